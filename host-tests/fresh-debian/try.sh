@@ -4,9 +4,10 @@
 #
 #   sudo host-tests/fresh-debian/try.sh [TRIAL ...]    all trials, or those named; exit code 1 if one fails
 #
-# Needs root, debootstrap, e2fsprogs, a Debian with network, rustup's stable toolchain, 6 GB and a quarter of an hour.
-# Changes nothing but a folder of its own: the Debian is made there once, and each trial runs in a layer over it. In there
-# rustup has no targets and reaches no server, so that Debian's packages must do.
+# Needs root, debootstrap, e2fsprogs, a Debian with network, rustup's stable toolchain, 6 GB and a
+# quarter of an hour. Changes nothing but a folder of its own: the Debian is made there once, and
+# each trial runs in a layer over it. In there rustup has no targets and reaches no server, so that
+# Debian's packages must do, unpacked into target.
 set -euo pipefail
 
 here=$(cd "$(dirname "$0")" && pwd)
@@ -102,7 +103,7 @@ said() { grep --quiet -- "$1" "$folder/said" || fail "it does not say: $1"; }
 # The next run ends well, the one after it finds nothing to do.
 sets_up() {
     enter "$folder/root" > "$folder/said" 2>&1 <<'END' || fail "it does not set up"
-        target/debug/host-tests setup && target/debug/host-tests setup
+        target/debug/host-tests setup --yes && target/debug/host-tests setup
 END
     said "nothing had to be done"
 }
@@ -119,25 +120,27 @@ ends() {
 
 twice-at-once() {
     enter "$folder/root" > "$folder/said" 2>&1 <<'END' || fail "one of the two failed"
-        target/debug/host-tests setup &
-        target/debug/host-tests setup && wait $!
+        target/debug/host-tests setup --yes &
+        target/debug/host-tests setup --yes && wait $!
 END
     sets_up
 }
 
 broken-qemu() {
-    sets_up && truncate --size=100000 "$folder/root/usr/bin/qemu-system-arm" && sets_up
+    sets_up && truncate --size=100000 "$folder/root/opt/double-pendulum/target/qemu/usr/bin/qemu-system-arm" || return
+    ends 'target/debug/host-tests setup' 0 && said "unpacked qemu-system-arm into target/qemu" && sets_up
 }
 
 without-root() {
     chown nobody "$folder/root/opt/double-pendulum/target" # as it is for whoever made the clone
     ends 'setpriv --reuid=nobody --regid=nogroup --clear-groups target/debug/host-tests setup' 2
-    said "only root may install packages" && said "what brings it: " && sets_up
+    # The compiler and QEMU are unpacked, which any user can do; Node.js is not.
+    said "only root may install packages" && said "run cargo setup --yes, or " && sets_up
 }
 
 without-network() {
     ends 'target/debug/host-tests setup' 2 --net
-    said "apt-get: " && said "what brings it: " && sets_up
+    said "E: " && said "run rustup target add " && sets_up
 }
 
 full-disk() { ends 'target/debug/host-tests setup' 2 && said "No space left\|free space"; }

@@ -1,6 +1,6 @@
 //! Motions computed on request, by any method.
 //!
-//! A [`Request`] names a [`Method`](double_pendulum::Method) and a motion. The service on the boards answers it step by step
+//! A [`Request`] names a [`Method`] and a motion. The service on the boards answers it step by step
 //! ([`Job`]), `cargo simulate` all at once ([`Request::readings`]); `cargo count` counts its steps, and its bits on host and
 //! chip are compared, by [`Request::crc`]. It is the same code wherever it runs, so that errors may be computed on the host
 //! and costs counted on the chip.
@@ -83,16 +83,21 @@ impl Request {
         }
     }
 
-    /// The longest step, s, that resolves every motion of this energy: [`Pendulum::admissible_step`]. None for the closed
-    /// form, which takes any, and for what the kernel refuses.
+    /// Returns the longest step, s, that resolves every motion of this energy; `None` for the
+    /// closed form, which takes any step, and for values that the kernel refuses.
+    ///
+    /// For RK4 it is [`Pendulum::admissible_step`]. A step of extrapolation of order 2 K errs as
+    /// little when it is K times as long.
     pub fn admissible_step(&self) -> Option<f64> {
         let ([a1, a2], [w1, w2]) = (self.angles, self.velocities);
-        let pendulum = Pendulum::<f64>::new(&self.parameters)
-            .ok()
-            .filter(|_| self.method.integrator() != Integrator::ClosedForm)?;
-        pendulum
-            .admissible_step(&pendulum.to_state(&Motion { a1, a2, w1, w2 }))
-            .ok()
+        let share = match self.method.integrator() {
+            Integrator::ClosedForm => return None,
+            Integrator::Rk4 => 1,
+            Integrator::Extrapolation => self.method.order() / 2,
+        };
+        let pendulum = Pendulum::<f64>::new(&self.parameters).ok()?;
+        let step = pendulum.admissible_step(&pendulum.to_state(&Motion { a1, a2, w1, w2 }));
+        Some(f64::from(share) * step.ok()?)
     }
 
     /// From its bytes in postcard's format, each as two hexadecimal digits.

@@ -36,7 +36,7 @@ use crate::timing::{DIRECT_REFILL, INDIRECT_REFILL, RESULT_USE_STALL, UNALIGNED_
 
 /// What every table of cycles says about them.
 pub const ERROR_BAR: &str = "Cycles are estimated: 1.6 % off (root mean square) and at most 5.0 % for 76 published kernels, 3 to 5 % \
-     too low on an STM32L4R5, none of them with an M0+; floating-point sequences held against chips for VADD, VDIV and moves only; \
+     too low on an STM32L4R5, no data for the M0+; floating-point timing checked for VADD, VDIV and moves only; \
      wait states cost extra (34 % at 2 on an STM32F1 for one AES).";
 
 /// Executed instructions, which are exact, and the cycles they take by the published timings, which are an estimate.

@@ -14,19 +14,34 @@ use crate::console::cli::{Refused, choice, complain, say};
 use crate::emulator::boards::{BOARDS, Board};
 use crate::emulator::process;
 use crate::emulator::qemu::{Clock, Machine, Settings};
-use crate::emulator::toolchain;
+use crate::emulator::toolchain::{self, Consent};
 
-/// Finds or brings all that builds and runs the firmware: the ARM core library, QEMU, and rp2040js for the Pico.
+/// Finds or fetches all that builds and runs the firmware: the ARM core library, QEMU, and rp2040js
+/// for the Pico.
 #[derive(Debug, Parser)]
-#[command(name = "cargo setup")]
-pub struct SetupOptions {}
+#[command(
+    name = "cargo setup",
+    after_help = "Example: cargo setup --yes
 
-pub fn setup(_: &SetupOptions) -> anyhow::Result<()> {
+Everything goes into target, host-tests/rp2040 and rustup's own folder, but for Node.js and npm: where they are missing, they
+are installed with apt-get after a question, or by --yes without one; elsewhere nothing is installed."
+)]
+pub struct SetupOptions {
+    /// Install missing system packages (nodejs, npm) without asking
+    #[arg(long)]
+    yes: bool,
+}
+
+fn consent(yes: bool) -> Consent {
+    if yes { Consent::Given } else { Consent::Ask }
+}
+
+pub fn setup(options: &SetupOptions) -> anyhow::Result<()> {
     let is_ready = toolchain::ready().is_ok() && toolchain::ready_for_pico().is_ok();
     say(toolchain::set_up()?)?;
     say(format_args!(
         "Raspberry Pi Pico: rp2040js under {}",
-        toolchain::set_up_pico()?.display()
+        toolchain::set_up_pico_with(consent(options.yes))?.display()
     ))?;
     if is_ready {
         say("nothing had to be done")?;
@@ -44,10 +59,10 @@ pub struct FwOptions {
     /// A binary of the firmware, or the path of an ELF file that is built already
     #[arg(value_name = "BIN", required_unless_present = "check")]
     binary: Option<PathBuf>,
-    /// The board to run it on; else the first that it is made for
-    #[arg(long, value_name = "NAME", value_parser = choice(&BOARDS, |board| board.name), hide_possible_values = true)]
+    /// The board to run it on [default: the first that it is made for]
+    #[arg(long, visible_alias = "on", value_name = "NAME", value_parser = choice(&BOARDS, |board| board.name), hide_possible_values = true)]
     board: Option<&'static Board>,
-    /// End it after this long, successfully; else it is given an hour, and to need more is an error
+    /// Stop it after this long and end with success [default: fails after one hour]
     #[arg(long, value_name = "N")]
     seconds: Option<u32>,
     /// Only check that all binaries compile for all targets without a warning, clippy's included if it is installed
@@ -96,7 +111,7 @@ pub fn fw(options: &FwOptions) -> anyhow::Result<ExitCode> {
     };
     match (ended, options.seconds) {
         (Err(error), Some(seconds)) if is_late(&error) => {
-            complain(format_args!("ended after {seconds} s, as told"));
+            complain(format_args!("stopped after {seconds} s, as requested"));
             Ok(ExitCode::SUCCESS)
         }
         (ended, _) => Ok(process::exit_code(ended?)),
@@ -153,6 +168,9 @@ pub struct TestOptions {
     /// Run the tests that take hours, too
     #[arg(long)]
     long: bool,
+    /// Install missing system packages (nodejs, npm) without asking
+    #[arg(long)]
+    yes: bool,
 }
 
 /// For every test, the compiling included, on a slow, busy machine; and for the long ones too.
@@ -164,7 +182,7 @@ const THREADS: &str = "RUST_TEST_THREADS";
 /// The set-up, the firmware, then exactly `cargo test`, with its own output and exit code.
 pub fn verify(options: &TestOptions) -> anyhow::Result<ExitCode> {
     let toolchain = toolchain::set_up()?;
-    toolchain::set_up_pico()?;
+    toolchain::set_up_pico_with(consent(options.yes))?;
     let limit = LIMITS[usize::from(options.long)];
     let test = |arguments: &[&str]| {
         let mut command = Command::new("cargo");
@@ -178,6 +196,11 @@ pub fn verify(options: &TestOptions) -> anyhow::Result<ExitCode> {
         }
         process::spawn(&mut command, limit)
     };
+    complain(if options.long {
+        "note: all tests, those that take hours included"
+    } else {
+        "note: all tests take some ten minutes"
+    });
     // Tests and firmware are compiled side by side: neither keeps all processors busy by itself.
     let mut compiling = test(&["--no-run", "--quiet"])?;
     toolchain.build_ahead()?;
@@ -187,7 +210,11 @@ pub fn verify(options: &TestOptions) -> anyhow::Result<ExitCode> {
     } else {
         &[]
     };
-    Ok(process::exit_code(test(arguments)?.wait()?))
+    let status = test(arguments)?.wait()?;
+    if status.success() {
+        say("all tests passed")?;
+    }
+    Ok(process::exit_code(status))
 }
 
 #[test]

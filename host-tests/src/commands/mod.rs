@@ -6,6 +6,7 @@ pub mod emulated;
 pub mod figures;
 pub mod flash;
 pub mod flips;
+pub mod out_file;
 pub mod plan;
 pub mod prove;
 pub mod report;

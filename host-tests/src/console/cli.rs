@@ -2,7 +2,6 @@
 
 use std::env;
 use std::fmt::{self, Display};
-use std::fs::{self, File};
 use std::io::{self, ErrorKind, Write, stderr, stdout};
 use std::path::Path;
 use std::process::{ExitCode, Termination};
@@ -73,27 +72,7 @@ pub fn complain(line: impl Display) {
     let _ = writeln!(stderr(), "{line}");
 }
 
-/// Refuses a file that cannot be written, before the work for it begins. What is there stays as it is.
-pub fn check_writable(option: &str, file: &Path) -> Result<(), Refused> {
-    let was_there = file.exists();
-    let opened = File::options().create(true).append(true).open(file);
-    let removed = opened.and_then(|_| {
-        if was_there {
-            Ok(())
-        } else {
-            fs::remove_file(file)
-        }
-    });
-    removed.map_err(|error| unwritable(option, file, &error))
-}
-
-/// Writes a file of the folder that `--out` names, which is made.
-pub fn write(file: &Path, bytes: impl AsRef<[u8]>) -> Result<(), Refused> {
-    let made = file.parent().map_or(Ok(()), fs::create_dir_all);
-    made.and_then(|()| fs::write(file, bytes))
-        .map_err(|error| unwritable("--out", file, &error))
-}
-
+/// The refusal of a file that cannot be written.
 pub fn unwritable(option: &str, path: &Path, error: &io::Error) -> Refused {
     Refused::because(format_args!(
         "{option}: cannot write {}: {error}",
@@ -154,12 +133,18 @@ fn parse<Options: Parser>() -> Result<Options, ExitCode> {
         })
 }
 
-/// The first paragraph of clap's report as one line; the usage that follows is left to `--help`.
+/// The first paragraph of clap's report as one line, and its tip; the usage that follows is left to
+/// `--help`.
 fn one_line(report: &str) -> String {
-    report
+    let first = report.lines().take_while(|line| !line.is_empty());
+    let line = first.map(str::trim).collect::<Vec<_>>().join(" ");
+    let tip = report
         .lines()
-        .take_while(|line| !line.is_empty())
-        .map(str::trim)
-        .collect::<Vec<_>>()
-        .join(" ")
+        .find_map(|line| line.trim().strip_prefix("tip: a similar "))
+        .map_or(String::new(), |tip| format!("; a similar {tip}"));
+    // The standard library's words for a number that is none.
+    let line = line
+        .replace("invalid digit found in string", "not a whole number")
+        .replace("invalid float literal", "not a number");
+    line + &tip
 }

@@ -26,7 +26,7 @@ impl Progress {
         let progress = Self::new(
             doing,
             ProgressBar::new_spinner(),
-            "{spinner} {prefix} {elapsed} {msg:.dim}",
+            "{spinner} {prefix} {elapsed} {wide_msg:.dim}",
         );
         if progress.bar.is_hidden() {
             complain(format_args!("{doing} ..."));

@@ -7,6 +7,7 @@ pub mod host;
 pub mod pico;
 pub mod process;
 pub mod qemu;
+pub mod scratch;
 pub mod stream;
 pub mod toolchain;
 

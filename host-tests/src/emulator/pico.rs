@@ -13,6 +13,7 @@ use firmware::protocol::{self, Frame, MAX_WIRE, ToHost, encode_command};
 use crate::emulator::flash::{flash_image, uf2};
 use crate::emulator::process::{self, Running};
 use crate::emulator::qemu::{LogDecoder, LogLine, Screenshot};
+use crate::emulator::scratch::Scratch;
 use crate::emulator::toolchain::workspace;
 use crate::emulator::up_to_frame;
 use crate::link::{Counts, Inbox};
@@ -26,7 +27,8 @@ pub struct PicoMachine {
     input: ChildStdin,
     output: BufReader<ChildStdout>,
     _process: Running,
-    _file: tempfile::NamedTempFile,
+    /// Of the program's file; removed after the emulator has ended.
+    _folder: Scratch,
     usb: Inbox,
     uart: Inbox,
     log: LogDecoder,
@@ -40,12 +42,13 @@ impl PicoMachine {
     pub fn start(node: &Path, elf: &Path, limit: Duration) -> anyhow::Result<Self> {
         let program = std::fs::read(elf)?;
         let (start, image) = flash_image(&program)?;
-        let file = tempfile::NamedTempFile::new()?;
-        std::fs::write(file.path(), uf2(start, &image))?;
+        let folder = Scratch::new()?;
+        let file = folder.path().join("pico.uf2");
+        std::fs::write(&file, uf2(start, &image))?;
         let mut command = Command::new(node);
         command
             .arg(workspace().join("host-tests/rp2040/main.js"))
-            .arg(file.path());
+            .arg(&file);
         command.stdin(Stdio::piped()).stdout(Stdio::piped());
         let mut process = process::spawn(&mut command, limit)?;
         let pipes = process.child.stdin.take().zip(process.child.stdout.take());
@@ -58,7 +61,7 @@ impl PicoMachine {
             input,
             output,
             _process: process,
-            _file: file,
+            _folder: folder,
             usb,
             uart,
             log,

@@ -1,5 +1,6 @@
-//! Supervised child processes: each has a time limit and its own process group, and the whole group is killed when its owner
-//! lets go of it, when the time is up, and when this process ends, interrupted (Ctrl-C, SIGTERM, SIGHUP) or killed.
+//! Supervised child processes: each has a time limit and its own process group, and the whole group
+//! is killed when its owner lets go of it, when the time is up, and when this process ends,
+//! interrupted (Ctrl-C, SIGQUIT, SIGTERM, SIGHUP) or killed.
 //!
 //! A shell in the group, the warden, does it. Groups within groups end too, for each has a warden of its own.
 
@@ -12,7 +13,7 @@ use std::sync::{Arc, Mutex, Once, PoisonError};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use signal_hook::consts::{SIGHUP, SIGINT, SIGKILL, SIGTERM};
+use signal_hook::consts::{SIGHUP, SIGINT, SIGKILL, SIGQUIT, SIGTERM};
 use signal_hook::flag::register_usize;
 use signal_hook::iterator::Signals;
 
@@ -164,8 +165,9 @@ pub fn run_watched(
     }
 }
 
-/// The signals that interrupt a command: Ctrl-C, a request to end, a terminal that is closed.
-const INTERRUPTS: [i32; 3] = [SIGINT, SIGTERM, SIGHUP];
+/// The signals that interrupt a command: Ctrl-C, Ctrl-\, a request to end, a terminal that is
+/// closed.
+const INTERRUPTS: [i32; 4] = [SIGINT, SIGQUIT, SIGTERM, SIGHUP];
 
 /// The exit code that the shell has for a command ended by a signal, 130 after Ctrl-C; success for 0, which is none.
 pub fn interrupted_by(signal: usize) -> ExitCode {
@@ -204,9 +206,11 @@ pub fn on_interrupt(hook: impl FnOnce() + Send + 'static) {
     hooks().push(Box::new(hook));
 }
 
-/// An interrupt takes this folder away too, which no value is dropped for.
-pub fn remove_on_interrupt(folder: &Path) {
-    let folder = folder.to_owned();
+/// Removes this file or folder when this process is interrupted, for then no value is dropped.
+pub fn remove_on_interrupt(path: &Path) {
+    let path = path.to_owned();
     // It may be gone already.
-    on_interrupt(move || drop(std::fs::remove_dir_all(folder)));
+    on_interrupt(move || {
+        drop(std::fs::remove_file(&path).or_else(|_| std::fs::remove_dir_all(path)))
+    });
 }

@@ -1,9 +1,11 @@
 //! What the firmware needs from outside, found or brought: the ARM core library, `qemu-system-arm` and, for the Raspberry Pi
 //! Pico, rp2040js.
 //!
-//! [`ready`] only looks. [`set_up`] brings what is missing: the core library by `rustup target add`, or else from
-//! Debian's source packages; QEMU from Debian's packages, installed, or unpacked into `qemu` in the target folder where they
-//! cannot be. Both ways build the same firmware with the same flags.
+//! [`ready`] only looks. [`set_up`] brings what is missing and changes nothing on the system: the
+//! core library by `rustup target add`, or else Debian's compiler and sources, unpacked into `rust`
+//! in the target folder; QEMU from Debian's packages, unpacked into `qemu` there. Both ways build
+//! the same firmware with the same flags. Only Node.js, which runs rp2040js, is installed on the
+//! system, and only after the user has agreed ([`Consent`]).
 
 mod bring;
 mod build;
@@ -14,10 +16,10 @@ use std::process::exit;
 use std::sync::OnceLock;
 use std::{env, fmt};
 
-pub use bring::QUICK;
 use bring::turn;
+pub use bring::{Consent, QUICK};
 pub use tools::find;
-use tools::{CORE_PACKAGES, Emulator, QEMU, QEMU_RISCV};
+use tools::{CORE_PACKAGES, Emulator, FromSource, QEMU, QEMU_RISCV};
 
 use crate::console::cli::{REFUSED, Refused, complain};
 
@@ -30,18 +32,20 @@ pub const TARGETS: [&str; 3] = [
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Toolchain {
-    /// Where the core library is not ready-made but built from the sources that Debian's compiler carries, by that compiler: the
-    /// folder that holds `rust-lld`.
-    linker: Option<PathBuf>,
+    /// Debian's compiler, where rustup has no ready-made core library.
+    from_source: Option<FromSource>,
     pub qemu: PathBuf,
 }
 
-/// That something is missing: why, and what brings it, in a line.
-fn missing(installs: bool, what: &str, why: &str, by_hand: &str) -> Refused {
-    let setup = if installs { "" } else { "cargo setup, or " };
-    Refused::because(format_args!(
-        "{what} is missing: {why}; what brings it: {setup}{by_hand}"
-    ))
+/// The refusal of a command that misses something: why, and what to do, in a line. The command
+/// `setup` is left out if it `is_tried` already.
+fn missing(is_tried: bool, what: &str, why: &str, setup: &str, by_hand: &str) -> Refused {
+    let setup = if is_tried {
+        String::new()
+    } else {
+        format!("run {setup}, or ")
+    };
+    Refused::because(format_args!("{what} is missing: {why}; {setup}{by_hand}"))
 }
 
 /// The tools, if all are there; installs nothing. Looks once per process.
@@ -52,9 +56,9 @@ pub fn ready() -> Result<Toolchain, Refused> {
 
 /// The tools, brought if need be; what was done for it is said. Two set-ups at once take turns.
 pub fn set_up() -> Result<Toolchain, Refused> {
-    let refused = |error| {
+    let refused = |_| {
         Refused::because(format_args!(
-            "QEMU's pipes: TMPDIR={}: {error}",
+            "TMPDIR={}: not a folder one can write to",
             env::temp_dir().display()
         ))
     };
@@ -81,21 +85,22 @@ pub fn set_up_for(target: &str) -> Result<Toolchain, Refused> {
 
 /// Both of them, or a line for each that is missing.
 fn both(installs: bool, targets: &[&str], emulator: &Emulator) -> Result<Toolchain, Refused> {
+    const SETUP: &str = "cargo setup";
     let packages = format!(
-        "rustup target add {}, or Debian's {}",
+        "run rustup target add {}, or as root apt-get install {}",
         targets.join(" "),
         CORE_PACKAGES.join(" ")
     );
     let core = tools::core(installs, targets)
-        .map_err(|why| missing(installs, "the core library", &why, &packages));
+        .map_err(|why| missing(installs, "Rust's ARM library", &why, SETUP, &packages));
     let by_hand = format!(
-        "this system's package {} (Homebrew: qemu)",
+        "install this system's package {} (Homebrew: qemu)",
         emulator.package
     );
     let qemu = tools::qemu(installs, emulator)
-        .map_err(|why| missing(installs, emulator.program, &why, &by_hand));
+        .map_err(|why| missing(installs, emulator.program, &why, SETUP, &by_hand));
     match (core, qemu) {
-        (Ok(linker), Ok(qemu)) => Ok(Toolchain { linker, qemu }),
+        (Ok(from_source), Ok(qemu)) => Ok(Toolchain { from_source, qemu }),
         (Err(core), Err(qemu)) => Err(Refused::because(format_args!("{core}\n{qemu}"))),
         (Err(missing), _) | (_, Err(missing)) => Err(missing),
     }
@@ -103,30 +108,36 @@ fn both(installs: bool, targets: &[&str], emulator: &Emulator) -> Result<Toolcha
 
 /// Node.js with the emulator of the Raspberry Pi Pico, if it is there; installs nothing.
 pub fn ready_for_pico() -> Result<PathBuf, Refused> {
-    tools::rp2040js(false)
+    tools::rp2040js(None)
 }
 
-/// The same, brought if need be.
+/// The same, brought if need be; the user is asked before anything is installed on the system.
 pub fn set_up_pico() -> Result<PathBuf, Refused> {
+    set_up_pico_with(Consent::Ask)
+}
+
+/// The same, where the user may have agreed already.
+pub fn set_up_pico_with(consent: Consent) -> Result<PathBuf, Refused> {
     ready_for_pico().or_else(|_| {
         let _turn = turn()?;
-        tools::rp2040js(true)
+        tools::rp2040js(Some(consent))
     })
 }
 
 impl fmt::Display for Toolchain {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match &self.linker {
+        match &self.from_source {
             None => writeln!(
                 f,
                 "ARM core library: ready-made, for {}",
                 TARGETS.join(", ")
             )?,
-            Some(folder) => {
+            Some(FromSource { rustc, linker, .. }) => {
                 writeln!(
                     f,
-                    "ARM core library: from Debian's sources, linked by rust-lld of {}",
-                    folder.display()
+                    "ARM core library: built from source by {}, linked by rust-lld of {}",
+                    rustc.display(),
+                    linker.display()
                 )?;
             }
         }

@@ -30,8 +30,12 @@ pub fn check(name: &str, picture: &str) -> Result<(), String> {
     if env::var_os(BLESS).is_some() {
         return fs::write(&path, picture).map_err(|error| format!("{}: {error}", path.display()));
     }
-    let committed =
-        fs::read_to_string(&path).map_err(|error| format!("{}: {error}", path.display()))?;
+    let committed = fs::read_to_string(&path).map_err(|error| {
+        format!(
+            "{}: {error}; a new one is written by {BLESS}=1",
+            path.display()
+        )
+    })?;
     let differs = |(row, (old, new)): (usize, (&str, &str))| {
         (old != new).then(|| format!("row {row}\n  was |{old}|\n  is  |{new}|"))
     };

@@ -7,6 +7,7 @@ use std::io::{self, BufRead, BufReader, Read};
 use std::os::unix::fs::PermissionsExt;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
+use std::time::{Duration, SystemTime};
 
 use firmware::protocol::ToHost;
 use host_tests::emulator::boards::{PICO, STM32F405};
@@ -29,7 +30,10 @@ fn what_runs_for_ever_ends_well_when_it_is_told_to() {
     let told = fw(&["mps2-an386", "--seconds", "2"]);
     assert_eq!(told.status.code(), Some(0), "{}", told.stderr);
     assert!(told.stdout.contains("boot: mps2-an386"), "{}", told.stdout);
-    assert_eq!(told.stderr.lines().last(), Some("ended after 2 s, as told"));
+    assert_eq!(
+        told.stderr.lines().last(),
+        Some("stopped after 2 s, as requested")
+    );
     assert_eq!(
         fw(&["inject-panic", "--seconds", "600"]).status.code(),
         Some(1),
@@ -67,11 +71,11 @@ fn a_listing_adds_up_to_the_row() {
     );
 }
 
-#[test]
-fn an_interrupt_leaves_nothing_in_the_temporary_folder() {
-    let temporary = tempfile::tempdir().expect("there is room for it");
+/// Starts a board whose folder is in `temporary`, and ends the command by a signal once the board
+/// runs; the exit code.
+fn ended_by(signal: Signal, temporary: &Path) -> Option<i32> {
     let mut command = program("fw");
-    command.arg("lm3s6965evb").env("TMPDIR", temporary.path());
+    command.arg("lm3s6965evb").env("TMPDIR", temporary);
     command
         .stdin(Stdio::null())
         .stdout(Stdio::piped())
@@ -80,11 +84,47 @@ fn an_interrupt_leaves_nothing_in_the_temporary_folder() {
     let mut log = BufReader::new(fw.child.stdout.take().expect("piped"));
     log.read_line(&mut String::new())
         .expect("the board says something");
-    let left = || fs::read_dir(temporary.path()).expect("it is there").count();
-    assert!(left() > 0, "the board has its folder there");
-    kill(Pid::from_raw(fw.child.id().cast_signed()), Signal::SIGTERM).expect("it runs");
-    assert_eq!(fw.wait().expect("it ends").code(), Some(143));
-    assert_eq!(left(), 0);
+    assert!(
+        !left(temporary).is_empty(),
+        "the board has its folder there"
+    );
+    kill(Pid::from_raw(fw.child.id().cast_signed()), signal).expect("it runs");
+    fw.wait().expect("it ends").code()
+}
+
+/// What is in a folder.
+fn left(folder: &Path) -> Vec<PathBuf> {
+    let entries = fs::read_dir(folder).expect("it is there");
+    entries
+        .map(|entry| entry.expect("an entry").path())
+        .collect()
+}
+
+#[test]
+fn an_interrupted_command_leaves_no_temporary_folder() {
+    let temporary = tempfile::tempdir().expect("there is room for it");
+    assert_eq!(ended_by(Signal::SIGTERM, temporary.path()), Some(143));
+    assert_eq!(left(temporary.path()), [""; 0].map(PathBuf::from));
+}
+
+#[test]
+fn the_folder_of_a_killed_command_is_removed_by_the_next() {
+    const LONG_AGO: Duration = Duration::from_secs(3600);
+    let temporary = tempfile::tempdir().expect("there is room for it");
+    assert_eq!(ended_by(Signal::SIGKILL, temporary.path()), None);
+    let folders = left(temporary.path());
+    let [folder] = &folders[..] else {
+        panic!("{folders:?}")
+    };
+    let opened = fs::File::open(folder).expect("a folder");
+    opened
+        .set_modified(SystemTime::now() - LONG_AGO)
+        .expect("its time");
+    let mut next = program("fw");
+    next.args(["mps2-an386", "--seconds", "1"])
+        .env("TMPDIR", temporary.path());
+    assert_eq!(output(&mut next).status.code(), Some(0));
+    assert_eq!(left(temporary.path()), [""; 0].map(PathBuf::from));
 }
 
 /// A command that was built in one checkout and is run in another works on that one; outside of any it says so.

@@ -6,10 +6,12 @@ mod demo_port;
 mod figures;
 mod firmware_cli;
 mod hygiene;
+mod out_file;
 mod process;
 mod random_input;
 mod readmes;
 mod rooms;
+mod set_up;
 mod simulate_cli;
 #[path = "../support/mod.rs"]
 mod support;

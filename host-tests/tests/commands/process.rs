@@ -95,6 +95,7 @@ fn children_end_with_an_interrupted_or_killed_process() {
         (Signal::SIGINT, Some(130), "hook\n"),
         (Signal::SIGTERM, Some(143), "hook\n"),
         (Signal::SIGHUP, Some(129), "hook\n"),
+        (Signal::SIGQUIT, Some(131), "hook\n"),
         (Signal::SIGKILL, None, ""),
     ] {
         let folder = tempfile::tempdir().expect("there is room for it");

@@ -2,9 +2,9 @@
 //! error in every row, and costs no more than it must.
 
 use clap::Parser;
-use double_pendulum::Motion;
+use double_pendulum::{Integrator, Method, Motion};
 use firmware::job::Request;
-use host_tests::commands::simulate::{Plan, SimulateOptions, choose};
+use host_tests::commands::simulate::{Plan, SimulateOptions, choose, plan};
 use host_tests::emulator::boards::BOARDS;
 use reference::taylor;
 
@@ -105,6 +105,113 @@ fn every_row_is_within_the_tolerance_and_no_longer_step_would_do()
                 }
             }
         }
+    }
+    Ok(())
+}
+
+fn planned(arguments: &str) -> Result<Plan, Box<dyn std::error::Error>> {
+    let words = std::iter::once("simulate").chain(arguments.split_whitespace());
+    Ok(plan(&SimulateOptions::try_parse_from(words)?)?)
+}
+
+#[test]
+fn without_a_step_the_longest_that_fits_the_rows_is_chosen()
+-> Result<(), Box<dyn std::error::Error>> {
+    const USUAL: f64 = 1.0 / 1024.0;
+    for (arguments, stride) in [
+        ("--every 0.1", 103),
+        ("--every 0.01", 11),
+        ("--every 1/2", 512),
+        ("--every 5/2", 2560),
+        ("--every 1/4096", 1),
+        ("--until 1 --every 1/3", 342),
+        // A hundred rows.
+        ("", 103),
+        ("--until 0", 11),
+        ("--method closed-form-f64 --every 5", 1),
+    ] {
+        let Plan {
+            request,
+            every,
+            note,
+        } = planned(arguments)?;
+        let whole = request.dt * f64::from(request.stride) / every.value();
+        assert!((whole - 1.0).abs() < 4.0 * f64::EPSILON, "{arguments}");
+        assert_eq!((request.stride, note), (stride, None), "{arguments}");
+        let is_closed = request.method.integrator() == Integrator::ClosedForm;
+        assert!(is_closed || request.dt <= USUAL, "{arguments}");
+    }
+    // A shorter one where the method or the fastest motion of the energy needs it.
+    for arguments in [
+        "--masses 1,1000 --until 1",
+        "--masses 1,1000 --until 1 --method extrapolation12-f64",
+        "--lengths 1e-8,1 --until 1/1024",
+        "--method rk4-fixed32 --masses 1,100 --angles 3,3 --until 1",
+    ] {
+        let Plan { request, note, .. } = planned(arguments)?;
+        let safe = request.admissible_step().unwrap_or(0.0);
+        assert!(
+            request.dt <= safe && note.is_none(),
+            "{arguments}: {request:?}"
+        );
+        let halved = 2.0 * request.dt;
+        assert!(halved > safe.min(USUAL), "{arguments}: {request:?}");
+    }
+    Ok(())
+}
+
+/// Motions whose energy is that of the velocities, at places where the velocities change fast.
+const FAST: [&str; 5] = [
+    "--angles 0.3,-0.2 --velocities 0,30",
+    "--angles 0,0.1 --velocities 20,-40 --masses 1,100",
+    "--angles 1,0 --velocities -10,10 --masses 1,10 --lengths 1,0.5",
+    "--angles 0,1.5 --velocities 50,-60 --masses 1,0.1",
+    "--angles 0.1,3.1 --velocities 30,30 --masses 1,30 --lengths 1,3",
+];
+
+/// The error of RK4's longest step that causes no warning, rad: 0.0072/4^5
+/// ([`Pendulum::admissible_step`](double_pendulum::Pendulum::admissible_step)).
+const SAFE_STEP_ERROR: f64 = 7.2e-6;
+/// Roundings of an angle in one step, rad.
+const ROUNDINGS: f64 = 1e-13;
+
+#[test]
+fn a_step_is_called_too_long_by_the_order_of_its_method() -> Result<(), Box<dyn std::error::Error>>
+{
+    let methods = [
+        Method::Rk4F64,
+        Method::Extrapolation8Fixed64,
+        Method::Extrapolation10Fixed64,
+        Method::Extrapolation12F64,
+        Method::Extrapolation16F64,
+    ];
+    for motion in FAST {
+        let mut rk4 = 0.0;
+        for method in methods {
+            let case = format!("{motion} --method {method}");
+            let safe = planned(&case)?.request.admissible_step().ok_or("no step")?;
+            for (steps, is_warned) in [((1.0 / safe).ceil(), false), ((1.0 / safe).floor(), true)] {
+                let step = format!("--step 1/{steps} --until 1/{steps}");
+                let Plan { request, note, .. } = planned(&format!("{case} {step}"))?;
+                let found = error(&request)?;
+                println!("{case} {step}: {found:.1e} rad");
+                assert_eq!(note.is_some(), is_warned, "{case}: {note:?}");
+                let limit = if method.integrator() == Integrator::Rk4 {
+                    rk4 = found;
+                    SAFE_STEP_ERROR
+                } else {
+                    ROUNDINGS.max(rk4)
+                };
+                assert!(is_warned || found <= limit, "{case}: {found:e} rad");
+            }
+        }
+    }
+    // What --tolerance takes, and what it would take from there down to the last digit.
+    for (motion, step) in [("120,120", "1/24"), ("120,120", "1/64"), ("2,2", "1/16")] {
+        let degrees = if motion == "2,2" { "" } else { "--degrees" };
+        let case =
+            format!("--angles {motion} {degrees} --method extrapolation16-fixed64 --step {step}");
+        assert_eq!(planned(&format!("{case} --until 1"))?.note, None, "{case}");
     }
     Ok(())
 }

@@ -16,4 +16,5 @@ mod scenes;
 mod service;
 mod ssd0323;
 mod ssd1306;
+mod tick_timer;
 mod warm_restart;

@@ -85,7 +85,7 @@ pub fn is_that_of_hamiltons_equations<F: Form>(tolerance: f64) {
             .expect("four");
         assert_near(
             format_args!(
-                "{form}: {} on average, beside Pendulum::step,",
+                "{form}: {} on average, compared with Pendulum::step (one of the two is wrong),",
                 EQUATIONS[worst]
             ),
             rates[worst],

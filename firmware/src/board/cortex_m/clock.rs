@@ -2,10 +2,11 @@
 
 use core::sync::atomic::{AtomicU32, Ordering};
 
-use cortex_m::peripheral::SYST;
 use cortex_m::peripheral::syst::SystClkSource;
+use cortex_m::peripheral::{SCB, SYST};
 use cortex_m_rt::exception;
 
+use super::tick_timer::{TickTimer, elapsed};
 use crate::config::TICK_RATE;
 
 /// Where the ticks are counted from: 5 s before they wrap, so that what goes wrong there does so in every test and not
@@ -54,17 +55,24 @@ pub fn ticks() -> u32 {
     TICKS.load(Ordering::Relaxed)
 }
 
-/// Processor cycles since the clock's start; wraps.
+/// Returns the processor cycles since the clock's start; wraps.
 pub fn cycles() -> u32 {
-    let period = PERIOD.load(Ordering::Relaxed);
-    loop {
-        let ticks = TICKS.load(Ordering::Relaxed);
-        let left = SYST::get_current();
-        // No tick came between the two readings.
-        if TICKS.load(Ordering::Relaxed) == ticks {
-            return ticks
-                .wrapping_mul(period)
-                .wrapping_add(period.wrapping_sub(1).wrapping_sub(left));
-        }
+    elapsed(&SysTickTimer, PERIOD.load(Ordering::Relaxed))
+}
+
+/// SysTick and its ticks.
+struct SysTickTimer;
+
+impl TickTimer for SysTickTimer {
+    fn ticks(&self) -> u32 {
+        ticks()
+    }
+
+    fn counter(&self) -> u32 {
+        SYST::get_current()
+    }
+
+    fn is_pending(&self) -> bool {
+        SCB::is_pendst_pending()
     }
 }

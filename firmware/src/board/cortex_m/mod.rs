@@ -11,6 +11,7 @@ pub(super) mod watchdog;
 #[cfg(armv6m)]
 mod long_product;
 mod stack;
+mod tick_timer;
 
 use core::str;
 

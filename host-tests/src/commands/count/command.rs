@@ -3,9 +3,9 @@
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use anyhow::{bail, ensure};
+use anyhow::{anyhow, bail, ensure};
 use clap::Parser;
-use double_pendulum::{Method, Parameters};
+use double_pendulum::{Error, Method, Parameter, Parameters};
 use firmware::job::Request;
 use rayon::prelude::*;
 
@@ -35,14 +35,15 @@ each argument. What the program prints, and how it ended, goes to stderr. If it 
 #[derive(Debug, Parser)]
 #[command(name = "cargo count", after_help = EXAMPLES)]
 pub struct CountOptions {
-    /// Only methods whose name contains this
+    /// The method of this name, or all whose name contains this
     #[arg(default_value = "")]
     method: String,
-    /// The boards, with commas between them; else lm3s6965evb, a Cortex-M3, with --elf lm3s6965evb-m4
-    #[arg(long, value_name = "NAME", value_delimiter = ',', value_parser = cli::choice(&BOARDS, |board| board.name))]
+    /// The boards, with commas between them [default: lm3s6965evb, a Cortex-M3; with --elf
+    /// lm3s6965evb-m4]
+    #[arg(long, visible_alias = "board", value_name = "NAME", value_delimiter = ',', value_parser = cli::choice(&BOARDS, |board| board.name))]
     on: Vec<&'static Board>,
-    /// Count a function of this program instead, with what interrupts it; the program ends itself by semihosting, or is
-    /// ended after --seconds
+    /// Count a function of this program instead, including interrupts; the program should exit by
+    /// semihosting, else it is stopped after --seconds
     #[arg(long, value_name = "FILE", requires = "function",
           conflicts_with_all = ["method", "steps", "m2", "l2", "angle", "halvings", "listing"])]
     elf: Option<PathBuf>,
@@ -52,7 +53,7 @@ pub struct CountOptions {
     /// How long that program may run, s
     #[arg(long, value_name = "N", default_value_t = 600, requires = "elf", value_parser = clap::value_parser!(u32).range(1..))]
     seconds: u32,
-    /// Steps to average over; else 256, or fewer of a costly method
+    /// Steps to average over [default: 256, or fewer of a costly method]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=MOST_STEPS))]
     steps: Option<u32>,
     /// The mass of bob 2, kg; that of bob 1 is 1
@@ -81,7 +82,8 @@ pub fn run(options: &CountOptions) -> anyhow::Result<()> {
     }
     if options.write_prices {
         let toolchain = toolchain::set_up()?;
-        return Ok(say(write_prices(&prices(&toolchain)?)?.display())?);
+        let file = write_prices(&prices(&toolchain)?)?;
+        return Ok(say(format_args!("wrote {}", file.display()))?);
     }
     let requests = options.requests().map_err(Refused::because)?;
     let boards = if options.on.is_empty() {
@@ -90,13 +92,14 @@ pub fn run(options: &CountOptions) -> anyhow::Result<()> {
         options.on.clone()
     };
     let toolchain = toolchain::set_up()?;
-    if !options.listing {
-        say(options.setting())?;
-        say(ERROR_BAR)?;
-        say(line(TITLES.map(str::to_owned)))?;
-    }
-    for board in boards {
+    for (place, board) in boards.into_iter().enumerate() {
         let target = Target::build(&toolchain, board)?;
+        // After the first build, which may fail.
+        if place == 0 && !options.listing {
+            say(options.setting())?;
+            say(ERROR_BAR)?;
+            say(line(TITLES.map(str::to_owned)))?;
+        }
         if options.listing {
             requests
                 .iter()
@@ -148,9 +151,16 @@ impl CountOptions {
             .crc()
             .map(|_| request)
         };
-        let methods = Method::ALL
+        let is_name = Method::ALL
             .iter()
-            .filter(|method| method.name().contains(&self.method));
+            .any(|method| method.name() == self.method);
+        let methods = Method::ALL.iter().filter(|method| {
+            if is_name {
+                method.name() == self.method
+            } else {
+                method.name().contains(&self.method)
+            }
+        });
         let checked: Vec<_> = methods.map(|&method| check(request(method))).collect();
         if checked.is_empty() {
             let names = Method::ALL
@@ -161,7 +171,8 @@ impl CountOptions {
             bail!("no method '{}'; there are {names}", self.method)
         }
         if checked.iter().all(Result::is_err) {
-            return Ok(checked.into_iter().collect::<Result<_, _>>()?);
+            let requests = checked.into_iter().collect::<Result<_, _>>();
+            return requests.map_err(|error| anyhow!("{}{error}", option_of(&error)));
         }
         Ok(checked.into_iter().flatten().collect())
     }
@@ -179,6 +190,17 @@ impl CountOptions {
             "one step of 2^-{halvings} s, averaged over the first steps from rest at {angle} rad; masses 1,{m2} kg, lengths \
              1,{l2} m, gravity {GRAVITY} m/s^2 (as an f32); instructions are counted"
         )
+    }
+}
+
+/// The option that sets what is refused, as an error begins; empty if none does.
+fn option_of(error: &Error) -> &'static str {
+    match error.parameter() {
+        Parameter::M2 => "--m2: ",
+        Parameter::L2 => "--l2: ",
+        Parameter::A1 | Parameter::A2 => "--angle: ",
+        Parameter::Dt => "--halvings: ",
+        _ => "",
     }
 }
 
@@ -321,4 +343,17 @@ fn count_calls(
         say(format_args!("{title:12} {mean:12.1} {least:12} {most:12}"))?;
     }
     Ok(())
+}
+
+#[test]
+fn a_full_name_counts_that_method_alone() {
+    for (name, methods) in [
+        ("rk4-f32-direction", 1),
+        ("direction", 2),
+        ("", Method::ALL.len()),
+    ] {
+        let options = CountOptions::try_parse_from(["count", name]);
+        let requests = options.map(|options| options.requests().map(|requests| requests.len()));
+        assert_eq!(requests.ok().and_then(Result::ok), Some(methods), "{name}");
+    }
 }

@@ -13,16 +13,16 @@ mod view;
 pub use options::DemoOptions;
 pub use panel::played;
 
-use std::fs;
 use std::io::{IsTerminal, stdin, stdout};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-use anyhow::{Context, ensure};
+use anyhow::ensure;
 use options::MOST_SECONDS;
 use panel::{Recording, png};
 use session::{Session, Source};
 
+use crate::commands::out_file::OutFile;
 use crate::console::cli::{Refused, complain, say};
 use crate::console::progress::Progress;
 use crate::emulator::boards::{Board, PICO};
@@ -140,8 +140,7 @@ fn headless(session: &mut Session, seconds: f64) -> anyhow::Result<()> {
 /// cable may flip bits: both are told, and neither is a fault.
 fn finish(options: &DemoOptions, mut session: Session) -> anyhow::Result<bool> {
     if let Some(path) = &options.screenshot {
-        fs::write(path, png(&session.screenshot)?)
-            .with_context(|| format!("cannot write {}", path.display()))?;
+        OutFile::create("--screenshot", path)?.write_whole(&png(&session.screenshot)?)?;
     }
     session.readings.lines.extend(session.source.told().0);
     let (

@@ -9,7 +9,8 @@ use firmware::config::PROCESSOR;
 use firmware::motion::Resources;
 use firmware::scenes::{AnyScene, SceneName};
 
-use crate::console::cli::{Refused, check_writable, choice};
+use crate::commands::out_file::check_writable;
+use crate::console::cli::{Refused, choice};
 use crate::emulator::boards::{BOARDS, Board, every_board};
 
 /// Shows the double pendulum on a board's panel, live in the terminal, each frame compared with the host's own; a panel that the

@@ -5,9 +5,9 @@
 
 use std::fs::File;
 use std::io::BufWriter;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-use anyhow::Context;
+use anyhow::{Context, anyhow};
 use firmware::config::TICK_RATE;
 use gif::{ColorOutput, DecodeOptions, Encoder, Frame as Picture, Repeat};
 use ratatui::Frame;
@@ -94,6 +94,7 @@ const GIF_RATE: i64 = 100;
 /// An animation as it is made.
 pub struct Recording {
     encoder: Encoder<BufWriter<File>>,
+    path: PathBuf,
     shown: Vec<u8>,
     /// The tick from which the next screenshot is wanted: until then the last is shown.
     due: Option<i64>,
@@ -109,6 +110,7 @@ impl Recording {
         encoder.set_repeat(Repeat::Infinite)?;
         Ok(Self {
             encoder,
+            path: path.to_owned(),
             shown: Vec::new(),
             due: None,
         })
@@ -143,14 +145,21 @@ impl Recording {
             .into();
         self.shown = now;
         let transparent = Some(UNCHANGED);
-        Ok(self.encoder.write_frame(&Picture {
+        let written = self.encoder.write_frame(&Picture {
             delay,
             width,
             height,
             transparent,
             buffer,
             ..Picture::default()
-        })?)
+        });
+        written.map_err(|error| {
+            // Half an animation is of no use. A device is no file to remove.
+            if self.path.is_file() {
+                let _ = std::fs::remove_file(&self.path);
+            }
+            anyhow!("--record: cannot write {}: {error}", self.path.display())
+        })
     }
 }
 
@@ -232,5 +241,23 @@ mod tests {
             drawn(128),
             pixels.map(|[above, below]| ("▀".to_owned(), above, below))
         );
+    }
+    #[test]
+    fn half_an_animation_is_removed_and_the_reason_is_given_once() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("half.gif");
+        let mut recording = Recording::create(&path).expect("a file");
+        // What is written from now on goes to a disk that is full.
+        let full = Recording::create(Path::new("/dev/full")).expect("a device");
+        recording.encoder = full.encoder;
+        let failed = (0..2000).find_map(|number| {
+            let mut canvas = Canvas::default();
+            canvas.update(number % 128, number / 128, |_| 15);
+            let tick = i64::from(number) * TICKS_PER_FRAME;
+            recording.add(&Screenshot::from(&canvas), tick).err()
+        });
+        let reason = format!("{:#}", failed.expect("the disk is full"));
+        assert_eq!(reason.matches("No space left").count(), 1, "{reason}");
+        assert!(reason.contains("half.gif") && !path.exists(), "{reason}");
     }
 }

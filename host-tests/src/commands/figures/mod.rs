@@ -13,7 +13,8 @@ use clap::Parser;
 use firmware::scenes::SceneName;
 
 use crate::commands::demo::{self, DemoOptions};
-use crate::console::cli::{complain, say, unwritable, write};
+use crate::commands::out_file::write;
+use crate::console::cli::{complain, say, unwritable};
 use crate::emulator::toolchain::workspace;
 
 /// Draws the book's figures 2 to 5 and 7 from the kernel, as SVG.
@@ -63,7 +64,8 @@ pub fn run(options: &FiguresOptions) -> Result<()> {
             .iter()
             .try_for_each(|&scene| record(scene, &folder))?;
     }
-    Ok(say(folder.display())?)
+    let folder = folder.join("figures");
+    Ok(say(format_args!("wrote {}", folder.display()))?)
 }
 
 pub fn animation(scene: SceneName, folder: &Path) -> PathBuf {

@@ -28,8 +28,12 @@ pub struct Map {
 /// A start's flip with the step, which is shown, and with half of it, which it is held against.
 pub type FlipPair = [Flip<f32>; 2];
 
-/// Starts that a thread follows by itself; the more, the fewer lanes are idle at its end.
+/// Starts that a thread follows by itself; the more, the fewer lanes are idle at its end. Fewer
+/// where each takes long, so that a portion ends every few seconds and progress is reported.
 const PORTION: usize = 8192;
+const LEAST_PORTION: usize = 64;
+/// The steps of a portion.
+const PORTION_STEPS: f64 = 1e9;
 
 impl Map {
     /// All starts, with the step that suits the pendulum, for a time `limit`, sqrt(l1/g), of the pendulum's l1 being its g.
@@ -46,6 +50,11 @@ impl Map {
             half: std::f64::consts::PI,
             searches,
         })
+    }
+
+    /// Returns the most steps that a start takes, with the step and with half of it.
+    pub fn steps(&self) -> f64 {
+        3.0 * f64::from(self.limit) / self.dt
     }
 
     /// Rows to compute: the lower half of a rectangle about hanging is the upper one's mirror image, both ways.
@@ -92,7 +101,8 @@ impl Map {
     /// What becomes of each; `tick` is told how many more are done.
     pub fn points(&self, tick: impl Fn(usize) + Sync) -> Result<Vec<FlipPair>, Error> {
         let (starts, [search, finer]) = (self.starts(), &self.searches);
-        let portions = starts.par_chunks(PORTION).map(|portion| {
+        let portion = ((PORTION_STEPS / self.steps()) as usize).clamp(LEAST_PORTION, PORTION);
+        let portions = starts.par_chunks(portion).map(|portion| {
             let [flips, checks] = [flips(search, portion)?, flips(finer, portion)?];
             tick(portion.len());
             Ok(flips

@@ -4,15 +4,15 @@ pub mod map;
 mod output;
 
 use std::f64::consts::PI;
-use std::fs;
 use std::path::PathBuf;
 
-use anyhow::{Context, Result, ensure};
+use anyhow::{Result, anyhow, ensure};
 use clap::Parser;
 use double_pendulum::Parameters;
 
-use crate::commands::simulate::{Number, Pair};
-use crate::console::cli::{Refused, check_writable, say};
+use crate::commands::out_file::OutFile;
+use crate::commands::simulate::{Number, Pair, option_of};
+use crate::console::cli::{Refused, complain, say};
 use crate::console::progress::Progress;
 use map::Map;
 
@@ -66,7 +66,7 @@ pub struct FlipsOptions {
         allow_hyphen_values = true
     )]
     centre: Pair,
-    /// How many times less than a whole turn the picture is across
+    /// Zoom factor (1 shows a whole turn)
     #[arg(
         long,
         value_name = "Z",
@@ -82,26 +82,41 @@ pub struct FlipsOptions {
     out: PathBuf,
 }
 
-/// Computes the map and writes the file; says how much of it is in doubt.
+/// The steps to a start from which their number is announced: a small map then takes a minute or
+/// more.
+const ANNOUNCED_STEPS: f64 = 1e6;
+
+/// Computes the map and writes the file; reports how much of it is uncertain.
 pub fn run(options: &FlipsOptions) -> Result<()> {
     let map = options
         .map()
         .map_err(|error| Refused::because(format_args!("{error:#}")))?;
-    check_writable("--out", &options.out)?;
-    let bar = Progress::of("starts", (map.size[0] * map.rows()) as u64);
+    let file = OutFile::create("--out", &options.out)?;
+    let all: usize = map.size.iter().product();
+    let computed = map.size[0] * map.rows();
+    let steps = map.steps();
+    if steps > ANNOUNCED_STEPS {
+        complain(format_args!(
+            "note: up to {steps:.1e} steps for each of {computed} starts; a smaller --limit takes less time"
+        ));
+    }
+    let doing = if computed < all {
+        format!("starts ({} more are mirror images)", all - computed)
+    } else {
+        "starts".to_owned()
+    };
+    let bar = Progress::of(&doing, computed as u64);
     let points = map.points(|done| bar.advance(done as u64))?;
     drop(bar);
-    let file = output::file(&options.out, &map, &points, options.doubt)?;
+    file.write_whole(&output::file(&options.out, &map, &points, options.doubt)?)?;
     let out = options.out.display();
-    fs::write(&options.out, file).with_context(|| format!("cannot write {out}"))?;
-    let all: usize = map.size.iter().product();
     let doubtful = map
         .shown(&points)
         .filter(|(_, point)| map.differ(*point))
         .count();
     let percent = 100.0 * doubtful as f64 / all as f64;
     Ok(say(format_args!(
-        "{out}: {doubtful} of {all} starts in doubt ({percent:.3} %)"
+        "wrote {out}; {doubtful} of {all} starts are uncertain ({percent:.3} %)"
     ))?)
 }
 
@@ -113,7 +128,7 @@ fn size(text: &str) -> Result<[usize; 2], String> {
     let number = |text: &str| {
         let number = text
             .parse()
-            .map_err(|_| format!("'{text}' is no whole number"))?;
+            .map_err(|_| format!("'{text}': not a whole number"))?;
         let (least, most) = (SIZES.start(), SIZES.end());
         if SIZES.contains(&number) {
             Ok(number)
@@ -172,15 +187,28 @@ impl FlipsOptions {
         }
         .cast::<f32>();
         let map =
-            Map::new(parameters, limit.value() as f32, *size).context("--masses, --lengths")?;
+            Map::new(parameters, limit.value() as f32, *size).map_err(|error| {
+                match option_of(&error, "") {
+                    "" => anyhow!(
+                        "--masses {}, --lengths {}: too extreme together for f32",
+                        self.masses,
+                        self.lengths
+                    ),
+                    option => anyhow!("{option}: {error}"),
+                }
+            })?;
         let map = Map {
             centre,
             half: PI / zoom.value(),
             ..map
         };
+        let longest = limit.value() * MOST_STEPS / map.steps();
+        // Two digits, rounded down.
+        let unit = 10_f64.powf(longest.log10().floor() - 1.0);
         ensure!(
-            2.0 * limit.value() / map.dt <= MOST_STEPS,
-            "--limit {limit}: more than a thousand million steps"
+            limit.value() <= longest,
+            "--limit {limit}: at most {:.1e} for these --masses and --lengths (over {MOST_STEPS:.0e} steps a start)",
+            (longest / unit).floor() * unit
         );
         Ok(map)
     }

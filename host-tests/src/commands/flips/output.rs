@@ -52,13 +52,15 @@ fn colour(map: &Map, point: FlipPair, doubt: bool) -> Colour {
     }
 }
 
-/// A row for each pixel, from the top left corner.
+/// A row for each pixel, from the top left corner. A time is empty if no rod can turn over, `inf`
+/// if none does within the limit.
 fn table(map: &Map, pixels: impl Iterator<Item = ([usize; 2], FlipPair)>) -> Result<Vec<u8>> {
-    let mut text = String::from("a1,a2,time,half_step\n");
+    let mut text =
+        String::from("a1 [rad],a2 [rad],time [sqrt(l1/g)],time_by_half_the_step [sqrt(l1/g)]\n");
     let word = |flip: Flip<f32>| match flip {
-        Flip::Never => "never".to_owned(),
+        Flip::Never => String::new(),
         Flip::After(time) => time.to_string(),
-        Flip::Later => "later".to_owned(),
+        Flip::Later => f32::INFINITY.to_string(),
     };
     for (place, point) in pixels {
         let ([a1, a2], [time, check]) = (map.start(place), point.map(word));

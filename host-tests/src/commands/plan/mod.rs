@@ -1,4 +1,4 @@
-//! `cargo plan`: how to compute a scene as cheaply as may be.
+//! `cargo plan`: the cheapest method that draws a scene.
 
 mod options;
 
@@ -9,15 +9,15 @@ use double_pendulum::plan::{Limit, Plan, Problem};
 use double_pendulum::{Method, Pendulum};
 use firmware::config::HALF_PIXEL;
 
-use crate::console::cli::{Refused, say};
+use crate::console::cli::{Refused, complain, say};
 
 const EXAMPLES: &str = "Examples:
   cargo plan --angles 90,90 --degrees --height 64 --duration 10
   cargo plan --masses 1,2.75 --angles 171,171 --degrees --target m4f
   cargo plan --scene figure-7 --target pico";
 
-/// Says how to compute a motion as cheaply as may be, right to half a pixel about the exact one, and until when that is
-/// expected; or that nothing the chip can afford is right in any frame, which is an answer, too (exit code 0).
+/// Finds the cheapest method that keeps the picture within half a pixel, and for how long. If the
+/// chip is too slow for any, it says so (exit code 0).
 ///
 /// Numbers are decimals (0.25, 1e-3) or fractions (1/256).
 #[derive(Debug, Parser)]
@@ -30,6 +30,7 @@ pub struct PlanOptions {
 
 pub fn run(PlanOptions { scene }: &PlanOptions) -> anyhow::Result<()> {
     let (problem, plan) = scene.plan().map_err(Refused::because)?;
+    scene.start.advice().iter().for_each(complain);
     Ok(words(&problem, &plan, &scene.target)
         .iter()
         .try_for_each(say)?)
@@ -46,7 +47,7 @@ fn words(scene: &Problem, plan: &Result<Plan, Limit>, chip: &Chip) -> Vec<String
                 format!("method   {}", plan.method),
                 format!("step     {}", step(scene, plan)),
                 format!(
-                    "horizon  expected to be right to half a pixel about the exact motion until {horizon:.2} s of {} s",
+                    "horizon  expected to stay within half a pixel of the exact motion until {horizon:.2} s of {} s",
                     scene.duration
                 ),
                 format!(
@@ -58,7 +59,7 @@ fn words(scene: &Problem, plan: &Result<Plan, Limit>, chip: &Chip) -> Vec<String
                     chip.title
                 ),
                 format!(
-                    "search   {:.2} s of the chip's time for planning",
+                    "search   finding this plan takes the chip {:.2} s",
                     plan.spent / chip.clock
                 ),
                 format!("why      {}", method(plan.method)),
@@ -66,10 +67,7 @@ fn words(scene: &Problem, plan: &Result<Plan, Limit>, chip: &Chip) -> Vec<String
             ]
         }
         Err(limit) => vec![
-            format!(
-                "nothing  that a {} can afford is right to half a pixel in any frame",
-                chip.title
-            ),
+            format!("nothing  no method is fast enough for a {}", chip.title),
             format!("why      {}", forbidden(*limit, frame)),
         ],
     };
@@ -100,30 +98,31 @@ fn method(method: Method) -> String {
     let directions = |why| format!("to draw, directions are enough and no angles needed; {why}");
     match method {
         Method::ClosedFormF32 => {
-            "until the horizon the linear motion is expected to be right to half a pixel".into()
+            "until the horizon the linear motion is within half a pixel".into()
         }
         Method::Rk4F32DirectionPlain => directions("the roundings of plain sums do not show"),
         Method::Rk4F32Direction => directions("the roundings of plain sums would show"),
         Method::Rk4Fixed32 => directions("integers are cheapest here"),
         Method::Extrapolation10Fixed64 => {
-            "32 bits show before, or take as many steps as cost more".into()
+            "32-bit methods are too inaccurate, or need so many steps that they cost more".into()
         }
         other => other.name().into(),
     }
 }
 
 fn limit(plan: &Plan, frame: f32) -> String {
-    let grow = |why: &str| format!("errors grow until they show{why}");
     match plan.limit {
         Limit::End if plan.steps > 1 => {
-            "with half the steps errors would show, or the fastest motion could be missed".into()
+            "half as many steps would be too inaccurate, or could miss the fastest motion".into()
         }
         Limit::End => "nothing cheaper that was tried is right to the end".into(),
-        Limit::Growth => grow(", in 64 bits as well; nothing here goes farther"),
-        Limit::Budget => grow(&format!(
-            "; what goes farther costs more than the {frame:.0} cycles allowed"
-        )),
-        Limit::Planning => "looking farther ahead costs more than the scene has time for".into(),
+        Limit::Growth => {
+            "the motion is chaotic: even 64 bits are not enough beyond this time".into()
+        }
+        Limit::Budget => format!(
+            "errors grow; a method that lasts longer costs more than the {frame:.0} cycles allowed"
+        ),
+        Limit::Planning => "planning further ahead takes more time than the scene has".into(),
         other => other.name().into(),
     }
 }
@@ -147,12 +146,12 @@ fn energy(scene: &Problem) -> Option<String> {
         return Some(String::from("without energy nothing moves"));
     }
     let turns = if pendulum.cannot_turn_over(&state) {
-        "no rod can turn over"
+        "there is not enough energy for a rod to turn over"
     } else {
-        "a rod may turn over"
+        "there is enough energy for a rod to turn over"
     };
     Some(format!(
-        "by its energy {turns}, and no motion takes less than 1/{:.0} s for a radian",
+        "{turns}; at most {:.0} rad/s",
         (1.0 / radian).ceil()
     ))
 }

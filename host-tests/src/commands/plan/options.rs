@@ -1,6 +1,7 @@
 //! What is planned, as the command line has it.
 
 use anyhow::{Context, bail, ensure};
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Parser, value_parser};
 use double_pendulum::plan::{Limit, Plan, PlanError, Problem};
 use firmware::config::{CORTEX_M0PLUS, CORTEX_M3, CORTEX_M4F, Processor, STM32F405};
@@ -9,6 +10,7 @@ use firmware::scenes::SceneName;
 
 use crate::commands::simulate::{Number, StartOptions, option_of};
 use crate::console::cli::choice;
+use crate::emulator::boards::every_board;
 use crate::emulator::host::Show;
 
 /// A scene, and the chip that computes it.
@@ -16,7 +18,8 @@ use crate::emulator::host::Show;
 pub struct SceneOptions {
     #[command(flatten)]
     pub start: StartOptions,
-    /// A scene of the boards as they start it, in place of all that moves: angles and masses are then the nearest `f32`
+    /// A built-in scene as the boards start it, in f32 (excludes --angles, --velocities, --masses,
+    /// --lengths, --gravity, --height, --duration and --rate)
     #[arg(long, value_name = "NAME", value_parser = choice(SceneName::ALL.iter().copied(), SceneName::name),
           conflicts_with_all = ["masses", "lengths", "gravity", "angles", "velocities", "degrees", "height", "duration", "rate"])]
     pub scene: Option<SceneName>,
@@ -39,9 +42,8 @@ pub struct SceneOptions {
     /// Frames per second, 1 to 65535
     #[arg(long, value_name = "N", default_value_t = 60, value_parser = value_parser!(u16).range(1..))]
     pub rate: u16,
-    /// The chip that computes it
-    #[arg(long, value_name = "CHIP", default_value = CHIPS[0].name,
-          value_parser = choice(CHIPS, |chip| chip.name))]
+    /// The chip that computes it; a board's name stands for its chip
+    #[arg(long, visible_alias = "on", value_name = "CHIP", default_value = CHIPS[0].name, value_parser = chip())]
     pub target: Chip,
 }
 
@@ -103,6 +105,21 @@ pub struct Chip {
     pub clock: f32,
     /// What its steps cost, and what may be spent.
     pub processor: Processor,
+}
+
+/// Reads the name of a chip, or that of a board with such a chip.
+fn chip() -> impl TypedValueParser<Value = Chip> {
+    let boards = |chip: &Chip| {
+        let boards = every_board().filter(|board| board.processor() == chip.processor);
+        boards.map(|board| board.name).collect::<Vec<_>>()
+    };
+    let names = CHIPS.map(|chip| PossibleValue::new(chip.name).aliases(boards(&chip)));
+    PossibleValuesParser::new(names).try_map(move |name| {
+        CHIPS
+            .into_iter()
+            .find(|chip| chip.name == name || boards(chip).contains(&&*name))
+            .ok_or("unknown")
+    })
 }
 
 /// Every chip, the default first: the LM3S6965, without a floating-point unit; the STM32F405, with one for `f32`; the slowest board's,

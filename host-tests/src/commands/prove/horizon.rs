@@ -152,21 +152,21 @@ pub fn words(
     };
     let predicted = match plan {
         Ok(plan) => format!(
-            "right until {:.3} s by {}, {} to a frame",
+            "right until {:.3} s by {}, steps to a frame: {}",
             plan.horizon, plan.method, plan.steps
         ),
-        Err(_) => String::from("nothing that the chip can afford is right in any frame"),
+        Err(_) => String::from("no method is fast enough"),
     };
     let unknown = told_apart(scene).map_or(String::new(), |time| {
-        format!("\nunknown    where a bob is at {time:.3} s: two motions of the digits on the panel are a rod apart")
+        format!("\nunknown    the numbers on the panel are too coarse to tell where a bob is after {time:.3} s")
     });
     format!(
-        "method     {method}, {steps} to a frame
-proved     right to half a pixel until {:.3} s, every one of {right} frames
+        "method     {method}, steps to a frame: {steps}
+proved     within half a pixel until {:.3} s, all {right} frames
            {first}
-open       {open} frames between, neither right nor wrong by proof
+undecided  {open} frames
 predicted  {predicted}
-known      the exact motion, each direction to {:.1e} at {end:.3} s{unknown}",
+known      exact motion enclosed within {:.1e} at {end:.3} s{unknown}",
         scene.time(right),
         frames.last().map_or(0.0, |frame| frame.width),
     )

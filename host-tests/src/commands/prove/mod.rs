@@ -1,4 +1,4 @@
-//! `cargo prove`: until when the frames of a chip are right, as a theorem.
+//! `cargo prove`: how long the frames of a chip are right, as a theorem.
 
 mod horizon;
 mod tables;
@@ -13,7 +13,7 @@ use double_pendulum::Method;
 use double_pendulum::plan::{Plan, Stepping};
 
 use crate::commands::plan::SceneOptions;
-use crate::console::cli::{Refused, choice, say};
+use crate::console::cli::{Refused, choice, complain, say};
 use crate::console::progress::Progress;
 use crate::emulator::process::{interrupted, interrupted_by};
 use crate::oracle::known_answers;
@@ -26,8 +26,9 @@ const EXAMPLES: &str = "Examples:
 
 Ctrl-C leaves what is proved until then.";
 
-/// Proves until when the frames that a chip draws are right to half a pixel: encloses the exact motion, rounding errors and
-/// all, and holds each frame of the planned method, which is bit-identical on every chip, against it.
+/// Proves how long the frames that a chip draws stay within half a pixel of the exact motion. It
+/// encloses that motion, rounding errors included, and checks each frame of the planned method,
+/// which is bit-identical on every chip.
 ///
 /// The motion is that of the decimals and fractions given; with --scene it is that of the board's own numbers.
 #[derive(Debug, Parser)]
@@ -70,11 +71,13 @@ pub fn run(options: &ProveOptions) -> anyhow::Result<ExitCode> {
     }
     let (scene, plan) = options.scene.plan().map_err(Refused::because)?;
     let given = || {
-        options
-            .scene
-            .start
-            .exact()
-            .ok_or("of a number, 18 digits at most can be enclosed")
+        let start = &options.scene.start;
+        start.exact().ok_or_else(|| {
+            format!(
+                "{}: at most 18 digits of a number can be enclosed",
+                start.too_long()
+            )
+        })
     };
     let of_board = options
         .scene
@@ -85,8 +88,10 @@ pub fn run(options: &ProveOptions) -> anyhow::Result<ExitCode> {
         method,
         steps: options.steps,
     });
+    options.scene.start.advice().iter().for_each(complain);
     let Some(stepping) = asked.or(plan.as_ref().ok().map(Plan::stepping)) else {
-        say("nothing that the chip can afford is right in any frame")?;
+        let chip = options.scene.target.title;
+        say(format_args!("no method is fast enough for a {chip}"))?;
         return Ok(ExitCode::SUCCESS);
     };
     let stopped = interrupted()?;

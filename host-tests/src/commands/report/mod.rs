@@ -18,8 +18,9 @@ use double_pendulum::Method;
 use firmware::config::HALF_PIXEL;
 
 use crate::commands::count::Target;
+use crate::commands::out_file::write;
 use crate::commands::table::{Table, between, small};
-use crate::console::cli::{say, unwritable, write};
+use crate::console::cli::{say, unwritable};
 use crate::emulator::boards::{BOARDS, Board};
 use crate::emulator::toolchain::{self, workspace};
 use accuracy::{LONG, SCENES, Scene};
@@ -80,7 +81,7 @@ pub fn run(options: &ReportOptions) -> Result<()> {
     } else if pages.iter().any(|(_, [page, made])| page != made) {
         say("the READMEs show other figures; cargo write-report --readme puts these there")?;
     }
-    Ok(say(folder.display())?)
+    Ok(say(format_args!("wrote {}", folder.display()))?)
 }
 
 /// Where they show the charts from, in the workspace.

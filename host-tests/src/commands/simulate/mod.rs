@@ -11,14 +11,15 @@ pub use request::{Plan, plan};
 pub use tolerance::choose;
 
 use std::fmt::{Display, LowerExp};
-use std::io::{self, BufWriter, Write};
+use std::io::{self, BufWriter, Write, stdout};
 use std::time::Duration;
 
-use anyhow::{Context, bail, ensure};
+use anyhow::{Context, anyhow, bail, ensure};
 use double_pendulum::{Method, Numbers, Pendulum};
 use firmware::job::{ON_BOARDS, Reading, Request};
 use firmware::protocol::{Answer, Command};
 
+use crate::commands::out_file::OutFile;
 use crate::console::cli::{Refused, complain, say};
 use crate::console::progress::Progress;
 use crate::emulator::boards::Board;
@@ -35,26 +36,58 @@ pub fn run(options: &SimulateOptions) -> anyhow::Result<()> {
         None => plan(options),
     };
     let plan = planned.map_err(|error| Refused::because(format_args!("{error:#}")))?;
-    plan.note.iter().for_each(complain);
-    let mut output = BufWriter::new(io::stdout().lock());
-    let (bar, mut rows) = (Progress::of("rows", u64::from(plan.request.samples) + 1), 0);
-    let mut write = |reading: &_| {
+    let notes = options.start.advice().into_iter().chain(plan.note.clone());
+    notes.for_each(complain);
+    let Some(path) = &options.out else {
+        let (rows, done) = write_rows(&plan, options, &mut stdout().lock())?;
+        return done.with_context(|| after(rows));
+    };
+
+    let mut file = OutFile::create("--out", path)?;
+    let (rows, done) =
+        write_rows(&plan, options, &mut file).map_err(|error| file.failed(&error))?;
+    // The rows before an error are right, and stay.
+    if rows > 0 {
+        file.finish()?;
+        say(format_args!("wrote {}", path.display()))?;
+    }
+    done.with_context(|| after(rows))
+}
+
+fn after(rows: u64) -> String {
+    format!("after {rows} rows")
+}
+
+/// Writes the rows; returns their number and how the motion ended, or that they cannot be written.
+fn write_rows(
+    plan: &Plan,
+    options: &SimulateOptions,
+    output: &mut impl Write,
+) -> io::Result<(u64, anyhow::Result<()>)> {
+    let mut output = BufWriter::new(output);
+    let bar = Progress::of("rows", u64::from(plan.request.samples) + 1);
+    let mut rows = 0;
+    let mut unwritten = None;
+    let mut write = |reading: &Reading| -> anyhow::Result<()> {
         bar.advance(1);
-        if rows == 0 {
-            writeln!(output, "{}", header(options))?;
-        }
-        writeln!(output, "{}", row(&plan, options, rows, reading))?;
+        let head = (rows == 0).then(|| header(options) + "\n");
+        let line = head.unwrap_or_default() + &row(plan, options, rows, reading);
+        writeln!(output, "{line}").map_err(|error| {
+            unwritten = Some(error);
+            anyhow!("a row cannot be written")
+        })?;
         rows += 1;
         Ok(())
     };
     let done = match options.place {
-        None => plan.request.readings(|reading| Ok(write(reading)?)),
-        Some(board) => on_board(&plan.request, board, write),
+        None => plan.request.readings(&mut write),
+        Some(board) => on_board(&plan.request, board, &mut write),
     };
     drop(bar);
-    // The rows until then are right, and stay.
-    done.with_context(|| format!("after {rows} rows"))?;
-    Ok(output.flush()?)
+    match unwritten {
+        Some(error) => Err(error),
+        None => output.flush().map(|()| (rows, done)),
+    }
 }
 
 /// To start QEMU and to send the rows.
@@ -67,7 +100,7 @@ const PER_STEP: Duration = Duration::from_millis(20);
 fn on_board(
     request: &Request,
     board: &'static Board,
-    mut row: impl FnMut(&Reading) -> io::Result<()>,
+    mut row: impl FnMut(&Reading) -> anyhow::Result<()>,
 ) -> anyhow::Result<()> {
     let toolchain = toolchain::set_up()?;
     let elf = toolchain.build_for(board)?;

@@ -21,6 +21,14 @@ const NOT_FINITE: &str = "must be a finite number";
 const ZERO_DENOMINATOR: &str = "the denominator is zero";
 
 impl Number {
+    pub fn one() -> Self {
+        Self {
+            text: "1".to_owned(),
+            value: 1.0,
+            fraction: Some((1, 1)),
+        }
+    }
+
     /// The `f64` nearest to it.
     pub fn value(&self) -> f64 {
         self.value

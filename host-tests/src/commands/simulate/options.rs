@@ -1,5 +1,8 @@
 //! The command line of `cargo simulate`.
 
+use std::f64::consts::TAU;
+use std::path::PathBuf;
+
 use clap::{ArgAction, Args, Parser};
 use double_pendulum::{Error, Method, Motion, Parameter, Parameters};
 use firmware::config::{FIRST_ANGLE, GRAVITY};
@@ -21,6 +24,7 @@ pub(super) fn name(place: Place) -> &'static str {
 
 const AFTER_HELP: &str = "\
 Examples:
+  cargo simulate --angles 120,120 --degrees --until 5 --every 0.1 --out swing.csv
   cargo simulate --angles 120,120 --degrees --until 5 --tolerance 1e-9
   cargo simulate --angles 0.5,0.5 --until 10 --every 1/10 --tolerance 1e-5 --on lm3s6965evb
   cargo simulate --angles 171,171 --degrees --masses 1,2.75 --step 1/4096 --until 5 --every 1
@@ -28,8 +32,8 @@ Examples:
   cargo simulate --angles 0.5,0.5 --step 1/16 --method extrapolation12-f64 --columns t,x2,y2 --header units
   cargo simulate --list
 
-Bad input, and numbers with which not even one step can be made: one line on stderr, exit code 2. A motion that leaves
-the finite numbers later: its rows until then, one line on stderr, exit code 1.";
+Bad input, and values that fail on the first step: one line on stderr, exit code 2. A motion that leaves the finite
+numbers later: its rows until then, one line on stderr, exit code 1.";
 
 /// Computes a motion of the double pendulum and prints it as CSV, SI units. Numbers are decimals (0.25, 1e-3) or fractions (1/256).
 #[derive(Debug, Parser)]
@@ -38,16 +42,12 @@ pub struct SimulateOptions {
     /// What moves.
     #[command(flatten)]
     pub start: StartOptions,
-    /// Step size, s; a warning says when it is too long to resolve every motion of this energy
-    #[arg(
-        long,
-        value_name = "DT",
-        default_value = "1/1024",
-        allow_hyphen_values = true
-    )]
-    pub step: Number,
-    /// Instead of a step: the error, rad, that no angle of any row may exceed; the cheapest method and step that keep it,
-    /// by the reference, are found and taken
+    /// Step size, s [default: the longest that fits the rows, at most 1/1024 s and safe for the
+    /// fastest motion possible at this energy]
+    #[arg(long, value_name = "DT", allow_hyphen_values = true)]
+    pub step: Option<Number>,
+    /// Largest error allowed in any angle, rad; finds and uses the cheapest method and step that
+    /// meet it
     #[arg(
         long,
         value_name = "E",
@@ -63,30 +63,33 @@ pub struct SimulateOptions {
         allow_hyphen_values = true
     )]
     pub until: Number,
-    /// Time from row to row, s; if not given one step, with --tolerance a hundredth of --until
+    /// Time from row to row, s [default: one --step; without --step a hundredth of --until]
     #[arg(long, value_name = "T", allow_hyphen_values = true)]
     pub every: Option<Number>,
-    /// Equations, numbers, integrator and its order, by a name of --list; rk4-f64 if not given
+    /// A method of --list [default: rk4-f64]
     #[arg(long, value_name = "NAME", value_parser = choice(Method::ALL.iter().copied(), Method::name), hide_possible_values = true)]
     pub method: Option<Method>,
     /// Print the table of methods: name, equations, numbers, integrator, order, where it runs
     #[arg(long, exclusive = true)]
     pub list: bool,
     /// Where it is computed: here, or by the firmware on an emulated board
-    #[arg(long = "on", value_name = "PLACE", default_value = HOST,
+    #[arg(long = "on", visible_alias = "board", value_name = "PLACE", default_value = HOST,
           value_parser = choice([None].into_iter().chain(BOARDS.iter().map(Some)), name))]
     pub place: Place,
     /// The columns, of t, a1, a2, p1, p2, w1, w2, energy, and x1, y1, x2, y2 of the bobs from the pivot, y upwards
     #[arg(long, value_name = "NAMES", value_delimiter = ',', default_value = "t,a1,a2,p1,p2,w1,w2,energy",
           value_parser = choice(0..NAMES.len(), |column| NAMES[column]), hide_possible_values = true)]
     pub columns: Vec<usize>,
-    /// What the first line says: the names of the columns, or their units as well
+    /// The first line: the names of the columns, or their units as well
     #[arg(long = "header", value_name = "KIND", default_value = "names", action = ArgAction::Set,
           value_parser = choice([false, true], |units| if units { "units" } else { "names" }))]
     pub units: bool,
     /// Add the bit patterns of a1, a2, p1, p2 in hexadecimal
     #[arg(long)]
     pub bits: bool,
+    /// Write the table to this file instead of the terminal
+    #[arg(long, value_name = "FILE")]
+    pub out: Option<PathBuf>,
 }
 
 /// A pendulum and its start.
@@ -154,6 +157,72 @@ impl StartOptions {
             .map_or(first, |angles| angles.values().map(radians));
         let [w1, w2] = self.velocities.values().map(radians);
         Motion { a1, a2, w1, w2 }
+    }
+
+    /// Returns a line of advice if an angle looks like degrees: more than a turn, without
+    /// --degrees.
+    pub fn advice(&self) -> Option<String> {
+        let angles = self.angles.as_ref().filter(|_| !self.degrees)?;
+        let largest = [&angles.0, &angles.1]
+            .into_iter()
+            .max_by(|one, other| one.value().abs().total_cmp(&other.value().abs()))?;
+        let turns = largest.value().abs() / TAU;
+        (turns > 1.0).then(|| {
+            format!("note: --angles {angles}: {largest} rad is {turns:.1} turns; for degrees add --degrees")
+        })
+    }
+
+    /// Returns the pair of options whose value is farthest from 1, which makes the motion fast or
+    /// its numbers too large.
+    pub(super) fn extreme(&self) -> String {
+        let pairs = [
+            ("--masses", &self.masses),
+            ("--lengths", &self.lengths),
+            ("--velocities", &self.velocities),
+        ];
+        let gravity = self
+            .gravity
+            .iter()
+            .map(|gravity| ("--gravity", [gravity; 2], gravity.to_string()));
+        let all = pairs
+            .map(|(option, pair)| (option, [&pair.0, &pair.1], pair.to_string()))
+            .into_iter()
+            .chain(gravity);
+        // Velocities and gravity are extreme when they are large only.
+        let distance = |option: &str, number: &Number| match number.value().abs() {
+            0.0 => 0.0,
+            value if option == "--masses" || option == "--lengths" => value.ln().abs(),
+            value => value.ln(),
+        };
+        let worst = all.max_by(|one, other| {
+            let [one, other] = [one, other].map(|(option, numbers, _)| {
+                numbers
+                    .map(|number| distance(option, number))
+                    .into_iter()
+                    .fold(0.0, f64::max)
+            });
+            one.total_cmp(&other)
+        });
+        worst.map_or(String::new(), |(option, _, text)| {
+            format!("{option} {text}")
+        })
+    }
+
+    /// Returns the first option whose number has too many digits for [`Self::exact`].
+    pub fn too_long(&self) -> String {
+        let pairs = [
+            ("--masses", Some(&self.masses)),
+            ("--lengths", Some(&self.lengths)),
+            ("--angles", self.angles.as_ref()),
+            ("--velocities", Some(&self.velocities)),
+        ];
+        let is_long = |pair: &&Pair| pair.0.exact().is_none() || pair.1.exact().is_none();
+        let found = pairs
+            .into_iter()
+            .find_map(|(option, pair)| Some(format!("{option} {}", pair.filter(is_long)?)));
+        let gravity = self.gravity.as_ref();
+        let gravity = gravity.map(|gravity| format!("--gravity {gravity}"));
+        found.or(gravity).unwrap_or_default()
     }
 
     /// All of it to the last digit given; `None` if a number has too many.

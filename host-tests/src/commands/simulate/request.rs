@@ -1,7 +1,7 @@
 //! From options to a request that the kernel accepts, and the times of its rows.
 
 use anyhow::{Context, anyhow, bail, ensure};
-use double_pendulum::{Error, Method, Motion, Parameter};
+use double_pendulum::{Error, Integrator, Method, Motion, Parameter};
 use firmware::job::Request;
 
 use super::options::name;
@@ -18,9 +18,66 @@ pub struct Plan {
     pub note: Option<String>,
 }
 
+/// The longest step that is chosen where none is given, s, and the most steps.
+const USUAL_STEP: f64 = 1.0 / 1024.0;
+const MOST_CHOSEN: f64 = (1 << 22) as f64;
+/// Rows where neither a step nor a time between rows is given.
+const ROWS: u32 = 100;
+
+/// The times of a motion: the step, the time from row to row and in steps, and the rows after the
+/// first.
+struct Timing {
+    step: Number,
+    every: Number,
+    stride: u32,
+    samples: u32,
+}
+
 /// Checks everything there is to check before the first row; an error is one line that names the option and the value.
 pub fn plan(options: &SimulateOptions) -> anyhow::Result<Plan> {
-    let SimulateOptions { step, until, .. } = options;
+    let until = &options.until;
+    ensure!(
+        until.value() >= 0.0,
+        "--until {until}: must not be negative"
+    );
+    let method = method(options)?;
+    let timing = match &options.step {
+        Some(step) => given(options, step)?,
+        None => chosen(options, method)?,
+    };
+    let Timing {
+        step,
+        every,
+        stride,
+        samples,
+    } = timing;
+    let request = request(options, method, &step, stride, samples);
+    accepted(options, &request)?;
+    check_first_step(options, &request)?;
+
+    let longest = request
+        .admissible_step()
+        .filter(|longest| request.dt > *longest);
+    let note = longest.map(|longest| {
+        let what = match &options.step {
+            Some(step) => format!("--step {step}:"),
+            None => format!("steps of {step} s"),
+        };
+        format!(
+            "warning: {what} may be too long for the fastest motion possible at this energy; {} is safe",
+            at_most(longest)
+        )
+    });
+    Ok(Plan {
+        request,
+        every,
+        note,
+    })
+}
+
+/// Returns the times where a step is given.
+fn given(options: &SimulateOptions, step: &Number) -> anyhow::Result<Timing> {
+    let until = &options.until;
     let every = options.every.as_ref().unwrap_or(step);
     for (option, time) in [("--step", step), ("--every", every)] {
         ensure!(
@@ -28,38 +85,129 @@ pub fn plan(options: &SimulateOptions) -> anyhow::Result<Plan> {
             "{option} {time}: must be greater than zero"
         );
     }
-    ensure!(
-        until.value() >= 0.0,
-        "--until {until}: must not be negative"
-    );
     let total = count(("--until", until), ("--step", step))?;
     let stride = count(("--every", every), ("--step", step))?;
     ensure!(
         total % stride == 0,
         "--until {until}: must be a whole multiple of --every {every}"
     );
-
-    let request = request(options, method(options)?, step, stride, total / stride);
-    accepted(options, &request)?;
-    // Numbers that overflow at once are refused before anything is printed.
-    Request {
-        stride: 1,
-        samples: request.samples.min(1),
-        ..request
-    }
-    .readings(|_| Ok::<_, Error>(()))
-    .with_context(|| format!("--step {step}: not even one step can be made"))?;
-    let longest = request
-        .admissible_step()
-        .filter(|longest| request.dt > *longest);
-    let note = longest.map(|longest| {
-        format!("warning: --step {step}: too long to resolve every motion of this energy; {longest:.1e} s would do")
-    });
-    Ok(Plan {
-        request,
+    Ok(Timing {
+        step: step.clone(),
         every: every.clone(),
-        note,
+        stride,
+        samples: total / stride,
     })
+}
+
+/// Chooses the longest step that goes into the time between rows a whole number of times, is at
+/// most [`USUAL_STEP`], and resolves every motion of this energy, unless that takes too many steps.
+fn chosen(options: &SimulateOptions, method: Method) -> anyhow::Result<Timing> {
+    let until = &options.until;
+    let every = match &options.every {
+        Some(every) => every.clone(),
+        None if until.is_positive() => until.divided_by(ROWS),
+        None => Number::one().divided_by(ROWS),
+    };
+    ensure!(
+        every.is_positive(),
+        "--every {every}: must be greater than zero"
+    );
+    let samples = count(("--until", until), ("--every", &every))?;
+    let in_parts = |parts: u32| {
+        let step = if parts == 1 {
+            every.clone()
+        } else {
+            every.divided_by(parts)
+        };
+        (request(options, method, &step, parts, samples), step)
+    };
+    if method.integrator() == Integrator::ClosedForm {
+        return Ok(Timing {
+            step: every.clone(),
+            every,
+            stride: 1,
+            samples,
+        });
+    }
+
+    // What the method takes at all, and what is safe.
+    let usual = Request {
+        dt: USUAL_STEP.min(every.value()),
+        samples: 0,
+        ..in_parts(1).0
+    };
+    let limit = match usual.readings(|_| Ok::<_, Error>(())) {
+        Err(Error::TooLarge {
+            parameter: Parameter::Dt,
+            limit,
+            ..
+        }) => limit * (1.0 - f64::EPSILON),
+        _ => USUAL_STEP,
+    };
+    let safe = usual
+        .admissible_step()
+        .map_or(limit, |safe| safe.min(limit));
+    let parts = |longest: f64| (every.value() / longest).ceil();
+    let rows = f64::from(samples.max(1));
+    let parts = [safe, limit]
+        .map(parts)
+        .into_iter()
+        .find(|parts| parts * rows <= MOST_CHOSEN)
+        .unwrap_or(parts(limit));
+    ensure!(
+        parts * rows <= f64::from(u32::MAX),
+        "{}: so fast a motion needs steps of at most {}, too many for --until {until}",
+        options.start.extreme(),
+        at_most(limit)
+    );
+    let stride = parts as u32;
+    let (_, step) = in_parts(stride);
+    Ok(Timing {
+        step,
+        every,
+        stride,
+        samples,
+    })
+}
+
+/// Refuses numbers that overflow at once, before anything is printed.
+fn check_first_step(options: &SimulateOptions, request: &Request) -> anyhow::Result<()> {
+    const SHORTER: f64 = 1e-6;
+    let first = |dt: f64| {
+        let request = Request {
+            dt,
+            stride: 1,
+            samples: request.samples.min(1),
+            ..*request
+        };
+        request.readings(|_| Ok::<_, Error>(()))
+    };
+    let Err(error) = first(request.dt) else {
+        return Ok(());
+    };
+    match (&options.step, first(SHORTER * request.dt)) {
+        (Some(step), Ok(())) => bail!("--step {step}: too long for the first step: {error}"),
+        _ => bail!(
+            "{}: too extreme: not even one step stays within the numbers of {}",
+            options.start.extreme(),
+            request.method
+        ),
+    }
+}
+
+/// Writes the largest short number that is not above `limit`, s.
+pub(super) fn at_most(limit: f64) -> String {
+    const LONG: f64 = 0.1;
+    const SHORT: f64 = 1e-6;
+    if limit >= LONG {
+        return format!("{} s", (1e3 * limit).floor() / 1e3);
+    }
+    if limit >= SHORT {
+        return format!("1/{} s", (1.0 / limit).ceil());
+    }
+    let power = limit.log10().floor();
+    let digits = (10.0 * limit / 10_f64.powf(power)).floor() / 10.0;
+    format!("{digits}e{power} s")
 }
 
 /// How many times one option's time goes into another's.
@@ -69,7 +217,13 @@ pub(super) fn count(
 ) -> anyhow::Result<u32> {
     let count = time.whole_multiple_of(unit);
     let count = count.with_context(|| {
-        format!("{option} {time}: must be a whole multiple of {unit_option} {unit}")
+        let parts = (time.value() / unit.value()).ceil();
+        let remedy = if option == "--every" && (1.0..1e9).contains(&parts) {
+            format!("; take --step {}", time.divided_by(parts as u32))
+        } else {
+            String::new()
+        };
+        format!("{option} {time}: must be a whole multiple of {unit_option} {unit}{remedy}")
     })?;
     u32::try_from(count).ok().with_context(|| {
         format!(
@@ -126,10 +280,26 @@ pub(super) fn accepted(options: &SimulateOptions, request: &Request) -> anyhow::
             ..
         } => {
             anyhow!(
-                "--velocities {}: the energy at the start is too large a number",
-                options.start.velocities
+                "{}: the energy at the start is too large a number",
+                options.start.extreme()
             )
         }
+        Error::TooLarge {
+            parameter: Parameter::Dt,
+            limit,
+            ..
+        } => match &options.step {
+            Some(step) if options.until.value() / limit <= f64::from(u32::MAX) => anyhow!(
+                "--step {step}: too long for {} here; at most {}",
+                request.method,
+                at_most(limit)
+            ),
+            _ => anyhow!(
+                "{}: so fast a motion needs steps of at most {}",
+                options.start.extreme(),
+                at_most(limit)
+            ),
+        },
         error => anyhow!("{}: {error}", option_of(&error, "--step")),
     })
 }

@@ -77,8 +77,8 @@ pub fn choose(options: &SimulateOptions, tolerance: &Number) -> anyhow::Result<(
         if rows == exact.len() {
             let (price, worst) = (price / every.value(), small(error));
             let note = format!(
-                "takes {method} in steps of {step} s, {price:.0} {unit} a simulated second: \
-                 off by {worst} rad at most, by the double-double reference"
+                "using {method}, step {step} s ({price:.0} {unit} per second of motion); \
+                 largest error {worst} rad (measured)"
             );
             return Ok((
                 Plan {
@@ -92,7 +92,7 @@ pub fn choose(options: &SimulateOptions, tolerance: &Number) -> anyhow::Result<(
         reached = reached.max(rows);
     }
     let until = every.times((reached as u64).saturating_sub(1));
-    bail!("--tolerance {tolerance}: nothing that may be taken keeps it beyond {until} s")
+    bail!("--tolerance {tolerance}: no allowed method stays within it beyond {until} s")
 }
 
 /// The numbers of steps from row to row that are tried: 1, 2, 3, 4, 6, 8, 12 and so on; the closed form needs none.

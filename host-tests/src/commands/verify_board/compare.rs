@@ -245,21 +245,33 @@ fn play(talk: &mut Talk, name: SceneName, hertz: u32, section: &mut Section) -> 
     let difference = comparison
         .difference()
         .map(|difference| difference.to_string());
-    let fault = difference
-        .as_ref()
-        .map(|difference| format!("{}: {difference}", name.name()));
-    let dropped = frames[frames.len() - 1]
-        .dropped
-        .wrapping_sub(frames[0].dropped);
-    let longest = |cycles: Option<u32>| {
+    let first = &frames[0];
+    let last = &frames[frames.len() - 1];
+    let dropped = last.dropped.wrapping_sub(first.dropped);
+    let milliseconds =
+        |cycles: Option<u32>| 1e3 * f64::from(cycles.unwrap_or(0)) / f64::from(hertz.max(1));
+    let computing = milliseconds(frames.iter().map(|frame| frame.scene_cycles).max());
+    // A frame reports the whole time of the frame before, which for the first belongs to another
+    // scene.
+    let whole = milliseconds(frames[1..].iter().map(|frame| frame.busy_cycles).max());
+
+    // The ticks from the frame before the first to the last one.
+    let ticks = last
+        .sequence
+        .wrapping_sub(first.sequence)
+        .wrapping_add(dropped);
+    let run = 1e3 * (f64::from(ticks) + 2.0) / f64::from(TICK_RATE);
+    let longest = computing.max(whole);
+    let too_long = (longest > run).then(|| {
         format!(
-            "{:.2}",
-            1e3 * f64::from(cycles.unwrap_or(0)) / f64::from(hertz.max(1))
+            "a frame of {longest:.2} ms in a run of {run:.2} ms: the board's clock is read wrongly"
         )
-    };
-    let computing = longest(frames.iter().map(|frame| frame.scene_cycles).max());
-    // It is told of the frame before, which is another scene's at first.
-    let whole = longest(frames[1..].iter().map(|frame| frame.busy_cycles).max());
+    });
+    let fault = difference
+        .clone()
+        .or(too_long)
+        .map(|fault| format!("{}: {fault}", name.name()));
+    let [computing, whole] = [computing, whole].map(|time| format!("{time:.2}"));
     let (compared, dropped) = (compared.to_string(), dropped.to_string());
     section.add(
         vec![

@@ -9,12 +9,12 @@ use std::time::Duration;
 use anyhow::{Context, anyhow};
 use firmware::protocol::{self, Answer, Frame, MAX_WIRE, ToHost, encode_command};
 use serde_json::json;
-use tempfile::TempDir;
 
 use super::debugger::{DESCRIBE, Places};
 use super::{LogDecoder, LogLine};
 use crate::emulator::boards::Board;
-use crate::emulator::process::{self, Running, remove_on_interrupt};
+use crate::emulator::process::{self, Running};
+use crate::emulator::scratch::Scratch;
 use crate::emulator::stream::{self, Channel, Stream};
 use crate::link::{Counts, Inbox};
 
@@ -59,7 +59,7 @@ pub struct Machine {
     pub(super) places: Places,
     process: Running,
     /// Taken away once QEMU is gone.
-    pub(super) folder: TempDir,
+    pub(super) folder: Scratch,
 }
 
 impl Machine {
@@ -76,10 +76,7 @@ impl Machine {
             .elf
             .canonicalize()
             .with_context(|| settings.elf.display().to_string())?;
-        let folder = tempfile::Builder::new()
-            .prefix("double-pendulum-")
-            .tempdir()?;
-        remove_on_interrupt(folder.path());
+        let folder = Scratch::new()?;
         let mut command = Command::new(settings.qemu);
         command.current_dir(folder.path());
         command

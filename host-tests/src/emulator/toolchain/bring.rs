@@ -1,7 +1,7 @@
 //! Bringing what is missing.
 
 use std::fs::{self, File};
-use std::io;
+use std::io::{self, IsTerminal, Write};
 use std::process::Command;
 use std::time::Duration;
 
@@ -45,10 +45,7 @@ pub(super) fn bring<T>(
     for (done, way) in ways.iter().filter(|_| installs) {
         match way().and_then(|()| find()) {
             Ok(found) => {
-                complain(format_args!(
-                    "done: {done}, because {}",
-                    failures.join("; ")
-                ));
+                complain(format_args!("{done}: {}", failures.join("; ")));
                 return Ok(found);
             }
             Err(failure) if failures.contains(&failure) => {}
@@ -58,8 +55,46 @@ pub(super) fn bring<T>(
     Err(failures.join("; "))
 }
 
-/// Installs packages of Debian's, by its newest lists: old ones may name packages that are gone.
-pub(super) fn install_packages(packages: &[&str]) -> Result<(), String> {
+/// Who has agreed that packages are installed on the system.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Consent {
+    /// The user is asked on the terminal; where there is none, nothing is installed.
+    Ask,
+    /// The user has passed `--yes`.
+    Given,
+}
+
+impl Consent {
+    /// Asks if need be; an error says why `packages` are not installed.
+    fn obtain(self, packages: &str) -> Result<(), String> {
+        if self == Consent::Given {
+            return Ok(());
+        }
+        let (input, output) = (io::stdin(), io::stderr());
+        if !(input.is_terminal() && output.is_terminal()) {
+            return Err(format!(
+                "{packages} would be installed on the system, which needs --yes"
+            ));
+        }
+        let mut answer = String::new();
+        let asked = write!(
+            &output,
+            "Install {packages} on this system with apt-get? [y/N] "
+        )
+        .and_then(|()| (&output).flush())
+        .and_then(|()| input.read_line(&mut answer));
+        let is_yes = ["y", "yes"].contains(&&*answer.trim().to_lowercase());
+        if asked.is_ok() && is_yes {
+            Ok(())
+        } else {
+            Err(format!("{packages} not installed, as answered"))
+        }
+    }
+}
+
+/// Installs packages of Debian's on the system, by its newest lists: old ones may name packages
+/// that are gone.
+pub(super) fn install_packages(packages: &[&str], consent: Consent) -> Result<(), String> {
     if find("apt-get").is_none() {
         return Err(
             "this system has no apt-get, the only package manager this command runs".to_owned(),
@@ -68,6 +103,7 @@ pub(super) fn install_packages(packages: &[&str]) -> Result<(), String> {
     if !nix::unistd::geteuid().is_root() {
         return Err("only root may install packages".to_owned());
     }
+    consent.obtain(&packages.join(", "))?;
     let updated = attempt(
         &mut apt_get("update"),
         INSTALL,

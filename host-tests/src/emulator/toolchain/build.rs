@@ -10,7 +10,6 @@ use std::time::Duration;
 use anyhow::ensure;
 
 use super::bring::run_shown;
-use super::tools::{DEBIAN_CARGO, DEBIAN_RUSTC};
 use super::{TARGETS, Toolchain, target, workspace};
 use crate::emulator::boards::{Board, PICO, every_board};
 
@@ -38,24 +37,24 @@ const OURS: [&str; 5] = [
 impl Toolchain {
     /// Cargo as it builds for a chip, in the workspace's folder.
     fn cargo(&self) -> Command {
-        let mut command = Command::new(if self.linker.is_some() {
-            DEBIAN_CARGO
-        } else {
-            "cargo"
-        });
+        let cargo = self
+            .from_source
+            .as_ref()
+            .map_or("cargo".as_ref(), |own| own.cargo.as_path());
+        let mut command = Command::new(cargo);
         for (name, _) in env::vars_os().filter(|(name, _)| is_foreign(name)) {
             command.env_remove(name);
         }
         command
             .current_dir(workspace())
             .env("RUSTUP_AUTO_INSTALL", "0");
-        if let Some(linker) = &self.linker {
+        if let Some(own) = &self.from_source {
             // Debian's cargo is a stable one; building core is still called unstable.
             command
-                .env("RUSTC", DEBIAN_RUSTC)
+                .env("RUSTC", &own.rustc)
                 .env("RUSTC_BOOTSTRAP", "1")
                 .env("CARGO_UNSTABLE_BUILD_STD", "core");
-            command.env("PATH", path_with(linker.clone()));
+            command.env("PATH", path_with(own.linker.clone()));
         }
         command
     }
@@ -126,7 +125,7 @@ impl Toolchain {
                 .filter(|board| board.target == target)
                 .map(|board| board.feature);
             let features = features.collect::<Vec<_>>().join(",");
-            let is_ready_made = self.linker.is_none();
+            let is_ready_made = self.from_source.is_none();
             let mut command =
                 self.for_targets(if is_ready_made { "clippy" } else { "check" }, &[target]);
             command.args(["--bins", "--example", "embassy", "--features", &features]);

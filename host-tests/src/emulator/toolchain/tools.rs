@@ -3,21 +3,35 @@
 use std::os::unix::fs::PermissionsExt;
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
 use std::{env, fs};
 
-use super::bring::{INSTALL, Way, attempt, bring, install_packages, says};
+use super::bring::{Consent, INSTALL, Way, attempt, bring, install_packages, says};
 use super::{missing, target, workspace};
 use crate::console::cli::Refused;
 
-/// Debian's compiler, by its own path.
-pub(super) const DEBIAN_RUSTC: &str = "/usr/bin/rustc";
-pub(super) const DEBIAN_CARGO: &str = "/usr/bin/cargo";
+/// The folders that may hold Debian's compiler with the sources of the core library: the system's
+/// programs, and what the set-up has unpacked for this project.
+fn debian_folders() -> [PathBuf; 2] {
+    [PathBuf::from("/usr/bin"), target().join(RUST_FOLDER)]
+}
+
+const RUST_FOLDER: &str = "rust";
 /// The Debian packages that build the ARM core library.
 pub(super) const CORE_PACKAGES: [&str; 3] = ["rustc-web", "cargo-web", "rust-web-src"];
 /// For `rustup target add`: 40 MB. Where it can only hang, this is what that costs, once.
 const RUSTUP: Duration = Duration::from_secs(60);
-const UNPACK_QEMU: &str = "host-tests/src/emulator/toolchain/unpack-qemu.sh";
+const UNPACK: &str = "host-tests/src/emulator/toolchain/unpack.sh";
+
+/// Debian's compiler, which builds the ARM core library from its sources.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct FromSource {
+    pub rustc: PathBuf,
+    pub cargo: PathBuf,
+    /// The folder of rustup's `rust-lld`, which Debian's packages do not have.
+    pub linker: PathBuf,
+}
 
 /// An emulator of QEMU's.
 pub(super) struct Emulator {
@@ -26,6 +40,9 @@ pub(super) struct Emulator {
     /// Where the set-up unpacks it for this project alone, in the target folder.
     folder: &'static str,
 }
+
+/// The oldest major version of QEMU that knows all options used here: `-action` came with 6.0.
+const LEAST_QEMU: u32 = 6;
 
 pub(super) const QEMU: Emulator = Emulator {
     program: "qemu-system-arm",
@@ -38,10 +55,13 @@ pub(super) const QEMU_RISCV: Emulator = Emulator {
     folder: "qemu-user",
 };
 
-/// The core library for these targets: ready-made by rustup beside the compiler in use, else Debian's sources and their compiler,
-/// with a linker.
-pub(super) fn core(installs: bool, targets: &[&str]) -> Result<Option<PathBuf>, String> {
+/// Finds or brings the core library for these targets: ready-made by rustup beside the compiler in
+/// use (`None`), else Debian's sources and their compiler.
+pub(super) fn core(installs: bool, targets: &[&str]) -> Result<Option<FromSource>, String> {
     let rustup = || {
+        if find("rustup").is_none() {
+            return Err("rustup was not found".to_owned());
+        }
         let mut rustup = Command::new("rustup");
         rustup
             .args(["target", "add"])
@@ -49,24 +69,56 @@ pub(super) fn core(installs: bool, targets: &[&str]) -> Result<Option<PathBuf>, 
             .current_dir(workspace())
             .env("RUSTUP_AUTO_INSTALL", "0");
         let doing = format!(
-            "rustup fetches the core library, for at most {} s",
+            "rustup fetches Rust's ARM library, for at most {} s",
             RUSTUP.as_secs()
         );
         attempt(&mut rustup, RUSTUP, &doing)
     };
-    let debian = || linker().and_then(|_| install_packages(&CORE_PACKAGES));
+    let folder = target().join(RUST_FOLDER);
+    let debian = || {
+        linker()?;
+        unpack(&folder, &["rustc", "cargo"], &CORE_PACKAGES, INSTALL)
+    };
     let ways: [Way; 2] = [
         (format!("rustup added {}", targets.join(", ")), &rustup),
-        (
-            format!("apt-get installed {}", CORE_PACKAGES.join(", ")),
-            &debian,
-        ),
+        (unpacked(&folder, &CORE_PACKAGES), &debian),
     ];
     bring(installs, || find_core(targets), &ways)
 }
 
-fn find_core(targets: &[&str]) -> Result<Option<PathBuf>, String> {
-    let (in_use, _) = libraries("rustc")?;
+/// What to report when packages have been unpacked into `folder`.
+fn unpacked(folder: &Path, packages: &[&str]) -> String {
+    format!("unpacked {} into {}", packages.join(", "), shown(folder))
+}
+
+/// Unpacks Debian's packages into `folder`, which changes nothing on the system.
+fn unpack(
+    folder: &Path,
+    programs: &[&str],
+    packages: &[&str],
+    limit: Duration,
+) -> Result<(), String> {
+    if find("apt-get").is_none() {
+        return Err("there is no apt-get, by which Debian's packages are unpacked".to_owned());
+    }
+    let mut command = Command::new("sh");
+    command
+        .arg(workspace().join(UNPACK))
+        .arg(folder)
+        .args([programs.join(" "), packages.join(" ")])
+        .env("LC_ALL", "C");
+    let doing = format!("unpacking {} into {}", packages.join(", "), shown(folder));
+    attempt(&mut command, limit, &doing)
+}
+
+/// A path of the project as people name it.
+fn shown(path: &Path) -> String {
+    let within = path.strip_prefix(workspace()).unwrap_or(path);
+    within.display().to_string()
+}
+
+fn find_core(targets: &[&str]) -> Result<Option<FromSource>, String> {
+    let (in_use, _) = libraries("rustc".as_ref())?;
     let has_core = |target: &&str| {
         let mut files = fs::read_dir(in_use.join(target).join("lib"))
             .into_iter()
@@ -77,25 +129,42 @@ fn find_core(targets: &[&str]) -> Result<Option<PathBuf>, String> {
     if targets.iter().all(has_core) {
         return Ok(None);
     }
-    let (debians, _) =
-        libraries(DEBIAN_RUSTC).map_err(|_| "neither rustup nor Debian has brought one")?;
-    if !debians.join("src/rust/library/core").is_dir() || !Path::new(DEBIAN_CARGO).is_file() {
-        return Err(format!(
-            "of Debian's {} not all are installed",
-            CORE_PACKAGES.join(", ")
-        ));
+    let mut why = "rustup has none for these targets".to_owned();
+    for folder in debian_folders() {
+        match from_source(&folder) {
+            Ok(found) => return Ok(Some(found)),
+            Err(Some(reason)) => why = reason,
+            Err(None) => {}
+        }
     }
-    let version = says(Command::new(DEBIAN_RUSTC).arg("--version"))?;
+    Err(why)
+}
+
+/// Finds Debian's compiler and its sources in a folder of programs; the error is `None` where there
+/// is nothing of it.
+fn from_source(folder: &Path) -> Result<FromSource, Option<String>> {
+    let [rustc, cargo] = ["rustc", "cargo"].map(|program| folder.join(program));
+    let (libraries, _) = libraries(&rustc).map_err(|_| None)?;
+    if !libraries.join("src/rust/library/core").is_dir() || !cargo.is_file() {
+        let all = CORE_PACKAGES.join(", ");
+        return Err(Some(format!("of Debian's {all} not all are installed")));
+    }
+    let version = says(Command::new(&rustc).arg("--version"))?;
     let least = env!("CARGO_PKG_RUST_VERSION");
     if number(&version, 1) < number(least, 1) {
-        return Err(format!("Debian's {} is older than {least}", version.trim()));
+        let version = version.trim();
+        return Err(Some(format!("Debian's {version} is older than {least}")));
     }
-    linker().map(Some)
+    Ok(FromSource {
+        rustc,
+        cargo,
+        linker: linker()?,
+    })
 }
 
 /// The folder of `rust-lld`, which Debian's packages do not have.
 fn linker() -> Result<PathBuf, String> {
-    let (libraries, host) = libraries("rustc")?;
+    let (libraries, host) = libraries("rustc".as_ref())?;
     let folder = libraries.join(host).join("bin");
     if folder.join("rust-lld").is_file() {
         return Ok(folder);
@@ -107,7 +176,7 @@ fn linker() -> Result<PathBuf, String> {
 }
 
 /// Where a compiler has its libraries, and its name of the host.
-fn libraries(rustc: &str) -> Result<(PathBuf, String), String> {
+fn libraries(rustc: &Path) -> Result<(PathBuf, String), String> {
     let mut command = Command::new(rustc);
     command
         .args(["--print", "sysroot", "--print", "host-tuple"])
@@ -132,8 +201,9 @@ fn number(version: &str, part: usize) -> Option<u32> {
         .ok()
 }
 
-/// An emulator from Debian's packages, installed, or unpacked for this project alone where they cannot be: where that would cost the
-/// user another package, or another may do it. The first that runs: the system's, else this project's own.
+/// Finds an emulator, or unpacks Debian's package of it for this project alone.
+///
+/// The project's own comes first: it is there because the system's would not do.
 pub(super) fn qemu(installs: bool, emulator: &Emulator) -> Result<PathBuf, String> {
     let Emulator {
         program,
@@ -141,42 +211,50 @@ pub(super) fn qemu(installs: bool, emulator: &Emulator) -> Result<PathBuf, Strin
         folder,
     } = *emulator;
     let folder = target().join(folder);
-    let find = || {
-        let mut why = "there is no such program".to_owned();
-        for path in find(program)
-            .into_iter()
-            .chain(executable(folder.join(program)))
-        {
-            match says(Command::new(&path).arg("--version")) {
-                Ok(_) => return Ok(path),
-                Err(reason) => why = reason,
-            }
+    let look = || {
+        if let Some(own) = executable(folder.join(program)).filter(|own| judged(own).is_ok()) {
+            return Ok(own);
         }
-        Err(why)
+        let path = find(program).ok_or_else(|| format!("there is no {program} on PATH"))?;
+        judged_once(&path).map(|()| path)
     };
-    let unpack = || {
-        let mut unpack = Command::new("sh");
-        unpack
-            .arg(workspace().join(UNPACK_QEMU))
-            .arg(&folder)
-            .args([package, program])
-            .env("LC_ALL", "C");
-        attempt(
-            &mut unpack,
-            INSTALL,
-            "unpacking QEMU, which cannot be installed",
-        )
+    let way = || unpack(&folder, &[program], &[package], INSTALL);
+    let ways: [Way; 1] = [(unpacked(&folder, &[package]), &way)];
+    bring(installs, look, &ways)
+}
+
+/// Refuses a QEMU that does not say its version, or is too old.
+fn judged(path: &Path) -> Result<(), String> {
+    let shown = path.display();
+    let said = says(Command::new(path).arg("--version"))
+        .map_err(|why| format!("{shown} does not work ({why})"))?;
+    let version = said
+        .split_once("version ")
+        .and_then(|(_, rest)| rest.split(|c: char| c.is_whitespace() || c == '(').next());
+    let Some((version, major)) = version.and_then(|version| Some((version, number(version, 0)?)))
+    else {
+        return Err(format!("{shown} does not say its version"));
     };
-    let ways: [Way; 2] = [
-        (format!("apt-get installed {package}"), &|| {
-            install_packages(&[package])
-        }),
-        (
-            format!("{package} unpacked into {}", folder.display()),
-            &unpack,
-        ),
-    ];
-    bring(installs, find, &ways)
+    if major < LEAST_QEMU {
+        return Err(format!(
+            "{shown} is QEMU {version}, which is too old: {LEAST_QEMU}.0 or newer is needed"
+        ));
+    }
+    Ok(())
+}
+
+/// As [`judged`], once for a program in a process: one that hangs would cost its time at every
+/// look.
+fn judged_once(path: &Path) -> Result<(), String> {
+    type Verdict = (PathBuf, Result<(), String>);
+    static VERDICTS: Mutex<Vec<Verdict>> = Mutex::new(Vec::new());
+    let mut verdicts = VERDICTS.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some((_, verdict)) = verdicts.iter().find(|(judged, _)| judged == path) {
+        return verdict.clone();
+    }
+    let verdict = judged(path);
+    verdicts.push((path.to_owned(), verdict.clone()));
+    verdict
 }
 
 /// The program that would be run by this name.
@@ -198,9 +276,11 @@ const ASK: &str = "const [{ dependencies }, { version }] = ['.', './node_modules
     if (version !== dependencies.rp2040js) throw 'another version'";
 
 /// Node.js with the emulator of the Raspberry Pi Pico, a package of npm's, kept to one version.
-pub(super) fn rp2040js(installs: bool) -> Result<PathBuf, Refused> {
+pub(super) fn rp2040js(consent: Option<Consent>) -> Result<PathBuf, Refused> {
+    let installs = consent.is_some();
+    let install = |packages: &[&str]| install_packages(packages, consent.unwrap_or(Consent::Ask));
     let find_node = || {
-        let node = find("node").ok_or("there is no Node.js")?;
+        let node = find("node").ok_or("there is no node on PATH")?;
         let version = says(Command::new(&node).arg("--version"))?;
         let is_new = number(&version, 0).is_some_and(|number| number >= LEAST_NODE);
         if is_new {
@@ -212,7 +292,7 @@ pub(super) fn rp2040js(installs: bool) -> Result<PathBuf, Refused> {
             ))
         }
     };
-    let packages = || install_packages(&["nodejs", "npm"]);
+    let packages = || install(&["nodejs", "npm"]);
     let node = bring(
         installs,
         find_node,
@@ -220,10 +300,11 @@ pub(super) fn rp2040js(installs: bool) -> Result<PathBuf, Refused> {
     )
     .map_err(|why| {
         missing(
-            installs,
-            "Node.js, of 18 or newer",
+            consent == Some(Consent::Given),
+            "Node.js",
             &why,
-            "this system's packages nodejs and npm",
+            "cargo setup --yes",
+            "install this system's packages nodejs and npm, Node.js 18 or newer",
         )
     })?;
     let folder = workspace().join("host-tests/rp2040");
@@ -235,30 +316,26 @@ pub(super) fn rp2040js(installs: bool) -> Result<PathBuf, Refused> {
         );
         asked
             .map(drop)
-            .map_err(|_| "npm has not fetched the version that is wanted".to_owned())
+            .map_err(|_| "the version needed has not been fetched".to_owned())
     };
     let npm = || {
         if find("npm").is_none() {
-            install_packages(&["npm"])?;
+            install(&["npm"])?;
         }
         let mut npm = Command::new("npm");
         npm.args(["ci", "--ignore-scripts", "--no-audit", "--no-fund"])
             .current_dir(&folder);
-        attempt(
-            &mut npm,
-            NPM,
-            "npm fetches the emulator of the Raspberry Pi Pico",
-        )
+        attempt(&mut npm, NPM, "npm fetches rp2040js")
     };
     let (what, by_hand) = (
         "the emulator of the Raspberry Pi Pico",
-        "npm ci --prefix host-tests/rp2040",
+        "run npm ci --prefix host-tests/rp2040",
     );
     bring(
         installs,
         fetched,
         &[("npm fetched rp2040js".to_owned(), &npm)],
     )
-    .map_err(|why| missing(installs, what, &why, by_hand))?;
+    .map_err(|why| missing(installs, what, &why, "cargo setup", by_hand))?;
     Ok(node)
 }

@@ -1,0 +1,137 @@
+//! Files that commands write: each appears under its name when it is complete.
+
+use std::fs::{self, File, Permissions};
+use std::io::{self, Write};
+use std::os::unix::fs::PermissionsExt;
+use std::path::{Path, PathBuf};
+
+use anyhow::anyhow;
+use tempfile::NamedTempFile;
+
+use crate::console::cli::{Refused, unwritable};
+use crate::emulator::process::remove_on_interrupt;
+
+/// A file that is being written.
+///
+/// Two commands may write to one name at the same time: the name is that of the file that was
+/// completed last. A file that is dropped before [`OutFile::finish`] leaves what was there before.
+#[derive(Debug)]
+pub struct OutFile {
+    option: &'static str,
+    path: PathBuf,
+    content: Content,
+}
+
+#[derive(Debug)]
+enum Content {
+    /// Beside the name, in a file of this process alone.
+    Temporary(NamedTempFile),
+    /// The name is that of a device or a pipe.
+    Device(File),
+}
+
+impl OutFile {
+    /// Begins the file that `option` names; refuses one that cannot be written.
+    pub fn create(option: &'static str, path: &Path) -> Result<Self, Refused> {
+        let content = Content::create(path).map_err(|error| unwritable(option, path, &error))?;
+        Ok(Self {
+            option,
+            path: path.to_owned(),
+            content,
+        })
+    }
+
+    /// Gives the file its name.
+    pub fn finish(self) -> anyhow::Result<()> {
+        let Self {
+            option,
+            path,
+            content,
+        } = self;
+        match content {
+            Content::Device(_) => Ok(()),
+            Content::Temporary(file) => {
+                // A link stays one, and its target is replaced.
+                let target = path.canonicalize().unwrap_or_else(|_| path.clone());
+                let named = file.persist(target).map(drop);
+                named.map_err(|failure| {
+                    anyhow!(unwritable(option, &path, &failure.error).to_string())
+                })
+            }
+        }
+    }
+
+    /// Writes all of the file.
+    pub fn write_whole(mut self, bytes: &[u8]) -> anyhow::Result<()> {
+        self.write_all(bytes).map_err(|error| self.failed(&error))?;
+        self.finish()
+    }
+
+    /// Returns the error of a command whose file could not be written to the end.
+    pub fn failed(&self, error: &io::Error) -> anyhow::Error {
+        anyhow!(unwritable(self.option, &self.path, error).to_string())
+    }
+}
+
+impl Content {
+    fn create(path: &Path) -> io::Result<Self> {
+        const ANYONE: u32 = 0o666; // less what the umask takes away
+        let mut mode = ANYONE;
+        if let Ok(metadata) = fs::metadata(path) {
+            // A file that may not be changed is not replaced either.
+            let opened = File::options().append(true).open(path)?;
+            if !metadata.is_file() {
+                return Ok(Self::Device(opened));
+            }
+            mode = metadata.permissions().mode();
+        }
+        let target = path.canonicalize().unwrap_or_else(|_| path.to_owned());
+        let folder = match target.parent() {
+            Some(folder) if !folder.as_os_str().is_empty() => folder,
+            _ => Path::new("."),
+        };
+        let file = tempfile::Builder::new()
+            .prefix(".double-pendulum-")
+            .permissions(Permissions::from_mode(mode))
+            .tempfile_in(folder)
+            .map_err(without_path)?;
+        remove_on_interrupt(file.path());
+        Ok(Self::Temporary(file))
+    }
+}
+
+/// Returns the system's own words, which do not name the temporary file.
+fn without_path(error: io::Error) -> io::Error {
+    let text = error.to_string();
+    let reason = text.split(" at path ").next().unwrap_or_default();
+    io::Error::new(error.kind(), reason)
+}
+
+impl Write for OutFile {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        match &mut self.content {
+            Content::Temporary(file) => file.as_file_mut().write(bytes),
+            Content::Device(file) => file.write(bytes),
+        }
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        match &mut self.content {
+            Content::Temporary(file) => file.as_file_mut().flush(),
+            Content::Device(file) => file.flush(),
+        }
+    }
+}
+
+/// Refuses a file that cannot be written, before the work for it begins. What is there stays as it
+/// is.
+pub fn check_writable(option: &'static str, path: &Path) -> Result<(), Refused> {
+    OutFile::create(option, path).map(drop)
+}
+
+/// Writes a file of the folder that `--out` names; makes the folder.
+pub fn write(path: &Path, bytes: impl AsRef<[u8]>) -> anyhow::Result<()> {
+    let made = path.parent().map_or(Ok(()), fs::create_dir_all);
+    made.map_err(|error| unwritable("--out", path, &error))?;
+    OutFile::create("--out", path)?.write_whole(bytes.as_ref())
+}

@@ -1,0 +1,128 @@
+//! The files that commands write: complete or not there.
+
+use std::fs;
+use std::os::unix::fs::symlink;
+use std::path::Path;
+use std::process::Command;
+
+use host_tests::emulator::process::Output;
+
+use super::cli::{output, program};
+
+/// Runs a command of this project in `folder` where no file may be longer than a kilobyte, as if
+/// the disk were full.
+fn on_a_full_disk(line: &str, folder: &Path) -> Output {
+    let script = format!(
+        "trap '' XFSZ; ulimit -f 1; exec {} {line}",
+        env!("CARGO_BIN_EXE_host-tests")
+    );
+    output(
+        Command::new("bash")
+            .args(["-c", &script])
+            .current_dir(folder),
+    )
+}
+
+fn names(folder: &Path) -> Vec<String> {
+    let files = fs::read_dir(folder).expect("a folder");
+    files
+        .map(|file| {
+            let name = file.expect("a file").file_name();
+            name.to_string_lossy().into_owned()
+        })
+        .collect()
+}
+
+#[test]
+fn a_full_disk_is_an_error_and_leaves_no_part_of_a_file() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for (line, file) in [
+        ("flips --size 64 --limit 20 --out map.png", "map.png"),
+        ("simulate --out swing.csv", "swing.csv"),
+        ("figures --out .", "./figures/figure-2.svg"),
+    ] {
+        let said = on_a_full_disk(line, folder.path());
+        let error = format!("error: --out: cannot write {file}: File too large (os error 27)\n");
+        assert_eq!(
+            (said.status.code(), &*said.stdout, said.stderr),
+            (Some(1), "", error),
+            "{line}"
+        );
+        let left = names(folder.path());
+        assert!(
+            left.iter().all(|name| name == "figures"),
+            "{line}: {left:?}"
+        );
+    }
+    assert!(names(&folder.path().join("figures")).is_empty());
+}
+
+#[test]
+fn two_commands_with_one_file_both_end_well() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let start = || {
+        program("flips")
+            .args(["--size", "64", "--limit", "20", "--out", "map.png"])
+            .current_dir(folder.path())
+            .output()
+            .expect("it runs")
+    };
+    std::thread::scope(|scope| {
+        let runs = [(); 4].map(|()| scope.spawn(start));
+        for run in runs {
+            let said = run.join().expect("it ends");
+            assert!(said.status.success(), "{said:?}");
+            assert!(said.stdout.starts_with(b"wrote map.png; "), "{said:?}");
+        }
+    });
+    assert_eq!(names(folder.path()), ["map.png"]);
+}
+
+#[test]
+fn what_is_there_stays_until_the_new_file_is_complete() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("swing.csv");
+    fs::write(&file, "old").expect("a file");
+    let said = on_a_full_disk("simulate --out swing.csv", folder.path());
+    assert_eq!(said.status.code(), Some(1), "{said:?}");
+    assert_eq!(fs::read_to_string(&file).expect("the old one"), "old");
+
+    // A link stays a link, and a device a device.
+    let link = folder.path().join("link.csv");
+    symlink("swing.csv", &link).expect("a link");
+    let to = |file: &str| {
+        output(
+            program("simulate")
+                .args(["--until", "1", "--every", "1", "--out", file])
+                .current_dir(folder.path()),
+        )
+    };
+    assert_eq!(to("link.csv").stdout, "wrote link.csv\n");
+    assert_eq!(
+        fs::read_link(&link).expect("a link"),
+        Path::new("swing.csv")
+    );
+    let rows = fs::read_to_string(&file).expect("a table");
+    assert_eq!(rows.lines().count(), 3, "{rows}");
+    assert_eq!(to("/dev/null").status.code(), Some(0));
+    assert!(!fs::metadata("/dev/null").expect("a device").is_file());
+    assert_eq!(names(folder.path()).len(), 2);
+}
+
+/// A motion that leaves the finite numbers: the rows before are right.
+#[test]
+fn the_rows_before_an_error_are_in_the_file() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let said = output(
+        program("simulate")
+            .args(
+                "--masses 1,100 --angles 3,2 --step 1/20 --method rk4-f32 --out swing.csv"
+                    .split(' '),
+            )
+            .current_dir(folder.path()),
+    );
+    assert_eq!(said.status.code(), Some(1), "{said:?}");
+    assert!(said.stderr.contains("error: after 20 rows"), "{said:?}");
+    let rows = fs::read_to_string(folder.path().join("swing.csv")).expect("a table");
+    assert_eq!(rows.lines().count(), 21, "{rows}");
+}

@@ -1,0 +1,207 @@
+//! `cargo setup` with stand-ins for the system's programs: what it unpacks for this project alone,
+//! and what it installs on the system only after a question.
+
+use std::fs::{self, File, Permissions};
+use std::io::{Read, Write};
+use std::os::unix::fs::{OpenOptionsExt, PermissionsExt};
+use std::path::PathBuf;
+use std::process::{Command, Stdio};
+
+use host_tests::emulator::process::{Output, spawn};
+use nix::fcntl::OFlag;
+use nix::pty::{grantpt, posix_openpt, ptsname_r, unlockpt};
+use nix::unistd::geteuid;
+use tempfile::TempDir;
+
+use super::cli::{output, program};
+use crate::support::LIMIT;
+
+const GOOD_QEMU: &str = "echo QEMU emulator version 9.0.2";
+const GOOD_NODE: &str = "echo v20.1.0";
+const OLD_NODE: &str = "echo v12.22.12";
+
+/// Notes how it is called. Asked for a package it names one file, which it then makes; what is
+/// installed is a new Node.js.
+const APT_GET: &str = r#"
+echo "$@" >> "$LOG"
+case "$*" in
+    *--print-uris*) echo "'http://nowhere/q.deb' qemu-system-arm_9.0_all.deb 1 MD5Sum:0" ;;
+    *download*) touch qemu-system-arm_9.0_all.deb ;;
+    *update*) ;;
+    *install*) printf '#!/bin/sh\necho v20.1.0\n' > "$(dirname "$0")/node" ;;
+esac"#;
+/// Extracts a QEMU from any package.
+const DPKG_DEB: &str = r#"
+mkdir -p usr/bin
+printf '#!/bin/sh\necho QEMU emulator version 9.0.2\n' > usr/bin/qemu-system-arm
+chmod 755 usr/bin/qemu-system-arm"#;
+
+/// A system whose programs are stand-ins, and a target folder with nothing in it.
+struct System {
+    folder: TempDir,
+}
+
+impl System {
+    fn new(qemu: &str, node: &str) -> Self {
+        let system = Self {
+            folder: tempfile::tempdir().expect("a folder"),
+        };
+        for folder in ["bin", "target"] {
+            fs::create_dir(system.path(folder)).expect("a folder");
+        }
+        for (name, script) in [
+            ("qemu-system-arm", qemu),
+            ("node", node),
+            ("npm", "exit 0"),
+            ("apt-get", APT_GET),
+            ("dpkg-deb", DPKG_DEB),
+        ] {
+            let path = system.path("bin").join(name);
+            fs::write(&path, format!("#!/bin/sh\n{script}\n")).expect("a program");
+            fs::set_permissions(path, Permissions::from_mode(0o755)).expect("its mode");
+        }
+        system
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.folder.path().join(name)
+    }
+
+    fn setup(&self, arguments: &[&str]) -> Command {
+        let rest = std::env::var_os("PATH").unwrap_or_default();
+        let path = std::iter::once(self.path("bin")).chain(std::env::split_paths(&rest));
+        let mut command = program("setup");
+        command
+            .args(arguments)
+            .env("PATH", std::env::join_paths(path).expect("a path"))
+            .env("CARGO_TARGET_DIR", self.path("target"))
+            .env("LOG", self.path("log"));
+        command
+    }
+
+    /// The calls of apt-get that install something on the system.
+    fn installed(&self) -> Vec<String> {
+        let log = fs::read_to_string(self.path("log")).unwrap_or_default();
+        let installs = |line: &&str| line.contains("install") && !line.contains("--print-uris");
+        log.lines().filter(installs).map(str::to_owned).collect()
+    }
+}
+
+#[test]
+fn a_qemu_that_is_old_or_broken_is_replaced_by_an_unpacked_one() {
+    for (qemu, reason) in [
+        (
+            "echo 'QEMU emulator version 2.11.1(Debian 1:2.11)'",
+            "is QEMU 2.11.1, which is too old: 6.0 or newer is needed",
+        ),
+        ("exit 127", "does not work ("),
+        ("echo hello", "does not say its version"),
+    ] {
+        let system = System::new(qemu, GOOD_NODE);
+        let unpacked = system.path("target").join("qemu/qemu-system-arm");
+        let said = output(&mut system.setup(&[]));
+        assert_eq!(said.status.code(), Some(0), "{said:?}");
+        assert!(said.stderr.contains(reason), "{said:?}");
+        let line = format!("QEMU: {}\n", unpacked.display());
+        assert!(said.stdout.contains(&line), "{said:?}");
+        assert_eq!(system.installed(), [""; 0]);
+        // The next set-up finds it.
+        let again = output(&mut system.setup(&[]));
+        assert!(again.stdout.contains("nothing had to be done"), "{again:?}");
+    }
+}
+
+#[test]
+fn a_good_qemu_of_the_system_is_used() {
+    let system = System::new(GOOD_QEMU, GOOD_NODE);
+    let said = output(&mut system.setup(&[]));
+    let line = format!("QEMU: {}\n", system.path("bin/qemu-system-arm").display());
+    assert!(said.stdout.contains(&line), "{said:?}");
+    assert!(!system.path("log").exists(), "apt-get was called");
+}
+
+#[test]
+fn without_a_terminal_packages_are_installed_by_yes_only() {
+    let system = System::new(GOOD_QEMU, OLD_NODE);
+    let said = output(&mut system.setup(&[]));
+    assert_eq!(said.status.code(), Some(2), "{said:?}");
+    let errors: Vec<_> = said
+        .stderr
+        .lines()
+        .filter(|line| line.contains("error: "))
+        .collect();
+    let [error] = errors[..] else {
+        panic!("{said:?}")
+    };
+    assert!(
+        error.starts_with("error: Node.js is missing: Node.js v12.22.12 is older than 18; ")
+            && error.contains(
+                "; run cargo setup --yes, or install this system's packages nodejs and npm"
+            ),
+        "{error}"
+    );
+    assert_eq!(system.installed(), [""; 0]);
+
+    if geteuid().is_root() {
+        let said = output(&mut system.setup(&["--yes"]));
+        assert_eq!(said.status.code(), Some(0), "{said:?}");
+        assert!(
+            system.installed()[0].ends_with("nodejs npm"),
+            "{:?}",
+            system.installed()
+        );
+    }
+}
+
+/// Runs the set-up on a terminal where this is typed; what appears there, too.
+fn typed(system: &System, text: &str) -> (Output, String) {
+    let master =
+        posix_openpt(OFlag::O_RDWR | OFlag::O_NOCTTY | OFlag::O_CLOEXEC).expect("a terminal");
+    grantpt(&master)
+        .and_then(|()| unlockpt(&master))
+        .expect("a terminal");
+    let name = ptsname_r(&master).expect("its name");
+    let end = || {
+        let mut options = File::options();
+        options
+            .read(true)
+            .write(true)
+            .custom_flags(OFlag::O_NOCTTY.bits());
+        Stdio::from(options.open(&name).expect("its end"))
+    };
+    let mut command = system.setup(&[]);
+    command.stdin(end()).stderr(end()).stdout(Stdio::null());
+    let mut master = File::from(std::os::fd::OwnedFd::from(master));
+    master.write_all(text.as_bytes()).expect("it is typed");
+    let mut running = spawn(&mut command, LIMIT).expect("it starts");
+    drop(command);
+    let status = running.wait().expect("it ends");
+    // A terminal without users ends by an error.
+    let mut shown = Vec::new();
+    let _ = master.read_to_end(&mut shown);
+    let shown = String::from_utf8_lossy(&shown).into_owned();
+    let output = Output {
+        status,
+        stdout: String::new(),
+        stderr: shown.clone(),
+    };
+    (output, shown)
+}
+
+#[test]
+fn on_a_terminal_the_user_is_asked() {
+    // Only root is asked: nobody else may install packages.
+    if !geteuid().is_root() {
+        return;
+    }
+    for (answer, code, installed) in [("\n", 2, 0), ("n\n", 2, 0), ("y\n", 0, 1)] {
+        let system = System::new(GOOD_QEMU, OLD_NODE);
+        let (said, shown) = typed(&system, answer);
+        assert!(
+            shown.contains("Install nodejs, npm on this system with apt-get? [y/N] "),
+            "{shown}"
+        );
+        assert_eq!(said.status.code(), Some(code), "{answer:?}: {shown}");
+        assert_eq!(system.installed().len(), installed, "{answer:?}: {shown}");
+    }
+}
