@@ -16,8 +16,10 @@ const commands = {
   uart: (hex) => Buffer.from(hex, 'hex').forEach((byte) => board.chip.uart[0].feedByte(byte)),
   /** The panel's memory; nothing while it is off. */
   panel: () => say('panel', board.panel.shown()),
-  /** Plugs a panel of this status in, or pulls it: 0. */
-  plug: (status) => board.panel.plug(Number(status)),
+  /** Plugs a panel of this kind with these status bits in, or pulls it: none. */
+  plug: (kind, status) => board.panel.plug(kind, Number(status)),
+  /** The time of a byte on the panel's bus, ns. */
+  bus: (nanos) => (board.panel.byte = Number(nanos)),
   /** A button between this pin and ground: 1 is pressed. */
   button: (pin, is) => board.press(Number(pin), is === '1'),
   /** A circle where the processor is, until the next start. */

@@ -12,11 +12,12 @@ use embedded_io::Write;
 use crate::config::{
     MOST_MEASURED_STEPS, MOST_MESSAGES_PER_TICK, MOST_TICKS_PER_FRAME, Processor, RECEIVE_QUEUE,
 };
-use crate::display::Display;
+use crate::display::{Controller, Display};
 use crate::graphics::{Canvas, FrameBuffers};
 use crate::job::{Job, OnBoards, Request};
 use crate::protocol::{
-    Answer, Command, Decoder, Field, Frame, LinkError, MAX_WIRE, ToHost, decode_command, encode,
+    Answer, Command, Decoder, Field, Frame, LinkError, MAX_WIRE, Status, ToHost, decode_command,
+    encode,
 };
 use event::{FaultEdge, ThrottledCounter};
 
@@ -99,6 +100,20 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
         self.send(&ToHost::Restarted(restart.end), &mut log);
     }
 
+    /// Drives the panel as this controller; `None` identifies it. Returns false if the board has no
+    /// panel with a choice of controllers.
+    pub fn choose_panel(&mut self, controller: Option<Controller>) -> bool {
+        self.panel.choose(controller)
+    }
+
+    /// Returns what is played, and the state of the panel.
+    pub fn status(&self) -> Status {
+        Status {
+            panel: self.panel.report(),
+            ..self.player.status()
+        }
+    }
+
     /// Catches up with the clock, which counts ticks since reset and may wrap, then draws and sends once.
     ///
     /// Every tick is integrated, however late; the state after n ticks does not depend on how often this is called.
@@ -129,6 +144,12 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
         self.show(scene_cycles, &mut log);
         self.busy_cycles = (self.instruments.stopwatch)().wrapping_sub(start);
         ticks == late
+    }
+
+    /// Sends the last frame to the panel if it is still waiting for the bus. Returns true while it
+    /// waits.
+    pub fn catch_up(&mut self) -> bool {
+        self.panel.catch_up(self.canvas)
     }
 
     /// Takes bytes received over the link, executes and answers. Stops after [`MOST_MESSAGES_PER_TICK`] messages or
@@ -228,7 +249,7 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
     ) -> Result<(), Field> {
         self.execute(command, log)?;
         let answer = match command {
-            Command::Ask => Answer::Status(self.player.status()),
+            Command::Ask => Answer::Status(self.status()),
             Command::AskPlan => Answer::Planned(self.player.plan()),
             Command::Identify => Answer::Identity(self.instruments.identity()),
             Command::Measure { steps, in_ram } => {
@@ -238,6 +259,10 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
                     steps,
                     cycles: job.measure(|motion| timed(motion, steps, in_ram)),
                 }
+            }
+            Command::Panel(controller) => {
+                let has_choice = self.choose_panel(controller);
+                has_choice.then_some(Answer::Done).ok_or(Field::Panel)?
             }
             Command::Simulate(motion) => return self.begin_work(request, &motion, log),
             _ => Answer::Done,

@@ -5,6 +5,7 @@ use double_pendulum::{Error, Method};
 
 use crate::app::pace::Pace;
 use crate::config::{GREATEST_ANGLE, Processor};
+use crate::display::PanelReport;
 use crate::graphics::{Canvas, FadeLayer, text};
 use crate::motion::{CatchingUp, PlanResult, Planned, Planner, Resources, Settings};
 use crate::protocol::{Command, Field, Frame, Status};
@@ -105,6 +106,7 @@ impl<'a> Player<'a> {
             | Command::AskPlan
             | Command::Identify
             | Command::Measure { .. }
+            | Command::Panel(_)
             | Command::Simulate(_) => {}
         }
         Ok(false)
@@ -221,6 +223,7 @@ impl<'a> Player<'a> {
         }
     }
 
+    /// Returns what is played, without the state of the panel.
     pub fn status(&self) -> Status {
         let Self {
             name: scene,
@@ -237,6 +240,7 @@ impl<'a> Player<'a> {
             paused,
             steps,
             speed,
+            panel: PanelReport::default(),
         }
     }
 

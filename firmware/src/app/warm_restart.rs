@@ -7,7 +7,6 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::app::Player;
 use crate::config::TICK_RATE;
 use crate::protocol::{Cause, Decoder, MAX_WIRE, Restarted, Status, encode, read};
 
@@ -80,18 +79,17 @@ impl Journal {
         }
     }
 
-    /// What to keep of `player`, which has just been shown.
-    pub fn note(&mut self, player: &Player) -> Record {
+    /// Returns the record to keep after a frame: what is played, and the step that was shown.
+    pub fn note(&mut self, played: Status, step: u64) -> Record {
         self.frames = self.frames.saturating_add(1);
         if self.frames >= SOUND_FRAMES {
             self.restarts = 0;
         }
-        let (restarts, scene, step) = (self.restarts, player.name, player.report.step);
         Record {
-            played: player.status(),
+            played,
             end: Restarted {
-                restarts,
-                scene,
+                restarts: self.restarts,
+                scene: played.scene,
                 step,
                 ..Restarted::default()
             },

@@ -15,7 +15,7 @@ use super::cortex_m::watchdog::Watchdog;
 use super::serial;
 use crate::app::{App, Buttons, Event, Instruments, Journal, PlannerEvent, Record};
 use crate::config::{HALF_PIXEL, Processor};
-use crate::display::Display;
+use crate::display::{Display, Found};
 use crate::graphics::FrameBuffers;
 use crate::motion::Settings;
 use crate::protocol::{Cause, Restarted};
@@ -121,14 +121,19 @@ fn run<Panel: Display<Error: Debug>, Link: Write, Keys: Buttons>(
             is_late = !app.run_to(now, log);
             // A frame that is finished, drawn and sent is noted, and feeds the watchdog: nothing else does.
             if app.frames != before {
-                retained::keep(&journal.note(&app.player));
+                retained::keep(&journal.note(app.status(), app.player.report.step));
                 watchdog.feed();
             }
         }
         app.receive(from_fn(serial::received), log);
         app.note_lost(serial::lost(), log);
-        while ticks() == now && app.work(log) {}
-        while ticks() == now && app.player.look_ahead() {}
+        while ticks() == now && app.work(log) {
+            app.catch_up();
+        }
+        while ticks() == now && app.player.look_ahead() {
+            app.catch_up();
+        }
+        while ticks() == now && app.catch_up() {}
         now = wait_after(now);
     }
 }
@@ -139,6 +144,9 @@ fn resume<Panel: Display<Error: Debug>, Link: Write, Keys: Buttons>(
     app: &mut App<Panel, Link, Keys>,
     reset_by_watchdog: bool,
 ) -> Journal {
+    if let Some(controller) = retained::chosen_panel() {
+        app.choose_panel(Some(controller));
+    }
     let restart = retained::recall(reset_by_watchdog);
     if let Some(restart) = &restart {
         retained::keep(&Record {
@@ -151,7 +159,7 @@ fn resume<Panel: Display<Error: Debug>, Link: Write, Keys: Buttons>(
         app.resume(restart, log);
     }
     let mut journal = Journal::new(restart.as_ref());
-    retained::keep(&journal.note(&app.player));
+    retained::keep(&journal.note(app.status(), app.player.report.step));
     journal
 }
 
@@ -201,7 +209,18 @@ fn log<Panel: Debug, Link: Debug>(event: Event<Panel, Link>) {
             defmt::warn!("dropped {} frames, {} since reset", ticks, total)
         }
         Event::Panel(error) => defmt::warn!("panel: {}", Debug2Format(&error)),
-        Event::PanelFound(found) => defmt::info!("panel: {}", Debug2Format(&found)),
+        Event::PanelFound(Found {
+            controller,
+            by,
+            status,
+        }) => {
+            defmt::info!(
+                "panel: {=str}, {=str}, status {}",
+                controller.name(),
+                by.name(),
+                status
+            )
+        }
         Event::Damaged {
             messages,
             total,

@@ -1,7 +1,9 @@
-//! A panel's bus: the main loop fills an outbox and hands it to the bus's interrupt, which hands it back when it is empty.
+//! A panel's bus: the main loop fills an outbox and hands it to the bus's interrupt, which hands it
+//! back when it is empty.
 
 use embedded_hal::i2c::ErrorKind;
 
+use super::cortex_m::clock::cycles;
 use super::cortex_m::interrupt::Shared;
 use crate::display::{Outbox, PanelBus, Sent};
 
@@ -13,50 +15,72 @@ pub trait PanelPort {
     fn reset(&mut self);
 }
 
-/// The bus, and the outbox as long as the interrupt does not have it.
+/// The bus, and the outbox while the interrupt does not have it.
 pub struct Bus<P> {
     port: P,
     outbox: Option<&'static mut Outbox>,
+    /// Processor cycles in a microsecond.
+    megahertz: u32,
 }
 
 /// How often a start or stop is waited for, which takes 5 us: these tries take at least 12.
 pub const TRIES: u32 = 500;
 
-/// The outbox that the interrupt has.
-static OUTGOING: Shared<Option<&'static mut Outbox>> = Shared::new(None);
+/// An outbox on its way, and the processor cycle at which that began and ended.
+struct Outgoing {
+    outbox: &'static mut Outbox,
+    began: u32,
+    ended: u32,
+}
 
-/// For the bus's interrupt: `advance` does what is due, and says what has become of the messages once nothing more is; from
-/// then on the bus must not interrupt until [`PanelPort::begin`].
+/// The outbox that the interrupt has.
+static OUTGOING: Shared<Option<Outgoing>> = Shared::new(None);
+
+/// Serves the bus's interrupt: `advance` does what the bus waits for, and returns the outcome of the
+/// messages when all is done; from then on the bus must not interrupt until [`PanelPort::begin`].
 pub(in crate::board) fn serve(advance: impl FnOnce(&mut Outbox) -> Option<Sent>) {
     OUTGOING.with(|outgoing| {
-        if let Some(outbox) = outgoing
+        if let Some(Outgoing { outbox, ended, .. }) = outgoing
             && outbox.sent.is_none()
         {
             outbox.sent = advance(outbox);
+            if outbox.sent.is_some() {
+                *ended = cycles();
+            }
         }
     });
 }
 
 impl<P: PanelPort> Bus<P> {
-    /// There is one at most: the interrupt knows no other.
-    pub(in crate::board) fn new(mut port: P) -> Option<Self> {
+    /// Takes the port, and the frequency of the processor, Hz. There is one bus at most: the
+    /// interrupt knows no other.
+    pub(in crate::board) fn new(mut port: P, hertz: u32) -> Option<Self> {
         port.reset();
         Some(Self {
             port,
             outbox: Some(cortex_m::singleton!(: Outbox = Outbox::default())?),
+            megahertz: (hertz / 1_000_000).max(1),
         })
     }
 }
 
 impl<P: PanelPort> PanelBus for Bus<P> {
     fn outbox(&mut self) -> Option<(&mut Outbox, Sent)> {
-        if let Some(outbox) = OUTGOING
-            .with(|outgoing| outgoing.take_if(|outbox| outbox.sent.is_some()))
-            .flatten()
+        let arrived = OUTGOING
+            .with(|outgoing| outgoing.take_if(|Outgoing { outbox, .. }| outbox.sent.is_some()));
+        if let Some(Outgoing {
+            outbox,
+            began,
+            ended,
+        }) = arrived.flatten()
         {
             if !matches!(outbox.sent, Some(Ok(()) | Err(ErrorKind::NoAcknowledge(_)))) {
                 self.port.reset();
             }
+            outbox.took = ended
+                .wrapping_sub(began)
+                .checked_div(self.megahertz)
+                .unwrap_or(0);
             self.outbox = Some(outbox);
         }
         let outbox = self.outbox.as_deref_mut()?;
@@ -68,14 +92,20 @@ impl<P: PanelPort> PanelBus for Bus<P> {
         if let Some(outbox) = self.outbox.take() {
             let address = outbox.address;
             outbox.sent = None;
-            OUTGOING.with(|outgoing| *outgoing = Some(outbox));
+            let began = cycles();
+            let outgoing = Outgoing {
+                outbox,
+                began,
+                ended: began,
+            };
+            OUTGOING.with(|place| *place = Some(outgoing));
             self.port.begin(address);
         }
     }
 
     fn abort(&mut self) {
         self.port.reset();
-        if let Some(outbox) = OUTGOING.with(Option::take).flatten() {
+        if let Some(Outgoing { outbox, .. }) = OUTGOING.with(Option::take).flatten() {
             outbox.sent = Some(Err(ErrorKind::Other));
             self.outbox = Some(outbox);
         }

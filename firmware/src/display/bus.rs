@@ -9,22 +9,29 @@ use crate::graphics::{PAGES, WIDTH};
 /// A whole frame, of each page its window and its bytes, and all that wakes a panel.
 const CAPACITY: usize = PAGES * (5 + 2 + WIDTH) + 48;
 
-/// Messages to one address, each as its length and its bytes.
+/// Most bytes that are read from a panel at once.
+const ANSWER: usize = 2;
+
+/// Messages to one address, each as its length and its bytes, and the answer to them.
 #[derive(Debug)]
 pub struct Outbox {
-    /// Whom the messages are for, set by [`address_to`](Self::address_to).
+    /// The address of the panel, set by [`address_to`](Self::address_to).
     pub address: u8,
     messages: Vec<u8, CAPACITY>,
-    /// The place of what goes out next.
+    /// The index of the next byte to send.
     at: usize,
-    /// Bytes that are left of the message which is going out.
+    /// Bytes left of the message that is being sent.
     left: u8,
-    /// Whether to read the panel's status byte after the messages.
-    pub asks: bool,
-    /// The status byte last read.
-    pub status: u8,
-    /// What has become of the messages; `None` as long as they are going out.
+    /// Bytes to read from the panel after the messages.
+    asked: u8,
+    /// Bytes of these that the bus has been told to read, where it is told of each.
+    pub requested: usize,
+    /// The bytes read.
+    answer: Vec<u8, ANSWER>,
+    /// The outcome; `None` while the messages are being sent.
     pub sent: Option<Sent>,
+    /// The time that the messages took, us; 0 if it is not known.
+    pub took: u32,
 }
 
 pub type Sent = Result<(), ErrorKind>;
@@ -35,7 +42,7 @@ pub const SILENCE: ErrorKind = ErrorKind::NoAcknowledge(NoAcknowledgeSource::Unk
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct OutByte {
     pub value: u8,
-    /// Whether it is the last of its message: a stop follows, or the start of the next message.
+    /// The byte is the last of its message: a stop follows, or the start of the next message.
     pub ends_message: bool,
 }
 
@@ -46,24 +53,31 @@ impl Default for Outbox {
             messages: Vec::new(),
             at: 0,
             left: 0,
-            asks: false,
-            status: 0,
+            asked: 0,
+            requested: 0,
+            answer: Vec::new(),
             sent: Some(Ok(())),
+            took: 0,
         }
     }
 }
 
 impl Outbox {
-    /// Empties it: what is put in from now on is for this address.
+    /// Empties the outbox; messages put in from now on are for this address.
     pub fn address_to(&mut self, address: u8) {
-        *self = Self {
-            address,
-            ..Self::default()
-        };
+        self.address = address;
+        self.messages.clear();
+        self.at = 0;
+        self.left = 0;
+        self.asked = 0;
+        self.requested = 0;
+        self.answer.clear();
+        self.sent = Some(Ok(()));
+        self.took = 0;
     }
 
-    /// Puts a message in: a byte that tells what follows, and what follows, up to 254 bytes. One that does not fit is dropped; the
-    /// longest update of a panel fits (test `ssd1306`).
+    /// Appends a message: a byte that says what follows, and up to 254 bytes. A message that does
+    /// not fit is dropped; the longest update of a panel fits (test `oled_i2c`).
     pub fn put(&mut self, head: u8, body: &[u8]) {
         let needed = 2 + body.len();
         if let Ok(length) = u8::try_from(needed - 1)
@@ -76,16 +90,40 @@ impl Outbox {
         }
     }
 
-    /// Bytes of the messages in it, their addresses included.
-    pub fn len(&self) -> usize {
-        self.messages.len()
+    /// Reads this many bytes, at most 2, from the panel after the messages.
+    pub fn ask(&mut self, bytes: u8) {
+        self.asked = bytes.min(ANSWER as u8);
     }
 
+    /// Returns the number of bytes to read.
+    pub fn asked(&self) -> usize {
+        self.asked.into()
+    }
+
+    /// Takes a byte that was read.
+    pub fn answer(&mut self, byte: u8) {
+        // A byte that was not asked for is dropped.
+        let _ = self.answer.push(byte);
+    }
+
+    /// Returns the bytes read: as many as were asked for once the messages are sent.
+    pub fn answered(&self) -> &[u8] {
+        &self.answer
+    }
+
+    /// Returns the bytes on the bus: those of the messages and of the answer, with an address for
+    /// each.
+    pub fn len(&self) -> usize {
+        let read = if self.asked == 0 { 0 } else { 1 + self.asked() };
+        self.messages.len() + read
+    }
+
+    /// Returns true when all messages are sent; an answer may be outstanding.
     pub fn is_empty(&self) -> bool {
         self.at == self.messages.len()
     }
 
-    /// Whether a message goes out, its last byte still to come.
+    /// Returns true if a message is being sent and its last byte is still to come.
     pub fn is_within_message(&self) -> bool {
         self.left != 0
     }
@@ -94,7 +132,7 @@ impl Outbox {
 impl Iterator for Outbox {
     type Item = OutByte;
 
-    /// The next byte to go out; messages follow each other in their order.
+    /// Returns the next byte to send; messages follow each other in their order.
     fn next(&mut self) -> Option<OutByte> {
         if self.left == 0 {
             self.left = *self.messages.get(self.at)?;

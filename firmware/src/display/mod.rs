@@ -1,29 +1,50 @@
-//! Panels: they take a finished frame, and only that can fail. Those on I2C look alike, but may have different controllers.
+//! Panels take a finished frame, and only that can fail. Those on I2C look alike, but may have
+//! different controllers.
 
 use core::convert::Infallible;
+
+use embedded_hal::i2c::ErrorKind;
+use serde::{Deserialize, Serialize};
 
 use crate::graphics::Canvas;
 
 #[cfg(feature = "colour-panel")]
 mod any_panel;
 mod bus;
+mod oled_i2c;
 mod ssd0323;
-mod ssd1306;
 
 #[cfg(feature = "colour-panel")]
 pub use any_panel::AnyPanel;
 pub use bus::{OutByte, Outbox, PanelBus, SILENCE, Sent, free_bus};
+pub use oled_i2c::{OledError, OledI2c};
 pub use ssd0323::Ssd0323;
-pub use ssd1306::{Ssd1306, Ssd1306Error};
 
 pub trait Display {
     type Error;
 
     fn flush(&mut self, canvas: &Canvas) -> Result<(), Self::Error>;
 
-    /// Which panel was found since this was last asked.
+    /// Sends the last frame if it is still waiting for the bus, in the time left until the next one.
+    /// Returns true while it waits.
+    fn catch_up(&mut self, _: &Canvas) -> bool {
+        false
+    }
+
+    /// Returns the panel that was found since the last call.
     fn found(&mut self) -> Option<Found> {
         None
+    }
+
+    /// Returns the state of the panel for the host.
+    fn report(&self) -> PanelReport {
+        PanelReport::default()
+    }
+
+    /// Drives the panel as this controller; `None` identifies it. Returns false if the board has
+    /// no panel with a choice of controllers.
+    fn choose(&mut self, _: Option<Controller>) -> bool {
+        false
     }
 }
 
@@ -38,60 +59,95 @@ impl Display for NoDisplay {
     }
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Controller {
-    /// Most panels of 0.96 inches have it; the SSD1309 takes the same commands.
-    Ssd1306,
-    /// Most panels of 1.3 inches have it.
-    Sh1106,
-    /// Of square panels: not driven.
-    Sh1107,
+choice! {
+    /// The controller of a one-colour OLED panel on I2C.
+    Controller {
+        /// Most panels of 0.96 inches have it; the SSD1309 takes the same commands.
+        Ssd1306 = "ssd1306";
+        /// Most panels of 1.3 inches have it.
+        Sh1106 = "sh1106";
+        /// Panels of 128 x 128 and 64 x 128 have it. It is driven as a panel of 128 x 128.
+        Sh1107 = "sh1107";
+    }
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum By {
-    /// By the status byte, which the panel was asked for.
-    Status(u8),
-    /// The panel does not tell: it is taken for what most are.
-    Silence,
-    /// The program was built for it, with `PANEL=ssd1306` or `PANEL=sh1106`; the panel was not asked.
-    Build,
+choice! {
+    /// The way in which a controller was identified.
+    By {
+        /// The panel returned what was written into its memory, or did not.
+        Memory = "by reading its memory back";
+        /// Reading the memory was broken off; only the status byte was left to judge by.
+        Status = "by its status byte";
+        /// The panel acknowledges no read and is taken for the most common controller.
+        Silence = "as it answers no read";
+        /// The host, or the build variable `PANEL`, named the controller.
+        Choice = "as chosen";
+    }
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Found {
-    pub controller: Controller,
-    pub by: By,
+choice! {
+    /// An error of the bus that makes a panel absent.
+    BusFault {
+        /// No panel acknowledges its address.
+        NoAnswer = "no answer at 0x3C and 0x3D";
+        /// Another device drove the data line.
+        Disturbed = "the data line was driven by another device";
+        /// A transfer did not end.
+        Stuck = "the bus hangs";
+    }
 }
 
-impl Found {
-    pub const SILENT: Self = Self {
-        controller: Controller::Ssd1306,
-        by: By::Silence,
-    };
-
-    /// A panel of this status: what the lower half says, for the upper one says whether it is on.
-    ///
-    /// Source: the rule of L. Bank's OLED libraries (`ss_oled`); no data sheet promises it.
-    pub fn told(status: u8) -> Self {
-        let controller = match status & 0x0F {
-            0x08 => Controller::Sh1106,
-            0x07 | 0x0F => Controller::Sh1107,
-            _ => Controller::Ssd1306, // 3 or 6, and who knows what of an imitation
-        };
-        Self {
-            controller,
-            by: By::Status(status),
+impl From<ErrorKind> for BusFault {
+    fn from(error: ErrorKind) -> Self {
+        match error {
+            ErrorKind::NoAcknowledge(_) => Self::NoAnswer,
+            ErrorKind::ArbitrationLoss => Self::Disturbed,
+            _ => Self::Stuck,
         }
     }
 }
 
-/// The controller that the build variable `PANEL` names; it overrides the status byte.
+/// A panel that answers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(target_os = "none", derive(defmt::Format))]
+pub struct Found {
+    pub controller: Controller,
+    pub by: By,
+    /// The status byte, read with the display off; `None` if the panel acknowledges no read.
+    pub status: Option<u8>,
+}
+
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum PanelState {
+    /// The board has no panel, or one that cannot be asked.
+    #[default]
+    Unknown,
+    /// The board looks for a panel, identifies it or sends the first picture.
+    Starting,
+    Absent(BusFault),
+    Shown(Found),
+}
+
+/// The state of the panel for the host.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct PanelReport {
+    pub state: PanelState,
+    /// The controller that the user chose; `None` identifies it.
+    pub chosen: Option<Controller>,
+    /// Frames of the last whole second that were sent to the panel.
+    pub shown: u8,
+    /// Frames of these that were sent whole; the others left a part to the next frame.
+    pub whole: u8,
+}
+
+/// The controller that the build variable `PANEL` names. A controller chosen by the host has
+/// precedence.
 pub const BUILT_FOR: Option<Controller> = match option_env!("PANEL") {
     None => None,
     Some(name) => match name.as_bytes() {
         b"ssd1306" => Some(Controller::Ssd1306),
         b"sh1106" => Some(Controller::Sh1106),
-        _ => panic!("PANEL is neither ssd1306 nor sh1106"),
+        b"sh1107" => Some(Controller::Sh1107),
+        _ => panic!("PANEL is neither ssd1306, sh1106 nor sh1107"),
     },
 };

@@ -4,6 +4,7 @@ use double_pendulum::{Error, Method, Parameter};
 use serde::{Deserialize, Serialize};
 
 use super::{MAX_WIRE, encode, read};
+use crate::display::Controller;
 use crate::job::Request;
 use crate::scenes::SceneName;
 
@@ -51,6 +52,8 @@ pub enum Command {
         /// By their code in memory, otherwise by that in flash.
         in_ram: bool,
     },
+    /// Drive the panel as this controller; `None` identifies it. The choice outlasts a restart.
+    Panel(Option<Controller>),
 }
 
 /// Stands before every command, and before no message to the host: there a smaller number says which it is.
@@ -94,6 +97,8 @@ choice! {
         Field = "field";
         /// The message itself: no known command, or not with that command's fields.
         Message = "message";
+        /// The board has no panel with a choice of controllers.
+        Panel = "panel";
     }
 }
 

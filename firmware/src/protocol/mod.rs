@@ -33,7 +33,7 @@ pub use command::{Command, Field, decode_command, encode_command};
 pub use to_host::{Answer, BoardName, Cause, Frame, Identity, Restarted, Status, ToHost};
 
 /// The version of the protocol; the first byte of every message.
-pub const VERSION: u8 = 11;
+pub const VERSION: u8 = 12;
 /// The most bytes that a message takes by itself.
 pub const MAX_MESSAGE: usize = 97;
 /// The most bytes it takes before framing: with version and CRC.

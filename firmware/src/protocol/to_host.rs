@@ -6,6 +6,7 @@ use double_pendulum::Method;
 use serde::{Deserialize, Serialize};
 
 use super::Field;
+use crate::display::PanelReport;
 use crate::job::Reading;
 use crate::motion::{Planned, Settings};
 use crate::scenes::{Report, SceneName};
@@ -27,7 +28,7 @@ pub enum Answer {
     Done,
     /// This is wrong: the command is not executed, and nothing was changed; or the motion cannot be computed, or not to its end.
     Refused(Field),
-    /// What is played, and from what start.
+    /// What is played, and from what start; and the state of the panel.
     Status(Status),
     /// The plan of the scene; `None` if it shows no motion.
     Planned(Option<Planned>),
@@ -107,6 +108,8 @@ pub struct Status {
     pub steps: u32,
     /// Simulated time per real time.
     pub speed: f32,
+    /// The state of the panel.
+    pub panel: PanelReport,
 }
 
 choice! {

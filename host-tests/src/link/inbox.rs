@@ -17,6 +17,7 @@ pub fn refusal(field: Field) -> &'static str {
     match field {
         // It can read what this host sends, unless that has another table of methods.
         Field::Message => "message; its firmware is not of this version, flash it anew",
+        Field::Panel => "panel; the board has none with a choice of controllers",
         field => field.name(),
     }
 }

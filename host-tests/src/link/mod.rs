@@ -2,11 +2,13 @@
 //! one that is a USB device's.
 
 mod inbox;
+mod panel;
 mod port;
 
 use serialport::{SerialPortInfo, SerialPortType};
 
 pub use inbox::{Counts, Inbox, refusal};
+pub use panel::{is_well, panel};
 pub use port::Port;
 
 /// The word that stands for the only serial port over USB. Not the only one of some ids, for those of the Pico are lent to whoever

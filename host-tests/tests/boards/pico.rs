@@ -10,6 +10,7 @@ use firmware::app::Key;
 use firmware::config::{
     HOLD_TICKS, MOST_MEASURED_STEPS, RECEIVE_QUEUE, TICK_RATE, WATCHDOG_SECONDS,
 };
+use firmware::display::{BusFault, By, Controller, Found, PanelReport, PanelState};
 use firmware::graphics::Bitmap;
 use firmware::job::{CRC, Request};
 use firmware::protocol::{
@@ -243,7 +244,7 @@ fn stand_still(board: &mut PicoMachine) -> anyhow::Result<Frame> {
 fn the_panel_shows_the_hosts_picture_whichever_it_is_and_however_often_it_is_pulled()
 -> anyhow::Result<()> {
     let mut board = board()?;
-    board.tell("plug 0")?;
+    board.tell("plug none")?;
     board.run(Duration::from_millis(300))?;
     assert!(board.tell("panel")?.is_empty(), "it is off");
     assert!(
@@ -252,42 +253,52 @@ fn the_panel_shows_the_hosts_picture_whichever_it_is_and_however_often_it_is_pul
             .iter()
             .any(|line| line.text.starts_with("panel: Absent"))
     );
-    for (name, status, found) in [
-        (
-            SceneName::Page,
-            6,
-            "panel: Found { controller: Ssd1306, by: Status(70) }",
-        ),
-        (SceneName::Figure7, 0, ""),
-        (
-            SceneName::Butterfly,
-            8,
-            "panel: Found { controller: Sh1106, by: Status(72) }",
-        ),
-        (SceneName::Flips, 8, ""),
+    assert_eq!(
+        panel_report(&mut board)?.state,
+        PanelState::Absent(BusFault::NoAnswer)
+    );
+    let [ssd1306, sh1106] = [
+        "panel: ssd1306, by reading its memory back, status ",
+        "panel: sh1106, by reading its memory back, status ",
+    ];
+    for (name, panel, found) in [
+        (SceneName::Page, "ssd1306 6", ssd1306),
+        (SceneName::Figure7, "none", ""),
+        // Its status is that of the other.
+        (SceneName::Butterfly, "sh1106 6", sh1106),
+        // Its power fails for a moment.
+        (SceneName::Flips, "sh1106 8", sh1106),
+        (SceneName::Page, "ssd1306 0", ssd1306),
     ] {
         board.send(1, Command::Choose(name))?;
         board.send(2, Command::Pause(false))?;
-        board.tell(&format!("plug {status}"))?;
+        board.tell(&format!("plug {panel}"))?;
         // A new one is looked for within a second, and has what was lost in one more.
-        board.run(if status == 0 {
+        board.run(if panel == "none" {
             4 * PICTURE
         } else {
             Duration::from_millis(2000)
         })?;
         let frame = stand_still(&mut board)?;
-        assert_eq!(
-            board.lines().iter().any(|line| line.text == found),
-            !found.is_empty(),
-            "{}",
+        let lines = board.lines();
+        let reported = lines
+            .iter()
+            .find(|line| line.text.starts_with("panel: s"))
+            .map(|line| &line.text[..]);
+        assert!(
+            reported.unwrap_or_default().starts_with(found)
+                && reported.is_some() != found.is_empty(),
+            "{}: {reported:?}",
             name.name()
         );
+        let is_present = matches!(panel_report(&mut board)?.state, PanelState::Shown(_));
+        assert_eq!(is_present, panel != "none", "{}", name.name());
         let mut show = show(&PICO, name);
         (0..frame.report.step).for_each(|_| show.tick());
         let mut canvas = show.frame();
         firmware::graphics::text::pause_mark(&mut canvas);
         let (shown, picture) = (board.tell("panel")?, Bitmap::from(&canvas));
-        let expected = if status == 0 {
+        let expected = if panel == "none" {
             &[]
         } else {
             picture.pages.as_flattened()
@@ -299,6 +310,68 @@ fn the_panel_shows_the_hosts_picture_whichever_it_is_and_however_often_it_is_pul
             board.screenshot()?
         );
     }
+    Ok(())
+}
+
+/// Returns the state of the panel by the link.
+fn panel_report(board: &mut PicoMachine) -> anyhow::Result<PanelReport> {
+    board.send(7, Command::Ask)?;
+    match answers(board.run(4 * TICK)?)[..] {
+        [(7, Answer::Status(status))] => Ok(status.panel),
+        ref others => panic!("{others:?}"),
+    }
+}
+
+/// The scene that changes most, at the usual speed of the bus and at the worst.
+#[test]
+fn every_frame_reaches_a_panel_on_a_slow_bus() -> anyhow::Result<()> {
+    for nanos in [26_000, 34_000] {
+        let mut board = board()?;
+        board.tell(&format!("bus {nanos}"))?;
+        board.run(PICTURE)?;
+        board.send(1, Command::Choose(SceneName::SmallHeavy))?;
+        // In the first second the panel is identified. Then planning makes frames late.
+        board.run(TICK * TICK_RATE)?;
+        for _ in 0..4 {
+            board.run(TICK * (TICK_RATE - 4))?;
+            let report = panel_report(&mut board)?;
+            assert_eq!(u32::from(report.shown), TICK_RATE, "{nanos} ns");
+        }
+    }
+    Ok(())
+}
+
+#[test]
+fn chosen_controller_outlasts_a_restart() -> anyhow::Result<()> {
+    let chosen = Some(Controller::Sh1106);
+    let mut board = board()?;
+    board.run(8 * PICTURE)?;
+    board.send(1, Command::Panel(chosen))?;
+    assert_eq!(answers(board.run(8 * PICTURE)?), [(1, Answer::Done)]);
+    let is_driven = |report: PanelReport| {
+        matches!(
+            report.state,
+            PanelState::Shown(Found { by: By::Choice, .. })
+        ) && report.chosen == chosen
+    };
+    assert!(is_driven(panel_report(&mut board)?));
+
+    // By the watchdog, and from outside.
+    board.tell("hang")?;
+    board.run(Duration::from_secs(u64::from(WATCHDOG_SECONDS) * 2) + 8 * PICTURE)?;
+    assert!(is_driven(panel_report(&mut board)?));
+    board.tell("reset 0")?;
+    board.run(8 * PICTURE)?;
+    assert!(is_driven(panel_report(&mut board)?));
+
+    board.send(2, Command::Panel(None))?;
+    board.run(8 * PICTURE)?;
+    let report = panel_report(&mut board)?;
+    assert_eq!(report.chosen, None);
+    assert!(matches!(
+        report.state,
+        PanelState::Shown(Found { by: By::Memory, .. })
+    ));
     Ok(())
 }
 

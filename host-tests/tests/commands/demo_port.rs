@@ -8,7 +8,8 @@ use std::time::{Duration, Instant};
 
 use super::cli::program;
 use crate::support::bench::{Bench, WAIT, at_port, board, wire};
-use firmware::protocol::{Frame, ToHost};
+use firmware::display::{BusFault, By, Controller, Found, PanelReport, PanelState};
+use firmware::protocol::{Answer, Frame, ToHost};
 use firmware::scenes::Report;
 use nix::pty::{OpenptyResult, Winsize, openpty};
 
@@ -62,6 +63,59 @@ fn one_flipped_bit_is_named_and_fails() {
     let is_it =
         |line: &str| line.starts_with("not well: frame 300, step ") && line.contains(": p1 is 0x");
     assert!(told.lines().any(is_it), "{told}");
+}
+
+/// Returns the message, with this state of the panel in it.
+fn with_panel(mut message: ToHost, report: PanelReport) -> ToHost {
+    if let ToHost::Answer(_, Answer::Status(status)) = &mut message {
+        status.panel = report;
+    }
+    message
+}
+
+#[test]
+fn state_of_the_panel_is_reported_with_the_remedy_when_it_changes() {
+    let absent = PanelReport {
+        state: PanelState::Absent(BusFault::NoAnswer),
+        ..PanelReport::default()
+    };
+    let found = Found {
+        controller: Controller::Sh1106,
+        by: By::Memory,
+        status: Some(0x48),
+    };
+    let shown = PanelReport {
+        state: PanelState::Shown(found),
+        shown: 60,
+        ..PanelReport::default()
+    };
+    let [said, told] = demo(0, "--seconds 8", |bench| {
+        let report = if bench.frame < 200 { absent } else { shown };
+        bench.carry(|message| wire(with_panel(message, report)));
+    });
+    let lines: Vec<_> = told
+        .lines()
+        .filter(|line| line.starts_with("panel: "))
+        .collect();
+    assert!(
+        matches!(&lines[..], [first, second]
+            if first.contains("no answer at 0x3C and 0x3D: check the wiring")
+                && second.contains("sh1106 by reading its memory back (status 0x48)")),
+        "{told}"
+    );
+    assert!(
+        said.contains("panel                 sh1106 by reading"),
+        "{said}"
+    );
+}
+
+#[test]
+fn board_without_a_choice_of_controllers_refuses_one() {
+    let [_, told] = demo(1, "--panel sh1106", |bench| bench.carry(wire));
+    assert!(
+        told.contains("--panel: the board refuses: panel; the board has none"),
+        "{told}"
+    );
 }
 
 /// Its frames come, and are of another scene for ever.

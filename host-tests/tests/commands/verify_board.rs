@@ -11,6 +11,7 @@ use super::cli::program;
 use crate::support::LIMIT;
 use crate::support::bench::{BOARD, Bench, at_port, wire};
 use firmware::app::Key;
+use firmware::display::{BusFault, PanelState};
 use firmware::job::ON_BOARDS;
 use firmware::protocol::{Answer, ToHost};
 use firmware::scenes::SceneName;
@@ -27,7 +28,14 @@ fn a_board_with_the_hosts_bits_is_told_so_and_reported() {
     command
         .args(["--no-questions", "--report"])
         .arg(folder.path().join("mps2"));
-    let output = at_port(&mut Bench::new(), &mut command, |bench| bench.carry(wire));
+    let output = at_port(&mut Bench::new(), &mut command, |bench| {
+        bench.carry(|mut message| {
+            if let ToHost::Answer(_, Answer::Status(status)) = &mut message {
+                status.panel.state = PanelState::Absent(BusFault::NoAnswer);
+            }
+            wire(message)
+        })
+    });
     assert_eq!(output.status.code(), Some(0), "{output:?}");
     assert!(
         output.stdout.contains("every bit the host's"),
@@ -44,6 +52,7 @@ fn a_board_with_the_hosts_bits_is_told_so_and_reported() {
         format!("# {}\n", BOARD.name),
         format!(", {} Hz\n", BOARD.hertz),
         "built from commit ".to_owned(),
+        "- panel: absent: no answer at 0x3C and 0x3D: check the wiring".to_owned(),
     ];
     assert!(
         head.iter().all(|part| markdown.contains(part)),

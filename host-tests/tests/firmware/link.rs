@@ -6,6 +6,7 @@ use std::fmt::Debug;
 use double_pendulum::plan::{Limit, Plan, PlanError, Stepping};
 use double_pendulum::{Error, Method};
 use firmware::app::Record;
+use firmware::display::{BusFault, By, Controller, Found, PanelReport, PanelState};
 use firmware::job::{Reading, Request};
 use firmware::motion::{PlanResult, Planned, Settings};
 use firmware::protocol::{
@@ -165,6 +166,16 @@ fn every_message_fits() {
         (Some(end), None)
     );
     let (settings, method) = (Settings::default(), Some(method));
+    let panel = PanelReport {
+        state: PanelState::Shown(Found {
+            controller: Controller::Sh1107,
+            by: By::Choice,
+            status: Some(u8::MAX),
+        }),
+        chosen: Some(Controller::Sh1107),
+        shown: u8::MAX,
+        whole: u8::MAX,
+    };
     let played = Status {
         scene,
         settings,
@@ -173,6 +184,7 @@ fn every_message_fits() {
         paused: true,
         steps,
         speed: 1.0,
+        panel,
     };
     assert_eq!(
         Record::read(&Record { played, end }.write()),
@@ -227,9 +239,13 @@ fn numbers_mean_the_same_as_long_as_the_version_does() -> Result<(), String> {
         + &variants(read::<SceneName>)
         + &variants(read::<BoardName>)
         + &variants(read::<Cause>);
+    let panels = variants(read::<PanelState>)
+        + &variants(read::<Controller>)
+        + &variants(read::<By>)
+        + &variants(read::<BusFault>);
     snapshot::check(
         &format!("wire-{VERSION}"),
-        &(messages + &plans + &values + &variants(read::<Limit>)),
+        &(messages + &plans + &values + &variants(read::<Limit>) + &panels),
     )
 }
 

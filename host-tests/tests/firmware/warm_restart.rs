@@ -125,7 +125,7 @@ fn a_minute_without_a_restart_forgets_those_before() {
             ..Restarted::default()
         };
         assert_eq!(
-            journal.note(&player),
+            journal.note(player.status(), player.report.step),
             Record {
                 played: player.status(),
                 end

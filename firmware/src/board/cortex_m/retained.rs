@@ -4,6 +4,7 @@ use core::hint::black_box;
 use core::sync::atomic::{AtomicU8, Ordering};
 
 use crate::app::Record;
+use crate::display::Controller;
 use crate::protocol::{Cause, MAX_WIRE, Restarted};
 
 /// Two copies: whenever the program ends, even in the middle of writing one, the other is whole. The message's check tells
@@ -39,6 +40,11 @@ fn kept() -> Option<Record> {
 /// What was kept across the last reset, if that was no planned one.
 pub fn recall(by_watchdog: bool) -> Option<Record> {
     kept()?.restart(by_watchdog)
+}
+
+/// Returns the controller that was chosen for the panel, after any reset that left memory powered.
+pub fn chosen_panel() -> Option<Controller> {
+    kept()?.played.panel.chosen
 }
 
 pub fn last() -> Option<Restarted> {

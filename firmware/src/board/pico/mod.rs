@@ -1,4 +1,4 @@
-//! Raspberry Pi Pico: an RP2040, Cortex-M0+ at 125 MHz, of which one core is used; an SSD1306 or SH1106 panel on I2C0, up to five buttons,
+//! Raspberry Pi Pico: an RP2040, Cortex-M0+ at 125 MHz, of which one core is used; a one-colour OLED panel on I2C0, up to five buttons,
 //! and the serial link over USB and UART0 at once.
 //!
 //! Source: RP2040 data sheet, for the watchdog 2.8 (boot sequence), 2.13 (what it resets), 2.14 (subsystem resets), 4.7; Raspberry
@@ -27,7 +27,8 @@ use crate::board::panel_bus::Bus;
 use crate::board::serial::Outward;
 use crate::board::{Board, log};
 use crate::config::WATCHDOG_SECONDS;
-use crate::display::{BUILT_FOR, Ssd1306};
+use crate::display::{BUILT_FOR, OledI2c};
+use crate::graphics::Bitmap;
 use crate::protocol::BoardName;
 
 use i2c::I2c0;
@@ -41,7 +42,7 @@ static BOOT: [u8; 256] = rp2040_boot2::BOOT_LOADER_W25Q080;
 /// The Pico's crystal, Hz.
 const CRYSTAL: u32 = 12_000_000;
 
-pub type Pico = Board<Ssd1306<Bus<I2c0>>, Outward, PinKeys, Watchdog>;
+pub type Pico = Board<OledI2c<'static, Bus<I2c0>>, Outward, PinKeys, Watchdog>;
 
 /// Sets the board up; `None` the second time, or if its clock does not start.
 pub fn take() -> Option<Pico> {
@@ -99,8 +100,9 @@ pub fn take() -> Option<Pico> {
         clocks.system_clock.freq(),
         &mut chip.RESETS,
     )?;
+    let memory = cortex_m::singleton!(: Bitmap = Bitmap::BLACK)?;
     Some(Board {
-        panel: Ssd1306::new(bus, BUILT_FOR),
+        panel: OledI2c::new(bus, memory, BUILT_FOR),
         link,
         keys: PinKeys([
             pins.gpio10.into_pull_up_input().into_dyn_pin(),

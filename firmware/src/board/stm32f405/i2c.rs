@@ -13,6 +13,7 @@ use stm32f4xx_hal::pac::{I2C1, Interrupt};
 use stm32f4xx_hal::prelude::*;
 use stm32f4xx_hal::rcc::Rcc;
 
+use super::HERTZ;
 use crate::board::cortex_m::interrupt::unmask;
 use crate::board::panel_bus::{self, Bus, PanelPort, TRIES};
 use crate::display::{Outbox, SILENCE, Sent, free_bus};
@@ -31,7 +32,7 @@ pub struct I2c1((Scl, Sda));
 /// `None` the second time.
 pub(super) fn start(port: I2C1, clock: PB6, data: PB7, rcc: &mut Rcc) -> Option<Bus<I2c1>> {
     let (_, pins) = I2c::new(port, (clock, data), 400.kHz(), rcc).release();
-    let bus = Bus::new(I2c1(pins))?;
+    let bus = Bus::new(I2c1(pins), HERTZ)?;
     [Interrupt::I2C1_EV, Interrupt::I2C1_ER]
         .into_iter()
         .for_each(unmask);
@@ -43,6 +44,7 @@ impl PanelPort for I2c1 {
         let port = registers();
         // The control register is not to be written before.
         let _ = (0..TRIES).any(|_| port.cr1().read().stop().bit_is_clear());
+        port.cr1().modify(|_, w| w.pos().clear_bit());
         port.cr2()
             .modify(|_, w| w.itevten().set_bit().iterren().set_bit());
         port.cr1().modify(|_, w| w.start().set_bit());
@@ -98,22 +100,26 @@ fn registers() -> &'static RegisterBlock {
 /// Does what the bus waits for. Between two messages there is no stop but a start.
 fn advance(port: &RegisterBlock, outbox: &mut Outbox) -> Option<Sent> {
     let status = port.sr1().read().bits();
-    // What is left then is to read the status.
-    let reads = outbox.is_empty() && outbox.asks;
+    // The messages are sent: only the answer is left.
+    let reads = outbox.is_empty() && outbox.asked() > 0;
     let is_ready = if status & START_SENT != 0 {
         port.dr()
             .write(|w| w.dr().set(outbox.address << 1 | u8::from(reads)));
         false
     } else if status & ADDRESS_SENT != 0 {
-        let _ = port.sr2().read(); // Only this ends the address phase.
         if reads {
-            // One byte, which is not acknowledged.
-            port.cr1().modify(|_, w| w.stop().set_bit());
-            port.cr2().modify(|_, w| w.itbufen().set_bit());
+            accept(port, outbox.asked());
+        } else {
+            let _ = port.sr2().read(); // Only this ends the address phase.
         }
         !reads
-    } else if reads && status & BYTE_READ != 0 {
-        outbox.status = port.dr().read().dr().bits();
+    } else if reads && is_read(status, outbox.asked()) {
+        if outbox.asked() > 1 {
+            port.cr1().modify(|_, w| w.stop().set_bit());
+        }
+        for _ in 0..outbox.asked() {
+            outbox.answer(port.dr().read().dr().bits());
+        }
         silence(port);
         return Some(Ok(()));
     } else {
@@ -140,6 +146,37 @@ fn advance(port: &RegisterBlock, outbox: &mut Outbox) -> Option<Sent> {
     }
     stop(port);
     Some(Err(ErrorKind::Other))
+}
+
+/// Ends the address phase of one byte or two. The last byte is not acknowledged, and a stop follows
+/// it.
+///
+/// Of two bytes both are held in the block before any is read: POS moves the refusal to the second,
+/// and must be set before the phase ends; the stop is set when the bus stands still behind the
+/// second.
+///
+/// Source: RM0090, 27.3.3 (master receiver).
+fn accept(port: &RegisterBlock, bytes: usize) {
+    let is_pair = bytes > 1;
+    // The clock is held low until the second register is read.
+    port.cr1()
+        .modify(|_, w| w.ack().clear_bit().pos().bit(is_pair));
+    let _ = port.sr2().read();
+    if !is_pair {
+        port.cr1().modify(|_, w| w.stop().set_bit());
+        port.cr2().modify(|_, w| w.itbufen().set_bit());
+    }
+}
+
+/// Returns true if the answer has come: of two bytes the second waits behind the first. The flag for
+/// that alone is also set behind the last byte sent.
+fn is_read(status: u16, bytes: usize) -> bool {
+    let flags = if bytes > 1 {
+        BYTE_READ | ALL_SENT
+    } else {
+        BYTE_READ
+    };
+    status & flags == flags
 }
 
 /// A bus error is none: a master may detect one where there is none, so it is cleared and the transfer goes on (ES0182,

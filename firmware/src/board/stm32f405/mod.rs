@@ -1,4 +1,4 @@
-//! STM32F405 (or F407): Cortex-M4F at 168 MHz, an SSD1306 or SH1106 panel on I2C1, one button, serial port USART3.
+//! STM32F405 (or F407): Cortex-M4F at 168 MHz, a one-colour OLED panel on I2C1, one button, serial port USART3.
 //!
 //! The same image runs on the chip and in QEMU's `netduinoplus2`, where there are the processor, the memory and the
 //! serial ports, but neither clock control nor pins nor I2C: their registers read 0 and forget what is written.
@@ -29,7 +29,8 @@ use crate::board::panel_bus::Bus;
 use crate::board::serial::{Inbox, Outward, receive_by, send};
 use crate::board::{Board, log};
 use crate::config::{BAUD, WATCHDOG_SECONDS};
-use crate::display::{BUILT_FOR, Ssd1306};
+use crate::display::{BUILT_FOR, OledI2c};
+use crate::graphics::Bitmap;
 use crate::protocol::BoardName;
 
 use i2c::I2c1;
@@ -40,7 +41,7 @@ const HERTZ: u32 = 168_000_000;
 /// The chip's unique number (RM0090, 39.1), in its system memory.
 const UNIQUE_NUMBER: *const [u32; 3] = core::ptr::without_provenance(0x1fff_7a10);
 
-pub type Stm32f405 = Board<Ssd1306<Bus<I2c1>>, Outward, OneKey, IndependentWatchdog>;
+pub type Stm32f405 = Board<OledI2c<'static, Bus<I2c1>>, Outward, OneKey, IndependentWatchdog>;
 
 /// Sets the board up; `None` the second time.
 pub fn take() -> Option<Stm32f405> {
@@ -55,8 +56,10 @@ pub fn take() -> Option<Stm32f405> {
     let chip_number = if is_emulated { [0; 4] } else { chip_number() };
     let instruments = start(core, BoardName::Stm32f405, HERTZ, chip_number);
     let (b, c) = (chip.GPIOB.split(&mut rcc), chip.GPIOC.split(&mut rcc));
+    let bus = i2c::start(chip.I2C1, b.pb6, b.pb7, &mut rcc)?;
+    let memory = cortex_m::singleton!(: Bitmap = Bitmap::BLACK)?;
     Some(Board {
-        panel: Ssd1306::new(i2c::start(chip.I2C1, b.pb6, b.pb7, &mut rcc)?, BUILT_FOR),
+        panel: OledI2c::new(bus, memory, BUILT_FOR),
         link: start_link(chip.USART3, (b.pb10, b.pb11), &mut rcc)?,
         keys: OneKey(c.pc7.into_pull_up_input()),
         instruments,

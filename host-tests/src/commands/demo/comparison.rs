@@ -5,6 +5,7 @@ use std::collections::VecDeque;
 use std::fmt;
 
 use firmware::config::{PROCESSOR, PROCESSORS, TICK_RATE};
+use firmware::display::PanelReport;
 use firmware::graphics::{Canvas, text};
 use firmware::motion::Settings;
 use firmware::protocol::{Field, Frame, Status};
@@ -60,6 +61,7 @@ impl Comparison {
             paused: false,
             steps: 0,
             speed: 1.0,
+            panel: PanelReport::default(),
             ..*status
         };
         match (self.doubt.take(), &self.playing) {

@@ -6,6 +6,7 @@ use clap::Parser;
 use double_pendulum::Method;
 use double_pendulum::plan::Stepping;
 use firmware::config::PROCESSOR;
+use firmware::display::Controller;
 use firmware::motion::Resources;
 use firmware::scenes::{AnyScene, SceneName};
 
@@ -33,6 +34,11 @@ pub struct DemoOptions {
           value_parser = choice([None].into_iter().chain(Method::DRAWN.iter().copied().map(Some)),
                                 |method| method.map_or("plan", Method::name)))]
     pub method: Option<Asked>,
+    /// The controller of the panel, kept until the board is switched off; `auto` identifies it [default: as it is]
+    #[arg(long, value_name = "NAME",
+          value_parser = choice([None].into_iter().chain(Controller::ALL.iter().copied().map(Some)),
+                                |panel| panel.map_or("auto", Controller::name)))]
+    pub panel: Option<Chosen>,
     /// Run without a terminal: as fast as it goes, repeatable bit for bit, with a summary at the end
     #[arg(long)]
     pub headless: bool,
@@ -56,6 +62,7 @@ fn after_help() -> String {
         "Keys: up/down mass ratio, left/right start angle, space restart, tab next scene, p pause, . step, ? help, q quit\n\n\
          Scenes:\n{}\n\
          A board in the hand: cargo demo --port /dev/ttyUSB0\n\
+         Its picture is shifted or dark: cargo demo --port auto --panel sh1106, or ssd1306\n\
          Example without a terminal: cargo demo --scene butterfly --headless --seconds 10 --record butterfly.gif",
         scenes.collect::<String>()
     )
@@ -81,6 +88,9 @@ fn shows(scene: SceneName) -> &'static str {
 
 /// A method, or none to leave it to the board's plan.
 pub type Asked = Option<Method>;
+
+/// A controller of the panel, or none to identify it.
+pub type Chosen = Option<Controller>;
 
 impl DemoOptions {
     /// Refuses what is known to fail before anything is built: files that cannot be written, a method that the scene does not use.

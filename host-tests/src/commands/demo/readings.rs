@@ -4,12 +4,13 @@ use std::time::{Duration, Instant};
 
 use double_pendulum::plan::Stepping;
 use firmware::config::TICK_RATE;
+use firmware::display::PanelReport;
 use firmware::protocol::{Frame, Status};
 use firmware::scenes::Report;
 
 use super::comparison::Comparison;
 use crate::emulator::qemu::LogLine;
-use crate::link::Counts;
+use crate::link::{self, Counts};
 
 /// Frames whose past is kept, 12 s of them: no more is shown.
 const KEPT: usize = 12 * TICK_RATE as usize;
@@ -22,6 +23,8 @@ pub struct Readings {
     /// The angles that the motion started from, degrees; `None` until the board has told.
     pub start: Option<[f32; 2]>,
     pub counts: Counts,
+    /// The state of the panel when the board was last asked.
+    pub panel: Option<PanelReport>,
     /// What was told since the motion began, oldest first; empty where none is shown.
     pub past: Vec<Report>,
     pub lines: Vec<LogLine>,
@@ -65,6 +68,26 @@ impl Readings {
         self.comparison.status(status);
     }
 
+    /// Takes the state of the panel. It is told in the log when it becomes another.
+    pub fn panel(&mut self, report: &PanelReport) {
+        let before = self.panel.replace(*report);
+        let is_news = before.is_none_or(|before| {
+            before.state != report.state || link::is_well(&before) != link::is_well(report)
+        });
+        if let Some(text) = link::panel(report).filter(|_| is_news) {
+            let level = if link::is_well(report) {
+                "info"
+            } else {
+                "warn"
+            };
+            self.lines.push(LogLine {
+                level: Some(level.to_owned()),
+                text: format!("panel: {text}"),
+                place: String::new(),
+            });
+        }
+    }
+
     pub fn rate(&self) -> usize {
         self.arrivals
             .iter()
@@ -104,6 +127,13 @@ impl Readings {
             ..
         } = self;
         let last = self.frame.unwrap_or_default();
+        let panel = self
+            .panel
+            .as_ref()
+            .and_then(link::panel)
+            .map_or(String::new(), |panel| {
+                format!("panel                 {panel}\n")
+            });
         format!(
             "frames                {frames}\n\
              simulated time        {simulated:.3} s\n\
@@ -112,6 +142,7 @@ impl Readings {
              CRC errors            {}\n\
              lost frames           {}\n\
              dropped frames        {}\n\
+             {panel}\
              bits                  {comparison}",
             stepping(&last.report),
             counts.damaged,

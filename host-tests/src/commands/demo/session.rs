@@ -1,14 +1,15 @@
 //! A board being watched, with a terminal or without: its messages are taken, its scene chosen, its panel recorded.
 
+use anyhow::bail;
 use firmware::config::TICK_RATE;
-use firmware::protocol::{Answer, Command, Frame, ToHost};
+use firmware::protocol::{Answer, Command, Field, Frame, ToHost};
 
 use super::DemoOptions;
 use super::panel::Recording;
 use super::readings::Readings;
 use crate::emulator::pico::PicoMachine;
 use crate::emulator::qemu::{LogLine, Machine, Screenshot};
-use crate::link::{Counts, Port};
+use crate::link::{Counts, Port, refusal};
 
 /// Where the stream comes from.
 pub enum Source {
@@ -102,7 +103,16 @@ impl<'a> Session<'a> {
     pub fn hear(&mut self) -> anyhow::Result<()> {
         for message in self.source.messages()? {
             match message {
-                ToHost::Answer(_, Answer::Status(status)) => self.readings.status(&status),
+                ToHost::Answer(_, Answer::Status(status)) => {
+                    self.readings.status(&status);
+                    // An emulated panel is seen itself.
+                    if self.source.is_port() {
+                        self.readings.panel(&status.panel);
+                    }
+                }
+                ToHost::Answer(_, Answer::Refused(Field::Panel)) => {
+                    bail!("--panel: the board refuses: {}", refusal(Field::Panel))
+                }
                 ToHost::Frame(frame) => self.frame(&frame)?,
                 _ => {}
             }
@@ -130,7 +140,9 @@ impl<'a> Session<'a> {
         if self.options.scene.is_none_or(|scene| scene == frame.scene) {
             self.begun.get_or_insert(now);
         }
-        if self.readings.frame(*frame) {
+        // A real board is asked once a second for its panel.
+        let is_time = self.source.is_port() && frame.sequence.is_multiple_of(TICK_RATE);
+        if self.readings.frame(*frame) || is_time {
             self.source.send(Command::Ask)
         } else {
             Ok(())
@@ -141,6 +153,9 @@ impl<'a> Session<'a> {
     fn begin(&mut self, first: &Frame) -> anyhow::Result<()> {
         if let Some(scene) = self.options.scene.filter(|scene| *scene != first.scene) {
             self.source.send(Command::Choose(scene))?;
+        }
+        if let Some(controller) = self.options.panel {
+            self.source.send(Command::Panel(controller))?;
         }
         self.options
             .check_method(self.options.scene.unwrap_or(first.scene))?;

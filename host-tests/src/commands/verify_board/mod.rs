@@ -21,6 +21,7 @@ use crate::emulator::boards::{Board, every_board};
 use crate::emulator::flash::{ERASED, flash_image_over};
 use crate::emulator::process;
 use crate::emulator::toolchain::{self, QUICK, workspace};
+use crate::link;
 use talk::Talk;
 
 /// Verifies a board at a serial port: the bits of every method and scene beside the host's, the cycles of every method, the
@@ -89,6 +90,13 @@ pub fn run(options: &VerifyOptions) -> anyhow::Result<bool> {
         compare::methods(&mut talk)?,
         compare::scenes(&mut talk, identity.hertz)?,
     );
+    let panel = talk.ask(protocol::Command::Ask, |answer| {
+        if let Answer::Status(status) = answer {
+            Some(link::panel(&status.panel))
+        } else {
+            None
+        }
+    })?;
     let measured = compare::measured(&mut talk)?;
     drop(progress);
     let asked = if options.no_questions {
@@ -121,6 +129,9 @@ pub fn run(options: &VerifyOptions) -> anyhow::Result<bool> {
         "- chip {chip}, processor {:08x}, {} Hz\n- {program}\n",
         identity.processor, identity.hertz
     );
+    if let Some(panel) = &panel {
+        text += &format!("- panel: {panel}\n");
+    }
     let told = sections
         .iter()
         .filter(|section| !section.table.rows.is_empty());
@@ -138,7 +149,11 @@ pub fn run(options: &VerifyOptions) -> anyhow::Result<bool> {
     faults
         .iter()
         .for_each(|fault| complain(format_args!("not well: {fault}")));
-    say(format_args!("{headline}\nreport: {}", path.display()))?;
+    let panel = panel.map_or(String::new(), |panel| format!("panel: {panel}\n"));
+    say(format_args!(
+        "{headline}\n{panel}report: {}",
+        path.display()
+    ))?;
     Ok(faults.is_empty())
 }
 

@@ -1,0 +1,718 @@
+//! A 128 x 64 OLED panel in one colour on I2C, with an SSD1306, SSD1309, SH1106 or SH1107.
+//!
+//! A whole picture takes 1,080 bytes, 24 ms at the bus's 400 kHz and longer than a tick. So only
+//! columns that have changed are sent, and no frame waits for the bus:
+//!
+//! - A frame that needs more bytes than the bus carries in a tick is sent in part. The part that is
+//!   left over comes first in the next frame. The speed of the bus is measured.
+//! - A frame that comes while the bus is still busy is sent when the bus is free, unless the next
+//!   frame comes first.
+//!
+//! # Which controller it is
+//!
+//! The SH1106 returns its memory over I2C, the SSD1306 does not: a byte is written outside the
+//! picture and read back, twice. The status byte is a hint only, because modules in the field
+//! return almost any value in it.
+//!
+//! # A panel that lost its power
+//!
+//! A panel whose power fails for less than a tick is dark, yet acknowledges. The status byte is
+//! read once a second, and a panel that reports its display off is set up again. The first answers
+//! prove that the byte reports this. If it does not, settings that may be sent to a lit display are
+//! repeated, together with parts of the picture.
+//!
+//! Source: Solomon Systech, SSD1306 data sheet; Sino Wealth, SH1106 and SH1107 data sheets. The
+//! read-back is that of the FlashFloppy firmware (`oled_probe_model`).
+
+use embedded_hal::i2c::ErrorKind;
+
+use super::bus::{Outbox, PanelBus, Sent};
+use super::{BusFault, By, Controller, Display, Found, PanelReport, PanelState};
+use crate::config::TICK_RATE;
+use crate::graphics::{Bitmap, Canvas, HEIGHT, PAGES, WIDTH};
+
+/// The two addresses that a panel can be set to.
+const ADDRESSES: [u8; 2] = [0x3C, 0x3D];
+/// First byte of a message: commands follow, with their arguments.
+const COMMAND: u8 = 0x00;
+/// First byte of a message: bytes for the memory follow.
+const DATA: u8 = 0x40;
+/// First byte of a message: one command follows, then the next control byte.
+const ONE_COMMAND: u8 = 0x80;
+/// Control byte: one byte for the memory follows, or its memory is read.
+const ONE_DATA: u8 = 0xC0;
+
+const OFF: &[u8] = &[0xAE];
+const ON: &[u8] = &[0xAF];
+/// Chooses page 0 and column 0: outside the picture of an SH1106, and drawn over on the others.
+const CORNER: &[u8] = &[0xB0, 0x10, 0x00];
+/// The status bit that is set while the display is off: the only one that data sheets promise.
+const DISPLAY_OFF: u8 = 1 << 6;
+
+/// The differences between controllers.
+struct Profile {
+    /// Columns of the memory that are left of the panel's first.
+    left: u8,
+    /// Commands sent once, while the display is off.
+    settings: &'static [u8],
+    /// Those that may be repeated while the display is on.
+    repeated: &'static [u8],
+}
+
+/// The profile of a controller.
+fn profile(controller: Controller) -> &'static Profile {
+    match controller {
+        Controller::Ssd1306 => &SSD1306,
+        Controller::Sh1106 => &SH1106,
+        Controller::Sh1107 => &SH1107,
+    }
+}
+
+#[rustfmt::skip]
+const SSD1306: Profile = Profile {
+    left: 0,
+    settings: &[
+        0xD5, 0x80,                // clock as after reset, not divided
+        0xA8, (HEIGHT - 1) as u8,  // rows driven, less one
+        0xD3, 0,                   // rows not shifted
+        0x40,                      // first row shown
+        0xDA, 0x12,                // wiring of this panel's rows: odd and even apart
+        0xA1,                      // columns from the left
+        0xC8,                      // rows from the top
+        0xD9, 0x21,                // precharge, 1 and 2 clocks
+        0x81, 0x5F,                // contrast, of 0xFF
+        0xDB, 0x40,                // voltage of rows not driven
+        0xA4,                      // show what is in memory
+        0xA6,                      // not inverted
+        0x8D, 0x14,                // charge pump on
+        0x20, 0x02,                // data stays within the page
+        0x2E,                      // no scrolling
+    ],
+    // Without the clock, the charge pump and the addressing mode: none of them is for a lit panel.
+    repeated: &[
+        0xA8, (HEIGHT - 1) as u8, 0xD3, 0, 0x40, 0xDA, 0x12, 0xA1, 0xC8,
+        0xD9, 0x21, 0x81, 0x5F, 0xDB, 0x40, 0xA4, 0xA6, 0xAF,
+    ],
+};
+
+#[rustfmt::skip]
+const SH1106: Profile = Profile {
+    left: 2, // of 132 columns
+    settings: &[
+        0xD5, 0x80,                // clock
+        0xA8, (HEIGHT - 1) as u8,  // rows driven, less one
+        0xD3, 0,                   // rows not shifted
+        0x40,                      // first row shown
+        0xDA, 0x12,                // wiring of the rows
+        0xA1,                      // columns from the left
+        0xC8,                      // rows from the top
+        0xD9, 0x21,                // precharge, 1 and 2 clocks
+        0x81, 0x5F,                // contrast, of 0xFF
+        0xDB, 0x40,                // voltage of rows not driven
+        0xA4,                      // show what is in memory
+        0xA6,                      // not inverted
+        0xAD, 0x8B,                // converter on: only while the display is off (data sheet)
+    ],
+    repeated: &[],
+};
+
+/// A panel of 128 x 128, of which the upper half is used.
+#[rustfmt::skip]
+const SH1107: Profile = Profile {
+    left: 0,
+    settings: &[
+        0xD5, 0x50,                // clock as after reset
+        0xA8, 0x7F,                // rows driven, less one
+        0xD3, 0,                   // rows not shifted
+        0xDC, 0,                   // first row shown
+        0x20,                      // data stays within the page
+        0xA1,                      // columns from the left
+        0xC8,                      // rows from the top
+        0xD9, 0x22,                // precharge, 2 and 2 clocks
+        0x81, 0x2F,                // contrast, of 0xFF
+        0xDB, 0x35,                // voltage of rows not driven
+        0xA4,                      // show what is in memory
+        0xA6,                      // not inverted
+    ],
+    repeated: &[],
+};
+
+/// Frames between two tries of a panel that does not answer, and between two reads of the status
+/// byte: 1 s.
+const SECOND: u8 = TICK_RATE as u8;
+/// Frames after which a bus that is still busy hangs: 0.1 s, nearly three times what a whole picture
+/// takes on a slow bus.
+const PATIENCE: u32 = 6;
+/// Values that turn a byte read from memory into the next byte to write: one for each round.
+const PATTERN: [u8; 2] = [0x5A, 0xC6];
+
+/// Columns of a part of the picture that is sent again.
+const PART: usize = 16;
+/// Parts of the picture: all are sent again within 1.1 s.
+const PARTS: usize = PAGES * WIDTH / PART;
+/// Bytes that address a run of columns: an address, a control byte and 3 commands, of which the
+/// first names the page; an address and a control byte.
+const HEAD: usize = 7;
+/// The same in a page that is named already.
+const NEXT_HEAD: usize = HEAD - 1;
+/// Bytes that read the status byte.
+const CHECK: usize = 4;
+/// Unchanged columns that are sent rather than left out: to address the columns behind them takes
+/// as many bytes.
+const GAP: usize = NEXT_HEAD;
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum OledError {
+    /// No panel answers at either address; the error of the bus.
+    Absent(ErrorKind),
+    /// The panel answered before, but not now, or lost its power.
+    Lost,
+    /// The bus is too slow for every frame.
+    Slow {
+        /// Frames of the last [`TICK_RATE`] that were sent to the panel.
+        shown: u32,
+    },
+}
+
+/// Driver for a panel that may be absent or plugged in later.
+///
+/// An absent panel is looked for once a second; its frames are refused at once. The result of a
+/// frame is returned with a later one.
+#[derive(Debug)]
+pub struct OledI2c<'a, Bus> {
+    pub bus: Bus,
+    state: State,
+    /// The address of the panel, or the one that is being tried.
+    address: u8,
+    chosen: Option<Controller>,
+    found: Option<Found>,
+    /// The picture in the panel's memory once all that was sent has arrived.
+    memory: &'a mut Bitmap,
+    /// The page with which the next frame begins: the first that was left over.
+    page: usize,
+    /// Bytes that the bus carries in a tick.
+    room: Room,
+    told: Result<(), OledError>,
+    /// Frames in a row for which the bus has been busy.
+    waiting: u32,
+    /// The last frame waits for the bus.
+    is_owed: bool,
+    /// Frames until the status byte is read.
+    check_in: u8,
+    /// The part that is sent again next.
+    part: usize,
+    counted: Count,
+    /// The counts of the last whole second.
+    counts: Count,
+}
+
+#[derive(Clone, Copy, Debug, Default)]
+struct Count {
+    frames: u32,
+    shown: u32,
+    whole: u32,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum State {
+    Absent {
+        retry_in: u8,
+    },
+    /// The display is being switched off at an address.
+    Looking,
+    /// The status byte is being read.
+    Asking,
+    /// Memory is being read; `expected` was written to it in the round before.
+    Probing {
+        status: u8,
+        round: usize,
+        expected: u8,
+    },
+    /// Settings and the first picture are being sent.
+    Waking(Found),
+    Awake(Found, Watch),
+}
+
+/// How the driver notices that the panel has lost its power.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Watch {
+    /// The status byte reported the display off before it was switched on.
+    Unproven,
+    /// The status byte reports whether the display is on.
+    Status,
+    /// The status byte reported the display off once.
+    Suspect,
+    /// The status byte says nothing: settings are repeated.
+    Blind,
+}
+
+/// The outcome of a frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Offer {
+    /// The bus was busy until the next frame came.
+    Skipped,
+    /// A part was left over.
+    InPart,
+    Whole,
+}
+
+/// The number of bytes that the bus carries in a tick, less a thirty-second: frames are not equally
+/// far apart.
+#[derive(Clone, Copy, Debug)]
+struct Room(usize);
+
+impl Room {
+    /// The time for a frame, us.
+    const TIME: u32 = 1_000_000 / TICK_RATE * 31 / 32;
+    /// Until the bus is measured: what it carries at 34 us a byte, with 10 kOhm pull-ups.
+    const FIRST: Self = Self((Self::TIME / 34) as usize);
+    const LEAST: usize = 128;
+    const MOST: usize = PAGES * (HEAD + WIDTH);
+    /// Shorter transfers say little of the bus.
+    const MEASURED: usize = 64;
+
+    /// Learns from a transfer: at once that the bus is slower, gradually that it is faster.
+    fn measure(&mut self, outbox: &Outbox) {
+        let bytes = outbox.len();
+        if outbox.took == 0 || bytes < Self::MEASURED {
+            return;
+        }
+        let room = bytes as u32 * Self::TIME / outbox.took;
+        let room = (room as usize).clamp(Self::LEAST, Self::MOST);
+        self.0 = room.min(self.0 + room.saturating_sub(self.0).div_ceil(8));
+    }
+}
+
+impl<'a, Bus: PanelBus> OledI2c<'a, Bus> {
+    /// Takes the bus, a place to remember the picture, and the controller if it is not to be
+    /// identified. The panel is looked for with the first frame.
+    pub fn new(bus: Bus, memory: &'a mut Bitmap, chosen: Option<Controller>) -> Self {
+        Self {
+            bus,
+            state: State::Absent { retry_in: 0 },
+            address: ADDRESSES[0],
+            chosen,
+            found: None,
+            memory,
+            page: 0,
+            room: Room::FIRST,
+            told: Ok(()),
+            waiting: 0,
+            is_owed: false,
+            check_in: SECOND,
+            part: 0,
+            counted: Count::default(),
+            counts: Count::default(),
+        }
+    }
+
+    /// Sends the frame, or a part of it; `None` if the bus is busy.
+    ///
+    /// A frame that is late is sent in a shorter part, so that the next one is not late as well.
+    fn offer(&mut self, canvas: &Canvas, is_late: bool) -> Option<Offer> {
+        let (outbox, sent) = self.bus.outbox()?;
+        self.waiting = 0;
+        if sent.is_ok() {
+            self.room.measure(outbox);
+        }
+
+        // The outcome of the last messages decides what comes next.
+        let answer = outbox.answered();
+        let (state, news) = self
+            .state
+            .after(&mut self.address, self.chosen, sent, answer);
+        if let (State::Waking(found), false) = (state, state == self.state) {
+            self.found = Some(found);
+        }
+        self.state = state;
+        if let Some(told) = news {
+            self.told = told;
+            self.counted = Count::default();
+            self.counts = Count::default();
+            self.check_in = SECOND;
+        }
+
+        outbox.address_to(self.address);
+        let mut offer = Offer::Whole;
+        match state {
+            State::Absent { .. } => return Some(offer),
+            State::Looking => outbox.put(COMMAND, OFF),
+            State::Asking => {
+                outbox.put(COMMAND, &[]);
+                outbox.ask(1);
+            }
+            State::Probing {
+                round, expected, ..
+            } => probe(outbox, round, expected),
+            State::Waking(Found { controller, .. }) => {
+                let profile = profile(controller);
+                outbox.put(COMMAND, profile.settings);
+                *self.memory = Bitmap::from(canvas);
+                for (page, columns) in self.memory.pages.iter().enumerate() {
+                    put_columns(outbox, Some(page), profile.left, columns);
+                }
+                outbox.put(COMMAND, ON);
+                self.page = 0;
+            }
+            State::Awake(Found { controller, .. }, watch) => {
+                let profile = profile(controller);
+                let frame = Bitmap::from(canvas);
+                let checks = checks(watch, &mut self.check_in);
+                let late = if is_late { self.room.0 / 4 } else { 0 };
+                let room = self.room.0 - late - if checks { CHECK } else { 0 };
+                let left_over = draw(outbox, profile.left, self.memory, &frame, self.page, room);
+                self.page = left_over.unwrap_or(0);
+                if left_over.is_some() {
+                    offer = Offer::InPart;
+                }
+                self.part = repeat(outbox, profile, watch, self.memory, self.part, room);
+                if checks {
+                    outbox.put(COMMAND, &[]);
+                    outbox.ask(1);
+                }
+            }
+        }
+        if !outbox.is_empty() {
+            self.bus.send();
+        }
+        Some(offer)
+    }
+
+    /// Counts a frame that was shown or skipped, and reports once a second whether all were sent.
+    fn count(&mut self, offer: Offer) {
+        if !matches!(self.state, State::Awake(..)) {
+            return;
+        }
+        self.counted.frames += 1;
+        self.counted.shown += u32::from(offer != Offer::Skipped);
+        self.counted.whole += u32::from(offer == Offer::Whole);
+        if self.counted.frames >= TICK_RATE {
+            let shown = self.counted.shown;
+            self.told = if shown < self.counted.frames {
+                Err(OledError::Slow { shown })
+            } else {
+                Ok(())
+            };
+            self.counts = core::mem::take(&mut self.counted);
+        }
+    }
+}
+
+impl State {
+    /// Returns the next state, given the outcome of the last messages, and a change to report.
+    fn after(
+        self,
+        address: &mut u8,
+        chosen: Option<Controller>,
+        sent: Sent,
+        answer: &[u8],
+    ) -> (Self, Option<Result<(), OledError>>) {
+        let [first, second] = ADDRESSES;
+        let absent = |error| (Self::Absent { retry_in: SECOND }, Some(Err(error)));
+        let wake = |controller, by, status| {
+            let found = Found {
+                controller,
+                by,
+                status,
+            };
+            (Self::Waking(found), None)
+        };
+        let unanswered = matches!(sent, Err(ErrorKind::NoAcknowledge(_)));
+        match (self, sent, answer) {
+            (Self::Absent { retry_in: 0 }, ..) => {
+                *address = first;
+                (Self::Looking, None)
+            }
+            (Self::Absent { retry_in }, ..) => {
+                let retry_in = retry_in - 1;
+                (Self::Absent { retry_in }, None)
+            }
+
+            (Self::Looking, Ok(()), _) => (Self::Asking, None),
+            (Self::Looking, ..) if unanswered && *address == first => {
+                *address = second;
+                (self, None)
+            }
+
+            (Self::Asking, Ok(()), &[status, ..]) => match chosen {
+                Some(controller) => wake(controller, By::Choice, Some(status)),
+                None => {
+                    let (round, expected) = (0, 0);
+                    let probing = Self::Probing {
+                        status,
+                        round,
+                        expected,
+                    };
+                    (probing, None)
+                }
+            },
+            (Self::Asking, ..) if unanswered => match chosen {
+                Some(controller) => wake(controller, By::Choice, None),
+                None => wake(Controller::Ssd1306, By::Silence, None),
+            },
+
+            // The first byte read is a dummy.
+            (
+                Self::Probing {
+                    status,
+                    round,
+                    expected,
+                },
+                Ok(()),
+                &[_, byte],
+            ) => {
+                if round > 0 && byte != expected {
+                    wake(Controller::Ssd1306, By::Memory, Some(status))
+                } else if let Some(pattern) = PATTERN.get(round) {
+                    let probing = Self::Probing {
+                        status,
+                        round: round + 1,
+                        expected: byte ^ pattern,
+                    };
+                    (probing, None)
+                } else {
+                    wake(with_memory(status), By::Memory, Some(status))
+                }
+            }
+            (Self::Probing { status, .. }, ..) if unanswered => {
+                wake(by_status(status), By::Status, Some(status))
+            }
+
+            (Self::Waking(found), Ok(()), _) => {
+                let reports_off = found.status.is_some_and(|status| status & DISPLAY_OFF != 0);
+                let watch = if reports_off {
+                    Watch::Unproven
+                } else {
+                    Watch::Blind
+                };
+                (Self::Awake(found, watch), Some(Ok(())))
+            }
+
+            (Self::Awake(found, watch), Ok(()), answer) => match watch.after(answer) {
+                Some(watch) => (Self::Awake(found, watch), None),
+                None => {
+                    *address = first;
+                    (Self::Looking, Some(Err(OledError::Lost)))
+                }
+            },
+            (Self::Awake(..), Err(_), _) => absent(OledError::Lost),
+
+            (_, sent, _) => absent(OledError::Absent(sent.err().unwrap_or(ErrorKind::Other))),
+        }
+    }
+}
+
+impl Watch {
+    /// Returns the next state after an answer, if there is one; `None` if the panel has lost its
+    /// power.
+    fn after(self, answer: &[u8]) -> Option<Self> {
+        let Some(status) = answer.first() else {
+            return Some(self);
+        };
+        let is_off = status & DISPLAY_OFF != 0;
+        match (self, is_off) {
+            (Self::Blind, _) | (Self::Unproven, true) => Some(Self::Blind),
+            (_, false) => Some(Self::Status),
+            (Self::Status, true) => Some(Self::Suspect),
+            (Self::Suspect, true) => None,
+        }
+    }
+}
+
+/// The controller of a panel whose memory can be read and that gives this status.
+fn with_memory(status: u8) -> Controller {
+    // The lower six bits are the SH1107's number; the SH1106 leaves them open.
+    if status & 0x3F == 0x07 {
+        Controller::Sh1107
+    } else {
+        Controller::Sh1106
+    }
+}
+
+/// The likeliest controller of a panel of which nothing but the status is known.
+fn by_status(status: u8) -> Controller {
+    if status & 0x0F == 0x08 {
+        Controller::Sh1106
+    } else {
+        Controller::Ssd1306
+    }
+}
+
+impl<Bus: PanelBus> Display for OledI2c<'_, Bus> {
+    type Error = OledError;
+
+    fn flush(&mut self, canvas: &Canvas) -> Result<(), OledError> {
+        if core::mem::take(&mut self.is_owed) {
+            self.count(Offer::Skipped);
+        }
+        match self.offer(canvas, false) {
+            Some(offer) => self.count(offer),
+            None => {
+                self.is_owed = true;
+                self.waiting += 1;
+                if self.waiting >= PATIENCE {
+                    self.bus.abort();
+                }
+            }
+        }
+        self.told
+    }
+
+    fn catch_up(&mut self, canvas: &Canvas) -> bool {
+        if self.is_owed
+            && let Some(offer) = self.offer(canvas, true)
+        {
+            self.is_owed = false;
+            self.count(offer);
+        }
+        self.is_owed
+    }
+
+    fn found(&mut self) -> Option<Found> {
+        self.found.take()
+    }
+
+    fn report(&self) -> PanelReport {
+        let state = match (self.state, self.told) {
+            (State::Awake(found, _), _) => PanelState::Shown(found),
+            (_, Err(OledError::Absent(error))) => PanelState::Absent(error.into()),
+            (State::Absent { .. }, Err(_)) => PanelState::Absent(BusFault::NoAnswer),
+            _ => PanelState::Starting,
+        };
+        PanelReport {
+            state,
+            chosen: self.chosen,
+            shown: self.counts.shown as u8,
+            whole: self.counts.whole as u8,
+        }
+    }
+
+    fn choose(&mut self, chosen: Option<Controller>) -> bool {
+        self.chosen = chosen;
+        // With the next frame it is looked for and set up again.
+        self.state = State::Absent { retry_in: 0 };
+        true
+    }
+}
+
+/// Reads a byte of memory, and before that writes the one that is expected.
+fn probe(outbox: &mut Outbox, round: usize, expected: u8) {
+    outbox.put(COMMAND, CORNER);
+    if round > 0 {
+        outbox.put(ONE_COMMAND, &[0x00, ONE_DATA, expected]);
+    }
+    outbox.put(ONE_COMMAND, &[0x00, ONE_DATA]);
+    outbox.ask(2);
+}
+
+/// Returns true if the status byte is to be read with this frame.
+fn checks(watch: Watch, check_in: &mut u8) -> bool {
+    match watch {
+        Watch::Unproven | Watch::Suspect => true,
+        Watch::Blind => false,
+        Watch::Status => {
+            *check_in = check_in.saturating_sub(1);
+            let is_due = *check_in == 0;
+            if is_due {
+                *check_in = SECOND;
+            }
+            is_due
+        }
+    }
+}
+
+/// Appends the columns that differ between the panel's memory and the frame, page by page from
+/// `first` on, while there is room, and notes them in the memory. Returns the page that did not fit.
+fn draw(
+    outbox: &mut Outbox,
+    left: u8,
+    memory: &mut Bitmap,
+    frame: &Bitmap,
+    first: usize,
+    room: usize,
+) -> Option<usize> {
+    for page in (first..PAGES).chain(0..first) {
+        let old = memory.pages.get_mut(page)?;
+        let new = frame.pages.get(page)?;
+        let mut named = Some(page);
+        let mut head = HEAD;
+        let mut from = 0;
+        while let Some((start, end)) = next_run(old, new, from) {
+            let space = room.saturating_sub(outbox.len() + head);
+            if space == 0 {
+                return Some(page);
+            }
+            let end = end.min(start + space);
+            let (Some(old), Some(new)) = (old.get_mut(start..end), new.get(start..end)) else {
+                break;
+            };
+            put_columns(outbox, named.take(), left + start as u8, new);
+            old.copy_from_slice(new);
+            head = NEXT_HEAD;
+            from = end;
+        }
+    }
+    None
+}
+
+/// Returns the first and the end of the next columns that differ, from column `from` on; short gaps
+/// belong to them.
+fn next_run(old: &[u8; WIDTH], new: &[u8; WIDTH], from: usize) -> Option<(usize, usize)> {
+    let mut differing = old
+        .iter()
+        .zip(new)
+        .enumerate()
+        .skip(from)
+        .filter(|(_, (old, new))| old != new)
+        .map(|(column, _)| column);
+    let start = differing.next()?;
+    let mut last = start;
+    for column in differing {
+        if column - last > GAP {
+            break;
+        }
+        last = column;
+    }
+    Some((start, last + 1))
+}
+
+/// Appends a part of the picture that is sent again, or settings, if there is room. Returns the
+/// number of the next part.
+fn repeat(
+    outbox: &mut Outbox,
+    profile: &Profile,
+    watch: Watch,
+    memory: &Bitmap,
+    part: usize,
+    room: usize,
+) -> usize {
+    let space = room.saturating_sub(outbox.len());
+    if space < HEAD + PART {
+        return part;
+    }
+    let (page, column) = (part * PART / WIDTH, part * PART % WIDTH);
+    if let Some(columns) = memory
+        .pages
+        .get(page)
+        .and_then(|page| page.get(column..column + PART))
+    {
+        put_columns(outbox, Some(page), profile.left + column as u8, columns);
+        return part + 1;
+    }
+    if watch == Watch::Blind && !profile.repeated.is_empty() {
+        outbox.put(COMMAND, profile.repeated);
+    }
+    0
+}
+
+/// Appends columns for the page that was named last, or for the one named here.
+fn put_columns(outbox: &mut Outbox, page: Option<usize>, first: u8, columns: &[u8]) {
+    let [low, high] = [first & 0x0F, 0x10 | first >> 4];
+    match page {
+        Some(page) => outbox.put(COMMAND, &[0xB0 | page as u8, low, high]),
+        None => outbox.put(COMMAND, &[low, high]),
+    }
+    outbox.put(DATA, columns);
+}
+
+const _: () = assert!(PARTS < TICK_RATE as usize * 11 / 10);

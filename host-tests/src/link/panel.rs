@@ -1,0 +1,107 @@
+//! The state of a board's panel in words, with the remedy.
+
+use firmware::config::TICK_RATE;
+use firmware::display::{BusFault, Controller, Found, PanelReport, PanelState};
+
+/// The panel in one line; `None` if the board has none that can be asked.
+pub fn panel(report: &PanelReport) -> Option<String> {
+    let line = match report.state {
+        PanelState::Unknown => return None,
+        PanelState::Starting => "not found yet".to_owned(),
+        PanelState::Absent(fault) => format!("absent: {}: {}", fault.name(), remedy(fault)),
+        PanelState::Shown(found) => format!("{}, {}", identified(&found), frames(report)),
+    };
+    Some(line)
+}
+
+/// The controller, how it was identified and its status byte.
+fn identified(found: &Found) -> String {
+    let Found {
+        controller,
+        by,
+        status,
+    } = found;
+    let status = status.map_or(String::new(), |status| format!(" (status {status:#04x})"));
+    let tried = if *controller == Controller::Sh1107 {
+        ", of which only panels of 128 x 128 can be right"
+    } else {
+        ""
+    };
+    format!("{} {}{status}{tried}", controller.name(), by.name())
+}
+
+/// The frames of the last second.
+fn frames(report: &PanelReport) -> String {
+    let shown = report.shown;
+    match u32::from(shown) {
+        0 => "no second is over yet".to_owned(),
+        TICK_RATE => format!("{shown} frames/s"),
+        _ => format!(
+            "{shown} of {TICK_RATE} frames/s: the bus is slow; use 2.2 to 4.7 kOhm from SCL and SDA \
+             to 3.3 V and short wires"
+        ),
+    }
+}
+
+/// Returns the remedy for a panel that is absent.
+fn remedy(fault: BusFault) -> &'static str {
+    match fault {
+        BusFault::NoAnswer => {
+            "check the wiring; some modules do not acknowledge because SDAout is not connected"
+        }
+        BusFault::Disturbed => "remove other devices from the bus; check SDA for a short circuit",
+        BusFault::Stuck => {
+            "check SCL and SDA for a short circuit, and their resistors to 3.3 V: 4.7 kOhm or less"
+        }
+    }
+}
+
+/// Returns true if the panel is well, or cannot be asked.
+pub fn is_well(report: &PanelReport) -> bool {
+    let all = u32::from(report.shown) == TICK_RATE || report.shown == 0;
+    match report.state {
+        PanelState::Unknown => true,
+        PanelState::Starting | PanelState::Absent(_) => false,
+        PanelState::Shown(_) => all,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use firmware::display::By;
+
+    use super::*;
+
+    fn line(state: PanelState, shown: u8) -> String {
+        let report = PanelReport {
+            state,
+            shown,
+            ..PanelReport::default()
+        };
+        panel(&report).unwrap_or_default()
+    }
+
+    #[test]
+    fn panel_is_reported_with_its_remedy() {
+        assert_eq!(line(PanelState::Unknown, 0), "");
+        assert_eq!(
+            line(PanelState::Absent(BusFault::NoAnswer), 0),
+            "absent: no answer at 0x3C and 0x3D: check the wiring; some modules do not acknowledge \
+             because SDAout is not connected"
+        );
+        let found = Found {
+            controller: Controller::Sh1106,
+            by: By::Memory,
+            status: Some(0x48),
+        };
+        assert_eq!(
+            line(PanelState::Shown(found), 60),
+            "sh1106 by reading its memory back (status 0x48), 60 frames/s"
+        );
+        let slow = line(PanelState::Shown(found), 30);
+        assert!(
+            slow.contains("30 of 60 frames/s: the bus is slow"),
+            "{slow}"
+        );
+    }
+}

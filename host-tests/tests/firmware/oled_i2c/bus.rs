@@ -1,0 +1,407 @@
+//! The panel's bus with its time, and the controller at its end, stricter than the real one.
+
+use embedded_hal::i2c::ErrorKind;
+use firmware::config::TICK_RATE;
+use firmware::display::{Outbox, PanelBus, SILENCE, Sent};
+use firmware::graphics::{Bitmap, HEIGHT, WIDTH};
+
+/// Bits that a byte takes with its acknowledgement; a start or stop takes 1.
+pub const BYTE: u32 = 9;
+
+/// Time of a byte on the bus, ns: at 400 kHz, as measured on boards with 4.7 kOhm (346 kHz), and
+/// with the 10 kOhm of many modules (266 kHz).
+pub const IDEAL: u32 = 22_500;
+pub const USUAL: u32 = 26_000;
+pub const WORST: u32 = 34_000;
+
+/// The bus as an interrupt drives it, and the panel at its end.
+pub struct Line {
+    pub panel: Controller,
+    outbox: Outbox,
+    message: Vec<u8>,
+    byte_nanos: u32,
+    /// Bits there is time for.
+    time: u32,
+    /// Bits that the messages under way, or the last ones, have taken.
+    pub taken: u32,
+    /// Another device holds the clock low.
+    pub hangs: bool,
+    pub freed: u32,
+    /// Transfers begun.
+    pub sent: u32,
+}
+
+impl Line {
+    pub fn to(panel: Controller) -> Self {
+        Self::at(USUAL, panel)
+    }
+
+    pub fn at(byte_nanos: u32, panel: Controller) -> Self {
+        Self {
+            panel,
+            outbox: Outbox::default(),
+            message: Vec::new(),
+            byte_nanos,
+            time: 0,
+            taken: 0,
+            hangs: false,
+            freed: 0,
+            sent: 0,
+        }
+    }
+
+    /// Lets a tick pass.
+    pub fn run_tick(&mut self) {
+        self.run(1_000_000_000 / TICK_RATE / (self.byte_nanos / BYTE));
+    }
+
+    /// Lets the time of `bits` bits pass on the bus.
+    pub fn run(&mut self, bits: u32) {
+        self.time = if self.hangs {
+            0
+        } else {
+            self.time.saturating_add(bits)
+        };
+        let Self {
+            outbox,
+            panel,
+            message,
+            ..
+        } = self;
+        while outbox.sent.is_none() {
+            let asked = outbox.asked();
+            let needed = match (outbox.is_within_message(), outbox.is_empty(), asked) {
+                (true, ..) => BYTE,
+                (false, true, 0) => 1,
+                (false, true, asked) => 1 + (1 + asked as u32) * BYTE,
+                (false, false, _) => 1 + 2 * BYTE,
+            };
+            if self.time < needed {
+                return;
+            }
+            self.time -= needed;
+            self.taken += needed;
+            if !panel.plugged_in || outbox.address != panel.address {
+                outbox.sent = Some(Err(SILENCE));
+                message.clear();
+            } else if let Some(byte) = outbox.next() {
+                message.push(byte.value);
+                if byte.ends_message {
+                    panel.take(message);
+                    message.clear();
+                }
+            } else if let Some(answer) = panel.read(asked) {
+                answer.into_iter().for_each(|byte| outbox.answer(byte));
+                outbox.sent = Some(Ok(()));
+            } else {
+                outbox.sent = Some(Err(SILENCE));
+            }
+            outbox.took = (u64::from(self.taken * self.byte_nanos / BYTE) / 1000) as u32;
+        }
+        self.time = 0;
+    }
+
+    pub fn is_idle(&self) -> bool {
+        self.outbox.sent.is_some()
+    }
+}
+
+impl PanelBus for Line {
+    fn outbox(&mut self) -> Option<(&mut Outbox, Sent)> {
+        self.outbox.sent.map(|sent| (&mut self.outbox, sent))
+    }
+
+    fn send(&mut self) {
+        assert!(self.is_idle(), "one at a time");
+        self.outbox.sent = None;
+        self.taken = 0;
+        self.sent += 1;
+    }
+
+    fn abort(&mut self) {
+        assert!(!self.is_idle(), "nothing to abort");
+        self.freed += 1;
+        self.message.clear();
+        self.outbox.sent = Some(Err(ErrorKind::Other));
+    }
+}
+
+/// The status byte of a module.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Says {
+    /// These bits, and bit 6 while the display is off.
+    Off(u8),
+    /// The first until it is read for the first time after power has come, then the second; and bit
+    /// 6 while the display is off.
+    FirstThen(u8, u8),
+    /// Always this byte, whether the display is on or off.
+    Always(u8),
+    /// A read is not acknowledged.
+    Nothing,
+}
+
+/// A kind of controller.
+#[derive(Clone, Copy, Debug)]
+pub struct Kind {
+    pub says: Says,
+    /// The memory can be read.
+    pub returns_memory: bool,
+    /// Columns of its memory, and the first that is seen.
+    pub columns: usize,
+    pub left: usize,
+    /// The commands that the others do not have, and the number of their arguments.
+    pub own: &'static [(u8, usize)],
+    /// The commands that must be given before the display is switched on.
+    pub needed: &'static [&'static [u8]],
+    /// The settings that may be given while the display is on.
+    pub for_lit: &'static [u8],
+}
+
+/// It reports whether its display is on, so there is no reason to repeat a setting.
+pub const SSD1306: Kind = Kind {
+    says: Says::Off(0x06),
+    returns_memory: false,
+    columns: WIDTH,
+    left: 0,
+    own: &[(0x20, 1), (0x2E, 0), (0x8D, 1), (0xDA, 1)],
+    needed: &[&[0x20, 2], &[0x2E], &[0x8D, 0x14], &[0xDA, 0x12]],
+    for_lit: &[],
+};
+pub const SH1106: Kind = Kind {
+    says: Says::Off(0x08),
+    returns_memory: true,
+    columns: WIDTH + 4,
+    left: 2,
+    own: &[(0xAD, 1), (0xDA, 1)],
+    needed: &[&[0xAD, 0x8B], &[0xDA, 0x12]],
+    for_lit: &[],
+};
+/// The upper half of a panel of 128 x 128.
+pub const SH1107: Kind = Kind {
+    says: Says::Off(0x07),
+    returns_memory: true,
+    columns: WIDTH,
+    left: 0,
+    own: &[(0x20, 0), (0xAD, 1), (0xDC, 1)],
+    needed: &[&[0x20], &[0xDC, 0], &[0xA8, 0x7F]],
+    for_lit: &[],
+};
+/// An SSD1306 whose status says nothing of its display.
+pub const BLIND: Kind = Kind {
+    for_lit: &[
+        0x40, 0x81, 0xA1, 0xA4, 0xA6, 0xA8, 0xC8, 0xD3, 0xD9, 0xDA, 0xDB,
+    ],
+    ..SSD1306
+};
+pub const SILENT: Kind = Kind {
+    says: Says::Nothing,
+    ..BLIND
+};
+
+impl Kind {
+    pub fn says(self, says: Says) -> Self {
+        Self { says, ..self }
+    }
+}
+
+/// The number of arguments of a command of all, from the data sheets' command tables; they follow
+/// it in the same message.
+fn arguments(command: u8) -> Option<usize> {
+    match command {
+        0x00..=0x1F | 0x40 | 0xA1 | 0xA4 | 0xA6 | 0xAE | 0xAF | 0xB0..=0xB7 | 0xC8 => Some(0),
+        0x81 | 0xA8 | 0xD3 | 0xD5 | 0xD9 | 0xDB => Some(1),
+        _ => None,
+    }
+}
+
+/// A controller on a bus: panics on anything that its data sheet does not allow.
+pub struct Controller {
+    pub kind: Kind,
+    pub address: u8,
+    pub plugged_in: bool,
+    column: usize,
+    page: usize,
+    memory: Vec<u8>,
+    /// Bytes of the memory that are not known, as all are after power has come.
+    unknown: Vec<bool>,
+    given: Vec<Vec<u8>>,
+    on: bool,
+    /// How often the display was switched on.
+    pub lit: u32,
+    was_read: bool,
+    /// The status that was read last.
+    pub last_read: Option<u8>,
+    /// The next read is of the memory, not of the status.
+    reads_memory: bool,
+}
+
+impl Controller {
+    pub fn new(kind: Kind, address: u8) -> Self {
+        let size = kind.columns * HEIGHT / 8;
+        Self {
+            kind,
+            address,
+            plugged_in: true,
+            column: 0,
+            page: 0,
+            memory: vec![0xE7; size],
+            unknown: vec![true; size],
+            given: Vec::new(),
+            on: false,
+            lit: 0,
+            was_read: false,
+            last_read: None,
+            reads_memory: false,
+        }
+    }
+
+    pub fn plugged(self, plugged_in: bool) -> Self {
+        Self { plugged_in, ..self }
+    }
+
+    /// Takes power away for a moment.
+    pub fn lose_power(&mut self) {
+        *self = Self::new(self.kind, self.address);
+    }
+
+    fn status(&mut self) -> Option<u8> {
+        let off = u8::from(!self.on) << 6;
+        let was_read = std::mem::replace(&mut self.was_read, true);
+        self.last_read = match self.kind.says {
+            Says::Off(bits) => Some(bits | off),
+            Says::FirstThen(first, _) if !was_read => Some(first | off),
+            Says::FirstThen(_, bits) => Some(bits | off),
+            Says::Always(byte) => Some(byte),
+            Says::Nothing => None,
+        };
+        self.last_read
+    }
+
+    /// Returns bytes that are read; `None` if it does not acknowledge.
+    pub fn read(&mut self, count: usize) -> Option<Vec<u8>> {
+        let status = (count > 0 && self.kind.says != Says::Nothing)
+            .then(|| self.status())
+            .flatten();
+        if count > 0 {
+            status?;
+        }
+        if !(self.reads_memory && self.kind.returns_memory) {
+            return Some(vec![status.unwrap_or(0); count]);
+        }
+        let at = self.page * self.kind.columns + self.column;
+        let dummy = 0x55;
+        Some(
+            [dummy]
+                .into_iter()
+                .chain(self.memory[at..].iter().copied())
+                .take(count)
+                .collect(),
+        )
+    }
+
+    fn is_given(&self, needed: &[u8]) -> bool {
+        self.given.iter().any(|given| given == needed)
+    }
+
+    /// Obeys commands; none that is left out may have an argument in the next message.
+    fn commands(&mut self, mut bytes: &[u8]) {
+        while let [command, rest @ ..] = bytes {
+            let own = || {
+                self.kind
+                    .own
+                    .iter()
+                    .find(|(own, _)| own == command)
+                    .map(|(_, count)| *count)
+            };
+            let count = own()
+                .or_else(|| arguments(*command))
+                .unwrap_or_else(|| panic!("unknown command {command:#04x}"));
+            assert!(rest.len() >= count, "all arguments in one message");
+            match *command {
+                low @ 0x00..=0x0F => self.column = self.column & 0xF0 | usize::from(low),
+                high @ 0x10..=0x1F => {
+                    self.column = self.column & 0x0F | usize::from(high & 0x0F) << 4
+                }
+                page @ 0xB0..=0xB7 => self.page = usize::from(page & 7),
+                0xAE => self.on = false,
+                0xAF => {
+                    self.lit += u32::from(!self.on);
+                    self.on = true;
+                    for needed in self.kind.needed {
+                        assert!(self.is_given(needed), "lit before {needed:#04x?}");
+                    }
+                }
+                setting => {
+                    assert!(
+                        !self.on || self.kind.for_lit.contains(&setting),
+                        "{setting:#04x} while the display is on"
+                    );
+                    self.given.push(bytes[..=count].to_vec());
+                }
+            }
+            bytes = &rest[count..];
+        }
+    }
+
+    /// Data goes to the right within the page. Where it goes is not known before an SSD1306 is told
+    /// how to count.
+    fn data(&mut self, byte: u8) {
+        assert!(self.column < self.kind.columns, "beyond the last column");
+        let at = self.page * self.kind.columns + self.column;
+        self.memory[at] = byte;
+        let is_told = |needed: &&[u8]| needed.starts_with(&[0x20]);
+        let is_placed = !self.kind.needed.iter().any(is_told)
+            || self.given.iter().any(|given| given.starts_with(&[0x20]));
+        self.unknown[at] = !is_placed;
+        self.column += 1;
+    }
+
+    /// Takes a message: control bytes, of which those with bit 7 are for one byte each.
+    pub fn take(&mut self, message: &[u8]) {
+        let mut rest = message;
+        while let [control, after @ ..] = rest {
+            let is_data = control & 0x40 != 0;
+            self.reads_memory = is_data;
+            let (bytes, next) = if control & 0x80 == 0 {
+                (after, &[][..])
+            } else {
+                after.split_at(after.len().min(1))
+            };
+            assert!(control & 0x3F == 0, "neither commands nor data");
+            if is_data {
+                bytes.iter().for_each(|byte| self.data(*byte));
+            } else {
+                self.commands(bytes);
+            }
+            rest = next;
+        }
+    }
+
+    /// Returns true if each page of the picture is of one of these frames, and the display is on.
+    pub fn shows_any_of(&self, frames: &[&Bitmap]) -> bool {
+        self.on && self.late_pages(frames).is_empty()
+    }
+
+    pub fn shows(&self, frame: &Bitmap) -> bool {
+        self.shows_any_of(&[frame])
+    }
+
+    /// Returns the pages in which there is a byte that is in none of these frames.
+    pub fn late_pages(&self, frames: &[&Bitmap]) -> Vec<usize> {
+        let Kind { columns, left, .. } = self.kind;
+        let visible = |page: usize| page * columns + left..page * columns + left + WIDTH;
+        let is_current = |page: usize| {
+            let seen = &self.memory[visible(page)];
+            let is_one = || frames.iter().any(|frame| seen == frame.pages[page]);
+            let is_mixed = || {
+                let mut bytes = seen.iter().enumerate();
+                bytes.all(|(at, byte)| frames.iter().any(|frame| frame.pages[page][at] == *byte))
+            };
+            is_one() || frames.len() > 1 && is_mixed()
+        };
+        let is_known = |page: usize| !self.unknown[visible(page)].contains(&true);
+        (0..HEIGHT / 8)
+            .filter(|&page| !is_known(page) || !is_current(page))
+            .collect()
+    }
+}

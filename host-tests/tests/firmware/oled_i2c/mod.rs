@@ -1,0 +1,605 @@
+//! The one-colour panel: its frame, and its driver against controllers that are stricter than the
+//! real ones.
+
+mod bus;
+
+use std::collections::VecDeque;
+
+use embedded_hal::i2c::ErrorKind;
+use fastrand::Rng;
+use firmware::config::{STM32F405, TICK_RATE};
+use firmware::display::{
+    BusFault, By, Controller as Name, Display, Found, OledError, OledI2c, PanelReport, PanelState,
+    SILENCE,
+};
+use firmware::graphics::{Bitmap, Canvas, HEIGHT, WIDTH};
+use firmware::scenes::SceneName;
+use host_tests::emulator::host::Show;
+use host_tests::emulator::qemu::Screenshot;
+
+use crate::bench::places;
+use bus::{
+    BLIND, BYTE, Controller, IDEAL, Kind, Line, SH1106, SH1107, SILENT, SSD1306, Says, USUAL, WORST,
+};
+
+/// More bits than any frame needs, with the settings that wake the panel.
+const LONG: u32 = 4 * 400_000 / TICK_RATE;
+/// Frames until a panel at the first address shows one, at most.
+const FIRST: u32 = 6;
+/// Frames in which a panel must be back: 2 s.
+const BACK: u32 = 2 * TICK_RATE;
+
+type Panel = OledI2c<'static, Line>;
+
+/// Returns the driver of such a panel.
+fn panel(controller: Controller) -> Panel {
+    on(Line::to(controller), None)
+}
+
+fn on(line: Line, chosen: Option<Name>) -> Panel {
+    OledI2c::new(line, Box::leak(Box::new(Bitmap::BLACK)), chosen)
+}
+
+/// Sends a frame, and lets the bus have the time of so many bits.
+fn flush(panel: &mut Panel, frame: &Canvas, bits: u32) -> Result<(), OledError> {
+    let told = panel.flush(frame);
+    panel.bus.run(bits);
+    told
+}
+
+/// Sends a frame, and lets a tick pass.
+fn tick(panel: &mut Panel, frame: &Canvas) -> Result<(), OledError> {
+    let told = panel.flush(frame);
+    panel.bus.run_tick();
+    told
+}
+
+fn shows(panel: &Panel, frame: &Canvas) -> bool {
+    panel.bus.panel.shows(&Bitmap::from(frame))
+}
+
+fn shown(name: SceneName) -> Show {
+    Show::on(STM32F405, name, &name.first_settings()).expect("a scene of the catalogue")
+}
+
+/// The application's first scene after some ticks.
+fn scene(ticks: u32) -> Canvas {
+    let mut show = shown(SceneName::Page);
+    (0..ticks).for_each(|_| show.tick());
+    show.frame()
+}
+
+#[test]
+fn black_is_dark_and_the_upper_half_of_the_greys_is_solid_but_in_a_picture() {
+    for (all_greys, lit) in [
+        (
+            false,
+            [0, 0, 0, 3, 6, 8, 11, 14, 16, 16, 16, 16, 16, 16, 16, 16],
+        ),
+        (
+            true,
+            [0, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16],
+        ),
+    ] {
+        for (grey, lit) in (0..).zip(lit) {
+            let mut canvas = Canvas {
+                all_greys,
+                ..Canvas::default()
+            };
+            places().for_each(|(x, y)| canvas.update(x, y, |_| grey));
+            let ones: u32 = Bitmap::from(&canvas)
+                .pages
+                .as_flattened()
+                .iter()
+                .map(|byte| byte.count_ones())
+                .sum();
+            assert_eq!(
+                ones * 16 / (WIDTH * HEIGHT) as u32,
+                lit,
+                "pixels of 16 at {grey}, in a picture: {all_greys}"
+            );
+        }
+    }
+}
+
+#[test]
+fn every_pixel_is_in_its_place() {
+    for (x, y) in [(0, 0), (127, 0), (0, 63), (127, 63), (5, 9), (64, 32)] {
+        let mut canvas = Canvas::default();
+        canvas.update(x, y, |_| 15);
+        assert!(
+            Screenshot::from_pages(Bitmap::from(&canvas).pages.as_flattened())
+                == Screenshot::from(&canvas)
+        );
+    }
+}
+
+/// A frame of these pixels.
+fn pixels(mut is_lit: impl FnMut() -> bool) -> Canvas {
+    let mut canvas = Canvas::default();
+    places()
+        .filter(|_| is_lit())
+        .for_each(|(x, y)| canvas.update(x, y, |_| 15));
+    canvas
+}
+
+#[test]
+fn the_panel_shows_each_picture_at_either_address() {
+    let mut rng = Rng::with_seed(1);
+    // Whole frames of noise, and a few pixels here and there.
+    let noise = [2, 2, 1000, 300, 100, 30, 10, 3].map(|rarity| pixels(|| rng.u32(..rarity) == 0));
+    let frames: Vec<_> = [0, 1, 2, 30, 31, 400]
+        .map(scene)
+        .into_iter()
+        .chain(noise)
+        .collect();
+    for (kind, address) in [SSD1306, SH1106, SH1107, SILENT]
+        .into_iter()
+        .flat_map(|kind| [0x3C, 0x3D].map(|address| (kind, address)))
+    {
+        let mut panel = panel(Controller::new(kind, address));
+        for (number, frame) in frames.iter().enumerate() {
+            // A panel is looked for, identified and woken with the first frame. A whole frame of
+            // noise is sent in parts.
+            for _ in 0..if number == 0 { FIRST + 1 } else { 4 } {
+                assert_eq!(flush(&mut panel, frame, LONG), Ok(()));
+            }
+            assert!(
+                shows(&panel, frame),
+                "frame {number}, {kind:?} at {address:#04x}"
+            );
+        }
+    }
+}
+
+/// The modules that were found in the field, and how each is identified.
+///
+/// Source of the status bytes: Meshtastic's `probeOLED` and its threads 1363, 8850 and 11265;
+/// MeshCom 458; ss_oled 61.
+const MODULES: [(Kind, Says, Name, By); 21] = {
+    use By::{Memory, Silence};
+    [
+        (SSD1306, Says::Off(0x06), Name::Ssd1306, Memory),
+        (SSD1306, Says::Off(0x03), Name::Ssd1306, Memory),
+        (SSD1306, Says::Off(0x00), Name::Ssd1306, Memory),
+        (SSD1306, Says::Off(0x04), Name::Ssd1306, Memory),
+        (SSD1306, Says::Off(0x07), Name::Ssd1306, Memory),
+        (SSD1306, Says::Off(0x08), Name::Ssd1306, Memory),
+        (SSD1306, Says::FirstThen(0x06, 0x08), Name::Ssd1306, Memory),
+        (BLIND, Says::Always(0x00), Name::Ssd1306, Memory),
+        (BLIND, Says::Always(0x03), Name::Ssd1306, Memory),
+        (BLIND, Says::Always(0x07), Name::Ssd1306, Memory),
+        (BLIND, Says::Always(0x43), Name::Ssd1306, Memory),
+        (BLIND, Says::Always(0x46), Name::Ssd1306, Memory),
+        (BLIND, Says::Always(0x47), Name::Ssd1306, Memory),
+        (BLIND, Says::Always(0xFF), Name::Ssd1306, Memory),
+        (BLIND, Says::Nothing, Name::Ssd1306, Silence),
+        (SH1106, Says::Off(0x08), Name::Sh1106, Memory),
+        (SH1106, Says::Off(0x00), Name::Sh1106, Memory),
+        (SH1106, Says::FirstThen(0x06, 0x08), Name::Sh1106, Memory),
+        (SH1106, Says::Always(0x43), Name::Sh1106, Memory),
+        (SH1106, Says::Always(0xFF), Name::Sh1106, Memory),
+        (SH1107, Says::Off(0x07), Name::Sh1107, Memory),
+    ]
+};
+
+#[test]
+fn every_module_in_the_field_shows_the_picture() {
+    for (kind, says, controller, by) in MODULES {
+        let kind = kind.says(says);
+        let mut panel = panel(Controller::new(kind, 0x3C).plugged(false));
+        let mut found = Vec::new();
+        // The panel is plugged in after the first try.
+        for number in 0..4 * TICK_RATE {
+            panel.bus.panel.plugged_in = number > FIRST;
+            let frame = scene(number / 10);
+            let told = tick(&mut panel, &frame);
+            found.extend(panel.found());
+            if number > FIRST + BACK {
+                assert_eq!(told, Ok(()), "{kind:?}");
+                assert!(shows(&panel, &frame), "{kind:?}, frame {number}");
+            }
+        }
+        let found: Vec<_> = found
+            .iter()
+            .map(|found| (found.controller, found.by))
+            .collect();
+        assert_eq!(found, [(controller, by)], "{kind:?}");
+        assert_eq!(panel.bus.panel.lit, 1, "{kind:?} is switched on once");
+    }
+}
+
+#[test]
+fn status_byte_decides_only_where_reading_memory_is_broken_off() {
+    for (kind, status, controller) in [
+        (SH1106, 0x08, Name::Sh1106),
+        (BLIND, 0x06, Name::Ssd1306),
+        (BLIND, 0x07, Name::Ssd1306),
+    ] {
+        let says = Says::Off(status);
+        let mut panel = panel(Controller::new(kind.says(says), 0x3C));
+        // Switched off and asked; then its answers cease.
+        (0..2).for_each(|_| assert_eq!(flush(&mut panel, &scene(1), LONG), Ok(())));
+        panel.bus.panel.kind.says = Says::Nothing;
+        let found = (0..2).find_map(|_| {
+            let _ = panel.flush(&scene(1));
+            panel.bus.run(LONG);
+            panel.found()
+        });
+        let expected = Found {
+            controller,
+            by: By::Status,
+            status: Some(status | 0x40),
+        };
+        assert_eq!(found, Some(expected));
+    }
+}
+
+/// A module that cannot be identified is repaired by a command.
+#[test]
+fn chosen_controller_has_precedence_and_is_applied_at_once() {
+    // An SH1106 that answers no read.
+    let kind = Kind {
+        own: &[(0x20, 1), (0x2E, 0), (0x8D, 1), (0xAD, 1), (0xDA, 1)],
+        needed: &[],
+        for_lit: BLIND.for_lit,
+        ..SH1106.says(Says::Nothing)
+    };
+    let frame = scene(40);
+    let mut panel = panel(Controller::new(kind, 0x3C));
+    let run = |panel: &mut Panel| (0..BACK).for_each(|_| _ = tick(panel, &frame));
+    run(&mut panel);
+    assert!(!shows(&panel, &frame), "it is shifted by two columns");
+
+    for chosen in [
+        None,
+        Some(Name::Sh1106),
+        Some(Name::Ssd1306),
+        Some(Name::Sh1106),
+    ] {
+        assert!(panel.choose(chosen));
+        run(&mut panel);
+        let is_right = chosen == Some(Name::Sh1106);
+        assert_eq!(shows(&panel, &frame), is_right, "{chosen:?}");
+        let found = Found {
+            controller: chosen.unwrap_or_default(),
+            by: if chosen.is_some() {
+                By::Choice
+            } else {
+                By::Silence
+            },
+            status: None,
+        };
+        let report = panel.report();
+        assert_eq!(
+            (report.state, report.chosen),
+            (PanelState::Shown(found), chosen)
+        );
+    }
+
+    // The build's choice is the first.
+    let mut panel = on(Line::to(Controller::new(kind, 0x3C)), Some(Name::Sh1106));
+    run(&mut panel);
+    assert!(shows(&panel, &frame));
+}
+
+/// Bits of columns of a page: an address, a control byte and the place; an address, a control byte
+/// and the columns.
+const fn bits(columns: u32) -> u32 {
+    (1 + 5 * BYTE) + (1 + (2 + columns) * BYTE)
+}
+
+#[test]
+fn only_changes_are_sent_and_a_part_that_is_sent_again() {
+    let mut panel = panel(Controller::new(SSD1306, 0x3C));
+    let mut canvas = scene(30);
+    let taken = [&[][..]; 10]
+        .into_iter()
+        .chain([&[20][..], &[20, 90]])
+        .map(|changed| {
+            for &x in changed {
+                canvas.update(x, 7, |grey| 15 - grey);
+            }
+            assert_eq!(flush(&mut panel, &canvas, LONG), Ok(()));
+            panel.bus.taken
+        })
+        .collect::<Vec<_>>();
+    // The second run of a page does not name it.
+    let changes = [0, bits(1), 2 * bits(1) - BYTE];
+    assert_eq!(
+        taken[9..],
+        changes.map(|change| change + bits(16) + 1),
+        "and the stop"
+    );
+}
+
+/// The status byte tells that the display is off: settings are not repeated, and a panel that lost
+/// its power is set up again.
+#[test]
+fn panel_that_lost_its_power_is_set_up_again() {
+    for kind in [SSD1306, SH1106, SH1107] {
+        let mut panel = panel(Controller::new(kind, 0x3C));
+        let frame = scene(30);
+        for moment in [97, 60, 83] {
+            for _ in 0..moment {
+                let _ = tick(&mut panel, &frame);
+            }
+            assert!(shows(&panel, &frame));
+            panel.bus.panel.lose_power();
+            let back = (0..BACK).find(|_| {
+                let _ = tick(&mut panel, &frame);
+                shows(&panel, &frame)
+            });
+            assert!(back.is_some(), "{kind:?}");
+        }
+        // One wrong answer is none.
+        for _ in 0..FIRST {
+            assert_eq!(tick(&mut panel, &frame), Ok(()));
+        }
+        panel.bus.panel.kind.says = Says::Always(0x46);
+        panel.bus.panel.last_read = None;
+        while panel.bus.panel.last_read != Some(0x46) {
+            assert_eq!(tick(&mut panel, &frame), Ok(()));
+        }
+        panel.bus.panel.kind = kind;
+        for _ in 0..BACK {
+            assert_eq!(tick(&mut panel, &frame), Ok(()));
+        }
+        assert_eq!(panel.bus.panel.lit, 1, "since power came last");
+    }
+}
+
+/// Ticks for which the panel is away: between two of them, for so short a time that nobody misses
+/// an answer, in one, for longer.
+const AWAY: [u32; 5] = [0, 0, 1, 50, 100];
+/// Moments in each run, which lasts 40 s.
+const MOMENTS: usize = 15;
+
+/// A byte on the panel is of one of this many last frames: the first picture takes two ticks.
+const RECENT: usize = 3;
+
+#[test]
+fn panel_plugged_in_again_shows_every_scene_within_two_seconds() {
+    let runs = [SSD1306, SH1106]
+        .into_iter()
+        .flat_map(|kind| [false, true].map(|is_paused| (kind, is_paused)));
+    for ((kind, is_paused), &name) in
+        runs.flat_map(|run| SceneName::ALL.iter().map(move |name| (run, name)))
+    {
+        let mut panel = panel(Controller::new(kind, 0x3C));
+        let mut scene = shown(name);
+        let mut recent = VecDeque::new();
+        let mut longest = 0;
+        let run = format!("{:12} paused {is_paused}, {kind:?}", name.name());
+        // Returns true if the panel shows the last frames when the next one comes.
+        let mut step = |panel: &mut Panel| {
+            if !is_paused {
+                scene.tick();
+            }
+            let was_idle = panel.bus.is_idle();
+            let is_shown = panel.bus.panel.shows_any_of(&Vec::from_iter(&recent));
+            let sent = panel.bus.sent;
+            let frame = scene.frame();
+            recent.push_back(Bitmap::from(&frame));
+            recent.drain(..recent.len().saturating_sub(RECENT));
+            let _ = tick(panel, &frame);
+            if !was_idle {
+                assert_eq!(panel.bus.sent, sent, "it disturbs the one before");
+            }
+            was_idle && is_shown
+        };
+        for (away, moment) in AWAY
+            .into_iter()
+            .zip([97, 101, 83, 89, 103])
+            .cycle()
+            .take(MOMENTS)
+        {
+            let back = (0..BACK).find(|_| step(&mut panel));
+            longest = longest.max(back.unwrap_or_else(|| panic!("{run}: it is not back")));
+            for _ in 0..moment {
+                assert!(step(&mut panel), "{run}");
+            }
+            panel.bus.panel.lose_power();
+            panel.bus.panel.plugged_in = false;
+            for _ in 0..away {
+                step(&mut panel);
+            }
+            panel.bus.panel.plugged_in = true;
+        }
+        println!("{run}: back after {longest} ticks at most");
+    }
+}
+
+/// Frames of each run: 40 s.
+const FRAMES: u32 = 2400;
+
+/// Ticks for which a page may lag behind its frame, at any speed.
+const LATE: u32 = 1;
+
+/// Every frame of every scene is sent, at least in part, however slow the bus is. What is left over
+/// follows with the next frame.
+#[test]
+fn no_frame_of_any_scene_is_skipped_at_any_speed() {
+    // Frames of ten that are sent whole, at least.
+    const SPEEDS: [(u32, u32); 3] = [(IDEAL, 9), (USUAL, 0), (WORST, 0)];
+    for &name in SceneName::ALL {
+        let mut scene = shown(name);
+        let mut panels = SPEEDS.map(|speed| {
+            let line = Line::at(speed.0, Controller::new(SSD1306, 0x3C));
+            on(line, None)
+        });
+        let mut counts = [(0, 0, 0); 3];
+        let mut ages = [[0; HEIGHT / 8]; 3];
+        for number in 0..FRAMES {
+            scene.tick();
+            let frame = scene.frame();
+            let bitmap = Bitmap::from(&frame);
+            for ((panel, count), ages) in panels.iter_mut().zip(&mut counts).zip(&mut ages) {
+                let was_idle = panel.bus.is_idle();
+                let _ = tick(panel, &frame);
+                if number < 2 * FIRST {
+                    continue;
+                }
+                let late = panel.bus.panel.late_pages(&[&bitmap]);
+                for (page, age) in ages.iter_mut().enumerate() {
+                    *age = if late.contains(&page) { *age + 1 } else { 0 };
+                    count.2 = count.2.max(*age);
+                }
+                count.0 += u32::from(!was_idle);
+                count.1 += u32::from(late.is_empty());
+            }
+        }
+        for (((byte_nanos, least), panel), (skipped, whole, late)) in
+            SPEEDS.iter().zip(&panels).zip(counts)
+        {
+            let report = panel.report();
+            println!(
+                "{:12} {:4.1} us a byte: {skipped} frames skipped, {whole} whole, \
+                 a page at most {late} ticks late; in the last second {} and {}",
+                name.name(),
+                f64::from(*byte_nanos) / 1e3,
+                report.shown,
+                report.whole
+            );
+            assert_eq!(skipped, 0, "{}", name.name());
+            assert_eq!(u32::from(report.shown), TICK_RATE, "{}", name.name());
+            assert!(late <= LATE, "{}", name.name());
+            assert!(
+                10 * whole >= least * (FRAMES - 2 * FIRST),
+                "{}",
+                name.name()
+            );
+        }
+    }
+}
+
+/// A frame that takes longer to compute comes later in its tick, and the next one is then early.
+#[test]
+fn no_frame_is_skipped_when_frames_are_not_equally_far_apart() {
+    const SLICES: u32 = 64;
+    // The longest piece of planning between two tries: 4 ms.
+    const PIECE: u32 = 16;
+    let mut rng = Rng::with_seed(3);
+    for byte_nanos in [IDEAL, USUAL, WORST] {
+        let mut scene = shown(SceneName::SmallHeavy);
+        let mut panel = on(Line::at(byte_nanos, Controller::new(SSD1306, 0x3C)), None);
+        let slice = 1_000_000_000 / TICK_RATE / (byte_nanos / BYTE) / SLICES;
+        for number in 0..10 * TICK_RATE {
+            scene.tick();
+            // A third of the tick at most, as with planning.
+            let late = rng.u32(..SLICES / 3);
+            panel.bus.run(late * slice);
+            let frame = scene.frame();
+            let _ = panel.flush(&frame);
+            let mut done = late;
+            while done < SLICES {
+                let piece = rng.u32(1..=PIECE);
+                panel.bus.run(piece.min(SLICES - done) * slice);
+                done += piece;
+                // The last piece lasts into the next tick.
+                if done < SLICES {
+                    panel.catch_up(&frame);
+                }
+            }
+            if number % TICK_RATE == 0 && number > TICK_RATE {
+                let report = panel.report();
+                assert_eq!(u32::from(report.shown), TICK_RATE, "{byte_nanos} ns");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_bus_that_is_held_up_is_reported_once_a_second() {
+    let mut panel = panel(Controller::new(SSD1306, 0x3C));
+    let mut second = |is_slow: bool| {
+        let mut told = Ok(());
+        for number in 0..2 * TICK_RATE {
+            told = panel.flush(&scene(number));
+            // Every other tick another device holds the clock.
+            if !is_slow || number % 2 == 1 {
+                panel.bus.run_tick();
+            }
+        }
+        (told, panel.report().shown)
+    };
+    assert_eq!(second(false), (Ok(()), 60));
+    let shown = TICK_RATE / 2;
+    assert_eq!(second(true), (Err(OledError::Slow { shown }), 30));
+    assert_eq!(second(false), (Ok(()), 60));
+}
+
+#[test]
+fn an_absent_panel_is_looked_for_once_a_second_and_may_come_and_go() {
+    let plug = |panel: &mut Panel, plugged_in| {
+        panel.bus.panel = Controller::new(SSD1306, 0x3C).plugged(plugged_in)
+    };
+    let flush = |panel: &mut Panel, ticks| tick(panel, &scene(ticks));
+    let mut panel = panel(Controller::new(SSD1306, 0x3C).plugged(false));
+    let absent = Err(OledError::Absent(SILENCE));
+    assert_eq!(
+        panel.report(),
+        PanelReport {
+            state: PanelState::Starting,
+            ..PanelReport::default()
+        }
+    );
+    // No answer at the first address, nor at the second.
+    assert_eq!(
+        [1; 3].map(|ticks| flush(&mut panel, ticks)),
+        [Ok(()), Ok(()), absent]
+    );
+    let is_absent = PanelState::Absent(BusFault::NoAnswer);
+    for _ in 0..TICK_RATE {
+        assert_eq!(flush(&mut panel, 1), absent);
+        assert_eq!(panel.report().state, is_absent);
+    }
+    assert_eq!(panel.bus.sent, 2, "no other try within the second");
+    assert_eq!((flush(&mut panel, 1), panel.bus.sent), (absent, 3));
+
+    for (ticks, before) in [(1, absent), (4, Err(OledError::Lost))] {
+        plug(&mut panel, true);
+        let told: Vec<_> = (0..TICK_RATE + 12)
+            .map(|_| flush(&mut panel, ticks))
+            .collect();
+        assert!(
+            told.contains(&before) && told.last() == Some(&Ok(())),
+            "within a second"
+        );
+        assert!(shows(&panel, &scene(ticks)));
+        assert!(matches!(panel.report().state, PanelState::Shown(_)));
+        plug(&mut panel, false);
+        assert_eq!(
+            [2, 3].map(|ticks| flush(&mut panel, ticks)),
+            [Ok(()), Err(OledError::Lost)]
+        );
+        assert_eq!(panel.report().state, is_absent);
+        assert_eq!(panel.report().shown, 0);
+    }
+}
+
+#[test]
+fn a_bus_that_hangs_holds_up_nothing_and_is_freed() {
+    let flush = |panel: &mut Panel, ticks| tick(panel, &scene(ticks));
+    let mut panel = panel(Controller::new(SSD1306, 0x3C));
+    (0..10).for_each(|ticks| assert_eq!(flush(&mut panel, ticks), Ok(())));
+    panel.bus.hangs = true;
+    let told: Vec<_> = (5..20).map(|ticks| flush(&mut panel, ticks)).collect();
+    assert!(
+        told.starts_with(&[Ok(()); 5]) && told.ends_with(&[Err(OledError::Lost); 5]),
+        "{told:?}"
+    );
+    assert_eq!(panel.bus.freed, 1);
+    // While it hangs it is freed once a second.
+    for _ in 0..2 * TICK_RATE {
+        let _ = flush(&mut panel, 20);
+    }
+    assert_eq!(
+        (flush(&mut panel, 20), panel.bus.freed),
+        (Err(OledError::Absent(ErrorKind::Other)), 2)
+    );
+    assert_eq!(panel.report().state, PanelState::Absent(BusFault::Stuck));
+    panel.bus.hangs = false;
+    let told = (0..TICK_RATE + 12).map(|_| flush(&mut panel, 21)).last();
+    assert!(told == Some(Ok(())) && shows(&panel, &scene(21)));
+}
