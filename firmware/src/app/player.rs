@@ -24,8 +24,10 @@ pub struct Player<'a> {
     pub name: SceneName,
     pub settings: Settings,
     scene: AnyScene,
-    /// The method that is asked for; `None` leaves it to the plan.
+    /// The requested method; `None` leaves the choice to the plan. It outlasts the scene.
     method: Option<Method>,
+    /// True if the scene keeps the requested method; false if it follows the plan.
+    is_fixed: bool,
     planner: Planner,
     /// The motion as the plan has it, until it takes over; meanwhile nothing is planned.
     next: Option<CatchingUp>,
@@ -47,6 +49,7 @@ impl<'a> Player<'a> {
             settings,
             scene,
             method: None,
+            is_fixed: false,
             planner,
             next: None,
             ink,
@@ -56,18 +59,35 @@ impl<'a> Player<'a> {
         }
     }
 
-    /// Plays a scene with `settings`; the kernel's error if they describe no pendulum, and nothing is changed.
-    #[inline(never)] // what a scene needs to start would be on the stack of every frame
+    /// Plays a scene with `settings`. A scene that cannot use the requested method follows its plan.
+    ///
+    /// Returns the kernel's error if the settings describe no pendulum. Then nothing is changed.
     pub fn play(&mut self, name: SceneName, settings: Settings) -> Result<(), Error> {
+        match self.play_by(self.method, name, settings) {
+            Err(_) if self.method.is_some() => self.play_by(None, name, settings),
+            played => played,
+        }
+    }
+
+    /// Plays a scene by `method` and no other, or by its plan. If that is impossible, nothing is changed.
+    #[inline(never)] // what a scene needs to start would be on the stack of every frame
+    fn play_by(
+        &mut self,
+        method: Option<Method>,
+        name: SceneName,
+        settings: Settings,
+    ) -> Result<(), Error> {
         let resources = Resources {
             processor: self.planner.processor,
-            method: self.method,
+            method,
         };
         let height = self.scene.start(name, &settings, &resources)?;
         (self.name, self.settings, self.stopped, self.next) = (name, settings, false, None);
+        self.is_fixed = method.is_some();
         let initial = self.scene.report(0).stepping;
-        let is_fixed = self.method.is_some() || self.scene.planned().is_none();
-        self.planner.start(&settings, height, initial, is_fixed);
+        let keeps_initial = self.is_fixed || self.scene.planned().is_none();
+        self.planner
+            .start(&settings, height, initial, keeps_initial);
         *self.ink = FadeLayer::NONE;
         self.report = self.now();
         Ok(())
@@ -88,6 +108,7 @@ impl<'a> Player<'a> {
             Command::NextScene => return self.choose(self.name.next()),
             Command::PreviousScene => return self.choose(self.name.previous()),
             Command::Choose(name) => return self.choose(name),
+            Command::Play(name, settings) => return self.start(name, in_range(settings)?),
             Command::Set {
                 field: Field::Speed,
                 value,
@@ -142,7 +163,7 @@ impl<'a> Player<'a> {
 
     #[inline(never)] // what a motion needs to start would be on the stack of every frame
     fn follow(&mut self, found: &PlanResult) {
-        if let (Ok(plan), None) = (found, self.method) {
+        if let (Ok(plan), false) = (found, self.is_fixed) {
             let stepping = plan.stepping();
             if self
                 .scene
@@ -258,7 +279,9 @@ impl<'a> Player<'a> {
         let mut pace = Pace::default();
         (pace.paused, pace.steps) = (paused, steps);
         pace.set_speed(speed.into())?;
-        self.start_by(method, scene, settings)?;
+        let before = core::mem::replace(&mut self.method, method);
+        self.start(scene, settings)
+            .inspect_err(|_| self.method = before)?;
         self.pace = pace;
         Ok(())
     }
@@ -272,24 +295,16 @@ impl<'a> Player<'a> {
         Ok(true)
     }
 
-    /// Starts again by this method and no other, or as the plan has it.
+    /// Starts again by this method and no other, or as the plan has it. Refuses a method that the
+    /// scene cannot use: only a change of the scene or of its settings falls back to the plan.
     fn go(&mut self, method: Option<Method>) -> Result<bool, Field> {
         if method.is_some_and(|method| !Method::DRAWN.contains(&method)) {
             return Err(Field::Method);
         }
-        self.start_by(method, self.name, self.settings)
-            .map_err(|_| Field::Method)
-    }
-
-    fn start_by(
-        &mut self,
-        method: Option<Method>,
-        name: SceneName,
-        settings: Settings,
-    ) -> Result<bool, Field> {
-        let before = core::mem::replace(&mut self.method, method);
-        self.start(name, settings)
-            .inspect_err(|_| self.method = before)
+        self.play_by(method, self.name, self.settings)
+            .map_err(|_| Field::Method)?;
+        self.method = method;
+        Ok(true)
     }
 
     /// The settings with one of them changed; refuses an angle beyond straight up.
@@ -315,11 +330,16 @@ impl<'a> Player<'a> {
             Field::MassRatio => parameters.m2 = parameters.m1 * value,
             _ => return Err(Field::Field),
         }
-        let within = |degrees: f32| degrees.abs() <= GREATEST_ANGLE;
-        if settings.degrees.into_iter().all(within) {
-            Ok(settings)
-        } else {
-            Err(field)
-        }
+        in_range(settings).map_err(|_| field)
+    }
+}
+
+/// Refuses an angle beyond straight up.
+fn in_range(settings: Settings) -> Result<Settings, Field> {
+    let is_beyond = |degrees: f32| !(-GREATEST_ANGLE..=GREATEST_ANGLE).contains(&degrees);
+    match settings.degrees.map(is_beyond) {
+        [true, _] => Err(Field::A1),
+        [_, true] => Err(Field::A2),
+        _ => Ok(settings),
     }
 }

@@ -7,7 +7,7 @@ use core::mem::MaybeUninit;
 use defmt::Debug2Format;
 use double_pendulum::Parameters;
 use double_pendulum::plan::{Plan, PlanError, Stepping};
-use embedded_io::Write;
+use embedded_io::{Error, ErrorKind, Write};
 
 use super::cortex_m::clock::{ticks, wait_after};
 use super::cortex_m::retained;
@@ -18,7 +18,7 @@ use crate::config::{HALF_PIXEL, Processor};
 use crate::display::{Display, Found};
 use crate::graphics::FrameBuffers;
 use crate::motion::Settings;
-use crate::protocol::{Cause, Restarted};
+use crate::protocol::{Cause, Field, Restarted};
 use crate::scenes::SceneName;
 
 pub struct Board<Panel, Link, Keys, Dog> {
@@ -164,7 +164,7 @@ fn resume<Panel: Display<Error: Debug>, Link: Write, Keys: Buttons>(
 }
 
 #[inline(never)]
-fn log<Panel: Debug, Link: Debug>(event: Event<Panel, Link>) {
+fn log<Panel: Debug, Link: Error>(event: Event<Panel, Link>) {
     match event {
         Event::Restarted(end, resumed) => {
             defmt::warn!(
@@ -187,14 +187,18 @@ fn log<Panel: Debug, Link: Debug>(event: Event<Panel, Link>) {
             },
         ) => {
             let Parameters { m1, m2, l1, l2, g } = parameters;
-            defmt::info!(
-                "{=str} starts at {} and {} degrees, {} and {} rad/s",
-                scene.name(),
-                a1,
-                a2,
-                w1,
-                w2
-            );
+            if scene.has_angles() {
+                defmt::info!(
+                    "{=str} starts at {} and {} degrees, {} and {} rad/s",
+                    scene.name(),
+                    a1,
+                    a2,
+                    w1,
+                    w2
+                );
+            } else {
+                defmt::info!("{=str} starts", scene.name());
+            }
             defmt::info!(
                 "masses {} and {} kg, rods {} and {} m, g {} m/s2",
                 m1,
@@ -204,7 +208,12 @@ fn log<Panel: Debug, Link: Debug>(event: Event<Panel, Link>) {
                 g
             );
         }
-        Event::Refused(command, field) => defmt::warn!("refused {}: {}", command, field),
+        Event::Refused(_, field) => {
+            defmt::warn!(
+                "the button has no effect: this {=str} is out of range",
+                field.name()
+            )
+        }
         Event::Dropped { ticks, total } => {
             defmt::warn!("dropped {} frames, {} since reset", ticks, total)
         }
@@ -227,55 +236,92 @@ fn log<Panel: Debug, Link: Debug>(event: Event<Panel, Link>) {
             last,
         } => {
             defmt::warn!(
-                "{} damaged messages, {} since reset, the last: {}",
+                "{} damaged messages, {} since reset, the last: {=str}",
                 messages,
                 total,
-                last
+                last.name()
             );
         }
         Event::Lost { bytes, total } => {
             defmt::warn!("{} received bytes lost, {} since reset", bytes, total)
         }
-        Event::Stopped(error) => defmt::error!("stopped: {}", error),
+        Event::Stopped(_) => {
+            defmt::error!(
+                "stopped: this motion is too fast for this chip; press space or change the masses"
+            )
+        }
         Event::StepTooLong(step) => {
             defmt::warn!("the step is too long for this energy, {} s would do", step)
         }
-        Event::Motion(PlannerEvent::Found(Ok(Plan {
-            method,
-            steps,
-            error,
-            cost,
-            horizon,
-            limit,
-            ..
-        }))) => {
-            defmt::info!(
-                "plan: {=str}, steps to a frame: {}, expected to be at most {}/1000 of a pixel off until {}.{:02} s ({=str}), {} cycles a frame",
-                method.name(),
-                steps,
-                libm::ceilf(1e3 * HALF_PIXEL * error) as u32,
-                horizon as u32,
-                (100.0 * horizon) as u32 % 100,
-                limit.name(),
-                cost as u32,
-            )
-        }
+        Event::Motion(PlannerEvent::Found(Ok(plan))) => log_plan(&plan),
         Event::Motion(PlannerEvent::Found(Err(PlanError::NoMethod { limit, .. }))) => {
             defmt::info!(
-                "plan: nothing affordable is right to half a pixel in any frame ({=str})",
+                "plan: no method is fast enough for this chip (limited by {=str})",
                 limit.name()
             );
         }
         Event::Motion(PlannerEvent::Shown(Stepping { method, steps }, cost)) => {
             defmt::info!(
-                "shown: {=str}, steps to a frame: {}, {} cycles a frame",
+                "shown: {=str}, steps per frame: {}, {} cycles per frame",
                 method.name(),
                 steps,
                 cost as u32
             );
         }
-        Event::Motion(PlannerEvent::Found(Err(error))) => defmt::warn!("no plan: {}", error),
+        Event::Motion(PlannerEvent::Found(Err(PlanError::Refused(error)))) => {
+            defmt::warn!(
+                "no plan: this {=str} is out of range",
+                Field::from(error).name()
+            )
+        }
+        Event::Motion(PlannerEvent::Found(Err(_))) => defmt::warn!("no plan"),
         Event::Asked => defmt::info!("computing a motion on request"),
-        Event::Link(error) => defmt::error!("serial link: {}", Debug2Format(&error)),
+        Event::Link(error) => defmt::error!("serial link: {=str}", reason(error.kind())),
+    }
+}
+
+/// Logs a plan. The closed form has no steps, and its errors do not grow: it is another motion.
+fn log_plan(
+    &Plan {
+        method,
+        steps,
+        error,
+        cost,
+        horizon,
+        limit,
+        ..
+    }: &Plan,
+) {
+    let method = method.name();
+    let seconds = horizon as u32;
+    let hundredths = (100.0 * horizon) as u32 % 100;
+    if steps == 0 {
+        defmt::info!(
+            "plan: {=str}; leaves the exact motion at {}.{:02} s",
+            method,
+            seconds,
+            hundredths
+        );
+        return;
+    }
+    let thousandths = libm::ceilf(1e3 * HALF_PIXEL * error) as u32;
+    defmt::info!(
+        "plan: {=str}, steps per frame: {}; error up to {}.{:03} pixels until {}.{:02} s (limited by {=str}), {} cycles per frame",
+        method,
+        steps,
+        thousandths / 1000,
+        thousandths % 1000,
+        seconds,
+        hundredths,
+        limit.name(),
+        cost as u32,
+    );
+}
+
+/// Why the serial link has not taken a message.
+fn reason(kind: ErrorKind) -> &'static str {
+    match kind {
+        ErrorKind::TimedOut => "the host does not read, frames are dropped",
+        _ => "a message could not be sent",
     }
 }

@@ -1,7 +1,7 @@
 //! The motion itself, apart from any frame of it, and what its energy has become.
 
 use double_pendulum::plan::{PlannedRun, Stepping};
-use double_pendulum::{Error, Method, Pendulum, State};
+use double_pendulum::{Error, Method, Parameter, Pendulum, State};
 
 use crate::config::Processor;
 use crate::graphics::{HEIGHT, RodDirections};
@@ -37,7 +37,7 @@ impl Simulation {
         let (pendulum, start) = settings.start()?;
         let problem = settings.problem(HEIGHT as f32);
         let stepping = match method {
-            Some(method) => Stepping::of(&problem, method)?,
+            Some(method) => affordable(Stepping::of(&problem, method)?, processor)?,
             None => Stepping::lasting(&problem, &processor.costs, processor.frame)?,
         };
         pendulum.check_step(1.0 / (f64::from(problem.rate) * f64::from(stepping.steps)))?;
@@ -53,6 +53,20 @@ impl Simulation {
         // A motion that is lost is seen by its state.
         let _is_lost = self.motion.advance(1);
     }
+}
+
+/// Refuses a method and step count that cost more than a frame may. Frames would come late, and
+/// with enough steps the watchdog would reset the board.
+fn affordable(stepping: Stepping, processor: &Processor) -> Result<Stepping, Error> {
+    let cost = processor.costs.of_frame(stepping);
+    if cost > processor.frame {
+        return Err(Error::TooLarge {
+            parameter: Parameter::Cost,
+            value: cost.into(),
+            limit: processor.frame.into(),
+        });
+    }
+    Ok(stepping)
 }
 
 /// A motion by another stepping, from the start until it has caught up: after a number of ticks that depends only on what the

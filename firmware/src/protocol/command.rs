@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 use super::{MAX_WIRE, encode, read};
 use crate::display::Controller;
 use crate::job::Request;
+use crate::motion::Settings;
 use crate::scenes::SceneName;
 
 /// What is asked of the application, by button or over the serial link.
@@ -54,6 +55,8 @@ pub enum Command {
     },
     /// Drive the panel as this controller; `None` identifies it. The choice outlasts a restart.
     Panel(Option<Controller>),
+    /// Play a scene with these settings, all at once: a few of them alone may be impossible.
+    Play(SceneName, Settings),
 }
 
 /// Stands before every command, and before no message to the host: there a smaller number says which it is.

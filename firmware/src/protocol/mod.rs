@@ -88,6 +88,16 @@ pub enum LinkError {
     Version(u8),
 }
 
+impl LinkError {
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Malformed => "malformed",
+            Self::Checksum => "wrong checksum",
+            Self::Version(_) => "another version of the protocol",
+        }
+    }
+}
+
 /// Cuts a byte stream into checked messages; resynchronises at the next delimiter after any damage.
 #[derive(Debug)]
 pub struct Decoder {

@@ -27,7 +27,7 @@ fn choose(ports: &[SerialPortInfo]) -> Result<String, String> {
     };
     match &ports.iter().filter_map(over_usb).collect::<Vec<_>>()[..] {
         [] => Err(format!(
-            "{AUTO}: no USB serial adapter is plugged in; name the port, as in --port /dev/ttyUSB0"
+            "{AUTO}: no board and no serial adapter found on USB; name the port, as in --port /dev/ttyUSB0"
         )),
         [(name, _)] => Ok(name.clone()),
         several => {

@@ -147,7 +147,9 @@ impl Port {
         let Self { name, bytes, .. } = self;
         match self.inbox.damage {
             _ if *bytes == 0 => {
-                format!("{name}: nothing comes; is the board on, and its TX at the adapter's RX?")
+                format!(
+                    "{name}: no data; is the board powered, and (with an adapter) its TX wired to RX?"
+                )
             }
             Some(LinkError::Version(version)) => {
                 format!(
@@ -181,7 +183,7 @@ fn reason(name: &str, error: &serialport::Error) -> String {
         NoDevice => format!("{name}: another program has it open"),
         Io(ErrorKind::PermissionDenied) => {
             format!(
-                "{name}: no right to open it; as root: usermod -aG dialout USER, then log in again"
+                "{name}: permission denied; as root: usermod -aG dialout USER, then log in again"
             )
         }
         Io(ErrorKind::NotFound) => format!("{name}: there is no such port{}", present()),
@@ -213,7 +215,7 @@ mod tests {
         };
         let told = refused(serialport::ErrorKind::Io(ErrorKind::PermissionDenied));
         assert!(
-            told.contains("no right to open it") && told.contains("dialout"),
+            told.contains("permission denied") && told.contains("dialout"),
             "{told}"
         );
         assert!(refused(serialport::ErrorKind::NoDevice).contains("another program"));

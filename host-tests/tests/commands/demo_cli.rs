@@ -1,12 +1,15 @@
 //! `cargo demo` from outside: exit codes, summary, and the files it saves.
 
+use std::f32::consts::PI;
 use std::fs::File;
 use std::io::BufReader;
 use std::path::{Path, PathBuf};
 
 use super::cli::{output, program};
 use crate::support::toolchain;
+use double_pendulum::Parameters;
 use firmware::config::STM32F405;
+use firmware::motion::Settings;
 use firmware::scenes::SceneName;
 use host_tests::commands::demo::played;
 use host_tests::emulator::host::Show;
@@ -51,8 +54,8 @@ fn a_recording_shows_a_swinging_pendulum_and_is_the_same_every_time() {
             "simulated time        2.000 s\n",
             "CRC errors            0\n",
             "dropped frames        0\n",
-            "shown                 extrapolation10-fixed64, a step to a frame, right to half a pixel until",
-            "120 frames, every bit",
+            "shown                 extrapolation10-fixed64 · 1 step per frame · accurate to half a pixel until",
+            "120 frames, all identical to the host",
         ] {
             assert!(summary.contains(line), "no {line:?} in\n{summary}");
         }
@@ -93,7 +96,7 @@ fn the_method_can_be_chosen_and_is_named() {
         let output =
             output(program("demo").args(["--method", method, "--headless", "--seconds", "2"]));
         let shown = format!(
-            "\nshown                 {named}, a step to a frame, right to half a pixel until"
+            "\nshown                 {named} · 1 step per frame · accurate to half a pixel until"
         );
         assert!(
             output.status.success() && output.stdout.contains(&shown),
@@ -122,7 +125,9 @@ fn of_a_board_without_a_panel_the_redrawn_one_is_shown() {
     let output = output(command.arg(&animation));
     assert_eq!(output.status.code(), Some(0), "{output:?}");
     assert!(
-        output.stdout.contains("frames, every bit the host's"),
+        output
+            .stdout
+            .contains("60 frames, all identical to the host"),
         "{}",
         output.stdout
     );
@@ -140,6 +145,114 @@ fn of_a_board_without_a_panel_the_redrawn_one_is_shown() {
         );
         scene.tick();
     }
+}
+
+/// The animation begins with it, and each frame is the host's.
+#[test]
+fn a_motion_of_ones_own_is_played_recorded_and_compared() {
+    toolchain();
+    let folder = tempfile::tempdir().expect("a folder");
+    let animation = folder.path().join("own.gif");
+    let mut command = program("demo");
+    command.args(["--board", "stm32f405", "--headless", "--seconds", "1"]);
+    command.args(["--angles", "90,-45", "--degrees", "--masses", "1,3"]);
+    command.args([
+        "--lengths",
+        "1,7/10",
+        "--velocities",
+        "0,180",
+        "--gravity",
+        "1.62",
+    ]);
+    let output = output(command.arg("--record").arg(&animation));
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    let said = &output.stdout;
+    assert!(
+        said.contains("60 frames, all identical to the host"),
+        "{said}"
+    );
+    let saved = format!(
+        "saved                 {}, 30 pictures, the panel redrawn here from the board's numbers\n",
+        animation.display()
+    );
+    assert!(said.ends_with(&saved), "{said}");
+
+    let own = Settings {
+        parameters: Parameters {
+            m1: 1.0,
+            m2: 3.0,
+            l1: 1.0,
+            l2: 0.7,
+            g: 1.62,
+        },
+        degrees: [90.0, -45.0],
+        velocities: [0.0, PI],
+    };
+    let mut scene = Show::on(STM32F405, SceneName::Page, &own).expect("a motion");
+    let played = played(&animation).expect("a GIF file");
+    assert_eq!(played.len(), 30);
+    // Its first frame is the first that comes after the board has said that it plays this.
+    while Screenshot::from(&scene.frame()).greys != played[0].0 {
+        scene.tick();
+        assert!(scene.report().step < 10, "it is another motion");
+    }
+    for (number, (greys, _)) in played.iter().enumerate() {
+        assert!(
+            Screenshot::from(&scene.frame()).greys == *greys,
+            "screenshot {number}"
+        );
+        scene.tick();
+        scene.tick();
+    }
+}
+
+/// Of 120 frames every second one shows a new tick.
+#[test]
+fn at_half_the_speed_half_as_much_time_is_simulated() {
+    toolchain();
+    let output = output(program("demo").args([
+        "--board",
+        "mps2-an386",
+        "--speed",
+        "1/2",
+        "--headless",
+        "--seconds",
+        "2",
+    ]));
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    let said = &output.stdout;
+    let time = said
+        .lines()
+        .find_map(|line| {
+            line.strip_prefix("simulated time")?
+                .trim()
+                .strip_suffix(" s")
+        })
+        .and_then(|time| time.parse::<f64>().ok())
+        .expect("the simulated time");
+    assert!((0.98..1.1).contains(&time), "{said}");
+    assert!(
+        said.contains(" frames, all identical to the host"),
+        "{said}"
+    );
+}
+
+#[test]
+fn without_a_terminal_it_says_so_and_how_to_see_something() {
+    toolchain();
+    let told = |arguments: &[&str]| {
+        let mut command = program("demo");
+        command.args(["--board", "mps2-an386", "--seconds", "0.1"]);
+        let output = output(command.args(arguments));
+        assert_eq!(output.status.code(), Some(0), "{output:?}");
+        assert!(!output.stdout.contains("no terminal"), "{output:?}");
+        output.stderr
+    };
+    let reason = "no terminal: running headless; --record FILE.gif";
+    let by_itself = told(&[]);
+    assert!(by_itself.contains(reason), "{by_itself}");
+    let as_asked = told(&["--headless"]);
+    assert!(!as_asked.contains("no terminal"), "{as_asked}");
 }
 
 /// What QEMU is reached by lies there.

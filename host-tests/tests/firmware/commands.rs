@@ -2,15 +2,15 @@
 
 use std::f64::consts::PI;
 
-use double_pendulum::Method;
 use double_pendulum::plan::Stepping;
+use double_pendulum::{Method, Parameters};
 use fastrand::Rng;
 use firmware::app::{Event, Instruments, PlannerEvent};
 use firmware::config::{
-    MOST_MEASURED_STEPS, MOST_MESSAGES_PER_TICK, PLANNED, RECEIVE_QUEUE, TICK_RATE,
+    MOST_MEASURED_STEPS, MOST_MESSAGES_PER_TICK, PLANNED, PROCESSOR, RECEIVE_QUEUE, TICK_RATE,
 };
 use firmware::job::{OnBoards, Request, Run};
-use firmware::motion::Planned;
+use firmware::motion::{Planned, Settings};
 use firmware::protocol::{
     Answer, BoardName, Command, Field, Frame, Identity, MAX_WIRE, Status, ToHost, encode, frame,
 };
@@ -368,6 +368,197 @@ fn a_method_can_be_forced() {
     for &method in Method::DRAWN {
         assert_eq!(go(Some(method)), Some(method));
         assert_eq!(go(None), Some(Method::Extrapolation10Fixed64));
+    }
+}
+
+/// What no frame of a Cortex-M3 can pay for by this method: a short rod swings fast.
+const COSTLY: Method = Method::Rk4F32DirectionPlain;
+
+fn fast() -> Settings {
+    let mut settings = Settings::equal_rods(1.0, 10.0);
+    settings.parameters.l2 = 0.002;
+    settings
+}
+
+/// So Tab never gets stuck, whatever method is requested.
+#[test]
+fn a_scene_that_cannot_use_the_requested_method_follows_its_plan() {
+    let mut app = app();
+    let requested = Some(COSTLY);
+    let shown = |app: &Plain| app.player.report.stepping.map(|stepping| stepping.method);
+    let play = |app: &mut Plain, settings| {
+        let command = Command::Play(SceneName::Page, settings);
+        assert_eq!(answer(app, command), Answer::Done);
+    };
+    assert_eq!(answer(&mut app, Command::Method(requested)), Answer::Done);
+    assert_eq!(shown(&app), requested);
+
+    play(&mut app, fast());
+    assert_ne!(shown(&app), requested, "not possible here");
+    assert_eq!(status(&mut app).method, requested, "but not forgotten");
+    let fallen_back = status(&mut app);
+    assert_eq!(
+        answer(&mut app, Command::Method(requested)),
+        Answer::Refused(Field::Method),
+        "said to one who insists"
+    );
+    assert_eq!(status(&mut app), fallen_back, "and changes nothing");
+
+    // What the host replays from the status is the same.
+    let mut replayed = self::app();
+    assert_eq!(replayed.player.resume(&fallen_back), Ok(()));
+    assert_eq!(replayed.player.report, app.player.report);
+    assert_eq!(replayed.player.status(), fallen_back);
+
+    play(&mut app, Settings::default());
+    assert_eq!(
+        shown(&app),
+        requested,
+        "where it is possible, it is used again"
+    );
+}
+
+/// By every method, from every scene to the next and back.
+#[test]
+fn every_scene_is_reached_whatever_method_is_requested() {
+    for &method in Method::DRAWN {
+        let mut app = app();
+        assert_eq!(
+            answer(&mut app, Command::Method(Some(method))),
+            Answer::Done
+        );
+        for (command, turned) in [
+            (
+                Command::NextScene,
+                SceneName::next as fn(SceneName) -> SceneName,
+            ),
+            (Command::PreviousScene, SceneName::previous),
+        ] {
+            for _ in SceneName::ALL {
+                let name = turned(app.player.name);
+                assert_eq!(answer(&mut app, command), Answer::Done, "{method}");
+                assert_eq!(app.player.name, name, "{method}");
+            }
+        }
+    }
+}
+
+/// The plan may replace a method that a scene has fallen back to.
+#[test]
+fn a_scene_that_has_fallen_back_takes_what_the_plan_finds() {
+    let mut app = app();
+    app.receive(wire(1, Command::Method(Some(Method::Rk4Fixed32))), |_| ());
+    app.receive(wire(1, Command::Play(SceneName::Page, fast())), |_| ());
+    let initial = app.player.report.stepping;
+    let mut found = None;
+    for clock in 1..=30 * TICK_RATE {
+        app.run_to(clock, |event| {
+            if let Event::Motion(PlannerEvent::Found(Ok(plan))) = event {
+                found = Some(plan.stepping());
+            }
+        });
+    }
+    let found = found.expect("a plan");
+    assert_eq!(
+        app.player.report.stepping,
+        Some(found),
+        "begun by {initial:?}"
+    );
+}
+
+/// Many steps of a slow method would keep the board from its frames, and the watchdog would bite.
+#[test]
+fn a_requested_method_that_a_frame_cannot_pay_for_is_not_used() {
+    let mut app = app();
+    let requested = Some(Method::Rk4F32Direction);
+    app.receive(wire(1, Command::Method(requested)), |_| ());
+    for _ in 0..20 {
+        app.receive(wire(1, Command::Heavier), |_| ());
+        let stepping = app.player.report.stepping.expect("a motion");
+        assert!(
+            app.player.cost(stepping) <= PROCESSOR.frame,
+            "{stepping:?} at {}",
+            app.player.settings.mass_ratio()
+        );
+    }
+    assert_eq!(app.player.settings.mass_ratio(), 100.0);
+}
+
+/// All at once, for a few of them alone may be impossible.
+#[test]
+fn a_scene_is_played_with_settings_of_ones_own() {
+    let mut app = app();
+    let own = Settings {
+        parameters: Parameters {
+            m1: 3.0,
+            m2: 0.5,
+            l1: 0.7,
+            l2: 1.1,
+            g: 1.62,
+        },
+        degrees: [90.0, -45.0],
+        velocities: [0.5, -2.0],
+    };
+    let before = status(&mut app);
+    let play = Command::Play(SceneName::Butterfly, own);
+    assert_eq!(answer(&mut app, play), Answer::Done);
+    let played = Status {
+        scene: SceneName::Butterfly,
+        settings: own,
+        ..before
+    };
+    assert_eq!(status(&mut app), played);
+    assert_eq!(app.player.report.step, 0);
+
+    let with = |change: fn(&mut Settings)| {
+        let mut settings = own;
+        change(&mut settings);
+        settings
+    };
+    for (scene, settings, field) in [
+        (
+            SceneName::Page,
+            with(|own| own.degrees[0] = 180.5),
+            Field::A1,
+        ),
+        (
+            SceneName::Page,
+            with(|own| own.degrees[1] = -181.0),
+            Field::A2,
+        ),
+        (
+            SceneName::Page,
+            with(|own| own.degrees[1] = f32::NAN),
+            Field::A2,
+        ),
+        (
+            SceneName::Page,
+            with(|own| own.parameters.m1 = 0.0),
+            Field::M1,
+        ),
+        (
+            SceneName::Flips,
+            with(|own| own.parameters.m2 = -1.0),
+            Field::M2,
+        ),
+        (
+            SceneName::Upright,
+            with(|own| own.parameters.l1 = f32::INFINITY),
+            Field::L1,
+        ),
+        (
+            SceneName::Page,
+            with(|own| own.velocities[1] = f32::NAN),
+            Field::W2,
+        ),
+        (SceneName::Figure7, own, Field::L2), // its rods are equal
+    ] {
+        assert_eq!(
+            answer(&mut app, Command::Play(scene, settings)),
+            Answer::Refused(field),
+            "{settings:?}"
+        );
+        assert_eq!(status(&mut app), played);
     }
 }
 

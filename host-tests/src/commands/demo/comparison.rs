@@ -128,12 +128,12 @@ impl fmt::Display for Comparison {
         }
         write!(
             f,
-            "{} frames, every bit the host's",
+            "{} frames, all identical to the host",
             HumanCount(self.compared)
         )?;
         match self.skipped + self.waiting.len() as u64 {
             0 => Ok(()),
-            skipped => write!(f, " ({} not compared)", HumanCount(skipped)),
+            skipped => write!(f, " ({} skipped at restarts)", HumanCount(skipped)),
         }
     }
 }

@@ -10,7 +10,9 @@ use ratatui::crossterm::event::{self, Event, KeyCode, KeyEvent, KeyEventKind, Ke
 use ratatui::crossterm::style::Colored;
 use ratatui::crossterm::{cursor, execute};
 
-use super::session::Session;
+use super::options::scene_of_key;
+use super::readings::Help;
+use super::session::{Session, faster, slower};
 use super::view::draw;
 use crate::emulator::process;
 
@@ -51,37 +53,55 @@ fn show(session: &mut Session, seconds: f64, mut terminal: DefaultTerminal) -> a
             })?;
         }
         while event::poll(LOOK.saturating_sub(heard.elapsed()))? {
-            match event::read()? {
-                Event::Key(KeyEvent {
-                    kind: KeyEventKind::Release,
-                    ..
-                }) => {}
-                Event::Key(KeyEvent {
-                    code: KeyCode::Char('q') | KeyCode::Esc,
-                    ..
-                }) => return Ok(()),
-                Event::Key(KeyEvent {
-                    code: KeyCode::Char('c'),
-                    modifiers: KeyModifiers::CONTROL,
-                    ..
-                }) => {
-                    return Ok(());
-                }
-                Event::Key(KeyEvent { code, .. }) => execute(session, code)?,
-                _ => {}
+            let Event::Key(key) = event::read()? else {
+                continue;
+            };
+            match action(key, session.readings.help) {
+                Action::Nothing => {}
+                Action::Quit => return Ok(()),
+                Action::Help(page) => session.readings.help = page,
+                Action::Send(command) => session.command(command)?,
+                Action::Slower => session.change_speed(slower)?,
+                Action::Faster => session.change_speed(faster)?,
             }
         }
     }
     Ok(())
 }
 
-fn execute(
-    Session {
-        source, readings, ..
-    }: &mut Session,
-    code: KeyCode,
-) -> anyhow::Result<()> {
-    source.send(match code {
+/// What a key does.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Action {
+    Nothing,
+    Quit,
+    /// Shows this page of the help, or none.
+    Help(Help),
+    Send(Command),
+    Slower,
+    Faster,
+}
+
+/// Returns what a key does while this page of the help is shown. Any key but `?` closes the help, and does nothing else.
+fn action(key: KeyEvent, help: Help) -> Action {
+    let KeyEvent {
+        code,
+        modifiers,
+        kind,
+        ..
+    } = key;
+    if kind == KeyEventKind::Release {
+        return Action::Nothing;
+    }
+    match code {
+        KeyCode::Char('c') if modifiers.contains(KeyModifiers::CONTROL) => return Action::Quit,
+        KeyCode::Char('?') => return Action::Help(help.next()),
+        _ if help != Help::Hidden => return Action::Help(Help::Hidden),
+        _ => {}
+    }
+    let command = match code {
+        KeyCode::Char('q') => return Action::Quit,
+        KeyCode::Char('-' | '_') => return Action::Slower,
+        KeyCode::Char('+' | '=') => return Action::Faster,
         KeyCode::Up => Command::Heavier,
         KeyCode::Down => Command::Lighter,
         KeyCode::Left => Command::TurnLeft,
@@ -91,9 +111,60 @@ fn execute(
         KeyCode::BackTab | KeyCode::Char('N') => Command::PreviousScene,
         KeyCode::Char('p') => Command::TogglePause,
         KeyCode::Char('.') => Command::Step(1),
-        _ => {
-            readings.help ^= code == KeyCode::Char('?');
-            return Ok(());
+        KeyCode::Char(key) => match scene_of_key(key) {
+            Some(scene) => Command::Choose(scene),
+            None => return Action::Nothing,
+        },
+        _ => return Action::Nothing,
+    };
+    Action::Send(command)
+}
+
+#[cfg(test)]
+mod tests {
+    use firmware::scenes::SceneName;
+
+    use super::*;
+
+    fn pressed(code: KeyCode) -> KeyEvent {
+        KeyEvent::new(code, KeyModifiers::NONE)
+    }
+
+    #[test]
+    fn any_key_closes_the_help_and_escape_never_quits() {
+        for code in [KeyCode::Esc, KeyCode::Char('q'), KeyCode::Up] {
+            for page in [Help::Keys, Help::Numbers] {
+                assert_eq!(action(pressed(code), page), Action::Help(Help::Hidden));
+            }
         }
-    })
+        let hidden = |code| action(pressed(code), Help::Hidden);
+        assert_eq!(hidden(KeyCode::Esc), Action::Nothing);
+        assert_eq!(hidden(KeyCode::Char('q')), Action::Quit);
+        assert_eq!(hidden(KeyCode::Char('?')), Action::Help(Help::Keys));
+        let interrupt = KeyEvent::new(KeyCode::Char('c'), KeyModifiers::CONTROL);
+        assert_eq!(action(interrupt, Help::Keys), Action::Quit);
+    }
+
+    #[test]
+    fn the_help_is_turned_over_page_by_page() {
+        let mut pages = vec![Help::Hidden];
+        while let Action::Help(page) = action(pressed(KeyCode::Char('?')), pages[pages.len() - 1])
+            && page != Help::Hidden
+        {
+            pages.push(page);
+        }
+        assert_eq!(pages, [Help::Hidden, Help::Keys, Help::Numbers]);
+    }
+
+    #[test]
+    fn every_scene_has_a_key_of_its_own() {
+        let chosen = |key| action(pressed(KeyCode::Char(key)), Help::Hidden);
+        let keys = "123456789abcd";
+        assert_eq!(keys.len(), SceneName::ALL.len());
+        for (key, scene) in keys.chars().zip(SceneName::ALL) {
+            assert_eq!(chosen(key), Action::Send(Command::Choose(*scene)), "{key}");
+        }
+        assert_eq!(chosen('0'), Action::Nothing);
+        assert_eq!(chosen('e'), Action::Nothing);
+    }
 }

@@ -2,7 +2,9 @@
 //! or at a serial port.
 
 pub(crate) mod comparison;
+mod help;
 mod live;
+mod motion;
 mod numbers;
 mod options;
 mod panel;
@@ -33,6 +35,7 @@ use crate::link::Port;
 
 /// How long a run without a terminal takes if nothing else is asked for.
 const DEFAULT_SECONDS: f64 = 10.0;
+const NO_TERMINAL: &str = "no terminal: running headless; --record FILE.gif or --screenshot FILE.png saves what the panel shows";
 /// The most time that an emulated board may take: so much, and so much for each second of its time.
 const LIMIT: [f64; 2] = [60.0, 20.0];
 
@@ -53,6 +56,9 @@ pub fn run(options: &DemoOptions) -> anyhow::Result<bool> {
         .as_deref()
         .map(Recording::create)
         .transpose()?;
+    if !is_live && !options.headless {
+        complain(NO_TERMINAL);
+    }
     let mut session = Session::new(options, source, recording);
     if is_live {
         live::watch(&mut session, seconds)?
@@ -136,12 +142,12 @@ fn headless(session: &mut Session, seconds: f64) -> anyhow::Result<()> {
     session.look()
 }
 
-/// Completes the files and says how it went; whether all was well. A board that goes by a real clock may drop frames, and a
-/// cable may flip bits: both are told, and neither is a fault.
+/// Completes the files and prints the summary. Returns true if all was well. A board that goes by a real clock may drop frames,
+/// and a cable may flip bits: both are printed, and neither is a fault.
 fn finish(options: &DemoOptions, mut session: Session) -> anyhow::Result<bool> {
-    if let Some(path) = &options.screenshot {
-        OutFile::create("--screenshot", path)?.write_whole(&png(&session.screenshot)?)?;
-    }
+    let is_silent = session.readings.frame.is_none();
+    ensure!(!is_silent, "{}: no frame came", session.name());
+    let saved = save_files(options, &mut session)?;
     session.readings.lines.extend(session.source.told().0);
     let (
         name,
@@ -149,7 +155,6 @@ fn finish(options: &DemoOptions, mut session: Session) -> anyhow::Result<bool> {
             readings, source, ..
         },
     ) = (session.name(), &session);
-    ensure!(readings.frame.is_some(), "{name}: no frame came");
     let is_repeatable = matches!(source, Source::Lockstep(_) | Source::Pico(_));
     let mut faults = if is_repeatable {
         readings.faults()
@@ -161,7 +166,7 @@ fn finish(options: &DemoOptions, mut session: Session) -> anyhow::Result<bool> {
         .iter()
         .for_each(|fault| complain(format_args!("not well: {fault}")));
     let said = say(format_args!(
-        "board                 {name}\n{}",
+        "board                 {name}\n{}{saved}",
         readings.report()
     ));
     // A fault is one even if no one reads the summary.
@@ -169,4 +174,26 @@ fn finish(options: &DemoOptions, mut session: Session) -> anyhow::Result<bool> {
         said?;
     }
     Ok(faults.is_empty())
+}
+
+/// Completes the animation and the screenshot. Returns the lines of the summary that name them.
+fn save_files(options: &DemoOptions, session: &mut Session) -> anyhow::Result<String> {
+    let source = if session.has_panel() {
+        ""
+    } else {
+        ", the panel redrawn here from the board's numbers"
+    };
+    let mut saved = String::new();
+    if let Some(recording) = session.take_recording() {
+        let (path, pictures) = recording.finish()?;
+        saved += &format!(
+            "\nsaved                 {}, {pictures} pictures{source}",
+            path.display()
+        );
+    }
+    if let Some(path) = &options.screenshot {
+        OutFile::create("--screenshot", path)?.write_whole(&png(&session.screenshot)?)?;
+        saved += &format!("\nsaved                 {}{source}", path.display());
+    }
+    Ok(saved)
 }

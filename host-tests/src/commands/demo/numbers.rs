@@ -1,5 +1,5 @@
-//! The latest numbers in a column beside the panel, the energy error's past as bars below them, and what they mean; both angles
-//! over the last seconds as a chart.
+//! The latest numbers in a column beside the panel, with the energy error's past as bars below them; both angles over the last
+//! seconds as a chart.
 
 use double_pendulum::State;
 use firmware::config::TICK_RATE;
@@ -8,8 +8,8 @@ use ratatui::Frame;
 use ratatui::layout::{Constraint, Layout, Rect};
 use ratatui::style::{Color, Style, Stylize};
 use ratatui::symbols::Marker;
-use ratatui::text::{Line, Text};
-use ratatui::widgets::{Axis, Block, Chart, Dataset, GraphType, Paragraph, Sparkline, Wrap};
+use ratatui::text::Line;
+use ratatui::widgets::{Axis, Block, Chart, Dataset, GraphType, Paragraph, Sparkline};
 
 use super::readings::Readings;
 
@@ -114,7 +114,13 @@ fn energy_errors(frame: &mut Frame, area: Rect, past: &[Report]) {
         .fold(LEAST_SCALE, f32::max)
         .log10()
         .ceil() as i32;
-    let scale = Block::new().title(format!("error 0 to 1e{exponent}").dim());
+    let long = format!("bars: full height 1e{exponent}");
+    let scale = if long.len() <= usize::from(area.width) {
+        long
+    } else {
+        format!("bars to 1e{exponent}")
+    };
+    let scale = Block::new().title(scale.dim());
     let bars = shown
         .iter()
         .map(|error| (error / 10.0_f32.powi(exponent) * HEIGHT) as u64)
@@ -126,46 +132,6 @@ fn energy_errors(frame: &mut Frame, area: Rect, past: &[Report]) {
             .fg(Color::Yellow)
             .block(scale),
         area,
-    );
-}
-
-const MEANINGS: [(&str, &str); 10] = [
-    (
-        "½px>19.8 s on the panel",
-        "right to half a pixel until 19.8 s at least; ½px ok: for ever",
-    ),
-    ("μ, mass ratio", "mass of bob 2 over that of bob 1"),
-    ("time", "simulated, since the motion began"),
-    (
-        "start, angle 1, angle 2",
-        "of the rods, from hanging straight down",
-    ),
-    (
-        "frames/s",
-        "frames that came in the last second; 60 are due",
-    ),
-    ("dropped", "frames that the board had no time to send"),
-    ("CRC errors", "messages that were damaged on the way"),
-    (
-        "energy error",
-        "what the arithmetic has added, relative to the energy above rest",
-    ),
-    ("bars below it", "its size, the largest of each half second"),
-    (
-        "every bit the host's",
-        "each frame is equal to one computed here, once the board has said what it plays",
-    ),
-];
-
-pub fn draw_help(frame: &mut Frame) {
-    let line = |(name, meaning): (&str, &'static str)| {
-        Line::from(vec![format!("{name}: ").bold(), meaning.into()])
-    };
-    let text: Text = MEANINGS.into_iter().map(line).collect();
-    let block = Block::bordered().title("what the numbers mean; ? goes back");
-    frame.render_widget(
-        Paragraph::new(text).wrap(Wrap { trim: true }).block(block),
-        frame.area(),
     );
 }
 

@@ -3,19 +3,21 @@
 use std::path::PathBuf;
 
 use clap::Parser;
-use double_pendulum::Method;
 use double_pendulum::plan::Stepping;
-use firmware::config::PROCESSOR;
+use double_pendulum::{Method, Parameter};
+use firmware::config::{GREATEST_SPEED, Processor, STM32F405};
 use firmware::display::Controller;
-use firmware::motion::Resources;
+use firmware::motion::{Resources, Settings};
 use firmware::scenes::{AnyScene, SceneName};
 
+use super::motion::OwnMotion;
 use crate::commands::out_file::check_writable;
+use crate::commands::simulate::Number;
 use crate::console::cli::{Refused, choice};
 use crate::emulator::boards::{BOARDS, Board, every_board};
 
-/// Shows the double pendulum on a board's panel, live in the terminal, each frame compared with the host's own; a panel that the
-/// host cannot see is redrawn from the numbers that the board sends.
+/// Shows the double pendulum on a board's panel, live in the terminal, and compares each frame with the host's own. For a real
+/// board the picture is rebuilt from the data it sends.
 #[derive(Clone, Debug, Parser)]
 #[command(name = "cargo demo", after_help = after_help())]
 pub struct DemoOptions {
@@ -23,13 +25,13 @@ pub struct DemoOptions {
     #[arg(long, value_name = "NAME", default_value = BOARDS[0].name,
           value_parser = choice(every_board(), |board| board.name))]
     pub board: &'static Board,
-    /// Not an emulated board but the one at this serial port; `auto` finds it by its USB id
+    /// Use the real board at this serial port; `auto` takes the only one over USB
     #[arg(long, value_name = "PATH", conflicts_with = "board")]
     pub port: Option<String>,
-    /// The scene [default: what the board plays, page when it is switched on]
+    /// The scene [default: the board's current scene, page after power-on]
     #[arg(long, value_name = "NAME", value_parser = choice(SceneName::ALL.iter().copied(), SceneName::name))]
     pub scene: Option<SceneName>,
-    /// How the motion is computed; `plan` leaves it to the board [default: what the board does, plan when it is switched on]
+    /// The method that computes the motion; `plan` lets the board choose [default: the board's current choice, plan after power-on]
     #[arg(long, value_name = "NAME",
           value_parser = choice([None].into_iter().chain(Method::DRAWN.iter().copied().map(Some)),
                                 |method| method.map_or("plan", Method::name)))]
@@ -39,7 +41,13 @@ pub struct DemoOptions {
           value_parser = choice([None].into_iter().chain(Controller::ALL.iter().copied().map(Some)),
                                 |panel| panel.map_or("auto", Controller::name)))]
     pub panel: Option<Chosen>,
-    /// Run without a terminal: as fast as it goes, repeatable bit for bit, with a summary at the end
+    /// What moves, in place of the scene's own motion.
+    #[command(flatten)]
+    pub motion: OwnMotion,
+    /// Simulated time per real time, 0.01 to 4 [default: the board's current speed, 1 after power-on]
+    #[arg(long, value_name = "N", allow_hyphen_values = true)]
+    pub speed: Option<Number>,
+    /// Run without a terminal, at full speed, same result every time, with a summary at the end
     #[arg(long)]
     pub headless: bool,
     /// How long, in seconds by the board's clock [default: 10 when headless, else until q is pressed]
@@ -48,24 +56,58 @@ pub struct DemoOptions {
     /// Save what the panel showed as an animation, 30 frames per second
     #[arg(long, value_name = "FILE.gif", value_parser = |file: &str| ends_in("gif", file))]
     pub record: Option<PathBuf>,
-    /// Save the last screenshot of the panel
+    /// Save the last picture of the panel
     #[arg(long, value_name = "FILE.png", value_parser = |file: &str| ends_in("png", file))]
     pub screenshot: Option<PathBuf>,
 }
 
 /// The keys, what each scene shows, and examples.
 fn after_help() -> String {
-    let scenes = SceneName::ALL
+    let keys = KEYS
         .iter()
-        .map(|scene| format!("  {:12} {}\n", scene.name(), shows(*scene)));
+        .map(|(keys, meaning)| format!("  {keys:16} {meaning}\n"));
+    let scenes = SceneName::ALL.iter().enumerate().map(|(place, scene)| {
+        let key = scene_key(place);
+        format!("  {key}  {:12} {}\n", scene.name(), shows(*scene))
+    });
     format!(
-        "Keys: up/down mass ratio, left/right start angle, space restart, tab next scene, p pause, . step, ? help, q quit\n\n\
-         Scenes:\n{}\n\
-         A board in the hand: cargo demo --port /dev/ttyUSB0\n\
-         Its picture is shifted or dark: cargo demo --port auto --panel sh1106, or ssd1306\n\
-         Example without a terminal: cargo demo --scene butterfly --headless --seconds 10 --record butterfly.gif",
+        "Keys:\n{}\nScenes, each with its key:\n{}\n\
+         Examples:\n  \
+         cargo demo --angles 90,45 --degrees --masses 1,3 --lengths 1,0.7 --speed 1/2\n  \
+         cargo demo --port /dev/ttyUSB0      # a real board\n  \
+         cargo demo --port auto --panel sh1106   # if its picture is shifted or dark; or ssd1306\n  \
+         cargo demo --scene butterfly --headless --seconds 10 --record butterfly.gif",
+        keys.collect::<String>(),
         scenes.collect::<String>()
     )
+}
+
+/// Every key, and what it does.
+pub const KEYS: [(&str, &str); 10] = [
+    ("up, down", "mass ratio m2/m1: next larger, next smaller"),
+    ("left, right", "start angle of both rods by 1 degree"),
+    ("space, Enter", "restart; a pause stays"),
+    ("tab, n", "next scene; shift-tab, N: previous scene"),
+    ("1-9, a-d", "scene by number"),
+    ("p", "pause, continue"),
+    (".", "one tick of 1/60 s, then pause"),
+    ("-, +", "slower, faster"),
+    ("?", "help; again: its second page; Esc closes it"),
+    ("q, ctrl-C", "quit"),
+];
+
+/// Returns the key of the scene at `place` in the catalogue: its number from 1, in base 14 or more.
+pub fn scene_key(place: usize) -> char {
+    u32::try_from(place + 1)
+        .ok()
+        .and_then(|number| char::from_digit(number, 36))
+        .unwrap_or(' ')
+}
+
+/// Returns the scene with this key.
+pub fn scene_of_key(key: char) -> Option<SceneName> {
+    let place = (0..SceneName::ALL.len()).find(|place| scene_key(*place) == key)?;
+    SceneName::ALL.get(place).copied()
 }
 
 fn shows(scene: SceneName) -> &'static str {
@@ -93,7 +135,8 @@ pub type Asked = Option<Method>;
 pub type Chosen = Option<Controller>;
 
 impl DemoOptions {
-    /// Refuses what is known to fail before anything is built: files that cannot be written, a method that the scene does not use.
+    /// Refuses what is known to fail before anything is built: files that cannot be written, a speed out of range, a method or
+    /// a motion that the scene cannot show.
     pub fn check(&self) -> Result<(), Refused> {
         for (option, file) in [
             ("--record", &self.record),
@@ -102,35 +145,84 @@ impl DemoOptions {
             file.as_deref()
                 .map_or(Ok(()), |file| check_writable(option, file))?;
         }
+        self.speed()?;
         let first = self.port.is_none().then_some(SceneName::Page);
-        self.scene
-            .or(first)
-            .map_or(Ok(()), |scene| self.check_method(scene))
+        match self.scene.or(first) {
+            Some(scene) => self.start(scene).map(|_| ()),
+            None => Ok(()),
+        }
     }
 
-    pub fn check_method(&self, scene: SceneName) -> Result<(), Refused> {
-        let Some(Some(method)) = self.method else {
-            return Ok(());
+    /// Returns the requested speed, simulated time per real time.
+    pub fn speed(&self) -> Result<Option<f64>, Refused> {
+        let Some(speed) = &self.speed else {
+            return Ok(None);
         };
-        let resources = Resources {
-            processor: PROCESSOR,
-            method: Some(method),
-        };
-        let refused = |why: &str| {
+        // The board counts in hundredths.
+        let (least, most) = (0.01, f64::from(GREATEST_SPEED));
+        if (least..=most).contains(&speed.value()) {
+            Ok(Some(speed.value()))
+        } else {
             Err(Refused::because(format_args!(
-                "--method {method}: --scene {} {why}",
-                scene.name()
+                "--speed {speed}: write a number from {least} to {most}"
             )))
-        };
-        let mut started = AnyScene::empty();
-        match started
-            .start(scene, &scene.first_settings(), &resources)
-            .map(|_| started.report(0).stepping)
-        {
-            Ok(Some(Stepping { method: gone, .. })) if gone == method => Ok(()),
-            Ok(_) => refused("has no use for it"),
-            Err(_) => refused("cannot be computed so"),
         }
+    }
+
+    /// Returns the settings to start `scene` with; `None` leaves them to the scene.
+    ///
+    /// Refuses a motion or a method that the scene cannot show.
+    pub fn start(&self, scene: SceneName) -> Result<Option<Settings>, Refused> {
+        let own = self.motion.settings(scene, self.processor())?;
+        let settings = own.unwrap_or_else(|| scene.first_settings());
+        if let Some(Some(method)) = self.method {
+            usable(method, scene, &settings, self.processor()).map_err(|reason| {
+                Refused::because(format_args!(
+                    "--method {method}: {reason}; leave --method out, or take another scene"
+                ))
+            })?;
+        }
+        Ok(own)
+    }
+
+    /// Returns the class of the board's processor. A board at a port says only later what it is, and may refuse then: it is
+    /// taken for one of the fastest.
+    fn processor(&self) -> Processor {
+        if self.port.is_some() {
+            STM32F405
+        } else {
+            self.board.processor()
+        }
+    }
+}
+
+/// Returns why a scene with these settings does not use a method.
+pub fn usable(
+    method: Method,
+    scene: SceneName,
+    settings: &Settings,
+    processor: Processor,
+) -> Result<(), String> {
+    let resources = Resources {
+        processor,
+        method: Some(method),
+    };
+    let mut started = AnyScene::empty();
+    let stepping = started
+        .start(scene, settings, &resources)
+        .map(|_| started.report(0).stepping);
+    let scene = scene.name();
+    match stepping {
+        Ok(Some(stepping)) if stepping.method == method => Ok(()),
+        Ok(Some(Stepping { method, .. })) => Err(format!("scene {scene} always uses {method}")),
+        Ok(None) => Err(format!("scene {scene} has no choice of methods")),
+        Err(error) if error.parameter() == Parameter::Cost => {
+            Err(format!("too slow for scene {scene} on this chip"))
+        }
+        Err(error) if error.parameter() == Parameter::Dt => {
+            Err(format!("its steps are too long for scene {scene}"))
+        }
+        Err(error) => Err(format!("cannot compute scene {scene} ({error})")),
     }
 }
 

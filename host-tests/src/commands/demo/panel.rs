@@ -3,13 +3,13 @@
 //! In the terminal, where it fits, a pixel is half a character, in its grey; else eight pixels or more are a character, whose dots
 //! are those that are lit, in the colour of the brightest.
 
-use std::fs::File;
-use std::io::BufWriter;
+use std::fs::{self, File};
+use std::io::{self, BufWriter, ErrorKind};
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, anyhow};
 use firmware::config::TICK_RATE;
-use gif::{ColorOutput, DecodeOptions, Encoder, Frame as Picture, Repeat};
+use gif::{ColorOutput, DecodeOptions, Encoder, EncodingError, Frame as Picture, Repeat};
 use ratatui::Frame;
 use ratatui::layout::Rect;
 use ratatui::style::Color;
@@ -93,8 +93,10 @@ const GIF_RATE: i64 = 100;
 
 /// An animation as it is made.
 pub struct Recording {
-    encoder: Encoder<BufWriter<File>>,
     path: PathBuf,
+    encoder: Encoder<BufWriter<File>>,
+    /// How many pictures it has.
+    pictures: usize,
     shown: Vec<u8>,
     /// The tick from which the next screenshot is wanted: until then the last is shown.
     due: Option<i64>,
@@ -109,8 +111,9 @@ impl Recording {
         let mut encoder = Encoder::new(BufWriter::new(file), width, height, &palette)?;
         encoder.set_repeat(Repeat::Infinite)?;
         Ok(Self {
-            encoder,
             path: path.to_owned(),
+            encoder,
+            pictures: 0,
             shown: Vec::new(),
             due: None,
         })
@@ -145,22 +148,53 @@ impl Recording {
             .into();
         self.shown = now;
         let transparent = Some(UNCHANGED);
-        let written = self.encoder.write_frame(&Picture {
+        let picture = Picture {
             delay,
             width,
             height,
             transparent,
             buffer,
             ..Picture::default()
-        });
-        written.map_err(|error| {
-            // Half an animation is of no use. A device is no file to remove.
-            if self.path.is_file() {
-                let _ = std::fs::remove_file(&self.path);
-            }
-            anyhow!("--record: cannot write {}: {error}", self.path.display())
-        })
+        };
+        self.pictures += 1;
+        self.encoder
+            .write_frame(&picture)
+            .map_err(|error| unwritten(&self.path, &cause(error)))
     }
+
+    /// Writes what is left. Returns the file and the number of its pictures.
+    pub fn finish(self) -> anyhow::Result<(PathBuf, usize)> {
+        let Self {
+            path,
+            encoder,
+            pictures,
+            ..
+        } = self;
+        let finished = encoder
+            .into_inner()
+            .map_err(cause)
+            .and_then(|file| file.into_inner().map_err(io::IntoInnerError::into_error));
+        match finished {
+            Ok(_) => Ok((path, pictures)),
+            Err(error) => Err(unwritten(&path, &error)),
+        }
+    }
+}
+
+fn cause(error: EncodingError) -> io::Error {
+    match error {
+        EncodingError::Io(error) => error,
+        other => io::Error::new(ErrorKind::InvalidData, other),
+    }
+}
+
+/// Removes the part of an animation that could be written, and returns why the rest could not.
+fn unwritten(path: &Path, error: &io::Error) -> anyhow::Error {
+    // A device is no file to remove.
+    if path.is_file() {
+        let _ = fs::remove_file(path);
+    }
+    anyhow!("--record: cannot write {}: {error}", path.display())
 }
 
 fn magnified(screenshot: &Screenshot) -> Vec<u8> {

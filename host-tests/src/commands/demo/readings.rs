@@ -2,13 +2,15 @@
 
 use std::time::{Duration, Instant};
 
+use double_pendulum::Method;
 use double_pendulum::plan::Stepping;
-use firmware::config::TICK_RATE;
+use firmware::config::{PROCESSOR, PROCESSORS, TICK_RATE};
 use firmware::display::PanelReport;
 use firmware::protocol::{Frame, Status};
-use firmware::scenes::Report;
+use firmware::scenes::{Report, SceneName};
 
 use super::comparison::Comparison;
+use super::options::usable;
 use crate::emulator::qemu::LogLine;
 use crate::link::{self, Counts};
 
@@ -16,6 +18,35 @@ use crate::link::{self, Counts};
 const KEPT: usize = 12 * TICK_RATE as usize;
 /// The time over which frames per second are counted.
 const RATE_SPAN: Duration = Duration::from_secs(1);
+
+/// What is shown of the help.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Help {
+    #[default]
+    Hidden,
+    Keys,
+    Numbers,
+}
+
+impl Help {
+    /// The page that the key `?` leads to.
+    pub fn next(self) -> Self {
+        match self {
+            Self::Hidden => Self::Keys,
+            Self::Keys => Self::Numbers,
+            Self::Numbers => Self::Hidden,
+        }
+    }
+}
+
+/// A line of the host's own in the log.
+pub fn warning(text: String) -> LogLine {
+    LogLine {
+        level: Some("warn".to_owned()),
+        text,
+        place: String::new(),
+    }
+}
 
 #[derive(Debug, Default)]
 pub struct Readings {
@@ -29,8 +60,12 @@ pub struct Readings {
     pub past: Vec<Report>,
     pub lines: Vec<LogLine>,
     pub comparison: Comparison,
-    /// Whether what they mean is shown in their place.
-    pub help: bool,
+    /// The page of the help that is shown in their place.
+    pub help: Help,
+    /// Simulated time per real time, as the board has reported it or as it was set since.
+    pub speed: Option<f32>,
+    /// The latest scene of which it was said that it does not use the requested method.
+    unusable: Option<(SceneName, Method)>,
     pub(super) arrivals: Vec<Instant>,
     frames: u64,
     greatest_energy_error: f32,
@@ -65,6 +100,7 @@ impl Readings {
     /// Takes what the board says that it plays: frames tell of rod 1 only.
     pub fn status(&mut self, status: &Status) {
         self.start = Some(status.settings.degrees);
+        self.note_method(status);
         self.comparison.status(status);
     }
 
@@ -85,6 +121,28 @@ impl Readings {
                 text: format!("panel: {text}"),
                 place: String::new(),
             });
+        }
+    }
+
+    /// Says once in a scene that it does not use the requested method.
+    fn note_method(&mut self, status: &Status) {
+        let Some(method) = status.method else {
+            self.unusable = None;
+            return;
+        };
+        let processor = PROCESSORS
+            .get(usize::from(status.processor))
+            .copied()
+            .unwrap_or(PROCESSOR);
+        let Err(reason) = usable(method, status.scene, &status.settings, processor) else {
+            self.unusable = None;
+            return;
+        };
+        let unusable = Some((status.scene, method));
+        if self.unusable != unusable {
+            self.unusable = unusable;
+            self.lines
+                .push(warning(format!("{method} is not used here: {reason}")));
         }
     }
 
@@ -144,7 +202,7 @@ impl Readings {
              dropped frames        {}\n\
              {panel}\
              bits                  {comparison}",
-            stepping(&last.report),
+            stepping(&last),
             counts.damaged,
             counts.lost,
             last.dropped
@@ -152,26 +210,45 @@ impl Readings {
     }
 }
 
-/// How a frame is computed and until when such frames are right, in one line.
-pub fn stepping(
-    &Report {
-        stepping,
+/// Returns how a frame is computed, and how long such frames are accurate, in one line.
+pub fn stepping(frame: &Frame) -> String {
+    let Report {
         horizon,
         is_looking,
+        time,
         ..
-    }: &Report,
-) -> String {
-    let stepping = match stepping {
-        None => "nothing to plan".to_owned(),
-        Some(Stepping { method, steps: 0 }) => method.to_string(),
-        Some(Stepping { method, steps: 1 }) => format!("{method}, a step to a frame"),
-        Some(Stepping { method, steps }) => format!("{method}, {steps} steps to a frame"),
-    };
+    } = frame.report;
+    let computed = computed(frame);
     if horizon.is_infinite() {
-        return stepping;
+        return computed;
     }
-    let at_least = if is_looking { "at least " } else { "" };
-    format!("{stepping}, right to half a pixel until {at_least}{horizon:.1} s")
+    let accuracy = if is_looking && horizon <= 0.0 {
+        "accuracy not known yet".to_owned()
+    } else if is_looking {
+        format!("accurate to half a pixel until at least {horizon:.1} s")
+    } else if is_linear(frame) {
+        format!("leaves the exact motion at {horizon:.2} s")
+    } else if time > f64::from(horizon) {
+        format!("was accurate to half a pixel until {horizon:.1} s")
+    } else {
+        format!("accurate to half a pixel until {horizon:.1} s")
+    };
+    format!("{computed} · {accuracy}")
+}
+
+/// Returns the method, with its number of steps.
+fn computed(frame: &Frame) -> String {
+    match frame.report.stepping {
+        None => "no planning in this scene".to_owned(),
+        Some(Stepping { method, .. }) if is_linear(frame) => method.to_string(),
+        Some(Stepping { method, steps: 1 }) => format!("{method} · 1 step per frame"),
+        Some(Stepping { method, steps }) => format!("{method} · {steps} steps per frame"),
+    }
+}
+
+fn is_linear(frame: &Frame) -> bool {
+    let method = frame.report.stepping.map(|stepping| stepping.method);
+    method == Some(Method::ClosedFormF32)
 }
 
 #[cfg(test)]
@@ -179,6 +256,38 @@ mod tests {
     use firmware::scenes::SceneName;
 
     use super::*;
+
+    #[test]
+    fn a_method_that_a_scene_does_not_use_is_said_once() {
+        let mut readings = Readings::default();
+        let status = |scene: SceneName, method| Status {
+            scene,
+            settings: scene.first_settings(),
+            method,
+            processor: PROCESSOR.code,
+            paused: false,
+            steps: 0,
+            speed: 1.0,
+            panel: PanelReport::default(),
+        };
+        let method = Method::Rk4Fixed32;
+        let scenes = [
+            SceneName::Page,
+            SceneName::SmallEqual,
+            SceneName::Flips,
+            SceneName::Page,
+            SceneName::Flips,
+        ];
+        for scene in scenes {
+            // Restarts say nothing new.
+            readings.status(&status(scene, Some(method)));
+            readings.status(&status(scene, Some(method)));
+        }
+        let said: Vec<_> = readings.lines.iter().map(ToString::to_string).collect();
+        let small = "warn  rk4-fixed32 is not used here: scene small-1 always uses closed-form-f32";
+        let flips = "warn  rk4-fixed32 is not used here: scene flips has no choice of methods";
+        assert_eq!(said, [small, flips, flips]);
+    }
 
     #[test]
     fn the_simulated_time_is_that_of_all_restarts_and_scenes() {

@@ -2,11 +2,13 @@
 
 use anyhow::bail;
 use firmware::config::TICK_RATE;
-use firmware::protocol::{Answer, Command, Field, Frame, ToHost};
+use firmware::motion::Settings;
+use firmware::protocol::{Answer, Command, Field, Frame, Status, ToHost};
 
 use super::DemoOptions;
 use super::panel::Recording;
-use super::readings::Readings;
+use super::readings::{Readings, warning};
+use crate::console::cli::Refused;
 use crate::emulator::pico::PicoMachine;
 use crate::emulator::qemu::{LogLine, Machine, Screenshot};
 use crate::link::{Counts, Port, refusal};
@@ -32,27 +34,22 @@ impl Source {
         }
     }
 
-    pub fn send(&mut self, command: Command) -> anyhow::Result<()> {
+    fn send(&mut self, request: u16, command: Command) -> anyhow::Result<()> {
         match self {
-            Self::Live(machine) | Self::Lockstep(machine) => machine.send(0, command)?,
-            Self::Pico(machine) => machine.send(0, command)?,
-            Self::Port(port) => port.send(0, command),
+            Self::Live(machine) | Self::Lockstep(machine) => machine.send(request, command)?,
+            Self::Pico(machine) => machine.send(request, command)?,
+            Self::Port(port) => port.send(request, command),
         }
         Ok(())
     }
 
     /// The lines of the log since the last call, of a port what has become of it; and what the link has been through.
     pub fn told(&mut self) -> (Vec<LogLine>, Counts) {
-        let notice = |text: String| LogLine {
-            level: Some("warn".to_owned()),
-            text,
-            place: String::new(),
-        };
         match self {
             Self::Live(machine) | Self::Lockstep(machine) => (machine.lines(), machine.counts()),
             Self::Pico(machine) => (machine.lines(), machine.counts()[0]),
             Self::Port(port) => (
-                port.notices.drain(..).map(notice).collect(),
+                port.notices.drain(..).map(warning).collect(),
                 port.inbox.counts,
             ),
         }
@@ -61,6 +58,24 @@ impl Source {
     pub fn is_port(&self) -> bool {
         matches!(self, Self::Port(_))
     }
+}
+
+/// The number of a command that comes from a key.
+const KEY: u16 = 0;
+/// The number of the commands by which the board is set up. A refusal of one of them ends the session.
+const SETUP: u16 = 1;
+
+/// The speeds that the keys step through, simulated time per real time: from the least to the greatest there is.
+const SPEEDS: [f32; 9] = [0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 4.0];
+
+/// Returns the next greater speed; `None` at the greatest.
+pub fn faster(now: f32) -> Option<f32> {
+    SPEEDS.into_iter().find(|speed| *speed > now)
+}
+
+/// Returns the next smaller speed; `None` at the least.
+pub fn slower(now: f32) -> Option<f32> {
+    SPEEDS.into_iter().rev().find(|speed| *speed < now)
 }
 
 pub struct Session<'a> {
@@ -74,6 +89,10 @@ pub struct Session<'a> {
     begun: Option<i64>,
     /// What the ticks of the board's clock lack since it was last restarted.
     before: i64,
+    /// The start that the user has given, until the board reports that it shows it.
+    awaited: Option<Settings>,
+    /// The number of the latest question for the board's status.
+    question: u16,
 }
 
 impl<'a> Session<'a> {
@@ -88,6 +107,8 @@ impl<'a> Session<'a> {
             now: None,
             begun: None,
             before: 0,
+            awaited: None,
+            question: 0,
         }
     }
 
@@ -103,16 +124,11 @@ impl<'a> Session<'a> {
     pub fn hear(&mut self) -> anyhow::Result<()> {
         for message in self.source.messages()? {
             match message {
-                ToHost::Answer(_, Answer::Status(status)) => {
-                    self.readings.status(&status);
-                    // An emulated panel is seen itself.
-                    if self.source.is_port() {
-                        self.readings.panel(&status.panel);
-                    }
-                }
-                ToHost::Answer(_, Answer::Refused(Field::Panel)) => {
-                    bail!("--panel: the board refuses: {}", refusal(Field::Panel))
-                }
+                ToHost::Answer(question, Answer::Status(status)) => self.status(question, &status),
+                ToHost::Answer(SETUP, Answer::Refused(field)) => bail!(self.refused(field)),
+                ToHost::Answer(_, Answer::Refused(field)) => self.readings.lines.push(warning(
+                    format!("no effect here: the board refuses this {}", refusal(field)),
+                )),
                 ToHost::Frame(frame) => self.frame(&frame)?,
                 _ => {}
             }
@@ -137,35 +153,96 @@ impl<'a> Session<'a> {
             Some(_) => {}
         }
         let now = *self.now.insert(self.tick(frame));
-        if self.options.scene.is_none_or(|scene| scene == frame.scene) {
+        let is_scene = self.options.scene.is_none_or(|scene| scene == frame.scene);
+        if is_scene && self.awaited.is_none() {
             self.begun.get_or_insert(now);
         }
         // A real board is asked once a second for its panel.
         let is_time = self.source.is_port() && frame.sequence.is_multiple_of(TICK_RATE);
         if self.readings.frame(*frame) || is_time {
-            self.source.send(Command::Ask)
+            self.ask()
         } else {
             Ok(())
         }
     }
 
-    /// Has the board play what was asked for, by the method asked for.
+    fn ask(&mut self) -> anyhow::Result<()> {
+        self.source.send(self.question, Command::Ask)
+    }
+
+    /// Takes the answer to a question. Only the latest one knows the speed that was set last.
+    fn status(&mut self, question: u16, status: &Status) {
+        self.awaited.take_if(|start| *start == status.settings);
+        if question == self.question {
+            self.readings.speed = Some(status.speed);
+        }
+        self.readings.status(status);
+        // An emulated panel is visible itself.
+        if self.source.is_port() {
+            self.readings.panel(&status.panel);
+        }
+    }
+
+    /// Returns why the board cannot be set up as the options say.
+    fn refused(&self, field: Field) -> Refused {
+        let option = match field {
+            Field::Method => "--method",
+            Field::Speed => "--speed",
+            Field::M1 | Field::M2 => "--masses",
+            Field::L1 | Field::L2 => "--lengths",
+            Field::G => "--gravity",
+            Field::A1 | Field::A2 => "--angles",
+            Field::W1 | Field::W2 => "--velocities",
+            Field::Panel => "--panel",
+            _ => "--scene",
+        };
+        let (name, field) = (self.name(), refusal(field));
+        Refused::because(format_args!(
+            "{name}: the board refuses this {field}; change {option}"
+        ))
+    }
+
+    /// Sends the command of a key.
+    pub fn command(&mut self, command: Command) -> anyhow::Result<()> {
+        self.source.send(KEY, command)
+    }
+
+    /// Sets another speed, which `next` returns for the present one, once the board has reported that.
+    pub fn change_speed(&mut self, next: fn(f32) -> Option<f32>) -> anyhow::Result<()> {
+        let Some(speed) = self.readings.speed.and_then(next) else {
+            return Ok(());
+        };
+        self.readings.speed = Some(speed);
+        self.question = self.question.wrapping_add(1);
+        self.command(Command::Set {
+            field: Field::Speed,
+            value: speed.into(),
+        })?;
+        self.ask()
+    }
+
+    /// Sets the board up as the options say.
     fn begin(&mut self, first: &Frame) -> anyhow::Result<()> {
-        if let Some(scene) = self.options.scene.filter(|scene| *scene != first.scene) {
-            self.source.send(Command::Choose(scene))?;
+        let scene = self.options.scene.unwrap_or(first.scene);
+        self.awaited = self.options.start(scene)?;
+        let play = match self.awaited {
+            Some(settings) => Some(Command::Play(scene, settings)),
+            None => (scene != first.scene).then_some(Command::Choose(scene)),
+        };
+        let panel = self.options.panel.map(Command::Panel);
+        let method = self.options.method.map(Command::Method);
+        let speed = self.options.speed()?.map(|value| Command::Set {
+            field: Field::Speed,
+            value,
+        });
+        for command in [panel, play, method, speed].into_iter().flatten() {
+            self.source.send(SETUP, command)?;
         }
-        if let Some(controller) = self.options.panel {
-            self.source.send(Command::Panel(controller))?;
-        }
-        self.options
-            .check_method(self.options.scene.unwrap_or(first.scene))?;
-        self.options
-            .method
-            .map_or(Ok(()), |method| self.source.send(Command::Method(method)))
+        Ok(())
     }
 
     /// Whether the host can see a panel; else it draws one.
-    fn has_panel(&self) -> bool {
+    pub fn has_panel(&self) -> bool {
         self.options.board.has_panel && !self.source.is_port()
     }
 
@@ -197,6 +274,11 @@ impl<'a> Session<'a> {
         recording.map_or(Ok(()), |recording| recording.add(&self.screenshot, tick))
     }
 
+    /// Returns the animation, which is complete.
+    pub fn take_recording(&mut self) -> Option<Recording> {
+        self.recording.take()
+    }
+
     /// The tick of the board's clock that a frame belongs to, those before its restarts included.
     fn tick(&self, frame: &Frame) -> i64 {
         self.before + i64::from(frame.sequence) + i64::from(frame.dropped)
@@ -207,5 +289,31 @@ impl<'a> Session<'a> {
         self.begun.zip(self.now).map_or(0.0, |(begun, now)| {
             (now - begun + 1) as f64 / f64::from(TICK_RATE)
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use firmware::config::GREATEST_SPEED;
+
+    use super::*;
+
+    #[test]
+    fn the_speed_keys_step_from_the_least_to_the_greatest_and_back() {
+        let steps = |from, next: fn(f32) -> Option<f32>| {
+            let mut speeds = vec![from];
+            while let Some(speed) = next(speeds[speeds.len() - 1]) {
+                speeds.push(speed);
+            }
+            speeds
+        };
+        let up = steps(0.01, faster);
+        assert_eq!(up, SPEEDS);
+        assert_eq!(up.last(), Some(&(GREATEST_SPEED as f32)));
+        let mut down = steps(GREATEST_SPEED as f32, slower);
+        down.reverse();
+        assert_eq!(down, SPEEDS);
+        // From a speed of the user's own.
+        assert_eq!([faster(0.25), slower(0.25)], [Some(0.5), Some(0.2)]);
     }
 }

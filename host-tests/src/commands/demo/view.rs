@@ -11,8 +11,8 @@ use ratatui::text::Line;
 use ratatui::widgets::{Block, Paragraph};
 use textwrap::{Options, WordSplitter, wrap};
 
-use super::readings::{Readings, stepping};
-use super::{numbers, panel};
+use super::readings::{Help, Readings, stepping};
+use super::{help, numbers, panel};
 use crate::emulator::qemu::{LogLine, Screenshot, WIDTH};
 
 /// The panel's widths, columns: a pixel each; in Braille two of them; no narrower than makes sense.
@@ -26,16 +26,20 @@ const WORDS: u16 = 7;
 /// Rows from which there is room for both angles, their frame included, and their share of the width, percent.
 const ANGLES: u16 = 7;
 const ANGLES_WIDTH: u16 = 60;
-const KEYS: [&str; 8] = [
-    "↑ ↓ masses",
-    "← → angle",
+/// The keys, at the bottom in at most so many rows: all but the least used where there is no room for more.
+const KEYS: [&str; 9] = [
+    "↑↓ masses",
+    "←→ angle",
     "space restart",
-    "tab scene",
+    "tab/shift-tab scene",
+    "-+ speed",
     "p pause",
     ". step",
     "? help",
     "q quit",
 ];
+const KEYS_ROWS: usize = 2;
+const LEAST_USED: [usize; 2] = [4, 6];
 /// A space that no row ends at.
 const JOINT: &str = "\u{a0}";
 
@@ -56,19 +60,15 @@ pub fn draw(
         frame.render_widget(Paragraph::new(text), area);
         return;
     };
-    if readings.help {
-        return numbers::draw_help(frame);
+    if readings.help != Help::Hidden {
+        return help::draw(frame, readings.help);
     }
     let now = readings.frame.as_ref();
-    let words = now.map_or("no frame came yet".to_owned(), |now| {
-        format!("{} · {}", stepping(&now.report), readings.comparison)
+    let words = now.map_or("no frame yet".to_owned(), |now| {
+        format!("{} · {}", stepping(now), readings.comparison)
     });
     let words = rows(&words, area.width, "");
-    let keys = rows(
-        &KEYS.map(|key| key.replace(' ', JOINT)).join("  "),
-        area.width,
-        "",
-    );
+    let keys = keys(area.width);
     let top = (width / 4).max(numbers::ROWS);
     let parts = [
         Length(1),
@@ -84,7 +84,11 @@ pub fn draw(
 
     let scene = now.map(|now| now.scene.name());
     let paused = now.is_some_and(|now| now.paused).then_some("paused");
-    let title = [Some(board), scene, paused]
+    let speed = readings
+        .speed
+        .filter(|speed| *speed != 1.0)
+        .map(|speed| format!("speed {speed}"));
+    let title = [Some(board), scene, paused, speed.as_deref()]
         .into_iter()
         .flatten()
         .collect::<Vec<_>>()
@@ -130,6 +134,20 @@ pub fn draw(
             .iter_mut()
             .for_each(|cell| (cell.fg, cell.bg) = (Color::Reset, Color::Reset));
     }
+}
+
+/// Returns the rows that name the keys.
+fn keys(width: u16) -> Vec<String> {
+    let rows_of = |keys: Vec<&str>| {
+        let keys: Vec<_> = keys.iter().map(|key| key.replace(' ', JOINT)).collect();
+        rows(&keys.join("  "), width, "")
+    };
+    let all = rows_of(KEYS.to_vec());
+    if all.len() <= KEYS_ROWS {
+        return all;
+    }
+    let few = (0..KEYS.len()).filter(|place| !LEAST_USED.contains(place));
+    rows_of(few.map(|place| KEYS[place]).collect())
 }
 
 /// The width of a panel of which each pixel is half a character, which takes colours, or a Braille pattern's dot; where there is no
@@ -269,8 +287,13 @@ mod tests {
     #[test]
     fn common_terminals_look_as_they_did() {
         let butterfly = readings(SceneName::Butterfly);
-        let mut asking = readings(SceneName::Page);
-        asking.help = true;
+        let help = |page| {
+            let mut asking = readings(SceneName::Page);
+            asking.help = page;
+            asking
+        };
+        let mut slow = readings(SceneName::Page);
+        slow.speed = Some(0.1);
         let shown = [
             ("150x45", rows(&butterfly, true, (150, 45))),
             ("100x30", rows(&butterfly, false, (100, 30))),
@@ -282,7 +305,9 @@ mod tests {
                 rows(&readings(SceneName::Flips), false, (100, 30)),
             ),
             ("no-frame", rows(&Readings::default(), false, (80, 24))),
-            ("help", rows(&asking, false, (60, 20))),
+            ("48x20", rows(&slow, false, (48, 20))),
+            ("help-keys", rows(&help(Help::Keys), false, (48, 20))),
+            ("help", rows(&help(Help::Numbers), false, (48, 20))),
         ];
         let check =
             |(name, rows): (_, String)| snapshot::check(&format!("terminal-{name}"), &rows).err();

@@ -1,0 +1,179 @@
+//! A motion of the user's own: the options that replace the start of a scene.
+
+use std::fmt::Display;
+
+use clap::Args;
+use double_pendulum::{Error, Parameter};
+use firmware::config::{GREATEST_ANGLE, Processor};
+use firmware::motion::{Resources, Settings};
+use firmware::scenes::{AnyScene, SceneName};
+
+use crate::commands::simulate::{Number, Pair, option_of};
+use crate::console::cli::Refused;
+
+/// The pendulum and its start. A value that is not given is that of the scene.
+#[derive(Args, Clone, Debug)]
+pub struct OwnMotion {
+    /// Masses of the bobs, kg [default: the scene's, like all of these]
+    #[arg(long, value_name = "M1,M2", allow_hyphen_values = true)]
+    masses: Option<Pair>,
+    /// Lengths of the rods, m
+    #[arg(long, value_name = "L1,L2", allow_hyphen_values = true)]
+    lengths: Option<Pair>,
+    /// Gravitational acceleration, m/s^2
+    #[arg(long, value_name = "G", allow_hyphen_values = true)]
+    gravity: Option<Number>,
+    /// Angles at the start from hanging, rad (see --degrees), at most half a turn either way
+    #[arg(long, value_name = "A1,A2", allow_hyphen_values = true)]
+    angles: Option<Pair>,
+    /// Angular velocities at the start, rad/s (see --degrees)
+    #[arg(long, value_name = "W1,W2", allow_hyphen_values = true)]
+    velocities: Option<Pair>,
+    /// Read angles in degrees and velocities in degrees per second
+    #[arg(long)]
+    degrees: bool,
+}
+
+const MASSES: &str = "--masses";
+const LENGTHS: &str = "--lengths";
+const GRAVITY: &str = "--gravity";
+const ANGLES: &str = "--angles";
+const VELOCITIES: &str = "--velocities";
+
+/// Returns the options that change what a scene shows.
+fn used_by(scene: SceneName) -> &'static [&'static str] {
+    match scene {
+        SceneName::Frequencies => &[MASSES],
+        SceneName::Flips => &[MASSES, LENGTHS, GRAVITY],
+        _ => &[MASSES, LENGTHS, GRAVITY, ANGLES, VELOCITIES],
+    }
+}
+
+impl OwnMotion {
+    /// Returns the options that are given, with their values.
+    fn given(&self) -> Vec<(&'static str, String)> {
+        fn text(value: &Option<impl Display>) -> Option<String> {
+            value.as_ref().map(ToString::to_string)
+        }
+        let options = [
+            (MASSES, text(&self.masses)),
+            (LENGTHS, text(&self.lengths)),
+            (GRAVITY, text(&self.gravity)),
+            (ANGLES, text(&self.angles)),
+            (VELOCITIES, text(&self.velocities)),
+        ];
+        options
+            .into_iter()
+            .filter_map(|(option, value)| Some((option, value?)))
+            .collect()
+    }
+
+    /// Returns the settings to play `scene` with; `None` if no option is given.
+    ///
+    /// Refuses an option that the scene has no use for, and a motion that it cannot show on `processor`.
+    pub fn settings(
+        &self,
+        scene: SceneName,
+        processor: Processor,
+    ) -> Result<Option<Settings>, Refused> {
+        let given = self.given();
+        let used = used_by(scene);
+        if let Some((option, value)) = given.iter().find(|(option, _)| !used.contains(option)) {
+            return Err(Refused::because(format_args!(
+                "{option} {value}: scene {} does not use it; take another scene, as in --scene page",
+                scene.name()
+            )));
+        }
+        if given.is_empty() {
+            return Ok(None);
+        }
+        let settings = self.applied_to(scene.first_settings());
+        self.check_angles(&settings)?;
+
+        let resources = Resources {
+            processor,
+            method: None,
+        };
+        AnyScene::empty()
+            .start(scene, &settings, &resources)
+            .map_err(|error| refusal(&given, scene, &error))?;
+        Ok(Some(settings))
+    }
+
+    /// Returns the settings with the given values in place of their own.
+    fn applied_to(&self, mut settings: Settings) -> Settings {
+        let single = |pair: &Pair| pair.values().map(|value| value as f32);
+        let parameters = &mut settings.parameters;
+        if let Some(masses) = &self.masses {
+            [parameters.m1, parameters.m2] = single(masses);
+        }
+        if let Some(lengths) = &self.lengths {
+            [parameters.l1, parameters.l2] = single(lengths);
+        }
+        if let Some(gravity) = &self.gravity {
+            parameters.g = gravity.value() as f32;
+        }
+        if let Some(angles) = &self.angles {
+            settings.degrees = angles.values().map(|angle| {
+                if self.degrees {
+                    angle as f32
+                } else {
+                    angle.to_degrees() as f32
+                }
+            });
+        }
+        if let Some(velocities) = &self.velocities {
+            settings.velocities = velocities.values().map(|velocity| {
+                if self.degrees {
+                    velocity.to_radians() as f32
+                } else {
+                    velocity as f32
+                }
+            });
+        }
+        settings
+    }
+
+    fn check_angles(&self, settings: &Settings) -> Result<(), Refused> {
+        let is_beyond = settings
+            .degrees
+            .iter()
+            .any(|degrees| degrees.abs() > GREATEST_ANGLE);
+        let Some(angles) = self.angles.as_ref().filter(|_| is_beyond) else {
+            return Ok(());
+        };
+        let limit = if self.degrees {
+            format!("at most {GREATEST_ANGLE} degrees either way")
+        } else {
+            let radians = f64::from(GREATEST_ANGLE).to_radians();
+            format!("at most {radians:.4} rad either way; if these are degrees, add --degrees")
+        };
+        Err(Refused::because(format_args!("{ANGLES} {angles}: {limit}")))
+    }
+}
+
+/// Returns why a scene cannot start, with the option to blame: the one that sets the refused
+/// parameter if it is given, else all that are given.
+fn refusal(given: &[(&'static str, String)], scene: SceneName, error: &Error) -> Refused {
+    let option = option_of(error, "");
+    let is_to_blame = |(name, _): &&(&str, String)| *name == option;
+    let blamed = match given.iter().find(is_to_blame) {
+        Some(blamed) => std::slice::from_ref(blamed),
+        None => given,
+    };
+    let blamed: Vec<_> = blamed
+        .iter()
+        .map(|(option, value)| format!("{option} {value}"))
+        .collect();
+    let blamed = blamed.join(" ");
+    let scene = scene.name();
+    match error {
+        Error::UnequalRods { .. } => Refused::because(format_args!(
+            "{blamed}: scene {scene} needs rods of equal length; take another scene, as in --scene page"
+        )),
+        _ if error.parameter() == Parameter::Dt => Refused::because(format_args!(
+            "{blamed}: too fast a motion for this chip; take masses more alike, longer rods, less gravity or lower velocities"
+        )),
+        error => Refused::because(format_args!("{blamed}: {error}")),
+    }
+}
