@@ -2,6 +2,7 @@
 
 import { RP2040 } from 'rp2040js';
 import { Panel } from './panel.js';
+import { BOOT, addRom } from './rom.js';
 import { addTime } from './uart.js';
 import { UsbHost } from './usb_host.js';
 import { flashed } from './uf2.js';
@@ -19,6 +20,8 @@ const [WATCHDOG, RESETS] = [0x40058, 0x4000c];
 const [ALL, BY_ROM] = [0x1ffffff, (1 << 6) | (1 << 9) | (1 << 21)];
 /** The newer revision of the chip, B2: of the older one's fault at the start of USB the emulator knows nothing. */
 const CHIP_ID = 0x20002927;
+/** The number of the exception. */
+const HARD_FAULT = 3;
 /** Registers of the processor that the emulator lacks: reset (bit 2), what protects memory, and whether a debugger is there. */
 const [AIRCR, MPU_TYPE, MPU_LAST, DHCSR] = [0xd0c, 0xd90, 0xda0, 0xdf0];
 
@@ -28,6 +31,7 @@ export class Board {
     this.say = say;
     this.panel = new Panel();
     this.pressed = new Set();
+    this.usb = new UsbHost((bytes) => this.say('usb', bytes));
     this.start();
   }
 
@@ -56,9 +60,11 @@ export class Board {
     };
     this.addRegisters(chip.ppb);
     this.mendEntry(chip.core);
-    chip.onBreak = () => {};
+    this.isInBootLoader = false;
+    addRom(chip);
+    chip.onBreak = (code) => code === BOOT && this.enterBootLoader();
     this.panel.connect(chip);
-    this.usb = new UsbHost(chip.usbCtrl, (bytes) => this.say('usb', bytes));
+    this.usb.attach(chip, !before || reason !== 0);
     this.sent = [];
     addTime(chip.uart[0], chip.clock, (byte) => this.sent.push(byte));
     BUTTONS.forEach((pin) => chip.gpio[pin].setInputValue(!this.pressed.has(pin)));
@@ -92,7 +98,8 @@ export class Board {
       const { core, clock, clkSys } = this.chip;
       const cycle = 1e9 / clkSys;
       while (clock.nanos < end && this.due === null) {
-        if (!core.waiting) clock.tick(core.executeInstruction() * cycle);
+        if (this.isInBootLoader) clock.tick(end - clock.nanos);
+        else if (!core.waiting) clock.tick(core.executeInstruction() * cycle);
         else if (core.checkForInterrupts()) core.waiting = false;
         else clock.tick(Math.max(1, Math.min(clock.nanosToNextAlarm, end - clock.nanos)));
         if (this.chip.clkSys !== clkSys) break;
@@ -132,6 +139,18 @@ export class Board {
     this.due = isDownload ? BY_TIMER : 0;
     if (isDownload) this.chip.peripherals[WATCHDOG].scratchData[WISH] = 0;
     this.restart();
+  }
+
+  /** The program has ended; a drive takes the place of its port. */
+  enterBootLoader() {
+    this.isInBootLoader = true;
+    this.usb.pull(false);
+    this.say('bootloader');
+  }
+
+  /** A fault where the processor is. */
+  fault() {
+    this.chip.core.exceptionEntry(HARD_FAULT);
   }
 
   hang() {

@@ -13,6 +13,12 @@ const commands = {
   run: (micros) => board.run(Number(micros)),
   /** Gives the board bytes, over USB or through the UART. */
   usb: (hex) => board.usb.send(Buffer.from(hex, 'hex')),
+  /** Opens the port over USB at this speed, or closes it: 0. */
+  port: (baud) => board.usb.open(Number(baud)),
+  /** A long control transfer of the USB host's, which it breaks off after its first packet. */
+  breakOff: () => board.usb.breakOff(),
+  /** The board's device descriptor, as the USB host has read it; nothing if no board is there. */
+  descriptor: () => say('descriptor', board.usb.device),
   uart: (hex) => Buffer.from(hex, 'hex').forEach((byte) => board.chip.uart[0].feedByte(byte)),
   /** The panel's memory; nothing while it is off. */
   panel: () => say('panel', board.panel.shown()),
@@ -24,6 +30,8 @@ const commands = {
   button: (pin, is) => board.press(Number(pin), is === '1'),
   /** A circle where the processor is, until the next start. */
   hang: () => board.hang(),
+  /** A fault where the processor is. */
+  fault: () => board.fault(),
   /** Resets it: 1 after a download, 0 as a debugger does. */
   reset: (isDownload) => board.reset(isDownload === '1'),
   /** The board's memory, from an address on. */

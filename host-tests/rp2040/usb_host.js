@@ -1,36 +1,133 @@
-// A computer at the board's USB socket: enumerates it and opens its serial port.
+// A computer at the board's USB socket: sees the board come and go, enumerates it and opens its
+// serial port.
 
 const [IN, STANDARD, CLASS] = [0x80, 0x00, 0x21];
 const [DEVICE, CONFIGURATION, ENDPOINT] = [1, 2, 5];
-/** 460,800 baud, 8N1: as a terminal program sets it. */
-const LINE = [0x00, 0x08, 0x07, 0x00, 0, 0, 8];
+const [SET_ADDRESS, GET_DESCRIPTOR, SET_CONFIGURATION] = [5, 6, 9];
+const [SET_LINE_CODING, SET_CONTROL_LINE_STATE] = [0x20, 0x22];
+/** The lines DTR and RTS, which say that a program has the port open. */
+const OPEN = 3;
+/** As a terminal program sets the port: 460,800 bits a second. */
+const BAUD = 460_800;
+/** Where the controller's pull-up is switched, and by which bit. */
+const [SIE_CTRL, PULL_UP] = [0x4c, 1 << 16];
+/** The device that holds the controller in reset, and its bit. */
+const [RESETS, HELD] = [0x4000c, 1 << 24];
+/**
+ * A shorter absence goes unnoticed, nanoseconds: hubs report a change when they are asked, every
+ * few milliseconds.
+ */
+const NOTICED = 10e6;
+/** So long the board must be there before it is reset (USB 2.0, 7.1.7.3: at least 100 ms). */
+const DEBOUNCE = 100e6;
+/** A control transfer that is longer than the board has room for, and its first packet. */
+const [TOO_LONG, PACKET] = [200, 64];
 
 export class UsbHost {
-  constructor(usb, received) {
-    this.usb = usb;
+  constructor(received) {
     this.received = received;
     this.waiting = [];
+    /** The speed at which a program has the port open; 0 is closed. */
+    this.baud = BAUD;
+    /** When the pull-up was switched off; null while it is on. */
+    this.absentSince = -Infinity;
+    this.forget();
+  }
+
+  /** The board is gone, or begins anew. */
+  forget() {
     /** The numbers of the endpoints that bytes come from and go to. */
     this.ends = {};
+    this.wants = new Set();
+    this.requests = [];
+    this.request = undefined;
+    this.isConfigured = false;
+    this.device = [];
+  }
+
+  /**
+   * The socket is that of this chip: a new one, or the same after a reset. A reset of the processor
+   * alone leaves the pull-up as it was.
+   */
+  attach(chip, isWholeReset) {
+    const { usbCtrl: usb, clock } = chip;
+    [this.usb, this.clock] = [usb, clock];
+    this.forget();
+    if (isWholeReset) this.pull(false);
     /** The next request comes when the last has wholly arrived. */
-    this.later = usb.rp2040.clock.createAlarm(() => this.next());
-    usb.onUSBEnabled = () => usb.resetDevice();
+    this.later = clock.createAlarm(() => this.next());
+    this.seen = clock.createAlarm(() => usb.resetDevice());
+    const resets = chip.peripherals[RESETS];
+    const [control, hold] = [usb.writeUint32.bind(usb), resets.writeUint32.bind(resets)];
+    usb.writeUint32 = (offset, value) => {
+      control(offset, value);
+      if (offset === SIE_CTRL) this.pull((value & PULL_UP) !== 0);
+    };
+    resets.writeUint32 = (offset, value) => {
+      hold(offset, value);
+      if (offset === 0 && value & HELD) this.pull(false);
+    };
+    usb.onUSBEnabled = () => {};
     usb.onResetReceived = () => this.enumerate();
     usb.onEndpointRead = (end) => this.wanted(end);
     usb.onEndpointWrite = (end, bytes) => this.given(end, bytes);
   }
 
+  /**
+   * The board's pull-up is on or off. A board that was not away for long enough is taken for the
+   * one that the host knows, which has an address.
+   */
+  pull(isOn) {
+    const isPresent = this.absentSince === null;
+    if (isOn === isPresent) return;
+    const now = this.clock.nanos;
+    if (!isOn) {
+      this.absentSince = now;
+      this.seen?.cancel();
+      this.forget();
+      return;
+    }
+    const absence = now - this.absentSince;
+    this.absentSince = null;
+    if (absence < NOTICED) return;
+    this.waiting = []; // what was for the port that is gone
+    this.seen.schedule(DEBOUNCE);
+  }
+
   enumerate() {
-    this.wants = new Set();
-    this.requests = [
-      [IN, 6, DEVICE << 8, 0, 18],
-      [STANDARD, 5, 1, 0, 0],
-      [IN, 6, CONFIGURATION << 8, 0, 255],
-      [STANDARD, 9, 1, 0, 0],
-      [CLASS, 0x20, 0, 0, LINE.length],
-      [CLASS, 0x22, 3, 0, 0],
+    this.forget();
+    this.ask(
+      [IN, GET_DESCRIPTOR, DEVICE << 8, 0, 18],
+      [STANDARD, SET_ADDRESS, 1, 0, 0],
+      [IN, GET_DESCRIPTOR, CONFIGURATION << 8, 0, 255],
+      [STANDARD, SET_CONFIGURATION, 1, 0, 0],
+    );
+  }
+
+  /** A program opens the port at this speed, or closes it: 0. The speed stays when it is closed. */
+  open(baud) {
+    this.baud = baud;
+    if (this.isConfigured) this.ask(...this.opening());
+  }
+
+  opening() {
+    if (!this.baud) return [[CLASS, SET_CONTROL_LINE_STATE, 0, 0, 0]];
+    const { baud } = this;
+    const line = [baud & 255, (baud >> 8) & 255, (baud >> 16) & 255, baud >>> 24, 0, 0, 8];
+    return [
+      [CLASS, SET_LINE_CODING, 0, 0, line.length, line],
+      [CLASS, SET_CONTROL_LINE_STATE, OPEN, 0, 0],
     ];
-    this.next();
+  }
+
+  /** A transfer that the host breaks off. */
+  breakOff() {
+    this.ask([CLASS, 0, 0, 0, TOO_LONG, Array(PACKET).fill(0)]);
+  }
+
+  ask(...requests) {
+    this.requests.push(...requests);
+    if (!this.request) this.next();
   }
 
   next() {
@@ -46,8 +143,11 @@ export class UsbHost {
   /** The board is ready to take bytes. */
   wanted(end) {
     this.wants.add(end);
-    const [type, , , , length] = this.request ?? [IN];
-    if (end === 0 && type === CLASS && length) this.usb.endpointReadDone(0, new Uint8Array(LINE));
+    const [type, , , , length, bytes] = this.request ?? [IN];
+    if (end === 0 && type === CLASS && length) {
+      this.usb.endpointReadDone(0, new Uint8Array(bytes));
+      if (bytes.length < length) this.request = undefined; // broken off
+    }
     if (end === this.ends.out) this.flush();
   }
 
@@ -55,13 +155,18 @@ export class UsbHost {
   given(end, bytes) {
     if (end === this.ends.in) return this.received(bytes);
     if (end !== 0 || !this.request) return;
-    const [type, , value, , length] = this.request;
+    const [type, request, value, , length] = this.request;
     this.data.push(...bytes);
     if (type === IN) {
       if (value >> 8 === DEVICE) this.packet = this.data[7];
       if (bytes.length === this.packet && this.data.length < length) return;
+      if (value >> 8 === DEVICE) this.device = this.data;
       if (value >> 8 === CONFIGURATION) this.learn();
       this.usb.endpointReadDone(0, new Uint8Array(0));
+    }
+    if (type === STANDARD && request === SET_CONFIGURATION) {
+      this.isConfigured = true;
+      if (this.baud) this.requests.push(...this.opening());
     }
     this.later.schedule(50_000);
   }
@@ -80,7 +185,7 @@ export class UsbHost {
   }
 
   flush() {
-    if (this.request || !this.waiting.length || !this.wants?.delete(this.ends.out)) return;
+    if (this.request || !this.waiting.length || !this.wants.delete(this.ends.out)) return;
     this.usb.endpointReadDone(this.ends.out, new Uint8Array(this.waiting.splice(0, 64)));
   }
 }

@@ -16,8 +16,8 @@ use crate::display::{Controller, Display};
 use crate::graphics::{Canvas, FrameBuffers};
 use crate::job::{Job, OnBoards, Request};
 use crate::protocol::{
-    Answer, Command, Decoder, Field, Frame, LinkError, MAX_WIRE, Status, ToHost, decode_command,
-    encode,
+    Answer, Command, Decoder, Field, Frame, LinkError, MAX_WIRE, Restarted, Status, ToHost,
+    decode_command, encode,
 };
 use event::{FaultEdge, ThrottledCounter};
 
@@ -30,7 +30,8 @@ pub use warm_restart::{Journal, Kept, MOST_RESTARTS, Record, SOUND_FRAMES};
 /// The same on a board and in a test: a panel, a byte sink and buttons are all it needs.
 #[derive(Debug)]
 pub struct App<'a, Panel, Link, Keys> {
-    panel: Panel,
+    /// Not a part of this, so that neither is too large for the stack while it is made.
+    panel: &'a mut Panel,
     pub link: Link,
     keys: Keys,
     controls: Controls,
@@ -51,6 +52,8 @@ pub struct App<'a, Panel, Link, Keys> {
     panel_failing: FaultEdge,
     link_failing: FaultEdge,
     pub instruments: Instruments,
+    /// The last restart that the board made by itself, for hosts that ask.
+    restarted: Option<Restarted>,
     /// Processor cycles of the frame before, from the first tick to the end of its sending.
     busy_cycles: u32,
 }
@@ -61,7 +64,7 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
     pub fn new(
         processor: Processor,
         FrameBuffers { canvas, ink }: &'a mut FrameBuffers,
-        panel: Panel,
+        panel: &'a mut Panel,
         link: Link,
         keys: Keys,
     ) -> Self {
@@ -83,6 +86,7 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
             panel_failing: FaultEdge::default(),
             link_failing: FaultEdge::default(),
             instruments: Instruments::default(),
+            restarted: None,
             busy_cycles: 0,
         }
     }
@@ -93,10 +97,12 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
             (clock, frames, ThrottledCounter::starting(frames, clock));
     }
 
-    /// Goes on after a restart with what was played before it, and tells the host.
+    /// Goes on after a restart with what was played before it, and tells the host: one that is
+    /// connected now at once, and any other when it asks.
     pub fn resume(&mut self, restart: &Record, mut log: impl Log<Panel, Link>) {
         let resumed = !restart.is_given_up() && self.player.resume(&restart.played).is_ok();
         log(Event::Restarted(restart.end, resumed));
+        self.restarted = Some(restart.end);
         self.send(&ToHost::Restarted(restart.end), &mut log);
     }
 
@@ -252,6 +258,7 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
             Command::Ask => Answer::Status(self.status()),
             Command::AskPlan => Answer::Planned(self.player.plan()),
             Command::Identify => Answer::Identity(self.instruments.identity()),
+            Command::AskRestart => Answer::Restart(self.restarted),
             Command::Measure { steps, in_ram } => {
                 let (steps, timed) = (steps.min(MOST_MEASURED_STEPS), self.instruments.timed);
                 let (_, job) = self.work.as_mut().ok_or(Field::Message)?;

@@ -126,6 +126,7 @@ impl<'a> Player<'a> {
             Command::Ask
             | Command::AskPlan
             | Command::Identify
+            | Command::AskRestart
             | Command::Measure { .. }
             | Command::Panel(_)
             | Command::Simulate(_) => {}

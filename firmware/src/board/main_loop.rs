@@ -32,10 +32,12 @@ pub struct Board<Panel, Link, Keys, Dog> {
 }
 
 pub trait Plays {
+    type Panel;
     type Application;
 }
 
 impl<Panel: 'static, Link: 'static, Keys: 'static, Dog> Plays for Board<Panel, Link, Keys, Dog> {
+    type Panel = Panel;
     type Application = App<'static, Panel, Link, Keys>;
 }
 
@@ -47,24 +49,28 @@ macro_rules! program {
         fn main() -> ! {
             static mut BUFFERS: $crate::graphics::FrameBuffers =
                 $crate::graphics::FrameBuffers::BLANK;
+            static mut PANEL: core::mem::MaybeUninit<
+                <$crate::board::$module::$board as $crate::board::Plays>::Panel,
+            > = core::mem::MaybeUninit::uninit();
             static mut APP: core::mem::MaybeUninit<
                 <$crate::board::$module::$board as $crate::board::Plays>::Application,
             > = core::mem::MaybeUninit::uninit();
             let Some(board) = $crate::board::$module::take() else {
                 panic!("the board was taken before")
             };
-            board.play(APP, BUFFERS, $crate::config::$processor)
+            board.play(APP, PANEL, BUFFERS, $crate::config::$processor)
         }
     };
 }
 
-impl<Panel: Display<Error: Debug>, Link: Write, Keys: Buttons, Dog: Watchdog>
+impl<Panel: Display<Error: Debug> + 'static, Link: Write, Keys: Buttons, Dog: Watchdog>
     Board<Panel, Link, Keys, Dog>
 {
-    /// Plays for ever, the application and its frames at the places given.
+    /// Plays for ever, the application, the panel's driver and the frames at the places given.
     pub fn play(
         self,
         place: &'static mut MaybeUninit<App<'static, Panel, Link, Keys>>,
+        panel_place: &'static mut MaybeUninit<Panel>,
         buffers: &'static mut FrameBuffers,
         processor: Processor,
     ) -> ! {
@@ -81,6 +87,7 @@ impl<Panel: Display<Error: Debug>, Link: Write, Keys: Buttons, Dog: Watchdog>
             instruments.identity.board.name(),
             instruments.identity.hertz
         );
+        let panel = panel_place.write(panel);
         let app = application(place, buffers, panel, link, keys, processor);
         app.instruments = instruments;
         run(app, watchdog, reset_by_watchdog)
@@ -91,7 +98,7 @@ impl<Panel: Display<Error: Debug>, Link: Write, Keys: Buttons, Dog: Watchdog>
 fn application<'a, Panel: Display, Link: Write, Keys: Buttons>(
     place: &'a mut MaybeUninit<App<'a, Panel, Link, Keys>>,
     buffers: &'a mut FrameBuffers,
-    panel: Panel,
+    panel: &'a mut Panel,
     link: Link,
     keys: Keys,
     processor: Processor,

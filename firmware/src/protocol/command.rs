@@ -57,6 +57,8 @@ pub enum Command {
     Panel(Option<Controller>),
     /// Play a scene with these settings, all at once: a few of them alone may be impossible.
     Play(SceneName, Settings),
+    /// Asks for the last restart that the board made by itself; changes nothing.
+    AskRestart,
 }
 
 /// Stands before every command, and before no message to the host: there a smaller number says which it is.

@@ -16,7 +16,8 @@ pub enum ToHost {
     /// One drawn frame, sent as soon as it is on the panel.
     Frame(Frame),
     /// The board has restarted by itself and plays on, from the start of its scene. The frames after it are counted from 0
-    /// again.
+    /// again. Over USB no host hears this message, because a restart ends the connection: a host
+    /// asks with [`Command::AskRestart`](super::Command::AskRestart) when it has opened the port.
     Restarted(Restarted),
     /// To the command of this number.
     Answer(u16, Answer),
@@ -41,6 +42,9 @@ pub enum Answer {
     /// How long steps took: processor cycles, what calls them included; 0 where nothing counts cycles, as in QEMU, or the code
     /// does not stand there.
     Measured { steps: u32, cycles: u32 },
+    /// The last restart that the board made by itself; `None` if it has made none since it was
+    /// switched on or reset from outside.
+    Restart(Option<Restarted>),
 }
 
 impl ToHost {

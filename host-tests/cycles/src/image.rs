@@ -116,6 +116,15 @@ impl Image {
             .any(|(start, bytes)| address.wrapping_sub(*start) < bytes.len() as u32)
     }
 
+    /// Returns the word at an address of what is loaded.
+    pub fn word(&self, address: u32) -> Option<u32> {
+        self.loaded.iter().find_map(|(start, bytes)| {
+            let at = address.checked_sub(*start)? as usize;
+            let word = bytes.get(at..at.checked_add(4)?)?;
+            Some(u32::from_le_bytes(word.try_into().ok()?))
+        })
+    }
+
     pub fn lacks(&self, function: &str) -> anyhow::Error {
         anyhow!("{}: no function {function}", self.path.display())
     }

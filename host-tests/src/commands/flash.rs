@@ -1,10 +1,12 @@
 //! `cargo pico` and `cargo flash-f4`: the firmware brought onto a board, as a file or by a program that flashes.
 
 use std::fs;
-use std::io::Write;
+use std::io::{BufRead, BufReader, Write};
 use std::os::unix::process::CommandExt;
 use std::path::{Path, PathBuf};
-use std::process::Command;
+use std::process::{Command, Stdio};
+use std::thread::sleep;
+use std::time::{Duration, Instant};
 
 use anyhow::{Context, bail};
 use clap::Parser;
@@ -13,6 +15,7 @@ use crate::console::cli::{Refused, complain, say};
 use crate::emulator::boards::{PICO, STM32F405};
 use crate::emulator::flash::{flash_image, uf2};
 use crate::emulator::toolchain::{self, target};
+use crate::link::{running_board, touch};
 
 /// The file, and the one by which a board's drive says whose it is.
 const FILE: &str = "pico.uf2";
@@ -20,7 +23,15 @@ const LABEL: &str = "INFO_UF2.TXT";
 /// What the label of an RP2040 says.
 const OURS: &str = "Board-ID: RPI-RP2";
 
-/// Builds the firmware of the Raspberry Pi Pico as a file, and copies it onto the board if that shows itself as a drive.
+/// The file system of the drive, which the boot ROM makes up.
+const DRIVE_TYPE: &str = "vfat";
+/// How long the drive may take to appear after the board was sent into its boot loader: the
+/// enumeration takes a second, the desktop's mounting another.
+const MOUNTING: Duration = Duration::from_secs(10);
+const LOOK: Duration = Duration::from_millis(250);
+
+/// Builds the firmware of the Raspberry Pi Pico as a file, and copies it onto the board: one that
+/// shows itself as a drive, or one that runs this firmware at a USB port.
 #[derive(Debug, Parser)]
 #[command(
     name = "cargo pico",
@@ -42,13 +53,16 @@ pub fn pico(options: &PicoOptions) -> anyhow::Result<()> {
         file.display(),
         image.len()
     ))?;
-    let Some(drive) = options
-        .drive
-        .clone()
-        .or_else(|| mounted(&fs::read_to_string("/proc/mounts").ok()?))
-    else {
-        const BY_HAND: &str = "hold BOOTSEL while you plug the Pico in, then copy this file onto the drive RPI-RP2; it starts by itself";
-        return Ok(say(BY_HAND)?);
+    let drive = match options.drive.clone().or_else(find_drive) {
+        Some(drive) => drive,
+        None => {
+            let ports = serialport::available_ports().unwrap_or_default();
+            let Some(port) = running_board(&ports) else {
+                const BY_HAND: &str = "hold BOOTSEL while you plug the Pico in, then copy this file onto the drive RPI-RP2; it starts by itself";
+                return Ok(say(BY_HAND)?);
+            };
+            restart_in_boot_loader(port)?
+        }
     };
     let to = drive.join(FILE);
     // Until the drive has it. Not `fs::copy`, which sets the file's mode as well: a drive that root has mounted refuses that.
@@ -61,6 +75,29 @@ pub fn pico(options: &PicoOptions) -> anyhow::Result<()> {
     ))?)
 }
 
+/// Restarts the board at this port in its boot loader and waits for its drive.
+fn restart_in_boot_loader(port: &str) -> anyhow::Result<PathBuf> {
+    say(format_args!(
+        "{port}: the board restarts in its boot loader"
+    ))?;
+    touch(port).map_err(Refused::because)?;
+    let since = Instant::now();
+    while since.elapsed() < MOUNTING {
+        if let Some(drive) = find_drive() {
+            return Ok(drive);
+        }
+        sleep(LOOK);
+    }
+    bail!(Refused::because(
+        "the board waits in its boot loader, but its drive RPI-RP2 is not mounted: mount it, \
+         then name the folder with --drive"
+    ))
+}
+
+fn find_drive() -> Option<PathBuf> {
+    mounted(&fs::read_to_string("/proc/mounts").ok()?)
+}
+
 fn drive(folder: &str) -> Result<PathBuf, String> {
     match fs::read_to_string(Path::new(folder).join(LABEL)) {
         Ok(label) if label.contains(OURS) => Ok(folder.into()),
@@ -69,10 +106,17 @@ fn drive(folder: &str) -> Result<PathBuf, String> {
     }
 }
 
-/// The drive of an RP2040 among those that are mounted.
+/// The drive of an RP2040 among those that are mounted. Only drives of its type are looked into:
+/// a file system of the network whose server is gone would never answer.
 fn mounted(mounts: &str) -> Option<PathBuf> {
-    let folders = mounts.lines().filter_map(|line| line.split(' ').nth(1));
-    folders
+    let folder = |line: &str| {
+        let mut fields = line.split(' ').skip(1);
+        let folder = fields.next()?;
+        (fields.next()? == DRIVE_TYPE).then(|| folder.to_owned())
+    };
+    mounts
+        .lines()
+        .filter_map(folder)
         .map(|folder| folder.replace("\\040", " "))
         .find_map(|folder| drive(&folder).ok())
 }
@@ -131,7 +175,8 @@ pub fn stm32f405(options: &FlashOptions) -> anyhow::Result<()> {
         let (start, image) = flash_image(&fs::read(&elf)?)?;
         let file = elf.with_extension("bin");
         fs::write(&file, image).with_context(|| file.display().to_string())?;
-        // ST's loader, its flash, and the program started at the end.
+        // ST's loader and its flash. Without `:leave`, because a program started by the loader
+        // finds its USB interrupt pending, and `dfu-util` fails when the device is gone.
         command
             .args([
                 "-d",
@@ -139,7 +184,7 @@ pub fn stm32f405(options: &FlashOptions) -> anyhow::Result<()> {
                 "-a",
                 "0",
                 "-s",
-                &format!("{start:#010x}:leave"),
+                &format!("{start:#010x}"),
                 "-D",
             ])
             .arg(file);
@@ -147,9 +192,82 @@ pub fn stm32f405(options: &FlashOptions) -> anyhow::Result<()> {
     } else {
         command.args(["run", "--chip", &options.chip]).arg(elf);
     }
+    let start = |error| Refused::because(format_args!("cannot start {program}: {error}"));
+    if options.dfu {
+        let mut child = command.stdout(Stdio::piped()).spawn().map_err(start)?;
+        let output = child.stdout.take().context("dfu-util has no output")?;
+        let is_written = copy_until_written(BufReader::new(output), &mut std::io::stdout())?;
+        let status = child.wait()?;
+        if !is_written {
+            bail!("{program} did not report {DOWNLOADED:?} ({status})");
+        }
+        return Ok(say(
+            "the program is in the flash: take the wire off BOOT0, then press reset",
+        )?);
+    }
     // It takes the place of this process, so that the terminal, Ctrl-C and the exit code are its own.
-    let error = command.exec();
-    bail!(Refused::because(format_args!(
-        "cannot start {program}: {error}"
-    )))
+    bail!(start(command.exec()))
+}
+
+/// What `dfu-util` prints when the whole file is in the flash.
+///
+/// Its exit code does not tell: where the device goes away before it has answered for its state,
+/// that is 74 (EX_IOERR) although all is written.
+const DOWNLOADED: &str = "File downloaded successfully";
+
+/// Passes the output of `dfu-util` on. Returns true if it reports that the file is written.
+fn copy_until_written(mut output: impl BufRead, to: &mut impl Write) -> std::io::Result<bool> {
+    let mut is_written = false;
+    let mut line = Vec::new();
+    // A progress bar ends in a carriage return, and its lines are long: whatever is there is shown.
+    loop {
+        let bytes = output.fill_buf()?;
+        let count = bytes.len();
+        if count == 0 {
+            return Ok(is_written);
+        }
+        to.write_all(bytes)?;
+        to.flush()?;
+        for &byte in bytes {
+            if byte == b'\n' || byte == b'\r' {
+                line.clear();
+            } else {
+                line.push(byte);
+                is_written |= line.ends_with(DOWNLOADED.as_bytes());
+            }
+        }
+        output.consume(count);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_a_drive_of_the_boot_roms_type_is_looked_into() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let name = folder.path().display().to_string();
+        fs::write(folder.path().join(LABEL), format!("UF2\n{OURS}\n")).expect("a file");
+        let mounts =
+            |kind: &str| format!("/dev/sda1 / ext4 rw 0 0\n/dev/sdb1 {name} {kind} rw 0 0\n");
+        assert_eq!(mounted(&mounts("vfat")), Some(folder.path().to_owned()));
+        for kind in ["nfs4", "fuse.sshfs", "ext4"] {
+            assert_eq!(mounted(&mounts(kind)), None, "{kind}");
+        }
+    }
+
+    #[test]
+    fn a_download_is_judged_by_the_tools_own_line() {
+        let judged = |text: &str| {
+            let mut shown = Vec::new();
+            let is_written = copy_until_written(text.as_bytes(), &mut shown).expect("memory");
+            assert_eq!(shown, text.as_bytes());
+            is_written
+        };
+        assert!(judged(
+            "Download\t[====] 100%  237060 bytes\rDownload done.\nFile downloaded successfully\n"
+        ));
+        assert!(!judged("Download\t[==   ] 40%\rError during download\n"));
+    }
 }

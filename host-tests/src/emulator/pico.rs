@@ -35,6 +35,7 @@ pub struct PicoMachine {
     lines: Vec<LogLine>,
     heard_by_usb: Vec<ToHost>,
     heard_by_uart: Vec<ToHost>,
+    is_in_boot_loader: bool,
 }
 
 impl PicoMachine {
@@ -68,6 +69,7 @@ impl PicoMachine {
             lines,
             heard_by_usb,
             heard_by_uart,
+            is_in_boot_loader: false,
         })
     }
 
@@ -108,6 +110,16 @@ impl PicoMachine {
             digits(encode_command(request, command, &mut [0; MAX_WIRE]))
         ))
         .map(drop)
+    }
+
+    /// Opens the port over USB at this speed, or closes it: 0. It is open at first.
+    pub fn set_port(&mut self, baud: u32) -> anyhow::Result<()> {
+        self.tell(&format!("port {baud}")).map(drop)
+    }
+
+    /// Returns true if the program has handed over to the chip's boot loader.
+    pub fn is_in_boot_loader(&self) -> bool {
+        self.is_in_boot_loader
     }
 
     pub fn heard_by_uart(&mut self) -> Vec<ToHost> {
@@ -170,6 +182,7 @@ impl PicoMachine {
                 "log" => self.lines.extend(self.log.take(&bytes)),
                 // Bytes cut off by it are no damage of the link's.
                 "restarted" => (self.usb.decoder, self.uart.decoder) = Default::default(),
+                "bootloader" => self.is_in_boot_loader = true,
                 "done" => return Ok(asked),
                 _ => asked = bytes,
             }

@@ -29,6 +29,8 @@ pub struct Inbox {
     pub counts: Counts,
     /// The sequence number the next frame should have.
     expected: Option<u32>,
+    /// The next frame is the first of a connection: those before it were not for this host.
+    is_joining: bool,
     pub damage: Option<LinkError>,
     /// What comes may begin in the middle of a message.
     joins: bool,
@@ -59,7 +61,10 @@ impl Inbox {
                 // One that lies behind is of a board that has started to count anew.
                 let restarted = missing > u32::MAX / 2;
                 self.counts.restarts += u64::from(restarted);
-                self.counts.lost += if restarted { 0 } else { missing.into() };
+                if !restarted && !std::mem::take(&mut self.is_joining) {
+                    self.counts.lost += u64::from(missing);
+                }
+                self.is_joining = false;
                 self.expected = Some(sequence.wrapping_add(1));
             }
             ToHost::Restarted(_) => {
@@ -71,10 +76,15 @@ impl Inbox {
         Some(message)
     }
 
-    /// A connection begins, to a board that may be in the middle of a message and of its count.
+    /// Begins a connection to a board that may be in the middle of a message and of its count.
+    ///
+    /// The sequence number of the connection before is kept: a smaller one shows that the board
+    /// has restarted meanwhile.
     pub fn join(&mut self) {
-        (self.decoder, self.expected, self.damage, self.joins) =
-            (Decoder::default(), None, None, true);
+        self.decoder = Decoder::default();
+        self.damage = None;
+        self.joins = true;
+        self.is_joining = true;
     }
 }
 
@@ -117,6 +127,22 @@ mod tests {
                 ..Counts::default()
             }
         );
+    }
+
+    #[test]
+    fn frames_between_two_connections_are_not_lost_and_a_restart_there_is_seen() {
+        let mut inbox = Inbox::default();
+        for (sequence, restarts) in [(700, 0), (900, 0), (30, 1), (90, 1)] {
+            inbox.join();
+            let frame = ToHost::Frame(Frame {
+                sequence,
+                ..Frame::default()
+            });
+            encode(&frame, &mut [0; MAX_WIRE])
+                .iter()
+                .for_each(|&byte| _ = inbox.take(byte));
+            assert_eq!((inbox.counts.lost, inbox.counts.restarts), (0, restarts));
+        }
     }
 
     #[test]

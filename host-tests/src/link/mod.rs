@@ -4,25 +4,93 @@
 mod inbox;
 mod panel;
 mod port;
+mod restarts;
 
-use serialport::{SerialPortInfo, SerialPortType};
+use serialport::{SerialPortInfo, SerialPortType, UsbPortInfo};
 
 pub use inbox::{Counts, Inbox, refusal};
 pub use panel::{is_well, panel};
-pub use port::Port;
+pub use port::{BAUD_OF_BOOT_LOADER, Port, touch};
+pub use restarts::{Restarts, describe_restart};
 
 /// The word that stands for the only serial port over USB. Not the only one of some ids, for those of the Pico are lent to whoever
 /// does not go by them.
 const AUTO: &str = "auto";
 
+/// Names by which a board with a USB port of its own presents itself (`board/pico/usb.rs`).
+const MANUFACTURER: &str = "double-pendulum";
+const PRODUCT: &str = "Double pendulum";
+
+/// Returns the port of the only board that runs this firmware and has a USB port of its own.
+///
+/// Its USB ids are lent to anybody who goes by the names (rule 7 of V-USB's
+/// `USB-IDs-for-free.txt`), so the names decide.
+pub fn running_board(ports: &[SerialPortInfo]) -> Option<&str> {
+    let is_it = |port: &&SerialPortInfo| {
+        usb(port).is_some_and(|usb| {
+            usb.manufacturer.as_deref() == Some(MANUFACTURER)
+                && usb.product.as_deref() == Some(PRODUCT)
+        })
+    };
+    match ports.iter().filter(is_it).collect::<Vec<_>>()[..] {
+        [port] => Some(&port.port_name),
+        _ => None,
+    }
+}
+
+fn usb(port: &SerialPortInfo) -> Option<&UsbPortInfo> {
+    match &port.port_type {
+        SerialPortType::UsbPort(usb) => Some(usb),
+        _ => None,
+    }
+}
+
+/// A USB device that was at a port, and may come back under another name: Linux gives a new one
+/// while any program still holds the old node.
+#[derive(Clone, Debug)]
+struct Device {
+    usb: UsbPortInfo,
+    /// The ports that were there beside it when it went.
+    others: Vec<String>,
+}
+
+impl Device {
+    /// Returns the device at the port `name`, if that is a USB device's.
+    fn at(name: &str, ports: &[SerialPortInfo]) -> Option<Self> {
+        let port = ports.iter().find(|port| port.port_name == name)?;
+        Some(Self {
+            usb: usb(port)?.clone(),
+            others: Vec::new(),
+        })
+    }
+
+    /// Notes which ports are there while the device at `name` is not.
+    fn gone(&mut self, name: &str, ports: Vec<SerialPortInfo>) {
+        let names = ports.into_iter().map(|port| port.port_name);
+        self.others = names.filter(|other| other != name).collect();
+    }
+
+    /// Returns the port at which it is back: the only one that has come since with the same ids
+    /// and names.
+    fn back<'a>(&self, ports: &'a [SerialPortInfo]) -> Option<&'a str> {
+        let is_it = |port: &&SerialPortInfo| {
+            usb(port) == Some(&self.usb) && !self.others.contains(&port.port_name)
+        };
+        match ports.iter().filter(is_it).collect::<Vec<_>>()[..] {
+            [port] => Some(&port.port_name),
+            _ => None,
+        }
+    }
+}
+
 fn choose(ports: &[SerialPortInfo]) -> Result<String, String> {
     let over_usb = |port: &SerialPortInfo| {
-        let SerialPortType::UsbPort(usb) = &port.port_type else {
-            return None;
-        };
         Some((
             port.port_name.clone(),
-            usb.product.clone().unwrap_or_else(|| "no name".to_owned()),
+            usb(port)?
+                .product
+                .clone()
+                .unwrap_or_else(|| "no name".to_owned()),
         ))
     };
     match &ports.iter().filter_map(over_usb).collect::<Vec<_>>()[..] {
@@ -82,5 +150,33 @@ mod tests {
         let several =
             "auto: there are several, name one: /dev/ttyACM0 (Double pendulum), /dev/ttyUSB0 (no name)".to_owned();
         assert_eq!(choose(&[pico, other]), Err(several));
+    }
+
+    #[test]
+    fn a_device_that_comes_back_is_found_under_its_new_name_and_no_other_is_taken_for_it() {
+        let [old, new] = ["/dev/ttyACM0", "/dev/ttyACM1"].map(|name| usb(name, Some("Pico")));
+        let [twin, foreign] = [
+            usb("/dev/ttyACM2", Some("Pico")),
+            usb("/dev/ttyACM3", Some("modem")),
+        ];
+        let mut device = Device::at("/dev/ttyACM0", &[old.clone(), twin.clone()]).expect("it is");
+        device.gone("/dev/ttyACM0", vec![old.clone(), twin.clone()]);
+        assert_eq!(device.back(&[twin.clone(), foreign.clone()]), None);
+        for back in [old, new] {
+            let ports = [twin.clone(), foreign.clone(), back.clone()];
+            assert_eq!(device.back(&ports), Some(&*back.port_name));
+        }
+    }
+
+    #[test]
+    fn a_running_board_is_known_by_its_names() {
+        let mut board = usb("/dev/ttyACM0", Some(PRODUCT));
+        assert_eq!(running_board(std::slice::from_ref(&board)), None);
+        if let SerialPortType::UsbPort(usb) = &mut board.port_type {
+            usb.manufacturer = Some(MANUFACTURER.to_owned());
+        }
+        let ports = [usb("/dev/ttyUSB0", None), board.clone()];
+        assert_eq!(running_board(&ports), Some("/dev/ttyACM0"));
+        assert_eq!(running_board(&[board.clone(), board]), None, "which?");
     }
 }

@@ -1,28 +1,43 @@
 //! A real serial port, with a board at its other end or not: it says what is the matter, and goes on when the board is back.
 
+use std::fs;
 use std::io::{ErrorKind, Read, Write};
+use std::os::unix::fs::MetadataExt;
+use std::thread::sleep;
 use std::time::{Duration, Instant};
 
 use firmware::config::BAUD;
-use firmware::protocol::{Cause, Command, LinkError, MAX_WIRE, ToHost, VERSION, encode_command};
-use serialport::SerialPort;
+use firmware::protocol::{Command, LinkError, MAX_WIRE, ToHost, VERSION, encode_command};
+use nix::unistd::{Gid, Group};
+use serialport::{SerialPort, SerialPortInfo};
 
-use super::{AUTO, Inbox, choose};
+use super::{AUTO, Device, Inbox, Restarts, choose};
 
 /// How long bytes are waited for: they are looked for often enough.
 const WAIT: Duration = Duration::from_millis(1);
 /// How long the port may take to accept a message, which the board takes within a tick.
 const ACCEPTANCE: Duration = Duration::from_millis(500);
 const RETRY: Duration = Duration::from_millis(250);
+/// How long `auto` waits for a port: a board that was flashed just now enumerates within a second,
+/// and its node gets its group a little later.
+const ARRIVAL: Duration = Duration::from_secs(3);
 /// A board that plays sends 60 messages a second: without one for so long, something is the matter.
 const PATIENCE: Duration = Duration::from_secs(2);
 /// Bytes looked at in one go at most; a foreign device may send without end.
 const MOST_BYTES: usize = 1 << 16;
+/// The number of the question about restarts; the answer is known by its kind.
+const QUESTION: u16 = u16::MAX - 1;
+/// The speed at which a board restarts in its boot loader, bits per second: the convention of
+/// Arduino's boards. The Pico obeys when the port is closed at this speed.
+pub const BAUD_OF_BOOT_LOADER: u32 = 1200;
 
 pub struct Port {
     pub name: String,
     open: Option<Box<dyn SerialPort>>,
+    /// The USB device at the port, by which it is found under another name.
+    device: Option<Device>,
     pub inbox: Inbox,
+    pub restarts: Restarts,
     /// What is the matter, or is well again: a line each, said once. To be drained.
     pub notices: Vec<String>,
     /// When an intact message came last, or the port was opened, or last tried.
@@ -34,18 +49,27 @@ pub struct Port {
 impl Port {
     /// Opens the port of this name, or the only one over USB; what is wrong in one line.
     pub fn open(name: &str) -> Result<Self, String> {
-        let name = match name {
-            AUTO => choose(&serialport::available_ports().unwrap_or_default())?,
-            name => name.to_owned(),
+        let (name, open) = if name == AUTO {
+            let since = Instant::now();
+            only_one(ports, open, || {
+                let is_time_left = since.elapsed() < ARRIVAL;
+                if is_time_left {
+                    sleep(RETRY);
+                }
+                is_time_left
+            })?
+        } else {
+            let open = open(name).map_err(|error| reason(name, &error))?;
+            (name.to_owned(), open)
         };
-        let open = Some(open(&name).map_err(|error| reason(&name, &error))?);
-        let (inbox, notices, since) = (Inbox::default(), Vec::new(), Instant::now());
         let mut port = Self {
+            device: Device::at(&node(&name), &ports()),
             name,
-            open,
-            inbox,
-            notices,
-            since,
+            open: Some(open),
+            inbox: Inbox::default(),
+            restarts: Restarts::default(),
+            notices: Vec::new(),
+            since: Instant::now(),
             bytes: 0,
             complained: false,
         };
@@ -58,14 +82,18 @@ impl Port {
         if self.open.is_none() {
             self.reopen();
         }
-        let restarts = self.inbox.counts.restarts;
-        let bytes = self.read();
-        let messages: Vec<_> = bytes
-            .into_iter()
-            .filter_map(|byte| self.inbox.take(byte))
-            .collect();
-        if self.inbox.counts.restarts > restarts {
-            self.notices.push(restart(&messages));
+        let mut messages = Vec::new();
+        for byte in self.read() {
+            let restarts = self.inbox.counts.restarts;
+            let Some(message) = self.inbox.take(byte) else {
+                continue;
+            };
+            let recounted = self.inbox.counts.restarts > restarts;
+            self.notices.extend(self.restarts.take(&message, recounted));
+            if self.restarts.is_question_due() {
+                self.send(QUESTION, Command::AskRestart);
+            }
+            messages.push(message);
         }
         self.note(&messages);
         messages
@@ -111,10 +139,10 @@ impl Port {
     fn gone(&mut self, why: &str) {
         self.open = None;
         self.since = Instant::now();
-        self.notices.push(format!(
-            "{} is gone ({why}): is the cable out? Waiting for it",
-            self.name
-        ));
+        if let Some(device) = &mut self.device {
+            device.gone(&node(&self.name), ports());
+        }
+        self.notices.push(gone(&self.name, why));
     }
 
     fn reopen(&mut self) {
@@ -123,9 +151,21 @@ impl Port {
         }
         (self.since, self.bytes, self.complained) = (Instant::now(), 0, false);
         self.open = open(&self.name).ok();
+        let mut notice = format!("{} is back", self.name);
+        if self.open.is_none()
+            && let Some(device) = &self.device
+            && let Some(name) = device.back(&ports())
+        {
+            self.open = open(name).ok();
+            if self.open.is_some() {
+                notice += &format!(" as {name}");
+                self.name = name.to_owned();
+            }
+        }
         if self.open.is_some() {
             self.inbox.join();
-            self.notices.push(format!("{} is back", self.name));
+            self.restarts.join();
+            self.notices.push(notice);
         }
     }
 
@@ -148,7 +188,8 @@ impl Port {
         match self.inbox.damage {
             _ if *bytes == 0 => {
                 format!(
-                    "{name}: no data; is the board powered, and (with an adapter) its TX wired to RX?"
+                    "{name}: no data; is the board powered, and (with an adapter) its TX wired to RX? \
+                     A Pico behind a hub may need its cable pulled and plugged in again"
                 )
             }
             Some(LinkError::Version(version)) => {
@@ -163,37 +204,103 @@ impl Port {
     }
 }
 
-/// What the board says of its restart, if it has not just been switched on.
-fn restart(messages: &[ToHost]) -> String {
-    let Some(end) = messages.iter().rev().copied().find_map(ToHost::restarted) else {
-        return "the board has been switched on or reset".to_owned();
-    };
-    let cause = end.cause.map_or("reset", Cause::name);
-    format!("the board has restarted after a {cause} in {end}")
+/// A port that has ended. Over USB a board's restart looks like a pulled cable; the board tells
+/// which it was when it is back.
+fn gone(name: &str, why: &str) -> String {
+    format!("{name} is gone ({why}): the cable is out, or the board restarts; waiting for it")
 }
 
 fn open(name: &str) -> serialport::Result<Box<dyn SerialPort>> {
     serialport::new(name, BAUD).timeout(WAIT).open()
 }
 
+fn ports() -> Vec<SerialPortInfo> {
+    serialport::available_ports().unwrap_or_default()
+}
+
+/// Returns the device node that a name, which may be a link of udev's, stands for.
+fn node(name: &str) -> String {
+    fs::canonicalize(name).map_or(name.to_owned(), |path| path.display().to_string())
+}
+
+/// Opens the only port over USB. As long as `waits` returns true, a port that is not there yet is
+/// waited for, and one that has just come may still lack its rights.
+fn only_one<P>(
+    mut ports: impl FnMut() -> Vec<SerialPortInfo>,
+    mut open: impl FnMut(&str) -> serialport::Result<P>,
+    mut waits: impl FnMut() -> bool,
+) -> Result<(String, P), String> {
+    let mut has_waited = false;
+    loop {
+        let found = ports();
+        let missing = match choose(&found) {
+            Ok(name) => match open(&name) {
+                Ok(port) => return Ok((name, port)),
+                Err(error) if has_waited => reason(&name, &error),
+                Err(error) => return Err(reason(&name, &error)),
+            },
+            Err(several) if found.iter().any(|port| super::usb(port).is_some()) => {
+                return Err(several);
+            }
+            Err(none) => none,
+        };
+        has_waited = true;
+        if !waits() {
+            return Err(missing);
+        }
+    }
+}
+
+/// Has a board at this port restart in its boot loader, by closing the port at a certain speed.
+///
+/// # Errors
+///
+/// The port does not open; the reason in one line.
+pub fn touch(name: &str) -> Result<(), String> {
+    let mut port = serialport::new(name, BAUD_OF_BOOT_LOADER)
+        .open()
+        .map_err(|error| reason(name, &error))?;
+    // A board that is quick is gone before this is answered. To close the port does the same.
+    let _ = port.write_data_terminal_ready(false);
+    Ok(())
+}
+
 /// Why a port does not open, in one line.
 fn reason(name: &str, error: &serialport::Error) -> String {
     use serialport::ErrorKind::{Io, NoDevice};
     match error.kind() {
-        NoDevice => format!("{name}: another program has it open"),
-        Io(ErrorKind::PermissionDenied) => {
-            format!(
-                "{name}: permission denied; as root: usermod -aG dialout USER, then log in again"
-            )
-        }
+        NoDevice => format!(
+            "{name}: another program has it open; ModemManager lets a new port go after some seconds"
+        ),
+        Io(ErrorKind::PermissionDenied) => denied(name, group(name).as_deref()),
         Io(ErrorKind::NotFound) => format!("{name}: there is no such port{}", present()),
         _ => format!("{name}: it cannot be used as a serial port: {error}"),
     }
 }
 
+/// The group whose members may open the port; `None` if that is root's, or has no right either.
+fn group(name: &str) -> Option<String> {
+    const GROUP_READS_AND_WRITES: u32 = 0o060;
+    let node = fs::metadata(name).ok()?;
+    let has_rights = node.mode() & GROUP_READS_AND_WRITES == GROUP_READS_AND_WRITES;
+    if !has_rights || node.gid() == 0 {
+        return None;
+    }
+    let group = Group::from_gid(Gid::from_raw(node.gid())).ok()??;
+    Some(group.name)
+}
+
+/// The right to open the port is missing.
+fn denied(name: &str, group: Option<&str>) -> String {
+    let remedy = match group {
+        Some(group) => format!("as root: usermod -aG {group} USER, then log in again"),
+        None => format!("only root may; as root: chmod a+rw {name}"),
+    };
+    format!("{name}: permission denied; {remedy}")
+}
+
 fn present() -> String {
-    let ports = serialport::available_ports().unwrap_or_default();
-    let names: Vec<_> = ports.into_iter().map(|port| port.port_name).collect();
+    let names: Vec<_> = ports().into_iter().map(|port| port.port_name).collect();
     if names.is_empty() {
         String::new()
     } else {
@@ -215,7 +322,7 @@ mod tests {
         };
         let told = refused(serialport::ErrorKind::Io(ErrorKind::PermissionDenied));
         assert!(
-            told.contains("permission denied") && told.contains("dialout"),
+            told.contains("permission denied") && told.contains("chmod"),
             "{told}"
         );
         assert!(refused(serialport::ErrorKind::NoDevice).contains("another program"));
@@ -227,5 +334,77 @@ mod tests {
                 .err()
                 .is_some_and(|told| told.contains("cannot be used as a serial port"))
         );
+    }
+
+    #[test]
+    fn the_group_is_that_of_the_port_and_not_a_distributions_habit() {
+        assert!(denied("/dev/ttyX", Some("uucp")).contains("usermod -aG uucp USER"));
+        // A terminal is its group's to write to, and not to read; these two are root's.
+        for name in ["/dev/null", "/nowhere/tty"] {
+            assert_eq!(group(name), None, "{name}");
+        }
+    }
+
+    fn usb_port(name: &str) -> SerialPortInfo {
+        SerialPortInfo {
+            port_name: name.to_owned(),
+            port_type: serialport::SerialPortType::UsbPort(serialport::UsbPortInfo {
+                vid: 0x16c0,
+                pid: 0x27dd,
+                serial_number: None,
+                manufacturer: None,
+                product: None,
+            }),
+        }
+    }
+
+    fn denial() -> serialport::Error {
+        let kind = serialport::ErrorKind::Io(ErrorKind::PermissionDenied);
+        serialport::Error::new(kind, "denied")
+    }
+
+    /// The port comes with the third look, and its rights with the fifth.
+    #[test]
+    fn auto_waits_for_a_port_that_comes_and_for_its_rights() {
+        let (mut looks, mut tries, mut waits) = (0, 0, 0);
+        let ports = || {
+            looks += 1;
+            Vec::from_iter((looks > 2).then(|| usb_port("/dev/ttyACM0")))
+        };
+        let open = |_: &str| {
+            tries += 1;
+            if tries > 2 { Ok(7) } else { Err(denial()) }
+        };
+        let found = only_one(ports, open, || {
+            waits += 1;
+            waits < 9
+        });
+        assert_eq!((found, waits), (Ok(("/dev/ttyACM0".to_owned(), 7)), 4));
+    }
+
+    #[test]
+    fn auto_does_not_wait_without_end_or_where_waiting_is_of_no_use() {
+        let mut waits = 0;
+        let nothing = only_one(
+            Vec::new,
+            |_| Ok(()),
+            || {
+                waits += 1;
+                waits < 9
+            },
+        );
+        assert!(nothing.is_err_and(|told| told.contains("no USB serial adapter")));
+        assert_eq!(waits, 9);
+        for ports in [vec!["/dev/ttyACM0"], vec!["/dev/ttyACM0", "/dev/ttyACM1"]] {
+            let list = || ports.iter().map(|name| usb_port(name)).collect();
+            let refused = only_one(list, |_| Err::<(), _>(denial()), || panic!("it waits"));
+            assert!(refused.is_err());
+        }
+    }
+
+    #[test]
+    fn a_port_that_ends_is_not_said_to_be_a_pulled_cable() {
+        let told = gone("/dev/ttyACM0", "Broken pipe");
+        assert!(told.contains("or the board restarts"), "{told}");
     }
 }

@@ -8,6 +8,7 @@ mod identity;
 mod no_panic;
 mod pico;
 mod qemu_buttons;
+mod qemu_lm3s6965evb;
 mod qemu_plan;
 mod qemu_restart;
 mod qemu_stm32f405;

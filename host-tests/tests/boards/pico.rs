@@ -8,7 +8,7 @@ use cycles::Core;
 use double_pendulum::Method;
 use firmware::app::Key;
 use firmware::config::{
-    HOLD_TICKS, MOST_MEASURED_STEPS, RECEIVE_QUEUE, TICK_RATE, WATCHDOG_SECONDS,
+    BAUD, HOLD_TICKS, MOST_MEASURED_STEPS, RECEIVE_QUEUE, TICK_RATE, WATCHDOG_SECONDS,
 };
 use firmware::display::{BusFault, By, Controller, Found, PanelReport, PanelState};
 use firmware::graphics::Bitmap;
@@ -22,6 +22,7 @@ use host_tests::emulator::boards::{BOARDS, PICO};
 use host_tests::emulator::flash::flash_image;
 use host_tests::emulator::pico::PicoMachine;
 use host_tests::emulator::toolchain;
+use host_tests::link::{BAUD_OF_BOOT_LOADER, Restarts};
 
 /// Long enough for the panel to take a whole picture.
 const PICTURE: Duration = Duration::from_millis(50);
@@ -30,7 +31,18 @@ const PICTURE: Duration = Duration::from_millis(50);
 const SHOWING: u32 = 200_000;
 const TICK: Duration = Duration::from_nanos(1_000_000_000 / TICK_RATE as u64);
 
+/// A restart takes this long at most: the watchdog's time, and that in which the host finds the
+/// board again.
+const RESTART: Duration = Duration::from_millis(2000 * WATCHDOG_SECONDS as u64 + 400);
+
+/// A board to which the host has just opened its port.
 fn board() -> anyhow::Result<PicoMachine> {
+    let mut board = switched_on()?;
+    board.next_frame()?;
+    Ok(board)
+}
+
+fn switched_on() -> anyhow::Result<PicoMachine> {
     let emulator = toolchain::ready_for_pico().unwrap_or_else(|missing| panic!("{missing}"));
     PicoMachine::start(&emulator, &application(&PICO), LIMIT)
 }
@@ -63,10 +75,13 @@ fn the_file_is_for_the_chips_flash_and_its_boot_rom() -> anyhow::Result<()> {
 fn usb_and_uart_carry_the_hosts_bits_and_every_command() -> anyhow::Result<()> {
     const FRAMES: u32 = 240;
     const SAMPLES: u32 = 200;
-    let mut board = board()?;
+    let mut board = switched_on()?;
     let mut show = show(&PICO, SceneName::Page);
-    let mut sent = Vec::new();
-    for sequence in 0..FRAMES {
+    let mut sent = vec![board.next_frame()?];
+    // Those before nobody heard: the host takes its time to find the board.
+    let first = sent[0].sequence;
+    assert!((6..12).contains(&first), "{first}");
+    for sequence in first + 1..first + FRAMES {
         let frame = board.next_frame()?;
         assert_eq!(
             (frame.sequence, frame.dropped, frame.report.step),
@@ -80,6 +95,7 @@ fn usb_and_uart_carry_the_hosts_bits_and_every_command() -> anyhow::Result<()> {
         .heard_by_uart()
         .into_iter()
         .filter_map(ToHost::frame)
+        .skip(first as usize)
         .collect();
     assert_eq!(through_uart, sent);
     // No frame waits for the UART.
@@ -243,7 +259,7 @@ fn stand_still(board: &mut PicoMachine) -> anyhow::Result<Frame> {
 #[test]
 fn the_panel_shows_the_hosts_picture_whichever_it_is_and_however_often_it_is_pulled()
 -> anyhow::Result<()> {
-    let mut board = board()?;
+    let mut board = switched_on()?;
     board.tell("plug none")?;
     board.run(Duration::from_millis(300))?;
     assert!(board.tell("panel")?.is_empty(), "it is off");
@@ -411,17 +427,16 @@ fn every_button_does_its_own() -> anyhow::Result<()> {
 #[test]
 fn the_watchdog_restarts_the_board_in_its_scene() -> anyhow::Result<()> {
     let mut board = board()?;
-    board.run(PICTURE)?;
     board.send(1, Command::Choose(SceneName::Butterfly))?;
     board.send(2, Command::Heavier)?;
     board.run(10 * TICK)?;
     let before = board.next_frame()?;
     board.run(TICK / 4)?;
     board.tell("hang")?;
-    let messages = board.run(Duration::from_secs(u64::from(WATCHDOG_SECONDS) * 2) + 8 * PICTURE)?;
-    let restarted = messages
+    board.run(RESTART)?;
+    let restarted = board
+        .heard_by_uart()
         .into_iter()
-        .chain(board.heard_by_uart())
         .find_map(ToHost::restarted);
     let Restarted {
         cause,
@@ -453,6 +468,110 @@ fn the_watchdog_restarts_the_board_in_its_scene() -> anyhow::Result<()> {
         assert_eq!(board.next_frame()?.scene, SceneName::Page);
         board.send(3, Command::Choose(SceneName::Butterfly))?;
         board.run(4 * TICK)?;
+        assert_eq!(last_restart(&mut board)?, None, "{after_download}");
+    }
+    Ok(())
+}
+
+/// The answer over USB to the question about restarts.
+fn last_restart(board: &mut PicoMachine) -> anyhow::Result<Option<Restarted>> {
+    board.send(4, Command::AskRestart)?;
+    match answers(board.run(4 * TICK)?)[..] {
+        [(4, Answer::Restart(end))] => Ok(end),
+        ref others => panic!("{others:?}"),
+    }
+}
+
+/// By a fault the processor alone is reset, by a hang the whole chip. Either way the connection is
+/// gone and the message about the restart with it, but whoever opens the port is told.
+#[test]
+fn a_host_that_opens_the_port_late_learns_of_a_crash_and_of_a_hang() -> anyhow::Result<()> {
+    let (mut board, mut restarts) = (board()?, Restarts::default());
+    let mut told = |end| restarts.take(&ToHost::Answer(4, Answer::Restart(end)), false);
+    assert_eq!(told(last_restart(&mut board)?), None);
+    board.send(1, Command::Choose(SceneName::Butterfly))?;
+    board.run(10 * TICK)?;
+    for (number, (end, cause)) in (1..).zip([("fault", Cause::Fault), ("hang", Cause::Hang)]) {
+        let before = board.next_frame()?;
+        board.set_port(0)?;
+        board.run(TICK)?;
+        board.tell(end)?;
+        let silence = board.run(RESTART + Duration::from_secs(1))?;
+        assert!(silence.is_empty(), "the port is closed");
+        board.set_port(BAUD)?;
+        let first = board.next_frame()?;
+        assert!(first.sequence > TICK_RATE, "{end}: it is late");
+        let restarted = last_restart(&mut board)?.expect("it has restarted");
+        assert_eq!((restarted.cause, restarted.restarts), (Some(cause), number));
+        assert_eq!(restarted.scene, SceneName::Butterfly);
+        assert!(restarted.step > before.report.step, "{end}");
+        // The chip's watchdog has no interrupt, so nothing notes where a program hangs.
+        let is_place_known = restarted.pc > 0x1000_0000;
+        assert_eq!(is_place_known, cause == Cause::Fault, "{restarted:?}");
+        let line = told(Some(restarted)).expect("it is new");
+        let place = format!("after a {} in scene butterfly, step", cause.name());
+        assert!(line.contains(&place), "{line}");
+    }
+    Ok(())
+}
+
+/// The host has the port open all the time: it must see the board go, or it would go on talking to
+/// an address that the board has forgotten.
+#[test]
+fn every_restart_disconnects_the_board() -> anyhow::Result<()> {
+    for end in ["fault", "hang", "reset 0", "reset 1"] {
+        let mut board = board()?;
+        board.run(10 * TICK)?;
+        let before = board.next_frame()?.sequence;
+        board.tell(end)?;
+        let frames = board.run(RESTART)?.into_iter().filter_map(ToHost::frame);
+        let sequences: Vec<_> = frames.map(|frame| frame.sequence).collect();
+        assert!(
+            sequences.first().is_some_and(|first| *first < before),
+            "{end}: {sequences:?}"
+        );
+    }
+    Ok(())
+}
+
+/// The libraries leave the first packet of a transfer that is too long for them where it is, and
+/// the controller's interrupt is one of level.
+#[test]
+fn a_broken_off_control_transfer_does_not_stop_the_board() -> anyhow::Result<()> {
+    let mut board = board()?;
+    let before = board.next_frame()?;
+    board.tell("breakOff")?;
+    board.run(TICK * TICK_RATE)?;
+    let after = board.next_frame()?;
+    let frames = after.sequence - before.sequence;
+    assert_eq!((after.dropped, after.lost), (0, 0));
+    assert!(frames.abs_diff(TICK_RATE) < 4, "{frames}");
+    let counts = board.counts()[0];
+    assert_eq!((counts.damaged, counts.lost, counts.restarts), (0, 0, 0));
+    // The next request puts it right.
+    board.set_port(0)?;
+    assert!(board.run(10 * TICK)?.len() < 3);
+    board.set_port(BAUD)?;
+    board.next_frame().map(drop)
+}
+
+#[test]
+fn the_descriptor_comes_in_one_packet() -> anyhow::Result<()> {
+    assert_eq!(board()?.tell("descriptor")?[7], 64);
+    Ok(())
+}
+
+#[test]
+fn a_port_closed_at_its_speed_brings_the_boot_loader_and_one_closed_at_another_does_not()
+-> anyhow::Result<()> {
+    let mut board = board()?;
+    for (baud, is_it) in [(BAUD, false), (BAUD_OF_BOOT_LOADER, true)] {
+        board.set_port(baud)?;
+        board.run(10 * TICK)?;
+        assert!(!board.is_in_boot_loader(), "it is still open");
+        board.set_port(0)?;
+        board.run(10 * TICK)?;
+        assert_eq!(board.is_in_boot_loader(), is_it, "{baud}");
     }
     Ok(())
 }

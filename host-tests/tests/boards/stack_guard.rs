@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use crate::support::{address, application};
 use cycles::Image;
-use host_tests::emulator::boards::BOARDS;
+use host_tests::emulator::boards::every_board;
 
 /// The part of memory that statics and guard share, and what it can be divided by, as in `board/cortex_m/stack.rs`.
 const REGION: u32 = 32 * 1024;
@@ -13,10 +13,30 @@ const EIGHTH: u32 = REGION / 8;
 /// given by number.
 const PUSHED: u32 = 9 * 4 + 8 * 8 + 4 * 4;
 
-/// Bytes that an instruction takes of the stack for local variables.
-fn taken(first: u16, second: u16) -> Option<u32> {
+/// What follows at the deepest place before the guard is touched at all: the registers that the
+/// next function pushes, or those of an interrupt with a floating-point unit's.
+const NEXT: u32 = if PUSHED > 104 { PUSHED } else { 104 };
+/// Bytes of every guard that no frame may use, for the next change of the code or the compiler.
+const MARGIN: u32 = 512;
+
+/// Bytes that an instruction takes of the stack for local variables. `literal` is the constant
+/// that the instruction before has loaded, with its register.
+///
+/// `mov sp, rN` is not looked for: it is how a function gives back what it took.
+fn taken(first: u16, second: u16, literal: Option<(u16, u32)>) -> Option<u32> {
     let second = u32::from(second);
     let imm12 = (u32::from(first) >> 10 & 1) << 11 | second >> 4 & 0x700 | second & 0xff;
+    // add sp, rN: a Cortex-M0+ takes more than 508 bytes so, by a negative constant.
+    if first & 0xff87 == 0x4485 {
+        return match literal {
+            Some((register, constant)) if register == first >> 3 & 0xf => {
+                let change = constant.cast_signed();
+                (change < 0).then(|| change.unsigned_abs())
+            }
+            // Whatever it holds.
+            _ => Some(u32::MAX),
+        };
+    }
     match (first & 0xfbff, second >> 8 & 0xf) {
         _ if first & 0xff80 == 0xb080 => Some(u32::from(first & 0x7f) * 4),
         (0xf2ad, 0xd) => Some(imm12),
@@ -25,6 +45,13 @@ fn taken(first: u16, second: u16) -> Option<u32> {
         (0xebad, 0xd) => Some(u32::MAX),
         _ => None,
     }
+}
+
+/// The constant that `ldr rN, [pc, #...]` at this address loads, with its register.
+fn literal(image: &Image, address: u32, first: u16) -> Option<(u16, u32)> {
+    let is_load = first & 0xf800 == 0x4800;
+    let at = ((address + 4) & !3) + 4 * u32::from(first & 0xff);
+    is_load.then(|| Some((first >> 8 & 7, image.word(at)?)))?
 }
 
 /// A 12-bit constant of an instruction as the number it stands for (ThumbExpandImm, ARM DDI 0403, A5.3.2).
@@ -51,21 +78,36 @@ fn instructions_that_take_stack_are_recognised() {
         (0xb007, 0, None),      // add sp, #28
         (0xf5ad, 0x5c0b, None), // sub.w r12, sp, #8896
     ] {
-        assert_eq!(taken(first, second), bytes, "{first:#x} {second:#x}");
+        assert_eq!(taken(first, second, None), bytes, "{first:#x} {second:#x}");
+    }
+    // Thumb-1's: add sp, r6 after ldr r6, to take and to give back; after ldr r5; add sp, r0 after
+    // another instruction; add r8, r6.
+    let minus = |bytes: u32| 0_u32.wrapping_sub(bytes);
+    for (first, literal, bytes) in [
+        (0x44b5, Some((6, minus(8016))), Some(8016)),
+        (0x44b5, Some((6, 8016)), None),
+        (0x44b5, Some((5, minus(8016))), Some(u32::MAX)),
+        (0x4485, None, Some(u32::MAX)),
+        (0x44b0, Some((6, minus(8016))), None),
+    ] {
+        assert_eq!(taken(first, 0, literal), bytes, "{first:#x} {literal:?}");
     }
 }
 
 #[test]
 fn no_function_steps_over_the_guard() {
-    for board in &BOARDS {
+    let mut too_large = Vec::new();
+    for board in every_board() {
         let elf = application(board);
         let image = Image::read(&elf).unwrap_or_else(|error| panic!("{error}"));
         let mut frames = BTreeMap::new();
+        let mut constant = None;
         for (address, first, second) in image.words() {
-            if let Some(bytes) = taken(first, second.unwrap_or_default()) {
+            if let Some(bytes) = taken(first, second.unwrap_or_default(), constant) {
                 let frame: &mut u32 = frames.entry(image.function_at(address)).or_default();
                 *frame = frame.saturating_add(bytes);
             }
+            constant = literal(&image, address, first);
         }
         let (function, frame) = frames
             .into_iter()
@@ -75,14 +117,17 @@ fn no_function_steps_over_the_guard() {
         let guard = REGION
             - (address(&elf, "__euninit") - address(&elf, "_ram_start")).next_multiple_of(EIGHTH);
         let largest = function.map_or("", |function| &function.name);
+        let needed = frame.saturating_add(PUSHED + NEXT + MARGIN);
         println!(
             "{}: a guard of {guard} bytes; the largest frame is {frame}, of {largest}",
             board.name
         );
-        assert!(
-            frame.saturating_add(PUSHED) <= guard,
-            "{}: {largest} takes {frame} of {guard}",
-            board.name
-        );
+        if needed > guard {
+            too_large.push(format!(
+                "{}: {largest} takes {frame} of {guard}",
+                board.name
+            ));
+        }
     }
+    assert!(too_large.is_empty(), "{too_large:#?}");
 }

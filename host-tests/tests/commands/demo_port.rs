@@ -9,8 +9,8 @@ use std::time::{Duration, Instant};
 use super::cli::program;
 use crate::support::bench::{Bench, WAIT, at_port, board, wire};
 use firmware::display::{BusFault, By, Controller, Found, PanelReport, PanelState};
-use firmware::protocol::{Answer, Frame, ToHost};
-use firmware::scenes::Report;
+use firmware::protocol::{Answer, Cause, Frame, Restarted, ToHost};
+use firmware::scenes::{Report, SceneName};
 use nix::pty::{OpenptyResult, Winsize, openpty};
 
 /// A cable stays out for so long.
@@ -183,11 +183,51 @@ fn a_pulled_cable_is_said_and_waited_for_and_a_board_that_restarts_is_followed_a
         lines.len() == 2 && lines[0].contains("is gone") && lines[1].ends_with("is back"),
         "{told}"
     );
+    assert!(lines[0].contains("or the board restarts"), "{told}");
     assert!(
         told.contains("the board has been switched on or reset"),
         "{told}"
     );
     assert!(said.contains("frames, all identical to the host"), "{said}");
+}
+
+/// Over USB a restart takes the port away, and with it the board's message: what is left is the
+/// answer to the question that is asked when the port is back.
+#[test]
+fn a_board_that_comes_back_after_a_hang_is_not_taken_for_a_pulled_cable() {
+    let end = Restarted {
+        cause: Some(Cause::Hang),
+        restarts: 2,
+        scene: SceneName::Butterfly,
+        step: 1234,
+        ..Restarted::default()
+    };
+    let mut gone = None;
+    let [_, told] = demo(0, "--seconds 6", |bench| {
+        let has_restarted = gone.is_some();
+        bench.carry(|message| match message {
+            ToHost::Answer(request, Answer::Restart(None)) if has_restarted => {
+                wire(ToHost::Answer(request, Answer::Restart(Some(end))))
+            }
+            message => wire(message),
+        });
+        match gone {
+            None if bench.heard && bench.frame > 150 => {
+                bench.unplug();
+                bench.machine = board();
+                gone = Some(Instant::now());
+            }
+            Some(since) if bench.cable.is_none() && since.elapsed() > OUT => bench.plug(),
+            _ => {}
+        }
+    });
+    let restarts: Vec<_> = told
+        .lines()
+        .filter(|line| line.contains("the board has"))
+        .collect();
+    assert_eq!(restarts.len(), 1, "{told}");
+    let line = "the board has restarted after a hang in scene butterfly, step 1234 (in a row: 2)";
+    assert!(restarts[0].ends_with(line), "{told}");
 }
 
 #[test]

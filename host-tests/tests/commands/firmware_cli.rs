@@ -189,12 +189,18 @@ fn without_probe_rs_it_says_what_is_missing() -> io::Result<()> {
     Ok(())
 }
 
-/// With a stand-in of this name found first, which says its arguments, `said`, and ends with an exit code that is then the
-/// command's; the last of them, a file.
-fn handed(name: &str, arguments: &[&str], said: &str) -> io::Result<PathBuf> {
+/// Runs the command with a stand-in of this name found first, which prints its arguments, `said`,
+/// then does what `ends` says; the command must end with `code`. Returns the last argument, a file.
+fn handed(
+    name: &str,
+    arguments: &[&str],
+    said: &str,
+    ends: &str,
+    code: i32,
+) -> io::Result<PathBuf> {
     let folder = tempfile::tempdir()?;
     let stand_in = folder.path().join(name);
-    fs::write(&stand_in, "#!/bin/sh\necho \"$@\"\nexit 7\n")?;
+    fs::write(&stand_in, format!("#!/bin/sh\necho \"$@\"\n{ends}\n"))?;
     fs::set_permissions(&stand_in, Permissions::from_mode(0o755))?;
     let rest = env::var_os("PATH").unwrap_or_default();
     let output = flash(
@@ -204,15 +210,11 @@ fn handed(name: &str, arguments: &[&str], said: &str) -> io::Result<PathBuf> {
             .chain(env::split_paths(&rest)),
     );
     assert!(
-        output.stdout.starts_with(said) && output.status.code() == Some(7),
+        output.stdout.starts_with(said) && output.status.code() == Some(code),
         "{output:?}"
     );
-    Ok(output
-        .stdout
-        .split_whitespace()
-        .last()
-        .unwrap_or_default()
-        .into())
+    let line = output.stdout.lines().next().unwrap_or_default();
+    Ok(line.split_whitespace().last().unwrap_or_default().into())
 }
 
 #[test]
@@ -221,6 +223,8 @@ fn it_hands_the_image_to_probe_rs() -> io::Result<()> {
         "probe-rs",
         &["--chip", "STM32F407VGTx"],
         "run --chip STM32F407VGTx /",
+        "exit 7",
+        7,
     )?;
     assert!(
         image.ends_with("thumbv7em-none-eabihf/release/stm32f405"),
@@ -237,7 +241,9 @@ fn it_hands_the_bytes_of_the_flash_to_dfu_util() -> io::Result<()> {
     let bin = handed(
         "dfu-util",
         &["--dfu"],
-        "-d 0483:df11 -a 0 -s 0x08000000:leave -D /",
+        "-d 0483:df11 -a 0 -s 0x08000000 -D /",
+        "echo 'File downloaded successfully'; exit 74",
+        0,
     )?;
     let mut qemu = Command::new(toolchain::ready().expect("the tools").qemu);
     qemu.args([
@@ -262,6 +268,12 @@ fn it_hands_the_bytes_of_the_flash_to_dfu_util() -> io::Result<()> {
         .filter_map(ToHost::frame);
     assert_eq!(frames.next().map(|frame| frame.report.step), Some(1));
     Ok(())
+}
+
+#[test]
+fn a_download_that_is_not_reported_as_complete_fails_whatever_its_exit_code_is() -> io::Result<()> {
+    let said = "-d 0483:df11 -a 0 -s 0x08000000 -D /";
+    handed("dfu-util", &["--dfu"], said, "exit 0", 1).map(drop)
 }
 
 /// What the label on an RP2040's drive says.

@@ -175,7 +175,8 @@ proptest! {
     #[test]
     fn every_command_is_answered(commands in vec(command(), 1..3)) {
         let mut sheets = FrameBuffers::BLANK;
-        let mut app = App::new(CORTEX_M4F, &mut sheets, NoDisplay, Vec::new(), NoButtons);
+        let mut panel = NoDisplay;
+        let mut app = App::new(CORTEX_M4F, &mut sheets, &mut panel, Vec::new(), NoButtons);
         app.player.play(SceneName::Page, Settings::default()).expect("good settings");
         for (tick, bytes) in (1..).zip(commands) {
             let (status, sent) = (app.player.status(), app.link.len());

@@ -58,6 +58,14 @@ fn a_board_with_the_hosts_bits_is_told_so_and_reported() {
         head.iter().all(|part| markdown.contains(part)),
         "{markdown}"
     );
+    // What the board says of restarts, and what is its owner's to find out.
+    for row in [
+        "| restarts during this verification | 0 |",
+        "| last restart by itself | none since it was switched on |",
+        "| a night's run | (fill in) |",
+    ] {
+        assert!(markdown.contains(row), "no {row:?} in {markdown}");
+    }
     let agree = |columns: usize| {
         let is_row = |line: &&str| {
             line.matches('|').count() == columns + 1 && line.contains("| the host's |")

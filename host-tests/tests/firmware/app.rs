@@ -8,13 +8,13 @@ use firmware::config::{GRAVITY, MOST_TICKS_PER_FRAME, ROD, TICK_RATE};
 use firmware::display::{Display, NoDisplay};
 use firmware::graphics::{Canvas, Place, RodDirections, View};
 use firmware::motion::Settings;
-use firmware::protocol::{Cause, LinkError, Restarted, Status, ToHost};
+use firmware::protocol::{Answer, Cause, Command, LinkError, Restarted, Status, ToHost};
 use firmware::scenes::{Report, SceneName};
 use host_tests::emulator::host::Show;
 use host_tests::link::Inbox;
 use host_tests::oracle::tolerances::ENERGY_SHOWN;
 
-use crate::bench::{Plain, app, frames, messages, of, starting_with};
+use crate::bench::{Plain, app, frames, messages, of, starting_with, wire};
 
 /// Runs to each of the clock's readings in turn.
 fn run(clock: impl IntoIterator<Item = u32>) -> Plain {
@@ -410,5 +410,11 @@ fn a_restart_goes_on_with_what_was_played() {
         assert_eq!(events, [Event::Restarted(end, resumed)]);
         assert_eq!(app.player.status(), if resumed { played } else { first });
         assert_eq!(messages(&app.link), [ToHost::Restarted(end)]);
+        // Nobody may have heard that; whoever asks is told, each time.
+        for _ in 0..2 {
+            app.receive(wire(5, Command::AskRestart), |_| ());
+            let answer = ToHost::Answer(5, Answer::Restart(Some(end)));
+            assert_eq!(messages(&app.link).last(), Some(&answer));
+        }
     }
 }

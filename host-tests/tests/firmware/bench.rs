@@ -14,7 +14,12 @@ use host_tests::link::Inbox;
 pub type Plain = App<'static, NoDisplay, Vec<u8>, NoButtons>;
 
 /// The application as it begins, with such devices.
-pub fn of<P: Display, L: Write, K: Buttons>(panel: P, link: L, keys: K) -> App<'static, P, L, K> {
+pub fn of<P: Display + 'static, L: Write, K: Buttons>(
+    panel: P,
+    link: L,
+    keys: K,
+) -> App<'static, P, L, K> {
+    let panel = Box::leak(Box::new(panel));
     let mut app = App::new(PROCESSOR, sheets(), panel, link, keys);
     app.player
         .play(SceneName::Page, Settings::default())

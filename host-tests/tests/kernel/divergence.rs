@@ -109,7 +109,8 @@ fn a_scene_stands_at_its_last_good_frame() {
         degrees: [179.0, 60.0],
         velocities: [3e4, -3e4],
     };
-    let mut app = App::new(PROCESSOR, sheets(), NoDisplay, Vec::new(), NoButtons);
+    let mut panel = NoDisplay;
+    let mut app = App::new(PROCESSOR, sheets(), &mut panel, Vec::new(), NoButtons);
     app.player
         .play(SceneName::Page, settings)
         .unwrap_or_else(|error| panic!("{error}"));

@@ -3,10 +3,11 @@
 //!
 //! The upper 32 KB of memory are the stack's, and it grows downwards. The statics are at the bottom of the lower 32 KB;
 //! what they leave of it, in eighths of 4 KB, the memory protection unit refuses to everyone. `memory.x` sees to it that
-//! they leave at least 12 KB.
+//! they leave at least 8 KB.
 //!
 //! A thinner guard would do against a creeping stack, but a function that takes kilobytes at once, as those do that make
-//! a scene, could step over it. No function of the firmware takes as much as this guard holds (test `stack_guard`), so the
+//! a scene, could step over it. No function of the firmware takes as much as this guard holds, with
+//! what the next call pushes and a margin of 512 bytes (test `stack_guard`), so the
 //! stack pointer cannot pass it; and wherever it stops within, the next call or interrupt is refused.
 //!
 //! So are the registers that the processor stacks on its way to the fault's handler. A Cortex-M3 or M4 notes that and takes the

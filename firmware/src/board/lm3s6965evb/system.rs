@@ -18,6 +18,7 @@ const LOCK_TRIES: u32 = 10_000;
 const SYSTEM_CONTROL: Device = unsafe { Device::at(0x400F_E000) };
 const DID0: Register = SYSTEM_CONTROL.register(0x000);
 const DID1: Register = SYSTEM_CONTROL.register(0x004);
+const LDOPCTL: Register = SYSTEM_CONTROL.register(0x034);
 const RIS: Register = SYSTEM_CONTROL.register(0x050);
 const RESC: Register = SYSTEM_CONTROL.register(0x05c);
 const MISC: Register = SYSTEM_CONTROL.register(0x058);
@@ -25,6 +26,12 @@ const RCC: Register = SYSTEM_CONTROL.register(0x060);
 const RCGC0: Register = SYSTEM_CONTROL.register(0x100);
 const RCGC1: Register = SYSTEM_CONTROL.register(0x104);
 const RCGC2: Register = SYSTEM_CONTROL.register(0x108);
+
+/// The revision, of DID0.
+const REVISION: u32 = 0xffff;
+const REVISION_A2: u32 = 2;
+/// The regulator's output, of LDOPCTL: 2.75 V.
+const LDO_2_75_V: u32 = 0x1b;
 
 const WATCHDOG: u32 = 1 << 3;
 const MAIN_OSCILLATOR_OFF: u32 = 1 << 0;
@@ -41,6 +48,11 @@ const PLL_LOCKED: u32 = 1 << 6;
 /// Starts the clock and powers the peripherals; the processor's clock in Hz. With a PLL that does not lock that is the
 /// crystal's: slow, but alive.
 pub fn start() -> u32 {
+    // An erratum of this revision: at the regulator's 2.5 V it may fail once the PLL runs. Every
+    // program of the vendor's for this board begins so (`REVISION_IS_A2`, `SysCtlLDOSet`).
+    if DID0.read() & REVISION == REVISION_A2 {
+        LDOPCTL.write(LDO_2_75_V);
+    }
     // As the data sheet says under Initialization and Configuration: without PLL and divider; then from the crystal;
     // start the PLL, wait for it, change over.
     RCC.modify(USE_DIVIDER, BYPASS);

@@ -79,7 +79,8 @@ fn UART0_IRQ() {
 /// To look at USB and to read what has come ends the interrupts of both.
 ///
 /// A USB packet for which there is no room stays where it is, and the host waits. As long as it does, its interrupt would come again
-/// and again; meanwhile the UART's does, which is asked for with each frame.
+/// and again; meanwhile the UART's does, which is asked for with each frame. So it is with a packet
+/// that USB cannot be rid of.
 fn receive(inbox: &mut Inbox) {
     if usb::poll(inbox) {
         enable_interrupts();

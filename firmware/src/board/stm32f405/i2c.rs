@@ -5,7 +5,7 @@
 use cortex_m::asm::delay;
 use embedded_hal::i2c::ErrorKind;
 use stm32f4xx_hal::gpio::alt::i2c1::{Scl, Sda};
-use stm32f4xx_hal::gpio::{PB6, PB7, PinState};
+use stm32f4xx_hal::gpio::{PB6, PB7, PinState, Pull};
 use stm32f4xx_hal::i2c::I2c;
 use stm32f4xx_hal::interrupt;
 use stm32f4xx_hal::pac::i2c1::RegisterBlock;
@@ -31,6 +31,10 @@ pub struct I2c1((Scl, Sda));
 
 /// `None` the second time.
 pub(super) fn start(port: I2C1, clock: PB6, data: PB7, rcc: &mut Rcc) -> Option<Bus<I2c1>> {
+    // The library leaves the pull-ups alone (RM0090, 8.4.4). At 40 kOhm they are too weak for the
+    // bus, but without a panel its lines would float, which looks like another master's doing.
+    let clock = clock.internal_resistor(Pull::Up);
+    let data = data.internal_resistor(Pull::Up);
     let (_, pins) = I2c::new(port, (clock, data), 400.kHz(), rcc).release();
     let bus = Bus::new(I2c1(pins), HERTZ)?;
     [Interrupt::I2C1_EV, Interrupt::I2C1_ER]

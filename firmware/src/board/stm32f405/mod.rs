@@ -13,7 +13,7 @@
 
 mod i2c;
 
-use stm32f4xx_hal::gpio::{PB10, PB11, PC7};
+use stm32f4xx_hal::gpio::{PB10, PB11, PC7, Pull};
 use stm32f4xx_hal::pac::usart1::RegisterBlock;
 use stm32f4xx_hal::pac::{self, DBGMCU, IWDG, Interrupt, RCC, USART3};
 use stm32f4xx_hal::prelude::*;
@@ -51,7 +51,8 @@ pub fn take() -> Option<Stm32f405> {
     if is_emulated {
         log::into_emulator()
     } else {
-        log::into_memory()
+        log::into_memory();
+        keep_log_readable();
     }
     let chip_number = if is_emulated { [0; 4] } else { chip_number() };
     let instruments = start(core, BoardName::Stm32f405, HERTZ, chip_number);
@@ -80,6 +81,17 @@ impl Buttons for OneKey {
     }
 }
 
+/// Keeps the memory's clock on while the processor sleeps, as it does between frames: else a probe
+/// reads zeros there, and finds no log. `probe-rs` sets these bits itself, OpenOCD and J-Link leave
+/// it to a script (RM0090, 38.16.3: DBGMCU_CR).
+fn keep_log_readable() {
+    // SAFETY: nothing else uses this register, and its bits concern debugging alone.
+    let debug = unsafe { &*DBGMCU::ptr() };
+    debug
+        .cr()
+        .modify(|_, w| w.dbg_sleep().set_bit().dbg_stop().set_bit());
+}
+
 /// What the chip says that it is, and its unique number.
 fn chip_number() -> [u32; 4] {
     // SAFETY: both are only read, and nothing else uses them.
@@ -104,6 +116,9 @@ fn start_clock(rcc: RCC) -> (Rcc, bool) {
 
 /// Starts the serial port. The support library sets it up and lets go of it.
 fn start_link(port: USART3, pins: (PB10, PB11), rcc: &mut Rcc) -> Option<Outward> {
+    // The adapter is optional. Without it the input would float beside the output that toggles, and
+    // receive its echo; the library leaves the pull-up alone (RM0090, 8.4.4).
+    let pins = (pins.0, pins.1.internal_resistor(Pull::Up));
     // There is a divisor for this baud rate at either clock, so this does not fail.
     let mut port = port
         .serial::<u8>(pins, config::Config::default().baudrate(BAUD.bps()), rcc)

@@ -1,5 +1,6 @@
 //! `cargo verify-board`: what the tests prove in emulation, proven on a board in the hand, with a report to be sent in.
 
+mod check_list;
 mod compare;
 mod talk;
 
@@ -104,12 +105,13 @@ pub fn run(options: &VerifyOptions) -> anyhow::Result<bool> {
     } else {
         talk::ask_person(&mut talk, name)?
     };
+    let checks = check_list::section(&talk.port, name);
     // The board, which goes on sending, has told all before anything is built.
     let (cycles, program) = (
         compare::cycles(&measured, board)?,
         program(board, &identity)?,
     );
-    let sections = [methods, cycles, scenes, asked];
+    let sections = [methods, cycles, scenes, asked, checks];
 
     let faults: Vec<&String> = sections
         .iter()
@@ -120,7 +122,8 @@ pub fn run(options: &VerifyOptions) -> anyhow::Result<bool> {
     } else {
         format!("{} not well", faults.len())
     };
-    let [motions, methods, scenes, _] = sections.each_ref().map(|section| section.table.rows.len());
+    let [motions, methods, scenes, ..] =
+        sections.each_ref().map(|section| section.table.rows.len());
     let headline =
         format!("{name}: {motions} motions of {methods} methods, {scenes} scenes: {verdict}");
     let chip = identity.chip.map(|word| format!("{word:08x}")).join(" ");

@@ -1,0 +1,92 @@
+//! The check list of a new board: properties that no emulator has and no message reports.
+
+use firmware::protocol::Restarted;
+
+use super::Section;
+use crate::link::{Port, describe_restart};
+
+/// A check by hand, which the firmware's README describes.
+pub struct Check {
+    pub name: &'static str,
+    /// The boards that have what is checked; all if none is named.
+    boards: &'static [&'static str],
+}
+
+const fn check(name: &'static str, boards: &'static [&'static str]) -> Check {
+    Check { name, boards }
+}
+
+const WITH_I2C: &[&str] = &["pico", "stm32f405"];
+const WITH_USB: &[&str] = &["pico"];
+
+/// The checks, in the order in which a new board meets them.
+pub const CHECKS: &[Check] = &[
+    check("enumeration at the first try", WITH_USB),
+    check("control packets of 64 bytes", WITH_USB),
+    check("SCL frequency and rise time", WITH_I2C),
+    check("status byte after power-on", WITH_I2C),
+    check("status byte after a reset", WITH_I2C),
+    check("panel pulled for 10 s while playing", WITH_I2C),
+    check("SDA alone pulled", WITH_I2C),
+    check("SCL at ground for 2 s", WITH_I2C),
+    check("forced crash, at a root port", &[]),
+    check("forced crash, behind a hub", WITH_USB),
+    check("boot loader by `cargo pico` alone", WITH_USB),
+    check("port opened and closed 50 times", &[]),
+    check("computer suspended", WITH_USB),
+    check("host killed in the middle of a transfer", &[]),
+    check("probe attached late, detached, flashing", &[]),
+    check("a night's run", &[]),
+];
+
+/// A cell that the owner fills in.
+pub const BLANK: &str = "(fill in)";
+
+/// Returns the check list of the board `name`: the restarts that the port has learnt of, and a row
+/// for each check by hand.
+pub fn section(port: &Port, name: &str) -> Section {
+    let note = "Restarts by the board's own report. The rest is the owner's to fill in, by the check list in \
+                `firmware/README.md`; what does not apply stays.";
+    let mut section = Section::new("Check list", note, &["what", "found"]);
+    for (what, found) in restarts(port.restarts.count, port.restarts.last.as_ref()) {
+        section.add(vec![what.to_owned(), found], None);
+    }
+    let is_for = |check: &&Check| check.boards.is_empty() || check.boards.contains(&name);
+    for check in CHECKS.iter().filter(is_for) {
+        section.add(vec![check.name.to_owned(), BLANK.to_owned()], None);
+    }
+    section
+}
+
+fn restarts(count: u32, last: Option<&Restarted>) -> [(&'static str, String); 2] {
+    [
+        ("restarts during this verification", count.to_string()),
+        (
+            "last restart by itself",
+            last.map_or("none since it was switched on".to_owned(), describe_restart),
+        ),
+    ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::emulator::toolchain::workspace;
+
+    #[test]
+    fn the_readme_describes_every_check() {
+        let page = std::fs::read_to_string(workspace().join("firmware/README.md")).expect("a page");
+        // Wherever its lines end.
+        let page = page.split_whitespace().collect::<Vec<_>>().join(" ");
+        for check in CHECKS {
+            assert!(page.contains(check.name), "{} is not described", check.name);
+        }
+    }
+
+    #[test]
+    fn restarts_are_counted_and_named() {
+        let end = Restarted::default();
+        let [(_, count), (_, last)] = restarts(3, Some(&end));
+        assert_eq!((&*count, last), ("3", describe_restart(&end)));
+    }
+}

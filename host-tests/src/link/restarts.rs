@@ -1,0 +1,186 @@
+//! The restarts of a board, as far as a host at its port learns of them.
+//!
+//! A restart ends a USB connection, so the board's own message about it reaches nobody. The host
+//! asks for the last restart each time that it has opened the port, and whenever the frames are
+//! counted anew.
+
+use firmware::protocol::{Answer, Cause, Restarted, ToHost};
+
+/// Messages after which an unanswered question is repeated: a board sends 60 a second.
+const PATIENCE: u32 = 60;
+
+/// The restarts that a host has learnt of.
+#[derive(Debug, Default)]
+pub struct Restarts {
+    /// The last restart that the board has reported, from before the connection too.
+    pub last: Option<Restarted>,
+    /// Restarts since the host first opened the port, those by the power switch included.
+    pub count: u32,
+    question: Question,
+    /// The frames have been counted anew, and the board has not yet answered why.
+    recounted: bool,
+    /// The board has answered once.
+    is_known: bool,
+}
+
+#[derive(Debug, Default, PartialEq)]
+enum Question {
+    /// To be asked with the next message that comes.
+    #[default]
+    Due,
+    /// Asked, and not answered for this number of messages.
+    Asked(u32),
+    Answered,
+}
+
+impl Restarts {
+    /// Begins a connection.
+    pub fn join(&mut self) {
+        self.question = Question::Due;
+    }
+
+    /// Takes a message and whether it shows that the frames are counted anew. Returns a line for
+    /// the user if there is something new.
+    pub fn take(&mut self, message: &ToHost, recounted: bool) -> Option<String> {
+        match *message {
+            ToHost::Restarted(end) => {
+                self.question = Question::Answered;
+                self.learn(Some(end), true)
+            }
+            ToHost::Answer(_, Answer::Restart(end)) => {
+                self.question = Question::Answered;
+                let recounted = std::mem::take(&mut self.recounted);
+                self.learn(end, recounted)
+            }
+            _ => {
+                if recounted {
+                    self.recounted = true;
+                    self.question = Question::Due;
+                }
+                None
+            }
+        }
+    }
+
+    /// Returns true if the board is to be asked now. To be called after each message, so that
+    /// nothing is sent to a device that is no board.
+    pub fn is_question_due(&mut self) -> bool {
+        let (is_due, next) = match self.question {
+            Question::Due | Question::Asked(PATIENCE..) => (true, Question::Asked(0)),
+            Question::Asked(messages) => (false, Question::Asked(messages + 1)),
+            Question::Answered => (false, Question::Answered),
+        };
+        self.question = next;
+        is_due
+    }
+
+    /// Takes the board's report of its last restart.
+    fn learn(&mut self, end: Option<Restarted>, recounted: bool) -> Option<String> {
+        let is_first = !std::mem::replace(&mut self.is_known, true);
+        let is_new = std::mem::replace(&mut self.last, end) != end;
+        let has_restarted = recounted || is_new && !is_first && end.is_some();
+        self.count += u32::from(has_restarted);
+        match end {
+            Some(end) if is_new || recounted => Some(describe_restart(&end)),
+            None if recounted => Some("the board has been switched on or reset".to_owned()),
+            _ => None,
+        }
+    }
+}
+
+/// A restart in one line: cause, place as far as it is known, and count.
+pub fn describe_restart(end: &Restarted) -> String {
+    let place = match end.pc {
+        0 => String::new(),
+        pc => format!(", pc {pc:#010x}, lr {:#010x}", end.lr),
+    };
+    format!(
+        "the board has restarted after a {} in {end}{place} (in a row: {})",
+        end.cause.map_or("reset", Cause::name),
+        end.restarts
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use firmware::protocol::Frame;
+
+    use super::*;
+
+    fn frame() -> ToHost {
+        ToHost::Frame(Frame::default())
+    }
+
+    fn end(restarts: u8) -> Restarted {
+        Restarted {
+            cause: Some(Cause::Hang),
+            restarts,
+            pc: 0x1000_1234,
+            ..Restarted::default()
+        }
+    }
+
+    fn answer(end: Option<Restarted>) -> ToHost {
+        ToHost::Answer(0, Answer::Restart(end))
+    }
+
+    #[test]
+    fn nothing_is_asked_before_a_message_and_an_unanswered_question_is_repeated() {
+        let mut restarts = Restarts::default();
+        let mut asked = 0;
+        for _ in 0..=PATIENCE + 1 {
+            restarts.take(&frame(), false);
+            asked += u32::from(restarts.is_question_due());
+        }
+        assert_eq!(asked, 2);
+        restarts.take(&answer(None), false);
+        assert!((0..1000).all(|_| !restarts.is_question_due()));
+        restarts.join();
+        assert!(restarts.is_question_due());
+    }
+
+    #[test]
+    fn a_restart_is_reported_however_late_the_port_is_opened_and_once_for_each_connection() {
+        let mut restarts = Restarts::default();
+        let line = restarts.take(&answer(Some(end(1))), false).expect("a line");
+        for part in ["after a hang", "scene page, step 0", "0x10001234", "row: 1"] {
+            assert!(line.contains(part), "no {part:?} in {line:?}");
+        }
+        assert!(
+            !super::describe_restart(&Restarted::default()).contains("pc"),
+            "unknown"
+        );
+        assert_eq!(restarts.count, 0, "it was before");
+        // The cable is pulled and plugged in again.
+        restarts.join();
+        assert_eq!(restarts.take(&answer(Some(end(1))), false), None);
+        // The next restart took the connection with it.
+        restarts.join();
+        assert!(restarts.take(&answer(Some(end(2))), false).is_some());
+        assert_eq!((restarts.count, restarts.last), (1, Some(end(2))));
+    }
+
+    #[test]
+    fn a_restart_like_the_last_one_is_recognised_by_the_frames() {
+        let mut restarts = Restarts::default();
+        restarts.take(&answer(Some(end(1))), false);
+        restarts.join();
+        assert_eq!(restarts.take(&frame(), true), None);
+        assert!(restarts.is_question_due());
+        assert!(restarts.take(&answer(Some(end(1))), false).is_some());
+        assert_eq!(restarts.count, 1);
+    }
+
+    #[test]
+    fn a_board_that_was_switched_off_is_not_said_to_have_crashed() {
+        let mut restarts = Restarts::default();
+        restarts.take(&answer(Some(end(1))), false);
+        restarts.take(&frame(), true);
+        let line = restarts.take(&answer(None), false);
+        assert_eq!(
+            line.as_deref(),
+            Some("the board has been switched on or reset")
+        );
+        assert_eq!((restarts.count, restarts.last), (1, None));
+    }
+}

@@ -1,0 +1,18 @@
+//! Registers of the emulated LM3S6965, which says that it is of revision A2.
+
+use crate::support::{address, application, on};
+use host_tests::emulator::boards::BOARDS;
+use host_tests::emulator::qemu::Machine;
+
+/// The regulator's control, and its value for 2.75 V.
+const LDOPCTL: u32 = 0x400f_e034;
+const LDO_2_75_V: u8 = 0x1b;
+
+#[test]
+fn revision_a2_runs_at_2_75_volts_before_the_clock_is_read() -> anyhow::Result<()> {
+    let board = &BOARDS[0];
+    let mut machine = on(board, Machine::halted)?;
+    machine.run_to(address(&application(board), "clock::cycles"))?;
+    assert_eq!(machine.read(LDOPCTL..LDOPCTL + 1)?, [LDO_2_75_V]);
+    Ok(())
+}
