@@ -1,22 +1,9 @@
-//! Runs every method of the kernel for 2,560 steps and prints the CRC of its bits, one line each. For cores that no board here
-//! has: all it needs of a machine is a way to print and a way to exit.
+//! Prints the golden bits of every method as this core computes them. For cores that no board here has: all it needs of a machine
+//! is a way to print and a way to end.
 #![no_std]
 #![no_main]
 
-use core::fmt::{self, Write};
-
-use double_pendulum::Method;
-use firmware::job::Request;
-
-/// Prints all lines.
-fn say(output: &mut impl Write) -> fmt::Result {
-    Method::ALL
-        .iter()
-        .try_for_each(|&method| match Request::on_any_core(method).crc() {
-            Ok(crc) => writeln!(output, "{} {crc:08x}", method.name()),
-            Err(error) => writeln!(output, "{} {error}", method.name()),
-        })
-}
+use firmware::job::write_golden;
 
 #[panic_handler]
 fn panic(_: &core::panic::PanicInfo) -> ! {
@@ -30,7 +17,7 @@ mod machine {
 
     #[cortex_m_rt::entry]
     fn main() -> ! {
-        end(hio::hstdout().is_ok_and(|mut output| super::say(&mut output).is_ok()))
+        end(hio::hstdout().is_ok_and(|mut output| super::write_golden(&mut output).is_ok()))
     }
 
     pub fn end(is_success: bool) -> ! {
@@ -44,8 +31,8 @@ mod machine {
     }
 }
 
-/// A RISC-V under Linux, whose calls QEMU's user mode serves.
-#[cfg(target_arch = "riscv32")]
+/// A program under Linux, whose calls QEMU's user mode serves.
+#[cfg(any(target_arch = "riscv32", target_arch = "aarch64"))]
 mod machine {
     use core::arch::asm;
     use core::fmt;
@@ -56,11 +43,22 @@ mod machine {
 
     struct Output;
 
+    #[cfg(target_arch = "riscv32")]
     fn call(number: usize, [a, b, c]: [usize; 3]) -> isize {
         let result;
         // SAFETY: `write` reads the bytes of a living `str`, `exit` takes a number, and both keep all registers but the first.
         unsafe {
             asm!("ecall", in("a7") number, inlateout("a0") a => result, in("a1") b, in("a2") c)
+        };
+        result
+    }
+
+    #[cfg(target_arch = "aarch64")]
+    fn call(number: usize, [a, b, c]: [usize; 3]) -> isize {
+        let result;
+        // SAFETY: as above; the calls have the same numbers.
+        unsafe {
+            asm!("svc #0", in("x8") number, inlateout("x0") a => result, in("x1") b, in("x2") c)
         };
         result
     }
@@ -79,12 +77,47 @@ mod machine {
     // SAFETY: this name is the program's first address; Linux has put the stack pointer where it must be.
     #[unsafe(no_mangle)]
     extern "C" fn _start() -> ! {
-        end(super::say(&mut Output).is_ok())
+        end(super::write_golden(&mut Output).is_ok())
     }
 
     pub fn end(is_success: bool) -> ! {
         loop {
             call(EXIT, [usize::from(!is_success), 0, 0]);
         }
+    }
+}
+
+/// A WebAssembly module, whose host prints (`host-tests/wasm/run.js`).
+#[cfg(target_arch = "wasm32")]
+mod machine {
+    use core::arch::wasm32::unreachable;
+    use core::fmt;
+
+    #[link(wasm_import_module = "host")]
+    unsafe extern "C" {
+        fn print(text: *const u8, bytes: usize);
+    }
+
+    struct Output;
+
+    impl fmt::Write for Output {
+        fn write_str(&mut self, text: &str) -> fmt::Result {
+            // SAFETY: the host only reads the bytes of this living `str`.
+            unsafe { print(text.as_ptr(), text.len()) };
+            Ok(())
+        }
+    }
+
+    // SAFETY: no other function has this name.
+    #[unsafe(no_mangle)]
+    extern "C" fn start() {
+        if super::write_golden(&mut Output).is_err() {
+            end(false);
+        }
+    }
+
+    /// Traps: a module that succeeds returns.
+    pub fn end(_is_success: bool) -> ! {
+        unreachable()
     }
 }

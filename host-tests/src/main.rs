@@ -3,7 +3,8 @@
 use std::process::ExitCode;
 
 use host_tests::commands::{
-    count, demo, emulated, figures, flash, flips, plan, prove, report, simulate, verify_board,
+    count, demo, emulated, figures, flash, flips, plan, prove, release, report, simulate,
+    verify_board,
 };
 use host_tests::console::cli::{main as run, verdict};
 
@@ -17,6 +18,7 @@ fn main() -> ExitCode {
         Some("pico") => run(flash::pico),
         Some("plan") => run(plan::run),
         Some("prove") => run(prove::run),
+        Some("release-files") => run(release::run),
         Some("setup") => run(emulated::setup),
         Some("simulate") => run(simulate::run),
         Some("verify") => run(emulated::verify),

@@ -7,6 +7,7 @@
 
 mod answer;
 mod comparison;
+mod golden;
 mod run;
 mod table;
 
@@ -20,6 +21,7 @@ use serde::{Deserialize, Serialize};
 use crate::config::GRAVITY;
 
 pub use answer::Job;
+pub use golden::write_golden;
 pub use run::Run;
 pub use table::{AnyRun, ON_BOARDS, OnBoards};
 
@@ -62,7 +64,7 @@ pub struct Reading {
 }
 
 impl Request {
-    /// 10 s of a chaotic motion, 2,560 steps: what is compared on every core there is, boards or not.
+    /// 10 s of a chaotic motion, 2,560 steps, which every method can compute.
     pub fn on_any_core(method: Method) -> Self {
         let parameters = Parameters {
             m1: 1.0,

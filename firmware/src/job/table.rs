@@ -3,6 +3,7 @@
 //! The first block is what every board's application computes on request. The second is computed on the host and counted on the
 //! chips by the `measure` program, and takes no flash of an application.
 
+use double_pendulum::golden::{Bits, Golden};
 use double_pendulum::parts::Canonical;
 use double_pendulum::{
     ClosedFormF32, ClosedFormF64, Direction, DirectionF32, DirectionF32Plain, Error,
@@ -92,6 +93,14 @@ macro_rules! table {
 
             pub fn energy(&self) -> f64 {
                 any!(self, run => run.energy().to_f64())
+            }
+        }
+
+        /// Returns the bits of a motion of the kernel's golden file by a method.
+        pub(super) fn golden_bits(method: Method, motion: &Golden) -> Result<Bits, Error> {
+            match method {
+                $(Method::$method => motion.bits::<$form>(),)*
+                $(Method::$other => motion.bits::<$other_form>(),)*
             }
         }
 

@@ -14,11 +14,11 @@ use clap::Parser;
 use crate::console::cli::{Refused, complain, say};
 use crate::emulator::boards::{PICO, STM32F405};
 use crate::emulator::flash::{flash_image, uf2};
-use crate::emulator::toolchain::{self, target};
+use crate::emulator::toolchain::{self, Toolchain, target};
 use crate::link::{running_board, touch};
 
 /// The file, and the one by which a board's drive says whose it is.
-const FILE: &str = "pico.uf2";
+pub const FILE: &str = "pico.uf2";
 const LABEL: &str = "INFO_UF2.TXT";
 /// What the label of an RP2040 says.
 const OURS: &str = "Board-ID: RPI-RP2";
@@ -43,16 +43,19 @@ pub struct PicoOptions {
     drive: Option<PathBuf>,
 }
 
-pub fn pico(options: &PicoOptions) -> anyhow::Result<()> {
-    let toolchain = toolchain::set_up()?;
+/// Builds the firmware of the Raspberry Pi Pico and writes it to the target folder as UF2; returns the bytes of flash that it takes,
+/// and the file.
+pub fn uf2_file(toolchain: &Toolchain) -> anyhow::Result<(usize, PathBuf)> {
     let (start, image) = flash_image(&fs::read(toolchain.build_for(&PICO)?)?)?;
-    let (file, blocks) = (target().join(FILE), uf2(start, &image));
-    fs::write(&file, &blocks).with_context(|| file.display().to_string())?;
-    say(format_args!(
-        "{}: {} bytes of flash",
-        file.display(),
-        image.len()
-    ))?;
+    let file = target().join(FILE);
+    fs::write(&file, uf2(start, &image)).with_context(|| file.display().to_string())?;
+    Ok((image.len(), file))
+}
+
+pub fn pico(options: &PicoOptions) -> anyhow::Result<()> {
+    let (bytes, file) = uf2_file(&toolchain::set_up()?)?;
+    say(format_args!("{}: {bytes} bytes of flash", file.display()))?;
+    let blocks = fs::read(&file)?;
     let drive = match options.drive.clone().or_else(find_drive) {
         Some(drive) => drive,
         None => {

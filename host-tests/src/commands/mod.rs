@@ -9,6 +9,7 @@ pub mod flips;
 pub mod out_file;
 pub mod plan;
 pub mod prove;
+pub mod release;
 pub mod report;
 pub mod simulate;
 pub mod table;

@@ -41,11 +41,21 @@ pub struct PicoMachine {
 impl PicoMachine {
     /// Switches a board on with this firmware in its flash: what `cargo pico` copies, and nothing else. Node.js runs it.
     pub fn start(node: &Path, elf: &Path, limit: Duration) -> anyhow::Result<Self> {
-        let program = std::fs::read(elf)?;
-        let (start, image) = flash_image(&program)?;
+        let (start, image) = flash_image(&std::fs::read(elf)?)?;
+        Self::flashed(node, &uf2(start, &image), elf, limit)
+    }
+
+    /// Switches a board on whose flash has been written by this UF2 file. Its log is read by the ELF
+    /// file.
+    pub fn flashed(
+        node: &Path,
+        blocks: &[u8],
+        elf: &Path,
+        limit: Duration,
+    ) -> anyhow::Result<Self> {
         let folder = Scratch::new()?;
         let file = folder.path().join("pico.uf2");
-        std::fs::write(&file, uf2(start, &image))?;
+        std::fs::write(&file, blocks)?;
         let mut command = Command::new(node);
         command
             .arg(workspace().join("host-tests/rp2040/main.js"))

@@ -9,6 +9,7 @@
 
 mod bring;
 mod build;
+mod remap;
 mod tools;
 
 use std::path::{Path, PathBuf, absolute};
@@ -19,7 +20,7 @@ use std::{env, fmt};
 use bring::turn;
 pub use bring::{Consent, QUICK};
 pub use tools::find;
-use tools::{CORE_PACKAGES, Emulator, FromSource, QEMU, QEMU_RISCV};
+use tools::{CORE_PACKAGES, Emulator, FromSource, QEMU, QEMU_AARCH64, QEMU_RISCV};
 
 use crate::console::cli::{REFUSED, Refused, complain};
 
@@ -34,6 +35,7 @@ pub const TARGETS: [&str; 3] = [
 pub struct Toolchain {
     /// Debian's compiler, where rustup has no ready-made core library.
     from_source: Option<FromSource>,
+    /// The emulator of the core: QEMU, or Node.js for WebAssembly.
     pub qemu: PathBuf,
 }
 
@@ -51,7 +53,7 @@ fn missing(is_tried: bool, what: &str, why: &str, setup: &str, by_hand: &str) ->
 /// The tools, if all are there; installs nothing. Looks once per process.
 pub fn ready() -> Result<Toolchain, Refused> {
     static READY: OnceLock<Result<Toolchain, Refused>> = OnceLock::new();
-    READY.get_or_init(|| both(false, &TARGETS, &QEMU)).clone()
+    READY.get_or_init(|| both(false, &TARGETS, arm)).clone()
 }
 
 /// The tools, brought if need be; what was done for it is said. Two set-ups at once take turns.
@@ -65,45 +67,59 @@ pub fn set_up() -> Result<Toolchain, Refused> {
     tempfile::tempdir().map_err(refused)?;
     ready().or_else(|_| {
         let _turn = turn()?;
-        both(true, &TARGETS, &QEMU)
+        both(true, &TARGETS, arm)
     })
 }
 
-/// The same for another target: its core library and its emulator, which for a RISC-V is that of its programs under Linux.
+/// The same for another target: its core library and its emulator.
+///
+/// QEMU emulates a board for an ARM microcontroller, and Linux for a RISC-V and for an aarch64. Node.js
+/// runs WebAssembly.
 pub fn set_up_for(target: &str) -> Result<Toolchain, Refused> {
+    let emulator = match target.split('-').next() {
+        Some("wasm32") => |installs: bool| tools::node(installs.then_some(Consent::Ask)),
+        Some("aarch64") => |installs| qemu(installs, &QEMU_AARCH64),
+        Some("riscv32imac") => |installs| qemu(installs, &QEMU_RISCV),
+        _ => arm,
+    };
     let _turn = turn()?;
-    both(
-        true,
-        &[target],
-        if target.starts_with("riscv") {
-            &QEMU_RISCV
-        } else {
-            &QEMU
-        },
-    )
+    both(true, &[target], emulator)
 }
 
-/// Both of them, or a line for each that is missing.
-fn both(installs: bool, targets: &[&str], emulator: &Emulator) -> Result<Toolchain, Refused> {
-    const SETUP: &str = "cargo setup";
+/// The core library of these targets and an emulator, or a line for each that is missing.
+fn both(
+    installs: bool,
+    targets: &[&str],
+    emulator: fn(bool) -> Result<PathBuf, Refused>,
+) -> Result<Toolchain, Refused> {
     let packages = format!(
         "run rustup target add {}, or as root apt-get install {}",
         targets.join(" "),
         CORE_PACKAGES.join(" ")
     );
     let core = tools::core(installs, targets)
-        .map_err(|why| missing(installs, "Rust's ARM library", &why, SETUP, &packages));
-    let by_hand = format!(
-        "install this system's package {} (Homebrew: qemu)",
-        emulator.package
-    );
-    let qemu = tools::qemu(installs, emulator)
-        .map_err(|why| missing(installs, emulator.program, &why, SETUP, &by_hand));
-    match (core, qemu) {
+        .map_err(|why| missing(installs, "Rust's core library", &why, SETUP, &packages));
+    match (core, emulator(installs)) {
         (Ok(from_source), Ok(qemu)) => Ok(Toolchain { from_source, qemu }),
         (Err(core), Err(qemu)) => Err(Refused::because(format_args!("{core}\n{qemu}"))),
         (Err(missing), _) | (_, Err(missing)) => Err(missing),
     }
+}
+
+const SETUP: &str = "cargo setup";
+
+/// Finds or brings QEMU for the boards.
+fn arm(installs: bool) -> Result<PathBuf, Refused> {
+    qemu(installs, &QEMU)
+}
+
+fn qemu(installs: bool, emulator: &Emulator) -> Result<PathBuf, Refused> {
+    let by_hand = format!(
+        "install this system's package {} (Homebrew: qemu)",
+        emulator.package
+    );
+    tools::qemu(installs, emulator)
+        .map_err(|why| missing(installs, emulator.program, &why, SETUP, &by_hand))
 }
 
 /// Node.js with the emulator of the Raspberry Pi Pico, if it is there; installs nothing.

@@ -1,4 +1,4 @@
-//! Pictures as text, one character per pixel, so that a change of a picture shows in a diff.
+//! Snapshots: pictures as text, one character per pixel, so that a change of a picture shows in a diff; and files of checksums.
 
 use std::env;
 use std::fs;
@@ -8,7 +8,7 @@ use crate::emulator::toolchain::workspace;
 /// One character for each of the panel's 16 greys, from black to white.
 pub const GREYS: &[u8; 16] = b" .,:;-~=+*oaOX#@";
 
-/// Set to anything, this environment variable makes [`check`] write the pictures instead of comparing them.
+/// Set to anything, this environment variable makes [`check`] and [`check_lines`] write the files instead of comparing them.
 pub const BLESS: &str = "BLESS";
 
 /// Greys of 0 to 15, row by row, as lines of `width` characters.
@@ -52,5 +52,31 @@ pub fn check(name: &str, picture: &str) -> Result<(), String> {
         "{name} differs from {}; accept by {BLESS}=1\n{}",
         path.display(),
         rows.join("\n")
+    ))
+}
+
+/// Compares `text` line by line with a committed file of the project; returns the lines that differ, with the command that accepts
+/// them.
+pub fn check_lines(file: &str, text: &str) -> Result<(), String> {
+    let path = workspace().join(file);
+    if env::var_os(BLESS).is_some() {
+        return fs::write(&path, text).map_err(|error| format!("{}: {error}", path.display()));
+    }
+    let committed =
+        fs::read_to_string(&path).map_err(|error| format!("{}: {error}", path.display()))?;
+    if committed == text {
+        return Ok(());
+    }
+    let differing: Vec<String> = committed
+        .lines()
+        .zip(text.lines())
+        .filter(|(old, new)| old != new)
+        .map(|(old, new)| format!("was {old}\nis  {new}"))
+        .collect();
+    Err(format!(
+        "{file} differs, {} lines before and {} now; accept by {BLESS}=1\n{}",
+        committed.lines().count(),
+        text.lines().count(),
+        differing.join("\n")
     ))
 }

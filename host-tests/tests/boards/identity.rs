@@ -1,5 +1,5 @@
 //! The same bits from the host and from the boards, from optimised and unoptimised code, after every single step; on more cores,
-//! for 2,560 steps, test `cores`.
+//! the golden bits, test `cores`.
 
 use std::io::Write;
 use std::process::{Command, Stdio};

@@ -10,6 +10,7 @@ mod out_file;
 mod process;
 mod random_input;
 mod readmes;
+mod release;
 mod rooms;
 mod set_up;
 mod simulate_cli;

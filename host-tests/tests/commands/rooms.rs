@@ -14,8 +14,8 @@ const ROOMS: [(&str, &[&str]); 3] = [
     (
         "kernel",
         &[
-            "tests", "flips", "plan", "methods", "bounds", "small", "pendulum", "error", "table",
-            "numbers",
+            "tests", "golden", "flips", "plan", "methods", "bounds", "small", "pendulum", "error",
+            "table", "numbers",
         ],
     ),
     (

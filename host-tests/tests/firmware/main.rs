@@ -7,6 +7,7 @@ mod canvas;
 mod commands;
 mod controls;
 mod fault;
+mod golden;
 mod horizon;
 mod i2c_recovery;
 mod link;

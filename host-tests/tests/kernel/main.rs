@@ -7,6 +7,7 @@ mod divergence;
 mod fixed;
 mod flips;
 mod forms;
+mod golden;
 mod hard_cases;
 mod known_answers;
 mod limits;

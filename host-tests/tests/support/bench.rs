@@ -11,6 +11,7 @@ use std::time::Duration;
 
 use firmware::protocol::{MAX_WIRE, ToHost, encode};
 use host_tests::emulator::boards::{Board, MPS2_AN386};
+use host_tests::emulator::pico::PicoMachine;
 use host_tests::emulator::process::{Output, run};
 use host_tests::emulator::qemu::{Clock, Machine, Settings};
 use nix::fcntl::OFlag;
@@ -22,9 +23,41 @@ use crate::support::{LIMIT, on};
 pub const BOARD: &Board = &MPS2_AN386;
 /// From one look at the cable to the next.
 pub const WAIT: Duration = Duration::from_millis(1);
+/// An emulated board that takes bytes and sends messages.
+pub trait Linked {
+    fn take(&mut self, bytes: &[u8]) -> anyhow::Result<()>;
+
+    /// The messages that have come since the last call.
+    fn sent(&mut self) -> anyhow::Result<Vec<ToHost>>;
+}
+
+impl Linked for Machine {
+    fn take(&mut self, bytes: &[u8]) -> anyhow::Result<()> {
+        self.send_bytes(bytes)
+    }
+
+    fn sent(&mut self) -> anyhow::Result<Vec<ToHost>> {
+        self.messages()
+    }
+}
+
+/// Its time passes only while messages are asked for.
+impl Linked for PicoMachine {
+    fn take(&mut self, bytes: &[u8]) -> anyhow::Result<()> {
+        self.send_bytes(bytes)
+    }
+
+    fn sent(&mut self) -> anyhow::Result<Vec<ToHost>> {
+        self.run(SLICE)
+    }
+}
+
+/// How long a Pico runs from one look at the cable to the next, by its own clock.
+const SLICE: Duration = Duration::from_millis(4);
+
 /// A board at a port, by a name that stays when the cable is pulled.
-pub struct Bench {
-    pub machine: Machine,
+pub struct Bench<M = Machine> {
+    pub machine: M,
     pub cable: Option<PtyMaster>,
     /// The host has said something.
     pub heard: bool,
@@ -40,10 +73,16 @@ impl Bench {
     }
 
     pub fn of(board: &Board) -> Self {
+        Self::with(machine(board))
+    }
+}
+
+impl<M: Linked> Bench<M> {
+    pub fn with(machine: M) -> Self {
         let folder = tempfile::tempdir().expect("a folder");
         let name = folder.path().join("ttyACM0");
         let mut bench = Self {
-            machine: machine(board),
+            machine,
             cable: None,
             heard: false,
             frame: 0,
@@ -78,7 +117,7 @@ impl Bench {
         match cable.read(&mut bytes) {
             Ok(count) => {
                 self.machine
-                    .send_bytes(&bytes[..count])
+                    .take(&bytes[..count])
                     .expect("the board takes it");
                 self.heard = true;
                 true
@@ -106,7 +145,7 @@ impl Bench {
         let is_heard = self.is_heard();
         let messages = self
             .machine
-            .messages()
+            .sent()
             .unwrap_or_else(|error| panic!("{error}"));
         for message in messages.into_iter().filter(|_| is_heard) {
             self.frame = message.frame().map_or(self.frame, |frame| frame.sequence);
@@ -137,15 +176,25 @@ pub fn wire(message: ToHost) -> Vec<u8> {
 }
 
 /// Runs a command at the bench's port beside `play`, which is called until it has ended.
-pub fn at_port(
-    bench: &mut Bench,
+pub fn at_port<M: Linked>(
+    bench: &mut Bench<M>,
     command: &mut Command,
-    mut play: impl FnMut(&mut Bench),
+    play: impl FnMut(&mut Bench<M>),
+) -> Output {
+    at_port_for(LIMIT, bench, command, play)
+}
+
+/// The same for a command that takes up to `limit`.
+pub fn at_port_for<M: Linked>(
+    limit: Duration,
+    bench: &mut Bench<M>,
+    command: &mut Command,
+    mut play: impl FnMut(&mut Bench<M>),
 ) -> Output {
     command.arg("--port").arg(&bench.name);
     scope(|scope| {
         let run =
-            scope.spawn(move || run(command, LIMIT).unwrap_or_else(|error| panic!("{error}")));
+            scope.spawn(move || run(command, limit).unwrap_or_else(|error| panic!("{error}")));
         while !run.is_finished() {
             play(bench);
         }

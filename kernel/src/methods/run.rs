@@ -104,6 +104,11 @@ impl<F: Form> Run<F> {
             .energy_at(self.directions(), self.motion.momenta())
     }
 
+    /// Gives `feed` the bit patterns of all that the method carries from step to step.
+    pub(crate) fn bits(&self, feed: impl FnMut(u64)) {
+        self.motion.bits(feed);
+    }
+
     /// Seconds since the start.
     #[must_use]
     pub fn time(&self) -> f64 {

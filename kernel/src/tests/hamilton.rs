@@ -96,9 +96,8 @@ fn derivatives_are_the_gradient_of_h() {
         let scales = [bounds.w1, bounds.w2, range, range];
         let values = pendulum.derivatives(&z);
         for i in 0..4 {
-            let name = format_args!("{} beside the gradient of H", EQUATIONS[i]);
             assert_near(
-                name,
+                format_args!("{} beside the gradient of H", EQUATIONS[i]),
                 values[i],
                 gradient[i],
                 scales[i],

@@ -4,6 +4,7 @@
 
 mod added_method;
 mod forms;
+mod golden;
 mod hamilton;
 mod lagrange;
 mod random;

@@ -58,8 +58,10 @@ fn panic(info: &PanicInfo) -> ! {
     let [pc, lr] = [(); 2].map(|()| calls.next().unwrap_or_default());
     // Of a fault before, if it is not zero.
     let [cfsr, ..] = fault_status(false);
-    let report = format_args!("PANIC: {info}\n  pc {pc:#010x}  lr {lr:#010x}  cfsr {cfsr:#010x}");
-    crash((Cause::Panic, pc, lr, cfsr), &report)
+    crash(
+        (Cause::Panic, pc, lr, cfsr),
+        &format_args!("PANIC: {info}\n  pc {pc:#010x}  lr {lr:#010x}  cfsr {cfsr:#010x}"),
+    )
 }
 
 /// Every fault ends here, since none has a handler of its own, on a stack of its own. Passes on where the processor put

@@ -7,10 +7,10 @@ use std::process::Command;
 use std::sync::Mutex;
 use std::time::Duration;
 
-use anyhow::ensure;
+use anyhow::{anyhow, ensure};
 
 use super::bring::run_shown;
-use super::{TARGETS, Toolchain, target, workspace};
+use super::{TARGETS, Toolchain, remap, target, workspace};
 use crate::emulator::boards::{Board, PICO, every_board};
 
 /// What this process has built, each binary with its target: to ask cargo again takes half a second.
@@ -78,7 +78,7 @@ impl Toolchain {
             let feature = every_board()
                 .find(|board| board.binary == binary)
                 .map_or("", |board| board.feature);
-            let mut command = self.for_targets("build", &[target]);
+            let mut command = self.for_targets("build", &[target])?;
             command.args(["--bin", binary, "--features", feature]);
             self.finish(command, &format!("building {binary} for {target}"))?;
             BUILT
@@ -89,9 +89,9 @@ impl Toolchain {
         Ok(elf)
     }
 
-    /// Builds the image of every method for a target; for a processor of this name that computes `f64` itself, if there is one.
+    /// Builds the image of the golden bits for a target; for a processor of this name that computes `f64` itself, if there is one.
     pub fn build_cores(&self, target: &str, double: Option<&str>) -> anyhow::Result<PathBuf> {
-        let mut command = self.for_targets("build", &[target]);
+        let mut command = self.for_targets("build", &[target])?;
         // Both kinds come out under one name.
         let folder = double.map_or_else(Self::folder, |cpu| Self::folder().join(cpu));
         command
@@ -106,12 +106,17 @@ impl Toolchain {
             command,
             &format!("building cores for {}", double.unwrap_or(target)),
         )?;
-        Ok(folder.join(target).join("release/cores"))
+        let file = if target.starts_with("wasm") {
+            "release/cores.wasm"
+        } else {
+            "release/cores"
+        };
+        Ok(folder.join(target).join(file))
     }
 
     /// Builds what is run on every target, side by side, and every board's application.
     pub fn build_ahead(&self) -> anyhow::Result<()> {
-        let mut command = self.for_targets("build", &TARGETS);
+        let mut command = self.for_targets("build", &TARGETS)?;
         command.args(AHEAD.iter().flat_map(|binary| ["--bin", binary]));
         self.finish(command, "building the firmware for all targets")?;
         every_board().try_for_each(|board| self.build_for(board).map(drop))
@@ -127,7 +132,7 @@ impl Toolchain {
             let features = features.collect::<Vec<_>>().join(",");
             let is_ready_made = self.from_source.is_none();
             let mut command =
-                self.for_targets(if is_ready_made { "clippy" } else { "check" }, &[target]);
+                self.for_targets(if is_ready_made { "clippy" } else { "check" }, &[target])?;
             command.args(["--bins", "--example", "embassy", "--features", &features]);
             if features.contains(PICO.feature) {
                 command.args(["--example", "colour_panel", "--features", "colour-panel"]);
@@ -143,13 +148,22 @@ impl Toolchain {
     }
 
     /// What cargo is to do with the optimised firmware for some targets.
-    fn for_targets(&self, what: &str, targets: &[&str]) -> Command {
+    fn for_targets(&self, what: &str, targets: &[&str]) -> anyhow::Result<Command> {
+        let rustc = self
+            .from_source
+            .as_ref()
+            .map_or("rustc".as_ref(), |own| own.rustc.as_path());
+        let flags = remap::flags(rustc).map_err(|error| anyhow!(error))?;
         let mut command = self.cargo();
         command
             .args([what, "--release", "--package", "firmware"])
             .env("CARGO_TARGET_DIR", Self::folder());
-        command.args(targets.iter().flat_map(|target| ["--target", target]));
-        command
+        for target in targets {
+            // After the flags of the configuration. A TOML string has the escapes of a Rust one.
+            let flags = format!("target.{target}.rustflags={flags:?}");
+            command.args(["--target", target, "--config", &flags]);
+        }
+        Ok(command)
     }
 
     fn finish(&self, mut command: Command, doing: &str) -> anyhow::Result<()> {

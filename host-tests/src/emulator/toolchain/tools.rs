@@ -54,6 +54,11 @@ pub(super) const QEMU_RISCV: Emulator = Emulator {
     package: "qemu-user",
     folder: "qemu-user",
 };
+pub(super) const QEMU_AARCH64: Emulator = Emulator {
+    program: "qemu-aarch64",
+    package: "qemu-user",
+    folder: "qemu-user-aarch64",
+};
 
 /// Finds or brings the core library for these targets: ready-made by rustup beside the compiler in
 /// use (`None`), else Debian's sources and their compiler.
@@ -275,8 +280,9 @@ const ASK: &str = "const [{ dependencies }, { version }] = ['.', './node_modules
     .map((folder) => require(folder + '/package.json'));
     if (version !== dependencies.rp2040js) throw 'another version'";
 
-/// Node.js with the emulator of the Raspberry Pi Pico, a package of npm's, kept to one version.
-pub(super) fn rp2040js(consent: Option<Consent>) -> Result<PathBuf, Refused> {
+/// Finds Node.js of a version that runs the emulator of the Pico and WebAssembly modules, or installs it
+/// with the user's consent.
+pub(super) fn node(consent: Option<Consent>) -> Result<PathBuf, Refused> {
     let installs = consent.is_some();
     let install = |packages: &[&str]| install_packages(packages, consent.unwrap_or(Consent::Ask));
     let find_node = || {
@@ -293,7 +299,7 @@ pub(super) fn rp2040js(consent: Option<Consent>) -> Result<PathBuf, Refused> {
         }
     };
     let packages = || install(&["nodejs", "npm"]);
-    let node = bring(
+    bring(
         installs,
         find_node,
         &[("apt-get installed nodejs, npm".to_owned(), &packages)],
@@ -306,7 +312,14 @@ pub(super) fn rp2040js(consent: Option<Consent>) -> Result<PathBuf, Refused> {
             "cargo setup --yes",
             "install this system's packages nodejs and npm, Node.js 18 or newer",
         )
-    })?;
+    })
+}
+
+/// Node.js with the emulator of the Raspberry Pi Pico, a package of npm's, kept to one version.
+pub(super) fn rp2040js(consent: Option<Consent>) -> Result<PathBuf, Refused> {
+    let node = node(consent)?;
+    let installs = consent.is_some();
+    let install = |packages: &[&str]| install_packages(packages, consent.unwrap_or(Consent::Ask));
     let folder = workspace().join("host-tests/rp2040");
     let fetched = || {
         let asked = says(

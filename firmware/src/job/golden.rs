@@ -1,0 +1,24 @@
+//! The golden bits, computed on this machine.
+
+use core::fmt::{self, Write};
+
+use double_pendulum::Method;
+use double_pendulum::golden::{HEADER, Line, MOTIONS};
+
+use super::table::golden_bits;
+
+/// Writes what `golden/bits.csv` of the kernel should be: a heading and a line for each method and motion.
+///
+/// A method that refuses a motion has its error in place of the bits.
+pub fn write_golden(output: &mut impl Write) -> fmt::Result {
+    writeln!(output, "{HEADER}")?;
+    for &method in Method::ALL {
+        for motion in &MOTIONS {
+            match golden_bits(method, motion) {
+                Ok(bits) => writeln!(output, "{}", Line(method, motion, bits))?,
+                Err(error) => writeln!(output, "{method},{},{error}", motion.name)?,
+            }
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,114 @@
+//! `cargo release-files`: all that a release hands out, in one folder. The same commit and compiler make the same bytes anywhere.
+
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+use std::time::Duration;
+
+use anyhow::{Context, bail, ensure};
+use clap::Parser;
+
+use crate::commands::flash;
+use crate::console::cli::{Refused, say};
+use crate::emulator::boards::every_board;
+use crate::emulator::process;
+use crate::emulator::toolchain::{self, QUICK, target, workspace};
+
+/// The folder, in the target folder.
+const FOLDER: &str = "release-files";
+/// The sums, in the format that `sha256sum --check` reads.
+const SUMS: &str = "SHA256SUMS";
+/// For packaging the kernel, an index of the registry fetched if need be.
+const PACKAGE: Duration = Duration::from_secs(300);
+const KERNEL: &str = "double-pendulum-kernel";
+/// Programs that print sums in that format, and their arguments.
+const HASHERS: [(&str, &[&str]); 2] = [("sha256sum", &[]), ("shasum", &["-a", "256"])];
+
+/// Makes target/release-files/: the Pico's UF2, the ELF file of every board, the packaged kernel, and their SHA-256 sums.
+///
+/// The files depend on the commit and the compiler alone, not on folders or the machine.
+#[derive(Debug, Parser)]
+#[command(name = "cargo release-files")]
+pub struct ReleaseOptions {}
+
+pub fn run(_: &ReleaseOptions) -> anyhow::Result<()> {
+    let hasher = HASHERS
+        .iter()
+        .find(|(program, _)| toolchain::find(program).is_some());
+    let Some((hasher, arguments)) = hasher else {
+        bail!(Refused::because(
+            "neither sha256sum nor shasum is installed: a release needs one, as in the package coreutils"
+        ));
+    };
+    let toolchain = toolchain::set_up()?;
+    let folder = target().join(FOLDER);
+    if folder.exists() {
+        fs::remove_dir_all(&folder).with_context(|| folder.display().to_string())?;
+    }
+    fs::create_dir_all(&folder).with_context(|| folder.display().to_string())?;
+
+    // The firmware.
+    for board in every_board() {
+        let elf = toolchain.build_for(board)?;
+        copy(&elf, &folder.join(format!("{}.elf", board.name)))?;
+    }
+    let (_, file) = flash::uf2_file(&toolchain)?;
+    copy(&file, &folder.join(flash::FILE))?;
+
+    // The kernel.
+    let scratch = tempfile::tempdir_in(target())?;
+    package(scratch.path())?;
+    let archive = format!("{KERNEL}-{}.crate", env!("CARGO_PKG_VERSION"));
+    copy(
+        &scratch.path().join("package").join(&archive),
+        &folder.join(archive),
+    )?;
+
+    // The sums.
+    let mut names: Vec<_> = fs::read_dir(&folder)?
+        .map(|entry| Ok(entry?.file_name()))
+        .collect::<Result<_, std::io::Error>>()?;
+    names.sort();
+    let mut command = Command::new(hasher);
+    command.args(*arguments).args(names).current_dir(&folder);
+    let sums = process::run(&mut command, QUICK)?;
+    ensure!(sums.status.success(), "{hasher}: {}", sums.stderr);
+    fs::write(folder.join(SUMS), &sums.stdout)?;
+    say(sums.stdout.trim_end())?;
+    Ok(say(folder.display())?)
+}
+
+fn copy(from: &Path, to: &Path) -> anyhow::Result<()> {
+    fs::copy(from, to).with_context(|| from.display().to_string())?;
+    Ok(())
+}
+
+/// Packages the kernel as a registry takes it. Cargo asks the registry only if what is on this machine is not enough.
+fn package(into: &Path) -> anyhow::Result<()> {
+    let attempt = |more: &[&str]| {
+        let mut cargo = Command::new("cargo");
+        cargo
+            .args([
+                "package",
+                "--package",
+                KERNEL,
+                "--no-verify",
+                "--allow-dirty",
+            ])
+            .arg("--target-dir")
+            .arg(into)
+            .args(more)
+            .current_dir(workspace());
+        process::run(&mut cargo, PACKAGE)
+    };
+    if attempt(&["--offline"])?.status.success() {
+        return Ok(());
+    }
+    let output = attempt(&[])?;
+    ensure!(
+        output.status.success(),
+        "the kernel cannot be packaged\n{}",
+        output.stderr
+    );
+    Ok(())
+}

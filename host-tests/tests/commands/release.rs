@@ -1,0 +1,184 @@
+//! The firmware's images are the same wherever they are built: no folder of the builder is in them, and `cargo release-files` makes
+//! the same files in another checkout with another folder of cargo.
+
+use std::env;
+use std::fs;
+use std::io;
+use std::os::unix::fs::symlink;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::time::Duration;
+
+use host_tests::emulator::boards::{PICO, every_board};
+use host_tests::emulator::flash::flash_image;
+use host_tests::emulator::pico::PicoMachine;
+use host_tests::emulator::process::Output;
+use host_tests::emulator::toolchain::{self, target, workspace};
+
+use super::cli::{output, program};
+use crate::support::bench::{Bench, at_port_for, wire};
+use crate::support::{application, toolchain};
+
+/// A small image that every kind of core runs.
+const SMALL: (&str, &str) = ("inject-panic", "thumbv7m-none-eabi");
+
+/// Guards the emulated Pico against a hang: a whole verification takes it 25 s of its own time, minutes of ours.
+const LONG: Duration = Duration::from_secs(3600);
+
+fn cargo_home() -> PathBuf {
+    let home = || Path::new(&env::var_os("HOME").expect("a home")).join(".cargo");
+    env::var_os("CARGO_HOME").map_or_else(home, PathBuf::from)
+}
+
+/// A copy of the checkout, with a folder of cargo and a target folder of its own.
+struct Elsewhere(tempfile::TempDir);
+
+impl Elsewhere {
+    fn new(history: History) -> io::Result<Self> {
+        let folder = tempfile::tempdir()?;
+        let left_out: &[&str] = match history {
+            History::Copied => &LEFT_OUT,
+            History::LeftOut => &[&LEFT_OUT[..], &[".git"]].concat(),
+        };
+        copy(workspace(), &folder.path().join("checkout"), left_out)?;
+        // What has been fetched already, by other names.
+        let home = folder.path().join("cargo");
+        fs::create_dir_all(&home)?;
+        for name in ["registry", "config.toml"] {
+            let there = cargo_home().join(name);
+            if there.exists() {
+                symlink(there, home.join(name))?;
+            }
+        }
+        let elsewhere = Self(folder);
+        fs::create_dir_all(elsewhere.target())?;
+        symlink(target().join("qemu"), elsewhere.target().join("qemu"))?;
+        Ok(elsewhere)
+    }
+
+    fn checkout(&self) -> PathBuf {
+        self.0.path().join("checkout")
+    }
+
+    fn target(&self) -> PathBuf {
+        self.checkout().join("target")
+    }
+
+    /// Runs a command of the project there.
+    fn output(&self, command: &mut Command) -> Output {
+        output(
+            command
+                .current_dir(self.checkout())
+                .env("CARGO_MANIFEST_DIR", self.checkout().join("host-tests"))
+                .env("CARGO_HOME", self.0.path().join("cargo"))
+                .env_remove("CARGO_TARGET_DIR"),
+        )
+    }
+}
+
+/// What is built or fetched.
+const LEFT_OUT: [&str; 2] = ["target", "node_modules"];
+
+/// The commits of a checkout. The packaged kernel names the last.
+enum History {
+    Copied,
+    LeftOut,
+}
+
+/// Copies the files of a folder, but for those of these names.
+fn copy(from: &Path, to: &Path, left_out: &[&str]) -> io::Result<()> {
+    fs::create_dir_all(to)?;
+    for entry in fs::read_dir(from)? {
+        let path = entry?.path();
+        let name = path.file_name().unwrap_or_default();
+        let to = to.join(name);
+        if left_out.iter().any(|not| *not == name) {
+            continue;
+        } else if path.is_dir() {
+            copy(&path, &to, left_out)?;
+        } else {
+            fs::copy(&path, &to)?;
+        }
+    }
+    Ok(())
+}
+
+#[test]
+fn no_folder_of_the_builder_is_in_an_image() {
+    let sysroot = output(Command::new("rustc").args(["--print", "sysroot"])).stdout;
+    let folders = [
+        workspace().display().to_string(),
+        target().display().to_string(),
+        cargo_home().display().to_string(),
+        sysroot.trim().to_owned(),
+    ];
+    for board in every_board() {
+        let elf = fs::read(application(board)).expect("an ELF file");
+        for folder in &folders {
+            assert!(folder.len() > 1);
+            let is_in_it = elf
+                .windows(folder.len())
+                .any(|bytes| bytes == folder.as_bytes());
+            assert!(!is_in_it, "{}: {folder}", board.name);
+        }
+    }
+}
+
+#[test]
+fn an_image_built_elsewhere_has_the_same_bytes() -> anyhow::Result<()> {
+    let (binary, chip) = SMALL;
+    let here = toolchain()
+        .build(binary, chip)
+        .unwrap_or_else(|error| panic!("{error}"));
+    let elsewhere = Elsewhere::new(History::LeftOut)?;
+    // Runs it, too: it ends with a panic, as it should.
+    let mut command = program("fw");
+    command.arg(binary);
+    let ran = elsewhere.output(&mut command);
+    assert!(
+        ran.stdout.contains("injected with the number 42"),
+        "{ran:?}"
+    );
+    let there = elsewhere
+        .target()
+        .join("firmware")
+        .join(chip)
+        .join("release")
+        .join(binary);
+    let [here, there] = [here, there].map(fs::read);
+    let [here, there] = [here?, there?];
+    assert!(flash_image(&here)? == flash_image(&there)?, "loaded bytes");
+    assert!(here == there, "the ELF file");
+    Ok(())
+}
+
+/// The files of a release, made here and elsewhere; and a board that has been flashed with the other's file.
+#[test]
+#[ignore = "builds every image twice, and a board answers for minutes"]
+fn a_release_made_elsewhere_is_the_same_and_is_verified_here() -> anyhow::Result<()> {
+    let elsewhere = Elsewhere::new(History::Copied)?;
+    let here = output(&mut program("release-files"));
+    assert!(here.status.success(), "{}", here.stderr);
+    let there = elsewhere.output(&mut program("release-files"));
+    assert!(there.status.success(), "{}", there.stderr);
+    let sums = |folder: PathBuf| fs::read_to_string(folder.join("release-files/SHA256SUMS"));
+    let (here, there) = (sums(target())?, sums(elsewhere.target())?);
+    assert_eq!(here, there);
+    assert_eq!(here.lines().count(), every_board().count() + 2, "{here}");
+
+    let blocks = fs::read(elsewhere.target().join("release-files/pico.uf2"))?;
+    let node = toolchain::ready_for_pico().unwrap_or_else(|missing| panic!("{missing}"));
+    let board = PicoMachine::flashed(&node, &blocks, &application(&PICO), LONG)?;
+    let folder = tempfile::tempdir()?;
+    let mut command = program("verify-board");
+    command
+        .args(["--no-questions", "--report"])
+        .arg(folder.path().join("pico"));
+    let verified = at_port_for(LONG, &mut Bench::with(board), &mut command, |bench| {
+        bench.carry(wire);
+    });
+    assert_eq!(verified.status.code(), Some(0), "{verified:?}");
+    let report = fs::read_to_string(folder.path().join("pico.md"))?;
+    assert!(report.contains(": built from commit "), "{report}");
+    Ok(())
+}
