@@ -81,7 +81,7 @@ pub const CORTEX_M3: Processor = Processor {
     code: 0,
     costs: prices::CORTEX_M3,
     frame: 200_000.0,
-    look_ahead: 360_000.0,
+    look_ahead: 380_000.0,
     flips: FIXED,
 };
 /// A Cortex-M0+, which has no long product either, as on the Raspberry Pi Pico: at 125 MHz a tick has 2,083,000 cycles. A start of

@@ -53,7 +53,7 @@ fn every_frame_carries_the_kernels_state_bit_identically() {
     let scale = start_energy - pendulum.least_energy();
     let stepping = Stepping {
         method: Method::Extrapolation10Fixed64,
-        steps: 1,
+        steps: 3,
     };
     let mut expected = Settings::default().run(0.0, stepping).expect("good");
     for (sequence, frame) in (0..).zip(frames) {

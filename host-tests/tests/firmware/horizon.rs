@@ -145,18 +145,24 @@ fn half_a_pixel_is_kept_until_the_time_on_the_panel_and_hardly_longer() {
 const LEAST_ENDING: usize = 10;
 const LEAST_CHANGES: usize = 10;
 
-/// What the page and figure 7 bring on every class of processors: goals, s.
+/// What the page and figure 7 bring on every class of processors: goals, s. The page may take 15 % of a frame of a Cortex-M3 at
+/// 50 MHz, and is known to be right for 20 s when it has played there for 12 s.
 #[test]
 fn the_page_and_figure_7_are_right_for_as_long_as_they_should() {
     for (name, least, most) in [
-        (SceneName::Page, 19.0, 30_000.0),
-        (SceneName::Figure7, 16.0, f32::INFINITY),
+        (SceneName::Page, 20.0, 125_000.0),
+        (SceneName::Figure7, 20.0, f32::INFINITY),
     ] {
         for processor in [CORTEX_M3, CORTEX_M4F] {
             let mut show = Show::on(processor, name, &name.first_settings())
                 .expect("a scene of the catalogue");
-            let ticks = 40 * TICK_RATE;
-            (0..ticks).for_each(|_| show.tick());
+            let (ticks, early) = (40 * TICK_RATE, 12 * TICK_RATE);
+            (0..early).for_each(|_| show.tick());
+            let is_early = name == SceneName::Page && processor == CORTEX_M3;
+            let horizon = f64::from(show.report().horizon);
+            println!("{}: {horizon} s after 12 s", name.name());
+            assert!(!is_early || horizon >= least, "{horizon} s after 12 s");
+            (early..ticks).for_each(|_| show.tick());
             let report = show.report();
             let stepping = report.stepping.expect("it moves");
             let cost = show.player.cost(stepping);

@@ -7,10 +7,10 @@ use firmware::config::{
 };
 use firmware::motion::{Planner, Settings};
 
-/// What these begin by, which is right wherever any other is.
+/// What these begin by, in finer steps than any reference: right wherever any other is.
 const LASTING: Stepping = Stepping {
     method: Method::Extrapolation10Fixed64,
-    steps: 1,
+    steps: 8,
 };
 const HEIGHT: f32 = 57.0;
 /// Ticks by which everything here is found.
@@ -95,7 +95,7 @@ fn there_is_nothing_to_do_without_a_motion_or_when_all_is_found() {
     );
 }
 
-/// In 64 bits steps that resolve all that the energy allows, four to a frame here, are right wherever any others are; longer
+/// In 64 bits steps as fine as those of the reference, which takes four to a frame here, are right wherever any others are; longer
 /// ones only as far as they have been looked at themselves.
 #[test]
 fn only_steps_that_resolve_a_motion_are_right_wherever_others_are() {

@@ -112,9 +112,9 @@ fn the_cheapest_that_is_right_for_longest_is_chosen() {
             M4F,
             STM32F405.frame,
             figure7,
-            (Extrapolation10Fixed64, 3),
+            (Extrapolation10Fixed64, 6),
             Limit::Growth,
-            12.0..=20.0,
+            16.0..=21.5,
         ),
         (
             M4F,
@@ -376,7 +376,7 @@ fn a_method_that_is_asked_for_resolves_the_motion() {
             Method::Rk4F32Direction
         ]
         .map(steps),
-        [3, 2, 2]
+        [7, 2, 2]
     );
 }
 

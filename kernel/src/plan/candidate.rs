@@ -19,6 +19,8 @@ pub(super) struct Candidate {
     pub error: f32,
     /// True if a frame was inaccurate, or if the candidate is excluded.
     pub failed: bool,
+    /// The steps per frame of the fine run that it was compared with; `u32::MAX` if there was none.
+    pub judge_steps: u32,
 }
 
 impl Candidate {
@@ -28,6 +30,7 @@ impl Candidate {
             accurate_frames: 0,
             error: 0.0,
             failed: false,
+            judge_steps: u32::MAX,
         }
     }
 
@@ -36,9 +39,13 @@ impl Candidate {
         f64::from(self.accurate_frames) > WORTH * f64::from(other.accurate_frames)
     }
 
-    /// Takes note of a frame with an error of about `error`, and hardly ever more than `bound`. NaN is wrong.
+    /// Takes note of a frame with an error of about `error`, and hardly ever more than `bound`. NaN is
+    /// wrong. After the first inaccurate frame nothing is noted.
     #[inline(never)] // one copy
     pub fn note(&mut self, error: f32, bound: f32) {
+        if self.failed {
+            return;
+        }
         if bound <= TOLERATED {
             self.error = if error > self.error {
                 error

@@ -60,8 +60,16 @@ pub struct Stepping {
     pub steps: u32,
 }
 
-/// At so many admissible steps or less in one, the roundings of [`Method::Extrapolation10Fixed64`] are what ends its horizon, not its steps.
-pub(super) const RESOLVING: f64 = 2.1;
+/// In steps of this many admissible ones or less, [`Method::Extrapolation10Fixed64`] is accurate for about as long as in any: its
+/// roundings end its horizon, not its steps.
+pub(super) const RESOLVING: f64 = 0.7;
+
+/// A scene begins in the first of these steps that a frame can pay for, in admissible ones.
+const INITIAL: [f64; 5] = [RESOLVING, 1.0, 1.5, 2.1, FIRST_STEP];
+
+/// The fine run of a reference has steps of this many admissible ones, or of the first of these that planning can pay for. Its error is
+/// measured, so that longer steps shorten a horizon and never make it wrong.
+const FINE: [f64; 6] = [0.53, 0.65, 0.8, 1.1, 1.5, 2.1];
 
 /// The first step looked at is no longer than this many admissible ones: the fastest rate that the energy allows turns a
 /// radian in it. In longer steps two runs could miss alike what neither sees.
@@ -83,6 +91,72 @@ pub(super) fn steps_to_frame(method: Method, rate: u16, longest: f64) -> u32 {
     }
 }
 
+/// A run in 64 bits and a finer one: the reference of candidates in 32 bits, and candidates themselves.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Pair {
+    pub coarse: Stepping,
+    pub fine: Stepping,
+}
+
+/// The truncation error of the fine run is taken to be this many times as large as the order says: it may be too low where
+/// steps do not resolve the motion.
+const TRUST: f32 = 16.0;
+/// The least share of the distance to the coarse run that the fine run is taken to be off by.
+const LEAST_SHARE: f32 = 1.0 / 32.0;
+
+impl Pair {
+    fn new(coarse: u32, fine: u32) -> Self {
+        let [coarse, fine] = [coarse, fine].map(|steps| Stepping {
+            method: Method::Extrapolation10Fixed64,
+            steps,
+        });
+        Self { coarse, fine }
+    }
+
+    /// Returns the pair whose coarse run makes `steps` steps per frame. The fine one makes a third more, or `least` if that is more.
+    pub fn of_coarse(steps: u32, least: u32) -> Self {
+        let more = (steps / 3).max(1);
+        Self::new(steps, steps.saturating_add(more).max(least))
+    }
+
+    /// Returns the pairs whose fine run has one of the [`FINE`] steps, the finest first. The coarse run makes at least `least`
+    /// steps per frame, and at most `most`.
+    ///
+    /// If that is fewer than usual, the fine run makes a third more, if these steps resolve the motion.
+    pub fn all(
+        rate: u16,
+        admissible: f64,
+        least: u32,
+        most: u32,
+    ) -> impl DoubleEndedIterator<Item = Self> {
+        let steps = move |longest: f64| {
+            let method = Method::Extrapolation10Fixed64;
+            steps_to_frame(method, rate, longest * admissible).max(2)
+        };
+        FINE.into_iter().map(move |longest| {
+            let fine = steps(longest);
+            let coarse = (fine - fine.div_ceil(4)).max(least);
+            if coarse > most && most >= least {
+                let [.., longest] = FINE;
+                Self::of_coarse(most, steps(longest))
+            } else {
+                Self::new(coarse, fine.max(coarse.saturating_add(1)))
+            }
+        })
+    }
+
+    /// Returns the share of the distance between both runs that the fine one may be off by: by its order, it is
+    /// (coarse/fine)^10 if both resolve the motion.
+    pub fn share_of_fine(&self) -> f32 {
+        let ratio = self.coarse.steps as f32 / self.fine.steps as f32;
+        let fifth = ratio * ratio * ratio * ratio * ratio;
+        (TRUST * fifth * fifth).clamp(LEAST_SHARE, 1.0)
+    }
+}
+
+/// The first of [`FINE`] for a pair that is no candidate itself.
+pub(super) const JUDGING: usize = 4;
+
 /// The longest step that resolves every motion of the problem's energy, s.
 ///
 /// Refuses what [`Pendulum::new`] and [`Pendulum::admissible_step`] refuse.
@@ -101,7 +175,7 @@ impl Stepping {
     #[doc(hidden)]
     pub fn lasting(problem: &Problem, costs: &Costs, frame: f32) -> Result<Self, Error> {
         let admissible = admissible_step(problem)?;
-        for longest in [RESOLVING, FIRST_STEP] {
+        for longest in INITIAL {
             if let Some(stepping) = Self::fixed64(problem, longest * admissible, costs, frame) {
                 return Ok(stepping);
             }
@@ -170,5 +244,40 @@ impl Stepping {
     #[inline(never)] // the motion stands on the stack
     fn check(self, problem: &Problem) -> Result<(), Error> {
         PlannedRun::new(problem, self).map(|_| ())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A pendulum that needs some steps per frame, on a chip that can pay for none, few and many.
+    #[test]
+    fn pairs_are_two_runs_and_keep_their_limits() {
+        for admissible in [1e-4, 1e-3, 3e-3, 1e-2, 1.0] {
+            for [least, most] in [[1, u32::MAX], [1, 3], [2, 9], [5, 3]] {
+                let pairs = || Pair::all(60, admissible, least, most);
+                let mut finer = u32::MAX;
+                for Pair { coarse, fine } in pairs() {
+                    assert!(least <= coarse.steps && coarse.steps < fine.steps);
+                    assert!(coarse.steps <= most || most < least);
+                    assert!(fine.steps <= finer);
+                    finer = fine.steps;
+                }
+                // However few steps a frame can pay for, the fine run resolves the motion.
+                let [.., longest] = FINE;
+                let resolving = 1.0 / (60.0 * longest * admissible);
+                assert!(pairs().all(|pair| f64::from(pair.fine.steps) >= resolving.floor()));
+            }
+        }
+    }
+
+    /// Twice the steps reduce an error of order 10 by 2^10; what is allowed for is more.
+    #[test]
+    fn the_fine_run_is_off_by_a_share_of_the_distance() {
+        assert_eq!(Pair::new(3, 6).share_of_fine(), LEAST_SHARE);
+        assert_eq!(Pair::new(99, 100).share_of_fine(), 1.0);
+        let share = Pair::new(3, 4).share_of_fine();
+        assert!((share / (TRUST * 0.75_f32.powi(10)) - 1.0).abs() < 1e-5);
     }
 }

@@ -12,11 +12,11 @@ use crate::error::Error;
 pub enum Limit {
     /// The duration asked for: all of it is right.
     End,
-    /// The growth of errors: nothing finer goes farther.
+    /// The growth of rounding errors in 64 bits, which finer steps do not reduce.
     Growth,
     /// The budget for a frame: finer steps or `f64` may go farther, and cost more.
     Budget,
-    /// The budget for planning: no later frame was looked at.
+    /// The budget for planning: it covers no later frame, or no trial in finer steps.
     Planning,
     /// The method and the step that were asked for: others may go farther ([`Search::of`](super::Search::of)).
     Method,

@@ -5,18 +5,23 @@
 //! the other chaotic, and no formula in the energy tells them apart. So a search plans. It runs the motion itself, in coarse
 //! steps and in fine ones, and compares where the bobs would be:
 //!
-//! | error of | is measured by the distance to |
+//! | error of | is measured by |
 //! |---|---|
-//! | any method in 32 bits, the closed form | a run in 64 bits, in steps that resolve the motion |
-//! | the same, where planning cannot pay for that | three runs in finer steps, the numbers given to each an ulp off |
-//! | 64 bits | three such runs |
+//! | any method in 32 bits, the closed form | the distance to a run in 64 bits, and the error of that |
+//! | the same, if planning cannot pay for that | the distances to three runs in finer steps, the numbers given to each an ulp off |
+//! | truncation in 64 bits | the distance to a second run in 64 bits in other steps |
+//! | rounding in 64 bits | its size where it arises, times the growth of small distances since |
+//!
+//! No run is taken for exact: along the one direction in which errors grow, two runs that are equally wrong may agree by
+//! chance. Growth is measured by motions in 32 bits that are kept close to the one in 64 bits.
 //!
 //! The coarsest step at which anything stays within the tolerance to the end decides; of all that does the cheapest is
 //! taken. If nothing does (chaos), what does longest is; if no method within the budgets meets the
 //! tolerance in any frame, [`PlanError::NoMethod`] says so. The search begins at a step that resolves all motions of the energy, by the proven
 //! bound of [`Pendulum::admissible_step`](crate::Pendulum::admissible_step), by compensated `f32` or 32 bits of fixed point,
 //! whichever costs less, and at half and a quarter of it. It goes over to 64 bits where rounding is the larger error or these
-//! cost less. Planning takes no heap, and is done in pieces that a busy caller can afford ([`Search`]).
+//! cost less, in the finest steps that both budgets can pay for. Planning takes no heap, and is done in pieces that a busy
+//! caller can afford ([`Search`]).
 //!
 //! What a step costs is the caller's business: [`Costs`] is a price list in any unit.
 //!
@@ -49,6 +54,7 @@ mod error;
 mod problem;
 mod run;
 mod search;
+mod shadow;
 mod trial;
 
 use crate::error::Error;
@@ -74,8 +80,8 @@ pub struct Plan {
     pub error: f32,
     /// What computing a frame costs, without drawing it; never more than the budget, but where the method was asked for.
     pub cost: f32,
-    /// Until when every frame is predicted to be right to the tolerance, s: the time of the last of them. No proof: of 2,000
-    /// scenes one may be wrong a little earlier (the repository's test `plan_study`).
+    /// Until when every frame is predicted to be right to the tolerance, s: the time of the last of them. It is no proof: the bound
+    /// on roundings is a measured one, and a frame may be wrong a little earlier (the repository's test `plan_study`).
     pub horizon: f64,
     /// What ends the horizon.
     pub limit: Limit,

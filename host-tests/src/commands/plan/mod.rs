@@ -117,7 +117,8 @@ fn limit(plan: &Plan, frame: f32) -> String {
         }
         Limit::End => "nothing cheaper that was tried is right to the end".into(),
         Limit::Growth => {
-            "the motion is chaotic: even 64 bits are not enough beyond this time".into()
+            "the motion is chaotic: even 64 bits are not enough beyond this time, in any number of steps"
+                .into()
         }
         Limit::Budget => format!(
             "errors grow; a method that lasts longer costs more than the {frame:.0} cycles allowed"

@@ -1,0 +1,286 @@
+//! The scenes of the study: classes to draw from at random, and single ones that are difficult.
+
+use std::f64::consts::PI;
+
+use double_pendulum::plan::Problem;
+use double_pendulum::{Motion, Parameters};
+use fastrand::Rng;
+use firmware::config::GRAVITY;
+use firmware::motion::half_pixel;
+use host_tests::oracle::random::{log_uniform, symmetric};
+
+/// The height of the display, pixels, if the class has no other.
+const HEIGHT: f64 = 64.0;
+/// Frames per second, if the class has no other.
+const RATE: u16 = 60;
+/// The duration of a scene, s, if the class has no other.
+const SECONDS: [f64; 2] = [2.0, 30.0];
+
+/// The least amplitude, rad.
+const LEAST: f64 = 0.01;
+/// The greatest velocity of a rod, in units of its own sqrt(g/l) and in rad/s.
+const GREATEST: [f64; 2] = [20.0, 60.0];
+
+/// A kind of scene.
+///
+/// Bob 1 has 1 kg and rod 1 has 1 m: with gravity given, the ratios are all there is. `log` means
+/// evenly spread in the logarithm.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Class {
+    /// Mass ratio m2/m1 1e-3 to 1e3, length ratio l2/l1 1e-2 to 1e2, 2 to 30 s: log.
+    ///
+    /// - Amplitude 0.01 to pi rad: every other one log, the others evenly.
+    /// - One angle is as large as the amplitude. The other one is too in every third scene,
+    ///   otherwise anything up to it.
+    /// - Every other scene starts at rest, the others with velocities up to a share of the greatest
+    ///   ones: 20 times the rod's own sqrt(g/l), at most 60 rad/s. The share 0.01 to 1 is spread as
+    ///   the amplitude is.
+    Broad,
+    /// At rest with both rods at 1.5 to 3.3 rad, to either side. Mass ratio 1 to 10 and length ratio
+    /// 0.5 to 2, log. 30 s.
+    High,
+    /// At rest with one rod or both within 1e-10 to 1e-7 rad of upright, log, the other one hanging.
+    /// Mass ratio 1e-2 to 1e2 and length ratio 0.1 to 10, log.
+    Upright,
+    /// As [`Broad`](Self::Broad), but mass ratio 10 to 1000.
+    Heavy,
+    /// As [`Broad`](Self::Broad), but mass ratio 1e-3 to 0.1.
+    Light,
+    /// As [`Broad`](Self::Broad), but mass ratio 0.1 to 10, length ratio 0.3 to 3, and velocities of
+    /// -60 to 60 rad/s, evenly.
+    Fast,
+    /// As [`Broad`](Self::Broad), but 1 to 3000 frames per second and a height of 32 to 1e5 pixels,
+    /// log. At most [`MOST_FRAMES`].
+    Odd,
+}
+
+/// The most frames of a scene of odd frame rate, so that the study ends.
+const MOST_FRAMES: f64 = 3_000.0;
+
+impl Class {
+    pub const ALL: [Self; 7] = [
+        Self::Broad,
+        Self::High,
+        Self::Upright,
+        Self::Heavy,
+        Self::Light,
+        Self::Fast,
+        Self::Odd,
+    ];
+
+    /// Returns the scenes of this class, without end.
+    pub fn scenes(self, seed: u64) -> impl Iterator<Item = Problem> {
+        let mut rng = Rng::with_seed(seed);
+        std::iter::repeat_with(move || self.scene(&mut rng))
+    }
+
+    fn scene(self, rng: &mut Rng) -> Problem {
+        let [least_mass, greatest_mass] = match self {
+            Self::Broad | Self::Odd => [1e-3, 1e3],
+            Self::High => [1.0, 10.0],
+            Self::Upright => [1e-2, 1e2],
+            Self::Heavy => [10.0, 1e3],
+            Self::Light => [1e-3, 0.1],
+            Self::Fast => [0.1, 10.0],
+        };
+        let [least_length, greatest_length] = match self {
+            Self::High => [0.5, 2.0],
+            Self::Upright => [0.1, 10.0],
+            Self::Fast => [0.3, 3.0],
+            Self::Broad | Self::Heavy | Self::Light | Self::Odd => [1e-2, 1e2],
+        };
+        let pendulum = Parameters {
+            m1: 1.0,
+            m2: log_uniform(rng, least_mass, greatest_mass),
+            l1: 1.0,
+            l2: log_uniform(rng, least_length, greatest_length),
+            g: GRAVITY,
+        };
+
+        let start = match self {
+            Self::High => {
+                let mut angle = || (1.5 + 1.8 * rng.f64()) * if rng.bool() { 1.0 } else { -1.0 };
+                Motion::at_rest(angle(), angle())
+            }
+            Self::Upright => {
+                let mut upright =
+                    || PI + log_uniform(rng, 1e-10, 1e-7) * if rng.bool() { 1.0 } else { -1.0 };
+                let [a1, a2] = [upright(), upright()];
+                match rng.u8(0..3) {
+                    0 => Motion::at_rest(a1, a2),
+                    1 => Motion::at_rest(a1, 0.0),
+                    _ => Motion::at_rest(0.0, a2),
+                }
+            }
+            Self::Fast => Motion {
+                w1: 60.0 * symmetric(rng),
+                w2: 60.0 * symmetric(rng),
+                ..swing(rng)
+            },
+            Self::Broad | Self::Heavy | Self::Light | Self::Odd => {
+                let start = swing(rng);
+                pushed(rng, &pendulum, start)
+            }
+        };
+
+        let [shortest, longest] = SECONDS;
+        let duration = match self {
+            Self::High => 30.0,
+            _ => log_uniform(rng, shortest, longest),
+        };
+        let usual = shown(pendulum, start, duration);
+        if self != Self::Odd {
+            return usual;
+        }
+        let rate = log_uniform(rng, 1.0, 3e3).round();
+        Problem {
+            tolerance: half_pixel(&pendulum, log_uniform(rng, 32.0, 1e5)),
+            duration: duration.min(MOST_FRAMES / rate),
+            rate: rate as u16,
+            ..usual
+        }
+    }
+}
+
+/// Returns a number of `LEAST` to `most`: every other one log, the others evenly.
+fn size(rng: &mut Rng, most: f64) -> f64 {
+    if rng.bool() {
+        log_uniform(rng, LEAST, most)
+    } else {
+        LEAST + (most - LEAST) * rng.f64()
+    }
+}
+
+/// Returns a start at rest.
+fn swing(rng: &mut Rng) -> Motion<f64> {
+    let amplitude = size(rng, PI);
+    let other = amplitude * symmetric(rng);
+    match rng.u8(0..3) {
+        0 => Motion::at_rest(amplitude, amplitude),
+        1 => Motion::at_rest(other, amplitude),
+        _ => Motion::at_rest(amplitude, other),
+    }
+}
+
+/// Gives every other start velocities.
+fn pushed(rng: &mut Rng, pendulum: &Parameters<f64>, start: Motion<f64>) -> Motion<f64> {
+    if !rng.bool() {
+        return start;
+    }
+    let share = size(rng, 1.0);
+    let [of_own, in_all] = GREATEST;
+    let mut velocity =
+        |l: f64| share * symmetric(rng) * (of_own * (GRAVITY / l).sqrt()).min(in_all);
+    Motion {
+        w1: velocity(pendulum.l1),
+        w2: velocity(pendulum.l2),
+        ..start
+    }
+}
+
+/// Returns a scene on a display of [`HEIGHT`], accurate to half a pixel.
+pub fn shown(pendulum: Parameters<f64>, start: Motion<f64>, duration: f64) -> Problem {
+    Problem {
+        pendulum,
+        start,
+        tolerance: half_pixel(&pendulum, HEIGHT),
+        duration,
+        rate: RATE,
+    }
+}
+
+/// Returns scenes that are accurate for some 20 s in 64 bits, each with neighbours, whose roundings
+/// differ.
+pub fn long() -> impl Iterator<Item = Problem> {
+    let scenes = [
+        (1.18219, 0.714144, 2.17128, 1.27892),
+        (2.15233, 1.72009, -2.41900, -2.39437),
+    ];
+    scenes.into_iter().flat_map(|(m2, l2, a1, a2)| {
+        [-1e-6, 0.0, 1e-6].map(|by| shown(pendulum(m2, l2), Motion::at_rest(a1 + by, a2), 30.0))
+    })
+}
+
+fn pendulum(m2: f64, l2: f64) -> Parameters<f64> {
+    Parameters {
+        m1: 1.0,
+        m2,
+        l1: 1.0,
+        l2,
+        g: GRAVITY,
+    }
+}
+
+/// Returns scenes for which planners have once predicted horizons that were too long.
+///
+/// In most of them the 64-bit run that others were compared with was as inaccurate as these, by the
+/// truncation of its steps and along the same unstable direction. The last three start so close to
+/// upright that torques are some 100 units of 32-bit fixed point.
+pub fn hard() -> impl Iterator<Item = Problem> {
+    let at_rest = [
+        (
+            1.4826889256467146,
+            1.4799525044318236,
+            [-2.0018157303742776, 1.5338129848838782],
+            30.0,
+        ),
+        (
+            9.21277683541668,
+            1.0810234776001242,
+            [2.8729130334994313, 1.8442480319308214],
+            30.0,
+        ),
+        (
+            4.531706614680641,
+            1.2479179547187897,
+            [3.158238877824255, 3.2087658676989745],
+            21.564,
+        ),
+        (
+            1.0472617484882536,
+            1.055621710215608,
+            [-2.158383629003499, 2.0514647871209992],
+            30.0,
+        ),
+        (
+            9.177492549219721,
+            1.5931701961118174,
+            [-1.9199503961822268, 1.5437370172036957],
+            30.0,
+        ),
+        (1.5, 1.5, [-1.9, 1.5], 30.0),
+        (
+            36.52164454459284,
+            0.9099955648494059,
+            [0.0, 3.141592526716453],
+            4.168,
+        ),
+        (
+            12.163950762818784,
+            0.525717763591576,
+            [3.141592931761884, 0.0],
+            4.168,
+        ),
+        (
+            26.02443797796008,
+            0.11214485532614257,
+            [0.0, 3.1415926713421167],
+            4.168,
+        ),
+    ]
+    .map(|(m2, l2, [a1, a2], duration)| shown(pendulum(m2, l2), Motion::at_rest(a1, a2), duration));
+    let moving = Problem {
+        rate: 11,
+        ..shown(
+            pendulum(5.548479106136162, 1.7324935668359651),
+            Motion {
+                a1: 1.2317869673428747,
+                a2: -0.40585594813669523,
+                w1: -7.6660058872035,
+                w2: 4.276755632018979,
+            },
+            14.5,
+        )
+    };
+    at_rest.into_iter().chain([moving])
+}
