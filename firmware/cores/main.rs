@@ -1,5 +1,5 @@
-//! Prints the golden bits of every method as this core computes them. For cores that no board here has: all it needs of a machine
-//! is a way to print and a way to end.
+//! Prints the golden bits of every method as this core computes them. For cores that no board here
+//! has: all it needs of a machine is a way to print and a way to end.
 #![no_std]
 #![no_main]
 

@@ -1,5 +1,6 @@
-//! Prints the golden bits of every method as this machine computes them. For builds by other compilers:
-//! `cargo +1.88 run --package firmware --example golden | diff kernel/golden/bits.csv -`.
+//! Prints the golden bits of every method as this machine computes them. For builds by other
+//! compilers: `cargo +1.88 run --package firmware --example golden | diff kernel/golden/bits.csv
+//! -`.
 
 use std::io::{self, Write};
 

@@ -1,4 +1,5 @@
-// Runs the WebAssembly module that the command line names: the image of `firmware/cores`, which imports a way to print.
+// Runs the WebAssembly module that the command line names: the image of `firmware/cores`, which
+// imports a way to print.
 'use strict';
 
 const { readFileSync, writeSync } = require('node:fs');

@@ -1,7 +1,7 @@
 //! The golden bits: motions whose bits are kept in `golden/bits.csv`.
 //!
-//! The tests of this crate compare every method with that file, and so does every emulated core of the repository. A change
-//! of a bit therefore shows as a change of the file.
+//! The tests of this crate compare every method with that file, and so does every emulated core of
+//! the repository. A change of a bit therefore shows as a change of the file.
 
 use core::fmt;
 
@@ -84,7 +84,8 @@ pub const MOTIONS: [Golden; 4] = [
 /// The bits of a motion by one method.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Bits {
-    /// The FNV-1a hash, 64 bits, of all words that the method carries, little-endian, after each step.
+    /// The FNV-1a hash, 64 bits, of all words that the method carries, little-endian, after each
+    /// step.
     pub checksum: u64,
     /// The words of a1, a2, p1 and p2 at the end.
     pub state: [u64; 4],

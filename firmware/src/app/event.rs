@@ -1,6 +1,5 @@
 //! What the application says of itself: what is news, and not again and again.
 
-use double_pendulum::Error;
 use embedded_io::ErrorType;
 
 use crate::app::PlannerEvent;
@@ -42,9 +41,9 @@ pub enum Event<Panel, Link> {
     Link(Link),
     /// A motion is asked for over the link.
     Asked,
-    /// The step is too long for the scene's motion, which has left the finite numbers; it stands at its last good
-    /// frame until it is started again.
-    Stopped(Error),
+    /// The scene's motion is too fast for this chip, or for the method that the user has selected.
+    /// It stands still until it is started again.
+    Stopped,
     /// The step is longer than this, s, the longest that resolves every motion of the energy of what was asked for.
     StepTooLong(f64),
     Motion(PlannerEvent),

@@ -16,8 +16,8 @@ use crate::display::{Controller, Display};
 use crate::graphics::{Canvas, FrameBuffers};
 use crate::job::{Job, OnBoards, Request};
 use crate::protocol::{
-    Answer, Command, Decoder, Field, Frame, LinkError, MAX_WIRE, Restarted, Status, ToHost,
-    decode_command, encode,
+    Answer, Command, Decoder, Field, Frame, LinkError, MAX_WIRE, PlayState, Restarted, Status,
+    ToHost, decode_command, encode,
 };
 use event::{FaultEdge, ThrottledCounter};
 
@@ -142,8 +142,8 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
                 total: self.dropped.total,
             });
         }
-        if let Err(error) = self.player.check() {
-            log(Event::Stopped(error));
+        if self.player.check() {
+            log(Event::Stopped);
         }
         self.player.draw(self.canvas);
         let scene_cycles = (self.instruments.stopwatch)().wrapping_sub(start);
@@ -236,6 +236,9 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
     fn execute(&mut self, command: Command, log: &mut impl Log<Panel, Link>) -> Result<(), Field> {
         if self.player.execute(command)? {
             log(Event::Started(self.player.name, self.player.settings));
+            if self.player.state() == PlayState::Stopped {
+                log(Event::Stopped);
+            }
             if let Some(stepping) = self.player.report.stepping {
                 log(Event::Motion(PlannerEvent::Shown(
                     stepping,

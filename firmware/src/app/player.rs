@@ -4,11 +4,11 @@ use double_pendulum::plan::Stepping;
 use double_pendulum::{Error, Method};
 
 use crate::app::pace::Pace;
-use crate::config::{GREATEST_ANGLE, Processor};
+use crate::config::{GREATEST_ANGLE, Processor, TICK_RATE};
 use crate::display::PanelReport;
-use crate::graphics::{Canvas, FadeLayer, text};
-use crate::motion::{CatchingUp, PlanResult, Planned, Planner, Resources, Settings};
-use crate::protocol::{Command, Field, Frame, Status};
+use crate::graphics::{Anchor, Canvas, FadeLayer, LINE, label, text};
+use crate::motion::{CatchingUp, Horizon, PlanResult, Planned, Planner, Resources, Settings};
+use crate::protocol::{Command, Field, Frame, PlayState, Status};
 use crate::scenes::{AnyScene, Report, SceneName};
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,7 +34,8 @@ pub struct Player<'a> {
     ink: &'a mut FadeLayer,
     pace: Pace,
     pub report: Report,
-    /// The motion has left the finite numbers.
+    /// True if the motion cannot be computed: it is too fast for every method that a frame can pay
+    /// for, or it has left the finite numbers.
     stopped: bool,
 }
 
@@ -59,7 +60,8 @@ impl<'a> Player<'a> {
         }
     }
 
-    /// Plays a scene with `settings`. A scene that cannot use the requested method follows its plan.
+    /// Plays a scene with `settings`. A scene that cannot use the requested method follows its
+    /// plan.
     ///
     /// Returns the kernel's error if the settings describe no pendulum. Then nothing is changed.
     pub fn play(&mut self, name: SceneName, settings: Settings) -> Result<(), Error> {
@@ -69,7 +71,8 @@ impl<'a> Player<'a> {
         }
     }
 
-    /// Plays a scene by `method` and no other, or by its plan. If that is impossible, nothing is changed.
+    /// Plays a scene by `method` and no other, or by its plan. If that is impossible, nothing is
+    /// changed.
     #[inline(never)] // what a scene needs to start would be on the stack of every frame
     fn play_by(
         &mut self,
@@ -82,10 +85,14 @@ impl<'a> Player<'a> {
             method,
         };
         let height = self.scene.start(name, &settings, &resources)?;
-        (self.name, self.settings, self.stopped, self.next) = (name, settings, false, None);
+        self.name = name;
+        self.settings = settings;
+        self.stopped = self.scene.is_too_fast();
+        self.next = None;
         self.is_fixed = method.is_some();
         let initial = self.scene.report(0).stepping;
         let keeps_initial = self.is_fixed || self.scene.planned().is_none();
+        let height = height.filter(|_| !self.stopped);
         self.planner
             .start(&settings, height, initial, keeps_initial);
         *self.ink = FadeLayer::NONE;
@@ -162,23 +169,30 @@ impl<'a> Player<'a> {
         }
     }
 
+    /// Begins to switch to the method and steps of a plan, if that does not shorten the horizon.
+    ///
+    /// A plan whose horizon is past is not followed: its motion is as inaccurate as the one that is
+    /// shown. Nor is one whose motion costs less, but ends sooner than what the panel has claimed.
     #[inline(never)] // what a motion needs to start would be on the stack of every frame
     fn follow(&mut self, found: &PlanResult) {
-        if let (Ok(plan), false) = (found, self.is_fixed) {
-            let stepping = plan.stepping();
-            if self
-                .scene
-                .planned()
-                .is_some_and(|simulation| simulation.motion.stepping() != stepping)
-            {
-                self.next = CatchingUp::new(&self.settings, stepping, &self.planner.processor).ok();
-            }
+        let (Ok(plan), false) = (found, self.is_fixed) else {
+            return;
+        };
+        let Some(simulation) = self.scene.planned() else {
+            return;
+        };
+        let current = simulation.motion.stepping();
+        let planned = plan.stepping();
+        let time = self.planner.ticks as f64 / f64::from(TICK_RATE);
+        let is_longer = plan.horizon >= self.planner.horizon(current).max(time);
+        if planned != current && is_longer {
+            self.next = CatchingUp::new(&self.settings, planned, &self.planner.processor).ok();
         }
     }
 
     /// Does a piece of the planning that the next tick would do; whether there is more.
     pub fn look_ahead(&mut self) -> bool {
-        !self.is_paused() && self.next.is_none() && self.planner.work_ahead()
+        !self.is_still() && self.next.is_none() && self.planner.work_ahead()
     }
 
     pub fn plan(&self) -> Option<Planned> {
@@ -193,52 +207,98 @@ impl<'a> Player<'a> {
     /// The scene in numbers, with what the planner knows of it.
     fn now(&self) -> Report {
         let report = self.scene.report(self.planner.ticks);
+        if self.stopped {
+            return Report {
+                stepping: None,
+                horizon: Horizon::Until(0.0),
+                ..report
+            };
+        }
         let Some(stepping) = report.stepping.filter(|_| self.planner.has_task()) else {
             return report;
         };
-        Report {
-            horizon: self.planner.horizon(stepping) as f32,
-            is_looking: self.planner.is_searching(),
-            ..report
-        }
+        let verified = self.planner.horizon(stepping) as f32;
+        let horizon = if self.planner.is_settled() && self.next.is_none() {
+            Horizon::Until(verified)
+        } else if verified >= report.time as f32 {
+            Horizon::AtLeast(verified)
+        } else {
+            Horizon::Undecided
+        };
+        Report { horizon, ..report }
     }
 
-    /// Takes the scene's numbers if they are finite; else stops its time for good and says why, once. To be asked
-    /// before each frame: what is drawn and reported stays at the last good one.
+    /// Takes the scene's report if its numbers are finite. Otherwise stops the scene, and returns
+    /// true once; the report stays the last good one.
+    ///
+    /// To be called before each frame.
     #[inline(never)]
-    pub fn check(&mut self) -> Result<(), Error> {
+    pub fn check(&mut self) -> bool {
         if self.stopped {
-            return Ok(());
+            return false;
         }
         let report = self.now();
-        report.state.finite().inspect_err(|_| self.stopped = true)?;
-        self.report = report;
-        Ok(())
+        self.stopped = report.state.finite().is_err();
+        if !self.stopped {
+            self.report = report;
+        }
+        self.stopped
     }
 
-    /// Draws the scene over the canvas that holds its last frame, and a mark if its time stands still.
+    /// Draws the scene, and a mark if it is paused. Of a stopped scene it writes why nothing moves.
     #[inline(never)]
     pub fn draw(&self, canvas: &mut Canvas) {
-        if !self.stopped {
-            self.scene.draw(&self.report, self.ink, canvas);
-        }
-        if self.is_paused() {
-            text::pause_mark(canvas);
+        match self.state() {
+            PlayState::Playing => self.scene.draw(&self.report, self.ink, canvas),
+            PlayState::Paused => {
+                self.scene.draw(&self.report, self.ink, canvas);
+                text::pause_mark(canvas);
+            }
+            PlayState::Stopped => self.draw_stopped(canvas),
         }
     }
 
-    pub fn is_paused(&self) -> bool {
-        self.pace.paused || self.stopped
+    /// Writes that the motion is too fast, and the numbers that a user can change by the buttons.
+    fn draw_stopped(&self, canvas: &mut Canvas) {
+        canvas.clone_from(&Canvas::BLACK);
+        let of = match self.method {
+            None => "for this chip",
+            Some(_) => "for this method",
+        };
+        text::write(canvas, "too fast", Anchor::Middle(2 * LINE));
+        text::write(canvas, of, Anchor::Middle(3 * LINE));
+        let [angle, _] = self.settings.degrees;
+        let mass_ratio = label::mass_ratio(self.settings.mass_ratio());
+        text::write(canvas, &mass_ratio, Anchor::Middle(5 * LINE));
+        text::write(
+            canvas,
+            &label::degrees("α ", angle),
+            Anchor::Middle(6 * LINE),
+        );
+    }
+
+    /// Returns true if the scene does not advance.
+    pub fn is_still(&self) -> bool {
+        self.state() != PlayState::Playing
+    }
+
+    pub fn state(&self) -> PlayState {
+        if self.stopped {
+            PlayState::Stopped
+        } else if self.pace.paused {
+            PlayState::Paused
+        } else {
+            PlayState::Playing
+        }
     }
 
     /// The frame as it is told to the host, but for what only the board's clock and link know.
     pub fn frame(&self) -> Frame {
         let [start_angle, _] = self.settings.angles();
-        let (scene, paused, mass_ratio) = (self.name, self.is_paused(), self.settings.mass_ratio());
         Frame {
-            scene,
-            paused,
-            mass_ratio,
+            scene: self.name,
+            state: self.state(),
+            mass_ratio: self.settings.mass_ratio(),
             start_angle,
             report: self.report,
             ..Frame::default()
@@ -253,15 +313,14 @@ impl<'a> Player<'a> {
             method,
             ..
         } = *self;
-        let (paused, steps, speed) = (self.is_paused(), self.pace.steps, self.pace.speed());
         Status {
             scene,
             settings,
             method,
             processor: self.planner.processor.code,
-            paused,
-            steps,
-            speed,
+            state: self.state(),
+            steps: self.pace.steps,
+            speed: self.pace.speed(),
             panel: PanelReport::default(),
         }
     }
@@ -272,13 +331,14 @@ impl<'a> Player<'a> {
             scene,
             settings,
             method,
-            paused,
+            state,
             steps,
             speed,
             ..
         } = *status;
         let mut pace = Pace::default();
-        (pace.paused, pace.steps) = (paused, steps);
+        pace.paused = state == PlayState::Paused;
+        pace.steps = steps;
         pace.set_speed(speed.into())?;
         let before = core::mem::replace(&mut self.method, method);
         self.start(scene, settings)

@@ -252,11 +252,9 @@ fn log<Panel: Debug, Link: Error>(event: Event<Panel, Link>) {
         Event::Lost { bytes, total } => {
             defmt::warn!("{} received bytes lost, {} since reset", bytes, total)
         }
-        Event::Stopped(_) => {
-            defmt::error!(
-                "stopped: this motion is too fast for this chip; press space or change the masses"
-            )
-        }
+        Event::Stopped => defmt::warn!(
+            "stopped: this motion is too fast; change the masses or the angle, or choose another scene"
+        ),
         Event::StepTooLong(step) => {
             defmt::warn!("the step is too long for this energy, {} s would do", step)
         }

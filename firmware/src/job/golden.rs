@@ -7,7 +7,8 @@ use double_pendulum::golden::{HEADER, Line, MOTIONS};
 
 use super::table::golden_bits;
 
-/// Writes what `golden/bits.csv` of the kernel should be: a heading and a line for each method and motion.
+/// Writes what `golden/bits.csv` of the kernel should be: a heading and a line for each method and
+/// motion.
 ///
 /// A method that refuses a motion has its error in place of the bits.
 pub fn write_golden(output: &mut impl Write) -> fmt::Result {

@@ -24,7 +24,27 @@ pub struct Misprinted {
     inertia: f32,
     /// sin a1, cos a1, sin D, cos D, q1, q2 (1/s): nothing here needs an angle.
     z: [f32; 6],
+    /// True if the rods were ever too fast for the steps. Then `z` stays as it was before.
+    is_lost: bool,
 }
+
+/// The largest number of steps in a tick: all that a Cortex-M3 has time for.
+const PARTS: u32 = 4 * STEPS_PER_TICK;
+
+/// The length of the shortest step, s.
+const PART: f32 = (DT / 4.0) as f32;
+
+/// The largest angle by which a rod may turn in a step, rad. Beyond it steps of this length do not
+/// resolve the motion.
+const MOST_TURN: f32 = 0.5;
+
+/// The largest error of a squared length in a tick. A step in which the rates change too fast for the
+/// bounds above stretches a direction by more.
+const LENGTH_ERROR: f32 = 1e-3;
+
+/// The largest angle by which the elbow may bend in a step, rad, times sqrt(1 + mu): r changes
+/// within an angle of 1/sqrt(1 + mu).
+const MOST_BEND: f32 = 1.0;
 
 impl Misprinted {
     /// Equal rods, let go at `start`.
@@ -50,12 +70,32 @@ impl Misprinted {
             gravity: g / l,
             inertia,
             z,
+            is_lost: false,
         }
     }
 
+    /// Returns true if the motion has become too fast to be shown. It is then lost for good.
+    pub fn is_lost(&self) -> bool {
+        self.is_lost
+    }
+
+    /// Advances by one tick, in steps that resolve the motion at both of their ends, as long as any do.
     pub fn tick(&mut self) {
-        for _ in 0..STEPS_PER_TICK {
-            self.z = rk4::step(|z| self.rates(z), &self.z, DT as f32);
+        let mut left = PARTS;
+        let mut parts = PARTS / STEPS_PER_TICK;
+        while left > 0 {
+            let z = rk4::step(|z| self.rates(z), &self.z, parts as f32 * PART);
+            if self.is_resolved(&self.z, parts) && self.is_resolved(&z, parts) {
+                self.z = z;
+                left -= parts;
+            } else if parts > 1 {
+                parts /= 2;
+            } else {
+                self.is_lost = true;
+            }
+            if self.is_lost {
+                return;
+            }
         }
         let [sin1, cos1, sin_d, cos_d, q1, q2] = self.z;
         let ([sin1, cos1], [sin_d, cos_d]) = (unit([sin1, cos1]), unit([sin_d, cos_d]));
@@ -78,6 +118,7 @@ impl Misprinted {
             gravity,
             inertia,
             z: [_, _, sin_d, cos_d, q1, q2],
+            ..
         } = self;
         let [[_, cos1], [_, cos2]] = self.directions();
         let q = q1 - q2 * cos_d;
@@ -85,17 +126,37 @@ impl Misprinted {
         inertia * (kinetic - gravity * ((1.0 + mu) * cos1 + mu * cos2))
     }
 
-    fn rates(&self, &[sin1, cos1, sin_d, cos_d, q1, q2]: &[f32; 6]) -> [f32; 6] {
+    /// Returns u and v, the rates at which rods 1 and 2 turn, 1/s.
+    fn turning(&self, &[_, _, sin_d, cos_d, q1, q2]: &[f32; 6]) -> [f32; 2] {
+        let mu = self.mass_ratio;
+        let r = 1.0 / (1.0 + mu * sin_d * sin_d);
+        [
+            (q1 - q2 * cos_d) * r,
+            (q2 * (1.0 + mu) - q1 * mu * cos_d) * r,
+        ]
+    }
+
+    /// Returns true if a step of this many [`PART`]s resolves the motion near `z`.
+    fn is_resolved(&self, z: &[f32; 6], parts: u32) -> bool {
+        let [turn1, turn2] = self.turning(z).map(|rate| rate * (parts as f32 * PART));
+        let bend = turn1 - turn2;
+        let [sin1, cos1, sin_d, cos_d, ..] = *z;
+        let is_unit = |sin: f32, cos: f32| (sin * sin + cos * cos - 1.0).abs() <= LENGTH_ERROR;
+        is_unit(sin1, cos1)
+            && is_unit(sin_d, cos_d)
+            && turn1.abs() <= MOST_TURN
+            && turn2.abs() <= MOST_TURN
+            && bend * bend * (1.0 + self.mass_ratio) <= MOST_BEND * MOST_BEND
+    }
+
+    fn rates(&self, z: &[f32; 6]) -> [f32; 6] {
         let &Self {
             mass_ratio: mu,
             gravity,
             ..
         } = self;
-        let r = 1.0 / (1.0 + mu * sin_d * sin_d);
-        let (u, v) = (
-            (q1 - q2 * cos_d) * r,
-            (q2 * (1.0 + mu) - q1 * mu * cos_d) * r,
-        );
+        let [sin1, cos1, sin_d, cos_d, ..] = *z;
+        let [u, v] = self.turning(z);
         let (w, force) = (u - v, u * v * sin_d);
         let sin2 = sin1 * cos_d - cos1 * sin_d;
         let [torque1, torque2] = [(1.0 + mu) * gravity * sin1, mu * gravity * sin2];

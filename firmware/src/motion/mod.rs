@@ -1,10 +1,12 @@
 //! The motion itself, apart from any frame of it: settings, stepping, planning.
 
+mod horizon;
 mod misprinted;
 mod planner;
 mod settings;
 mod simulation;
 
+pub use horizon::Horizon;
 pub use misprinted::Misprinted;
 pub use planner::{PlanResult, Planned, Planner};
 pub use settings::{Settings, half_pixel};

@@ -4,7 +4,7 @@ use double_pendulum::plan::{PlannedRun, Stepping};
 use double_pendulum::{Error, Method, Parameter, Pendulum, State};
 
 use crate::config::Processor;
-use crate::graphics::{HEIGHT, RodDirections};
+use crate::graphics::HEIGHT;
 use crate::motion::Settings;
 
 /// What a motion may be computed by.
@@ -20,13 +20,19 @@ pub struct Resources {
 #[derive(Clone, Debug)]
 pub struct Simulation {
     pub energy: Energy,
-    /// To be read: only [`tick`](Self::tick) moves it.
+    /// The motion, to be read: only [`tick`](Self::tick) advances it.
     pub motion: PlannedRun,
+    /// True if a frame pays for no method that resolves the motion. Then `motion` is only a pose.
+    pub is_too_fast: bool,
 }
 
 impl Simulation {
-    /// At the start: by the method that is asked for, else by the stepping expected to stay right longest before anything is
-    /// planned. The kernel's error if the pendulum is too quick for what may be spent.
+    /// Creates a simulation at its start, computed by the requested method or, without one, by
+    /// [`Stepping::initial`].
+    ///
+    /// # Errors
+    ///
+    /// Refuses settings that describe no pendulum, and a motion that the requested method refuses.
     pub fn new(
         settings: &Settings,
         &Resources {
@@ -34,17 +40,21 @@ impl Simulation {
             method,
         }: &Resources,
     ) -> Result<Self, Error> {
-        let (pendulum, start) = settings.start()?;
+        let (pendulum, _) = settings.start()?;
         let problem = settings.problem(HEIGHT as f32);
-        let stepping = match method {
-            Some(method) => affordable(Stepping::of(&problem, method)?, processor)?,
-            None => Stepping::lasting(&problem, &processor.costs, processor.frame)?,
+        let initial = match method {
+            Some(method) => Some(affordable(Stepping::of(&problem, method)?, processor)?),
+            None => Stepping::initial(&problem, &processor.costs, processor.frame)?,
+        };
+        let stepping = match initial {
+            Some(stepping) => stepping,
+            None => Stepping::of(&problem, Method::Rk4F32Direction)?,
         };
         pendulum.check_step(1.0 / (f64::from(problem.rate) * f64::from(stepping.steps)))?;
-        let motion = settings.run(0.0, stepping)?;
         Ok(Self {
-            energy: Energy::new(pendulum, motion.directions(), &start),
-            motion,
+            energy: Energy::new(settings)?,
+            motion: settings.run(0.0, stepping)?,
+            is_too_fast: initial.is_none(),
         })
     }
 
@@ -108,34 +118,52 @@ impl CatchingUp {
     }
 }
 
-/// The energy a motion started with, to hold what it has become against.
+/// The energy of a motion at its start, to compare its later energy with.
+///
+/// Energies are in `f64` and above that of hanging at rest, K = E - Emin, a sum of terms none of
+/// which is negative. So the error of a motion in 64 bits is known to a few roundings of `f64`,
+/// however small its swings are.
 #[derive(Clone, Debug)]
 pub struct Energy {
-    pub pendulum: Pendulum<f32>,
-    /// J.
-    pub start: f32,
+    pendulum: Pendulum<f64>,
+    /// K at the start, J.
+    start: f64,
 }
 
 impl Energy {
-    pub fn new(pendulum: Pendulum<f32>, directions: RodDirections, start: &State<f32>) -> Self {
-        let start = pendulum.energy_at(directions, [start.p1, start.p2]);
-        Self { pendulum, start }
+    /// Returns the energy of the start that `settings` describe.
+    ///
+    /// # Errors
+    ///
+    /// Refuses settings that describe no pendulum.
+    pub fn new(settings: &Settings) -> Result<Self, Error> {
+        let pendulum = Pendulum::new(&settings.parameters.cast())?;
+        let start = pendulum.energy_above_rest(&pendulum.to_state(&settings.motion().cast()));
+        Ok(Self { pendulum, start })
     }
 
-    /// (E - E0)/(E0 - Emin), with E0 the energy at the start and Emin that of hanging at rest; 0 if the start is
-    /// hanging at rest, which it never leaves. Rods that point to these `directions` now have the momenta of `state`.
-    pub fn error(&self, directions: RodDirections, state: &State<f32>) -> f32 {
-        let energy = self.pendulum.energy_at(directions, [state.p1, state.p2]);
-        let scale = self.start - self.pendulum.least_energy();
-        if scale > 0.0 {
-            (energy - self.start) / scale
+    /// Returns (E - E0)/(E0 - Emin) of the motion as it is computed, not as its numbers are
+    /// rounded for the report; 0 if the start is hanging at rest, which a motion never leaves.
+    pub fn error(&self, motion: &PlannedRun) -> f32 {
+        self.relative(motion.energy_above_rest(&self.pendulum))
+    }
+
+    /// Returns the same of a motion that is in this state now.
+    pub fn error_of_state(&self, state: &State<f32>) -> f32 {
+        self.relative(self.pendulum.energy_above_rest(&state.cast()))
+    }
+
+    fn relative(&self, energy: f64) -> f32 {
+        if self.start > 0.0 {
+            ((energy - self.start) / self.start) as f32
         } else {
             0.0
         }
     }
 
-    /// The energy, J, that has this [`error`](Self::error).
+    /// Returns the energy E, J, that has this [`error`](Self::error).
     pub fn of_error(&self, error: f32) -> f32 {
-        self.start + error * (self.start - self.pendulum.least_energy())
+        let above_rest = self.start + f64::from(error) * self.start;
+        (self.pendulum.least_energy() + above_rest) as f32
     }
 }

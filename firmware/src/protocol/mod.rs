@@ -30,7 +30,9 @@ use serde::de::DeserializeOwned;
 use crate::job::CRC;
 
 pub use command::{Command, Field, decode_command, encode_command};
-pub use to_host::{Answer, BoardName, Cause, Frame, Identity, Restarted, Status, ToHost};
+pub use to_host::{
+    Answer, BoardName, Cause, Frame, Identity, PlayState, Restarted, Status, ToHost,
+};
 
 /// The version of the protocol; the first byte of every message.
 pub const VERSION: u8 = 12;

@@ -83,8 +83,7 @@ pub struct Frame {
     /// Bytes from the host that were lost because they came faster than they were taken, since reset; at least so many.
     pub lost: u32,
     pub scene: SceneName,
-    /// The scene's time stands still.
-    pub paused: bool,
+    pub state: PlayState,
     pub mass_ratio: f32,
     /// Start angle of rod 1, rad; on the page that of both.
     pub start_angle: f32,
@@ -106,14 +105,26 @@ pub struct Status {
     pub method: Option<Method>,
     /// The class of the processor, by its place in [`PROCESSORS`](crate::config::PROCESSORS).
     pub processor: u8,
-    /// Its time stands still.
-    pub paused: bool,
+    pub state: PlayState,
     /// Ticks still to do before it stops, if it was told to do some.
     pub steps: u32,
     /// Simulated time per real time.
     pub speed: f32,
     /// The state of the panel.
     pub panel: PanelReport,
+}
+
+choice! {
+    /// The state of the scene's time.
+    PlayState {
+        /// It advances.
+        Playing = "playing";
+        /// It stands still until a command lets it go on.
+        Paused = "paused";
+        /// It stands still because the motion is too fast for this chip, or for the method that the
+        /// user has selected. Other settings or another scene start again.
+        Stopped = "stopped";
+    }
 }
 
 choice! {

@@ -46,9 +46,18 @@ pub struct Beats {
     shape: [f32; 2],
     scale: f32,
     spots: [Spot; 2],
+    mass_ratio: f32,
+    /// Both angles of the exact motion, within half a turn either way, rad.
+    exact: [f32; 2],
 }
 
 impl Beats {
+    /// Returns both angles of the exact motion, within half a turn either way, rad.
+    fn exact_angles(&self) -> [f32; 2] {
+        let directions = self.simulation.motion.directions();
+        directions.map(|[sin, cos]| libm::atan2f(sin, cos))
+    }
+
     /// Where the linear and the exact motion are, each in its figure.
     fn spots(&self) -> [Spot; 2] {
         let [fast_shape, slow_shape] = self.shape;
@@ -57,12 +66,9 @@ impl Beats {
             let across = slow_shape * (a2 - fast_shape * a1) / (slow_shape - fast_shape);
             Spot::at(x + self.scale * across, y - self.scale * (a2 - across))
         };
-        let (motion, [left, right]) = (&self.simulation.motion, MIDDLES);
-        let exact = motion.directions().map(|[sin, cos]| libm::atan2f(sin, cos));
-        [
-            spot(left, self.linear.at(motion.time()).angles()),
-            spot(right, exact),
-        ]
+        let [left, right] = MIDDLES;
+        let linear = self.linear.at(self.simulation.motion.time()).angles();
+        [spot(left, linear), spot(right, self.exact)]
     }
 }
 
@@ -86,17 +92,31 @@ impl Scene for Beats {
             shape,
             scale,
             spots,
+            mass_ratio: settings.mass_ratio(),
+            exact: [0.0; 2],
         };
+        scene.exact = scene.exact_angles();
         scene.spots = scene.spots();
-        Ok((scene, (scale > 0.0).then_some(4.0 * scale)))
+
+        // An error of both angles moves a spot by less than that of one times this.
+        let [fast_shape, _] = shape;
+        let gain = libm::sqrtf(0.5 * (1.0 + fast_shape * fast_shape));
+        Ok((scene, (scale > 0.0).then_some(4.0 * scale * gain)))
     }
 
     fn tick(&mut self, _: u64, ink: &mut FadeLayer) {
         self.simulation.tick();
+        let before = self.exact;
+        self.exact = self.exact_angles();
         let spots = self.spots();
-        for (from, to) in self.spots.into_iter().zip(spots) {
+
+        // An angle that passes straight up goes on at the other edge of the figure, without a line
+        // across it.
+        let wraps = |(from, to): (f32, f32)| (from - to).abs() > core::f32::consts::PI;
+        let is_cut = [false, before.into_iter().zip(self.exact).any(wraps)];
+        for ((from, to), is_cut) in self.spots.into_iter().zip(spots).zip(is_cut) {
             Stroke {
-                from,
+                from: if is_cut { to } else { from },
                 to,
                 radius: HALF_WIDTH,
             }
@@ -120,8 +140,8 @@ impl Scene for Beats {
         }
         text::write(canvas, "linear", Anchor::Left(0));
         text::write(canvas, "exact", Anchor::Right(0));
-        let mass_ratio = self.simulation.energy.pendulum.parameters().mass_ratio();
-        text::write(canvas, &label::mass_ratio(mass_ratio), Anchor::Middle(0));
+        let mass_ratio = label::mass_ratio(self.mass_ratio);
+        text::write(canvas, &mass_ratio, Anchor::Middle(0));
         let reach = if self.scale > 0.0 {
             (REACH / self.scale).to_degrees()
         } else {
@@ -148,5 +168,9 @@ impl Scene for Beats {
 
     fn planned(&mut self) -> Option<&mut Simulation> {
         Some(&mut self.simulation)
+    }
+
+    fn is_too_fast(&self) -> bool {
+        self.simulation.is_too_fast
     }
 }

@@ -4,7 +4,7 @@ use double_pendulum::Error;
 use double_pendulum::plan::PlannedRun;
 use heapless::Deque;
 
-use crate::config::TICK_RATE;
+use crate::config::{Processor, TICK_RATE};
 use crate::graphics::{
     Anchor, Canvas, FadeLayer, Height, LINE, LOWEST, Place, SUBPIXELS, TRACE_HALF_WIDTH, View,
     WIDTH, label, plot, text,
@@ -77,7 +77,17 @@ impl Butterfly {
 impl Scene for Butterfly {
     #[inline(never)] // all scenes' preparations would stand side by side on the stack
     fn new(settings: &Settings, resources: &Resources) -> Result<(Self, Option<f32>), Error> {
-        let first = Simulation::new(settings, resources)?;
+        // A frame pays for both twins.
+        let &Resources { processor, method } = resources;
+        let each = Processor {
+            frame: 0.5 * processor.frame,
+            ..processor
+        };
+        let resources = Resources {
+            processor: each,
+            method,
+        };
+        let first = Simulation::new(settings, &resources)?;
         let second = settings.run(APART, first.motion.stepping())?;
         let views = [first.motion.directions(), second.directions()]
             .map(|directions| View::new(&settings.parameters, Place::HALVES[0], directions));
@@ -138,5 +148,9 @@ impl Scene for Butterfly {
 
     fn report(&self, _: u64) -> Report {
         Report::of(&self.first)
+    }
+
+    fn is_too_fast(&self) -> bool {
+        self.first.is_too_fast
     }
 }

@@ -14,7 +14,7 @@ use double_pendulum::{Error, State};
 
 use crate::config::{GREATEST_ANGLE, TICK_RATE};
 use crate::graphics::{Anchor, Canvas, FadeLayer, Fading, label, text};
-use crate::motion::{Resources, Settings, Simulation};
+use crate::motion::{Horizon, Resources, Settings, Simulation};
 
 /// Something to watch: it starts from settings, moves tick by tick and is drawn when there is time for it.
 pub trait Scene: Sized {
@@ -40,7 +40,16 @@ pub trait Scene: Sized {
     fn planned(&mut self) -> Option<&mut Simulation> {
         None
     }
+
+    /// Returns true if no method resolves the motion at a cost that a frame can pay. Then the scene
+    /// must not advance.
+    fn is_too_fast(&self) -> bool {
+        false
+    }
 }
+
+/// The smallest energy error that `f64` can show: the energy is a sum of some 20 rounded numbers.
+pub const LEAST_ENERGY_ERROR: f32 = 4e-15;
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Report {
@@ -50,13 +59,10 @@ pub struct Report {
     pub time: f64,
     /// The canonical state of the first pendulum shown, turns counted; zeros where none moves.
     pub state: State<f32>,
-    /// (E - E0)/(E0 - Emin) of that pendulum: its energy error relative to the energy at the start above hanging at rest.
+    /// (E - E0)/(E0 - Emin) of that pendulum as it is computed, before its numbers are rounded for
+    /// this report. Less than [`LEAST_ENERGY_ERROR`] either way is rounding of the energy itself.
     pub energy_error: f32,
-    /// Until when the frame is known to be right to [half a pixel](crate::config::HALF_PIXEL) about the exact motion, s after
-    /// the start; infinity where nothing can be wrong.
-    pub horizon: f32,
-    /// Whether that is only a lower bound so far.
-    pub is_looking: bool,
+    pub horizon: Horizon,
     /// What it is computed by; `None` where no motion is.
     pub stepping: Option<Stepping>,
 }
@@ -67,7 +73,6 @@ impl Report {
         Self {
             step: ticks,
             time: time(ticks),
-            horizon: f32::INFINITY,
             ..Self::default()
         }
     }
@@ -75,11 +80,10 @@ impl Report {
     /// Of a scene whose first pendulum is `simulation`.
     #[inline(never)] // no second copy
     pub fn of(simulation: &Simulation) -> Self {
-        let (motion, state) = (&simulation.motion, simulation.motion.rounded_state());
-        let energy_error = simulation.energy.error(motion.directions(), &state);
+        let motion = &simulation.motion;
         Self {
-            state,
-            energy_error,
+            state: motion.rounded_state(),
+            energy_error: simulation.energy.error(motion),
             stepping: Some(motion.stepping()),
             ..Self::at(motion.frame())
         }
@@ -93,19 +97,14 @@ fn time(ticks: u64) -> f64 {
 
 /// Writes the time and until when the frame can be trusted; the time stands out once it is known that it no longer can.
 fn draw_clock(canvas: &mut Canvas, report: &Report, time_at: Anchor, trust_at: Anchor) {
-    let &Report {
-        time,
-        horizon: until,
-        is_looking,
-        ..
-    } = report;
+    let &Report { time, horizon, .. } = report;
     let shown = label::time(time);
-    if !is_looking && time > f64::from(until) {
+    if horizon.is_past(time) {
         text::write_on(canvas, &shown, time_at, text::MARKED);
     } else {
         text::write(canvas, &shown, time_at);
     }
-    text::write(canvas, &label::trust(until, is_looking), trust_at);
+    text::write(canvas, &label::trust(horizon), trust_at);
 }
 
 macro_rules! catalogue {
@@ -145,6 +144,11 @@ macro_rules! catalogue {
 
             pub fn planned(&mut self) -> Option<&mut Simulation> {
                 match self { $(Self::$row(scene) => scene.planned(),)* }
+            }
+
+            /// As [`Scene::is_too_fast`].
+            pub fn is_too_fast(&self) -> bool {
+                match self { $(Self::$row(scene) => scene.is_too_fast(),)* }
             }
 
             pub fn report(&self, ticks: u64) -> Report {
@@ -193,6 +197,11 @@ impl SceneName {
     /// Whether it shows a motion, which starts from two angles.
     pub fn has_angles(self) -> bool {
         !matches!(self, Self::Frequencies | Self::Flips)
+    }
+
+    /// Returns true if the scene shows the linear motion, on purpose, and not the exact one.
+    pub fn is_linear(self) -> bool {
+        matches!(self, Self::SmallLight | Self::SmallEqual | Self::SmallHeavy)
     }
 
     /// The next one in the catalogue; after the last the first.

@@ -2,16 +2,18 @@
 //! equations and by the ones it prints, and upright, both rods at exactly 180 degrees, where the pendulum would stand for ever if the
 //! number pi could be held.
 
-use double_pendulum::{DirectionF32, Error, Parameters, Real, Run, State};
+use double_pendulum::plan::Stepping;
+use double_pendulum::{DirectionF32, Error, Method, Parameters, Pendulum, Real, Run, State};
 
 use crate::config::{
-    DT, HALF_PIXEL, PAGE_GRAVITY, STEPS_PER_TICK, TRAIL_BRIGHTNESS, TRAIL_FADING, TRAIL_HALF_WIDTH,
+    HALF_PIXEL, PAGE_GRAVITY, Processor, STEPS_PER_TICK, TICK_RATE, TRAIL_BRIGHTNESS, TRAIL_FADING,
+    TRAIL_HALF_WIDTH,
 };
 use crate::graphics::{
-    Anchor, Canvas, FadeLayer, Fading, LINE, LOWEST, Place, RodDirections, SUBPIXELS,
+    Anchor, Canvas, FadeLayer, Fading, HEIGHT, LINE, LOWEST, Place, RodDirections, SUBPIXELS,
     TRACE_HALF_WIDTH, View, label, text,
 };
-use crate::motion::{Energy, Misprinted, Resources, Settings, Simulation};
+use crate::motion::{Horizon, Misprinted, Resources, Settings, Simulation};
 use crate::scenes::{Report, Scene, draw_clock, time};
 
 /// One pendulum, bob 2's trail, and settings and time in the corners, the one place the motion never reaches.
@@ -92,6 +94,10 @@ impl Scene for Page {
     fn planned(&mut self) -> Option<&mut Simulation> {
         Some(&mut self.simulation)
     }
+
+    fn is_too_fast(&self) -> bool {
+        self.simulation.is_too_fast
+    }
 }
 
 /// Two motions in their halves of the frame, each with bob 2's whole trace.
@@ -111,8 +117,13 @@ impl Halves {
         }
     }
 
-    fn draw(&self, [left, right]: [&str; 2], report: &Report, canvas: &mut Canvas) {
-        self.0.iter().for_each(|view| view.draw(canvas, u8::MAX));
+    /// Draws both pendulums or, if the right one `is_lost`, the left one.
+    fn draw(&self, [left, right]: [&str; 2], is_lost: bool, report: &Report, canvas: &mut Canvas) {
+        let Self([left_view, right_view]) = self;
+        left_view.draw(canvas, u8::MAX);
+        if !is_lost {
+            right_view.draw(canvas, u8::MAX);
+        }
         text::write(canvas, left, Anchor::Left(0));
         text::write(canvas, right, Anchor::Right(0));
         draw_clock(
@@ -172,6 +183,7 @@ impl Scene for Figure7 {
     fn tick(&mut self, _: u64, ink: &mut FadeLayer) {
         self.right.tick();
         self.misprinted.tick();
+        // A motion that is lost leaves no more trace.
         self.halves.trace(
             [self.right.motion.directions(), self.misprinted.directions()],
             ink,
@@ -179,17 +191,16 @@ impl Scene for Figure7 {
     }
 
     fn draw(&self, report: &Report, canvas: &mut Canvas) {
-        let (right, misprinted) = (
-            self.right.energy.of_error(report.energy_error),
-            self.misprinted.energy(),
-        );
-        let energies = [("true ", right), ("book ", misprinted)]
-            .map(|(name, energy)| label::label(name, energy, 1, " J"));
-        self.halves.draw(
-            energies.each_ref().map(|energy| energy.as_str()),
-            report,
-            canvas,
-        );
+        let right = self.right.energy.of_error(report.energy_error);
+        let right = label::label("true ", right, 1, " J");
+        let is_lost = self.misprinted.is_lost();
+        let misprinted = if is_lost {
+            label::Label::try_from("book too fast").unwrap_or_default()
+        } else {
+            label::label("book ", self.misprinted.energy(), 1, " J")
+        };
+        let energies = [right.as_str(), misprinted.as_str()];
+        self.halves.draw(energies, is_lost, report, canvas);
     }
 
     fn report(&self, _: u64) -> Report {
@@ -199,36 +210,51 @@ impl Scene for Figure7 {
     fn planned(&mut self) -> Option<&mut Simulation> {
         Some(&mut self.right)
     }
+
+    fn is_too_fast(&self) -> bool {
+        self.right.is_too_fast
+    }
 }
 
-/// The same motion in plain `f32` on the left and in compensated `f32` on the right. The clock is that of the left one,
-/// beside the right one. There is no plan: both are shown for what their arithmetic does.
+/// The same motion in plain `f32` on the left and in compensated `f32` on the right. The clock is
+/// that of the left one, compared with the same motion in 64 bits, which is not drawn. There is no
+/// plan: both are shown for what their arithmetic does.
 ///
 /// The `f32` nearest to pi is 8.7e-8 too large, so the true motion from there falls after about 3 s. Plain `f32` drops
 /// the first tiny increments altogether and stands for minutes: it looks perfect and is wrong. What is kept beside the
 /// state on the right is just what was dropped.
 #[derive(Clone, Debug)]
 pub struct Upright {
+    pendulum: Pendulum<f32>,
     plain: State<f32>,
     plain_directions: RodDirections,
     compensated: Run<DirectionF32>,
-    energy: Energy,
+    /// Steps of both to a tick.
+    steps: u32,
+    exact: Simulation,
     halves: Halves,
-    /// The time of the last right frame; infinity as long as all are.
-    horizon: f32,
+    horizon: Horizon,
 }
 
+/// The number of times that a step in plain `f32` costs as much as the two sines and cosines of a
+/// frame in closed form: RK4 evaluates the equations four times.
+const PLAIN_STEP: f32 = 4.0;
+
+/// The largest distance of a bob from that of the motion in 64 bits, pixels, that is less than half a
+/// pixel from the exact one: steps of that motion may be the longest that resolve it.
+const NEAR: f32 = HALF_PIXEL / 1.1;
+
 impl Upright {
-    /// Whether the plain motion is no longer shown where the compensated one is.
+    /// Returns true if a bob of the plain motion may no longer be shown where the exact one is.
     fn have_parted(&self) -> bool {
         let Halves([left, _]) = &self.halves;
-        let [plain, compensated] =
-            [self.plain_directions, self.compensated.directions()].map(|to| left.bobs(to));
+        let [plain, exact] =
+            [self.plain_directions, self.exact.motion.directions()].map(|to| left.bobs(to));
         let is_near = |((x, y), (exact_x, exact_y)): ((f32, f32), (f32, f32))| {
             let (dx, dy) = (x - exact_x, y - exact_y);
-            dx * dx + dy * dy <= HALF_PIXEL * HALF_PIXEL
+            dx * dx + dy * dy <= NEAR * NEAR
         };
-        !plain.into_iter().zip(compensated).all(is_near)
+        !plain.into_iter().zip(exact).all(is_near)
     }
 }
 
@@ -237,51 +263,80 @@ fn directions(state: &State<f32>) -> RodDirections {
 }
 
 impl Scene for Upright {
-    fn new(settings: &Settings, _: &Resources) -> Result<(Self, Option<f32>), Error> {
+    #[inline(never)] // all scenes' preparations would stand side by side on the stack
+    fn new(settings: &Settings, resources: &Resources) -> Result<(Self, Option<f32>), Error> {
         let (pendulum, plain) = settings.start()?;
-        pendulum.check_step(DT)?;
-        let compensated = pendulum.run(&plain, DT)?;
+
+        // RK4 in steps that a search would try first, and no fewer than at power-on.
+        let steps = Stepping::of(&settings.problem(HEIGHT as f32), Method::Rk4F32Direction)?.steps;
+        let steps = steps.max(STEPS_PER_TICK);
+        let dt = 1.0 / f64::from(TICK_RATE * steps);
+        pendulum.check_step(dt)?;
+
+        // The motion in 64 bits may take the rest of a frame.
+        let Processor { costs, frame, .. } = &resources.processor;
+        let both = steps as f32 * (PLAIN_STEP * costs.closed_form + costs.direction);
+        let resources = Resources {
+            processor: Processor {
+                frame: frame - both,
+                ..resources.processor
+            },
+            method: None,
+        };
+        let mut exact = Simulation::new(settings, &resources)?;
+        exact.is_too_fast |= exact.motion.stepping().method != Method::Extrapolation10Fixed64;
+
+        let compensated = pendulum.run(&plain, dt)?;
         let plain_directions = directions(&plain);
         let halves = Halves::new(settings, [plain_directions, compensated.directions()]);
-        let energy = Energy::new(pendulum, plain_directions, &plain);
-        Ok((
-            Self {
-                plain,
-                plain_directions,
-                compensated,
-                energy,
-                halves,
-                horizon: f32::INFINITY,
-            },
-            None,
-        ))
+        let scene = Self {
+            pendulum,
+            plain,
+            plain_directions,
+            compensated,
+            steps,
+            exact,
+            halves,
+            horizon: Horizon::AtLeast(0.0),
+        };
+        Ok((scene, None))
     }
 
     fn tick(&mut self, ticks: u64, ink: &mut FadeLayer) {
-        for _ in 0..STEPS_PER_TICK {
-            self.plain = self.energy.pendulum.step(&self.plain, DT as f32);
+        let dt = 1.0 / (TICK_RATE * self.steps) as f32;
+        for _ in 0..self.steps {
+            self.plain = self.pendulum.step(&self.plain, dt);
         }
         self.plain_directions = directions(&self.plain);
         // One that is lost stands still.
-        let _stays = self.compensated.advance(STEPS_PER_TICK);
-        if self.horizon.is_infinite() && self.have_parted() {
-            self.horizon = time(ticks.wrapping_sub(1)) as f32;
+        let _stays = self.compensated.advance(self.steps);
+        if self.horizon.is_open() {
+            self.exact.tick();
+            self.horizon = if self.have_parted() {
+                Horizon::Until(time(ticks.wrapping_sub(1)) as f32)
+            } else {
+                Horizon::AtLeast(time(ticks) as f32)
+            };
         }
         self.halves
             .trace([self.plain_directions, self.compensated.directions()], ink);
     }
 
     fn draw(&self, report: &Report, canvas: &mut Canvas) {
-        self.halves.draw(["plain", "compensated"], report, canvas);
+        let names = ["plain", "compensated"];
+        self.halves.draw(names, false, report, canvas);
     }
 
     fn report(&self, ticks: u64) -> Report {
-        let energy_error = self.energy.error(self.plain_directions, &self.plain);
         Report {
             state: self.plain,
-            energy_error,
+            energy_error: self.exact.energy.error_of_state(&self.plain),
             horizon: self.horizon,
             ..Report::at(ticks)
         }
+    }
+
+    fn is_too_fast(&self) -> bool {
+        self.exact.is_too_fast
     }
 }

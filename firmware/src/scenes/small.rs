@@ -179,6 +179,7 @@ impl Scene for Small {
 
     fn report(&self, ticks: u64) -> Report {
         let state = self.pendulum.to_state(&self.motion.at(time(ticks)));
+        // The energy of the linear motion says nothing about its arithmetic.
         Report {
             state,
             stepping: Some(CLOSED_FORM),

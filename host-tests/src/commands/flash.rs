@@ -43,8 +43,8 @@ pub struct PicoOptions {
     drive: Option<PathBuf>,
 }
 
-/// Builds the firmware of the Raspberry Pi Pico and writes it to the target folder as UF2; returns the bytes of flash that it takes,
-/// and the file.
+/// Builds the firmware of the Raspberry Pi Pico and writes it to the target folder as UF2; returns
+/// the bytes of flash that it takes, and the file.
 pub fn uf2_file(toolchain: &Toolchain) -> anyhow::Result<(usize, PathBuf)> {
     let (start, image) = flash_image(&fs::read(toolchain.build_for(&PICO)?)?)?;
     let file = target().join(FILE);

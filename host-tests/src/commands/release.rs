@@ -1,4 +1,5 @@
-//! `cargo release-files`: all that a release hands out, in one folder. The same commit and compiler make the same bytes anywhere.
+//! `cargo release-files`: all that a release hands out, in one folder. The same commit and compiler
+//! make the same bytes anywhere.
 
 use std::fs;
 use std::path::Path;
@@ -24,7 +25,8 @@ const KERNEL: &str = "double-pendulum-kernel";
 /// Programs that print sums in that format, and their arguments.
 const HASHERS: [(&str, &[&str]); 2] = [("sha256sum", &[]), ("shasum", &["-a", "256"])];
 
-/// Makes target/release-files/: the Pico's UF2, the ELF file of every board, the packaged kernel, and their SHA-256 sums.
+/// Makes target/release-files/: the Pico's UF2, the ELF file of every board, the packaged kernel,
+/// and their SHA-256 sums.
 ///
 /// The files depend on the commit and the compiler alone, not on folders or the machine.
 #[derive(Debug, Parser)]
@@ -83,7 +85,8 @@ fn copy(from: &Path, to: &Path) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Packages the kernel as a registry takes it. Cargo asks the registry only if what is on this machine is not enough.
+/// Packages the kernel as a registry takes it. Cargo asks the registry only if what is on this
+/// machine is not enough.
 fn package(into: &Path) -> anyhow::Result<()> {
     let attempt = |more: &[&str]| {
         let mut cargo = Command::new("cargo");

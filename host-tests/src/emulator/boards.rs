@@ -79,7 +79,7 @@ impl Board {
 }
 
 /// QEMU's board with the OLED panel, which knows several processors.
-const LM3S6965EVB: Board = Board {
+pub const LM3S6965EVB: Board = Board {
     name: "lm3s6965evb",
     machine: "lm3s6965evb",
     cpu: "cortex-m3",

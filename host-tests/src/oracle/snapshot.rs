@@ -1,4 +1,5 @@
-//! Snapshots: pictures as text, one character per pixel, so that a change of a picture shows in a diff; and files of checksums.
+//! Snapshots: pictures as text, one character per pixel, so that a change of a picture shows in a
+//! diff; and files of checksums.
 
 use std::env;
 use std::fs;
@@ -8,7 +9,8 @@ use crate::emulator::toolchain::workspace;
 /// One character for each of the panel's 16 greys, from black to white.
 pub const GREYS: &[u8; 16] = b" .,:;-~=+*oaOX#@";
 
-/// Set to anything, this environment variable makes [`check`] and [`check_lines`] write the files instead of comparing them.
+/// Set to anything, this environment variable makes [`check`] and [`check_lines`] write the files
+/// instead of comparing them.
 pub const BLESS: &str = "BLESS";
 
 /// Greys of 0 to 15, row by row, as lines of `width` characters.
@@ -55,8 +57,8 @@ pub fn check(name: &str, picture: &str) -> Result<(), String> {
     ))
 }
 
-/// Compares `text` line by line with a committed file of the project; returns the lines that differ, with the command that accepts
-/// them.
+/// Compares `text` line by line with a committed file of the project; returns the lines that
+/// differ, with the command that accepts them.
 pub fn check_lines(file: &str, text: &str) -> Result<(), String> {
     let path = workspace().join(file);
     if env::var_os(BLESS).is_some() {

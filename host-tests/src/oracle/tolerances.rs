@@ -207,9 +207,14 @@ pub const TURNING: [f64; 3] = [5e-7, 5e-3, 1.0];
 /// (measured 1.8e-13), in single a few roundings (measured 1.4e-11).
 pub const SMALL_MOTION: [f64; 2] = [3e-13, 2e-11];
 
-/// The energy error in `f32`, from directions against from angles: some roundings of numbers three times as large as what it is
-/// relative to.
-pub const ENERGY_SHOWN: f32 = 1e-6;
+/// The energy error of a frame, by the directions in 64 bits against by the angles: some roundings of
+/// `f64`, of numbers three times as large as what it is relative to.
+pub const ENERGY_SHOWN: f64 = 1e-14;
+
+/// The energy of the misprinted motion in its first second or until it is lost, over twice the
+/// largest potential energy: at large mass ratios it is wilder than any true motion, and rounding
+/// shows within a second.
+pub const MISPRINT_ENERGY_SHOWN: f64 = 0.1;
 
 /// The energy along a day in 32 bits beside that of `f64` in the same steps, over the energy above rest: the goal (measured at
 /// five mass ratios and three steps: compensated `f32` up to 2.0e-4, plain 3.1e-4, fixed point 2.6e-6).

@@ -1,7 +1,8 @@
-//! The golden bits on cores that people own, boards or not: every method, four motions of 640 steps.
+//! The golden bits on cores that people own, boards or not: every method, four motions of 640
+//! steps.
 //!
-//! What a core needs is fetched by its test alone: the compiler's core library, its emulator. Where it cannot be had the test says
-//! so.
+//! What a core needs is fetched by its test alone: the compiler's core library, its emulator. Where
+//! it cannot be had the test says so.
 
 use std::fs;
 use std::io::{Write, stderr};
@@ -21,8 +22,8 @@ enum Emulator {
 }
 use Emulator::{Linux, Machine, Node};
 
-/// A core: its name, the compiler's target, and its emulator; and what the compiler calls it if it is to compute `f64` itself,
-/// the kernel's feature `double-fpu`.
+/// A core: its name, the compiler's target, and its emulator; and what the compiler calls it if it
+/// is to compute `f64` itself, the kernel's feature `double-fpu`.
 struct Core(&'static str, &'static str, Emulator, Option<&'static str>);
 
 /// Its emulator with the image.

@@ -1,5 +1,5 @@
-//! The firmware's images are the same wherever they are built: no folder of the builder is in them, and `cargo release-files` makes
-//! the same files in another checkout with another folder of cargo.
+//! The firmware's images are the same wherever they are built: no folder of the builder is in them,
+//! and `cargo release-files` makes the same files in another checkout with another folder of cargo.
 
 use std::env;
 use std::fs;
@@ -22,7 +22,8 @@ use crate::support::{application, toolchain};
 /// A small image that every kind of core runs.
 const SMALL: (&str, &str) = ("inject-panic", "thumbv7m-none-eabi");
 
-/// Guards the emulated Pico against a hang: a whole verification takes it 25 s of its own time, minutes of ours.
+/// Guards the emulated Pico against a hang: a whole verification takes it 25 s of its own time,
+/// minutes of ours.
 const LONG: Duration = Duration::from_secs(3600);
 
 fn cargo_home() -> PathBuf {
@@ -152,7 +153,8 @@ fn an_image_built_elsewhere_has_the_same_bytes() -> anyhow::Result<()> {
     Ok(())
 }
 
-/// The files of a release, made here and elsewhere; and a board that has been flashed with the other's file.
+/// The files of a release, made here and elsewhere; and a board that has been flashed with the
+/// other's file.
 #[test]
 #[ignore = "builds every image twice, and a board answers for minutes"]
 fn a_release_made_elsewhere_is_the_same_and_is_verified_here() -> anyhow::Result<()> {

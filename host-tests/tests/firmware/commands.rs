@@ -9,10 +9,12 @@ use firmware::app::{Event, Instruments, PlannerEvent};
 use firmware::config::{
     MOST_MEASURED_STEPS, MOST_MESSAGES_PER_TICK, PLANNED, PROCESSOR, RECEIVE_QUEUE, TICK_RATE,
 };
+use firmware::graphics::{Anchor, Canvas, LINE, text};
 use firmware::job::{OnBoards, Request, Run};
-use firmware::motion::{Planned, Settings};
+use firmware::motion::{Horizon, Planned, Settings};
 use firmware::protocol::{
-    Answer, BoardName, Command, Field, Frame, Identity, MAX_WIRE, Status, ToHost, encode, frame,
+    Answer, BoardName, Command, Field, Frame, Identity, MAX_WIRE, PlayState, Status, ToHost,
+    encode, frame,
 };
 use firmware::scenes::SceneName;
 use host_tests::link::refusal;
@@ -180,7 +182,7 @@ fn a_bad_command_is_answered_with_the_field_and_changes_nothing() {
         (set(Field::M2, 1e300), Field::M2),
         (set(Field::L1, f64::NAN), Field::L1),
         (set(Field::L2, f64::INFINITY), Field::L2),
-        (set(Field::L1, 1e-6), Field::L1), // too quick for the step
+        (set(Field::L1, 1e-30), Field::L1), // no step is short enough
         (set(Field::G, -9.81), Field::G),
         (set(Field::A1, 181_f64.to_radians()), Field::A1),
         (set(Field::A2, 4.0), Field::A2),
@@ -202,6 +204,63 @@ fn a_bad_command_is_answered_with_the_field_and_changes_nothing() {
         );
     }
     assert_eq!((status(&mut app), app.player.report), before);
+}
+
+/// The panel says so in words, the frames say that the scene has stopped, and the log says it once;
+/// other settings start it again.
+#[test]
+fn motion_that_is_too_fast_is_stopped_and_said_to_be() {
+    let mut app = app();
+    let mut events = Vec::new();
+    app.receive(wire(1, set(Field::W2, 2e4)), |event| events.push(event));
+    assert_eq!(last(&app, 1), Answer::Done);
+    for clock in 1..=10 {
+        app.run_to(clock, |event| events.push(event));
+    }
+    let settings = app.player.settings;
+    assert_eq!(
+        events,
+        [Event::Started(SceneName::Page, settings), Event::Stopped]
+    );
+    let frames = frames(&app.link);
+    assert_eq!(frames.len(), 10);
+    for frame in frames {
+        assert_eq!(frame.state, PlayState::Stopped);
+        assert_eq!((frame.report.step, frame.report.stepping), (0, None));
+        assert_eq!(frame.report.horizon, Horizon::Until(0.0));
+    }
+    let mut expected = Canvas::default();
+    for (row, text) in [
+        (2, "too fast"),
+        (3, "for this chip"),
+        (5, "μ 1.00"),
+        (6, "α 120°"),
+    ] {
+        text::write(&mut expected, text, Anchor::Middle(row * LINE));
+    }
+    assert!(*app.canvas == expected);
+
+    app.receive(wire(2, set(Field::W2, 0.0)), |_| ());
+    app.run_to(11, |_| ());
+    assert_eq!(app.player.state(), PlayState::Playing);
+    assert_eq!(app.player.report.step, 1);
+}
+
+/// A user's pause is not a stop, and does not outlive one.
+#[test]
+fn paused_and_stopped_are_told_apart() {
+    let mut app = app();
+    let states = [
+        (Command::Pause(true), PlayState::Paused),
+        (set(Field::W2, 2e4), PlayState::Stopped),
+        (set(Field::W2, 0.0), PlayState::Paused),
+        (Command::Pause(false), PlayState::Playing),
+    ];
+    for (command, state) in states {
+        assert_eq!(answer(&mut app, command), Answer::Done);
+        assert_eq!((app.player.state(), status(&mut app).state), (state, state));
+        assert_eq!(app.player.frame().state, state);
+    }
 }
 
 /// Of an unknown kind, with too few fields, too many, a scene, a setting or a method that is none, and without a number.
@@ -347,7 +406,7 @@ fn the_plan_is_found_in_some_tick_told_when_asked_and_followed() {
     let report = app.player.report;
     assert_eq!(report.stepping, Some(calm.stepping()));
     assert!(
-        f64::from(report.horizon) > PLANNED && report.is_looking,
+        matches!(report.horizon, Horizon::AtLeast(until) if f64::from(until) > PLANNED),
         "{report:?}"
     );
 

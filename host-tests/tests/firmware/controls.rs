@@ -5,7 +5,7 @@ use firmware::config::{
     DEBOUNCE_TICKS, HOLD_TICKS, MASS_RATIOS, REPEAT_DELAY_TICKS, REPEAT_PERIOD_TICKS,
 };
 use firmware::graphics::label;
-use firmware::motion::Settings;
+use firmware::motion::{Horizon, Settings};
 use firmware::protocol::Command;
 
 const NONE: Pressed = Pressed {
@@ -266,12 +266,17 @@ fn labels_show_what_is_set() {
         times.map(|label| label.to_string()),
         ["0.0 s", "0.0 s", "59.9 s", "3600.0 s"]
     );
-    let trusts = [8.44, 9370.2, f32::INFINITY, f32::NAN].map(|until| label::trust(until, false));
-    assert_eq!(
-        trusts.map(|label| label.to_string()),
-        ["½px 8.4 s", "½px 9370 s", "½px ok", "½px ok"]
-    );
-    assert_eq!(label::trust(8.44, true).to_string(), "½px>8.4 s");
+    let horizons = [
+        (Horizon::Until(8.46), "½px 8.4 s"),
+        (Horizon::Until(9370.2), "½px 9370 s"),
+        (Horizon::Until(1.0 / 60.0), "½px 0.02 s"),
+        (Horizon::AtLeast(8.46), "½px>8.4 s"),
+        (Horizon::Undecided, "½px ?"),
+        (Horizon::Always, "½px ok"),
+    ];
+    for (horizon, text) in horizons {
+        assert_eq!(label::trust(horizon).to_string(), text, "{horizon:?}");
+    }
     let ticks = [0.0, 0.05, 0.2, 1.0, 50.0].map(|time| label::tick(time, " s"));
     assert_eq!(
         ticks.map(|label| label.to_string()),
@@ -288,7 +293,7 @@ fn labels_of_any_numbers_are_safe() {
             label::time(number.into()),
         );
         let _ = (
-            label::trust(number, true),
+            label::trust(Horizon::AtLeast(number)),
             label::tick(number, " s"),
             label::label("true ", number, 1, " J"),
         );

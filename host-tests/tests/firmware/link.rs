@@ -8,10 +8,11 @@ use double_pendulum::{Error, Method};
 use firmware::app::Record;
 use firmware::display::{BusFault, By, Controller, Found, PanelReport, PanelState};
 use firmware::job::{Reading, Request};
-use firmware::motion::{PlanResult, Planned, Settings};
+use firmware::motion::{Horizon, PlanResult, Planned, Settings};
 use firmware::protocol::{
     Answer, BoardName, Cause, Command, Decoder, Field, Frame, LinkError, MAX_MESSAGE, MAX_WIRE,
-    Restarted, Status, ToHost, VERSION, decode_command, encode, encode_command, frame, read,
+    PlayState, Restarted, Status, ToHost, VERSION, decode_command, encode, encode_command, frame,
+    read,
 };
 use firmware::scenes::{Report, SceneName};
 use host_tests::oracle::snapshot;
@@ -105,6 +106,7 @@ fn every_message_fits() {
     let report = Report {
         step,
         stepping: Some(Stepping { method, steps }),
+        horizon: Horizon::Until(1.0),
         ..Report::default()
     };
     let counts = Frame {
@@ -181,7 +183,7 @@ fn every_message_fits() {
         settings,
         method,
         processor: 0,
-        paused: true,
+        state: PlayState::Paused,
         steps,
         speed: 1.0,
         panel,
@@ -238,6 +240,8 @@ fn numbers_mean_the_same_as_long_as_the_version_does() -> Result<(), String> {
     let values = variants(read::<Method>)
         + &variants(read::<SceneName>)
         + &variants(read::<BoardName>)
+        + &variants(read::<PlayState>)
+        + &variants(read::<Horizon>)
         + &variants(read::<Cause>);
     let panels = variants(read::<PanelState>)
         + &variants(read::<Controller>)

@@ -17,5 +17,6 @@ mod planner;
 mod scenes;
 mod service;
 mod ssd0323;
+mod sweep;
 mod tick_timer;
 mod warm_restart;

@@ -1,9 +1,11 @@
 //! The page's equal-rod form as printed, against the right one, at the settings of its figure 7.
 
 use double_pendulum::{Parameters, Pendulum, State, rk4};
-use firmware::config::{HALF_PIXEL, TICK_RATE};
-use firmware::graphics::{Place, View};
-use firmware::motion::Misprinted;
+use firmware::config::{HALF_PIXEL, MASS_RATIOS, TICK_RATE};
+use firmware::graphics::{Anchor, Canvas, LINE, Place, View, text};
+use firmware::motion::{Misprinted, Settings};
+use firmware::scenes::SceneName;
+use host_tests::emulator::host::Show;
 use host_tests::oracle::{textbook, tolerances};
 
 const MU: f64 = 2.75;
@@ -83,6 +85,89 @@ fn with_equal_masses_the_printed_form_is_right() {
             "{printed} instead of {right}"
         );
     }
+}
+
+/// The motion is shown at any mass ratio for as long as steps resolve it, and is then lost for good.
+#[test]
+fn printed_form_is_shown_only_while_it_is_resolved() {
+    const STEPS_PER_TICK: usize = 128;
+    let mut lost = Vec::new();
+    for (mass_ratio, degrees) in MASS_RATIOS
+        .into_iter()
+        .step_by(2)
+        .flat_map(|ratio| [60.0, 120.0, 171.0, 180.0].map(|degrees| (ratio, degrees)))
+    {
+        let settings = Settings {
+            degrees: [degrees; 2],
+            ..SceneName::Figure7
+                .first_settings()
+                .with_mass_ratio(mass_ratio)
+        };
+        let (_, start) = settings.start().expect("good settings");
+        let mut shown = Misprinted::new(&settings.parameters, &start);
+        let parameters = settings.parameters.cast::<f64>();
+        let pendulum = Pendulum::new(&parameters).expect("good settings");
+        let span = -2.0 * pendulum.least_energy();
+        let mut z = start.cast::<f64>().into();
+        for tick in 1..=TICK_RATE {
+            shown.tick();
+            for _ in 0..STEPS_PER_TICK {
+                let rhs = |z: &[f64; 4]| {
+                    textbook::misprinted_equal_rods(mass_ratio.into(), 1.0, parameters.g, z)
+                };
+                z = rk4::step(rhs, &z, 1.0 / (TICK_RATE as usize * STEPS_PER_TICK) as f64);
+            }
+            let case = format!("{mass_ratio}, {degrees} degrees, tick {tick}");
+            if shown.is_lost() {
+                let directions = shown.directions();
+                shown.tick();
+                assert_eq!(shown.directions(), directions, "{case}");
+                lost.push(mass_ratio);
+                break;
+            }
+            for [sin, cos] in shown.directions() {
+                assert!((sin.hypot(cos) - 1.0).abs() < 1e-3, "{case}: {sin} {cos}");
+            }
+            let off = (f64::from(shown.energy()) - pendulum.energy(&State::from(z))).abs();
+            assert!(
+                off <= tolerances::MISPRINT_ENERGY_SHOWN * span,
+                "{case}: {off} J of {span}"
+            );
+        }
+    }
+    let least = lost.iter().copied().fold(f32::INFINITY, f32::min);
+    assert!(lost.len() > 10 && least > MU as f32, "{lost:?}");
+}
+
+/// The default start of the scene lasts.
+#[test]
+fn figure_7_shows_the_printed_form_for_ten_minutes() {
+    let settings = SceneName::Figure7.first_settings();
+    let (_, start) = settings.start().expect("good settings");
+    let mut shown = Misprinted::new(&settings.parameters, &start);
+    for tick in 0..600 * TICK_RATE {
+        shown.tick();
+        assert!(!shown.is_lost(), "tick {tick}");
+    }
+}
+
+/// In the scene a rod that is lost is not drawn, and words stand in the place of its energy.
+#[test]
+fn lost_motion_is_not_drawn() {
+    let settings = SceneName::Figure7.first_settings().with_mass_ratio(100.0);
+    let mut show = Show::new(SceneName::Figure7, &settings).expect("good settings");
+    (0..TICK_RATE).for_each(|_| show.tick());
+    let mut expected = Canvas::default();
+    let label = "book too fast";
+    text::write(&mut expected, label, Anchor::Right(0));
+    let frame = show.frame();
+    let words = (64..128).flat_map(|x| (0..LINE).map(move |y| (x, y)));
+    for (x, y) in words.filter(|&(x, y)| expected.get(x, y) != Some(0)) {
+        assert_eq!(frame.get(x, y), expected.get(x, y), "{x}, {y}");
+    }
+    // The pivot of the right pendulum is drawn with its rods.
+    let (x, y) = Place::HALVES[1].pivot;
+    assert_eq!(frame.get(x as i32, y as i32), Some(0));
 }
 
 #[test]

@@ -240,6 +240,10 @@ impl<R: Real> Form for ClosedForm<R> {
         [Q::from_f64(p1), Q::from_f64(p2)]
     }
 
+    fn energy_above_rest(&self, pendulum: &Pendulum<f64>) -> f64 {
+        pendulum.energy_above_rest(&self.state())
+    }
+
     fn state(&self) -> State<f64> {
         self.pendulum
             .to_state(&self.oscillations.at(self.time()))

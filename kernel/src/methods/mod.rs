@@ -23,7 +23,7 @@ use core::fmt::Debug;
 
 use crate::error::Error;
 use crate::numbers::{Real, Sealed};
-use crate::pendulum::{Direction, Parameters, State};
+use crate::pendulum::{Direction, Parameters, Pendulum, State};
 
 /// Hamilton's equations as one writes them down, stepped by RK4 in `f32`: `rk4-f32`.
 pub type HamiltonF32 = Canonical<f32>;
@@ -98,6 +98,16 @@ pub trait Form: Sealed + Copy + Debug + PartialEq + 'static {
     #[doc(hidden)]
     fn state(&self) -> State<f64>;
 
+    /// Returns the energy above rest, J, to the last digit carried.
+    ///
+    /// `pendulum` is the pendulum of this motion. The energy is that of the directions and
+    /// momenta, which may be up to half a step ahead of the [`state`](Self::state).
+    #[doc(hidden)]
+    fn energy_above_rest(&self, pendulum: &Pendulum<f64>) -> f64 {
+        let [upper, lower] = self.directions();
+        pendulum.energy_above_rest_at([unit(upper), unit(lower)], self.momenta())
+    }
+
     /// Whether [`state`](Self::state) has angles with all their turns.
     #[doc(hidden)]
     const HAS_TURNS: bool = false;
@@ -105,4 +115,10 @@ pub trait Form: Sealed + Copy + Debug + PartialEq + 'static {
     /// Gives `feed` the bit patterns of all that is carried, the number of steps among them, to compare machines by.
     #[doc(hidden)]
     fn bits(&self, feed: impl FnMut(u64));
+}
+
+/// Returns the direction with length 1.
+pub(crate) fn unit([sin, cos]: Direction<f64>) -> Direction<f64> {
+    let inverse = 1.0 / libm::sqrt(sin * sin + cos * cos);
+    [sin * inverse, cos * inverse]
 }

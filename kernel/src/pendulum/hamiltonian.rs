@@ -148,6 +148,22 @@ impl<R: Real> Pendulum<R> {
             + self.torque[1] * height2
     }
 
+    /// Returns the [energy above rest](Self::energy_above_rest) where the directions (sin, cos) of both
+    /// rods and the momenta (p1, p2), kg m^2/s, are known. Needs no trigonometry.
+    #[doc(hidden)]
+    #[must_use]
+    #[inline(never)] // Not inlined, to save flash.
+    pub fn energy_above_rest_at(
+        &self,
+        [[sin1, cos1], [sin2, cos2]]: [[R; 2]; 2],
+        momenta: [R; 2],
+    ) -> R {
+        let elbow = (sin1 * cos2 - cos1 * sin2, cos1 * cos2 + sin1 * sin2);
+        self.kinetic_energy_of(elbow, momenta)
+            + self.torque[0] * one_minus_cos((sin1, cos1))
+            + self.torque[1] * one_minus_cos((sin2, cos2))
+    }
+
     /// Returns the least possible energy, that of hanging at rest, J:
     /// min V = -(m1 + m2) g l1 - m2 g l2.
     #[must_use]

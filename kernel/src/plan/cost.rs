@@ -75,6 +75,10 @@ const FINE: [f64; 6] = [0.53, 0.65, 0.8, 1.1, 1.5, 2.1];
 /// radian in it. In longer steps two runs could miss alike what neither sees.
 pub(super) const FIRST_STEP: f64 = 4.0;
 
+/// RK4 in 32 bits starts with steps no longer than this many admissible ones, the first of them if a
+/// frame pays for it. In twice as long steps its error is 16 times as large.
+const RESOLVING_RK4: [f64; 2] = [1.0, 2.0];
+
 /// Finer steps than this many to a frame are never tried.
 pub(super) const MOST_STEPS: u32 = 1 << 16;
 
@@ -167,36 +171,53 @@ pub(super) fn admissible_step(problem: &Problem) -> Result<f64, Error> {
 }
 
 impl Stepping {
-    /// What a motion may be shown by while nothing is known of it but its energy: [`Method::Extrapolation10Fixed64`] where
-    /// `frame`, which a frame may cost, allows for it, in steps that resolve all there may be or, if those cost too much, the
-    /// longest that are looked at; else by such steps in 32 bits, or as many as can be had.
+    /// Returns the method and step count to start with, before planning has produced a result.
+    ///
+    /// They resolve every motion of the problem's energy, and a frame costs no more than `frame`.
+    /// In the order of preference:
+    ///
+    /// 1. [`Method::Extrapolation10Fixed64`] in steps whose roundings are the larger error;
+    /// 2. the same in the longest steps that a search tries;
+    /// 3. RK4 in 32 bits, by the method whose steps cost less, in [admissible
+    ///    steps](Pendulum::admissible_step);
+    /// 4. the same in twice as long steps. Longer ones gain or lose several percent of the energy
+    ///    within seconds.
+    ///
+    /// Returns `None` if a frame pays for none of these.
+    ///
+    /// # Errors
     ///
     /// Refuses what [`Pendulum::new`] and [`Pendulum::admissible_step`] refuse.
     #[doc(hidden)]
-    pub fn lasting(problem: &Problem, costs: &Costs, frame: f32) -> Result<Self, Error> {
+    pub fn initial(problem: &Problem, costs: &Costs, frame: f32) -> Result<Option<Self>, Error> {
         let admissible = admissible_step(problem)?;
-        for longest in INITIAL {
-            if let Some(stepping) = Self::fixed64(problem, longest * admissible, costs, frame) {
-                return Ok(stepping);
-            }
-        }
-        let affordable = |method| {
-            let mut steps = steps_to_frame(method, problem.rate, FIRST_STEP * admissible);
-            while steps > 1 && costs.of_frame(Self { method, steps }) > frame {
-                steps /= 2;
-            }
-            Self { method, steps }
-        };
-        let fixed = affordable(Method::Rk4Fixed32);
-        let is_fixed = costs.fixed32 < costs.direction && fixed.check(problem).is_ok();
-        Ok(if is_fixed {
-            fixed
+        let in_32_bits = if costs.fixed32 < costs.direction {
+            [Method::Rk4Fixed32, Method::Rk4F32Direction]
         } else {
-            affordable(Method::Rk4F32Direction)
-        })
+            [Method::Rk4F32Direction, Method::Rk4Fixed32]
+        };
+        let of = |(method, longest): (Method, f64)| {
+            Self::affordable(method, problem, longest * admissible, costs, frame)
+        };
+
+        let in_64_bits = INITIAL
+            .map(|longest| (Method::Extrapolation10Fixed64, longest))
+            .into_iter()
+            .find_map(of);
+        Ok(in_64_bits.or_else(|| {
+            RESOLVING_RK4
+                .into_iter()
+                .flat_map(|longest| in_32_bits.map(|method| (method, longest)))
+                .find_map(of)
+        }))
     }
 
-    /// By `method`, in the longest steps that resolve every motion of this energy. Refuses what [`lasting`](Self::lasting) refuses.
+    /// Returns `method` in the longest steps that a search tries first or, if the method refuses
+    /// these as too long, in the longest that it accepts.
+    ///
+    /// # Errors
+    ///
+    /// Refuses what [`initial`](Self::initial) refuses.
     #[doc(hidden)]
     pub fn of(problem: &Problem, method: Method) -> Result<Self, Error> {
         let admissible = admissible_step(problem)?;
@@ -205,13 +226,12 @@ impl Stepping {
         } else {
             FIRST_STEP
         };
-        Ok(Self {
-            method,
-            steps: steps_to_frame(method, problem.rate, longest * admissible),
-        })
+        let steps = steps_to_frame(method, problem.rate, longest * admissible);
+        Ok(Self::accepted(method, problem, steps, |_| true).unwrap_or(Self { method, steps }))
     }
 
-    /// By [`Method::Extrapolation10Fixed64`] in steps of `longest` s or less, as coarse as its numbers take, if they cost no more than `frame`.
+    /// Returns [`Method::Extrapolation10Fixed64`] in steps of `longest` s or less, as
+    /// [`affordable`](Self::affordable).
     pub(super) fn fixed64(
         problem: &Problem,
         longest: f64,
@@ -219,11 +239,35 @@ impl Stepping {
         frame: f32,
     ) -> Option<Self> {
         let method = Method::Extrapolation10Fixed64;
-        let mut stepping = Self {
-            method,
-            steps: steps_to_frame(method, problem.rate, longest),
-        };
-        while costs.of_frame(stepping) <= frame && stepping.steps < MOST_STEPS {
+        Self::affordable(method, problem, longest, costs, frame)
+    }
+
+    /// Returns `method` in steps of `longest` s or less, as coarse as its numbers take. Returns
+    /// `None` if a frame then costs more than `frame`, or if the method refuses the motion.
+    fn affordable(
+        method: Method,
+        problem: &Problem,
+        longest: f64,
+        costs: &Costs,
+        frame: f32,
+    ) -> Option<Self> {
+        let steps = steps_to_frame(method, problem.rate, longest);
+        Self::accepted(method, problem, steps, |stepping| {
+            costs.of_frame(stepping) <= frame
+        })
+    }
+
+    /// Returns `method` in `steps` steps to a frame, or in more if it refuses these as too long.
+    /// Returns `None` if it refuses the motion, or if the step count is not `allowed`.
+    #[inline(never)] // Not inlined, to save flash.
+    fn accepted(
+        method: Method,
+        problem: &Problem,
+        steps: u32,
+        allowed: impl Fn(Self) -> bool,
+    ) -> Option<Self> {
+        let mut stepping = Self { method, steps };
+        while allowed(stepping) && stepping.steps < MOST_STEPS {
             match stepping.check(problem) {
                 Ok(()) => return Some(stepping),
                 Err(Error::TooLarge {
@@ -231,8 +275,13 @@ impl Stepping {
                     limit,
                     ..
                 }) => {
-                    stepping.steps =
-                        steps_to_frame(method, problem.rate, limit).max(stepping.steps + 1);
+                    let enough = steps_to_frame(method, problem.rate, limit);
+                    let more = if method == Method::Extrapolation10Fixed64 {
+                        stepping.steps + 1
+                    } else {
+                        2 * stepping.steps
+                    };
+                    stepping.steps = enough.max(more);
                 }
                 Err(_) => return None,
             }

@@ -256,6 +256,15 @@ impl PlannedRun {
         State { a1, a2, p1, p2 }
     }
 
+    /// Returns the energy above rest, J, of the motion as it is carried: nothing is rounded to
+    /// `f32`. `pendulum` is the pendulum of the problem.
+    #[inline(never)]
+    #[doc(hidden)]
+    #[must_use]
+    pub fn energy_above_rest(&self, pendulum: &Pendulum<f64>) -> f64 {
+        with!(&self.run, run => run.energy_above_rest(pendulum))
+    }
+
     /// The canonical state in SI units to the last digit carried, the angles with all their turns.
     #[must_use]
     #[inline(never)]

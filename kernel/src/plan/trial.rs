@@ -119,15 +119,8 @@ const BESIDE_REFERENCE: f32 = 1.1;
 ///
 /// The truncation error is at most 1.7 times the distance to a run with 5/4 of the steps (order 4),
 /// and 1.12 times that to one with 7/4. Roundings are samples of one spread, the run's own and those
-/// of the three. In 32 bits of fixed point they have a larger one, because all shifts truncate. Test
-/// `plan_study` holds the bound against the exact motion.
-fn beside_finer_steps(method: Method) -> f32 {
-    if method == Method::Rk4Fixed32 {
-        2.9
-    } else {
-        2.0
-    }
-}
+/// of the three. Test `plan_study` holds the bound against the exact motion.
+const BESIDE_FINER_STEPS: f32 = 2.9;
 
 /// Returns the steps of the finer runs for each frame: a quarter more, a half, three quarters.
 ///
@@ -396,7 +389,7 @@ impl Trial {
             let others = [second, third, fourth].map(|other| distance(self.rods, &own, &other));
             let greatest = others.into_iter().fold(0.0, greater);
             self.by_rounding = others.into_iter().any(|other| 2.0 * other < greatest);
-            let bound = beside_finer_steps(self.candidates[0].stepping.method) * greatest;
+            let bound = BESIDE_FINER_STEPS * greatest;
             for (candidate, shown) in self.candidates.iter_mut().zip(in_32_bits) {
                 let beside = distance(self.rods, &shown, &own);
                 candidate.note(beside + greatest, beside + bound);

@@ -1,4 +1,5 @@
-//! Every method computes the bits that `golden/bits.csv` keeps, and the list of changes names that file.
+//! Every method computes the bits that `golden/bits.csv` keeps, and the list of changes names that
+//! file.
 
 use std::format;
 use std::fs;
@@ -30,7 +31,8 @@ const METHODS: [(Method, ComputeLine); 13] = [
     (Method::ClosedFormF64, line::<ClosedFormF64>),
     (Method::ClosedFormF32, line::<ClosedFormF32>),
 ];
-/// The methods of the table whose types are the firmware's. Its tests compare them with the same file.
+/// The methods of the table whose types are the firmware's. Its tests compare them with the same
+/// file.
 const ELSEWHERE: [Method; 2] = [Method::Rk4F32Micromath, Method::TextbookF32];
 /// The method that only these tests have.
 const OF_TESTS: Method = Method::Rk4F64Lagrange;

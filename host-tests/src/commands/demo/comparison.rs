@@ -8,7 +8,7 @@ use firmware::config::{PROCESSOR, PROCESSORS, TICK_RATE};
 use firmware::display::PanelReport;
 use firmware::graphics::{Canvas, text};
 use firmware::motion::Settings;
-use firmware::protocol::{Field, Frame, Status};
+use firmware::protocol::{Field, Frame, PlayState, Status};
 use firmware::scenes::SceneName;
 use indicatif::HumanCount;
 
@@ -58,7 +58,7 @@ impl Comparison {
     pub fn status(&mut self, status: &Status) {
         // What is played by its start alone: how its time goes is another matter.
         let start = Status {
-            paused: false,
+            state: PlayState::Playing,
             steps: 0,
             speed: 1.0,
             panel: PanelReport::default(),
@@ -105,7 +105,7 @@ impl Comparison {
             .playing
             .as_ref()
             .map_or(Canvas::default(), |(_, show)| show.frame());
-        if frame.paused {
+        if frame.state == PlayState::Paused {
             text::pause_mark(&mut canvas);
         }
         Screenshot::from(&canvas)
@@ -152,7 +152,7 @@ fn played(start: &Status) -> Result<Show, Field> {
 /// Goes on towards the step of `frame`; whether it is there.
 fn is_reached(show: &mut Show, frame: &Frame) -> bool {
     for _ in 0..MOST_TICKS {
-        if show.report().step >= frame.report.step || show.player.is_paused() {
+        if show.report().step >= frame.report.step || show.player.is_still() {
             return true;
         }
         show.tick();
@@ -177,7 +177,9 @@ fn difference(board: &Frame, here: &Frame) -> Option<String> {
             ("p1", p1),
             ("p2", p2),
             ("energy error", report.energy_error.to_bits().into()),
-            ("horizon", report.horizon.to_bits().into()),
+            ("horizon", report.horizon.verified().to_bits().into()),
+            ("open horizon", report.horizon.is_open().into()),
+            ("stop", (frame.state == PlayState::Stopped).into()),
         ]
     };
     let mut pairs = numbers(board).into_iter().zip(numbers(here));

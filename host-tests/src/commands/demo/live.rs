@@ -81,7 +81,8 @@ enum Action {
     Faster,
 }
 
-/// Returns what a key does while this page of the help is shown. Any key but `?` closes the help, and does nothing else.
+/// Returns what a key does while this page of the help is shown. Any key but `?` closes the help,
+/// and does nothing else.
 fn action(key: KeyEvent, help: Help) -> Action {
     let KeyEvent {
         code,

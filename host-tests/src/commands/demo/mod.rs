@@ -142,8 +142,8 @@ fn headless(session: &mut Session, seconds: f64) -> anyhow::Result<()> {
     session.look()
 }
 
-/// Completes the files and prints the summary. Returns true if all was well. A board that goes by a real clock may drop frames,
-/// and a cable may flip bits: both are printed, and neither is a fault.
+/// Completes the files and prints the summary. Returns true if all was well. A board that goes by a
+/// real clock may drop frames, and a cable may flip bits: both are printed, and neither is a fault.
 fn finish(options: &DemoOptions, mut session: Session) -> anyhow::Result<bool> {
     let is_silent = session.readings.frame.is_none();
     ensure!(!is_silent, "{}: no frame came", session.name());

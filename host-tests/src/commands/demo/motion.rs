@@ -70,7 +70,8 @@ impl OwnMotion {
 
     /// Returns the settings to play `scene` with; `None` if no option is given.
     ///
-    /// Refuses an option that the scene has no use for, and a motion that it cannot show on `processor`.
+    /// Refuses an option that the scene has no use for, and a motion that it cannot show on
+    /// `processor`.
     pub fn settings(
         &self,
         scene: SceneName,

@@ -1,5 +1,5 @@
-//! The latest numbers in a column beside the panel, with the energy error's past as bars below them; both angles over the last
-//! seconds as a chart.
+//! The latest numbers in a column beside the panel, with the energy error's past as bars below
+//! them; both angles over the last seconds as a chart.
 
 use double_pendulum::State;
 use firmware::config::TICK_RATE;
@@ -11,15 +11,15 @@ use ratatui::symbols::Marker;
 use ratatui::text::Line;
 use ratatui::widgets::{Axis, Block, Chart, Dataset, GraphType, Paragraph, Sparkline};
 
-use super::readings::Readings;
+use super::readings::{Readings, energy_error};
 
 /// Columns that they need, and beyond which a value would be far from its name.
 pub const NARROWEST: u16 = 15;
 const WIDEST: u16 = 24;
 /// Rows that they need in the narrowest column.
 pub const ROWS: u16 = 13;
-/// The least scale of the energy errors: what is below a tenth of it is rounding and nothing to look at.
-const LEAST_SCALE: f32 = 1e-6;
+/// The smallest scale of the bars: errors below it are little more than the rounding of the energy.
+const LEAST_SCALE: f32 = 1e-14;
 
 pub fn draw(frame: &mut Frame, area: Rect, readings: &Readings) {
     let area = Rect {
@@ -72,8 +72,8 @@ fn rows(readings: &Readings) -> [(&'static str, String); 9] {
         ("CRC errors", true, readings.counts.damaged.to_string()),
         (
             "energy error",
-            moves,
-            format!("{:+.1e}", now.report.energy_error),
+            moves && !now.scene.is_linear(),
+            energy_error(now.report.energy_error, |error| format!("{error:+.1e}")),
         ),
     ];
     rows.map(|(name, is_known, value)| (name, if is_known { value } else { "-".to_owned() }))

@@ -16,8 +16,8 @@ use crate::commands::simulate::Number;
 use crate::console::cli::{Refused, choice};
 use crate::emulator::boards::{BOARDS, Board, every_board};
 
-/// Shows the double pendulum on a board's panel, live in the terminal, and compares each frame with the host's own. For a real
-/// board the picture is rebuilt from the data it sends.
+/// Shows the double pendulum on a board's panel, live in the terminal, and compares each frame with
+/// the host's own. For a real board the picture is rebuilt from the data it sends.
 #[derive(Clone, Debug, Parser)]
 #[command(name = "cargo demo", after_help = after_help())]
 pub struct DemoOptions {
@@ -31,7 +31,8 @@ pub struct DemoOptions {
     /// The scene [default: the board's current scene, page after power-on]
     #[arg(long, value_name = "NAME", value_parser = choice(SceneName::ALL.iter().copied(), SceneName::name))]
     pub scene: Option<SceneName>,
-    /// The method that computes the motion; `plan` lets the board choose [default: the board's current choice, plan after power-on]
+    /// The method that computes the motion; `plan` lets the board choose [default: the board's
+    /// current choice, plan after power-on]
     #[arg(long, value_name = "NAME",
           value_parser = choice([None].into_iter().chain(Method::DRAWN.iter().copied().map(Some)),
                                 |method| method.map_or("plan", Method::name)))]
@@ -44,7 +45,8 @@ pub struct DemoOptions {
     /// What moves, in place of the scene's own motion.
     #[command(flatten)]
     pub motion: OwnMotion,
-    /// Simulated time per real time, 0.01 to 4 [default: the board's current speed, 1 after power-on]
+    /// Simulated time per real time, 0.01 to 4 [default: the board's current speed, 1 after
+    /// power-on]
     #[arg(long, value_name = "N", allow_hyphen_values = true)]
     pub speed: Option<Number>,
     /// Run without a terminal, at full speed, same result every time, with a summary at the end
@@ -135,8 +137,8 @@ pub type Asked = Option<Method>;
 pub type Chosen = Option<Controller>;
 
 impl DemoOptions {
-    /// Refuses what is known to fail before anything is built: files that cannot be written, a speed out of range, a method or
-    /// a motion that the scene cannot show.
+    /// Refuses what is known to fail before anything is built: files that cannot be written, a
+    /// speed out of range, a method or a motion that the scene cannot show.
     pub fn check(&self) -> Result<(), Refused> {
         for (option, file) in [
             ("--record", &self.record),
@@ -185,8 +187,8 @@ impl DemoOptions {
         Ok(own)
     }
 
-    /// Returns the class of the board's processor. A board at a port says only later what it is, and may refuse then: it is
-    /// taken for one of the fastest.
+    /// Returns the class of the board's processor. A board at a port says only later what it is,
+    /// and may refuse then: it is taken for one of the fastest.
     fn processor(&self) -> Processor {
         if self.port.is_some() {
             STM32F405

@@ -6,8 +6,9 @@ use double_pendulum::Method;
 use double_pendulum::plan::Stepping;
 use firmware::config::{PROCESSOR, PROCESSORS, TICK_RATE};
 use firmware::display::PanelReport;
-use firmware::protocol::{Frame, Status};
-use firmware::scenes::{Report, SceneName};
+use firmware::motion::Horizon;
+use firmware::protocol::{Frame, PlayState, Status};
+use firmware::scenes::{LEAST_ENERGY_ERROR, Report, SceneName};
 
 use super::comparison::Comparison;
 use super::options::usable;
@@ -196,13 +197,14 @@ impl Readings {
             "frames                {frames}\n\
              simulated time        {simulated:.3} s\n\
              shown                 {}\n\
-             largest energy error  {greatest_energy_error:.1e}\n\
+             largest energy error  {}\n\
              CRC errors            {}\n\
              lost frames           {}\n\
              dropped frames        {}\n\
              {panel}\
              bits                  {comparison}",
             stepping(&last),
+            energy_error(*greatest_energy_error, |error| format!("{error:.1e}")),
             counts.damaged,
             counts.lost,
             last.dropped
@@ -212,47 +214,52 @@ impl Readings {
 
 /// Returns how a frame is computed, and how long such frames are accurate, in one line.
 pub fn stepping(frame: &Frame) -> String {
-    let Report {
-        horizon,
-        is_looking,
-        time,
-        ..
-    } = frame.report;
-    let computed = computed(frame);
-    if horizon.is_infinite() {
-        return computed;
+    if frame.state == PlayState::Stopped {
+        return "this motion is too fast for this chip: change the masses or the angle, or choose \
+                another scene or method"
+            .to_owned();
     }
-    let accuracy = if is_looking && horizon <= 0.0 {
-        "accuracy not known yet".to_owned()
-    } else if is_looking {
-        format!("accurate to half a pixel until at least {horizon:.1} s")
-    } else if is_linear(frame) {
-        format!("leaves the exact motion at {horizon:.2} s")
-    } else if time > f64::from(horizon) {
-        format!("was accurate to half a pixel until {horizon:.1} s")
-    } else {
-        format!("accurate to half a pixel until {horizon:.1} s")
+    let computed = computed(frame);
+    let accuracy = match frame.report.horizon {
+        Horizon::Always => return computed,
+        Horizon::Undecided => "accuracy not known yet".to_owned(),
+        Horizon::AtLeast(time) => format!("accurate to half a pixel until at least {time:.1} s"),
+        Horizon::Until(time) if frame.scene.is_linear() => {
+            format!("leaves the exact motion by half a pixel at {time:.2} s")
+        }
+        Horizon::Until(time) if frame.report.time > f64::from(time) => {
+            format!("was accurate to half a pixel until {time:.1} s")
+        }
+        Horizon::Until(time) => format!("accurate to half a pixel until {time:.1} s"),
     };
     format!("{computed} · {accuracy}")
 }
 
 /// Returns the method, with its number of steps.
 fn computed(frame: &Frame) -> String {
+    if frame.scene.is_linear() {
+        return "the linear motion on purpose".to_owned();
+    }
     match frame.report.stepping {
         None => "no planning in this scene".to_owned(),
-        Some(Stepping { method, .. }) if is_linear(frame) => method.to_string(),
+        Some(Stepping { method, steps: 0 }) => method.to_string(),
         Some(Stepping { method, steps: 1 }) => format!("{method} · 1 step per frame"),
         Some(Stepping { method, steps }) => format!("{method} · {steps} steps per frame"),
     }
 }
 
-fn is_linear(frame: &Frame) -> bool {
-    let method = frame.report.stepping.map(|stepping| stepping.method);
-    method == Some(Method::ClosedFormF32)
+/// Returns an energy error, or that it is less than `f64` can show.
+pub fn energy_error(error: f32, write: impl Fn(f32) -> String) -> String {
+    if error.abs() < LEAST_ENERGY_ERROR {
+        format!("< {LEAST_ENERGY_ERROR:.0e}")
+    } else {
+        write(error)
+    }
 }
 
 #[cfg(test)]
 mod tests {
+    use double_pendulum::Method;
     use firmware::scenes::SceneName;
 
     use super::*;
@@ -265,7 +272,7 @@ mod tests {
             settings: scene.first_settings(),
             method,
             processor: PROCESSOR.code,
-            paused: false,
+            state: PlayState::Playing,
             steps: 0,
             speed: 1.0,
             panel: PanelReport::default(),
@@ -287,6 +294,69 @@ mod tests {
         let small = "warn  rk4-fixed32 is not used here: scene small-1 always uses closed-form-f32";
         let flips = "warn  rk4-fixed32 is not used here: scene flips has no choice of methods";
         assert_eq!(said, [small, flips, flips]);
+    }
+
+    #[test]
+    fn horizon_and_stop_are_said_in_words() {
+        let words = |scene, state, horizon| {
+            let stepping = Some(Stepping {
+                method: Method::Rk4Fixed32,
+                steps: 8,
+            });
+            stepping_of(scene, state, horizon, stepping)
+        };
+        let page = |horizon| words(SceneName::Page, PlayState::Playing, horizon);
+        let head = "rk4-fixed32 · 8 steps per frame ·";
+        assert_eq!(
+            page(Horizon::Undecided),
+            format!("{head} accuracy not known yet")
+        );
+        assert_eq!(
+            page(Horizon::AtLeast(2.5)),
+            format!("{head} accurate to half a pixel until at least 2.5 s")
+        );
+        assert_eq!(
+            page(Horizon::Until(2.5)),
+            format!("{head} accurate to half a pixel until 2.5 s")
+        );
+        assert_eq!(
+            words(
+                SceneName::SmallHeavy,
+                PlayState::Playing,
+                Horizon::Until(0.017)
+            ),
+            "the linear motion on purpose · leaves the exact motion by half a pixel at 0.02 s"
+        );
+        assert!(
+            words(SceneName::Page, PlayState::Stopped, Horizon::Until(0.0))
+                .starts_with("this motion is too fast for this chip: change the masses")
+        );
+    }
+
+    fn stepping_of(
+        scene: SceneName,
+        state: PlayState,
+        horizon: Horizon,
+        method: Option<Stepping>,
+    ) -> String {
+        stepping(&Frame {
+            scene,
+            state,
+            report: Report {
+                horizon,
+                stepping: method,
+                ..Report::default()
+            },
+            ..Frame::default()
+        })
+    }
+
+    #[test]
+    fn energy_error_below_what_f64_shows_is_said_to_be_so() {
+        let written = |error| energy_error(error, |error| format!("{error:+.1e}"));
+        assert_eq!(written(2.4e-14), "+2.4e-14");
+        assert_eq!(written(-1e-15), "< 4e-15");
+        assert_eq!(written(0.0), "< 4e-15");
     }
 
     #[test]

@@ -62,10 +62,12 @@ impl Source {
 
 /// The number of a command that comes from a key.
 const KEY: u16 = 0;
-/// The number of the commands by which the board is set up. A refusal of one of them ends the session.
+/// The number of the commands by which the board is set up. A refusal of one of them ends the
+/// session.
 const SETUP: u16 = 1;
 
-/// The speeds that the keys step through, simulated time per real time: from the least to the greatest there is.
+/// The speeds that the keys step through, simulated time per real time: from the least to the
+/// greatest there is.
 const SPEEDS: [f32; 9] = [0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 4.0];
 
 /// Returns the next greater speed; `None` at the greatest.
@@ -207,7 +209,8 @@ impl<'a> Session<'a> {
         self.source.send(KEY, command)
     }
 
-    /// Sets another speed, which `next` returns for the present one, once the board has reported that.
+    /// Sets another speed, which `next` returns for the present one, once the board has reported
+    /// that.
     pub fn change_speed(&mut self, next: fn(f32) -> Option<f32>) -> anyhow::Result<()> {
         let Some(speed) = self.readings.speed.and_then(next) else {
             return Ok(());

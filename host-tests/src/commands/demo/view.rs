@@ -3,6 +3,7 @@
 
 use std::borrow::Cow;
 
+use firmware::protocol::PlayState;
 use ratatui::Frame;
 use ratatui::layout::Constraint::{Fill, Length, Min, Percentage};
 use ratatui::layout::{Layout, Rect};
@@ -26,7 +27,8 @@ const WORDS: u16 = 7;
 /// Rows from which there is room for both angles, their frame included, and their share of the width, percent.
 const ANGLES: u16 = 7;
 const ANGLES_WIDTH: u16 = 60;
-/// The keys, at the bottom in at most so many rows: all but the least used where there is no room for more.
+/// The keys, at the bottom in at most so many rows: all but the least used where there is no room
+/// for more.
 const KEYS: [&str; 9] = [
     "↑↓ masses",
     "←→ angle",
@@ -83,16 +85,22 @@ pub fn draw(
         .areas(top);
 
     let scene = now.map(|now| now.scene.name());
-    let paused = now.is_some_and(|now| now.paused).then_some("paused");
+    let state = now.map(|now| now.state);
+    let still = state.filter(|state| *state != PlayState::Playing);
     let speed = readings
         .speed
         .filter(|speed| *speed != 1.0)
         .map(|speed| format!("speed {speed}"));
-    let title = [Some(board), scene, paused, speed.as_deref()]
-        .into_iter()
-        .flatten()
-        .collect::<Vec<_>>()
-        .join(" · ");
+    let title = [
+        Some(board),
+        scene,
+        still.map(PlayState::name),
+        speed.as_deref(),
+    ]
+    .into_iter()
+    .flatten()
+    .collect::<Vec<_>>()
+    .join(" · ");
     frame.render_widget(Line::from(title).bold(), title_at);
     panel::draw(
         frame,
@@ -196,6 +204,7 @@ mod tests {
     use double_pendulum::{Method, State};
     use firmware::graphics::Canvas;
     use firmware::graphics::text::{self, Anchor};
+    use firmware::motion::Horizon;
     use firmware::protocol::Frame as Reading;
     use firmware::scenes::{Report, SceneName};
     use ratatui::Terminal;
@@ -218,7 +227,7 @@ mod tests {
             readings.frame(Reading {
                 sequence: tick,
                 scene,
-                paused: true,
+                state: PlayState::Paused,
                 mass_ratio: 25.0 / 144.0,
                 dropped: 123_456,
                 report: Report {
@@ -233,8 +242,7 @@ mod tests {
                         method: Method::Extrapolation10Fixed64,
                         steps: 12,
                     }),
-                    horizon: 86_400.0,
-                    is_looking: true,
+                    horizon: Horizon::AtLeast(86_400.0),
                     ..Report::default()
                 },
                 ..Reading::default()

@@ -31,6 +31,9 @@ pub struct PlanOptions {
 pub fn run(PlanOptions { scene }: &PlanOptions) -> anyhow::Result<()> {
     let (problem, plan) = scene.plan().map_err(Refused::because)?;
     scene.start.advice().iter().for_each(complain);
+    if let (true, Ok(plan)) = (scene.is_linear(), &plan) {
+        return Ok(linear_words(plan).iter().try_for_each(say)?);
+    }
     Ok(words(&problem, &plan, &scene.target)
         .iter()
         .try_for_each(say)?)
@@ -73,6 +76,18 @@ fn words(scene: &Problem, plan: &Result<Plan, Limit>, chip: &Chip) -> Vec<String
     };
     lines.extend(energy(scene).map(|line| format!("         {line}")));
     lines
+}
+
+/// A scene that shows the linear motion, with its horizon, a line each.
+fn linear_words(plan: &Plan) -> [String; 3] {
+    [
+        format!("method   {}", plan.method),
+        format!(
+            "horizon  leaves the exact motion by half a pixel after {:.2} s",
+            plan.horizon
+        ),
+        String::from("why      this scene shows the linear motion on purpose: nothing is planned"),
+    ]
 }
 
 fn pixels(error: f32) -> String {

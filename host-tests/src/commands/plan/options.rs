@@ -3,7 +3,8 @@
 use anyhow::{Context, bail, ensure};
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Parser, value_parser};
-use double_pendulum::plan::{Limit, Plan, PlanError, Problem};
+use double_pendulum::Method;
+use double_pendulum::plan::{Limit, Plan, PlanError, Problem, Search, Stepping};
 use firmware::config::{CORTEX_M0PLUS, CORTEX_M3, CORTEX_M4F, Processor, STM32F405};
 use firmware::motion::half_pixel;
 use firmware::scenes::SceneName;
@@ -12,6 +13,21 @@ use crate::commands::simulate::{Number, StartOptions, option_of};
 use crate::console::cli::choice;
 use crate::emulator::boards::every_board;
 use crate::emulator::host::Show;
+
+/// The method of the scenes that show the linear motion.
+const LINEAR: Stepping = Stepping {
+    method: Method::ClosedFormF32,
+    steps: 1,
+};
+
+/// Advances a search to its end.
+fn finish(mut search: Search) -> Result<Plan, PlanError> {
+    loop {
+        if let Some(plan) = search.advance(f32::INFINITY)? {
+            return Ok(plan);
+        }
+    }
+}
 
 /// A scene, and the chip that computes it.
 #[derive(Debug, Parser)]
@@ -52,17 +68,30 @@ const HIGHEST: f64 = 1e6;
 
 impl SceneOptions {
     /// The scene with its plan, or with what forbids any; an error is one line that names the option and the value.
+    ///
+    /// The plan of a [linear](SceneName::is_linear) scene is the horizon of the linear motion.
     pub fn plan(&self) -> anyhow::Result<(Problem, Result<Plan, Limit>)> {
         let problem = self
             .scene
             .map_or_else(|| self.given(), |name| self.of_scene(name))?;
         let Processor { costs, .. } = &self.target.processor;
-        match Plan::search(&problem, costs, &self.target.processor.budget(&problem)) {
+        let budget = self.target.processor.budget(&problem);
+        let found = if self.is_linear() {
+            Search::of(LINEAR, &problem, costs, &budget).and_then(finish)
+        } else {
+            Plan::search(&problem, costs, &budget)
+        };
+        match found {
             Ok(plan) => Ok((problem, Ok(plan))),
             Err(PlanError::NoMethod { limit, .. }) => Ok((problem, Err(limit))),
             Err(PlanError::Refused(error)) => bail!("{}: {error}", option_of(&error, "the scene")),
             Err(error) => bail!("the scene: {error}"),
         }
+    }
+
+    /// Returns true if the scene shows the linear motion, on purpose.
+    pub fn is_linear(&self) -> bool {
+        self.scene.is_some_and(SceneName::is_linear)
     }
 
     /// What a board of this class plans when it starts the scene.

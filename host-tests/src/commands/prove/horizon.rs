@@ -32,7 +32,8 @@ pub fn frames(
                 .map(|direction| direction.map(|x| Fixed::of(x.into())))
         };
         last = drawn.map_or(Some(false), |()| {
-            are_near(&scene, &exact, &shown(), scene.tolerance)
+            // Bob 2 as seen from bob 1 counts, because some scenes show curves of the angles.
+            is_none_off(&are_off(&scene, &exact, &shown(), scene.tolerance))
         });
         let width = exact
             .as_flattened()
@@ -47,25 +48,30 @@ pub fn frames(
     }))
 }
 
-/// Whether both bobs are within `tolerance`, m, of each other in these directions; `None` if that depends on where in the boxes they are.
-fn are_near(
+/// Returns true for bob 1, bob 2, and bob 2 as seen from bob 1, if it is more than `tolerance`, m, off
+/// between these directions; `None` if that depends on where in the boxes they are.
+fn are_off(
     scene: &Problem,
     one: &[[Fixed; 2]; 2],
     other: &[[Fixed; 2]; 2],
     tolerance: f64,
-) -> Option<bool> {
+) -> [Option<bool>; 3] {
     let Parameters { l1, l2, .. } = scene.pendulum;
     // all over the longer rod, rounded
     let [l1, l2, tolerance] =
         [l1, l2, tolerance].map(|x| Fixed::of(x / l1.max(l2)).wider(f64::EPSILON));
     let off = |rod: usize, l: Fixed| [0, 1].map(|axis| (one[rod][axis] - other[rod][axis]) * l);
     let ([x1, y1], [x2, y2]) = (off(0, l1), off(1, l2));
-    let beyond = [[x1, y1], [x1 + x2, y1 + y2]]
-        .map(|[x, y]| (x * x + y * y - tolerance * tolerance).is_positive());
-    if beyond.contains(&Some(true)) {
+    [[x1, y1], [x1 + x2, y1 + y2], [x2, y2]]
+        .map(|[x, y]| (x * x + y * y - tolerance * tolerance).is_positive())
+}
+
+/// Returns true if none is off, `None` if that is not known.
+fn is_none_off(off: &[Option<bool>]) -> Option<bool> {
+    if off.contains(&Some(true)) {
         Some(false)
     } else {
-        (beyond == [Some(false); 2]).then_some(true)
+        off.iter().all(Option::is_some).then_some(true)
     }
 }
 
@@ -125,10 +131,9 @@ fn told_apart(scene: &Problem) -> Option<f64> {
     });
     let mut verdicts = (1..=scene.frames()).map_while(|frame| {
         one.advance().and(other.advance())?;
-        Some((
-            frame,
-            are_near(scene, &one.directions(), &other.directions(), l1.max(l2)),
-        ))
+        let (one, other) = (one.directions(), other.directions());
+        let [bob1, bob2, _] = are_off(scene, &one, &other, l1.max(l2));
+        Some((frame, is_none_off(&[bob1, bob2])))
     });
     verdicts
         .find(|(_, are_near)| *are_near == Some(false))

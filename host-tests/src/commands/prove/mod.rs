@@ -109,6 +109,9 @@ pub fn run(options: &ProveOptions) -> anyhow::Result<ExitCode> {
     }
     drop(bar);
     if !options.csv {
+        if asked.is_none() && options.scene.is_linear() {
+            say("scene      shows the linear motion on purpose, not the exact one")?;
+        }
         say(words(&scene, &plan, stepping, &proved))?;
     }
     Ok(interrupted_by(stopped.load(Ordering::Relaxed)))

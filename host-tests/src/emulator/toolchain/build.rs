@@ -89,7 +89,8 @@ impl Toolchain {
         Ok(elf)
     }
 
-    /// Builds the image of the golden bits for a target; for a processor of this name that computes `f64` itself, if there is one.
+    /// Builds the image of the golden bits for a target; for a processor of this name that computes
+    /// `f64` itself, if there is one.
     pub fn build_cores(&self, target: &str, double: Option<&str>) -> anyhow::Result<PathBuf> {
         let mut command = self.for_targets("build", &[target])?;
         // Both kinds come out under one name.

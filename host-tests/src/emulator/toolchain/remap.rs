@@ -1,7 +1,9 @@
-//! Flags that keep the builder's folders out of the firmware's images: the same commit has the same bytes wherever it is built.
+//! Flags that keep the builder's folders out of the firmware's images: the same commit has the same
+//! bytes wherever it is built.
 //!
-//! Panics name source files. Files of other crates are in the folder of cargo, and those of the core library may be in that of
-//! the compiler: both are usually in the builder's home. The names given instead do not depend on the machine.
+//! Panics name source files. Files of other crates are in the folder of cargo, and those of the
+//! core library may be in that of the compiler: both are usually in the builder's home. The names
+//! given instead do not depend on the machine.
 
 use std::path::{Path, PathBuf, absolute};
 use std::process::Command;

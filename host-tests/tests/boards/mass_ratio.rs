@@ -1,0 +1,63 @@
+//! The largest mass ratio that keys reach, on the emulated board that is slowest at it: up is pressed
+//! until nothing changes any more.
+
+use firmware::config::{MASS_RATIOS, TICK_RATE};
+use firmware::protocol::{Answer, Command, PlayState};
+use firmware::scenes::SceneName;
+use host_tests::emulator::boards::LM3S6965EVB;
+use host_tests::emulator::host::Show;
+use host_tests::emulator::qemu::Machine;
+
+use crate::support::on;
+
+/// The time for which each scene is followed, ticks. With steps that do not resolve the motion it left
+/// the finite numbers after 2.6 s, and `figure-7` after 1 s.
+const FOLLOWED: u64 = 4 * TICK_RATE as u64;
+
+/// The largest relative energy error of a frame; 1 % shows after some seconds.
+const ENERGY: f32 = 1e-3;
+
+#[test]
+fn up_held_down_shows_the_hosts_motion_at_mass_ratio_100() -> anyhow::Result<()> {
+    let board = &LM3S6965EVB;
+    let mut machine = on(board, Machine::start)?;
+    machine.next_frame()?;
+    for name in [SceneName::Page, SceneName::Figure7] {
+        let mut settings = name.first_settings();
+        machine.send(1, Command::Choose(name))?;
+        assert_eq!(machine.next_answer()?, (1, Answer::Done));
+        for _ in MASS_RATIOS {
+            machine.send(1, Command::Heavier)?;
+            assert_eq!(machine.next_answer()?, (1, Answer::Done));
+            settings = settings.heavier();
+        }
+        assert_eq!(settings.mass_ratio(), 100.0);
+
+        let mut show = Show::on(board.processor(), name, &settings)?;
+        loop {
+            let frame = machine.next_frame()?;
+            let place = format!("{}, step {}", name.name(), frame.report.step);
+            assert_eq!(frame, show.expected(&frame), "{place}");
+            assert_eq!(
+                (frame.state, frame.dropped),
+                (PlayState::Playing, 0),
+                "{place}"
+            );
+            assert!(
+                frame.report.energy_error.abs() <= ENERGY,
+                "{place}: {:e}",
+                frame.report.energy_error
+            );
+            if frame.report.step >= FOLLOWED {
+                break;
+            }
+        }
+    }
+    let bad: Vec<_> = machine
+        .lines()
+        .into_iter()
+        .filter(|line| line.is_bad())
+        .collect();
+    assert!(bad.is_empty(), "{bad:#?}");
+    Ok(())
+}
