@@ -162,6 +162,17 @@ impl<R: Real> Pendulum<R> {
 /// The product W dt for the longest step that resolves a motion whose fastest rate is W.
 const RESOLVED: f64 = 0.25;
 
+/// The phase w1 dt, rad, up to which RK4 is stable on the fast mode: 2 sqrt(2).
+pub(crate) const RK4_STABLE: f64 = 2.828_427_124_746_190_3;
+
+/// Returns the longest step, s, in which the fast mode advances by at most `phase` rad.
+///
+/// It is infinite where a pendulum has no modes, without gravity or out of the range of `f64`.
+#[inline(never)] // Not inlined, to save flash.
+pub(crate) fn stable_step(parameters: &Parameters<f64>, phase: f64) -> f64 {
+    Modes::new(parameters).map_or(f64::INFINITY, |modes| phase / modes.fast.frequency)
+}
+
 /// Refuses the steps that [`check_step`] refuses, and steps backwards.
 fn check_forward<R: Real>(dt: f64) -> Result<(), Error> {
     if dt.is_finite() && dt <= 0.0 {

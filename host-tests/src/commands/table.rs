@@ -43,6 +43,39 @@ pub fn small(value: f64) -> String {
     }
 }
 
+/// Returns a bound of two digits, in exponent form, that is no less than `value`.
+pub fn at_most(value: f64) -> String {
+    let rounded = format!("{value:.1e}");
+    // A decimal may be below the `f64` that it is read as, by half a unit of its last place.
+    let is_enough = |text: &str| text.parse::<f64>().is_ok_and(|bound| bound > value);
+    if value == 0.0 || !value.is_finite() || is_enough(&rounded) {
+        return rounded;
+    }
+    let more = value * 1.1;
+    let unit = 10_f64.powi(value.log10().floor() as i32 - 1);
+    [value + 0.5 * unit, value + unit, more]
+        .map(|bound| format!("{bound:.1e}"))
+        .into_iter()
+        .find(|text| is_enough(text))
+        .unwrap_or_else(|| format!("{:.1e}", 2.0 * value))
+}
+
+#[test]
+fn bounds_are_rounded_up() {
+    for (value, text) in [
+        (0.0, "0.0e0"),
+        (1.0, "1.1e0"),
+        (1.5429e-7, "1.6e-7"),
+        (1.81e-4, "1.9e-4"),
+        (9.91e-33, "1.0e-32"),
+        (9.9999e5, "1.0e6"),
+        (1.01e-300, "1.1e-300"),
+        (f64::INFINITY, "inf"),
+    ] {
+        assert_eq!(at_most(value), text, "{value:e}");
+    }
+}
+
 #[test]
 fn what_stands_between_the_marks_is_replaced() {
     let [old, new] = ["old", "new"].map(|text| format!("before [{text}] after"));

@@ -175,3 +175,54 @@ fn a_scene_is_planned_as_the_boards_start_it() {
         );
     }
 }
+
+/// Waits until a process handles SIGTERM itself; by then `prove` has its plan.
+#[cfg(target_os = "linux")]
+fn wait_for_handler(process: u32) {
+    const SIGTERM_BIT: u64 = 1 << (15 - 1);
+    loop {
+        let status = fs::read_to_string(format!("/proc/{process}/status")).expect("it runs");
+        let caught = status
+            .lines()
+            .find_map(|line| line.strip_prefix("SigCgt:"))
+            .and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok())
+            .expect("a mask of signals");
+        if caught & SIGTERM_BIT != 0 {
+            return;
+        }
+        std::thread::sleep(std::time::Duration::from_millis(10));
+    }
+}
+
+/// The proof would take hours, and so would the search for motions that look the same on the panel.
+#[cfg(target_os = "linux")]
+#[test]
+fn an_interrupted_proof_prints_what_it_has_proved() {
+    use host_tests::emulator::process::spawn;
+    use nix::sys::signal::{Signal, kill};
+    use nix::unistd::Pid;
+    use std::io::Read;
+
+    let words = "--angles 0.1,0.1 --duration 1e4 --method rk4-fixed32 --steps 16";
+    for signal in [Signal::SIGINT, Signal::SIGTERM] {
+        let mut command = program("prove");
+        command
+            .args(words.split_whitespace())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::null());
+        let mut running = spawn(&mut command, LIMIT).expect("it starts");
+        let process = running.child.id();
+        wait_for_handler(process);
+        kill(Pid::from_raw(process as i32), signal).expect("it runs");
+
+        let mut text = String::new();
+        let mut output = running.child.stdout.take().expect("piped");
+        output.read_to_string(&mut text).expect("text");
+        let status = running.wait().expect("it ends by itself");
+        assert_eq!(status.code(), Some(128 + signal as i32), "{text}");
+        assert!(
+            text.contains("interrupted after ") && text.contains("proved     right"),
+            "{text}"
+        );
+    }
+}

@@ -349,7 +349,10 @@ fn a_motion_of_64_bits_is_right_or_said_to_be_lost() -> Result<(), Error> {
         let mut fixed = pendulum.run::<Fixed64<ORDER>>(&start, dt)?;
         let mut double = pendulum.run::<ExtrapolationF64<ORDER>>(&start, dt)?;
         let is_right = fixed.advance(3).is_ok();
-        double.advance(3)?;
+        let is_right_in_f64 = double.advance(3);
+        if is_right {
+            is_right_in_f64?;
+        }
         Ok(is_right.then(|| largest_difference(&[fixed.state()], &[double.state()])))
     }
     let mut rng = fastrand::Rng::with_seed(14);

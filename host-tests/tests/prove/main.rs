@@ -1,6 +1,7 @@
 //! The enclosure: the exact motion is in it, and leaves it when any of its allowances is taken away.
 
 mod motions;
+mod periodic_orbits;
 
 use double_pendulum::{Motion, Parameters};
 use fastrand::Rng;
@@ -111,6 +112,59 @@ fn what_is_rounded_is_counted() {
         format!("-0.1875{:0<29}", "")
     );
     assert_eq!(third.wider(9e-5).decimal(33.0), "0.3333");
+}
+
+/// The sines of large angles, computed with 90 digits.
+#[test]
+fn whole_turns_are_removed_exactly() {
+    let [zero, one] = [(0, 1), (1, 1)];
+    let hull = |angles: [(i64, u64); 2], degrees: bool| {
+        let [a1, a2] = angles.map(|(above, below)| above as f64 / below as f64);
+        let [a1, a2] = [a1, a2].map(|a| if degrees { a.to_radians() } else { a });
+        let parameters = Parameters::equal_rods(1.0, 1.0, 1.0);
+        let start = Start {
+            about: (parameters, Motion::at_rest(a1, a2)),
+            fractions: Some([angles[0], angles[1], zero, zero, one, one, one, one, one]),
+            degrees: [degrees, false],
+        };
+        (
+            start.enclose(RATE).hull(),
+            Start::of(&parameters, &start.about.1).enclose(RATE).hull(),
+        )
+    };
+
+    for (angle, digits, width) in [
+        ((1000, 1), "0.826879540532002560255887429109", 1e-31),
+        (
+            (12_345_678, 1000),
+            "-0.704081313753298916640886018839",
+            1e-30,
+        ),
+        ((1_000_000_000_000_001, 1), "0.031889", 1e-18),
+    ] {
+        let (exact, _) = hull([angle, zero], false);
+        let sine = exact[0].decimal(30.0);
+        assert!(sine.starts_with(digits), "{sine} for {digits}");
+        assert!(
+            exact[0].radius() < width,
+            "{angle:?}: {:e}",
+            exact[0].radius()
+        );
+    }
+
+    // 300 degrees are -60, and a million degrees 280, which is -80.
+    for (angle, less) in [
+        ((300, 1), (-60, 1)),
+        ((1_000_000, 1), (-80, 1)),
+        ((1441, 2), (1, 2)),
+    ] {
+        let [(large, _), (small, _)] = [angle, less].map(|angle| hull([angle, (10, 1)], true));
+        assert_eq!(large, small, "{angle:?} degrees");
+    }
+
+    // As an `f64`, a large angle is taken as it is.
+    let (exact, double) = hull([(1000, 1), (-700, 1)], false);
+    assert_eq!(exact, double);
 }
 
 #[test]

@@ -50,7 +50,12 @@ pub struct SmallOscillations<R> {
     pub fast: Oscillation<R>,
     #[doc(hidden)]
     pub slow: Oscillation<R>,
+    /// True if an angle may exceed [`SMALL`].
+    is_wide: bool,
 }
+
+/// The largest angle, rad, whose direction is drawn by the first terms of its series.
+const SMALL: f64 = 0.6;
 
 impl<R: Real> SmallOscillations<R> {
     /// The motion that starts as `start`.
@@ -76,18 +81,31 @@ impl<R: Real> SmallOscillations<R> {
         let split = |x1: R, x2: R| [(r2 * x1 - x2) / (r2 - r1), (x2 - r1 * x1) / (r2 - r1)];
         let [c1, c2] = split(start.a1, start.a2);
         let [v1, v2] = split(start.w1, start.w2);
-        Self {
+        let fast = Oscillation {
+            cosine: c1,
+            sine: v1 / fast,
+        };
+        let slow = Oscillation {
+            cosine: c2,
+            sine: v2 / slow,
+        };
+        let mut linear = Self {
             turns,
             modes,
-            fast: Oscillation {
-                cosine: c1,
-                sine: v1 / fast,
-            },
-            slow: Oscillation {
-                cosine: c2,
-                sine: v2 / slow,
-            },
-        }
+            fast,
+            slow,
+            is_wide: false,
+        };
+        let small = R::from_f64(SMALL);
+        linear.is_wide = linear.reach().map(|most| most <= small) != [true; 2];
+        linear
+    }
+
+    /// Returns what neither angle ever exceeds, rad: the sum of the modes' amplitudes.
+    fn reach(&self) -> [R; 2] {
+        let [fast, slow] = [&self.fast, &self.slow].map(Oscillation::amplitude);
+        let [of_fast, of_slow] = self.modes.map(|mode| mode.shape.abs());
+        [fast + slow, of_fast * fast + of_slow * slow]
     }
 
     /// Angles and angular velocities a time `t` (s) after the start; `t` may be negative.
@@ -110,11 +128,16 @@ impl<R: Real> SmallOscillations<R> {
 
     /// (sin, cos) of both angles a time `t` (s) after the start: all that a drawing needs.
     ///
-    /// By the first terms of their series, sin a = a - a^3/6 and cos a = 1 - a^2/2 + a^4/24: off by a^5/120, far less than
-    /// the linear motion itself. Two sincos and no division.
+    /// If neither angle of the motion ever exceeds 0.6 rad, by the first terms of their series, sin a = a - a^3/6 and
+    /// cos a = 1 - a^2/2 + a^4/24: off by a^5/120, 7e-4 at most, and far less than the linear motion itself. Two sincos and
+    /// no division. Otherwise by the sines and cosines of the angles, which costs two sincos more. The length is 1 to 4e-4.
     #[must_use]
     pub fn directions(&self, t: f64) -> [Direction<R>; 2] {
-        self.angles(self.phases(t)).map(|a| {
+        let angles = self.angles(self.phases(t));
+        if self.is_wide {
+            return angles.map(|a| a.own_sin_cos().into());
+        }
+        angles.map(|a| {
             let square = a * a;
             let [sixth, twelfth] = [R::from_f64(1.0 / 6.0), R::from_f64(1.0 / 12.0)];
             [
@@ -169,6 +192,8 @@ impl<R> Sealed for ClosedForm<R> {}
 impl<R: Real> Form for ClosedForm<R> {
     type Real = R;
     const HAS_TURNS: bool = true;
+    const STABLE: f64 = f64::INFINITY;
+    const CHECKS_ENERGY: bool = true; // it keeps that of the linear motion
 
     fn new(parameters: &Parameters<f64>, start: &State<f64>, dt: f64) -> Result<Self, Error> {
         check_step::<f64>(dt)?;
@@ -198,11 +223,16 @@ impl<R: Real> Form for ClosedForm<R> {
             steps: 0,
             ..*self
         };
-        let out_of_range = |_| Error::OutOfRange {
-            parameter: Parameter::A1,
-            value: motion.a1,
-        };
-        started.check().map(|()| started).map_err(out_of_range)
+        let most_turns = R::from_f64(f64::from(i32::MAX) * core::f64::consts::TAU);
+        let has_turns = oscillations.reach().map(|most| most <= most_turns) == [true; 2];
+        if has_turns && started.check().is_ok() {
+            Ok(started)
+        } else {
+            Err(Error::OutOfRange {
+                parameter: Parameter::A1,
+                value: motion.a1,
+            })
+        }
     }
 
     fn advance(&mut self, steps: u32) {

@@ -28,6 +28,27 @@ use crate::numbers::Real;
 /// The largest number of rows, which is that of order 16.
 pub const ROWS: usize = 8;
 
+/// Returns true if a step can be of this order: 2, 4 .. 16.
+pub(crate) const fn is_order(order: u32) -> bool {
+    order % 2 == 0 && order >= 2 && order <= 2 * ROWS as u32
+}
+
+/// The phases in [`stable`], for the orders 2, 4 .. 16.
+const STABLE: [f64; ROWS] = [0.95, 2.86, 2.51, 3.67, 5.28, 4.77, 6.37, 7.35];
+
+/// Returns the phase w dt, rad, up to which a step of this order lets an oscillation of frequency w
+/// grow by less than a tenth.
+///
+/// The orders 2, 6, 10 and 14 are stable in no step at all, but only just: an oscillation grows by
+/// less than 1e-4 in a step of up to 0.16, 0.94, 2.14 and 6.3 rad.
+pub(crate) const fn stable(order: u32) -> f64 {
+    if is_order(order) {
+        STABLE[order as usize / 2 - 1]
+    } else {
+        f64::INFINITY
+    }
+}
+
 /// Extrapolation of an even order, for any system of equations in the numbers `R`.
 ///
 /// The orders 6, 8, 12 and 16 are measured by the tests of the repository.
@@ -43,9 +64,8 @@ pub struct Extrapolation<R> {
 
 /// Returns the number of rows of a method of `order` 2, 4 .. 16. Refuses any other order.
 pub(super) fn rows(order: u32) -> Result<usize, Error> {
-    let rows = order as usize / 2;
-    if order % 2 == 0 && (1..=ROWS).contains(&rows) {
-        Ok(rows)
+    if is_order(order) {
+        Ok(order as usize / 2)
     } else {
         Err(Error::OutOfRange {
             parameter: Parameter::Order,
@@ -140,5 +160,41 @@ impl<R: Real> Extrapolation<R> {
     /// Returns the shares 2/n and the weights of all rows, and the number of rows.
     pub(super) fn parts(&self) -> (&[R; ROWS], &[R; ROWS], usize) {
         (&self.shares, &self.weights, self.rows)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The growth of an oscillation in a step of `phase` rad.
+    fn growth(method: &Extrapolation<f64>, phase: f64) -> f64 {
+        let [x, y] = method.step(|&[x, y]| [y, -x], &[1.0, 0.0], phase);
+        libm::hypot(x, y)
+    }
+
+    #[test]
+    fn steps_are_stable_up_to_the_phase_in_the_table() -> Result<(), Error> {
+        for order in (2..=16).step_by(2) {
+            let method = Extrapolation::new(order)?;
+            let most = stable(order);
+            for share in 1..=1000 {
+                let phase = most * f64::from(share) / 1000.0;
+                let growth = growth(&method, phase);
+                assert!(growth < 1.1, "order {order}, {phase} rad: {growth}");
+            }
+            assert!(
+                growth(&method, most + 0.02) > 1.1,
+                "order {order}: no further"
+            );
+        }
+        for (order, phase) in [(2, 0.16), (6, 0.94), (10, 2.14), (14, 6.3)] {
+            let method = Extrapolation::new(order)?;
+            let most = (1..=100)
+                .map(|share| growth(&method, phase * f64::from(share) / 100.0))
+                .fold(0.0, f64::max);
+            assert!(most > 1.0 && most < 1.000_1, "order {order}: {most}");
+        }
+        Ok(())
     }
 }

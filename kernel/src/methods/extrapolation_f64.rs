@@ -22,7 +22,7 @@
 use crate::error::{Error, Parameter, check_finite};
 use crate::methods::Form;
 use crate::methods::direction::{Coefficients, Scale, directions, prepare, quantities};
-use crate::methods::extrapolation::{Extrapolation, ROWS};
+use crate::methods::extrapolation::{Extrapolation, ROWS, is_order, stable};
 use crate::numbers::{Lanes, Real, Sealed};
 use crate::pendulum::{Direction, Parameters, State};
 
@@ -32,7 +32,7 @@ const LANES: usize = 4;
 type Numbers = Lanes<f64, LANES>;
 
 /// A motion in the direction form, stepped by [`Extrapolation`] of order `ORDER`, 2, 4 .. 16, in
-/// `f64`.
+/// `f64`. Another order does not compile.
 ///
 /// The sums of the state are compensated, as in [`DirectionF32`](crate::DirectionF32), and the
 /// lengths of the directions are restored after every step.
@@ -277,8 +277,10 @@ impl<const ORDER: u32> Sealed for ExtrapolationF64<ORDER> {}
 #[doc(hidden)]
 impl<const ORDER: u32> Form for ExtrapolationF64<ORDER> {
     type Real = f64;
+    const STABLE: f64 = stable(ORDER);
 
     fn new(parameters: &Parameters<f64>, start: &State<f64>, dt: f64) -> Result<Self, Error> {
+        const { assert!(is_order(ORDER), "the order is 2, 4 .. 16") }
         let (coefficients, scale) = prepare(parameters, dt, 1.0)?;
         let motion = Self {
             coefficients,

@@ -37,6 +37,7 @@ use crate::bounds::check_step;
 use crate::error::{Error, Parameter};
 use crate::methods::Form;
 use crate::methods::direction::{quantities, state_of};
+use crate::methods::extrapolation::{is_order, stable};
 use crate::methods::scaling::{Scaling, lost};
 use crate::numbers::fixed::Q64;
 use crate::numbers::{Real, Sealed};
@@ -50,6 +51,15 @@ use rows::{EIGHTH, Rows, unit_of_time};
 /// Others are refused with an error that names the parameter. It also refuses a step of more than 15
 /// of its units of time, or one in which the fastest rate would turn a rod by more than 1.5 rad; the
 /// error contains the longest possible step.
+///
+/// An order that is not 2, 4 .. 16 does not compile:
+///
+/// ```compile_fail
+/// use double_pendulum::{Fixed64, Parameters, Pendulum, State};
+///
+/// let pendulum = Pendulum::new(&Parameters::equal_rods(1.0, 1.0, 9.81)).unwrap();
+/// let run = pendulum.run::<Fixed64<11>>(&State::at_rest(0.5, 0.5), 1.0 / 64.0);
+/// ```
 ///
 /// # Accuracy
 ///
@@ -86,6 +96,8 @@ const RATE: f64 = 0.125;
 const TORQUE: f64 = 1.0 / 256.0;
 /// The longest step, in units of time.
 const STEP: f64 = 15.0;
+/// The longest unit of time, s: that of a pendulum at rest without gravity. Its square is finite.
+const FOREVER: f64 = 1e150;
 /// The largest angle by which a rod may turn in a step, rad.
 const TURN: f64 = 1.5;
 
@@ -112,7 +124,7 @@ impl Fixed64State {
         let bounds = pendulum.bounds(start);
         let seconds = Scaling::in_seconds(parameters)?;
         let [by_rates, by_torques] = seconds.longest(&bounds, [RATE, TORQUE]);
-        let longest = libm::fmin(by_rates, by_torques);
+        let longest = libm::fmin(libm::fmin(by_rates, by_torques), FOREVER);
         let limit = libm::fmin(STEP * longest, TURN / RATE * by_rates);
         if libm::fabs(dt) > limit {
             return Err(Error::TooLarge {
@@ -216,8 +228,11 @@ impl<const ORDER: u32> Sealed for Fixed64<ORDER> {}
 #[doc(hidden)]
 impl<const ORDER: u32> Form for Fixed64<ORDER> {
     type Real = f32;
+    const STABLE: f64 = stable(ORDER);
+    const CHECKS_ENERGY: bool = true;
 
     fn new(parameters: &Parameters<f64>, start: &State<f64>, dt: f64) -> Result<Self, Error> {
+        const { assert!(is_order(ORDER), "the order is 2, 4 .. 16") }
         Fixed64State::new(parameters, start, dt, ORDER).map(Self)
     }
 

@@ -21,6 +21,7 @@ pub use run::{Run, Turns};
 
 use core::fmt::Debug;
 
+use crate::bounds::RK4_STABLE;
 use crate::error::Error;
 use crate::numbers::{Real, Sealed};
 use crate::pendulum::{Direction, Parameters, Pendulum, State};
@@ -53,6 +54,16 @@ pub trait Form: Sealed + Copy + Debug + PartialEq + 'static {
     /// What [`Run::directions`] and [`Run::angles`] are told in.
     #[doc(hidden)]
     type Real: Real;
+
+    /// The phase w1 dt, rad, up to which [`Pendulum::run`](crate::Pendulum::run) takes the method for
+    /// stable; w1 is the fast normal frequency.
+    #[doc(hidden)]
+    const STABLE: f64 = RK4_STABLE;
+
+    /// True if [`check`](Self::check) notices every energy that is far too large, and every direction
+    /// that is far too long. If not, [`Run`] looks at both.
+    #[doc(hidden)]
+    const CHECKS_ENERGY: bool = false;
 
     /// Checks the parameters and prepares the motion from `start` in steps of `dt` seconds; a negative one runs backwards.
     #[doc(hidden)]

@@ -9,6 +9,7 @@ mod hamilton;
 mod lagrange;
 mod random;
 mod refusals;
+mod runs;
 mod small_oscillations;
 mod symmetries;
 mod tolerances;

@@ -19,7 +19,7 @@ fn pendulum(parameters: Parameters<f64>) -> Result<(), Error> {
     Pendulum::new(&parameters).map(drop)
 }
 
-/// By the linear motion in `f32`, of which fourth powers are drawn.
+/// By the linear motion in `f32`, whose turns are counted in 31 bits.
 fn linear(angle: f64) -> Result<(), Error> {
     Pendulum::new(&GOOD)?
         .run::<ClosedFormF32>(&State::at_rest(angle, 0.0), 0.01)

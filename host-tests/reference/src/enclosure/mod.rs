@@ -10,11 +10,13 @@ mod fixed;
 mod start;
 
 use std::array::from_fn;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 pub use equations::Equations;
 use equations::{STARTS, discs};
 pub use fixed::Fixed;
-use fixed::{MOST_TERMS, ULP, up};
+pub use fixed::up;
+use fixed::{MOST_TERMS, ULP};
 pub use start::{Start, fastest_rate, sin_cos};
 
 /// Steps whose errors are kept in a box, before they become segments.
@@ -126,8 +128,14 @@ impl Enclosure {
 
     /// Moves on by a frame; `None` if the set has grown too large to be followed, or its numbers too large for the arithmetic.
     pub fn advance(&mut self) -> Option<()> {
+        self.advance_unless(&AtomicUsize::new(0))
+    }
+
+    /// As [`advance`](Self::advance); also `None`, in the middle of the frame, once `stopped` is not zero.
+    pub fn advance_unless(&mut self, stopped: &AtomicUsize) -> Option<()> {
         let mut left = vec![0];
         while let Some(halvings) = left.pop() {
+            (stopped.load(Ordering::Relaxed) == 0).then_some(())?;
             if self.step(halvings).is_none() {
                 left.extend([(halvings < MOST_HALVINGS).then_some(halvings + 1)?; 2]);
             }

@@ -57,9 +57,17 @@ impl Start {
         let [by, by1, by2] = [m1.max(m2), l1, l2].map(|x| x.log2() as i32);
 
         let about = [a1, a2, w1, w2, m1, m2, l1, l2, g];
+        let fractions = self.fractions.map(|mut fractions| {
+            if self.degrees[0] {
+                for angle in &mut fractions[..2] {
+                    *angle = without_whole_circles(*angle);
+                }
+            }
+            fractions
+        });
         // each by any power of two
         let [a1, a2, w1, w2, m1, m2, l1, l2, g] = from_fn(|i| {
-            move |exponent: i32| match self.fractions {
+            move |exponent: i32| match fractions {
                 Some(fractions) => Fixed::fraction(fractions[i].0, fractions[i].1, exponent),
                 None => Fixed::of(about[i] * f64::from(exponent).exp2()),
             }
@@ -73,7 +81,11 @@ impl Start {
             g(-2 * unit - by2) * over_l2,
         ];
         let radians = |x: Fixed, degrees: bool| if degrees { x.over(180) * Fixed::PI } else { x };
-        let [a1, a2] = [a1(0), a2(0)].map(|a| radians(a, self.degrees[0]));
+        let [a1, a2] = if self.degrees[0] {
+            [a1(0), a2(0)].map(|a| radians(a, true))
+        } else {
+            [without_turns(a1, about[0]), without_turns(a2, about[1])]
+        };
         let [w1, w2] = [w1(-unit), w2(-unit)].map(|w| radians(w, self.degrees[1]));
         let ([sin1, cos1], [s, c]) = (sin_cos(a1), sin_cos(a1 - a2));
         let start = [
@@ -97,6 +109,40 @@ impl Start {
             Fineness::default(),
         )
     }
+}
+
+/// Returns an angle in degrees less whole circles, exactly: -180 to 180 of them.
+fn without_whole_circles((numerator, denominator): (i64, u64)) -> (i64, u64) {
+    let circle = 360 * i128::from(denominator);
+    let rest = i128::from(numerator).rem_euclid(circle);
+    let nearest = if 2 * rest > circle {
+        rest - circle
+    } else {
+        rest
+    };
+    // It is nearer to zero than the numerator, or has its sign changed.
+    (i64::try_from(nearest).unwrap_or(numerator), denominator)
+}
+
+/// The largest angle, rad, that is enclosed as it is.
+const LARGEST_ANGLE: f64 = 64.0;
+
+/// Returns an angle of about `about` rad less whole turns; `angle` gives it times 2^n.
+///
+/// A large angle is taken 2^n times smaller, so that it is in range. Its rounding then counts 2^n
+/// times as much.
+fn without_turns(angle: impl Fn(i32) -> Fixed, about: f64) -> Fixed {
+    if about.abs() <= LARGEST_ANGLE {
+        return angle(0);
+    }
+    let places = (about.abs() / LARGEST_ANGLE).log2().ceil() as i32;
+    let turns = (about / std::f64::consts::TAU).round();
+    let share = Fixed::of(turns * f64::from(-places).exp2());
+    let mut rest = angle(-places) - share * (Fixed::PI + Fixed::PI);
+    for _ in 0..places {
+        rest = rest + rest;
+    }
+    rest
 }
 
 /// The sine and the cosine.

@@ -1,40 +1,43 @@
 //! The frames a method draws, held against the exact motion.
 
+use std::sync::atomic::{AtomicUsize, Ordering};
+
 use double_pendulum::plan::{Limit, Plan, PlannedRun, Problem, Stepping};
 use double_pendulum::{Error, Motion, Parameters};
 use firmware::config::HALF_PIXEL;
-use reference::enclosure::{Fixed, Start};
+use reference::enclosure::{Fixed, Start, up};
 
-/// A frame beside the exact motion.
+use crate::commands::table::at_most;
+
+/// A frame compared with the exact motion.
 #[derive(Clone, Copy, Debug)]
 pub struct Verdict {
-    /// Where the rods point, (sin, cos) each.
+    /// The directions of the rods, (sin, cos) each.
     exact: [[Fixed; 2]; 2],
-    /// So far that may be from the middle of the box.
+    /// The largest distance of a true direction from the middle of the box.
     width: f64,
     is_right: Option<bool>,
 }
 
-/// Every frame until one that is proved wrong, as long as the motion can be followed.
-pub fn frames(
+/// Returns every frame until one that is proved wrong, as long as the motion can be enclosed and
+/// `stopped` is zero.
+pub fn frames<'a>(
     scene: &Problem,
     start: &Start,
     stepping: Stepping,
-) -> Result<impl Iterator<Item = Verdict>, Error> {
+    stopped: &'a AtomicUsize,
+) -> Result<impl Iterator<Item = Verdict> + use<'a>, Error> {
     let mut motion = PlannedRun::new(scene, stepping)?;
     let (scene, mut set, mut last) = (*scene, start.enclose(scene.rate), None);
     Ok((0..scene.frames()).map_while(move |_| {
-        (last != Some(false)).then(|| set.advance())??;
+        (last != Some(false)).then(|| set.advance_unless(stopped))??;
         let (exact, drawn) = (set.directions(), motion.advance(1));
         let shown = || {
             motion
                 .directions()
                 .map(|direction| direction.map(|x| Fixed::of(x.into())))
         };
-        last = drawn.map_or(Some(false), |()| {
-            // Bob 2 as seen from bob 1 counts, because some scenes show curves of the angles.
-            is_none_off(&are_off(&scene, &exact, &shown(), scene.tolerance))
-        });
+        last = drawn.map_or(Some(false), |()| are_near(&scene, &exact, &shown()));
         let width = exact
             .as_flattened()
             .iter()
@@ -48,31 +51,35 @@ pub fn frames(
     }))
 }
 
-/// Returns true for bob 1, bob 2, and bob 2 as seen from bob 1, if it is more than `tolerance`, m, off
-/// between these directions; `None` if that depends on where in the boxes they are.
-fn are_off(
+/// Returns true if both bobs, and bob 2 as seen from bob 1, are within the scene's tolerance of each
+/// other in these directions: what a plan promises ([`Problem::tolerance`]).
+///
+/// `None` if that depends on where in the boxes the directions are.
+fn are_near(scene: &Problem, one: &[[Fixed; 2]; 2], other: &[[Fixed; 2]; 2]) -> Option<bool> {
+    let apart = are_apart(scene, one, other, scene.tolerance);
+    if apart.contains(&Some(true)) {
+        Some(false)
+    } else {
+        (apart == [Some(false); 3]).then_some(true)
+    }
+}
+
+/// Returns for bob 1, bob 2, and bob 2 as seen from bob 1 whether they are more than `distance`, m,
+/// apart in these directions; `None` if that depends on where in the boxes the directions are.
+fn are_apart(
     scene: &Problem,
     one: &[[Fixed; 2]; 2],
     other: &[[Fixed; 2]; 2],
-    tolerance: f64,
+    distance: f64,
 ) -> [Option<bool>; 3] {
     let Parameters { l1, l2, .. } = scene.pendulum;
-    // all over the longer rod, rounded
-    let [l1, l2, tolerance] =
-        [l1, l2, tolerance].map(|x| Fixed::of(x / l1.max(l2)).wider(f64::EPSILON));
+    // All lengths are divided by that of the longer rod, and rounded.
+    let [l1, l2, distance] =
+        [l1, l2, distance].map(|x| Fixed::of(x / l1.max(l2)).wider(f64::EPSILON));
     let off = |rod: usize, l: Fixed| [0, 1].map(|axis| (one[rod][axis] - other[rod][axis]) * l);
     let ([x1, y1], [x2, y2]) = (off(0, l1), off(1, l2));
     [[x1, y1], [x1 + x2, y1 + y2], [x2, y2]]
-        .map(|[x, y]| (x * x + y * y - tolerance * tolerance).is_positive())
-}
-
-/// Returns true if none is off, `None` if that is not known.
-fn is_none_off(off: &[Option<bool>]) -> Option<bool> {
-    if off.contains(&Some(true)) {
-        Some(false)
-    } else {
-        off.iter().all(Option::is_some).then_some(true)
-    }
+        .map(|[x, y]| (x * x + y * y - distance * distance).is_positive())
 }
 
 /// The number of frames proved right from the start on, and of those left open.
@@ -91,7 +98,11 @@ pub fn counts(frames: &[Verdict]) -> (u32, usize) {
 }
 
 impl Verdict {
-    /// At `time`, s: the middles of the box that the exact motion is in, how far it may be from them, and what is proved of the frame drawn.
+    /// Returns the row of the frame at `time`, s: the middles of the box that contains the exact
+    /// motion, the box's radius, and the verdict.
+    ///
+    /// The box is that of the printed numbers, read as decimals or as `f64`: its radius includes
+    /// the rounding of the middles and is rounded up.
     pub fn row(&self, time: f64) -> String {
         let middles = self
             .exact
@@ -100,16 +111,33 @@ impl Verdict {
             .map(|x| x.about().to_string())
             .collect::<Vec<_>>()
             .join(",");
+        let radius = self
+            .exact
+            .as_flattened()
+            .iter()
+            .map(|x| printed_radius(*x))
+            .fold(0.0, f64::max);
         let verdict = self
             .is_right
             .map_or("open", |is_right| if is_right { "right" } else { "wrong" });
-        format!("{time},{middles},{:.1e},{verdict}", self.width)
+        format!("{time},{middles},{},{verdict}", at_most(radius))
     }
 }
 
-/// When two motions whose starts read the same on the panel (the mass ratio to three digits, angles to a degree) are first more than
-/// the longer rod apart: from then on what the panel says of the start does not determine where a bob is.
-fn told_apart(scene: &Problem) -> Option<f64> {
+/// Returns the distance from the shortest decimal of the `f64` next to the middle, and from that
+/// `f64`, within which the true number is.
+///
+/// The decimal is at most half a unit of the last place, 2^-53 of itself, from the `f64`.
+fn printed_radius(x: Fixed) -> f64 {
+    let about = x.about();
+    let rounding = (x.middle() - Fixed::of(about)).size();
+    up(x.radius() + rounding + about.abs() * f64::EPSILON)
+}
+
+/// Returns the time of the first frame in which two motions whose starts look the same on the panel (the
+/// mass ratio to three digits, angles to a degree) are more than the longer rod apart: from then on the panel's
+/// numbers do not determine the position of a bob. Only the first `frames` frames are searched, until `stopped`.
+fn told_apart(scene: &Problem, frames: u32, stopped: &AtomicUsize) -> Option<f64> {
     let Parameters { m1, m2, l1, l2, .. } = scene.pendulum;
     let digit = m1 * 10_f64.powf((m2 / m1).log10().floor() - 2.0);
     let shown = [scene.start.a1, scene.start.a2].map(|a| a.to_degrees().round());
@@ -129,16 +157,39 @@ fn told_apart(scene: &Problem) -> Option<f64> {
         )
         .enclose(scene.rate)
     });
-    let mut verdicts = (1..=scene.frames()).map_while(|frame| {
-        one.advance().and(other.advance())?;
-        let (one, other) = (one.directions(), other.directions());
-        let [bob1, bob2, _] = are_off(scene, &one, &other, l1.max(l2));
-        Some((frame, is_none_off(&[bob1, bob2])))
+    let mut verdicts = (1..=frames).map_while(|frame| {
+        one.advance_unless(stopped)?;
+        other.advance_unless(stopped)?;
+        let [bob1, bob2, _] = are_apart(scene, &one.directions(), &other.directions(), l1.max(l2));
+        Some((frame, bob1 == Some(true) || bob2 == Some(true)))
     });
     verdicts
-        .find(|(_, are_near)| *are_near == Some(false))
+        .find(|(_, are_apart)| *are_apart)
         .map(|(frame, _)| scene.time(frame))
 }
+
+/// Returns the reason why no frame follows, and the option to change.
+fn not_enclosed(scene: &Problem, frames: &[Verdict]) -> String {
+    let Parameters { m1, m2, l1, l2, .. } = scene.pendulum;
+    let ratio = |a: f64, b: f64| (a / b).max(b / a);
+    if frames.last().is_some_and(|frame| frame.width > WIDE) {
+        String::from("its enclosure has grown too wide: a shorter --duration ends before")
+    } else if ratio(l1, l2) > LENGTHS {
+        format!("rods that differ more than {LENGTHS}-fold may be out of range: change --lengths")
+    } else if ratio(m1, m2) > MASSES {
+        format!("bobs that differ more than {MASSES}-fold may be out of range: change --masses")
+    } else {
+        String::from("it is too fast for a frame: take a higher --rate or slower --velocities")
+    }
+}
+
+/// The width of a box beyond which it is not followed because it is wide.
+const WIDE: f64 = 1e-12;
+
+/// The ratios of lengths and of masses up to which the numbers of the equations are in range
+/// ([`Start::enclose`]).
+const LENGTHS: f64 = 30.0;
+const MASSES: f64 = 1000.0;
 
 /// What is proved, a line each.
 pub fn words(
@@ -146,10 +197,19 @@ pub fn words(
     plan: &Result<Plan, Limit>,
     Stepping { method, steps }: Stepping,
     frames: &[Verdict],
+    stopped: &AtomicUsize,
 ) -> String {
     let ((right, open), end) = (counts(frames), scene.time(frames.len() as u32));
+    let is_complete = frames.len() as u32 == scene.frames();
     let first = match frames.last().map(|frame| frame.is_right) {
         Some(Some(false)) => format!("wrong at {end:.3} s: more than {HALF_PIXEL} pixels off"),
+        _ if stopped.load(Ordering::Relaxed) != 0 => {
+            format!("interrupted after {} frames, at {end:.3} s", frames.len())
+        }
+        _ if !is_complete => format!(
+            "the exact motion is not known after {end:.3} s; {}",
+            not_enclosed(scene, frames)
+        ),
         _ => format!(
             "none wrong of all {} frames, until {end:.3} s",
             frames.len()
@@ -162,17 +222,115 @@ pub fn words(
         ),
         Err(_) => String::from("no method is fast enough"),
     };
-    let unknown = told_apart(scene).map_or(String::new(), |time| {
+    let unknown = told_apart(scene, frames.len() as u32, stopped).map_or(String::new(), |time| {
         format!("\nunknown    the numbers on the panel are too coarse to tell where a bob is after {time:.3} s")
     });
+    let known = frames.last().map_or_else(
+        || String::from("the start only"),
+        |frame| {
+            let width = at_most(frame.width);
+            format!("exact motion enclosed within {width} at {end:.3} s")
+        },
+    );
     format!(
         "method     {method}, steps to a frame: {steps}
 proved     within half a pixel until {:.3} s, all {right} frames
            {first}
 undecided  {open} frames
 predicted  {predicted}
-known      exact motion enclosed within {:.1e} at {end:.3} s{unknown}",
+known      {known}{unknown}",
         scene.time(right),
-        frames.last().map_or(0.0, |frame| frame.width),
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::commands::simulate::Number;
+
+    /// Two rods of 1 m let go at 2 rad, a frame of 1 s, half a metre as tolerance.
+    fn scene() -> Problem {
+        Problem {
+            pendulum: Parameters::equal_rods(1.0, 1.0, 9.81),
+            start: Motion::at_rest(2.0, 2.0),
+            tolerance: 0.5,
+            duration: 20.0,
+            rate: 1,
+        }
+    }
+
+    /// The directions of rods at these angles, rad.
+    fn rods(angles: [f64; 2]) -> [[Fixed; 2]; 2] {
+        angles.map(|a| [a.sin(), a.cos()].map(Fixed::of))
+    }
+
+    #[test]
+    fn bob_2_is_judged_as_seen_from_bob_1_as_well() {
+        // Rod 1 has moved by 0.4 m, rod 2 back by 0.6 m: only from bob 1 is bob 2 too far off.
+        let [one, other] = [[0.0, 0.0], [0.4, -0.6]].map(rods);
+        let near = |tolerance| {
+            let scene = Problem {
+                tolerance,
+                ..scene()
+            };
+            are_near(&scene, &one, &other)
+        };
+        assert_eq!(near(0.5), Some(false));
+        assert_eq!(near(0.61), Some(true));
+        let [one, other] = [[0.0, 0.0], [0.4, 0.4]].map(rods);
+        assert_eq!(are_near(&scene(), &one, &other), Some(false), "bob 2");
+        let wide = one.map(|rod| rod.map(|x| x.wider(0.5)));
+        assert_eq!(are_near(&scene(), &one, &wide), None);
+    }
+
+    /// The printed box contains the ends of the ball, whether its middle is read as decimal or `f64`.
+    #[test]
+    fn the_printed_box_contains_the_exact_motion() {
+        for (above, below) in [
+            (1, 3),
+            (-2, 7),
+            (1, 1),
+            (123_456_789, 987_654_321),
+            (1, 1000),
+        ] {
+            for width in [0.0, 1e-33, 3e-17, 2e-9] {
+                let x = Fixed::fraction(above, below, 0).wider(width);
+                let text = x.about().to_string();
+                let decimal: Number = text.parse().expect("a decimal");
+                let (above, below) = decimal.exact().expect("few digits");
+                let radius: f64 = at_most(printed_radius(x)).parse().expect("a bound");
+                for middle in [Fixed::fraction(above, below, 0), Fixed::of(decimal.value())] {
+                    for end in [-1.0, 1.0].map(|side| x.middle() + Fixed::of(side * x.radius())) {
+                        let inside = (end - middle).size() <= radius;
+                        assert!(inside, "{text} within {radius:e} of {end:?}");
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn an_interruption_ends_every_search_at_once() {
+        let scene = scene();
+        let start = Start::of(&scene.pendulum, &scene.start);
+        let stepping = Stepping {
+            method: double_pendulum::Method::Rk4F32Direction,
+            steps: 256,
+        };
+        let [running, stopped] = [0, 15].map(AtomicUsize::new);
+        let count = |stopped| {
+            frames(&scene, &start, stepping, stopped)
+                .map(Iterator::count)
+                .expect("a motion")
+        };
+        assert!(count(&running) > 0);
+        assert_eq!(count(&stopped), 0);
+
+        // The motions of the panel's digits part after some seconds, and no frame beyond is searched.
+        let parted = |frames, stopped| told_apart(&scene, frames, stopped);
+        let time = parted(scene.frames(), &running).expect("they part");
+        assert_eq!(parted(time as u32, &running), Some(time));
+        assert_eq!(parted(time as u32 - 1, &running), None);
+        assert_eq!(parted(scene.frames(), &stopped), None);
+    }
 }

@@ -99,8 +99,7 @@ pub fn run(options: &ProveOptions) -> anyhow::Result<ExitCode> {
         say("t,sin_a1,cos_a1,sin_a2,cos_a2,radius,verdict")?;
     }
     let (bar, mut proved) = (Progress::of("proving", scene.frames().into()), Vec::new());
-    let frames = frames(&scene, &start, stepping).map_err(Refused::because)?;
-    for frame in frames.take_while(|_| stopped.load(Ordering::Relaxed) == 0) {
+    for frame in frames(&scene, &start, stepping, &stopped).map_err(Refused::because)? {
         bar.advance(1);
         proved.push(frame);
         if options.csv {
@@ -112,7 +111,7 @@ pub fn run(options: &ProveOptions) -> anyhow::Result<ExitCode> {
         if asked.is_none() && options.scene.is_linear() {
             say("scene      shows the linear motion on purpose, not the exact one")?;
         }
-        say(words(&scene, &plan, stepping, &proved))?;
+        say(words(&scene, &plan, stepping, &proved, &stopped))?;
     }
     Ok(interrupted_by(stopped.load(Ordering::Relaxed)))
 }

@@ -1,5 +1,7 @@
 //! Tables whose every line is proved: horizons, and known answers.
 
+use std::sync::atomic::AtomicUsize;
+
 use anyhow::{Context, Result};
 use clap::Parser;
 use firmware::scenes::SceneName;
@@ -32,8 +34,9 @@ pub fn horizons(name: SceneName) -> Result<String> {
             Err(_) => ["none", "none"].map(String::from),
             Ok(plan) => {
                 let start = Start::of(&scene.pendulum, &scene.start);
+                let never = AtomicUsize::new(0);
                 let (right, open) =
-                    counts(&frames(&scene, &start, plan.stepping())?.collect::<Vec<_>>());
+                    counts(&frames(&scene, &start, plan.stepping(), &never)?.collect::<Vec<_>>());
                 unproved += open;
                 [plan.horizon, scene.time(right)].map(|time| format!("{time:.2}"))
             }

@@ -47,7 +47,7 @@ pub struct SimulateOptions {
     #[arg(long, value_name = "DT", allow_hyphen_values = true)]
     pub step: Option<Number>,
     /// Largest error allowed in any angle, rad; finds and uses the cheapest method and step that
-    /// meet it
+    /// meet it. The exact motion is that of the f64 nearest to each number given
     #[arg(
         long,
         value_name = "E",

@@ -12,7 +12,7 @@ use reference::taylor;
 
 use super::request::{accepted, count, method, request};
 use super::{Number, Place, Plan, SimulateOptions};
-use crate::commands::table::small;
+use crate::commands::table::at_most;
 use crate::console::progress::Progress;
 
 /// The longest run that is tried, steps.
@@ -75,10 +75,10 @@ pub fn choose(options: &SimulateOptions, tolerance: &Number) -> anyhow::Result<(
         let (request, step) = in_parts(method, parts);
         let (rows, error) = agreement(&request, &exact, tolerance.value());
         if rows == exact.len() {
-            let (price, worst) = (price / every.value(), small(error));
+            let (price, worst) = (price / every.value(), at_most(error));
             let note = format!(
                 "using {method}, step {step} s ({price:.0} {unit} per second of motion); \
-                 largest error {worst} rad (measured)"
+                 largest error {worst} rad (measured, for the nearest f64 numbers)"
             );
             return Ok((
                 Plan {
@@ -109,14 +109,17 @@ fn divisions(method: Method, samples: u32) -> impl Iterator<Item = u32> {
     all.take_while(move |parts| *parts <= most)
 }
 
-/// How long a motion stays within `limit`, rad, of the exact one: the rows before the first that is too far off, and the largest
-/// error of an angle in them.
+/// Returns how long a motion stays within `limit`, rad, of the exact one: the number of rows before the first that
+/// is too far off, and the largest error of an angle in them.
+///
+/// The error includes half a unit of the last place, by which the exact angle was rounded.
 fn agreement(request: &Request, exact: &[State<f64>], limit: f64) -> (usize, f64) {
     let (mut rows, mut largest) = (0, 0.0_f64);
     // Anything that ends the motion ends the agreement.
     let _ = request.readings::<anyhow::Error>(|reading| {
         let ([a1, a2, ..], exact) = (reading.state, exact.get(rows).context("no more rows")?);
-        let apart = (a1 - exact.a1).abs().max((a2 - exact.a2).abs());
+        let error = |a: f64, exact: f64| (a - exact).abs() + 0.5 * f64::EPSILON * exact.abs();
+        let apart = error(a1, exact.a1).max(error(a2, exact.a2));
         ensure!(apart <= limit, "too far off");
         (rows, largest) = (rows + 1, largest.max(apart));
         Ok(())

@@ -1,0 +1,162 @@
+//! What a run refuses: a step beyond the limit of stability, and a motion that has left all reason.
+
+use core::f64::consts::PI;
+
+use double_pendulum::parts::DirectionF64;
+use double_pendulum::{
+    DirectionF32, DirectionF32Plain, Error, ExtrapolationF64, Fixed32, Fixed64, Form, HamiltonF32,
+    HamiltonF64, Modes, Motion, Parameter, Parameters, Pendulum, Real, State,
+};
+use fastrand::Rng;
+
+const EVEN: Parameters<f64> = Parameters {
+    m1: 1.0,
+    m2: 1.0,
+    l1: 1.0,
+    l2: 1.0,
+    g: 9.81,
+};
+
+/// Checks that steps of up to `phase` rad of the fast mode are accepted, and no longer ones.
+fn is_stable_up_to<F: Form>(phase: f64) -> Result<(), Error> {
+    let start = State::at_rest(1e-6, 1e-6);
+    for parameters in [EVEN, Parameters { m2: 1000.0, ..EVEN }] {
+        let pendulum = Pendulum::new(&parameters)?;
+        let longest = phase / Modes::new(&parameters)?.fast.frequency;
+        for dt in [0.999 * longest, -0.999 * longest] {
+            pendulum.run::<F>(&start, dt)?.advance(1)?;
+        }
+        for dt in [1.001 * longest, -1.001 * longest, 1e6] {
+            let Err(Error::TooLarge {
+                parameter: Parameter::Dt,
+                value,
+                limit,
+            }) = pendulum.run::<F>(&start, dt)
+            else {
+                panic!("{dt} s is accepted")
+            };
+            assert!(
+                value == dt && (limit / longest - 1.0).abs() < 1e-9,
+                "{limit}"
+            );
+        }
+    }
+
+    // Without gravity nothing swings.
+    let free = Pendulum::new(&Parameters { g: 0.0, ..EVEN })?;
+    free.run::<F>(&State::at_rest(1.0, 2.0), 1e6)?.advance(2)
+}
+
+#[test]
+fn run_refuses_steps_beyond_the_limit_of_stability() -> Result<(), Error> {
+    let rk4 = 8.0_f64.sqrt();
+    is_stable_up_to::<HamiltonF32>(rk4)?;
+    is_stable_up_to::<HamiltonF64>(rk4)?;
+    is_stable_up_to::<DirectionF32>(rk4)?;
+    is_stable_up_to::<DirectionF32Plain>(rk4)?;
+    is_stable_up_to::<DirectionF64>(rk4)?;
+    is_stable_up_to::<ExtrapolationF64<2>>(0.95)?;
+    is_stable_up_to::<ExtrapolationF64<12>>(4.77)?;
+    is_stable_up_to::<ExtrapolationF64<16>>(7.35)
+}
+
+/// Fixed point has limits of its own, but accepts the one that it names.
+#[test]
+fn fixed_point_accepts_the_limit_that_run_names() -> Result<(), Error> {
+    fn check<F: Form>(m2: f64) -> Result<(), Error> {
+        let parameters = Parameters { m2, ..EVEN };
+        let pendulum = Pendulum::new(&parameters)?;
+        let start = State::at_rest(1e-6, 1e-6);
+        let Err(Error::TooLarge { limit, .. }) = pendulum.run::<F>(&start, 1e6) else {
+            panic!("1e6 s is accepted")
+        };
+        pendulum.run::<F>(&start, 0.999_999 * limit)?.advance(100)
+    }
+    for m2 in [1.0, 100.0, 1000.0, 3000.0] {
+        check::<Fixed32>(m2)?;
+        check::<Fixed64<4>>(m2)?;
+        check::<Fixed64<12>>(m2)?;
+    }
+    Ok(())
+}
+
+/// A motion at rest without gravity may take any step whose square is a number.
+#[test]
+fn fixed64_at_rest_without_gravity_stays_at_rest_or_is_refused() -> Result<(), Error> {
+    let free = Pendulum::new(&Parameters { g: 0.0, ..EVEN })?;
+    let start = State::at_rest(1.0, 2.0);
+    for dt in [1e-300, 1.0, 1e150] {
+        let mut run = free.run::<Fixed64<8>>(&start, dt)?;
+        run.advance(3)?;
+        let state = run.state();
+        assert!(
+            state.check().is_ok() && (state.a1 - 1.0).abs() < 1e-15,
+            "{state:?}"
+        );
+    }
+    for dt in [1e152, 1e303, f64::MAX] {
+        let refused = free.run::<Fixed64<8>>(&start, dt);
+        assert!(
+            matches!(refused, Err(Error::TooLarge { .. })),
+            "{dt} s: {refused:?}"
+        );
+    }
+    Ok(())
+}
+
+/// Advances motions that are far too fast for their steps, step by step. Each is refused in the end,
+/// and until then its energy and its directions are within the documented bounds.
+fn energy_stays_within_its_bound<F: Form>() -> Result<(), Error> {
+    let mut rng = Rng::with_seed(5);
+    let mut symmetric = |most: f64| most * (2.0 * rng.f64() - 1.0);
+    let mut refused = 0;
+    for _ in 0..200 {
+        let parameters = Parameters {
+            m2: symmetric(5.0).exp2(),
+            l2: symmetric(2.0).exp2(),
+            ..EVEN
+        };
+        let pendulum = Pendulum::new(&parameters)?;
+        let motion = Motion {
+            a1: symmetric(PI),
+            a2: symmetric(PI),
+            w1: symmetric(300.0),
+            w2: symmetric(300.0),
+        };
+        let start = pendulum.to_state(&motion);
+        let most = 100.0 * pendulum.energy_above_rest(&start);
+
+        let mut run = pendulum.run::<F>(&start, 1.0 / 60.0)?;
+        for _ in 0..100 {
+            let before = run;
+            match run.advance(1) {
+                Ok(()) => {
+                    let energy = run.energy().to_f64();
+                    assert!(energy <= 1.001 * most, "{energy:e} J of {most:e} J");
+                    for [s, c] in run.directions() {
+                        let length = (s * s + c * c).sqrt().to_f64();
+                        assert!((0.49..2.01).contains(&length), "{length}");
+                    }
+                }
+                Err(error) => {
+                    assert!(matches!(error, Error::Diverged { .. }), "{error:?}");
+                    assert_eq!(run, before, "the run stays as it was");
+                    refused += 1;
+                    break;
+                }
+            }
+        }
+    }
+    assert!(refused > 100, "{refused} of 200 refused");
+    Ok(())
+}
+
+#[test]
+fn advance_refuses_an_energy_far_above_that_of_the_start() -> Result<(), Error> {
+    energy_stays_within_its_bound::<HamiltonF32>()?;
+    energy_stays_within_its_bound::<HamiltonF64>()?;
+    energy_stays_within_its_bound::<DirectionF32>()?;
+    energy_stays_within_its_bound::<DirectionF32Plain>()?;
+    energy_stays_within_its_bound::<DirectionF64>()?;
+    energy_stays_within_its_bound::<ExtrapolationF64<12>>()
+}
