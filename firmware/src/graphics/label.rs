@@ -2,8 +2,6 @@
 
 use heapless::String;
 
-use crate::motion::Horizon;
-
 /// A label: at most the bytes of what fits beside the motion.
 pub type Label = String<16>;
 
@@ -36,21 +34,10 @@ pub fn tick(value: f32, unit: &str) -> Label {
     label("", value, decimals, unit)
 }
 
-/// Returns the time until which frames are accurate to half a pixel: `½px 8.4 s`, `½px>8.4 s` if
-/// planning may raise it, `½px ?` while nothing is known, `½px ok` if always.
-///
-/// It is rounded down, so that no frame is claimed that is not verified. Below a second it is
-/// rounded to hundredths, which are shorter than a frame.
-pub fn trust(horizon: Horizon) -> Label {
-    let (name, until) = match horizon {
-        Horizon::AtLeast(until) => ("½px>", until),
-        Horizon::Until(until) if until < 1.0 => return label("½px ", until, 2, " s"),
-        Horizon::Until(until) => ("½px ", until),
-        Horizon::Undecided => return Label::try_from("½px ?").unwrap_or_default(),
-        Horizon::Always => return Label::try_from("½px ok").unwrap_or_default(),
-    };
-    let parts = if until < 1e3 { 10 } else { 1 };
-    written([name, ""], (until * parts as f32) as u32, parts, " s")
+/// Returns a time after a name, rounded down to tenths of a second, or to seconds from 1,000 s on.
+pub fn rounded_down(name: &str, seconds: f32) -> Label {
+    let parts = if seconds < 1e3 { 10 } else { 1 };
+    written([name, ""], (seconds * parts as f32) as u32, parts, " s")
 }
 
 /// The time since the start to a tenth of a second: `12.3 s`.

@@ -1,5 +1,7 @@
 //! The accuracy horizon of a scene.
 
+use crate::graphics::label::{self, Label};
+
 /// The time until which the frames of a scene are within [half a
 /// pixel](crate::config::HALF_PIXEL) of the exact motion, s after the start.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -23,6 +25,22 @@ impl Horizon {
             Self::Always => f32::INFINITY,
             Self::Undecided => 0.0,
             Self::AtLeast(time) | Self::Until(time) => time,
+        }
+    }
+
+    /// Returns the horizon as the panel shows it: `½px 8.4 s`, `½px>8.4 s` if planning may raise it,
+    /// `½px ?` while nothing is known, `½px ok` if frames are always accurate.
+    ///
+    /// It is rounded down, so that no frame is claimed that is not verified. Below a second it is
+    /// rounded to hundredths, which are shorter than a frame.
+    #[must_use]
+    pub fn label(self) -> Label {
+        match self {
+            Self::AtLeast(until) => label::rounded_down("½px>", until),
+            Self::Until(until) if until < 1.0 => label::label("½px ", until, 2, " s"),
+            Self::Until(until) => label::rounded_down("½px ", until),
+            Self::Undecided => Label::try_from("½px ?").unwrap_or_default(),
+            Self::Always => Label::try_from("½px ok").unwrap_or_default(),
         }
     }
 

@@ -104,7 +104,7 @@ fn draw_clock(canvas: &mut Canvas, report: &Report, time_at: Anchor, trust_at: A
     } else {
         text::write(canvas, &shown, time_at);
     }
-    text::write(canvas, &label::trust(horizon), trust_at);
+    text::write(canvas, &horizon.label(), trust_at);
 }
 
 macro_rules! catalogue {

@@ -393,7 +393,7 @@ mod tests {
                 waits < 9
             },
         );
-        assert!(nothing.is_err_and(|told| told.contains("no USB serial adapter")));
+        assert!(nothing.is_err_and(|told| told.contains("no board and no serial adapter")));
         assert_eq!(waits, 9);
         for ports in [vec!["/dev/ttyACM0"], vec!["/dev/ttyACM0", "/dev/ttyACM1"]] {
             let list = || ports.iter().map(|name| usb_port(name)).collect();

@@ -221,7 +221,7 @@ fn an_interrupted_proof_prints_what_it_has_proved() {
         let status = running.wait().expect("it ends by itself");
         assert_eq!(status.code(), Some(128 + signal as i32), "{text}");
         assert!(
-            text.contains("interrupted after ") && text.contains("proved     right"),
+            text.contains("interrupted after ") && text.contains("proved     within"),
             "{text}"
         );
     }

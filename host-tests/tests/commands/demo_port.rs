@@ -59,7 +59,7 @@ fn a_motion_of_ones_own_is_played_at_a_port_too() {
 /// The fastest board could pay for these steps, so only this one can tell.
 #[test]
 fn a_method_that_the_board_refuses_is_named() {
-    let arguments = "--method extrapolation10-fixed64 --angles 120,120 --degrees --lengths 1,1/50";
+    let arguments = "--method extrapolation10-fixed64 --angles 120,120 --degrees --lengths 1,1/10";
     let [said, told] = demo(2, arguments, |bench| bench.carry(wire));
     assert_eq!(said, "");
     assert!(
@@ -130,9 +130,9 @@ fn state_of_the_panel_is_reported_with_the_remedy_when_it_changes() {
 
 #[test]
 fn board_without_a_choice_of_controllers_refuses_one() {
-    let [_, told] = demo(1, "--panel sh1106", |bench| bench.carry(wire));
+    let [_, told] = demo(2, "--panel sh1106", |bench| bench.carry(wire));
     assert!(
-        told.contains("--panel: the board refuses: panel; the board has none"),
+        told.contains("the board refuses this panel; the board has none"),
         "{told}"
     );
 }

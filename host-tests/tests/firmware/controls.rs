@@ -275,7 +275,7 @@ fn labels_show_what_is_set() {
         (Horizon::Always, "½px ok"),
     ];
     for (horizon, text) in horizons {
-        assert_eq!(label::trust(horizon).to_string(), text, "{horizon:?}");
+        assert_eq!(horizon.label().to_string(), text, "{horizon:?}");
     }
     let ticks = [0.0, 0.05, 0.2, 1.0, 50.0].map(|time| label::tick(time, " s"));
     assert_eq!(
@@ -293,7 +293,7 @@ fn labels_of_any_numbers_are_safe() {
             label::time(number.into()),
         );
         let _ = (
-            label::trust(Horizon::AtLeast(number)),
+            Horizon::AtLeast(number).label(),
             label::tick(number, " s"),
             label::label("true ", number, 1, " J"),
         );

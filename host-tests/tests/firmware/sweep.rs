@@ -18,9 +18,9 @@ const TICKS: u32 = 20 * TICK_RATE;
 /// loses several percent within seconds.
 const ENERGY: f32 = 1e-2;
 
-/// A scene of every 400 may be inaccurate a little before its predicted horizon: planning compares
+/// A scene of every 500 may be inaccurate a little before its predicted horizon: planning compares
 /// computed motions with each other, and roundings may be alike by chance (test `plan_study`).
-const SCENES_TO_A_VIOLATION: usize = 400;
+const SCENES_TO_A_VIOLATION: usize = 500;
 
 /// A scene, and a setting that keys reach from its start.
 #[derive(Clone, Copy, Debug)]

@@ -95,9 +95,13 @@ impl OwnMotion {
             processor,
             method: None,
         };
-        AnyScene::empty()
+        let mut started = AnyScene::empty();
+        started
             .start(scene, &settings, &resources)
             .map_err(|error| refusal(&given, scene, &error))?;
+        if started.is_too_fast() {
+            return Err(too_fast(&all(&given)));
+        }
         Ok(Some(settings))
     }
 
@@ -162,19 +166,27 @@ fn refusal(given: &[(&'static str, String)], scene: SceneName, error: &Error) ->
         Some(blamed) => std::slice::from_ref(blamed),
         None => given,
     };
-    let blamed: Vec<_> = blamed
-        .iter()
-        .map(|(option, value)| format!("{option} {value}"))
-        .collect();
-    let blamed = blamed.join(" ");
+    let blamed = all(blamed);
     let scene = scene.name();
     match error {
         Error::UnequalRods { .. } => Refused::because(format_args!(
             "{blamed}: scene {scene} needs rods of equal length; take another scene, as in --scene page"
         )),
-        _ if error.parameter() == Parameter::Dt => Refused::because(format_args!(
-            "{blamed}: too fast a motion for this chip; take masses more alike, longer rods, less gravity or lower velocities"
-        )),
+        _ if error.parameter() == Parameter::Dt => too_fast(&blamed),
         error => Refused::because(format_args!("{blamed}: {error}")),
     }
+}
+
+/// Returns the options with their values, as they were given.
+fn all(given: &[(&'static str, String)]) -> String {
+    let words = given
+        .iter()
+        .map(|(option, value)| format!("{option} {value}"));
+    words.collect::<Vec<_>>().join(" ")
+}
+
+fn too_fast(blamed: &str) -> Refused {
+    Refused::because(format_args!(
+        "{blamed}: too fast a motion for this chip; take masses more alike, longer rods, less gravity or lower velocities"
+    ))
 }
