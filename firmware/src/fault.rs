@@ -1,18 +1,22 @@
-//! What a crashed Cortex-M says about itself, in words.
+//! The crash report of a Cortex-M, in words.
 
 use core::fmt;
 
-/// The registers that tell why a HardFault was taken, the last four the Configurable and the HardFault Status Register and the
-/// MemManage and the BusFault Address Register. A Cortex-M0+ has none of those: they are 0.
+/// The registers that describe a HardFault.
 ///
-/// Source: ARM DDI 0403 (ARMv7-M Architecture Reference Manual), B3.2.15 to B3.2.18; ARM DDI 0419 (ARMv6-M), B3.2.
+/// The last four are the Configurable Fault Status Register, the HardFault Status Register, the
+/// MemManage Address Register and the BusFault Address Register. A Cortex-M0+ has none of them;
+/// they are 0.
+///
+/// Source: ARM DDI 0403 (ARMv7-M Architecture Reference Manual), B3.2.15 to B3.2.18; ARM DDI 0419
+/// (ARMv6-M), B3.2.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Fault {
-    /// The registers that the processor stacked; `None` if the stack could not take them.
+    /// The registers that the processor has stacked; `None` if it could not stack them.
     pub stacked: Option<Stacked>,
-    /// The stack pointer when the fault came.
+    /// The stack pointer at the time of the fault.
     pub sp: u32,
-    /// The last call found on the stack: all there is to go by without the registers.
+    /// The last call found on the stack. It is the only evidence if the registers are missing.
     pub last_call: Option<u32>,
     pub cfsr: u32,
     pub hfsr: u32,
@@ -20,30 +24,35 @@ pub struct Fault {
     pub bfar: u32,
 }
 
-/// What the processor puts on the stack on its way to the handler, as far as it is of interest.
+/// The registers of interest that the processor stacks on its way to the handler.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Stacked {
-    /// Program counter: the instruction that failed, or for imprecise bus faults one soon after it.
+    /// The program counter: the instruction that failed. For an imprecise bus fault it is a later
+    /// instruction.
     pub pc: u32,
-    /// Link register: where the function that failed returns to, unless it has called others meanwhile.
+    /// The link register: the return address of the function that failed, unless it has called
+    /// other functions before.
     pub lr: u32,
     pub xpsr: u32,
 }
 
-/// The stack did not take the registers, or not all of them: on the way into an exception or, of the floating-point unit, later
-/// (MSTKERR, MLSPERR, STKERR, LSPERR).
+/// The bits of CFSR that mean that registers are missing on the stack: registers stacked on entry
+/// to an exception, or registers of the floating-point unit, which are stacked later (MSTKERR,
+/// MLSPERR, STKERR, LSPERR).
 const NOT_STACKED: u32 = 1 << 4 | 1 << 5 | 1 << 12 | 1 << 13;
-/// Data is refused by the memory protection unit, at an address that is known (DACCVIOL, MMARVALID).
+/// The bits of CFSR that mean that the memory protection unit refused a data access at a known
+/// address (DACCVIOL, MMARVALID).
 const REFUSED: u32 = 1 << 1 | 1 << 7;
 
-/// The bit of the program status that is set as long as the processor executes Thumb code, which is all it can.
+/// The bit of the program status register that is set while the processor executes Thumb code, the
+/// only code that it has.
 const THUMB: u32 = 1 << 24;
 
-/// The most bytes that one instruction pushes: 16 double-precision registers. Before it is done, the stack pointer still
-/// stands above them.
+/// The largest number of bytes that one instruction pushes: 16 double-precision registers. Until it
+/// is complete, the stack pointer is still above them.
 const LONGEST_PUSH: u32 = 16 * 8;
 
-/// The causes by bit of CFSR, the most telling first.
+/// The causes by bit of CFSR, the most specific first.
 const CAUSES: [(u32, &str); 13] = [
     (16, "undefined instruction"),
     (17, "invalid state (jump to an even address?)"),
@@ -61,8 +70,9 @@ const CAUSES: [(u32, &str); 13] = [
 ];
 
 impl Stacked {
-    /// The bytes that the processor has stacked, by what the link register held on the way into the handler: with the
-    /// registers of the floating-point unit or without.
+    /// Returns the number of bytes that the processor has stacked. `exception` is the value of the
+    /// link register on entry to the handler. It shows whether the registers of the floating-point
+    /// unit are included.
     pub fn size(exception: u32) -> u32 {
         if exception & (1 << 4) == 0 {
             26 * 4
@@ -73,16 +83,18 @@ impl Stacked {
 }
 
 impl Fault {
-    /// Whether the registers that should be on the stack are there.
+    /// Returns true if the registers are on the stack.
     pub fn has_stacked(cfsr: u32) -> bool {
         cfsr & NOT_STACKED == 0
     }
 
+    /// Returns the cause of the fault.
     pub fn cause(&self) -> &'static str {
         if self.is_stack_overflow() {
             return "stack overflow";
         }
         let has = |register: u32, bit: u32| register & (1 << bit) != 0;
+
         match CAUSES.iter().find(|(bit, _)| has(self.cfsr, *bit)) {
             Some((_, cause)) => cause,
             None if has(self.hfsr, 1) => "vector table could not be read",
@@ -97,7 +109,8 @@ impl Fault {
         }
     }
 
-    /// The stack took no more: not the registers of an exception, or not what was being pushed.
+    /// Returns true if the stack was full: the registers of an exception, or the registers of a
+    /// push instruction, did not fit.
     fn is_stack_overflow(&self) -> bool {
         let below = self.sp.wrapping_sub(self.mmfar);
         !Self::has_stacked(self.cfsr)
@@ -116,6 +129,7 @@ impl fmt::Display for Fault {
             ..
         } = self;
         writeln!(f, "HARDFAULT: {}", self.cause())?;
+
         match (self.stacked, self.last_call) {
             (Some(Stacked { pc, lr, xpsr }), _) => {
                 writeln!(f, "  pc {pc:#010x}  lr {lr:#010x}  xpsr {xpsr:#010x}")?
@@ -126,6 +140,7 @@ impl fmt::Display for Fault {
             )?,
             (None, None) => writeln!(f, "  pc and lr are lost")?,
         }
+
         write!(f, "  sp {sp:#010x}")?;
         if cfsr | hfsr == 0 {
             return Ok(());
@@ -137,7 +152,8 @@ impl fmt::Display for Fault {
     }
 }
 
-/// The bytes of the call, `bl` or `blx`, that ends with these two halfwords; `None` if none does.
+/// Returns the size in bytes of the call, `bl` or `blx`, that ends with these two halfwords; `None`
+/// if they are no call.
 pub fn call_size([first, second]: [u16; 2]) -> Option<u32> {
     if first & 0xf800 == 0xf000 && second & 0xd000 == 0xd000 {
         Some(4)

@@ -1,26 +1,84 @@
-//! The double-pendulum application for Cortex-M.
+//! The double-pendulum application for Cortex-M microcontrollers.
 //!
-//! All but `board` is portable: it is built and tested on the host as well as on the chip. A room imports only from
-//! the rooms below it in this table; data flows from the first row to the last and back only as commands.
+//! All modules except `board` are portable: they are built and tested on the host as well as on the
+//! chips. A module of this table imports only from the modules below it.
 //!
-//! | room | what is in it |
+//! | module | contents |
 //! |---|---|
-//! | `board` | the chips: registers, clocks, interrupts, all `unsafe`; one folder a board |
-//! | [`app`] | the run loop: buttons and serial messages become commands, the player executes them, each tick is integrated, drawn, sent; warm restart |
-//! | [`protocol`] | commands and what a board answers, framed and checked on the serial link |
-//! | [`scenes`] | what a scene is, the catalogue, the accuracy horizon |
-//! | [`job`] | motions computed on request: one table of arithmetics |
-//! | [`motion`] | settings, the moving state, the planner |
+//! | `board` | the chips: registers, clocks, interrupts, all `unsafe` code; one module per board |
+//! | [`app`] | executes commands, advances the scene, draws and sends it; warm restart |
+//! | [`protocol`] | the messages on the serial link, both ways, with framing and checksum |
+//! | [`scenes`] | the trait of all scenes, and the catalogue of scenes |
+//! | [`job`] | motions that are computed on request, by any method |
+//! | [`motion`] | settings, the motion in progress, the planner, the accuracy horizon |
 //! | [`display`] | panel drivers, generic over `embedded-hal` |
-//! | [`graphics`] | canvas, brush, fade layer, plot, text and its font, frame buffers |
-//! | [`fault`] | what a crash report says |
-//! | [`config`] | every number that may be tuned |
-//! | [`prices`] | what steps cost on each core, as counted |
+//! | [`graphics`] | canvas, brush, fade layer, plots, text and its font, frame buffers |
+//! | [`fault`] | the text of a crash report |
+//! | [`config`] | all tunable numbers |
+//! | [`prices`] | the cost of a step on each core, as counted |
+//!
+//! Commands come from the buttons and from the serial link. The player executes them. Every tick
+//! advances the scene; then the scene is drawn on the canvas, and the frame is sent to the panel
+//! and over the link.
+//!
+//! # Glossary
+//!
+//! Terms of physics, numerics and plans are in the glossary of the kernel ([`double_pendulum`]).
+//!
+//! Time:
+//!
+//! - **tick**: 1/60 s of the board's clock. At full speed the scene advances by one tick, too.
+//! - **pace**: the number of ticks of a scene in a tick of the clock: paused, slower or faster
+//!   ([`config::GREATEST_SPEED`]).
+//! - **late**: behind the clock by more than one tick. No tick is left out, but its frame is.
+//! - **stopped**: a scene whose motion cannot be computed; it does not advance.
+//!
+//! Scenes:
+//!
+//! - **scene**: a figure that moves, such as one pendulum or a plot ([`scenes::Scene`]).
+//! - **catalogue**: the table of all scenes with their names and initial settings.
+//! - **settings**: a pendulum and its initial angles and velocities ([`motion::Settings`]).
+//! - **page**: the article `[math24]` of the kernel, the source of the figures.
+//! - **player**: the state of the scene that is shown, and its pace ([`app::Player`]).
+//! - **report**: the numbers of a scene at one tick ([`scenes::Report`]).
+//! - **planner**: finds the method and its accuracy horizon while the scene runs
+//!   ([`motion::Planner`]).
+//! - **look-ahead**: the cycles for planning in each tick, which may be spent early.
+//! - **processor class**: processors with one price list and one set of budgets
+//!   ([`config::Processor`]).
+//!
+//! Drawing:
+//!
+//! - **canvas**: 128 x 64 pixels of 16 greys ([`graphics::Canvas`]).
+//! - **ink, fade layer**: the traces of earlier frames, which may fade ([`graphics::FadeLayer`]).
+//! - **frame buffers**: the canvas and the ink of the application ([`graphics::FrameBuffers`]).
+//! - **subpixel**: 1/64 of a pixel.
+//! - **panel**: the display hardware.
+//! - **controller**: the chip on the panel, such as an SSD1306 ([`display::Controller`]).
+//! - **outbox**: the bytes that an interrupt sends to a panel ([`display::Outbox`]).
+//!
+//! Link:
+//!
+//! - **link**: the serial connection to a host.
+//! - **message**: a checked packet on the link, in either direction.
+//! - **command**: a message to the board, or the effect of a button ([`protocol::Command`]).
+//! - **answer**: a message of the board to the host about one command ([`protocol::Answer`]).
+//! - **frame**: a drawn picture, or the message that describes it ([`protocol::Frame`]).
+//! - **request, job**: a motion to compute for the host, and its computation ([`job::Job`]).
+//! - **reading, sample**: the numbers of a job at one time; sample is its message.
+//!
+//! Faults:
+//!
+//! - **warm restart**: a reset that the board makes on its own; the same scene starts again.
+//! - **retained record**: scene, settings and cause, kept in memory across a reset
+//!   ([`app::Record`]).
+//! - **rate-limited log**: a log line that appears at most once a second, such as lost bytes.
 #![cfg_attr(not(test), no_std)]
 #![deny(unsafe_code)]
 #![allow(missing_docs, reason = "what name and type say is not said again")]
 
-/// A closed set of named choices: a row each gives the value and its name for people. The first is the default.
+/// Defines an enum of named choices. Each row gives a variant and its name for people. The first
+/// variant is the default.
 macro_rules! choice {
     ($(#[$doc:meta])* $name:ident { $($(#[$row_doc:meta])* $row:ident = $text:literal;)* }) => {
         $(#[$doc])*

@@ -1,5 +1,7 @@
-//! What a plan's steps cost on each kind of core, masses and lengths alike, and the preparation that costs most: estimated
-//! cycles, as `cargo count --write-prices` writes them and test `count` holds them to 3 %.
+//! The price lists of the cores: the estimated cycles of a step by each method of a plan, and of
+//! the most expensive preparation. They hold for all masses and lengths.
+//!
+//! `cargo count --write-prices` writes them, and the test `count` verifies them to 3 %.
 
 use double_pendulum::plan::Costs;
 

@@ -1,15 +1,15 @@
-//! The host's side: the commands, and what the tests hold every number against.
+//! The host software: the commands, and the standards of comparison for the tests.
 //!
-//! A room imports only from the rooms below it in this table.
+//! The modules here are called rooms. A room imports only from the rooms below it in this table.
 //!
-//! | room | what is in it |
+//! | room | content |
 //! |---|---|
-//! | `main.rs` | the command of each name |
-//! | [`commands`] | what the commands do: demo, simulate, plan, prove, flips, count, report, figures, verify-board |
+//! | `main.rs` | the program: runs the command that is named |
+//! | [`commands`] | the commands: demo, simulate, plan, prove, flips, count, report, figures, ... |
 //! | [`emulator`] | the emulated boards: QEMU, toolchain and set-up, processes, budgets |
 //! | [`link`] | the serial link: bytes to messages, and a real port |
 //! | [`oracle`] | known answers, hard cases, tolerances |
-//! | [`console`] | how every command talks: options, errors, progress |
+//! | [`console`] | the shared console interface: options, errors, progress |
 
 #![forbid(unsafe_code)]
 #![deny(clippy::print_stdout, clippy::print_stderr)]

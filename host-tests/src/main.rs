@@ -1,4 +1,5 @@
-//! Every command: `.cargo/config.toml` calls each by its name, which comes first; without one it is the demo.
+//! The program of all commands. `.cargo/config.toml` runs each with its name as the first argument;
+//! without a name it is the demo.
 
 use std::process::ExitCode;
 

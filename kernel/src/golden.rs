@@ -1,4 +1,4 @@
-//! The golden bits: motions whose bits are kept in `golden/bits.csv`.
+//! The golden bits: the bits of motions that are stored in `golden/bits.csv`.
 //!
 //! The tests of this crate compare every method with that file, and so does every emulated core of
 //! the repository. A change of a bit therefore shows as a change of the file.
@@ -10,13 +10,13 @@ use crate::methods::Form;
 use crate::pendulum::{Parameters, Pendulum, State};
 use crate::table::Method;
 
-/// The columns of the file.
+/// The header line of the file.
 pub const HEADER: &str = "method,motion,checksum,a1,a2,p1,p2";
 
-/// The steps of each motion.
+/// The number of steps of each motion.
 pub const STEPS: u32 = 640;
 
-/// No `f32` holds this step, s, so that the rounding of a method's constants takes effect.
+/// The step, s. It is not an `f32`, so that the rounding of a method's constants takes effect.
 const DT: f64 = 1.0 / 240.0;
 
 /// A motion of the file.
@@ -25,7 +25,7 @@ pub struct Golden {
     pub name: &'static str,
     pub parameters: Parameters<f64>,
     pub start: State<f64>,
-    /// The step, s.
+    /// The step, s; negative if time runs backwards.
     pub dt: f64,
 }
 
@@ -92,15 +92,17 @@ pub struct Bits {
 }
 
 impl Golden {
-    /// Computes the bits of this motion by the method that `F` is.
+    /// Computes the bits of this motion by the method `F`.
     pub fn bits<F: Form>(&self) -> Result<Bits, Error> {
         let pendulum = Pendulum::<f64>::new(&self.parameters)?;
         let mut run = pendulum.run::<F>(&self.start, self.dt)?;
+
         let mut checksum = FNV_OFFSET;
         for _ in 0..STEPS {
             run.advance(1)?;
             run.bits(|word| checksum = fnv_1a(checksum, &word.to_le_bytes()));
         }
+
         Ok(Bits {
             checksum,
             state: <[f64; 4]>::from(run.state()).map(f64::to_bits),
@@ -123,10 +125,11 @@ impl fmt::Display for Line<'_> {
 }
 
 const FNV_PRIME: u64 = 0x0000_0100_0000_01b3;
-/// The hash of no bytes.
+/// The FNV-1a hash of no bytes.
 pub const FNV_OFFSET: u64 = 0xcbf2_9ce4_8422_2325;
 
-/// Returns the hash of the bytes hashed so far and of `bytes` (G. Fowler, L. C. Noll, K.-P. Vo).
+/// Returns the FNV-1a hash of the earlier bytes, whose hash is `hash`, and of `bytes` (G. Fowler,
+/// L. C. Noll, K.-P. Vo).
 #[must_use]
 pub fn fnv_1a(hash: u64, bytes: &[u8]) -> u64 {
     bytes.iter().fold(hash, |hash, &byte| {

@@ -1,4 +1,4 @@
-//! Five buttons, debounced, become commands, or one: by how often it is tapped before it is held.
+//! The controls: five debounced buttons, or a single one, become commands.
 
 use crate::config::{
     DEBOUNCE_TICKS, HOLD_TICKS, MOST_TICKS_BETWEEN_TAPS, REPEAT_DELAY_TICKS, REPEAT_PERIOD_TICKS,
@@ -16,7 +16,7 @@ choice! {
     }
 }
 
-/// A reading of the five buttons; `true` is pressed.
+/// A reading of the five buttons; `true` means pressed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Pressed {
     pub up: bool,
@@ -26,6 +26,7 @@ pub struct Pressed {
     pub select: bool,
 }
 
+/// The buttons of a board.
 pub trait Buttons {
     fn read(&mut self) -> Pressed;
 }
@@ -39,7 +40,7 @@ impl Buttons for NoButtons {
     }
 }
 
-/// What up, down, left and right ask for alone, and with select held.
+/// The commands of up, down, left and right: alone, and with select held.
 const ARROWS: [[Command; 2]; 4] = [
     [Command::Heavier, Command::TogglePause],
     [Command::Lighter, Command::Step(1)],
@@ -47,17 +48,18 @@ const ARROWS: [[Command; 2]; 4] = [
     [Command::TurnRight, Command::NextScene],
 ];
 
-/// The five buttons' history.
+/// The state of the five buttons.
 ///
 /// | button | alone, repeating | with select held |
 /// |---|---|---|
-/// | up | next larger mass ratio | stop the scene's time, or let it go on |
-/// | down | next smaller mass ratio | one tick, then stop |
-/// | left | start angle clockwise | scene before |
+/// | up | next larger mass ratio | pause the scene, or let it continue |
+/// | down | next smaller mass ratio | advance one tick, then pause |
+/// | left | start angle clockwise | previous scene |
 /// | right | start angle counter-clockwise | next scene |
 ///
-/// Select alone does for all: let go it asks for a restart, held for [`HOLD_TICKS`] for the next
-/// scene, and held after taps for another mass ratio or start angle.
+/// The select button alone can do the most important things. A tap restarts the scene. Holding it
+/// for [`HOLD_TICKS`] selects the next scene. Holding it after taps changes the mass ratio or the
+/// start angle.
 #[derive(Clone, Debug, Default)]
 pub struct Controls {
     arrows: [Button; 4],
@@ -66,7 +68,7 @@ pub struct Controls {
 }
 
 impl Controls {
-    /// Takes the reading of one tick and returns what it asks for.
+    /// Takes the reading of one tick. Returns the commands of the buttons.
     pub fn tick(
         &mut self,
         Pressed {
@@ -79,6 +81,7 @@ impl Controls {
     ) -> impl Iterator<Item = Command> + use<> {
         let select = self.select.tick(select);
         let with_select = self.select.is_held();
+
         let mut asked = [None; 4];
         let arrows = ARROWS
             .into_iter()
@@ -91,12 +94,14 @@ impl Controls {
                 _ => None,
             };
         }
+
         let alone = self.alone.tick(select, asked.iter().any(Option::is_some));
         asked.into_iter().flatten().chain(alone)
     }
 }
 
-/// What select asks for when it is held after no tap, one, two, three, four; all but the first repeat.
+/// The commands of select when it is held after no tap, one, two, three or four taps. All except
+/// the first repeat.
 const HELD: [Command; 5] = [
     Command::NextScene,
     Command::Heavier,
@@ -105,19 +110,22 @@ const HELD: [Command; 5] = [
     Command::TurnLeft,
 ];
 
-/// The select button's history, as far as it is pressed alone.
+/// The state of the select button when it is used alone.
 #[derive(Clone, Debug, Default)]
 struct OneButton {
-    /// Ticks that it has been held alone; `None` if it is not, or has served for something else.
+    /// The time that it has been held alone, ticks; `None` if it is released, or is held together
+    /// with another button.
     held: Option<u8>,
+    /// True if holding it has already caused a command: its release is then not a tap.
     served: bool,
+    /// The number of taps in a row.
     taps: usize,
-    /// Ticks since the last of them.
+    /// The number of ticks since the last tap.
     since: u8,
 }
 
 impl OneButton {
-    /// Takes what the button does in this tick; what that asks for. A tap asks for a restart.
+    /// Takes the change of the button in this tick. Returns its command. A tap restarts the scene.
     fn tick(&mut self, change: Option<Change>, with_another: bool) -> Option<Command> {
         self.since = self.since.saturating_add(1);
         match change {
@@ -125,30 +133,34 @@ impl OneButton {
                 if self.since > MOST_TICKS_BETWEEN_TAPS {
                     self.taps = 0;
                 }
-                (self.held, self.served) = (Some(0), false);
+                self.held = Some(0);
+                self.served = false;
             }
             Some(Change::Released) => {
                 let tapped = self.held.take().is_some() && !self.served;
-                (self.taps, self.since) = (
-                    if tapped {
-                        self.taps.saturating_add(1)
-                    } else {
-                        0
-                    },
-                    0,
-                );
+                self.taps = if tapped {
+                    self.taps.saturating_add(1)
+                } else {
+                    0
+                };
+                self.since = 0;
                 return tapped.then_some(Command::Restart);
             }
             Some(Change::Repeated) | None => {}
         }
+
+        // Another button was pressed as well: this is no longer a hold of select alone.
         if with_another {
             self.held = None;
         }
+
         let held = self.held.as_mut()?;
         *held = held.saturating_add(1);
         if *held < HOLD_TICKS {
             return None;
         }
+
+        // Held long enough. The next scene does not repeat.
         self.served = true;
         let command = HELD.get(self.taps).copied();
         self.held = command
@@ -161,26 +173,27 @@ impl OneButton {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Change {
     Pressed,
-    /// Held long enough to count as pressed again.
+    /// The button is held long enough to count as pressed again.
     Repeated,
     Released,
 }
 
-/// One button, repeated while held.
+/// A button that repeats while it is held.
 #[derive(Clone, Debug, Default)]
 struct Button {
     phase: Phase,
-    /// Readings in a row that contradict the phase.
+    /// The number of readings in a row that contradict the phase.
     contradictions: u8,
 }
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 enum Phase {
-    /// Not yet seen released: a line that reads pressed from the first may be stuck or not driven, so it is ignored.
+    /// The button has not been seen released yet. A line that reads pressed from the beginning may
+    /// be stuck or not driven, so it is ignored.
     #[default]
     Unproven,
     Released,
-    /// Held, with this many ticks left until it counts as pressed again.
+    /// The button is held. It counts as pressed again after this number of ticks.
     Held {
         repeats_in: u8,
     },
@@ -191,6 +204,7 @@ impl Button {
         matches!(self.phase, Phase::Held { .. })
     }
 
+    /// Takes the reading of one tick. Returns the change of the debounced button.
     fn tick(&mut self, pressed: bool) -> Option<Change> {
         let contradicts = if self.phase == Phase::Unproven {
             !pressed
@@ -202,6 +216,8 @@ impl Button {
         } else {
             0
         };
+
+        // The level has changed for long enough.
         if self.contradictions >= DEBOUNCE_TICKS {
             self.contradictions = 0;
             let proven = self.phase != Phase::Unproven;
@@ -218,6 +234,7 @@ impl Button {
                 Change::Released
             });
         }
+
         let Phase::Held { repeats_in } = &mut self.phase else {
             return None;
         };

@@ -1,4 +1,4 @@
-//! What the application says of itself: what is news, and not again and again.
+//! The events that the application logs, and the counters that limit their rate.
 
 use embedded_io::ErrorType;
 
@@ -9,47 +9,50 @@ use crate::motion::Settings;
 use crate::protocol::{Command, Field, LinkError, Restarted};
 use crate::scenes::SceneName;
 
-/// What is worth a line in the log. Totals are since reset, what is beside them since it was last said.
+/// An event for the log. Totals are since reset; the other counts are since the last event of that
+/// kind.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Event<Panel, Link> {
-    /// The board has restarted by itself; whether it plays what it played before.
+    /// The board has restarted on its own. True if it plays the same scene as before.
     Restarted(Restarted, bool),
     /// A scene starts with these settings.
     Started(SceneName, Settings),
-    /// This is not possible because of this; all goes on as it was.
+    /// The command is impossible because of this field. Nothing changes.
     Refused(Command, Field),
-    /// Ticks passed without a frame. Said at most once a second, so that saying it does not make it worse.
+    /// Ticks have passed without a frame. It is logged at most once a second, so that logging does
+    /// not cause further delay.
     Dropped {
         ticks: u32,
         total: u32,
     },
-    /// Damaged messages came over the link. Said at most once a second, too.
+    /// Damaged messages came over the link. It is logged at most once a second.
     Damaged {
         messages: u32,
         total: u32,
         last: LinkError,
     },
-    /// The host sent bytes faster than they were taken. Said at most once a second, too.
+    /// The host has sent bytes faster than they were taken. It is logged at most once a second.
     Lost {
         bytes: u32,
         total: u32,
     },
-    /// A frame did not reach the panel, though the one before did.
+    /// A frame did not reach the panel, but the previous one did.
     Panel(Panel),
     PanelFound(Found),
-    /// A frame did not reach the link, though the one before did.
+    /// A message did not reach the link, but the previous one did.
     Link(Link),
-    /// A motion is asked for over the link.
+    /// A host has requested a motion.
     Asked,
     /// The scene's motion is too fast for this chip, or for the method that the user has selected.
-    /// It stands still until it is started again.
+    /// The scene does not advance until it is started again.
     Stopped,
-    /// The step is longer than this, s, the longest that resolves every motion of the energy of what was asked for.
+    /// The step of the requested motion is longer than this, s: the longest step that resolves
+    /// every motion of its energy.
     StepTooLong(f64),
     Motion(PlannerEvent),
 }
 
-/// What takes the events of an application with such a panel and link.
+/// A function that takes the events of an application with this panel and link.
 pub trait Log<Panel: Display, Link: ErrorType>: FnMut(Event<Panel::Error, Link::Error>) {}
 
 impl<Panel: Display, Link: ErrorType, F: FnMut(Event<Panel::Error, Link::Error>)> Log<Panel, Link>
@@ -57,16 +60,17 @@ impl<Panel: Display, Link: ErrorType, F: FnMut(Event<Panel::Error, Link::Error>)
 {
 }
 
-/// A count that wraps. How it has grown is said at most once a second, so that saying it does not make it worse.
+/// A count that wraps, and whose growth is reported at most once a second.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct ThrottledCounter {
     pub(super) total: u32,
+    /// The total at the last report, and the tick of that report.
     said: u32,
     tick: u32,
 }
 
 impl ThrottledCounter {
-    /// Counts from `total` on, at this tick.
+    /// Creates a count that is `total` at this tick.
     pub(super) fn starting(total: u32, tick: u32) -> Self {
         Self {
             total,
@@ -79,7 +83,7 @@ impl ThrottledCounter {
         self.total = self.total.wrapping_add(count);
     }
 
-    /// By how much it has grown, if it has and it is time to say so.
+    /// Returns the growth since the last report, if it is not zero and a second has passed.
     pub(super) fn news(&mut self, tick: u32) -> Option<u32> {
         let grown = self.total.wrapping_sub(self.said);
         let is_time = grown != 0 && tick.wrapping_sub(self.tick) >= TICK_RATE;
@@ -90,11 +94,13 @@ impl ThrottledCounter {
     }
 }
 
-/// Whether something that is done again and again fails; said only when it did not fail before.
+/// The state of a repeated operation: true if its last attempt failed. Only the first failure in a
+/// row is reported.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct FaultEdge(bool);
 
 impl FaultEdge {
+    /// Takes the result of an attempt, and calls `say` with a first failure.
     pub(super) fn note<E>(&mut self, result: Result<(), E>, say: impl FnOnce(E)) {
         let failed_before = core::mem::replace(&mut self.0, result.is_err());
         if let Err(error) = result

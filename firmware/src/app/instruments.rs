@@ -1,16 +1,21 @@
-//! What the board lends the application to tell of itself.
+//! The measuring functions that a board provides to the application.
 
 use crate::job::{CRC, OnBoards, Run};
 use crate::protocol::Identity;
 
-/// Nothing, by default, as on a host.
+/// The measuring functions and the identity of a board. The default, as on a host, measures
+/// nothing.
 #[derive(Clone, Copy, Debug)]
 pub struct Instruments {
-    /// Counts of the processor clock; may wrap.
+    /// Returns the count of the processor clock; may wrap.
     pub stopwatch: fn() -> u32,
-    /// Makes this many steps with interrupts off, running their code from RAM (`true`) or from flash. Returns the processor
-    /// cycles taken; 0 without a cycle counter, or if the code is not in that memory.
+    /// Makes this number of steps with interrupts off. Their code is run from RAM (`true`) or from
+    /// flash.
+    ///
+    /// Returns the processor cycles taken; 0 without a cycle counter, or if the code is not in that
+    /// memory.
     pub timed: fn(&mut OnBoards, u32, bool) -> u32,
+    /// Returns the program in flash.
     pub image: fn() -> &'static [u8],
     pub identity: Identity,
 }
@@ -31,7 +36,7 @@ impl Default for Instruments {
 }
 
 impl Instruments {
-    /// The answer to [`Command::Identify`](crate::protocol::Command::Identify).
+    /// Returns the answer to [`Command::Identify`](crate::protocol::Command::Identify).
     pub fn identity(&self) -> Identity {
         let image = (self.image)();
         Identity {

@@ -1,4 +1,4 @@
-//! The application: reads the buttons, moves the scene, draws it and sends it, tick by tick.
+//! The application: reads the buttons, and in each tick advances the scene, draws it and sends it.
 
 mod controls;
 mod event;
@@ -27,40 +27,46 @@ pub use instruments::Instruments;
 pub use player::{PlannerEvent, Player};
 pub use warm_restart::{Journal, Kept, MOST_RESTARTS, Record, SOUND_FRAMES};
 
-/// The same on a board and in a test: a panel, a byte sink and buttons are all it needs.
+/// The application. It needs only a panel, a byte sink and buttons, so that it is the same on a
+/// board and in a test.
 #[derive(Debug)]
 pub struct App<'a, Panel, Link, Keys> {
-    /// Not a part of this, so that neither is too large for the stack while it is made.
+    /// The panel is borrowed, so that neither it nor the application is too large for the stack
+    /// while it is created.
     panel: &'a mut Panel,
     pub link: Link,
     keys: Keys,
     controls: Controls,
     pub player: Player<'a>,
     decoder: Decoder,
-    /// The motion asked for last, and the number to answer it with.
+    /// The last requested motion, and the number of its command, which the answers repeat.
     work: Option<(u16, Job)>,
     pub canvas: &'a mut Canvas,
-    /// Ticks done since reset.
+    /// The number of ticks completed since reset.
     ticks: u32,
-    /// Frames drawn and sent since reset; wraps.
+    /// The number of frames drawn and sent since reset; wraps.
     pub frames: u32,
-    /// Ticks without a frame since reset.
+    /// The number of ticks without a frame since reset.
     dropped: ThrottledCounter,
+    /// The number of damaged messages, and of received bytes that were lost, since reset.
     damaged: ThrottledCounter,
     lost: ThrottledCounter,
     last_damage: Option<LinkError>,
     panel_failing: FaultEdge,
     link_failing: FaultEdge,
     pub instruments: Instruments,
-    /// The last restart that the board made by itself, for hosts that ask.
+    /// The last restart that the board made on its own, for hosts that ask.
     restarted: Option<Restarted>,
-    /// Processor cycles of the frame before, from the first tick to the end of its sending.
+    /// The processor cycles of the previous frame, from its first tick to the end of its transfer.
     busy_cycles: u32,
 }
 
 impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> {
-    /// Before it plays, which takes much of the stack: better when this is at its place.
-    #[inline(never)] // while it is made one of it stands on the stack, and not two
+    /// Creates an application that does not play yet.
+    ///
+    /// The start of a scene needs much stack. So it is better done when the application is at its
+    /// final place.
+    #[inline(never)] // Inlined, two copies of the application would be on the stack.
     pub fn new(
         processor: Processor,
         FrameBuffers { canvas, ink }: &'a mut FrameBuffers,
@@ -91,14 +97,16 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
         }
     }
 
-    /// Goes by a clock that stands at `clock` now, and counts frames and ticks without one from `frames` on.
+    /// Sets the clock to `clock`, and the counts of frames and of ticks without a frame to
+    /// `frames`.
     pub fn count_from(&mut self, clock: u32, frames: u32) {
-        (self.ticks, self.frames, self.dropped) =
-            (clock, frames, ThrottledCounter::starting(frames, clock));
+        self.ticks = clock;
+        self.frames = frames;
+        self.dropped = ThrottledCounter::starting(frames, clock);
     }
 
-    /// Goes on after a restart with what was played before it, and tells the host: one that is
-    /// connected now at once, and any other when it asks.
+    /// Plays again the scene from before a restart, and reports the restart to the host: to a host
+    /// that is connected now at once, and to any other when it asks.
     pub fn resume(&mut self, restart: &Record, mut log: impl Log<Panel, Link>) {
         let resumed = !restart.is_given_up() && self.player.resume(&restart.played).is_ok();
         log(Event::Restarted(restart.end, resumed));
@@ -112,7 +120,7 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
         self.panel.choose(controller)
     }
 
-    /// Returns what is played, and the state of the panel.
+    /// Returns the state of the player and of the panel.
     pub fn status(&self) -> Status {
         Status {
             panel: self.panel.report(),
@@ -120,21 +128,29 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
         }
     }
 
-    /// Catches up with the clock, which counts ticks since reset and may wrap, then draws and sends once.
+    /// Catches up with the clock, then draws and sends one frame. The clock counts ticks since
+    /// reset and may wrap.
     ///
-    /// Every tick is integrated, however late; the state after n ticks does not depend on how often this is called.
-    /// At most [`MOST_TICKS_PER_FRAME`] are done per call; the rest are done by the next calls. Returns whether the
-    /// clock is caught up with; if not, call again without waiting for the next tick.
+    /// Every tick is integrated, however late it is. The state after n ticks does not depend on the
+    /// number of calls.
+    ///
+    /// A call completes at most [`MOST_TICKS_PER_FRAME`] ticks, and the next calls complete the
+    /// rest. Returns true if no tick is left. If false, call again without waiting for the next
+    /// tick.
     pub fn run_to(&mut self, clock: u32, mut log: impl Log<Panel, Link>) -> bool {
         let late = clock.wrapping_sub(self.ticks);
         let ticks = late.min(MOST_TICKS_PER_FRAME);
         if ticks == 0 {
             return true;
         }
+
+        // Advance the scene.
         let start = (self.instruments.stopwatch)();
         for _ in 0..ticks {
             self.tick(&mut log);
         }
+
+        // Log the ticks without a frame, and a motion that has become too fast.
         self.dropped.add(ticks - 1);
         if let Some(ticks) = self.dropped.news(self.ticks) {
             log(Event::Dropped {
@@ -145,6 +161,8 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
         if self.player.check() {
             log(Event::Stopped);
         }
+
+        // Draw, show and send the frame.
         self.player.draw(self.canvas);
         let scene_cycles = (self.instruments.stopwatch)().wrapping_sub(start);
         self.show(scene_cycles, &mut log);
@@ -158,8 +176,10 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
         self.panel.catch_up(self.canvas)
     }
 
-    /// Takes bytes received over the link, executes and answers. Stops after [`MOST_MESSAGES_PER_TICK`] messages or
-    /// [`RECEIVE_QUEUE`] bytes, so that no flood of either delays the frame; what is left in `bytes` waits for the next call.
+    /// Takes bytes received over the link, executes the commands and answers them.
+    ///
+    /// Stops after [`MOST_MESSAGES_PER_TICK`] messages or [`RECEIVE_QUEUE`] bytes, so that a flood
+    /// of either does not delay the frame. The bytes left in `bytes` wait for the next call.
     pub fn receive(&mut self, bytes: impl IntoIterator<Item = u8>, mut log: impl Log<Panel, Link>) {
         let mut left = MOST_MESSAGES_PER_TICK;
         for byte in bytes.into_iter().take(RECEIVE_QUEUE) {
@@ -168,7 +188,8 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
                 .push(byte)
                 .map(|message| message.map(decode_command))
             {
-                // Of what is no command: an answer, perhaps its own, looped back. To answer that would have no end.
+                // Ignore messages that are not commands, such as our own answers on a looped-back
+                // link. Replying to them would never end.
                 None | Some(Ok(None)) => continue,
                 Some(Ok(Some((request, command)))) => {
                     let reply = command
@@ -183,11 +204,13 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
                     self.last_damage = Some(error);
                 }
             }
+
             left -= 1;
             if left == 0 {
                 break;
             }
         }
+
         if let Some(last) = self.last_damage
             && let Some(messages) = self.damaged.news(self.ticks)
         {
@@ -199,7 +222,7 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
         }
     }
 
-    /// Takes note of how many received bytes have been lost since reset; may wrap.
+    /// Takes the number of received bytes that have been lost since reset; may wrap.
     pub fn note_lost(&mut self, total: u32, mut log: impl Log<Panel, Link>) {
         self.lost.total = total;
         if let Some(bytes) = self.lost.news(self.ticks) {
@@ -207,14 +230,19 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
         }
     }
 
-    /// Does a bounded piece of the work asked for over the link, a step at most; whether there is more. A refusal ends it: the step
-    /// is too long for the motion, which has left the finite numbers.
+    /// Performs a bounded piece of the job of the host, at most one step. Returns true if more is
+    /// left.
+    ///
+    /// An error ends the job: the motion has left the finite numbers, because the step is too long
+    /// for it.
     pub fn work(&mut self, mut log: impl Log<Panel, Link>) -> bool {
         let Some((request, job)) = &mut self.work else {
             return false;
         };
-        let (request, index, reading, is_finished) =
-            (*request, job.given, job.advance(), job.is_finished());
+        let request = *request;
+        let index = job.given;
+        let reading = job.advance();
+        let is_finished = job.is_finished();
         match reading {
             Ok(Some(reading)) => self.answer(request, Answer::Sample { index, reading }, &mut log),
             Ok(None) => {}
@@ -223,6 +251,7 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
         !is_finished
     }
 
+    /// Completes one tick: executes the commands of the buttons and advances the scene.
     fn tick(&mut self, log: &mut impl Log<Panel, Link>) {
         self.ticks = self.ticks.wrapping_add(1);
         for command in self.controls.tick(self.keys.read()) {
@@ -233,6 +262,8 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
         self.player.tick(|news| log(Event::Motion(news)));
     }
 
+    /// Executes a command, and logs the start of a scene. Returns the field that is wrong if the
+    /// command is impossible.
     fn execute(&mut self, command: Command, log: &mut impl Log<Panel, Link>) -> Result<(), Field> {
         if self.player.execute(command)? {
             log(Event::Started(self.player.name, self.player.settings));
@@ -249,7 +280,8 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
         Ok(())
     }
 
-    /// Executes a command that came over the link, and answers it; what is wrong with it, if it cannot be.
+    /// Executes a command from the link and answers it. Returns the field that is wrong if the
+    /// command is impossible.
     fn reply(
         &mut self,
         request: u16,
@@ -263,7 +295,8 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
             Command::Identify => Answer::Identity(self.instruments.identity()),
             Command::AskRestart => Answer::Restart(self.restarted),
             Command::Measure { steps, in_ram } => {
-                let (steps, timed) = (steps.min(MOST_MEASURED_STEPS), self.instruments.timed);
+                let steps = steps.min(MOST_MEASURED_STEPS);
+                let timed = self.instruments.timed;
                 let (_, job) = self.work.as_mut().ok_or(Field::Message)?;
                 Answer::Measured {
                     steps,
@@ -281,8 +314,9 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
         Ok(())
     }
 
-    /// The samples of the motion follow; first what a step too long for its energy should be.
-    #[inline(never)] // what it takes to prepare a motion would be on the stack of every command
+    /// Begins the job of a requested motion; [`work`](Self::work) sends its samples. If the step is
+    /// too long for the energy of the motion, the longest admissible step is sent first.
+    #[inline(never)] // Inlined, the preparation of a motion would be on the stack of every command.
     fn begin_work(
         &mut self,
         request: u16,
@@ -299,6 +333,7 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
         Ok(())
     }
 
+    /// Sends the canvas to the panel and a frame message to the host.
     #[inline(never)]
     fn show(&mut self, scene_cycles: u32, log: &mut impl Log<Panel, Link>) {
         let shown = self.panel.flush(self.canvas);
@@ -307,6 +342,7 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
         if let Some(found) = self.panel.found() {
             log(Event::PanelFound(found));
         }
+
         let frame = Frame {
             sequence: self.frames,
             dropped: self.dropped.total,
@@ -319,16 +355,18 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
         self.frames = self.frames.wrapping_add(1);
     }
 
+    /// Sends an answer to the command with this number.
     fn answer(&mut self, request: u16, answer: Answer, log: &mut impl Log<Panel, Link>) {
         self.send(&ToHost::Answer(request, answer), log);
     }
 
     /// Sends a message, or the part of it that the link takes in time.
     fn send(&mut self, message: &ToHost, log: &mut impl Log<Panel, Link>) {
-        let (mut wire, mut sent) = ([0; MAX_WIRE], Ok(()));
+        let mut wire = [0; MAX_WIRE];
+        let mut sent = Ok(());
         let mut left = encode(message, &mut wire);
         while !left.is_empty() && sent.is_ok() {
-            // A link that takes nothing and says so is no reason to panic: the byte counts as sent.
+            // A link that returns 0 is no reason to panic: one byte counts as sent.
             sent = self
                 .link
                 .write(left)

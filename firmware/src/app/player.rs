@@ -1,4 +1,4 @@
-//! What is played: a scene with its settings, and how its time goes.
+//! The player: a scene with its settings, its plan and its pace.
 
 use double_pendulum::plan::Stepping;
 use double_pendulum::{Error, Method};
@@ -11,16 +11,20 @@ use crate::motion::{CatchingUp, Horizon, PlanResult, Planned, Planner, Resources
 use crate::protocol::{Command, Field, Frame, PlayState, Status};
 use crate::scenes::{AnyScene, Report, SceneName};
 
+/// An event of the planner or of the motion that is shown.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PlannerEvent {
+    /// The planner has found a result.
     Found(PlanResult),
-    /// The motion goes on by this method and these steps; cycles of a frame.
+    /// The motion is now computed by this method and step count, at this cost of a frame, cycles.
     Shown(Stepping, f32),
 }
 
+/// The state of the scene that is shown.
 #[derive(Debug)]
 pub struct Player<'a> {
-    /// What is played, to be read, as the settings and the report are: commands and ticks change it.
+    /// The name of the scene. The public fields are for reading only; commands and ticks change
+    /// them.
     pub name: SceneName,
     pub settings: Settings,
     scene: AnyScene,
@@ -29,7 +33,7 @@ pub struct Player<'a> {
     /// True if the scene keeps the requested method; false if it follows the plan.
     is_fixed: bool,
     planner: Planner,
-    /// The motion as the plan has it, until it takes over; meanwhile nothing is planned.
+    /// The planned motion until it takes over. Meanwhile nothing is planned.
     next: Option<CatchingUp>,
     ink: &'a mut FadeLayer,
     pace: Pace,
@@ -40,23 +44,23 @@ pub struct Player<'a> {
 }
 
 impl<'a> Player<'a> {
-    /// As it goes on this class of processors, before it plays anything that moves.
+    /// Creates the player for a processor of this class. It shows an empty figure until a scene is
+    /// played.
     pub fn new(processor: Processor, ink: &'a mut FadeLayer) -> Self {
-        let (scene, settings) = (AnyScene::empty(), Settings::default());
-        let (name, report) = (SceneName::Frequencies, scene.report(0));
-        let (planner, pace, stopped) = (Planner::new(processor), Pace::default(), false);
+        let scene = AnyScene::empty();
+        let report = scene.report(0);
         Self {
-            name,
-            settings,
+            name: SceneName::Frequencies,
+            settings: Settings::default(),
             scene,
             method: None,
             is_fixed: false,
-            planner,
+            planner: Planner::new(processor),
             next: None,
             ink,
-            pace,
+            pace: Pace::default(),
             report,
-            stopped,
+            stopped: false,
         }
     }
 
@@ -73,7 +77,7 @@ impl<'a> Player<'a> {
 
     /// Plays a scene by `method` and no other, or by its plan. If that is impossible, nothing is
     /// changed.
-    #[inline(never)] // what a scene needs to start would be on the stack of every frame
+    #[inline(never)] // Inlined, the start of a scene would be on the stack of every frame.
     fn play_by(
         &mut self,
         method: Option<Method>,
@@ -85,29 +89,34 @@ impl<'a> Player<'a> {
             method,
         };
         let height = self.scene.start(name, &settings, &resources)?;
+
         self.name = name;
         self.settings = settings;
         self.stopped = self.scene.is_too_fast();
         self.next = None;
         self.is_fixed = method.is_some();
+
+        // Start the planner with the method that the scene has chosen.
         let initial = self.scene.report(0).stepping;
         let keeps_initial = self.is_fixed || self.scene.planned().is_none();
         let height = height.filter(|_| !self.stopped);
         self.planner
             .start(&settings, height, initial, keeps_initial);
+
         *self.ink = FadeLayer::NONE;
         self.report = self.now();
         Ok(())
     }
 
-    /// Executes a command; if that cannot be, nothing is changed and the error names what is wrong. Whether the scene
-    /// was started again.
-    #[inline(never)] // what scenes need to start would be on the stack of every frame
+    /// Executes a command. Returns true if the scene was started again.
+    ///
+    /// If the command is impossible, returns the field that is wrong. Then nothing is changed.
+    #[inline(never)] // Inlined, the start of a scene would be on the stack of every frame.
     pub fn execute(&mut self, command: Command) -> Result<bool, Field> {
         match command {
             Command::Heavier => return self.start(self.name, self.settings.heavier()),
             Command::Lighter => return self.start(self.name, self.settings.lighter()),
-            // What does not depend on the angles goes on.
+            // A scene that does not depend on the angles continues.
             Command::TurnLeft | Command::TurnRight if !self.name.has_angles() => {}
             Command::TurnLeft => return self.start(self.name, self.settings.turned(-1)),
             Command::TurnRight => return self.start(self.name, self.settings.turned(1)),
@@ -121,15 +130,24 @@ impl<'a> Player<'a> {
                 value,
             } => self.pace.set_speed(value)?,
             Command::Method(method) => return self.go(method),
-            // What the new value makes impossible, it is the new value that is wrong.
+            // If the scene cannot start with the new value, report that field as the wrong one.
             Command::Set { field, value } => {
                 return self
                     .start(self.name, self.with(field, value)?)
                     .map_err(|_| field);
             }
-            Command::Pause(paused) => (self.pace.paused, self.pace.steps) = (paused, 0),
-            Command::TogglePause => (self.pace.paused, self.pace.steps) = (!self.pace.paused, 0),
-            Command::Step(ticks) => (self.pace.paused, self.pace.steps) = (true, ticks),
+            Command::Pause(paused) => {
+                self.pace.paused = paused;
+                self.pace.steps = 0;
+            }
+            Command::TogglePause => {
+                self.pace.paused = !self.pace.paused;
+                self.pace.steps = 0;
+            }
+            Command::Step(ticks) => {
+                self.pace.paused = true;
+                self.pace.steps = ticks;
+            }
             Command::Ask
             | Command::AskPlan
             | Command::Identify
@@ -141,8 +159,9 @@ impl<'a> Player<'a> {
         Ok(false)
     }
 
-    /// Advances by one tick of the clock, which may be any number of the scene's; `tell` is given what planning finds, and
-    /// what a scene begins or goes on by.
+    /// Advances by one tick of the clock, which may be any number of ticks of the scene.
+    ///
+    /// Calls `tell` with each result of the planner, and with each method that takes over.
     #[inline(never)]
     pub fn tick(&mut self, mut tell: impl FnMut(PlannerEvent)) {
         if self.stopped {
@@ -150,6 +169,8 @@ impl<'a> Player<'a> {
         }
         for _ in 0..self.pace.tick() {
             self.scene.tick(self.planner.ticks + 1, self.ink);
+
+            // Either the planned motion catches up, or the planner works.
             if let Some(next) = &mut self.next {
                 self.planner.skip_tick();
                 if self.scene.planned().is_none_or(|motion| next.tick(motion)) {
@@ -169,11 +190,13 @@ impl<'a> Player<'a> {
         }
     }
 
-    /// Begins to switch to the method and steps of a plan, if that does not shorten the horizon.
+    /// Begins to switch to the method and step count of a plan, if that does not shorten the
+    /// horizon.
     ///
-    /// A plan whose horizon is past is not followed: its motion is as inaccurate as the one that is
-    /// shown. Nor is one whose motion costs less, but ends sooner than what the panel has claimed.
-    #[inline(never)] // what a motion needs to start would be on the stack of every frame
+    /// A plan whose horizon is past is not followed, because its motion is as inaccurate as the
+    /// current one. A plan that costs less, but has a shorter horizon than the panel has shown, is
+    /// not followed either.
+    #[inline(never)] // Inlined, the start of a motion would be on the stack of every frame.
     fn follow(&mut self, found: &PlanResult) {
         let (Ok(plan), false) = (found, self.is_fixed) else {
             return;
@@ -181,6 +204,7 @@ impl<'a> Player<'a> {
         let Some(simulation) = self.scene.planned() else {
             return;
         };
+
         let current = simulation.motion.stepping();
         let planned = plan.stepping();
         let time = self.planner.ticks as f64 / f64::from(TICK_RATE);
@@ -190,21 +214,24 @@ impl<'a> Player<'a> {
         }
     }
 
-    /// Does a piece of the planning that the next tick would do; whether there is more.
+    /// Performs a piece of the next tick's planning in advance. Returns true if it did, so that
+    /// more may be left.
     pub fn look_ahead(&mut self) -> bool {
         !self.is_still() && self.next.is_none() && self.planner.work_ahead()
     }
 
+    /// Returns the last result of the planner and its problem; `None` if the scene shows no planned
+    /// motion.
     pub fn plan(&self) -> Option<Planned> {
         self.planner.planned()
     }
 
-    /// Cycles of a frame that is computed so.
+    /// Returns the cost of a frame by this method and step count, cycles.
     pub fn cost(&self, stepping: Stepping) -> f32 {
         self.planner.processor.costs.of_frame(stepping)
     }
 
-    /// The scene in numbers, with what the planner knows of it.
+    /// Returns the report of the scene, with the horizon that the planner has verified.
     fn now(&self) -> Report {
         let report = self.scene.report(self.planner.ticks);
         if self.stopped {
@@ -214,9 +241,11 @@ impl<'a> Player<'a> {
                 ..report
             };
         }
+
         let Some(stepping) = report.stepping.filter(|_| self.planner.has_task()) else {
             return report;
         };
+
         let verified = self.planner.horizon(stepping) as f32;
         let horizon = if self.planner.is_settled() && self.next.is_none() {
             Horizon::Until(verified)
@@ -245,7 +274,8 @@ impl<'a> Player<'a> {
         self.stopped
     }
 
-    /// Draws the scene, and a mark if it is paused. Of a stopped scene it writes why nothing moves.
+    /// Draws the scene, and a mark if it is paused. If the scene is stopped, writes the reason
+    /// instead.
     #[inline(never)]
     pub fn draw(&self, canvas: &mut Canvas) {
         match self.state() {
@@ -292,7 +322,8 @@ impl<'a> Player<'a> {
         }
     }
 
-    /// The frame as it is told to the host, but for what only the board's clock and link know.
+    /// Returns the frame message, without the numbers that only the clock and the link of the board
+    /// know.
     pub fn frame(&self) -> Frame {
         let [start_angle, _] = self.settings.angles();
         Frame {
@@ -305,7 +336,7 @@ impl<'a> Player<'a> {
         }
     }
 
-    /// Returns what is played, without the state of the panel.
+    /// Returns the state of the player, without the state of the panel.
     pub fn status(&self) -> Status {
         let Self {
             name: scene,
@@ -325,7 +356,8 @@ impl<'a> Player<'a> {
         }
     }
 
-    /// Plays what a status tells, from its start; if that cannot be, nothing is changed and the error names what is wrong.
+    /// Plays the scene of a status, from its start. If that is impossible, returns the field that
+    /// is wrong; then nothing is changed.
     pub fn resume(&mut self, status: &Status) -> Result<(), Field> {
         let Status {
             scene,
@@ -336,10 +368,12 @@ impl<'a> Player<'a> {
             speed,
             ..
         } = *status;
+
         let mut pace = Pace::default();
         pace.paused = state == PlayState::Paused;
         pace.steps = steps;
         pace.set_speed(speed.into())?;
+
         let before = core::mem::replace(&mut self.method, method);
         self.start(scene, settings)
             .inspect_err(|_| self.method = before)?;
@@ -347,17 +381,21 @@ impl<'a> Player<'a> {
         Ok(())
     }
 
+    /// Starts a scene with its own initial settings. Returns true.
     fn choose(&mut self, name: SceneName) -> Result<bool, Field> {
         self.start(name, name.first_settings())
     }
 
+    /// Starts a scene. Returns true.
     fn start(&mut self, name: SceneName, settings: Settings) -> Result<bool, Field> {
         self.play(name, settings)?;
         Ok(true)
     }
 
-    /// Starts again by this method and no other, or as the plan has it. Refuses a method that the
-    /// scene cannot use: only a change of the scene or of its settings falls back to the plan.
+    /// Starts again by this method and no other; `None` leaves the choice to the plan.
+    ///
+    /// Refuses a method that the scene cannot use. Only a change of the scene or of its settings
+    /// falls back to the plan.
     fn go(&mut self, method: Option<Method>) -> Result<bool, Field> {
         if method.is_some_and(|method| !Method::DRAWN.contains(&method)) {
             return Err(Field::Method);
@@ -368,7 +406,7 @@ impl<'a> Player<'a> {
         Ok(true)
     }
 
-    /// The settings with one of them changed; refuses an angle beyond straight up.
+    /// Returns the settings with one field changed. Refuses an angle beyond straight up.
     fn with(&self, field: Field, value: f64) -> Result<Settings, Field> {
         let mut settings = self.settings;
         let Settings {
@@ -376,7 +414,9 @@ impl<'a> Player<'a> {
             degrees: [a1, a2],
             velocities: [w1, w2],
         } = &mut settings;
-        let (value, angle) = (value as f32, value.to_degrees() as f32);
+        let angle = value.to_degrees() as f32;
+        let value = value as f32;
+
         match field {
             Field::M1 => parameters.m1 = value,
             Field::M2 => parameters.m2 = value,

@@ -1,37 +1,45 @@
-//! What is kept across a reset: what was played, and why it ended.
+//! The record that is kept across a reset: the scene, and the reason for the reset.
 //!
-//! It is kept in memory that the start-up code leaves alone, as a message of the serial link would be sent. That memory
-//! holds noise when the board is switched on; what is no intact message, by its frame, length, version and CRC, is noise,
-//! and the board starts as at the first time. So it does after a reset from outside, by its button or by a debugger:
-//! whoever does that wants a fresh start.
+//! It is kept in memory that the start-up code does not initialise, in the format of a message on
+//! the serial link. When the board is switched on, this memory contains noise. The frame, length,
+//! version and CRC of the message show whether it is intact. If it is not, the board starts with
+//! the first scene.
+//!
+//! After a reset from outside, by the reset button or a debugger, the board also starts with the
+//! first scene, because a fresh start is then wanted.
 
 use serde::{Deserialize, Serialize};
 
 use crate::config::TICK_RATE;
 use crate::protocol::{Cause, Decoder, MAX_WIRE, Restarted, Status, encode, read};
 
+/// The bytes of a retained record.
 pub type Kept = [u8; MAX_WIRE];
 
-/// A scene may be what ends the board each time: after so many restarts in a row it starts with the first scene.
+/// The largest number of restarts in a row that play the same scene again. After more the board
+/// starts with the first scene, because the scene may be the cause.
 pub const MOST_RESTARTS: u8 = 3;
-/// So many frames without a restart, a minute's worth, and those before count no longer.
+/// The number of frames, a minute's worth, without a restart after which earlier restarts no longer
+/// count.
 pub const SOUND_FRAMES: u32 = 60 * TICK_RATE;
 
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Record {
+    /// The state of the player.
     pub played: Status,
-    /// How it ended; with no cause as long as it has not.
+    /// The end of the program. It has no cause while the program is running.
     pub end: Restarted,
 }
 
 impl Record {
+    /// Returns the bytes to keep.
     pub fn write(&self) -> Kept {
         let mut kept = [0; MAX_WIRE];
         encode(self, &mut kept);
         kept
     }
 
-    /// `None` unless it is intact.
+    /// Returns the record; `None` if it is not intact.
     pub fn read(kept: &Kept) -> Option<Self> {
         let mut decoder = Decoder::default();
         for &byte in kept {
@@ -42,8 +50,10 @@ impl Record {
         None
     }
 
-    /// The restart that it tells of, counted; `None` of a reset from outside. Where nothing noted a cause, it may have been the
-    /// watchdog, by the board's own register.
+    /// Returns the record of a restart, with the restart counted. Returns `None` after a reset from
+    /// outside.
+    ///
+    /// If no cause is recorded, `by_watchdog` is the board's own information about the reset.
     pub fn restart(self, by_watchdog: bool) -> Option<Self> {
         let cause = Some(self.end.cause.or(by_watchdog.then_some(Cause::Hang))?);
         Some(Self {
@@ -56,22 +66,23 @@ impl Record {
         })
     }
 
-    /// Whether what was played has been tried often enough.
+    /// Returns true if the scene has been tried often enough.
     pub fn is_given_up(&self) -> bool {
         self.end.restarts > MOST_RESTARTS
     }
 }
 
-/// What is kept after each frame, in case it is the last.
+/// The counters for the records that are kept after each frame, in case it is the last.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Journal {
-    /// In a row, so far.
+    /// The number of restarts in a row.
     restarts: u8,
-    /// Frames since the last.
+    /// The number of frames since the last restart.
     frames: u32,
 }
 
 impl Journal {
+    /// Creates the counters; `restart` is the restart that has just happened.
     pub fn new(restart: Option<&Record>) -> Self {
         Self {
             restarts: restart.map_or(0, |restart| restart.end.restarts),
@@ -79,7 +90,8 @@ impl Journal {
         }
     }
 
-    /// Returns the record to keep after a frame: what is played, and the step that was shown.
+    /// Returns the record to keep after a frame: the state of the player, and the tick that was
+    /// shown.
     pub fn note(&mut self, played: Status, step: u64) -> Record {
         self.frames = self.frames.saturating_add(1);
         if self.frames >= SOUND_FRAMES {

@@ -1,5 +1,8 @@
-//! Where the log of a real chip goes: into memory that a debug probe reads while the processor runs (RTT), which costs next to
-//! nothing and never waits; or, where the same image runs in QEMU, to its standard output, as on the other boards.
+//! The output of the log on a real chip.
+//!
+//! A chip writes the log into memory that a debug probe reads while the processor runs (RTT). This
+//! costs next to nothing and never waits. If the same image runs in QEMU, it writes the log to the
+//! standard output, as the other boards do.
 
 use cortex_m::interrupt::{disable, enable};
 use cortex_m::register::primask;
@@ -14,13 +17,15 @@ use super::cortex_m::interrupt::Shared;
 #[defmt::global_logger]
 struct Logger;
 
+/// The encoder and the destination of the log.
 struct Path {
     encoder: Encoder,
     sink: Sink,
-    /// Whether interrupts were on before the line that is being written.
+    /// True if interrupts were on before the current line.
     interrupts: bool,
 }
 
+/// The destination of the log.
 enum Sink {
     Nowhere,
     Memory(UpChannel),
@@ -34,7 +39,7 @@ static PATH: Shared<Path> = Shared::new(Path {
     interrupts: false,
 });
 
-/// Opens the log of a chip; before that, lines are lost.
+/// Opens the log of a chip. Earlier lines are lost.
 pub fn into_memory() {
     crash::expect_no_debugger();
     let channel = rtt_init! { up: { 0: { size: 1024, name: "defmt" } } }.up.0;
@@ -52,7 +57,8 @@ impl Sink {
         match self {
             Self::Nowhere => {}
             Self::Memory(channel) => {
-                // A probe may ask to be waited for. One that is unplugged would then be waited for without end.
+                // A probe can request that the chip waits for it. If it were unplugged then, the
+                // wait would never end.
                 channel.set_mode(ChannelMode::NoBlockSkip);
                 channel.write(bytes);
             }
@@ -64,14 +70,14 @@ impl Sink {
     }
 }
 
-// SAFETY: `acquire` switches interrupts off until `release`, so a line is written by one at a time; written bytes are
-// passed on in order.
+// SAFETY: `acquire` switches interrupts off until `release`, so that only one writer at a time
+// writes a line. Bytes are passed on in order.
 unsafe impl defmt::Logger for Logger {
     fn acquire() {
         let interrupts = primask::read().is_active();
         disable();
         PATH.with(|path| {
-            // A line within a line is garbled, but leaves interrupts as they were.
+            // A line within a line is garbled, but the state of the interrupts is restored.
             path.interrupts |= interrupts;
             path.encoder.start_frame(|bytes| path.sink.write(bytes));
         });
@@ -82,7 +88,7 @@ unsafe impl defmt::Logger for Logger {
     unsafe fn release() {
         PATH.with(|path| path.encoder.end_frame(|bytes| path.sink.write(bytes)));
         if PATH.with(|path| core::mem::take(&mut path.interrupts)) == Some(true) {
-            // SAFETY: `acquire` has switched them off, and they were on before.
+            // SAFETY: `acquire` has switched the interrupts off, and they were on before.
             unsafe { enable() };
         }
     }

@@ -1,4 +1,4 @@
-//! The application of every board, its main loop and its log.
+//! The application of every board: its parts, its main loop and its log.
 
 use core::fmt::Debug;
 use core::iter::from_fn;
@@ -21,16 +21,18 @@ use crate::motion::Settings;
 use crate::protocol::{Cause, Field, Restarted};
 use crate::scenes::SceneName;
 
+/// The parts of a board.
 pub struct Board<Panel, Link, Keys, Dog> {
     pub panel: Panel,
     pub link: Link,
     pub keys: Keys,
     pub instruments: Instruments,
     pub watchdog: Dog,
-    /// Whether the board's own register says that the watchdog caused the last reset.
+    /// True if the board's own register indicates that the watchdog caused the last reset.
     pub reset_by_watchdog: bool,
 }
 
+/// The types of a board, for the statics of its program.
 pub trait Plays {
     type Panel;
     type Application;
@@ -41,7 +43,8 @@ impl<Panel: 'static, Link: 'static, Keys: 'static, Dog> Plays for Board<Panel, L
     type Application = App<'static, Panel, Link, Keys>;
 }
 
-/// The program of a board: the module that takes it, its type there, and the class of its processor.
+/// Defines the program of a board. The arguments are the module of the board, its type there, and
+/// the class of its processor.
 #[macro_export]
 macro_rules! program {
     ($module:ident::$board:ident on $processor:ident) => {
@@ -66,7 +69,8 @@ macro_rules! program {
 impl<Panel: Display<Error: Debug> + 'static, Link: Write, Keys: Buttons, Dog: Watchdog>
     Board<Panel, Link, Keys, Dog>
 {
-    /// Plays for ever, the application, the panel's driver and the frames at the places given.
+    /// Runs the application for ever. The application, the driver of the panel and the frame
+    /// buffers are put at the given places.
     pub fn play(
         self,
         place: &'static mut MaybeUninit<App<'static, Panel, Link, Keys>>,
@@ -94,7 +98,8 @@ impl<Panel: Display<Error: Debug> + 'static, Link: Write, Keys: Buttons, Dog: Wa
     }
 }
 
-#[inline(never)] // what it takes to make the application would be on the stack as long as that runs
+/// Creates the application at its place, and starts the first scene.
+#[inline(never)] // Inlined, its stack would be in use while the application runs.
 fn application<'a, Panel: Display, Link: Write, Keys: Buttons>(
     place: &'a mut MaybeUninit<App<'a, Panel, Link, Keys>>,
     buffers: &'a mut FrameBuffers,
@@ -111,8 +116,8 @@ fn application<'a, Panel: Display, Link: Write, Keys: Buttons>(
     app
 }
 
-/// Runs the application for ever; between ticks it works for the host, or sleeps.
-#[inline(never)] // apart from the start-up code, which may panic; this may not (test `no_panic`)
+/// Runs the application for ever. Between ticks it works for the host, plans, or sleeps.
+#[inline(never)] // Unlike the start-up code, this must not panic (test `no_panic`).
 fn run<Panel: Display<Error: Debug>, Link: Write, Keys: Buttons>(
     app: &'static mut App<Panel, Link, Keys>,
     mut watchdog: impl Watchdog,
@@ -122,18 +127,24 @@ fn run<Panel: Display<Error: Debug>, Link: Write, Keys: Buttons>(
     let mut now = ticks();
     app.count_from(now, 0);
     loop {
+        // Catch up with the clock.
         let mut is_late = true;
         while is_late {
             let before = app.frames;
             is_late = !app.run_to(now, log);
-            // A frame that is finished, drawn and sent is noted, and feeds the watchdog: nothing else does.
+            // A finished frame, drawn and sent, is recorded and feeds the watchdog. Nothing else
+            // feeds it.
             if app.frames != before {
                 retained::keep(&journal.note(app.status(), app.player.report.step));
                 watchdog.feed();
             }
         }
+
+        // Execute the commands of the host.
         app.receive(from_fn(serial::received), log);
         app.note_lost(serial::lost(), log);
+
+        // Use the rest of the tick: for the job of the host, for planning, for the panel.
         while ticks() == now && app.work(log) {
             app.catch_up();
         }
@@ -141,11 +152,13 @@ fn run<Panel: Display<Error: Debug>, Link: Write, Keys: Buttons>(
             app.catch_up();
         }
         while ticks() == now && app.catch_up() {}
+
         now = wait_after(now);
     }
 }
 
-/// What was played before an unplanned reset goes on. The restart is counted first: it may be the start that ends the board.
+/// Plays again the scene from before an unplanned reset. The restart is counted first, because its
+/// scene may end the board again.
 #[inline(never)]
 fn resume<Panel: Display<Error: Debug>, Link: Write, Keys: Buttons>(
     app: &mut App<Panel, Link, Keys>,
@@ -165,11 +178,13 @@ fn resume<Panel: Display<Error: Debug>, Link: Write, Keys: Buttons>(
         });
         app.resume(restart, log);
     }
+
     let mut journal = Journal::new(restart.as_ref());
     retained::keep(&journal.note(app.status(), app.player.report.step));
     journal
 }
 
+/// Writes the log line of an event.
 #[inline(never)]
 fn log<Panel: Debug, Link: Error>(event: Event<Panel, Link>) {
     match event {
@@ -285,7 +300,8 @@ fn log<Panel: Debug, Link: Error>(event: Event<Panel, Link>) {
     }
 }
 
-/// Logs a plan. The closed form has no steps, and its errors do not grow: it is another motion.
+/// Logs a plan. For the closed form it logs no steps and no error. The closed form is another
+/// motion, and its errors do not grow.
 fn log_plan(
     &Plan {
         method,
@@ -323,7 +339,7 @@ fn log_plan(
     );
 }
 
-/// Why the serial link has not taken a message.
+/// Returns the reason why the serial link has not taken a message.
 fn reason(kind: ErrorKind) -> &'static str {
     match kind {
         ErrorKind::TimedOut => "the host does not read, frames are dropped",

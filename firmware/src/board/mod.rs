@@ -1,14 +1,14 @@
-//! The boards: the only place for registers, clocks, interrupts and `unsafe`.
+//! The boards. All registers, clocks, interrupts and `unsafe` code are here.
 //!
-//! | room | what is in it |
+//! | module | contents |
 //! |---|---|
-//! | `main_loop` | the application of every board: its main loop, its log |
-//! | [`lm3s6965evb`], [`mps2_an386`], `stm32f405`, `pico` | one board each: its clocks, pins and devices |
-//! | `log` | where a real chip's log goes |
-//! | `steps` | the steps of every arithmetic, which real chips have twice, in flash and in memory |
-//! | [`cortex_m`] | what every Cortex-M has: the tick, the stack's guard, crash reports, memory kept across a reset |
-//! | `panel_bus` | a panel's bus that an interrupt drives |
-//! | `serial` | bytes in and out of any board's serial port |
+//! | `main_loop` | the main loop and the log lines of the application, for every board |
+//! | [`lm3s6965evb`], [`mps2_an386`], `stm32f405`, `pico` | a board: its clocks, pins and devices |
+//! | `log` | the output of the log on a real chip |
+//! | `steps` | the code of the steps, which real chips have twice, in flash and in RAM |
+//! | [`cortex_m`] | parts for every Cortex-M: tick, stack guard, crash reports, retained record |
+//! | `panel_bus` | a panel's bus that is driven by an interrupt |
+//! | `serial` | the bytes received and sent by a serial port |
 //! | `register` | a device register |
 
 pub mod cortex_m;
@@ -29,7 +29,8 @@ mod register;
 #[cfg(any(feature = "pico", feature = "stm32f405"))]
 mod steps;
 
-#[cfg(not(any(feature = "pico", feature = "stm32f405")))] // which have a log of their own
-use defmt_semihosting as _; // where the log goes
+// The boards without a log of their own send it to the debugger.
+#[cfg(not(any(feature = "pico", feature = "stm32f405")))]
+use defmt_semihosting as _;
 
 pub use main_loop::{Board, Plays};

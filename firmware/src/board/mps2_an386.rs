@@ -1,4 +1,4 @@
-//! ARM MPS2 with image AN386: Cortex-M4F at 25 MHz, serial port only.
+//! ARM MPS2 with image AN386: a Cortex-M4F at 25 MHz, with a serial port only.
 //!
 //! Source: ARM DAI 0386; the serial port is the CMSDK UART of ARM DDI 0479.
 
@@ -26,23 +26,23 @@ const CONTROL: Register = UART0.register(0x008);
 const INTERRUPT_CLEAR: Register = UART0.register(0x00c);
 const DIVISOR: Register = UART0.register(0x010);
 
-/// The watchdog of ARM DDI 0479. It interrupts as the NMI; no register tells of a reset.
+/// The watchdog of ARM DDI 0479. Its interrupt is the NMI. No register indicates a reset.
 // SAFETY: without DMA it cannot break memory safety.
 const WATCHDOG: Device = unsafe { Device::at(0x4000_8000) };
 
 const TRANSMITTER_FULL: u32 = 1 << 0;
 const RECEIVER_FULL: u32 = 1 << 1;
 const RECEIVER_OVERRUN: u32 = 1 << 3;
-/// Transmitter, receiver and the receiver's interrupt on.
+/// The transmitter, the receiver and the receiver's interrupt are on.
 const ENABLE: u32 = 1 << 3 | 1 << 1 | 1 << 0;
 const RECEIVED: u32 = 1 << 1;
 
-/// UART0's receiver.
+/// The interrupt of UART0's receiver.
 const INTERRUPT: Interrupt = Interrupt(0);
 
 pub type Mps2An386 = Board<NoDisplay, Outward, NoButtons, TwoStage>;
 
-/// Sets the board up; `None` the second time.
+/// Sets the board up. Returns `None` the second time.
 pub fn take() -> Option<Mps2An386> {
     let instruments = start(Peripherals::take()?, BoardName::Mps2An386, HERTZ, [0; 4]);
     receive_by(receive);
@@ -65,13 +65,14 @@ pub fn take() -> Option<Mps2An386> {
     })
 }
 
+/// Takes the received bytes.
 fn receive(inbox: &mut Inbox) {
     INTERRUPT_CLEAR.write(RECEIVED);
     while STATE.read() & RECEIVER_FULL != 0 {
         inbox.push(DATA.read() as u8);
     }
     if STATE.read() & RECEIVER_OVERRUN != 0 {
-        STATE.write(RECEIVER_OVERRUN); // Written back, it is cleared.
+        STATE.write(RECEIVER_OVERRUN); // Writing the bit clears it.
         inbox.note_overrun(true);
     }
 }

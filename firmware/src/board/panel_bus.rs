@@ -1,5 +1,5 @@
-//! A panel's bus: the main loop fills an outbox and hands it to the bus's interrupt, which hands it
-//! back when it is empty.
+//! The bus of a panel. The main loop fills an outbox and passes it to the bus's interrupt, which
+//! returns it when it is empty.
 
 use embedded_hal::i2c::ErrorKind;
 
@@ -7,37 +7,41 @@ use super::cortex_m::clock::cycles;
 use super::cortex_m::interrupt::Shared;
 use crate::display::{Outbox, PanelBus, Sent};
 
+/// The device of a bus.
 pub trait PanelPort {
-    /// Begins a message to this address; the interrupt does the rest.
+    /// Begins a message to this address. The interrupt does the rest.
     fn begin(&mut self, address: u8);
 
-    /// Frees a bus that hangs, and makes the device forget it: it interrupts no more.
+    /// Frees a bus that hangs, and resets the device. It does not interrupt any more.
     fn reset(&mut self);
 }
 
-/// The bus, and the outbox while the interrupt does not have it.
+/// The bus, and the outbox while the interrupt does not own it.
 pub struct Bus<P> {
     port: P,
     outbox: Option<&'static mut Outbox>,
-    /// Processor cycles in a microsecond.
+    /// The number of processor cycles in a microsecond.
     megahertz: u32,
 }
 
-/// How often a start or stop is waited for, which takes 5 us: these tries take at least 12.
+/// The number of tries to wait for a start or stop. It takes 5 us, and these tries take at least 12
+/// us.
 pub const TRIES: u32 = 500;
 
-/// An outbox on its way, and the processor cycle at which that began and ended.
+/// An outbox that is being sent, and the processor cycles of its begin and end.
 struct Outgoing {
     outbox: &'static mut Outbox,
     began: u32,
     ended: u32,
 }
 
-/// The outbox that the interrupt has.
+/// The outbox that the interrupt owns.
 static OUTGOING: Shared<Option<Outgoing>> = Shared::new(None);
 
-/// Serves the bus's interrupt: `advance` does what the bus waits for, and returns the outcome of the
-/// messages when all is done; from then on the bus must not interrupt until [`PanelPort::begin`].
+/// Handles the bus's interrupt.
+///
+/// `advance` does the next part of the transfer, and returns the outcome of the messages when all
+/// is done. After that the bus must not interrupt until [`PanelPort::begin`].
 pub(in crate::board) fn serve(advance: impl FnOnce(&mut Outbox) -> Option<Sent>) {
     OUTGOING.with(|outgoing| {
         if let Some(Outgoing { outbox, ended, .. }) = outgoing
@@ -52,8 +56,8 @@ pub(in crate::board) fn serve(advance: impl FnOnce(&mut Outbox) -> Option<Sent>)
 }
 
 impl<P: PanelPort> Bus<P> {
-    /// Takes the port, and the frequency of the processor, Hz. There is one bus at most: the
-    /// interrupt knows no other.
+    /// Creates the bus of a port; `hertz` is the frequency of the processor. There is at most one
+    /// bus, because the interrupt knows no other. Returns `None` the second time.
     pub(in crate::board) fn new(mut port: P, hertz: u32) -> Option<Self> {
         port.reset();
         Some(Self {
@@ -83,6 +87,7 @@ impl<P: PanelPort> PanelBus for Bus<P> {
                 .unwrap_or(0);
             self.outbox = Some(outbox);
         }
+
         let outbox = self.outbox.as_deref_mut()?;
         let sent = outbox.sent?;
         Some((outbox, sent))
@@ -98,6 +103,7 @@ impl<P: PanelPort> PanelBus for Bus<P> {
                 began,
                 ended: began,
             };
+
             OUTGOING.with(|place| *place = Some(outgoing));
             self.port.begin(address);
         }

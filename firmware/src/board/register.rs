@@ -1,21 +1,22 @@
 //! Devices and their registers.
 
-/// A device: 4 KiB of addresses with its registers.
+/// A device: a range of 4 KiB of addresses with its registers.
 #[derive(Clone, Copy, Debug)]
 pub struct Device(usize);
 
 impl Device {
-    /// The device whose registers begin at `base`.
+    /// Returns the device whose registers begin at `base`.
     ///
     /// # Safety
     ///
-    /// The 4 KiB from `base` must be a device's registers, all of 32 bits, and no value written to them may break memory
-    /// safety: no DMA addresses, no memory protection.
+    /// The 4 KiB from `base` must be the registers of a device, all of 32 bits, and no value
+    /// written to them may break memory safety: no DMA addresses, no memory protection.
     pub const unsafe fn at(base: usize) -> Self {
         Self(base)
     }
 
-    /// Its register at this offset, of which the lowest two bits and those beyond 4 KiB do not count.
+    /// Returns the register at this offset. The lowest two bits of the offset and those beyond 4
+    /// KiB are ignored.
     pub const fn register(self, offset: usize) -> Register {
         Register(self.0 + (offset & 0xffc))
     }
@@ -28,13 +29,15 @@ pub struct Register(usize);
 impl Register {
     #[inline]
     pub fn read(self) -> u32 {
-        // SAFETY: by [`Device::at`] it is one; any 32-bit pattern is a `u32`.
+        // SAFETY: by the contract of [`Device::at`] this is a register; any 32-bit pattern is a
+        // `u32`.
         unsafe { (self.0 as *const u32).read_volatile() }
     }
 
     #[inline]
     pub fn write(self, value: u32) {
-        // SAFETY: by [`Device::at`] it is one whose writes do not break memory safety.
+        // SAFETY: by the contract of [`Device::at`] this is a register whose writes do not break
+        // memory safety.
         unsafe { (self.0 as *mut u32).write_volatile(value) }
     }
 
@@ -44,7 +47,8 @@ impl Register {
         self.write((self.read() & !clear) | set);
     }
 
-    /// Reads until the bits of `mask` read `wanted`, at most `tries` times; whether they did.
+    /// Reads until the bits of `mask` are `wanted`, at most `tries` times. Returns true if they
+    /// are.
     #[inline]
     pub fn wait(self, mask: u32, wanted: u32, tries: u32) -> bool {
         (0..tries).any(|_| self.read() & mask == wanted)

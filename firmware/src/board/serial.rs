@@ -1,5 +1,7 @@
-//! Bytes over a board's serial port: an interrupt puts those received into a queue, from which the application takes them; those
-//! sent wait until the port takes them, but not without end.
+//! The bytes of a board's serial port.
+//!
+//! An interrupt puts received bytes into a queue, and the application takes them from it. Bytes to
+//! send wait until the port takes them, but not without a limit.
 
 use embedded_io::{ErrorKind, ErrorType, Write};
 use heapless::Deque;
@@ -7,7 +9,7 @@ use heapless::Deque;
 use super::cortex_m::interrupt::Shared;
 use crate::config::{BUS_TRIES, RECEIVE_QUEUE};
 
-/// What has come and is not taken yet, and how the interrupt receives.
+/// The received bytes that are not taken yet, and the function that receives.
 pub(in crate::board) struct Inbox {
     receive: Option<fn(&mut Inbox)>,
     pub received: Deque<u8, RECEIVE_QUEUE>,
@@ -26,37 +28,40 @@ impl Inbox {
         self.note_overrun(is_refused);
     }
 
-    /// Whether the port has had no room for a byte, or for several in a row.
+    /// Counts a lost byte if `overrun`: the port had no room for one byte, or for several in a row.
     pub fn note_overrun(&mut self, overrun: bool) {
         self.lost = self.lost.wrapping_add(overrun.into());
     }
 }
 
-/// How the interrupt receives. A port's interrupt is ended before its bytes are taken, so that one that comes meanwhile
-/// interrupts anew.
+/// Sets the function that receives. It must end the port's interrupt before it takes the bytes, so
+/// that a byte that comes meanwhile interrupts again.
 pub(in crate::board) fn receive_by(receive: fn(&mut Inbox)) {
     INBOX.with(|inbox| inbox.receive = Some(receive));
 }
 
-/// For the receiver's interrupt.
+/// Receives bytes; called by the receiver's interrupt.
 pub(in crate::board) fn receive() {
     INBOX.with(|inbox| inbox.receive.map(|receive| receive(inbox)));
 }
 
-/// The application's end of the queue.
+/// Returns the next received byte of the queue.
 pub fn received() -> Option<u8> {
     INBOX.with(|inbox| inbox.received.pop_front()).flatten()
 }
 
-/// A lower bound on the bytes that have overrun the port or the queue since reset: a port may report several at once. Wraps.
+/// Returns a lower bound of the number of bytes that were lost since reset because the port or the
+/// queue was full; wraps. It is a lower bound because a port may report several bytes at once.
 pub fn lost() -> u32 {
     INBOX.with(|inbox| inbox.lost).unwrap_or_default()
 }
 
-/// The outward direction of a port: sends bytes; whether it has taken them in time.
+/// The sending direction of a port. The function sends bytes, and returns true if the port has
+/// taken them in time.
 pub struct Outward(pub(in crate::board) fn(&[u8]) -> bool);
 
-/// Sends bytes one by one: each waits until the port `is_ready` for it.
+/// Sends bytes one by one. Each waits until the port `is_ready` for it. Returns true if all are
+/// sent.
 pub(in crate::board) fn send(bytes: &[u8], is_ready: impl Fn() -> bool, put: impl Fn(u8)) -> bool {
     bytes.iter().all(|&byte| {
         let is_ready = (0..BUS_TRIES).any(|_| is_ready());
@@ -80,7 +85,7 @@ impl Write for Outward {
         }
     }
 
-    /// Bytes leave by themselves; there is nothing to wait for.
+    /// Returns at once, because the port sends the bytes on its own.
     fn flush(&mut self) -> Result<(), ErrorKind> {
         Ok(())
     }

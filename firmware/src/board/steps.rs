@@ -1,18 +1,20 @@
-//! The steps of every arithmetic stand twice, in flash and in memory, so that their cycles can be measured in both. The linker
-//! keeps them together with all that they call (`steps.x`) and no branch leads out of there (test `steps`), so that they run
-//! wherever they are copied.
+//! The code of the steps, which is present twice, in flash and in RAM, so that its cycles can be
+//! measured in both.
+//!
+//! The linker keeps the steps together with all functions that they call (`steps.x`). No branch
+//! leaves this code (test `steps`), so that it can run at any address.
 
 use super::cortex_m::instruments::cycles_of;
 use crate::job::{OnBoards, Run};
 
 unsafe extern "C" {
-    /// Where the linker has taken them to stand: in one of the two places.
+    /// The address that the linker has assumed for the code: one of the two copies.
     static __steps_start: u8;
     static __steps_flash: u8;
     static __steps_ram: u8;
 }
 
-// Before anything else they are copied from flash into memory.
+// Before all other code, start-up copies the steps from flash to RAM.
 core::arch::global_asm!(
     ".section .text.__pre_init, \"ax\"",
     ".global __pre_init",
@@ -33,7 +35,7 @@ core::arch::global_asm!(
     ".pool",
 );
 
-/// As [`Instruments::timed`](crate::app::Instruments::timed).
+/// Implements [`Instruments::timed`](crate::app::Instruments::timed).
 pub fn timed(motion: &mut OnBoards, steps: u32, in_ram: bool) -> u32 {
     let advance = <OnBoards as Run>::advance as *const ();
     let place = if in_ram {
@@ -41,8 +43,10 @@ pub fn timed(motion: &mut OnBoards, steps: u32, in_ram: bool) -> u32 {
     } else {
         &raw const __steps_flash
     };
+
     let distance = (place as usize).wrapping_sub(&raw const __steps_start as usize);
-    // SAFETY: at this distance from the function stands a copy of it and of all that it calls.
+    // SAFETY: at this distance from the function is a copy of it and of all functions that it
+    // calls.
     let advance: fn(&mut OnBoards, u32) =
         unsafe { core::mem::transmute(advance.wrapping_byte_add(distance)) };
     cycles_of(|| advance(motion, steps))

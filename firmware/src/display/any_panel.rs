@@ -1,6 +1,8 @@
-//! Any panel that has a driver for [`embedded-graphics`](https://docs.rs/embedded-graphics): the whole frame, in its own colours.
+//! Any panel with a driver for [`embedded-graphics`](https://docs.rs/embedded-graphics). The whole
+//! frame is drawn in the panel's own colours.
 //!
-//! Such a driver keeps the processor busy until a frame is sent; those of this folder send what has changed.
+//! Such a driver occupies the processor until a frame is sent. The other drivers of this module
+//! send only the changes.
 
 use embedded_graphics_core::draw_target::DrawTarget;
 use embedded_graphics_core::geometry::{Point, Size};
@@ -10,7 +12,8 @@ use embedded_graphics_core::primitives::Rectangle;
 use super::Display;
 use crate::graphics::{Canvas, HEIGHT, WIDTH};
 
-/// A driver's panel, where on it the frame's upper left corner is, and the colour of each grey: its own `from`, or another.
+/// The panel of a driver, the position of the frame's upper left corner on it, and the colour of
+/// each grey. The colour can be the panel's own `from`, or any other function.
 #[derive(Clone, Copy, Debug)]
 pub struct AnyPanel<Target, Color> {
     pub target: Target,

@@ -1,18 +1,22 @@
-//! A panel's I2C bus: the messages on their way, filled in while it stands still and sent by its interrupt while the next frame is
-//! computed; and how it is freed.
+//! The I2C bus of a panel: the outbox of messages, and the recovery of a bus that hangs.
+//!
+//! The outbox is filled while the bus is idle. The bus's interrupt sends it while the next frame is
+//! computed.
 
 use embedded_hal::i2c::{ErrorKind, NoAcknowledgeSource};
 use heapless::Vec;
 
 use crate::graphics::{PAGES, WIDTH};
 
-/// A whole frame, of each page its window and its bytes, and all that wakes a panel.
+/// The capacity for a whole frame, with the window and the bytes of each page, and for all commands
+/// that set a panel up.
 const CAPACITY: usize = PAGES * (5 + 2 + WIDTH) + 48;
 
-/// Most bytes that are read from a panel at once.
+/// The largest number of bytes that are read from a panel at once.
 const ANSWER: usize = 2;
 
-/// Messages to one address, each as its length and its bytes, and the answer to them.
+/// Messages to one address, and the answer to them. Each message is stored as its length and its
+/// bytes.
 #[derive(Debug)]
 pub struct Outbox {
     /// The address of the panel, set by [`address_to`](Self::address_to).
@@ -20,11 +24,12 @@ pub struct Outbox {
     messages: Vec<u8, CAPACITY>,
     /// The index of the next byte to send.
     at: usize,
-    /// Bytes left of the message that is being sent.
+    /// The number of bytes left of the message that is being sent.
     left: u8,
-    /// Bytes to read from the panel after the messages.
+    /// The number of bytes to read from the panel after the messages.
     asked: u8,
-    /// Bytes of these that the bus has been told to read, where it is told of each.
+    /// The number of these bytes that have been requested, on a bus that needs a request for each
+    /// byte.
     pub requested: usize,
     /// The bytes read.
     answer: Vec<u8, ANSWER>,
@@ -34,11 +39,13 @@ pub struct Outbox {
     pub took: u32,
 }
 
+/// The outcome of the messages in an outbox.
 pub type Sent = Result<(), ErrorKind>;
 
-/// No panel acknowledges.
+/// The error of a panel that does not acknowledge.
 pub const SILENCE: ErrorKind = ErrorKind::NoAcknowledge(NoAcknowledgeSource::Unknown);
 
+/// A byte to send.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct OutByte {
     pub value: u8,
@@ -76,8 +83,8 @@ impl Outbox {
         self.took = 0;
     }
 
-    /// Appends a message: a byte that says what follows, and up to 254 bytes. A message that does
-    /// not fit is dropped; the longest update of a panel fits (test `oled_i2c`).
+    /// Appends a message: a control byte, and up to 254 bytes. A message that does not fit is
+    /// dropped. The longest update of a panel fits (test `oled_i2c`).
     pub fn put(&mut self, head: u8, body: &[u8]) {
         let needed = 2 + body.len();
         if let Ok(length) = u8::try_from(needed - 1)
@@ -102,17 +109,18 @@ impl Outbox {
 
     /// Takes a byte that was read.
     pub fn answer(&mut self, byte: u8) {
-        // A byte that was not asked for is dropped.
+        // A byte that was not requested is dropped.
         let _ = self.answer.push(byte);
     }
 
-    /// Returns the bytes read: as many as were asked for once the messages are sent.
+    /// Returns the bytes that were read. When the transfer is complete, they are as many as
+    /// requested.
     pub fn answered(&self) -> &[u8] {
         &self.answer
     }
 
-    /// Returns the bytes on the bus: those of the messages and of the answer, with an address for
-    /// each.
+    /// Returns the number of bytes on the bus: the bytes of the messages and of the answer, with an
+    /// address for each.
     pub fn len(&self) -> usize {
         let read = if self.asked == 0 { 0 } else { 1 + self.asked() };
         self.messages.len() + read
@@ -138,6 +146,7 @@ impl Iterator for Outbox {
             self.left = *self.messages.get(self.at)?;
             self.at += 1;
         }
+
         let value = *self.messages.get(self.at)?;
         self.at += 1;
         self.left -= 1;
@@ -148,30 +157,34 @@ impl Iterator for Outbox {
     }
 }
 
-/// A bus that empties an outbox while the processor does something else.
+/// A bus that sends an outbox while the processor does other work.
 pub trait PanelBus {
-    /// The outbox, and what has become of the messages put in last; `None` as long as they are going out.
+    /// Returns the outbox, and the outcome of its last messages; `None` while they are being sent.
     fn outbox(&mut self) -> Option<(&mut Outbox, Sent)>;
 
-    /// Sends what is in the outbox; returns at once.
+    /// Sends the messages in the outbox. Returns at once.
     fn send(&mut self);
 
-    /// Aborts the transfer, which then has failed, and frees a bus that hangs.
+    /// Aborts the transfer, whose outcome is then an error, and frees a bus that hangs.
     fn abort(&mut self);
 }
 
-/// The most clocks that a panel can be waiting for: the eight bits of a byte and its acknowledgement.
+/// The largest number of clocks that a panel can be waiting for: the eight bits of a byte and its
+/// acknowledgement.
 const MOST_CLOCKS: u32 = 9;
 
-/// Frees a bus whose data line a panel holds low: clocks it until that line is high, at most nine times, then makes a stop. A bus
-/// whose data line is high already is left alone. Whether the line is high in the end: if not, the panel is defective, or the line is
-/// short of a resistor.
+/// Frees a bus whose data line a panel holds low. Returns true if the line is high in the end. If
+/// not, the panel is defective, or the line has no pull-up resistor.
 ///
-/// A board that is reset in the middle of a byte, or a panel plugged in while the bus runs, leaves the panel in the middle of
-/// an answer: it holds the line for a bit that is never fetched, and no start can be made.
+/// The function clocks the bus until the data line is high, at most nine times, and then makes a
+/// stop. A bus whose data line is high already is left unchanged.
 ///
-/// `drive` lets the clock and the data line go (`true`) or pulls them low, in this order, lets half a clock pass, and says whether
-/// the data line is high then.
+/// A panel can be left in the middle of an answer, if the board is reset in the middle of a byte,
+/// or if the panel is plugged in while the bus is running. It holds the data line low for a bit
+/// that is never fetched, so that no start is possible.
+///
+/// `drive` releases the clock line and the data line (`true`) or pulls them low, in this order, and
+/// waits for half a clock. Then it returns true if the data line is high.
 ///
 /// Source: NXP UM10204, I2C-bus specification, 3.1.16 (bus clear).
 pub fn free_bus(mut drive: impl FnMut(bool, bool) -> bool) -> bool {
@@ -184,7 +197,8 @@ pub fn free_bus(mut drive: impl FnMut(bool, bool) -> bool) -> bool {
             break;
         }
     }
-    // A stop: the data line rises while the clock is high.
+
+    // Make a stop: the data line rises while the clock is high.
     drive(false, false);
     drive(true, false);
     drive(true, true)

@@ -1,5 +1,5 @@
-//! Panels take a finished frame, and only that can fail. Those on I2C look alike, but may have
-//! different controllers.
+//! Panel drivers. A panel takes a finished frame; only that can fail. Panels on I2C look alike, but
+//! may have different controllers.
 
 use core::convert::Infallible;
 
@@ -20,13 +20,15 @@ pub use bus::{OutByte, Outbox, PanelBus, SILENCE, Sent, free_bus};
 pub use oled_i2c::{OledError, OledI2c};
 pub use ssd0323::Ssd0323;
 
+/// A panel.
 pub trait Display {
     type Error;
 
+    /// Sends a frame to the panel, or prepares its transfer.
     fn flush(&mut self, canvas: &Canvas) -> Result<(), Self::Error>;
 
-    /// Sends the last frame if it is still waiting for the bus, in the time left until the next one.
-    /// Returns true while it waits.
+    /// Sends the last frame if it is still waiting for the bus, in the time left until the next
+    /// one. Returns true while it waits.
     fn catch_up(&mut self, _: &Canvas) -> bool {
         false
     }
@@ -48,6 +50,7 @@ pub trait Display {
     }
 }
 
+/// The panel of a board without one.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct NoDisplay;
 
@@ -72,9 +75,9 @@ choice! {
 }
 
 choice! {
-    /// The way in which a controller was identified.
+    /// The method of identifying a controller.
     By {
-        /// The panel returned what was written into its memory, or did not.
+        /// The panel returned the bytes that were written into its memory, or did not return them.
         Memory = "by reading its memory back";
         /// Reading the memory was broken off; only the status byte was left to judge by.
         Status = "by its status byte";
@@ -117,14 +120,17 @@ pub struct Found {
     pub status: Option<u8>,
 }
 
+/// The state of the search for a panel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum PanelState {
-    /// The board has no panel, or one that cannot be asked.
+    /// The board has no panel, or a panel that cannot be asked.
     #[default]
     Unknown,
     /// The board looks for a panel, identifies it or sends the first picture.
     Starting,
+    /// No panel answers.
     Absent(BusFault),
+    /// The panel shows the frames.
     Shown(Found),
 }
 
@@ -134,9 +140,9 @@ pub struct PanelReport {
     pub state: PanelState,
     /// The controller that the user chose; `None` identifies it.
     pub chosen: Option<Controller>,
-    /// Frames of the last whole second that were sent to the panel.
+    /// The number of frames of the last whole second that were sent to the panel.
     pub shown: u8,
-    /// Frames of these that were sent whole; the others left a part to the next frame.
+    /// The number of these frames that were sent whole. The others left a part to the next frame.
     pub whole: u8,
 }
 

@@ -55,11 +55,11 @@ struct Profile {
     left: u8,
     /// Commands sent once, while the display is off.
     settings: &'static [u8],
-    /// Those that may be repeated while the display is on.
+    /// The settings that may be repeated while the display is on.
     repeated: &'static [u8],
 }
 
-/// The profile of a controller.
+/// Returns the profile of a controller.
 fn profile(controller: Controller) -> &'static Profile {
     match controller {
         Controller::Ssd1306 => &SSD1306,
@@ -82,7 +82,7 @@ const SSD1306: Profile = Profile {
         0xD9, 0x21,                // precharge, 1 and 2 clocks
         0x81, 0x5F,                // contrast, of 0xFF
         0xDB, 0x40,                // voltage of rows not driven
-        0xA4,                      // show what is in memory
+        0xA4,                      // show the memory
         0xA6,                      // not inverted
         0x8D, 0x14,                // charge pump on
         0x20, 0x02,                // data stays within the page
@@ -109,14 +109,14 @@ const SH1106: Profile = Profile {
         0xD9, 0x21,                // precharge, 1 and 2 clocks
         0x81, 0x5F,                // contrast, of 0xFF
         0xDB, 0x40,                // voltage of rows not driven
-        0xA4,                      // show what is in memory
+        0xA4,                      // show the memory
         0xA6,                      // not inverted
         0xAD, 0x8B,                // converter on: only while the display is off (data sheet)
     ],
     repeated: &[],
 };
 
-/// A panel of 128 x 128, of which the upper half is used.
+/// A panel of 128 x 128. Its upper half is used.
 #[rustfmt::skip]
 const SH1107: Profile = Profile {
     left: 0,
@@ -131,7 +131,7 @@ const SH1107: Profile = Profile {
         0xD9, 0x22,                // precharge, 2 and 2 clocks
         0x81, 0x2F,                // contrast, of 0xFF
         0xDB, 0x35,                // voltage of rows not driven
-        0xA4,                      // show what is in memory
+        0xA4,                      // show the memory
         0xA6,                      // not inverted
     ],
     repeated: &[],
@@ -140,8 +140,8 @@ const SH1107: Profile = Profile {
 /// Frames between two tries of a panel that does not answer, and between two reads of the status
 /// byte: 1 s.
 const SECOND: u8 = TICK_RATE as u8;
-/// Frames after which a bus that is still busy hangs: 0.1 s, nearly three times what a whole picture
-/// takes on a slow bus.
+/// The number of frames after which a busy bus is considered to hang: 0.1 s, nearly three times the
+/// time of a whole picture on a slow bus.
 const PATIENCE: u32 = 6;
 /// Values that turn a byte read from memory into the next byte to write: one for each round.
 const PATTERN: [u8; 2] = [0x5A, 0xC6];
@@ -182,13 +182,13 @@ pub enum OledError {
 pub struct OledI2c<'a, Bus> {
     pub bus: Bus,
     state: State,
-    /// The address of the panel, or the one that is being tried.
+    /// The address of the panel, or the address that is being tried.
     address: u8,
     chosen: Option<Controller>,
     found: Option<Found>,
     /// The picture in the panel's memory once all that was sent has arrived.
     memory: &'a mut Bitmap,
-    /// The page with which the next frame begins: the first that was left over.
+    /// The first page of the next frame: the first one that was left over.
     page: usize,
     /// Bytes that the bus carries in a tick.
     room: Room,
@@ -233,7 +233,7 @@ enum State {
     Awake(Found, Watch),
 }
 
-/// How the driver notices that the panel has lost its power.
+/// The detection of a loss of power of the panel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Watch {
     /// The status byte reported the display off before it was switched on.
@@ -264,7 +264,7 @@ struct Room(usize);
 impl Room {
     /// The time for a frame, us.
     const TIME: u32 = 1_000_000 / TICK_RATE * 31 / 32;
-    /// Until the bus is measured: what it carries at 34 us a byte, with 10 kOhm pull-ups.
+    /// The room of a bus that is not measured yet: 34 us a byte, with 10 kOhm pull-ups.
     const FIRST: Self = Self((Self::TIME / 34) as usize);
     const LEAST: usize = 128;
     const MOST: usize = PAGES * (HEAD + WIDTH);
@@ -529,7 +529,7 @@ fn with_memory(status: u8) -> Controller {
     }
 }
 
-/// The likeliest controller of a panel of which nothing but the status is known.
+/// Returns the most likely controller of a panel, judged by its status byte alone.
 fn by_status(status: u8) -> Controller {
     if status & 0x0F == 0x08 {
         Controller::Sh1106
@@ -622,7 +622,8 @@ fn checks(watch: Watch, check_in: &mut u8) -> bool {
 }
 
 /// Appends the columns that differ between the panel's memory and the frame, page by page from
-/// `first` on, while there is room, and notes them in the memory. Returns the page that did not fit.
+/// `first` on, while there is room, and notes them in the memory. Returns the page that did not
+/// fit.
 fn draw(
     outbox: &mut Outbox,
     left: u8,

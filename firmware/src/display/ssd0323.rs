@@ -1,9 +1,10 @@
-//! The SSD0323 controller of a 128 x 64 OLED panel with 16 greys, over four-wire SPI.
+//! The SSD0323 controller of a 128 x 64 OLED panel with 16 greys, on four-wire SPI.
 //!
-//! A whole frame takes 4,096 bytes, 9 ms at 3.6 MHz. So only what has changed is sent: of each row the bytes from the first
-//! word that did to the last.
+//! A whole frame takes 4,096 bytes, 9 ms at 3.6 MHz. So only the changes are sent: the bytes of
+//! each row from the first changed word to the last.
 //!
-//! Source: Solomon Systech, SSD0323 data sheet; register values from the panel's application note (OSRAM AN018).
+//! Source: Solomon Systech, SSD0323 data sheet; register values from the panel's application note
+//! (OSRAM AN018).
 
 use core::convert::Infallible;
 
@@ -16,8 +17,9 @@ use crate::graphics::{Canvas, HEIGHT, Row, WIDTH};
 const LAST_COLUMN: u8 = (WIDTH / 2 - 1) as u8;
 const LAST_ROW: u8 = (HEIGHT - 1) as u8;
 
-/// The columns (of two pixels each) that data goes to, and the rows: each command also sets its half of the address to the
-/// first, and after the last column of a row comes the first of the next.
+/// The commands for the columns, of two pixels each, and for the rows that data is written to. Each
+/// command also sets its part of the address to the first column or row. After the last column of a
+/// row, the address continues with the first column of the next row.
 const fn columns(first: u8, last: u8) -> [u8; 3] {
     [0x15, first, last]
 }
@@ -27,16 +29,17 @@ const fn rows(first: u8) -> [u8; 3] {
 const ALL_COLUMNS: [u8; 3] = columns(0, LAST_COLUMN);
 const ALL_ROWS: [u8; 3] = rows(0);
 
-/// What wakes the panel, one command a row.
+/// The commands that set the panel up, one in each line.
 #[rustfmt::skip]
 const WAKE: [&[u8]; 19] = [
     &[0xAE],                    // display off
     &[0x81, 50],                // contrast, of 127
     &[0x85],                    // half current range
-    &[0xA0, 0x52],              // wiring of this panel: nibbles swapped, rows from the bottom and split odd/even
+    // Wiring of this panel: nibbles swapped, rows from the bottom and split odd/even.
+    &[0xA0, 0x52],
     &[0xA1, 0],                 // first row shown
     &[0xA2, 0x4C],              // shift of the rows by the wiring
-    &[0xA4],                    // show what is in memory
+    &[0xA4],                    // show the memory
     &[0xA8, LAST_ROW],          // rows driven, less one
     &[0xB1, 0x22],              // phase lengths, 2 and 2 clocks
     &[0xB2, 70],                // row period, clocks
@@ -51,18 +54,19 @@ const WAKE: [&[u8]; 19] = [
     &[0xAF],                    // display on
 ];
 
-/// The panel: an SPI device and the pin that tells data (high) from commands (low).
+/// The panel: an SPI device, and the pin that is high for data and low for commands.
 #[derive(Debug)]
 pub struct Ssd0323<'a, Spi, Pin> {
     spi: Spi,
     data_not_command: Pin,
-    /// What the panel's memory holds, if that is known.
+    /// The contents of the panel's memory. They are valid if `is_known`.
     memory: &'a mut Canvas,
     is_known: bool,
 }
 
 impl<'a, Spi: SpiDevice, Pin: OutputPin<Error = Infallible>> Ssd0323<'a, Spi, Pin> {
-    /// Takes the panel's wires, and a canvas to remember what it shows; nothing is sent yet.
+    /// Creates the driver of a panel with these lines, and a canvas for the copy of its memory.
+    /// Nothing is sent yet.
     pub fn new(spi: Spi, data_not_command: Pin, memory: &'a mut Canvas) -> Self {
         Self {
             spi,
@@ -82,13 +86,15 @@ impl<'a, Spi: SpiDevice, Pin: OutputPin<Error = Infallible>> Ssd0323<'a, Spi, Pi
         WAKE.iter().try_for_each(|command| self.command(command))
     }
 
-    /// Sends what differs between the panel's memory and the frame; all of it if the memory is not known.
+    /// Sends the differences between the panel's memory and the frame; the whole frame if the
+    /// memory is not known.
     fn update(&mut self, canvas: &Canvas) -> Result<(), Spi::Error> {
         let mut next = None;
         for (y, new) in (0..).zip(&canvas.rows) {
             let Some(old) = self.memory.row_mut(y.into()) else {
                 break;
             };
+
             let all = (0, WIDTH / 2 - 1);
             if let Some((first, last)) = if self.is_known {
                 differing(old, new)
@@ -107,19 +113,21 @@ impl<'a, Spi: SpiDevice, Pin: OutputPin<Error = Infallible>> Ssd0323<'a, Spi, Pi
         Ok(())
     }
 
+    /// Sends data for the memory.
     fn data(&mut self, bytes: &[u8]) -> Result<(), Spi::Error> {
         let Ok(()) = self.data_not_command.set_high();
         self.spi.write(bytes)
     }
 
-    /// Sends a command; this controller takes the arguments as commands, too.
+    /// Sends a command. This controller takes the arguments as commands, too.
     fn command(&mut self, bytes: &[u8]) -> Result<(), Spi::Error> {
         let Ok(()) = self.data_not_command.set_low();
         self.spi.write(bytes)
     }
 }
 
-/// The first and the last byte of the words in which two rows differ; `None` if they are alike.
+/// Returns the first and the last byte of the words that differ between two rows; `None` if the
+/// rows are equal.
 fn differing(Row(old): &Row, Row(new): &Row) -> Option<(usize, usize)> {
     const WORD: usize = size_of::<u32>();
     let words = || {

@@ -1,41 +1,50 @@
-//! The frame in one colour: for panels whose pixels are on or off.
+//! The frame in one colour, for panels whose pixels are on or off.
 
 use crate::graphics::canvas::{Canvas, HEIGHT, Row, WIDTH, carried};
 
 const ROWS: usize = 8;
 pub const PAGES: usize = HEIGHT / ROWS;
 
-/// Bayer's matrix: the order in which the pixels of a square of 4 x 4 are lit as it becomes brighter.
+/// The Bayer matrix: the lighting order of the pixels of a square of 4 x 4 as it becomes brighter.
 const ORDER: [[u32; 4]; 4] = [[0, 8, 2, 10], [12, 4, 14, 6], [3, 11, 1, 9], [15, 7, 13, 5]];
 
-/// For every fourth row what [carries](carried) out of the nibble of a lit pixel: of those with even numbers, and of those with odd
-/// ones, which are the high and the low nibbles.
+/// Returns the summands that [carry](carried) out of the nibble of a pixel that is to be lit, for
+/// each of four rows: first for the pixels with even numbers, which are the high nibbles, then for
+/// the pixels with odd numbers, which are the low nibbles.
 ///
-/// The grey, of 15, that a pixel must exceed to be lit is 2 to 7 by its place in the order. Soft edges want one threshold, for of many
-/// they turn ragged; a fading trail wants many, to fade. Both are had with all thresholds in the lower half: what is brighter is
-/// solid, and what is fainter thins out to single pixels. In a picture all greys matter: there it is 0 to 14, which is Bayer's.
+/// A pixel is lit if its grey, of 15, exceeds a threshold of 2 to 7 that depends on its place in
+/// the order. Soft edges need one threshold, because many make them ragged. A fading trail needs
+/// many, in order to fade. Thresholds in the lower half satisfy both: brighter greys are solid, and
+/// fainter ones thin out to single pixels.
+///
+/// In a picture all greys matter. There the thresholds are 0 to 14, as Bayer's.
 const fn room(all_greys: bool) -> [[u32; 2]; 4] {
     let mut room = [[0; 2]; 4];
     let mut place = 0;
     while place < 16 {
-        let (y, x) = (place / 4, place % 4);
+        let y = place / 4;
+        let x = place % 4;
         let order = ORDER[y][x];
+
         let threshold = if all_greys {
             order * 15 / 16
         } else {
             2 + order * 6 / 16
         };
+
         room[y][x % 2] |= (15 - threshold) * (0x0001_0001 << (8 * (x / 2)));
         place += 1;
     }
     room
 }
 
-/// Of a drawing, and of a picture.
+/// The summands for a drawing, and those for a picture.
 const ROOM: [[[u32; 2]; 4]; 2] = [room(false), room(true)];
 
-/// 128 x 64 pixels, each on or off, in the layout of the panel: pages of eight rows from the top, in each a byte for
-/// every column from the left, in that the lowest bit on top.
+/// 128 x 64 pixels, each on or off, in the memory layout of the panel.
+///
+/// A page is eight rows; the first page is at the top. A page has a byte for each column from the
+/// left. The lowest bit of a byte is the top row.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Bitmap {
     pub pages: [[u8; WIDTH]; PAGES],
@@ -52,6 +61,8 @@ impl From<&Canvas> for Bitmap {
         let mut bitmap = Self::BLACK;
         let [drawing, picture] = &ROOM;
         let room = if canvas.all_greys { picture } else { drawing };
+
+        // Eight pixels are one word of a row, and eight bytes of a page.
         for (page, rows) in bitmap
             .pages
             .iter_mut()
@@ -69,12 +80,14 @@ impl From<&Canvas> for Bitmap {
                         *lit |= carried(greys, *room) << y;
                     }
                 }
+
                 let [even, odd] = lit.map(u32::to_le_bytes);
                 *columns = [
                     even[0], odd[0], even[1], odd[1], even[2], odd[2], even[3], odd[3],
                 ];
             }
         }
+
         bitmap
     }
 }

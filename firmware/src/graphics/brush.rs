@@ -1,14 +1,16 @@
-//! Soft-edged strokes and discs in integer arithmetic: what rods, bobs and traces are made of.
+//! Strokes and discs with soft edges, in integer arithmetic. Rods, bobs and traces are made of
+//! them.
 
 use core::ops::Range;
 
 use crate::graphics::{Canvas, HEIGHT, WIDTH};
 
+/// The number of subpixels in a pixel, in each direction.
 pub const SUBPIXELS: i32 = 1 << SHIFT;
 const SHIFT: u32 = 6;
 const HALF: i32 = SUBPIXELS / 2;
 
-/// A place on the canvas in subpixels from its top left corner; pixel i covers 64 i to 64 i + 63.
+/// A point on the canvas, in subpixels from its top left corner. Pixel i covers 64 i to 64 i + 63.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Spot {
     pub x: i16,
@@ -16,7 +18,8 @@ pub struct Spot {
 }
 
 impl Spot {
-    /// The spot at (x, y) pixels, kept within one canvas size of the canvas, so that no sum below can overflow.
+    /// Returns the spot at (x, y) pixels. It is limited to one canvas size around the canvas, so
+    /// that no sum in this module can overflow.
     pub fn at(x: f32, y: f32) -> Self {
         let subpixels = |pixels: f32, size: usize| {
             let size = size as i32 * SUBPIXELS;
@@ -29,7 +32,8 @@ impl Spot {
     }
 }
 
-/// All points within `radius` subpixels of the line from `from` to `to`: a disc if both are one spot.
+/// The points within `radius` subpixels of the line from `from` to `to`. If both ends are the same,
+/// it is a disc.
 #[derive(Clone, Copy, Debug)]
 pub struct Stroke {
     pub from: Spot,
@@ -38,19 +42,25 @@ pub struct Stroke {
 }
 
 impl Stroke {
-    /// Draws it with a brightness of 0 to 255; where the canvas is brighter already, it stays.
-    #[inline(never)] // once in a program
+    /// Draws the stroke with a brightness of 0 to 255. Pixels that are brighter already keep their
+    /// grey.
+    #[inline(never)] // Not inlined, to save flash.
     pub fn lighten(&self, canvas: &mut Canvas, brightness: u8) {
         let limit = i32::from(self.radius) + HALF;
         let line = Line::new(self.from, self.to, limit);
         let grey = shade(brightness);
+
         let columns = pixels([self.from.x, self.to.x], limit, WIDTH);
         let rows = pixels([self.from.y, self.to.y], limit, HEIGHT);
+
         let mut band = line.band(rows.start);
         for y in rows {
             let near = band.next();
             let columns = columns.start.max(near.start)..columns.end.min(near.end);
             let Some(row) = canvas.row_mut(y) else { return };
+
+            // Both products are updated from pixel to pixel, because a sum costs less than a
+            // product.
             let to = line.to(columns.start, y);
             let mut progress = dot(line.along, to);
             let mut across = line.along.0 * to.1 - line.along.1 * to.0;
@@ -66,7 +76,8 @@ impl Stroke {
     }
 }
 
-/// A disc of `radius` subpixels that a dark gap, as wide as `gap` says, sets off from what lies behind it.
+/// A disc of `radius` subpixels, surrounded by a dark gap of `gap` subpixels that separates it from
+/// the background.
 #[derive(Clone, Copy, Debug)]
 pub struct Disc {
     pub centre: Spot,
@@ -75,19 +86,24 @@ pub struct Disc {
 }
 
 impl Disc {
-    /// Draws it with a brightness of 0 to 255.
+    /// Draws the disc and its gap. The brightness is 0 to 255.
     pub fn draw(&self, canvas: &mut Canvas, brightness: u8) {
         let Spot {
             x: centre_x,
             y: centre_y,
         } = self.centre;
         let edge = i32::from(self.radius) + HALF;
-        let (inner, outer) = ((edge - SUBPIXELS).max(0), edge + i32::from(self.gap));
+
+        // Within `inner` a pixel is covered, up to `edge` in part. Up to `outer` it is darkened.
+        let inner = (edge - SUBPIXELS).max(0);
+        let outer = edge + i32::from(self.gap);
         let wiped = (outer - SUBPIXELS).max(0);
         let wipe = |old: u8, distance: i32| {
             (((distance - wiped).max(0) as u32 * u32::from(old)) >> SHIFT) as u8
         };
+
         let grey = shade(brightness);
+
         let columns = pixels([centre_x; 2], outer, WIDTH);
         for y in pixels([centre_y; 2], outer, HEIGHT) {
             let Some(row) = canvas.row_mut(y) else { return };
@@ -116,52 +132,61 @@ impl Disc {
     }
 }
 
-/// The pixels of `size` that anything within `limit` of the places between two can touch.
+/// Returns the range of pixels, out of `size`, that can be touched by points within `limit` of the
+/// range between two coordinates.
 fn pixels([a, b]: [i16; 2], limit: i32, size: usize) -> Range<i32> {
     let first = (i32::from(a.min(b)) - limit) >> SHIFT;
     let last = (i32::from(a.max(b)) + limit) >> SHIFT;
     first.max(0)..(last + 1).min(size as i32)
 }
 
+/// Returns the middle of a pixel, subpixels.
 fn middle(pixel: i32) -> i32 {
     pixel * SUBPIXELS + HALF
 }
 
-/// For a brightness of 0 to 255, the function from a pixel's coverage, of [`SUBPIXELS`], to its grey: the edge is a ramp one
-/// pixel wide, which is what a straight edge of any direction covers to within a few percent.
+/// Returns the function from the coverage of a pixel, 0 to [`SUBPIXELS`], to its grey, for a
+/// brightness of 0 to 255.
+///
+/// The edge is a ramp one pixel wide. For a straight edge of any direction this agrees with the
+/// covered area to a few percent.
 #[inline(always)]
 fn shade(brightness: u8) -> impl Fn(i32) -> u8 {
-    /// The product that makes one grey: full brightness, 255 = 17 x 15, times full coverage is 15 of them.
+    /// The product of brightness and coverage that is one grey. Full brightness, 255 = 17 x 15,
+    /// times full coverage is 15 of them.
     const GREY: u32 = 17 * SUBPIXELS as u32;
     let greys = (u32::from(brightness) << 16).div_ceil(GREY);
     move |covered| ((covered.clamp(0, SUBPIXELS) as u32 * greys + (1 << 15)) >> 16) as u8
 }
 
-/// A straight line between two spots, and what is within `limit` of it.
+/// A straight line between two spots, and the two distances that limit its soft edge.
 struct Line {
     from: Spot,
     along: (i32, i32),
     length_squared: i32,
     length: i32,
-    /// Beyond it nothing is covered, within `whole` all of a pixel.
+    /// The distance from the line beyond which nothing is covered, and the one within which a pixel
+    /// is covered whole, subpixels.
     limit: i32,
     whole: i32,
 }
 
-/// The pixels of each row, from one row down to the next, that can be near the line made infinitely long: on a slope they are
-/// few.
+/// The range of pixels of each row that can be near the line, if the line is extended without end.
+/// Rows are visited downwards. On a steep line the ranges are short.
 struct Band {
-    /// Where the line crosses the middle of the row, and how far it moves from row to row; parts of a subpixel.
+    /// The x coordinate of the line in the middle of the row, and its change from row to row, in
+    /// 1/1024 subpixels.
     middle: i32,
     slope: i32,
-    /// Half of the band's width along a row, subpixels.
+    /// Half of the width of the band along a row, subpixels.
     half: i32,
 }
 
 impl Band {
-    /// Parts of a subpixel, as a shift.
+    /// The fraction bits of `middle` and `slope`.
     const PARTS: u32 = 10;
 
+    /// Returns the range of the current row, and moves on to the next row.
     fn next(&mut self) -> Range<i32> {
         let middle = (self.middle >> Self::PARTS) + HALF;
         self.middle = self.middle.wrapping_add(self.slope);
@@ -187,12 +212,16 @@ impl Line {
         }
     }
 
-    /// From the row `y` on. A line that is nearly level, or is but a spot, is near all pixels of its rows.
+    /// Returns the band from the row `y` on.
+    ///
+    /// A line that is nearly level, or only a spot, is near all pixels of its rows.
     fn band(&self, y: i32) -> Band {
-        /// Subpixels that a band is wider than the line: of the divisions and the slope each is off by less than one.
+        /// The excess width of a band, subpixels. The two divisions and the slope are each off by
+        /// less than one subpixel.
         const ROUNDED: i32 = 4;
         let (dx, dy) = self.along;
         let over = |product: i32| product.checked_div(dy).unwrap_or_default();
+
         if dx.abs() >= 8 * dy.abs() {
             return Band {
                 middle: 0,
@@ -200,6 +229,7 @@ impl Line {
                 half: 2 * WIDTH as i32 * SUBPIXELS,
             };
         }
+
         Band {
             middle: (i32::from(self.from.x) + over(dx * (middle(y) - i32::from(self.from.y))))
                 << Band::PARTS,
@@ -208,6 +238,8 @@ impl Line {
         }
     }
 
+    /// Returns the vector from the start of the line to the middle of the pixel at (x, y),
+    /// subpixels.
     fn to(&self, x: i32, y: i32) -> (i32, i32) {
         (
             middle(x) - i32::from(self.from.x),
@@ -215,12 +247,16 @@ impl Line {
         )
     }
 
-    /// How many subpixels of the pixel at (x, y) are covered, whose middle is `progress` along the line from its start and `across`
-    /// from it, each times the line's length: `limit`, which is more than all, where that is within `whole` of the line; none
-    /// beyond `limit`. Only between the two it takes a division.
+    /// Returns the coverage of the pixel at (x, y), subpixels: `limit`, which is more than a whole
+    /// pixel, within `whole` of the line, and 0 beyond `limit`. Only the values between need a
+    /// division.
     ///
-    /// Spots lie no farther from the canvas than its size, so differences are below 3 x 128 x 64 = 24,576 across and half that
-    /// down, and sums of two products below 24,576^2 x 1.25 = 7.6e8: 31 bits hold them.
+    /// `progress` and `across` are the distances of the middle of the pixel along the line from its
+    /// start and across it, each times the length of the line.
+    ///
+    /// Spots are no farther from the canvas than its size. So differences are below 3 x 128 x 64 =
+    /// 24,576 across and half that down, and sums of two products are below 24,576^2 x 1.25 =
+    /// 7.6e8. They fit into 31 bits.
     #[inline(always)]
     fn covered(&self, (x, y): (i32, i32), progress: i32, across: i32) -> i32 {
         let &Self {
@@ -230,6 +266,8 @@ impl Line {
             whole,
             ..
         } = self;
+
+        // The pixel is next to the line: the distance across counts.
         if progress > 0 && progress < self.length_squared {
             return match across.abs() {
                 across if across >= limit * length => 0,
@@ -237,6 +275,8 @@ impl Line {
                 across => limit - across.checked_div(length).unwrap_or_default(),
             };
         }
+
+        // The pixel is beyond an end: the distance from that end counts.
         let (dx, dy) = self.to(x, y);
         let end = if progress <= 0 {
             (dx, dy)
@@ -251,8 +291,11 @@ impl Line {
     }
 }
 
-/// The square root, rounded down, of what is no less than the square of `low` and less than that of `high`: what the chord
-/// between them says is never more, and less by a few.
+/// Returns the square root, rounded down. `square` is at least the square of `low` and less than
+/// the square of `high`.
+///
+/// The chord between `low` and `high` gives a first value that is never too large, and too small by
+/// a few at most.
 #[inline(always)]
 fn root(square: i32, low: i32, high: i32) -> i32 {
     let mut root = low
@@ -265,6 +308,7 @@ fn root(square: i32, low: i32, high: i32) -> i32 {
     root
 }
 
+/// Returns the scalar product.
 fn dot(a: (i32, i32), b: (i32, i32)) -> i32 {
     a.0 * b.0 + a.1 * b.1
 }

@@ -1,20 +1,22 @@
-//! The frame: 128 x 64 pixels of 16 greys, in the layout the panel itself uses; and the layer of what stays and fades.
+//! The canvas, 128 x 64 pixels of 16 greys in the memory layout of the panel, and the fade layer,
+//! which holds the traces of earlier frames.
 
 pub const WIDTH: usize = 128;
 pub const HEIGHT: usize = 64;
 const ROW: usize = WIDTH / 2;
 
-/// A row of pixels from the left, two in a byte: the high nibble is the left one. It stands at a word's boundary, so that it is
-/// copied and compared by words.
+/// A row of pixels from the left, two in a byte. The high nibble is the left pixel.
+///
+/// The row is aligned to a word, so that it can be copied and compared by words.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(align(4))]
 pub struct Row(pub [u8; ROW]);
 
-/// Rows from the top. Drawing cannot fail: what lies outside is not drawn.
+/// The rows of pixels from the top. Drawing cannot fail: pixels outside the canvas are ignored.
 #[derive(Debug, PartialEq, Eq)]
 pub struct Canvas {
     pub rows: [Row; HEIGHT],
-    /// Whether every grey matters, as in a picture; a drawing is bright on dark.
+    /// True if every grey matters, as in a picture. False for a drawing, which is bright on dark.
     pub all_greys: bool,
 }
 
@@ -32,7 +34,7 @@ impl Clone for Canvas {
         }
     }
 
-    /// Row by row, in half the time of the library's `memcpy`.
+    /// Copies row by row, in half the time of the library's `memcpy`.
     fn clone_from(&mut self, source: &Self) {
         self.all_greys = source.all_greys;
         for (Row(row), Row(from)) in self.rows.iter_mut().zip(&source.rows) {
@@ -50,20 +52,20 @@ impl Canvas {
         all_greys: false,
     };
 
-    /// The bytes as the panel takes them.
+    /// Returns the bytes in the order of the panel's memory.
     pub fn bytes(&self) -> impl Iterator<Item = u8> + Clone {
         self.rows.iter().flat_map(|Row(row)| *row)
     }
 
-    /// A row from the top; none outside.
+    /// Returns row `y`, counted from the top; `None` outside the canvas.
     #[inline]
     pub fn row_mut(&mut self, y: i32) -> Option<&mut Row> {
-        // What is negative is far beyond the end.
+        // A negative number becomes an index far beyond the end.
         self.rows.get_mut(y as usize)
     }
 
-    /// Moves every pixel from column `left` on to the left by one; what is left of them stays black, and the last column is
-    /// black.
+    /// Moves all pixels from column `left` on to the left by one. The columns left of `left` stay
+    /// black, and the last column becomes black.
     #[inline(never)]
     pub fn scroll(&mut self, left: i32) {
         for row in &mut self.rows {
@@ -77,13 +79,14 @@ impl Canvas {
         }
     }
 
-    /// The grey of a pixel, 0 to 15; `None` outside.
+    /// Returns the grey of a pixel, 0 to 15; `None` outside the canvas.
     pub fn get(&self, x: i32, y: i32) -> Option<u8> {
         let Row(row) = self.rows.get(y as usize)?;
         Some((row.get((x >> 1) as usize)? >> shift(x)) & 0x0F)
     }
 
-    /// Replaces the grey of a pixel by a function of it; of the result only the low four bits count.
+    /// Replaces the grey of a pixel by a function of it. Only the low four bits of the result
+    /// count.
     #[inline]
     pub fn update(&mut self, x: i32, y: i32, new: impl FnOnce(u8) -> u8) {
         if let Some(row) = self.row_mut(y) {
@@ -98,14 +101,18 @@ impl Canvas {
         }
     }
 
-    /// Gives pixels one grey: of 8 x 8 from (x, y) on those whose bits are set, the first row in the highest byte, in each the
-    /// leftmost pixel in the highest bit.
+    /// Sets pixels to one grey: the pixels of the 8 x 8 from (x, y) whose bits are set. The first
+    /// row is in the highest byte, and the leftmost pixel of a row is in its highest bit.
     #[inline(never)]
     pub fn stamp(&mut self, x: i32, mut y: i32, mut bits: u64, grey: u8) {
-        let (word, shift) = ((x >> 3) as usize, 4 * (x & 7));
+        let word = (x >> 3) as usize;
+        let shift = 4 * (x & 7);
         let greys = u32::from(grey) * 0x1111_1111;
+
         while bits != 0 {
             if let Some(Row(row)) = self.row_mut(y) {
+                // The eight pixels of a row are in one word of the canvas, or in two neighbouring
+                // ones.
                 let pixels = nibbles((bits >> 56) as u32);
                 for (word, part) in [
                     (word, pixels >> shift),
@@ -120,7 +127,8 @@ impl Canvas {
                     }
                 }
             }
-            (bits, y) = (bits << 8, y.wrapping_add(1));
+            bits <<= 8;
+            y = y.wrapping_add(1);
         }
     }
 }
@@ -134,32 +142,33 @@ impl Row {
         }
     }
 
-    /// Gives a pixel a grey of 0 to 15; if it is brighter already, it stays.
+    /// Sets a pixel to a grey of 0 to 15. A pixel that is brighter already keeps its grey.
     #[inline]
     pub fn lighten(&mut self, x: i32, grey: u8) {
         self.update(x, |old| old.max(grey));
     }
 }
 
-/// How ink fades: every row loses one grey in [`HEIGHT`]/`rows` ticks.
+/// The speed of fading: every row loses one grey in [`HEIGHT`]/`rows` ticks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Fading {
-    /// Rows that lose a grey in a tick.
+    /// The number of rows that lose a grey in a tick.
     pub rows: u8,
-    /// Grey that ink fades to and keeps.
+    /// The final grey of the fading.
     pub last: u8,
 }
 
 impl Fading {
     pub const NEVER: Self = Self { rows: 0, last: 15 };
-    /// A trace that stays: it loses a grey in about a second.
+    /// The fading of a trace that remains visible. It loses a grey in about a second.
     pub const TRACE: Self = Self { rows: 1, last: 4 };
 }
 
-/// What stays of the frames before.
+/// The traces of earlier frames. Each frame is drawn over them.
 #[derive(Clone, Debug)]
 pub struct FadeLayer {
     pub frame: Canvas,
+    /// The next row to fade.
     row: i32,
 }
 
@@ -169,9 +178,12 @@ impl FadeLayer {
         row: 0,
     };
 
+    /// Fades the next rows by one grey each. Pixels at or below the last grey are unchanged.
     #[inline(never)]
     pub fn fade(&mut self, Fading { rows, last }: Fading) {
         let room = u32::from(15_u8.saturating_sub(last)) * ONES;
+
+        // A grey above `last` carries out of its nibble, and then loses 1.
         for _ in 0..rows {
             if let Some(Row(row)) = self.frame.row_mut(self.row) {
                 for word in row.as_chunks_mut().0 {
@@ -185,22 +197,23 @@ impl FadeLayer {
     }
 }
 
-/// One in every other nibble.
+/// The number 1 in every other nibble.
 const ONES: u32 = 0x0101_0101;
 
-/// Every other one of eight greys, from the lowest: 1 where adding `room` to it carries out of its nibble.
+/// Returns a 1 for every other grey of eight, from the lowest, if adding `room` to it carries out
+/// of its nibble; otherwise 0.
 #[inline(always)]
 pub(super) fn carried(greys: u32, room: u32) -> u32 {
     (((greys & (15 * ONES)) + room) >> 4) & ONES
 }
 
-/// How far left in its byte a pixel's nibble lies.
+/// Returns the position of a pixel's nibble in its byte, as a shift.
 #[inline]
 fn shift(x: i32) -> u32 {
     4 * (!x as u32 & 1)
 }
 
-/// Of eight bits each as a nibble.
+/// Returns each of eight bits as a nibble of 0 or 15.
 #[inline]
 fn nibbles(bits: u32) -> u32 {
     let fours = (bits | bits << 12) & 0x000F_000F;

@@ -2,10 +2,11 @@
 
 use heapless::String;
 
-/// A label: at most the bytes of what fits beside the motion.
+/// A label. Its capacity is the number of bytes that fit next to the motion.
 pub type Label = String<16>;
 
-/// The mass ratio to three significant digits: `μ 100`, `μ 31.5`, `μ 2.75`, `μ 0.315`, `μ 0.0125`.
+/// Returns the mass ratio to three significant digits: `μ 100`, `μ 31.5`, `μ 2.75`, `μ 0.315`, `μ
+/// 0.0125`.
 pub fn mass_ratio(ratio: f32) -> Label {
     let decimals = [100.0, 10.0, 1.0, 0.1]
         .into_iter()
@@ -14,7 +15,8 @@ pub fn mass_ratio(ratio: f32) -> Label {
     label("μ ", ratio, decimals as u32, "")
 }
 
-/// A start angle after its name: `α 120°`, with one decimal if it is no whole number of degrees.
+/// Returns a start angle after its name: `α 120°`. It has one decimal if it is not a whole number
+/// of degrees.
 pub fn degrees(name: &str, degrees: f32) -> Label {
     let decimals = if degrees == (degrees as i32) as f32 {
         0
@@ -24,7 +26,7 @@ pub fn degrees(name: &str, degrees: f32) -> Label {
     label(name, degrees, decimals, "°")
 }
 
-/// A number of an axis: `10`, `0.2 s`.
+/// Returns a number of an axis: `10`, `0.2 s`.
 pub fn tick(value: f32, unit: &str) -> Label {
     let decimals = match value {
         0.1..1.0 => 1,
@@ -40,12 +42,13 @@ pub fn rounded_down(name: &str, seconds: f32) -> Label {
     written([name, ""], (seconds * parts as f32) as u32, parts, " s")
 }
 
-/// The time since the start to a tenth of a second: `12.3 s`.
+/// Returns the time since the start in tenths of a second, rounded down: `12.3 s`.
 pub fn time(seconds: f64) -> Label {
     written([""; 2], (seconds * 10.0) as u32, 10, " s")
 }
 
-/// `value` rounded to `decimals` places after a name and before a unit: `±12°`, `ω₁ 1.848`, `true -18.7 J`.
+/// Returns `value`, rounded to `decimals` places, after a name and before a unit: `±12°`, `ω₁
+/// 1.848`, `true -18.7 J`.
 #[inline(never)]
 pub fn label(name: &str, value: f32, decimals: u32, unit: &str) -> Label {
     let one = 10_u32.saturating_pow(decimals);
@@ -58,13 +61,16 @@ pub fn label(name: &str, value: f32, decimals: u32, unit: &str) -> Label {
     )
 }
 
-/// A number of which `one`, a power of ten, is 1.
+/// Returns a number in units of 1/`one`, where `one` is a power of ten, between `head` and `unit`.
 #[inline(never)]
 fn written(head: [&str; 2], number: u32, one: u32, unit: &str) -> Label {
     let mut label = Label::new();
     let mut write = || {
         head.iter().try_for_each(|part| label.push_str(part))?;
-        let (mut power, mut rest) = (one, number);
+
+        // The digits, from the highest power of ten down.
+        let mut power = one;
+        let mut rest = number;
         while power <= number / 10 {
             power *= 10;
         }
@@ -73,11 +79,13 @@ fn written(head: [&str; 2], number: u32, one: u32, unit: &str) -> Label {
             if power == one && one > 1 {
                 label.push('.')?;
             }
-            (rest, power) = (rest - digit * power, power / 10);
+            rest -= digit * power;
+            power /= 10;
         }
         label.push_str(unit)
     };
-    // A label too long for its place ends early; there is nothing else to do about it on a panel.
+
+    // A label that is too long is cut off. A panel offers no better way.
     let _ = write();
     label
 }

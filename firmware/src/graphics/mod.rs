@@ -1,4 +1,4 @@
-//! Drawing: a canvas of grey pixels, and all that draws on it.
+//! Drawing: a canvas of grey pixels, and the tools that draw on it.
 
 mod bitmap;
 mod brush;
@@ -15,8 +15,10 @@ pub use plot::Height;
 pub use text::{Anchor, Glyph, LINE, LOWEST, glyph};
 pub use view::{Place, RodDirections, TRACE_HALF_WIDTH, View};
 
-/// The frames that an application draws on. It borrows them: they are made where they stay, on a board in a static, so that their
-/// 8 KiB are neither on the stack nor copied when a scene is made.
+/// The frame buffers of an application, which borrows them.
+///
+/// They are created at their final place, on a board in a static, so that their 8 KiB are neither
+/// on the stack nor copied when a scene is created.
 #[derive(Clone, Debug)]
 pub struct FrameBuffers {
     pub canvas: Canvas,

@@ -1,29 +1,32 @@
-//! Curves over time or any other quantity: one value per column, drawn with soft edges in integer arithmetic.
+//! Curves over time or another quantity. They have one value per column, and are drawn with soft
+//! edges in integer arithmetic.
 
 use crate::graphics::{Canvas, HEIGHT, SUBPIXELS};
 
 const HALF_THICKNESS: i32 = 38;
 
-/// A height on the frame: subpixels down from the top edge.
+/// A height on the canvas: subpixels down from the top edge.
 pub type Height = i16;
 
-/// The height of `value` where zero is at row `zero` and a unit is `scale` pixels, upwards; held within twice the
-/// canvas.
+/// Returns the height of `value`, where zero is at row `zero` and a unit is `scale` pixels upwards.
+/// It is limited to twice the height of the canvas.
 pub const fn height(value: f32, zero: f32, scale: f32) -> Height {
     let limit = (2 * HEIGHT as i32 * SUBPIXELS) as f32;
     ((zero - scale * value) * SUBPIXELS as f32).clamp(-limit, limit) as Height
 }
 
-/// Draws the piece of a curve in column `x` between two heights with a brightness of 0 to 255; where the canvas is
-/// brighter already, it stays.
+/// Draws the part of a curve in column `x`, between two heights, with a brightness of 0 to 255.
+/// Pixels that are brighter already keep their grey.
 #[inline(never)]
 pub fn column(canvas: &mut Canvas, x: i32, from: Height, to: Height, brightness: u8) {
-    /// As of a [`Stroke`](crate::graphics::Stroke): 255 = 17 x 15.
+    /// The product of brightness and coverage that is one grey, as for a
+    /// [`Stroke`](crate::graphics::Stroke): 255 = 17 x 15.
     const GREY: u16 = 17 * SUBPIXELS as u16;
     let top = i32::from(from.min(to)) - HALF_THICKNESS;
     let bottom = i32::from(from.max(to)) + HALF_THICKNESS;
     let first = top.div_euclid(SUBPIXELS).max(0);
     let last = bottom.div_euclid(SUBPIXELS).min(HEIGHT as i32 - 1);
+
     for y in first..last + 1 {
         let covered = bottom.min((y + 1) * SUBPIXELS) - top.max(y * SUBPIXELS);
         let grey = ((u16::from(brightness) * covered as u16 + GREY / 2) / GREY) as u8;
@@ -31,11 +34,11 @@ pub fn column(canvas: &mut Canvas, x: i32, from: Height, to: Height, brightness:
     }
 }
 
-/// Grey of axes and of the lines that carry a scale: enough for a panel of one colour.
+/// The grey of axes and scale lines. It is bright enough for a panel of one colour.
 pub const AXIS_GREY: u8 = 8;
 
-/// Draws a line across columns `from` to `to` (exclusive) in row `y`, dotted.
-#[inline(never)] // no second copy
+/// Draws a dotted line in row `y`, from column `from` to column `to` (exclusive).
+#[inline(never)] // Not inlined, to save flash.
 pub fn axis(canvas: &mut Canvas, from: i32, to: i32, y: i32) {
     if let Some(row) = canvas.row_mut(y) {
         (from..to)
@@ -44,12 +47,12 @@ pub fn axis(canvas: &mut Canvas, from: i32, to: i32, y: i32) {
     }
 }
 
-/// The same down rows `from` to `to` in column `x`.
+/// Draws a dotted line in column `x`, from row `from` to row `to` (exclusive).
 pub fn upright_axis(canvas: &mut Canvas, x: i32, from: i32, to: i32) {
     (from..to).step_by(3).for_each(|y| axis_dot(canvas, x, y));
 }
 
-/// Draws a bar that tells a length, upright or level, with a foot at either end.
+/// Draws a scale bar, upright or level, with a foot at either end.
 #[inline(never)]
 pub fn bar(canvas: &mut Canvas, (x1, y1): (i32, i32), (x2, y2): (i32, i32)) {
     (x1..=x2).for_each(|x| (y1..=y2).for_each(|y| axis_dot(canvas, x, y)));
@@ -60,13 +63,13 @@ pub fn bar(canvas: &mut Canvas, (x1, y1): (i32, i32), (x2, y2): (i32, i32)) {
     }
 }
 
-/// Lightens a pixel of an axis or a bar; never inlined, to avoid a copy for each use.
+/// Lightens a pixel of an axis or a bar. The function is not inlined, to save flash.
 #[inline(never)]
 fn axis_dot(canvas: &mut Canvas, x: i32, y: i32) {
     canvas.lighten(x, y, AXIS_GREY);
 }
 
-/// The least step of a scale that is no less than `least`: 1, 2 or 5 times a power of ten.
+/// Returns the smallest step of a scale that is at least `least`: 1, 2 or 5 times a power of ten.
 pub fn scale_step(least: f32) -> f32 {
     const STEPS: [f32; 12] = [
         0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0,

@@ -1,41 +1,50 @@
-//! Text on the frame. The characters of ASCII are [`embedded-graphics`](https://docs.rs/embedded-graphics)' font of 5 x 8 pixels (test
-//! `canvas`), as whole rows, which are drawn in a fifth of the time of its pixels.
+//! Text on the canvas.
+//!
+//! The ASCII characters are from the font of 5 x 8 pixels of
+//! [`embedded-graphics`](https://docs.rs/embedded-graphics) (test `canvas`). They are stored as
+//! whole rows, which are drawn in a fifth of the time of single pixels.
 
 use crate::graphics::{Canvas, HEIGHT, WIDTH};
 
-/// Grey of the text, of 15: below the motion's.
+/// The grey of the text, of 15. It is darker than the motion.
 const GREY: u8 = 11;
-/// Text keeps this far from the panel's edges, pixels; a character brings such a gap above and on its right.
+/// The distance of text from the edges of the panel, pixels. A character contains such a gap above
+/// it and on its right.
 const MARGIN: i32 = 1;
 const RIGHT: i32 = WIDTH as i32 - 1 - MARGIN;
 
+/// The height of a line of text, and the top row of the lowest line.
 pub const LINE: i32 = 8;
 pub const LOWEST: i32 = HEIGHT as i32 - MARGIN - LINE;
 
-/// Where a line of text stands, its top at row y.
+/// The position of a line of text, whose top is at row y.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Anchor {
-    /// At the left edge, at the right one, and between the two.
+    /// The line is at the left edge, at the right edge, or in the middle.
     Left(i32),
     Right(i32),
     Middle(i32),
-    /// Its first character from column x on.
+    /// The first character begins at column x.
     At(i32, i32),
-    /// Its last character before column x.
+    /// The last character ends before column x.
     EndingAt(i32, i32),
 }
 
+/// Writes a line of text.
 pub fn write(canvas: &mut Canvas, text: &str, anchor: Anchor) {
     put(canvas, text, corner(anchor, text), GREY);
 }
 
-/// Ink and ground of a line that stands out, and of one over a picture.
+/// The greys of ink and background of a highlighted line, and of a line over a picture.
 pub const MARKED: [u8; 2] = [0, GREY];
 pub const WHITE_ON_BLACK: [u8; 2] = [15, 0];
 
+/// Writes a line of text on a background.
 pub fn write_on(canvas: &mut Canvas, text: &str, anchor: Anchor, [ink, ground]: [u8; 2]) {
     let width = width(text);
     let (left, top) = corner(anchor, text);
+
+    // The background begins one column left of the text.
     for x in (-1..width).step_by(8) {
         let row = !(0xFF_u32 >> (width - x).min(8)) as u8;
         canvas.stamp(
@@ -45,17 +54,20 @@ pub fn write_on(canvas: &mut Canvas, text: &str, anchor: Anchor, [ink, ground]: 
             ground,
         );
     }
+
     put(canvas, text, (left, top), ink);
 }
 
+/// Returns the width of a line of text, pixels.
 fn width(text: &str) -> i32 {
     text.chars().map(|character| glyph(character).width).sum()
 }
 
+/// Returns the top left corner of a line of text.
 fn corner(anchor: Anchor, text: &str) -> (i32, i32) {
     match anchor {
         Anchor::Left(y) => (MARGIN, y),
-        // The last character's gap may lie in the margin.
+        // The gap after the last character may be in the margin.
         Anchor::Right(y) => (RIGHT + 2 - width(text), y),
         Anchor::Middle(y) => (WIDTH as i32 / 2 - (width(text) - 1) / 2, y),
         Anchor::At(x, y) => (x, y),
@@ -63,6 +75,7 @@ fn corner(anchor: Anchor, text: &str) -> (i32, i32) {
     }
 }
 
+/// Draws the characters from the corner (left, top) on.
 #[inline(never)]
 fn put(canvas: &mut Canvas, text: &str, (mut left, top): (i32, i32), grey: u8) {
     for Glyph { width, rows } in text.chars().map(glyph) {
@@ -71,7 +84,7 @@ fn put(canvas: &mut Canvas, text: &str, (mut left, top): (i32, i32), grey: u8) {
     }
 }
 
-/// Draws two upright bars below the top right corner: time stands still.
+/// Draws two upright bars below the top right corner, which mean that the scene is paused.
 pub fn pause_mark(canvas: &mut Canvas) {
     for (bits, grey) in [(0xFFFF_FFFF_FFFF_FF00, 0), (0x0033_3333_3333_3300, GREY)] {
         canvas.stamp(RIGHT - 7, LINE + 2, bits, grey);
@@ -80,19 +93,25 @@ pub fn pause_mark(canvas: &mut Canvas) {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Glyph {
-    /// Columns with the gap after it.
+    /// The number of columns, with the gap after the character.
     pub width: i32,
-    /// Eight rows from the top, the first in the highest byte, in each the leftmost pixel in the highest bit.
+    /// Eight rows from the top. The first row is in the highest byte, and the leftmost pixel of a
+    /// row is in its highest bit.
     pub rows: u64,
 }
 
-/// A picture of glyphs, cells of 8 x 8 pixels, 8 in a row: those of ASCII from ' ' on, and then those that the font lacks, draws illegibly
-/// or gives too much room.
+/// The glyphs of the file `font.pbm`, a picture with cells of 8 x 8 pixels, 8 in a row.
+///
+/// The ASCII characters from ' ' on come first. They are followed by characters that the font
+/// lacks, draws illegibly or makes too wide.
 const GLYPHS: [u64; 112] = {
-    let (font, mut glyphs, mut pixel) = (include_bytes!("font.pbm"), [0; 112], 0);
+    let font = include_bytes!("font.pbm");
+    let mut glyphs = [0; 112];
+    let mut pixel = 0;
     while pixel < 64 * 112 {
-        let (x, y) = (pixel % 64, pixel / 64);
-        // From the file's end, each row with its end of line.
+        let x = pixel % 64;
+        let y = pixel / 64;
+        // Counted from the end of the file. Each row has an end of line.
         let is_ink = font[font.len() - 65 * (112 - y) + x] == b'1';
         let glyph = &mut glyphs[8 * (y / 8) + x / 8];
         *glyph = *glyph << 1 | is_ink as u64;
@@ -101,7 +120,7 @@ const GLYPHS: [u64; 112] = {
     glyphs
 };
 
-/// The glyph of a character; of one that there is not, that of a question mark.
+/// Returns the glyph of a character. An unknown character has the glyph of a question mark.
 pub fn glyph(character: char) -> Glyph {
     let (place, width) = match character {
         ' ' => (0, 3),

@@ -1,30 +1,33 @@
-//! A request being answered.
+//! The computation of a request.
 
 use double_pendulum::parts::Turns;
 use double_pendulum::{Error, Motion, Parameter, Pendulum};
 
 use super::{OnBoards, Reading, Request, Run};
 
-/// A request being answered: computes the samples one after the other, a bounded amount of work at a time. It counts the
-/// whole turns of a motion that does not.
+/// A request that is being answered.
+///
+/// The job computes one sample after the other, a bounded amount of work at a time. If the method
+/// does not count whole turns, the job counts them.
 #[derive(Clone, Copy, Debug)]
 pub struct Job<R = OnBoards> {
     run: R,
-    /// As the arithmetic holds it.
+    /// The pendulum, with parameters rounded as in the method.
     pendulum: Pendulum<f64>,
-    /// Of a motion that does not count its own.
+    /// The counters of whole turns; `None` if the method counts them.
     turns: Option<[Turns; 2]>,
+    /// The number of steps from one sample to the next.
     stride: u32,
-    /// Samples given so far; wraps.
+    /// The number of samples returned; wraps.
     pub given: u32,
-    /// Samples still to come, the one at the start included.
+    /// The number of samples left, including the initial one.
     left: u32,
-    /// Steps until the next of them.
+    /// The number of steps until the next sample.
     steps: u32,
 }
 
 impl<R: Run> Job<R> {
-    /// By the request's motion at its start.
+    /// Creates the job of a request, where `run` is its motion at the start.
     pub fn new(run: R, request: &Request) -> Result<Self, Error> {
         let Request {
             method,
@@ -55,35 +58,42 @@ impl<R: Run> Job<R> {
         })
     }
 
-    /// Whether every sample has been given.
+    /// Returns true if every sample has been returned.
     pub fn is_finished(&self) -> bool {
         self.left == 0
     }
 
-    /// Computes at most one step; the reading, when a sample is due.
+    /// Computes at most one step. Returns the reading if a sample is due.
     ///
-    /// Ends with [`Error::Diverged`] instead of a reading that is not finite: every one given before it is.
+    /// Returns [`Error::Diverged`] instead of a reading that is not finite, and ends the job. All
+    /// earlier readings are finite.
     pub fn advance(&mut self) -> Result<Option<Reading>, Error> {
         if self.is_finished() {
             return Ok(None);
         }
+
+        // The first call computes no step, because the initial sample is due.
         if self.steps > 0 {
             self.step();
         }
         if self.steps > 0 {
             return Ok(None);
         }
-        (self.given, self.left, self.steps) =
-            (self.given.wrapping_add(1), self.left - 1, self.stride);
+
+        self.given = self.given.wrapping_add(1);
+        self.left -= 1;
+        self.steps = self.stride;
         self.reading().map(Some).inspect_err(|_| self.left = 0)
     }
 
-    /// Lets `advance` make steps and nothing else, for their time to be measured: no sample after them is right.
+    /// Runs `advance` on the motion, so that its time can be measured. The job ends, because its
+    /// later samples would be wrong.
     pub fn measure<T>(&mut self, advance: impl FnOnce(&mut R) -> T) -> T {
         self.left = 0;
         advance(&mut self.run)
     }
 
+    /// Computes one step.
     fn step(&mut self) {
         self.run.advance(1);
         self.steps -= 1;
@@ -92,16 +102,16 @@ impl<R: Run> Job<R> {
         }
     }
 
+    /// Returns the reading now, or the error of a number that is not finite.
     fn reading(&self) -> Result<Reading, Error> {
         let state = self.run.state();
         let state = self
             .turns
             .map_or(state, |turns| Turns::unwrap(&turns, state))
             .finite()?;
-        let (Motion { w1, w2, .. }, energy) = (
-            self.pendulum.to_motion(&state),
-            self.pendulum.energy(&state),
-        );
+        let Motion { w1, w2, .. } = self.pendulum.to_motion(&state);
+        let energy = self.pendulum.energy(&state);
+
         for (parameter, value) in [
             (Parameter::W1, w1),
             (Parameter::W2, w2),
@@ -119,7 +129,7 @@ impl<R: Run> Job<R> {
     }
 }
 
-/// Gives every reading of `request` to `each`, the one at the start first.
+/// Calls `each` with every reading of `request`, the initial one first.
 pub(super) fn readings<E: From<Error>>(
     run: impl Run,
     request: &Request,

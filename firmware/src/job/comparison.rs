@@ -1,14 +1,15 @@
-//! What the kernel is compared with: the page's equations as they stand there, and the kernel's own by other sines.
+//! Methods for comparison with the kernel: the equations as the page prints them, and the kernel's
+//! equations with other sines.
 
 use double_pendulum::parts::Derivatives;
 use double_pendulum::{Error, Parameters, Pendulum};
 use libm::{cosf, sinf};
 use micromath::F32Ext;
 
-/// Hamilton's equations as the source page prints them: five sines and cosines of the `libm` crate and four divisions, nothing
-/// simplified.
+/// Hamilton's equations as the page prints them, not simplified: five sines and cosines of the
+/// `libm` crate, and four divisions.
 ///
-/// The peer that every other method is measured against; no device should run it.
+/// The other methods are compared with it. No device should run it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Textbook(Parameters<f32>);
 
@@ -17,7 +18,8 @@ impl Derivatives<f32> for Textbook {
         Ok(Self(*parameters))
     }
 
-    /// The time derivatives of (a1, a2, p1, p2) (`[math24]`), with den = m1 + m2 sin^2(a1 - a2):
+    /// Returns the time derivatives of (a1, a2, p1, p2) (`[math24]`), with den = m1 + m2 sin^2(a1 -
+    /// a2):
     ///
     /// - a1' = (p1 l2 - p2 l1 cos(a1 - a2)) / (l1^2 l2 den)
     /// - a2' = (p2 (m1 + m2) l1 - p1 m2 l2 cos(a1 - a2)) / (m2 l1 l2^2 den)
@@ -46,7 +48,8 @@ impl Derivatives<f32> for Textbook {
     }
 }
 
-/// [`Pendulum::derivatives`] by the sines of the `micromath` crate: short, and wrong by up to 1.2e-3.
+/// [`Pendulum::derivatives`] with the sines of the `micromath` crate, which are short and off by up
+/// to 1.2e-3.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Micromath(Pendulum<f32>);
 

@@ -7,10 +7,10 @@ use double_pendulum::golden::{HEADER, Line, MOTIONS};
 
 use super::table::golden_bits;
 
-/// Writes what `golden/bits.csv` of the kernel should be: a heading and a line for each method and
-/// motion.
+/// Writes the contents of the kernel's file `golden/bits.csv`, computed on this machine: a heading,
+/// and a line for each method and motion.
 ///
-/// A method that refuses a motion has its error in place of the bits.
+/// If a method refuses a motion, its error takes the place of the bits.
 pub fn write_golden(output: &mut impl Write) -> fmt::Result {
     writeln!(output, "{HEADER}")?;
     for &method in Method::ALL {

@@ -1,9 +1,14 @@
-//! Motions computed on request, by any method.
+//! Motions that are computed on request, by any method.
 //!
-//! A [`Request`] names a [`Method`] and a motion. The service on the boards answers it step by step
-//! ([`Job`]), `cargo simulate` all at once ([`Request::readings`]); `cargo count` counts its steps, and its bits on host and
-//! chip are compared, by [`Request::crc`]. It is the same code wherever it runs, so that errors may be computed on the host
-//! and costs counted on the chip.
+//! A [`Request`] contains a [`Method`] and a motion. It has several uses:
+//!
+//! - The application on the boards computes it step by step ([`Job`]).
+//! - `cargo simulate` computes all of it at once ([`Request::readings`]).
+//! - `cargo count` counts the cycles of its steps.
+//! - [`Request::crc`] serves to compare its bits on host and chip.
+//!
+//! All of them run the same code. So errors can be computed on the host, and costs can be counted
+//! on the chip.
 
 mod answer;
 mod comparison;
@@ -28,43 +33,46 @@ pub use table::{AnyRun, ON_BOARDS, OnBoards};
 /// The reflected CRC-32 of zip and Ethernet.
 pub const CRC: Crc<u32, Table<1>> = Crc::<u32, Table<1>>::new(&CRC_32_ISO_HDLC);
 
-/// The most bytes that a request takes in postcard's format.
+/// The largest size of a request in the postcard format, bytes.
 const MAX_BYTES: usize = 1 + 10 * 8 + 2 * 5;
 
-/// A motion to compute, by a method that the chip's application has or not. As text, the C programs read it, too
-/// (`host-tests/peers-c/measure.c`).
+/// A motion to compute. The application of a board may lack the method.
+///
+/// The text form of a request is also read by the C programs (`host-tests/peers-c/measure.c`).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(target_os = "none", derive(defmt::Format))]
 pub struct Request {
     pub method: Method,
     /// m1, m2 (kg), l1, l2 (m), g (m/s^2), in this order.
     pub parameters: Parameters<f64>,
-    /// a1, a2 at the start, rad.
+    /// The initial angles a1 and a2, rad.
     pub angles: [f64; 2],
-    /// w1, w2 at the start, rad/s.
+    /// The initial angular velocities w1 and w2, rad/s.
     pub velocities: [f64; 2],
-    /// Step size, s.
+    /// The step size, s.
     pub dt: f64,
-    /// Steps from one sample to the next.
+    /// The number of steps from one sample to the next.
     pub stride: u32,
-    /// Samples after the one at the start.
+    /// The number of samples after the initial one.
     pub samples: u32,
 }
 
-/// What is told of a motion asked for. The state is widened, which loses nothing, and of the fast forms given to the last digit
-/// they carry; what follows from it is computed in double precision.
+/// The numbers of a requested motion at one time.
+///
+/// The state is widened to `f64` without loss. A fast form gives all digits that it carries. The
+/// other numbers are computed from the state in double precision.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Reading {
-    /// a1, a2 (rad), p1, p2 (kg m^2/s).
+    /// The state a1, a2 (rad), p1, p2 (kg m^2/s).
     pub state: [f64; 4],
-    /// w1, w2, rad/s.
+    /// The angular velocities w1 and w2, rad/s.
     pub velocities: [f64; 2],
-    /// Energy, J; zero potential at the pivot.
+    /// The energy, J. The potential is zero at the pivot.
     pub energy: f64,
 }
 
 impl Request {
-    /// 10 s of a chaotic motion, 2,560 steps, which every method can compute.
+    /// Returns a request for 10 s of a chaotic motion, 2,560 steps, that every method can compute.
     pub fn on_any_core(method: Method) -> Self {
         let parameters = Parameters {
             m1: 1.0,
@@ -73,7 +81,8 @@ impl Request {
             l2: 1.0,
             g: GRAVITY,
         };
-        let (angles, velocities) = ([2.0; 2], [0.0; 2]);
+        let angles = [2.0; 2];
+        let velocities = [0.0; 2];
         Self {
             method,
             parameters,
@@ -97,18 +106,21 @@ impl Request {
             Integrator::Rk4 => 1,
             Integrator::Extrapolation => self.method.order() / 2,
         };
+
         let pendulum = Pendulum::<f64>::new(&self.parameters).ok()?;
         let step = pendulum.admissible_step(&pendulum.to_state(&Motion { a1, a2, w1, w2 }));
         Some(f64::from(share) * step.ok()?)
     }
 
-    /// From its bytes in postcard's format, each as two hexadecimal digits.
+    /// Returns the request in `text`: its bytes in the postcard format, each as two hexadecimal
+    /// digits. Returns `None` if the text is anything else.
     pub fn parse(text: &str) -> Option<Self> {
         let mut bytes = Vec::<u8, MAX_BYTES>::new();
         let byte = |digits: &[u8]| u8::from_str_radix(core::str::from_utf8(digits).ok()?, 16).ok();
         for digits in text.as_bytes().chunks(2) {
             bytes.push(byte(digits)?).ok()?;
         }
+
         postcard::take_from_bytes(&bytes)
             .ok()
             .filter(|(_, rest)| rest.is_empty())
@@ -116,7 +128,7 @@ impl Request {
     }
 }
 
-/// As [`Request::parse`] reads it.
+/// Writes the text that [`Request::parse`] reads.
 impl fmt::Display for Request {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let bytes = &mut [0; MAX_BYTES];
@@ -125,20 +137,23 @@ impl fmt::Display for Request {
     }
 }
 
-/// CRC-32 of all that is carried at every sample but the one at the start, and of the last state.
+/// Returns the CRC-32 of all numbers that the method carries, at every sample except the initial
+/// one, and of the last state.
 fn crc(mut run: impl Run, request: &Request) -> u32 {
     let mut digest = CRC.digest();
     for _ in 0..request.samples {
         counted_steps(&mut run, request.stride);
         run.bits(|word| digest.update(&word.to_le_bytes()));
     }
+
     <[f64; 4]>::from(run.state())
         .iter()
         .for_each(|number| digest.update(&number.to_le_bytes()));
     digest.finalize()
 }
 
-/// What the counter counts, from this function's first instruction to its return; it finds it by this name.
+/// Makes steps. The counter finds this function by its name, and counts from its first instruction
+/// to its return.
 #[inline(never)]
 fn counted_steps<R: Run>(run: &mut R, steps: u32) {
     let mut local = *run;

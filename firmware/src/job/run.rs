@@ -1,28 +1,31 @@
-//! What a row of the table is: a motion that can be started, stepped and read.
+//! The interface of a row of the table: a motion that can be started, advanced and read.
 
 use double_pendulum::{Error, Form, Integrator, Motion, Parameters, Pendulum, Real, State};
 
 use super::Request;
 
-/// One motion under way, with all that its arithmetic carries along: the one trait that a new row's type implements.
+/// A motion in progress, with all numbers that its method carries. The type of every row implements
+/// this trait.
 pub trait Run: Copy {
-    /// Makes `steps` steps. How they are dealt out to calls makes no difference to any bit.
+    /// Makes `steps` steps. `advance(a); advance(b)` is bit-identical to `advance(a + b)`.
     fn advance(&mut self, steps: u32);
 
-    /// The canonical state now, SI units, to the last digit carried; of the angles, whole turns may be missing where there
-    /// are [`sides`](Self::sides).
+    /// Returns the canonical state now, in SI units, with all digits that are carried.
+    ///
+    /// If [`sides`](Self::sides) returns a value, whole turns of the angles may be missing.
     fn state(&self) -> State<f64>;
 
-    /// The signs of the rods' directions, if somebody has to count whole turns by them.
+    /// Returns the signs of the rods' directions, if the caller must count whole turns by them.
     fn sides(&self) -> Option<[[i32; 2]; 2]> {
         None
     }
 
-    /// Gives `feed` the bit patterns of all that is carried from step to step.
+    /// Calls `feed` with the bits of all numbers that are carried from step to step.
     fn bits(&self, feed: impl FnMut(u64));
 }
 
-/// At step 0, with the request's angles and velocities; refuses what the kernel refuses.
+/// Returns the motion of a request at its start. Returns the kernel's error if it refuses the
+/// request.
 #[inline(never)]
 pub(super) fn start<F: Form>(request: &Request) -> Result<F, Error> {
     let checked = if request.method.is_single() {
@@ -34,7 +37,7 @@ pub(super) fn start<F: Form>(request: &Request) -> Result<F, Error> {
     Form::new(&parameters, &state, request.dt)
 }
 
-/// By any method of the kernel that makes steps.
+/// Every method of the kernel that is a [`Form`].
 impl<F: Form> Run for F {
     #[inline(always)]
     fn advance(&mut self, steps: u32) {
@@ -54,14 +57,13 @@ impl<F: Form> Run for F {
     }
 }
 
-/// The pendulum and its state at the start, each number rounded once to the arithmetic `R`, checked and computed in it.
-#[inline(never)] // flash has room for one of it, not for one of each row
+/// Returns the pendulum's parameters and its initial state. Each number is rounded once to the
+/// arithmetic `R`, and checked and computed in it.
+#[inline(never)] // One copy instead of one for each row, to save flash.
 fn checked<R: Real>(request: &Request) -> Result<(Parameters<f64>, State<f64>), Error> {
     let ([a1, a2], [w1, w2]) = (request.angles, request.velocities);
-    let (parameters, start) = (
-        request.parameters.cast::<R>(),
-        Motion { a1, a2, w1, w2 }.cast::<R>(),
-    );
+    let parameters = request.parameters.cast::<R>();
+    let start = Motion { a1, a2, w1, w2 }.cast::<R>();
     start.check()?;
     let pendulum = Pendulum::new(&parameters)?;
     if request.method.integrator() != Integrator::ClosedForm {

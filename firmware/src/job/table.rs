@@ -1,7 +1,8 @@
-//! The type that runs each method.
+//! The table of the methods, and of the type that runs each method.
 //!
-//! The first block is what every board's application computes on request. The second is computed on the host and counted on the
-//! chips by the `measure` program, and takes no flash of an application.
+//! The application of every board links the methods of the first block, to compute them on request.
+//! The methods of the second block are computed on the host, and counted on the chips by the
+//! `measure` program. They take no flash of an application.
 
 use double_pendulum::golden::{Bits, Golden};
 use double_pendulum::parts::Canonical;
@@ -22,12 +23,16 @@ macro_rules! table {
         /// The methods that every board's application links, the default first.
         pub const ON_BOARDS: &[Method] = &[$(Method::$method),*];
 
+        /// A motion in progress, by one of the methods that every board links.
         #[derive(Clone, Copy, Debug)]
-        pub enum OnBoards { $(#[doc = concat!("[`Method::", stringify!($method), "`]")] $method($form),)* }
+        pub enum OnBoards {
+            $(#[doc = concat!("[`Method::", stringify!($method), "`]")] $method($form),)*
+        }
 
         impl OnBoards {
-            /// At the start of the request, which the kernel may refuse; `None` by a method that boards have not.
-            #[inline(never)] // compilers shuffle so large a value word by word
+            /// Returns the motion of a request at its start, or the kernel's error. Returns `None`
+            /// if boards do not have the method.
+            #[inline(never)] // Inlined, the compiler would move this large value word by word.
             pub fn start(request: &Request) -> Option<Result<Self, Error>> {
                 Some(match request.method {
                     $(Method::$method => start::<$form>(request).map(Self::$method),)*
@@ -37,7 +42,7 @@ macro_rules! table {
         }
 
         impl Run for OnBoards {
-            // Never inlined: a board may have it twice, in flash and in memory.
+            // Not inlined, because a board may have this function twice, in flash and in RAM.
             #[inline(never)]
             fn advance(&mut self, steps: u32) {
                 match self { $(Self::$method(run) => Run::advance(run, steps),)* }
@@ -58,17 +63,28 @@ macro_rules! table {
 
         /// A [`Run`](double_pendulum::Run) whose method is chosen at run time.
         #[derive(Clone, Copy, Debug, PartialEq)]
-        pub enum AnyRun { $($method(double_pendulum::Run<$form>),)* $($other(double_pendulum::Run<$other_form>),)* }
+        pub enum AnyRun {
+            $($method(double_pendulum::Run<$form>),)*
+            $($other(double_pendulum::Run<$other_form>),)*
+        }
 
-        /// `$body` with the run of whichever method as `$run`.
+        /// Evaluates `$body`, where `$run` is the run of the method in `$any`.
         macro_rules! any {
             ($any:expr, $run:ident => $body:expr) => {
-                match $any { $(AnyRun::$method($run) => $body,)* $(AnyRun::$other($run) => $body,)* }
+                match $any {
+                    $(AnyRun::$method($run) => $body,)*
+                    $(AnyRun::$other($run) => $body,)*
+                }
             };
         }
 
         impl AnyRun {
-            pub fn new(method: Method, pendulum: &Pendulum<f64>, start: &State<f64>, dt: f64) -> Result<Self, Error> {
+            pub fn new(
+                method: Method,
+                pendulum: &Pendulum<f64>,
+                start: &State<f64>,
+                dt: f64,
+            ) -> Result<Self, Error> {
                 Ok(match method {
                     $(Method::$method => Self::$method(pendulum.run(start, dt)?),)*
                     $(Method::$other => Self::$other(pendulum.run(start, dt)?),)*
@@ -105,16 +121,20 @@ macro_rules! table {
         }
 
         impl Request {
-            /// Gives every reading to `each`, the one at the start first, until it refuses one.
-            pub fn readings<E: From<Error>>(&self, each: impl FnMut(&Reading) -> Result<(), E>) -> Result<(), E> {
+            /// Calls `each` with every reading, the initial one first, until it returns an error.
+            pub fn readings<E: From<Error>>(
+                &self,
+                each: impl FnMut(&Reading) -> Result<(), E>,
+            ) -> Result<(), E> {
                 match self.method {
                     $(Method::$method => answer::readings(start::<$form>(self)?, self, each),)*
                     $(Method::$other => answer::readings(start::<$other_form>(self)?, self, each),)*
                 }
             }
 
-            /// CRC-32 of all that is carried at every sample but the one at the start, and of the last state: two runs
-            /// are bit-identical if theirs are equal.
+            /// Returns the CRC-32 of all numbers that the method carries, at every sample except
+            /// the initial one, and of the last state. If those of two runs are equal, the runs are
+            /// bit-identical.
             pub fn crc(&self) -> Result<u32, Error> {
                 Ok(match self.method {
                     $(Method::$method => crc(start::<$form>(self)?, self),)*

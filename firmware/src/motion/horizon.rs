@@ -6,14 +6,15 @@ use crate::graphics::label::{self, Label};
 /// pixel](crate::config::HALF_PIXEL) of the exact motion, s after the start.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub enum Horizon {
-    /// Every frame is accurate, because nothing that is drawn can be inaccurate.
+    /// Every frame is accurate, because the scene draws nothing inaccurate.
     #[default]
     Always,
-    /// Not known yet: planning goes on, and has not verified the current frame.
+    /// The horizon is unknown: planning is in progress, and has not verified the current frame.
     Undecided,
-    /// At least this time, which is not past. Planning goes on, and may raise it.
+    /// The horizon is at least this time, which is not past. Planning is in progress, and may raise
+    /// it.
     AtLeast(f32),
-    /// This time. Planning has ended.
+    /// The horizon is this time. Planning has ended.
     Until(f32),
 }
 
@@ -44,7 +45,7 @@ impl Horizon {
         }
     }
 
-    /// Returns true if planning goes on.
+    /// Returns true while planning is in progress.
     #[must_use]
     pub fn is_open(self) -> bool {
         matches!(self, Self::Undecided | Self::AtLeast(_))

@@ -1,20 +1,24 @@
-//! The motion by the equal-rod equations that the page prints.
+//! The motion by the equations for equal rods as the page prints them.
 
 use double_pendulum::{Parameters, Real, State, rk4};
 
 use crate::config::{DT, STEPS_PER_TICK};
 use crate::graphics::RodDirections;
 
-/// The denominator of a2' lacks the factor mu = m2/m1, so rod 2 turns mu times as fast as it should. Unless mu = 1 the equations
-/// are not Hamilton's of anything, and what should be the energy is not kept.
+/// A motion by the misprinted equations.
+///
+/// The denominator of a2' lacks the factor mu = m2/m1, so that rod 2 turns mu times as fast as it
+/// should. Unless mu = 1, the equations are not Hamilton's equations of any system, and the energy
+/// is not conserved.
 ///
 /// With q = p/(m1 l^2), r = 1/(1 + mu sin^2 D), D = a1 - a2, G = g/l:
 ///
 /// - a1' = u = (q1 - q2 cos D) r; a2' = v = (q2 (1 + mu) - q1 mu cos D) r
 /// - q1' = -(1 + mu) G sin a1 - F; q2' = -mu G sin a2 + F
 ///
-/// F = u v sin D is, term by term, the two long fractions of the page in one. Where mu is above 10 or so, rod 2 turns so fast
-/// that no step here resolves it. Plain `f32` is right to half a pixel at figure 7 for 10 s (test `misprint`).
+/// F = u v sin D is equal, term by term, to the two long fractions of the page. If mu is above 10
+/// or so, rod 2 turns so fast that no step of this module resolves it. For figure 7, plain `f32` is
+/// accurate to half a pixel for 10 s (test `misprint`).
 #[derive(Clone, Copy, Debug)]
 pub struct Misprinted {
     mass_ratio: f32,
@@ -22,32 +26,32 @@ pub struct Misprinted {
     gravity: f32,
     /// m1 l^2, kg m^2.
     inertia: f32,
-    /// sin a1, cos a1, sin D, cos D, q1, q2 (1/s): nothing here needs an angle.
+    /// sin a1, cos a1, sin D, cos D, q1, q2 (1/s). The equations need no angle.
     z: [f32; 6],
     /// True if the rods were ever too fast for the steps. Then `z` stays as it was before.
     is_lost: bool,
 }
 
-/// The largest number of steps in a tick: all that a Cortex-M3 has time for.
+/// The largest number of steps in a tick. It is the limit of a Cortex-M3.
 const PARTS: u32 = 4 * STEPS_PER_TICK;
 
 /// The length of the shortest step, s.
 const PART: f32 = (DT / 4.0) as f32;
 
-/// The largest angle by which a rod may turn in a step, rad. Beyond it steps of this length do not
-/// resolve the motion.
+/// The largest rotation of a rod in a step, rad. Beyond it steps of this length do not resolve the
+/// motion.
 const MOST_TURN: f32 = 0.5;
 
-/// The largest error of a squared length in a tick. A step in which the rates change too fast for the
-/// bounds above stretches a direction by more.
+/// The largest error of a squared length in a tick. If the rates change too fast for the bounds
+/// above and below, a step stretches a direction by more.
 const LENGTH_ERROR: f32 = 1e-3;
 
-/// The largest angle by which the elbow may bend in a step, rad, times sqrt(1 + mu): r changes
-/// within an angle of 1/sqrt(1 + mu).
+/// The largest bend of the elbow in a step, rad, times sqrt(1 + mu). The number r changes within an
+/// angle of 1/sqrt(1 + mu).
 const MOST_BEND: f32 = 1.0;
 
 impl Misprinted {
-    /// Equal rods, let go at `start`.
+    /// Creates the motion of equal rods from `start`.
     pub fn new(
         &Parameters {
             m1, m2, l1: l, g, ..
@@ -74,12 +78,13 @@ impl Misprinted {
         }
     }
 
-    /// Returns true if the motion has become too fast to be shown. It is then lost for good.
+    /// Returns true if the motion has become too fast to be shown. It is then lost, and stays so.
     pub fn is_lost(&self) -> bool {
         self.is_lost
     }
 
-    /// Advances by one tick, in steps that resolve the motion at both of their ends, as long as any do.
+    /// Advances by one tick, in steps that resolve the motion at both of their ends. If no step
+    /// does, the motion is lost.
     pub fn tick(&mut self) {
         let mut left = PARTS;
         let mut parts = PARTS / STEPS_PER_TICK;
@@ -97,11 +102,15 @@ impl Misprinted {
                 return;
             }
         }
+
+        // Restore the lengths of the directions.
         let [sin1, cos1, sin_d, cos_d, q1, q2] = self.z;
-        let ([sin1, cos1], [sin_d, cos_d]) = (unit([sin1, cos1]), unit([sin_d, cos_d]));
+        let [sin1, cos1] = unit([sin1, cos1]);
+        let [sin_d, cos_d] = unit([sin_d, cos_d]);
         self.z = [sin1, cos1, sin_d, cos_d, q1, q2];
     }
 
+    /// Returns the directions of both rods.
     pub fn directions(&self) -> RodDirections {
         let [sin1, cos1, sin_d, cos_d, ..] = self.z;
         [
@@ -110,7 +119,7 @@ impl Misprinted {
         ]
     }
 
-    /// The energy H, J, as [`Pendulum::energy`](double_pendulum::Pendulum::energy) has it:
+    /// Returns the energy H, J, as [`Pendulum::energy`](double_pendulum::Pendulum::energy) does:
     /// ((q1 - q2 cos D)^2 r + q2^2/mu)/2 - (1 + mu) G cos a1 - mu G cos a2, times m1 l^2.
     pub fn energy(&self) -> f32 {
         let &Self {
@@ -126,7 +135,7 @@ impl Misprinted {
         inertia * (kinetic - gravity * ((1.0 + mu) * cos1 + mu * cos2))
     }
 
-    /// Returns u and v, the rates at which rods 1 and 2 turn, 1/s.
+    /// Returns the angular velocities u of rod 1 and v of rod 2, 1/s.
     fn turning(&self, &[_, _, sin_d, cos_d, q1, q2]: &[f32; 6]) -> [f32; 2] {
         let mu = self.mass_ratio;
         let r = 1.0 / (1.0 + mu * sin_d * sin_d);
@@ -149,6 +158,7 @@ impl Misprinted {
             && bend * bend * (1.0 + self.mass_ratio) <= MOST_BEND * MOST_BEND
     }
 
+    /// Returns the rates of change of `z`.
     fn rates(&self, z: &[f32; 6]) -> [f32; 6] {
         let &Self {
             mass_ratio: mu,
@@ -157,7 +167,8 @@ impl Misprinted {
         } = self;
         let [sin1, cos1, sin_d, cos_d, ..] = *z;
         let [u, v] = self.turning(z);
-        let (w, force) = (u - v, u * v * sin_d);
+        let w = u - v;
+        let force = u * v * sin_d;
         let sin2 = sin1 * cos_d - cos1 * sin_d;
         let [torque1, torque2] = [(1.0 + mu) * gravity * sin1, mu * gravity * sin2];
         [
@@ -171,7 +182,7 @@ impl Misprinted {
     }
 }
 
-/// A direction made as long as 1 again, to first order in what it misses.
+/// Returns a direction with its length restored to 1, to first order in the error.
 fn unit([sin, cos]: [f32; 2]) -> [f32; 2] {
     let gain = 1.5 - 0.5 * (sin * sin + cos * cos);
     [gain * sin, gain * cos]

@@ -1,4 +1,4 @@
-//! The motion itself, apart from any frame of it: settings, stepping, planning.
+//! The motion, independent of its picture: settings, method and step count, planning.
 
 mod horizon;
 mod misprinted;

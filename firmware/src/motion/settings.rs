@@ -1,4 +1,4 @@
-//! What a motion starts from: the pendulum, and where it is let go.
+//! The settings of a motion: the pendulum and its start.
 
 use double_pendulum::plan::{PlannedRun, Problem, Stepping};
 use double_pendulum::{Error, Motion, Parameters, Pendulum, State};
@@ -9,14 +9,14 @@ use crate::config::{
 };
 use crate::graphics::HEIGHT;
 
-/// A double pendulum and its start.
+/// A double pendulum, its initial angles and its initial angular velocities.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 #[cfg_attr(target_os = "none", derive(defmt::Format))]
 pub struct Settings {
     pub parameters: Parameters<f32>,
-    /// Start angles of rod 1 and rod 2, degrees from the downward vertical.
+    /// The start angles of rod 1 and rod 2, degrees from the downward vertical.
     pub degrees: [f32; 2],
-    /// Angular velocities of rod 1 and rod 2 at the start, rad/s.
+    /// The angular velocities of rod 1 and rod 2 at the start, rad/s.
     pub velocities: [f32; 2],
 }
 
@@ -27,7 +27,7 @@ impl Default for Settings {
 }
 
 impl Settings {
-    /// The page's pendulum: equal rods, let go from rest with both rods at one angle.
+    /// Returns the page's pendulum: equal rods, released from rest with both rods at one angle.
     pub fn equal_rods(mass_ratio: f32, degrees: f32) -> Self {
         let parameters = Parameters::equal_rods(mass_ratio, ROD, GRAVITY as f32);
         Self {
@@ -37,11 +37,12 @@ impl Settings {
         }
     }
 
+    /// Returns the mass ratio m2/m1.
     pub fn mass_ratio(&self) -> f32 {
         self.parameters.mass_ratio()
     }
 
-    /// With bob 2 of another mass, so that the mass ratio is `mass_ratio`.
+    /// Returns the settings with the mass of bob 2 changed, so that the mass ratio is `mass_ratio`.
     pub fn with_mass_ratio(self, mass_ratio: f32) -> Self {
         Self {
             parameters: Parameters {
@@ -52,7 +53,8 @@ impl Settings {
         }
     }
 
-    /// With the next larger mass ratio of [`MASS_RATIOS`]; the largest stays.
+    /// Returns the settings with the next larger mass ratio of [`MASS_RATIOS`]. The largest one
+    /// stays.
     pub fn heavier(self) -> Self {
         let next = MASS_RATIOS
             .iter()
@@ -61,7 +63,8 @@ impl Settings {
         next.map_or(self, |ratio| self.with_mass_ratio(ratio))
     }
 
-    /// With the next smaller mass ratio of [`MASS_RATIOS`]; the smallest stays.
+    /// Returns the settings with the next smaller mass ratio of [`MASS_RATIOS`]. The smallest one
+    /// stays.
     pub fn lighter(self) -> Self {
         let next = MASS_RATIOS
             .iter()
@@ -71,8 +74,8 @@ impl Settings {
         next.map_or(self, |ratio| self.with_mass_ratio(ratio))
     }
 
-    /// Both rods turned by one [`ANGLE_STEP`], counter-clockwise if `steps` is 1, clockwise if it is -1; each stops at
-    /// straight up.
+    /// Returns the settings with both rods turned by one [`ANGLE_STEP`], counter-clockwise if
+    /// `steps` is 1, clockwise if it is -1. Each rod stops at straight up.
     pub fn turned(self, steps: i8) -> Self {
         let turn = |degrees: f32| {
             (degrees + f32::from(steps) * ANGLE_STEP).clamp(-GREATEST_ANGLE, GREATEST_ANGLE)
@@ -83,26 +86,29 @@ impl Settings {
         }
     }
 
-    /// Start angles of rod 1 and rod 2, rad: pi/180 times the degrees.
+    /// Returns the start angles of rod 1 and rod 2, rad: pi/180 times the degrees.
     pub fn angles(&self) -> [f32; 2] {
         self.degrees.map(f32::to_radians)
     }
 
+    /// Returns the angles and angular velocities at the start.
     pub fn motion(&self) -> Motion<f32> {
         let ([a1, a2], [w1, w2]) = (self.angles(), self.velocities);
         Motion { a1, a2, w1, w2 }
     }
 
-    /// The pendulum and where it starts; the kernel's error if they describe none, or no finite state.
+    /// Returns the pendulum and its initial state. Returns the kernel's error if the settings
+    /// describe no pendulum, or no finite state.
     pub fn start(&self) -> Result<(Pendulum<f32>, State<f32>), Error> {
-        let (pendulum, motion) = (Pendulum::new(&self.parameters)?, self.motion());
+        let pendulum = Pendulum::new(&self.parameters)?;
+        let motion = self.motion();
         motion.check()?;
         let state = pendulum.to_state(&motion);
         state.check()?;
         Ok((pendulum, state))
     }
 
-    /// As it is planned on a display `height` pixels high.
+    /// Returns the problem to plan for a display `height` pixels high.
     pub fn problem(&self, height: f32) -> Problem {
         let pendulum = self.parameters.cast();
         Problem {
@@ -114,7 +120,7 @@ impl Settings {
         }
     }
 
-    /// The motion by this `stepping`, with rod 1 ahead by `apart` rad.
+    /// Returns the motion by this method and step count, with rod 1 ahead by `apart` rad.
     pub fn run(&self, apart: f64, stepping: Stepping) -> Result<PlannedRun, Error> {
         let mut problem = self.problem(HEIGHT as f32);
         problem.start.a1 += apart;
@@ -122,7 +128,8 @@ impl Settings {
     }
 }
 
-/// [`HALF_PIXEL`] in metres on a display `height` pixels high: both rods together are half of it long.
+/// Returns [`HALF_PIXEL`] in metres on a display `height` pixels high. The length of both rods
+/// together is half of that height.
 pub fn half_pixel(&Parameters { l1, l2, .. }: &Parameters<f64>, height: f64) -> f64 {
     f64::from(HALF_PIXEL) * (l1 + l2) / (0.5 * height)
 }

@@ -1,4 +1,4 @@
-//! The motion itself, apart from any frame of it, and what its energy has become.
+//! The simulation of the motion of a scene, and the error of its energy.
 
 use double_pendulum::plan::{PlannedRun, Stepping};
 use double_pendulum::{Error, Method, Parameter, Pendulum, State};
@@ -7,22 +7,24 @@ use crate::config::Processor;
 use crate::graphics::HEIGHT;
 use crate::motion::Settings;
 
-/// What a motion may be computed by.
+/// The processor and the method for computing a motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Resources {
-    /// What steps cost, and what may be spent.
+    /// The price list and the budgets.
     pub processor: Processor,
-    /// The method that is asked for; `None` leaves it to the plan.
+    /// The requested method; `None` leaves the choice to the plan.
     pub method: Option<Method>,
 }
 
-/// A pendulum in motion since its last restart.
+/// A motion in progress.
 #[derive(Clone, Debug)]
 pub struct Simulation {
+    /// The energy at the start.
     pub energy: Energy,
-    /// The motion, to be read: only [`tick`](Self::tick) advances it.
+    /// The motion. It is for reading only; [`tick`](Self::tick) advances it.
     pub motion: PlannedRun,
-    /// True if a frame pays for no method that resolves the motion. Then `motion` is only a pose.
+    /// True if no method that resolves the motion is within the budget of a frame. Then `motion` is
+    /// only a pose.
     pub is_too_fast: bool,
 }
 
@@ -46,6 +48,7 @@ impl Simulation {
             Some(method) => Some(affordable(Stepping::of(&problem, method)?, processor)?),
             None => Stepping::initial(&problem, &processor.costs, processor.frame)?,
         };
+
         let stepping = match initial {
             Some(stepping) => stepping,
             None => Stepping::of(&problem, Method::Rk4F32Direction)?,
@@ -58,9 +61,10 @@ impl Simulation {
         })
     }
 
-    #[inline(never)] // one copy
+    /// Advances the motion by one tick.
+    #[inline(never)] // Not inlined, to save flash.
     pub fn tick(&mut self) {
-        // A motion that is lost is seen by its state.
+        // A motion that has diverged is detected by its state.
         let _is_lost = self.motion.advance(1);
     }
 }
@@ -79,12 +83,14 @@ fn affordable(stepping: Stepping, processor: &Processor) -> Result<Stepping, Err
     Ok(stepping)
 }
 
-/// A motion by another stepping, from the start until it has caught up: after a number of ticks that depends only on what the
-/// stepping costs.
+/// A motion by another method and step count that starts again and catches up with the motion that
+/// is shown.
+///
+/// The number of ticks that it takes depends only on the cost of a frame.
 #[derive(Clone, Debug)]
 pub struct CatchingUp {
     motion: PlannedRun,
-    /// Frames in a tick.
+    /// The number of frames that it advances in a tick.
     most: u32,
 }
 
@@ -96,20 +102,23 @@ impl CatchingUp {
     ) -> Result<Self, Error> {
         let frame = processor.costs.of_frame(stepping).max(processor.piece());
         let affordable = (processor.look_ahead / frame) as u32;
-        // With fewer frames in a tick nothing catches up.
+
+        // With fewer frames in a tick it would never catch up.
         Ok(Self {
             motion: settings.run(0.0, stepping)?,
             most: affordable.max(2),
         })
     }
 
-    /// Makes a tick's frames; whether it has caught up with `simulation`, which then goes on as this.
+    /// Advances by the frames of a tick. Returns true if it has caught up with `simulation`. Then
+    /// `simulation` continues with this motion.
     pub fn tick(&mut self, simulation: &mut Simulation) -> bool {
         for _ in 0..self.most {
             if self.motion.frame() < simulation.motion.frame() {
                 let _is_lost = self.motion.advance(1);
             }
         }
+
         let is_there = self.motion.frame() == simulation.motion.frame();
         if is_there {
             simulation.motion = self.motion;
@@ -142,8 +151,8 @@ impl Energy {
         Ok(Self { pendulum, start })
     }
 
-    /// Returns (E - E0)/(E0 - Emin) of the motion as it is computed, not as its numbers are
-    /// rounded for the report; 0 if the start is hanging at rest, which a motion never leaves.
+    /// Returns (E - E0)/(E0 - Emin) of the motion, from its own numbers, before they are rounded
+    /// for the report. Returns 0 if the start is hanging at rest, which a motion never leaves.
     pub fn error(&self, motion: &PlannedRun) -> f32 {
         self.relative(motion.energy_above_rest(&self.pendulum))
     }
@@ -153,6 +162,7 @@ impl Energy {
         self.relative(self.pendulum.energy_above_rest(&state.cast()))
     }
 
+    /// Returns the relative error of an energy above rest, J.
     fn relative(&self, energy: f64) -> f32 {
         if self.start > 0.0 {
             ((energy - self.start) / self.start) as f32

@@ -1,4 +1,4 @@
-//! What the host asks for, and what can be wrong in it.
+//! The commands of a host, and the fields that can be wrong in them.
 
 use double_pendulum::{Error, Method, Parameter};
 use serde::{Deserialize, Serialize};
@@ -9,67 +9,77 @@ use crate::job::Request;
 use crate::motion::Settings;
 use crate::scenes::SceneName;
 
-/// What is asked of the application, by button or over the serial link.
+/// A command to the application, from a button or over the serial link.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(target_os = "none", derive(defmt::Format))]
 pub enum Command {
+    /// Selects the next larger mass ratio.
     Heavier,
+    /// Selects the next smaller mass ratio.
     Lighter,
-    /// The start angle one step clockwise.
+    /// Turns the start angles by one step clockwise.
     TurnLeft,
-    /// The start angle one step counter-clockwise.
+    /// Turns the start angles by one step counter-clockwise.
     TurnRight,
-    /// Start again with the same settings.
+    /// Starts the scene again with the same settings.
     Restart,
     NextScene,
     PreviousScene,
-    /// Play a scene with the settings that are its own.
+    /// Plays a scene with its own initial settings.
     Choose(SceneName),
-    /// Set one parameter and start again with it. Speed does not start again.
+    /// Sets one parameter and starts the scene again with it. A change of the speed does not
+    /// restart the scene.
     Set {
         field: Field,
-        /// Its value, in SI units.
+        /// The value, in SI units.
         value: f64,
     },
-    /// Start again by this method and no other, or as the plan has it.
+    /// Starts the scene again by this method and no other; `None` leaves the choice to the plan.
     Method(Option<Method>),
-    /// Stop the scene's time, or let it go on.
+    /// Pauses the scene (`true`) or lets it continue.
     Pause(bool),
     TogglePause,
-    /// So many ticks, one in each tick of the clock, then stop.
+    /// Advances the scene by this number of ticks, one in each tick of the clock, and then pauses
+    /// it.
     Step(u32),
-    /// Nothing but an answer: what is played.
+    /// Requests the scene, its settings and its state. Changes nothing.
     Ask,
-    /// Nothing but an answer: what the plan of it is, as far as it is found.
+    /// Requests the plan of the scene, as far as it is known. Changes nothing.
     AskPlan,
-    /// Nothing but an answer: what the board is.
+    /// Requests the identity of the board. Changes nothing.
     Identify,
-    /// Nothing but answers: the samples of this motion, computed in the time that frames leave free. It replaces one under way.
+    /// Requests the samples of this motion. They are computed in the time that frames leave free.
+    /// The scene continues. A job in progress is replaced.
     Simulate(Request),
-    /// Nothing but an answer: how long it takes to go on with the motion asked for last, so many steps at once and with interrupts
-    /// off. At most [`MOST_MEASURED_STEPS`](crate::config::MOST_MEASURED_STEPS) are made.
+    /// Requests the time of this number of further steps of the last requested motion. They are
+    /// made without a break and with interrupts off, at most
+    /// [`MOST_MEASURED_STEPS`](crate::config::MOST_MEASURED_STEPS).
     Measure {
         steps: u32,
-        /// By their code in memory, otherwise by that in flash.
+        /// True to run the code of the steps in RAM, false to run it in flash.
         in_ram: bool,
     },
-    /// Drive the panel as this controller; `None` identifies it. The choice outlasts a restart.
+    /// Drives the panel as this controller; `None` identifies it. The choice is kept across a
+    /// restart.
     Panel(Option<Controller>),
-    /// Play a scene with these settings, all at once: a few of them alone may be impossible.
+    /// Plays a scene with these settings. They are set all at once, because a part of them alone
+    /// may be impossible.
     Play(SceneName, Settings),
-    /// Asks for the last restart that the board made by itself; changes nothing.
+    /// Requests the last restart that the board made on its own. Changes nothing.
     AskRestart,
 }
 
-/// Stands before every command, and before no message to the host: there a smaller number says which it is.
+/// The mark byte before every command. A message to the host begins with a smaller number, which is
+/// its kind.
 const TO_CHIP: u8 = 0x80;
 
-/// The command as it goes over the wire; every answer repeats the number.
+/// Encodes a command for the wire. `request` is a number that every answer to it repeats.
 pub fn encode_command(request: u16, command: Command, wire: &mut [u8; MAX_WIRE]) -> &[u8] {
     encode(&(TO_CHIP, request, command), wire)
 }
 
-/// The number of an intact command, and the command if it can be read; `None` of a message that is none.
+/// Returns the number of an intact command, and the command if it can be read. Returns `None` if
+/// the message is not a command.
 pub fn decode_command(message: &[u8]) -> Option<(u16, Option<Command>)> {
     let numbered = message.strip_prefix(&[TO_CHIP])?;
     Some(
@@ -79,7 +89,7 @@ pub fn decode_command(message: &[u8]) -> Option<(u16, Option<Command>)> {
 }
 
 choice! {
-    /// What a command sets, or what is wrong in one.
+    /// A field that a command sets, or that is wrong in a command.
     Field {
         Method = "method";
         M1 = "m1";
@@ -92,15 +102,15 @@ choice! {
         W1 = "w1";
         W2 = "w2";
         Dt = "step size";
-        /// Mass ratio m2/m1: sets m2.
+        /// The mass ratio m2/m1; m2 is set.
         MassRatio = "mu";
-        /// Of both rods.
+        /// The angle of both rods.
         Angle = "angle";
-        /// Simulated time per real time.
+        /// The simulated time per real time.
         Speed = "speed";
-        /// What cannot be set.
+        /// A field that cannot be set.
         Field = "field";
-        /// The message itself: no known command, or not with that command's fields.
+        /// The message itself: it is no known command, or does not have the fields of that command.
         Message = "message";
         /// The board has no panel with a choice of controllers.
         Panel = "panel";
@@ -120,7 +130,7 @@ impl From<Error> for Field {
             Parameter::G => Field::G,
             Parameter::A1 => Field::A1,
             Parameter::A2 => Field::A2,
-            // A momentum at the start is the velocity times masses and lengths.
+            // The initial momenta follow from the velocities, masses and lengths.
             Parameter::W1 | Parameter::P1 => Field::W1,
             Parameter::W2 | Parameter::P2 => Field::W2,
             _ => Field::Dt,

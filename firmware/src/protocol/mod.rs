@@ -1,24 +1,28 @@
-//! What travels over the serial link, both ways: the chip and the host use this same code.
+//! The protocol of the serial link, in both directions. The chip and the host use this same code.
 //!
-//! A message on the wire is `COBS(version, message, CRC)` between two zero bytes. The version is one byte; the message is a
-//! [`ToHost`], or a mark, a number chosen by the host and a [`Command`], in [postcard](https://postcard.jamesmunns.com)'s
-//! format and SI units; the CRC is CRC-32/ISO-HDLC over everything before it, little-endian.
+//! A message on the wire is `COBS(version, message, CRC)` between two zero bytes. The version is
+//! one byte. The message is a [`ToHost`]; or it is a mark byte, a number chosen by the host and a
+//! [`Command`]. Its format is [postcard](https://postcard.jamesmunns.com), and its units are SI
+//! units. The CRC is the CRC-32/ISO-HDLC of all bytes before it, little-endian.
 //!
-//! # What gets past the check
+//! # Undetected errors
 //!
-//! CRC-32/ISO-HDLC detects every change of up to four bits in a body (test `link`), and of any other damage all but one
-//! in 2^32 = 4.3e9. A flipped bit on the wire may do more than that to the body, for it may make or unmake a zero, which
-//! moves bytes: of ten million frames sent through a link that flips one bit in 10,000, half a million are damaged, and
-//! the chance that a single one of them is taken for good is 550,000/2^32 = 1.3e-4. Tests `link` and
-//! `random_input` try it.
+//! CRC-32/ISO-HDLC detects every change of up to four bits in a body (test `link`). Of other errors
+//! it misses one in 2^32 = 4.3e9.
 //!
-//! A delimiter stands before and after each message, so that one that arrives intact is recovered whatever happened to
-//! those before and after it; what is missing shows in the sequence numbers of the frames.
+//! A flipped bit on the wire can change more than one bit of the body, because it can create or
+//! remove a zero, which moves bytes. Of ten million frames on a link that flips one bit in 10,000,
+//! half a million are damaged. The probability that a single one of them is accepted is
+//! 550,000/2^32 = 1.3e-4. The tests `link` and `random_input` try it.
+//!
+//! Every message has a delimiter before and after it. So a message that arrives intact is
+//! recovered even if its neighbours are damaged. The sequence numbers of the frames show which
+//! ones are missing.
 //!
 //! # When the host stops reading
 //!
-//! The board waits for its serial port a bounded time, then drops the message and goes on: the motion never waits for
-//! the host. The frames dropped are missing from the sequence.
+//! The board waits for its serial port for a bounded time. Then it drops the message and continues,
+//! so that the motion never waits for the host. Dropped frames are missing from the sequence.
 
 mod command;
 mod to_host;
@@ -34,16 +38,18 @@ pub use to_host::{
     Answer, BoardName, Cause, Frame, Identity, PlayState, Restarted, Status, ToHost,
 };
 
-/// The version of the protocol; the first byte of every message.
+/// The version of the protocol: the first byte of every message.
 pub const VERSION: u8 = 12;
-/// The most bytes that a message takes by itself.
+/// The largest size of a message without version and CRC, bytes.
 pub const MAX_MESSAGE: usize = 97;
-/// The most bytes it takes before framing: with version and CRC.
+/// The largest size of a message before framing, with version and CRC, bytes.
 const MAX_BODY: usize = 1 + MAX_MESSAGE + 4;
-/// The most bytes a message takes on the wire: COBS adds one byte (bodies are below 254), the delimiters another two.
+/// The largest size of a message on the wire, bytes. COBS adds one byte, because bodies are below
+/// 254 bytes, and the delimiters add two.
 pub const MAX_WIRE: usize = MAX_BODY + 3;
 
-/// The message as it goes over the wire, between delimiters: the front of `wire`. All messages fit (test `link`).
+/// Encodes a message for the wire, with its delimiters. Returns the used part of `wire`. All
+/// messages fit (test `link`).
 pub fn encode<'wire>(message: &impl Serialize, wire: &'wire mut [u8; MAX_WIRE]) -> &'wire [u8] {
     frame(
         postcard::to_slice(message, &mut [0; MAX_MESSAGE]).unwrap_or_default(),
@@ -51,7 +57,7 @@ pub fn encode<'wire>(message: &impl Serialize, wire: &'wire mut [u8; MAX_WIRE]) 
     )
 }
 
-/// The message in `bytes`; `None` unless they hold just that.
+/// Returns the message in `bytes`; `None` unless they contain exactly one message.
 pub fn read<M: DeserializeOwned>(bytes: &[u8]) -> Option<M> {
     postcard::take_from_bytes(bytes)
         .ok()
@@ -59,16 +65,19 @@ pub fn read<M: DeserializeOwned>(bytes: &[u8]) -> Option<M> {
         .map(|(message, _)| message)
 }
 
-/// Any message, given as bytes; nothing if they are more than [`MAX_MESSAGE`].
-#[inline(never)] // flash has room for one of it, not for one of each kind
+/// Frames a message of bytes for the wire. Returns nothing if it is longer than [`MAX_MESSAGE`].
+#[inline(never)] // One copy instead of one for each kind of message, to save flash.
 pub fn frame<'wire>(message: &[u8], wire: &'wire mut [u8; MAX_WIRE]) -> &'wire [u8] {
     if message.len() > MAX_MESSAGE {
         return &[];
     }
+
     let mut crc = CRC.digest();
     crc.update(&[VERSION]);
     crc.update(message);
     let crc = crc.finalize().to_le_bytes();
+
+    // The delimiters are the zeros before and after the encoded bytes.
     wire.fill(0);
     let [_, inside @ ..] = wire;
     let mut encoder = CobsEncoder::new(inside);
@@ -76,6 +85,7 @@ pub fn frame<'wire>(message: &[u8], wire: &'wire mut [u8; MAX_WIRE]) -> &'wire [
         .into_iter()
         .try_for_each(|part| encoder.push(part));
     debug_assert!(framed.is_ok());
+
     let end = 1 + encoder.finalize();
     wire.get(..=end).unwrap_or_default()
 }
@@ -83,10 +93,10 @@ pub fn frame<'wire>(message: &[u8], wire: &'wire mut [u8; MAX_WIRE]) -> &'wire [
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(target_os = "none", derive(defmt::Format))]
 pub enum LinkError {
-    /// Not a COBS encoding, or shorter or longer than any message.
+    /// The bytes are not a COBS encoding, or are shorter or longer than any message.
     Malformed,
     Checksum,
-    /// The sender speaks another version.
+    /// The sender uses another version of the protocol.
     Version(u8),
 }
 
@@ -100,12 +110,14 @@ impl LinkError {
     }
 }
 
-/// Cuts a byte stream into checked messages; resynchronises at the next delimiter after any damage.
+/// A decoder that splits a byte stream into checked messages. After damage it resynchronises at the
+/// next delimiter.
 #[derive(Debug)]
 pub struct Decoder {
     cobs: DecoderState,
     body: [u8; MAX_BODY],
-    /// Bytes of the body received since the last delimiter; beyond the longest body they are counted but not kept.
+    /// The number of bytes of the body received since the last delimiter. Bytes beyond the longest
+    /// body are counted but not kept.
     received: usize,
 }
 
@@ -120,7 +132,7 @@ impl Default for Decoder {
 }
 
 impl Decoder {
-    /// Takes one byte. At the end of a message: the message, or what is wrong with it.
+    /// Takes one byte. At the end of a message returns the message, or its error.
     pub fn push(&mut self, byte: u8) -> Option<Result<&[u8], LinkError>> {
         match self.cobs.feed(byte) {
             Ok(DecodeResult::NoData | DecodeResult::DataStart) => None,
@@ -143,12 +155,13 @@ impl Decoder {
     }
 }
 
-/// The message in a body, if it is intact and of this version.
+/// Returns the message in a body if it is intact and of this version.
 fn open(body: &[u8]) -> Result<&[u8], LinkError> {
     let (checked, crc) = body.split_last_chunk().ok_or(LinkError::Malformed)?;
     if CRC.checksum(checked) != u32::from_le_bytes(*crc) {
         return Err(LinkError::Checksum);
     }
+
     match checked {
         [VERSION, message @ ..] => Ok(message),
         [version, ..] => Err(LinkError::Version(*version)),

@@ -1,4 +1,4 @@
-//! What a board sends: a frame after each that it has drawn, and answers.
+//! The messages of a board to the host: a frame message after each drawn frame, and answers.
 
 use core::fmt;
 
@@ -11,43 +11,50 @@ use crate::job::Reading;
 use crate::motion::{Planned, Settings};
 use crate::scenes::{Report, SceneName};
 
+/// A message to the host.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum ToHost {
-    /// One drawn frame, sent as soon as it is on the panel.
+    /// A drawn frame, sent as soon as it is on the panel.
     Frame(Frame),
-    /// The board has restarted by itself and plays on, from the start of its scene. The frames after it are counted from 0
-    /// again. Over USB no host hears this message, because a restart ends the connection: a host
-    /// asks with [`Command::AskRestart`](super::Command::AskRestart) when it has opened the port.
+    /// The board has restarted on its own, and plays its scene from the start. Later frames are
+    /// counted from 0 again.
+    ///
+    /// Over USB no host receives this message, because a restart ends the connection. A host that
+    /// opens the port asks with [`Command::AskRestart`](super::Command::AskRestart).
     Restarted(Restarted),
-    /// To the command of this number.
+    /// An answer to the command with this number.
     Answer(u16, Answer),
 }
 
+/// An answer to a command.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Answer {
     /// The command has been executed.
     Done,
-    /// This is wrong: the command is not executed, and nothing was changed; or the motion cannot be computed, or not to its end.
+    /// The field that is wrong. The command is not executed, and nothing has changed; or the
+    /// requested motion cannot be computed, or not to its end.
     Refused(Field),
-    /// What is played, and from what start; and the state of the panel.
+    /// The scene and its settings, and the state of the panel.
     Status(Status),
     /// The plan of the scene; `None` if it shows no motion.
     Planned(Option<Planned>),
-    /// What the board is.
+    /// The identity of the board.
     Identity(Identity),
-    /// One sample of the motion asked for. The first one, index 0, is the start.
+    /// A sample of the requested motion. The first one, with index 0, is the start.
     Sample { index: u32, reading: Reading },
-    /// The motion asked for follows, but its step is too long to resolve every motion of its energy; the longest that would, s.
+    /// The longest step that resolves every motion of the energy of the requested one, s. The step
+    /// of the request is longer. The samples follow all the same.
     StepTooLong(f64),
-    /// How long steps took: processor cycles, what calls them included; 0 where nothing counts cycles, as in QEMU, or the code
-    /// does not stand there.
+    /// The time of the steps in processor cycles, including the call. It is 0 if there is no cycle
+    /// counter, as in QEMU, or if the code is not in that memory.
     Measured { steps: u32, cycles: u32 },
-    /// The last restart that the board made by itself; `None` if it has made none since it was
+    /// The last restart that the board made on its own; `None` if it has made none since it was
     /// switched on or reset from outside.
     Restart(Option<Restarted>),
 }
 
 impl ToHost {
+    /// Returns the frame; `None` for another message.
     pub fn frame(self) -> Option<Frame> {
         if let Self::Frame(frame) = self {
             Some(frame)
@@ -56,6 +63,7 @@ impl ToHost {
         }
     }
 
+    /// Returns the restart; `None` for another message.
     pub fn restarted(self) -> Option<Restarted> {
         if let Self::Restarted(restarted) = self {
             Some(restarted)
@@ -64,7 +72,7 @@ impl ToHost {
         }
     }
 
-    /// With its number.
+    /// Returns the answer and the number of its command; `None` for another message.
     pub fn answer(self) -> Option<(u16, Answer)> {
         if let Self::Answer(request, answer) = self {
             Some((request, answer))
@@ -76,39 +84,43 @@ impl ToHost {
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Frame {
-    /// Drawn frames since reset; a gap is a frame lost on the way, unless the board has [`Restarted`].
+    /// The number of frames drawn since reset. A gap means that a frame was lost on the way, unless
+    /// the board has [`Restarted`].
     pub sequence: u32,
-    /// Ticks whose frame was never drawn, since reset.
+    /// The number of ticks since reset whose frame was not drawn.
     pub dropped: u32,
-    /// Bytes from the host that were lost because they came faster than they were taken, since reset; at least so many.
+    /// A lower bound of the number of bytes from the host that were lost since reset because they
+    /// came faster than they were taken.
     pub lost: u32,
     pub scene: SceneName,
     pub state: PlayState,
     pub mass_ratio: f32,
-    /// Start angle of rod 1, rad; on the page that of both.
+    /// The start angle of rod 1, rad. In the page's settings both rods have it.
     pub start_angle: f32,
-    /// The scene in numbers, to the last bit.
+    /// The report of the scene, to the last bit.
     pub report: Report,
-    /// Counts of the processor clock that the scene took for this frame, moving and drawing: cycles on a chip; QEMU
-    /// does not model cycles, there they say how much of the tick its own clock let pass.
+    /// The time that the scene took for this frame, to advance and to be drawn, in counts of the
+    /// processor clock. They are cycles on a chip. QEMU does not model cycles; there they are the
+    /// time by its own clock.
     pub scene_cycles: u32,
-    /// The same for all of the frame before, sending it to the panel and over the link included.
+    /// The same for the whole previous frame, including its transfer to the panel and over the
+    /// link.
     pub busy_cycles: u32,
 }
 
-/// What is played, as far as it can be played again from it.
+/// The state of the player. It is sufficient to play the scene again.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Status {
     pub scene: SceneName,
     pub settings: Settings,
-    /// The method that was asked for; `None` leaves it to the plan.
+    /// The requested method; `None` leaves the choice to the plan.
     pub method: Option<Method>,
-    /// The class of the processor, by its place in [`PROCESSORS`](crate::config::PROCESSORS).
+    /// The class of the processor, as an index in [`PROCESSORS`](crate::config::PROCESSORS).
     pub processor: u8,
     pub state: PlayState,
-    /// Ticks still to do before it stops, if it was told to do some.
+    /// The number of ticks left of a command to advance step by step.
     pub steps: u32,
-    /// Simulated time per real time.
+    /// The simulated time per real time.
     pub speed: f32,
     /// The state of the panel.
     pub panel: PanelReport,
@@ -117,12 +129,12 @@ pub struct Status {
 choice! {
     /// The state of the scene's time.
     PlayState {
-        /// It advances.
+        /// The scene advances.
         Playing = "playing";
-        /// It stands still until a command lets it go on.
+        /// The scene is paused until a command lets it continue.
         Paused = "paused";
-        /// It stands still because the motion is too fast for this chip, or for the method that the
-        /// user has selected. Other settings or another scene start again.
+        /// The scene has stopped because the motion is too fast for this chip, or for the method
+        /// that the user has selected. Other settings or another scene start again.
         Stopped = "stopped";
     }
 }
@@ -130,34 +142,35 @@ choice! {
 choice! {
     /// Why the board restarted.
     Cause {
-        /// No frame was finished for too long.
+        /// The board finished no frame for too long.
         Hang = "hang";
-        /// The program found itself in a state that cannot be.
+        /// The program reached a state that should be impossible.
         Panic = "panic";
-        /// The processor could not go on.
+        /// The processor took a fault.
         Fault = "fault";
     }
 }
 
-/// What is said of the program and the scene is how things stood before.
+/// A restart, and the state of the program and of the scene before it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Restarted {
-    /// `None` where it cannot be found out.
+    /// The cause; `None` if it is unknown.
     pub cause: Option<Cause>,
-    /// Restarts in a row, this one included; the board forgets them after a minute without one.
+    /// The number of restarts in a row, including this one. After a minute without a restart the
+    /// board counts from 0.
     pub restarts: u8,
-    /// Where the program was, as far as that could be found out, else 0.
+    /// The program counter; 0 if it is unknown.
     pub pc: u32,
-    /// Where it would have returned to, likewise.
+    /// The return address; 0 if it is unknown.
     pub lr: u32,
     /// The processor's Configurable Fault Status Register.
     pub cfsr: u32,
-    /// The last frame shown: its scene and tick.
+    /// The scene and the tick of the last frame that was shown.
     pub scene: SceneName,
     pub step: u64,
 }
 
-/// Where it stood.
+/// Writes the scene and the tick of the last frame.
 impl fmt::Display for Restarted {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "scene {}, step {}", self.scene.name(), self.step)
@@ -166,13 +179,13 @@ impl fmt::Display for Restarted {
 
 choice! {
     BoardName {
-        /// Stellaris' evaluation board.
+        /// The Stellaris LM3S6965 evaluation board.
         Lm3s6965evb = "lm3s6965evb";
-        /// ARM's MPS2 with image AN386.
+        /// The ARM MPS2 with image AN386.
         Mps2An386 = "mps2-an386";
-        /// Any board with an STM32F405 or F407.
+        /// A board with an STM32F405 or F407.
         Stm32f405 = "stm32f405";
-        /// Raspberry Pi's Pico.
+        /// The Raspberry Pi Pico.
         Pico = "pico";
     }
 }
@@ -181,12 +194,12 @@ choice! {
 pub struct Identity {
     pub board: BoardName,
     pub hertz: u32,
-    /// What the processor says that it is: CPUID.
+    /// The CPUID register of the processor.
     pub processor: u32,
-    /// What the chip says that it is, and its unique number; zeros where it has none.
+    /// The identification of the chip and its unique number; zeros if it has none.
     pub chip: [u32; 4],
-    /// CRC-32 of the program in its flash, code and constants.
+    /// The CRC-32 of the program in flash, code and constants.
     pub image: u32,
-    /// Bytes of that.
+    /// The size of the program, bytes.
     pub image_bytes: u32,
 }

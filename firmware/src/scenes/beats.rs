@@ -1,5 +1,6 @@
-//! Beats that close: where the frequencies are as whole numbers, small oscillations come back to their start after a
-//! few periods and their Lissajous figure closes; the exact motion from the same start does not.
+//! Beats that close. If the two frequencies have a ratio of whole numbers, small oscillations
+//! return to their start after a few periods, and their Lissajous figure closes. The exact motion
+//! from the same start does not return.
 
 use double_pendulum::{Error, Modes, Oscillation, Parameters, SmallOscillations};
 
@@ -10,19 +11,19 @@ use crate::graphics::{
 use crate::motion::{Resources, Settings, Simulation};
 use crate::scenes::{Report, Scene, draw_clock};
 
-/// The middles of the two figures, and how far a mode reaches in them, pixels.
+/// The middles of the two figures, and the largest swing of a mode in them, pixels.
 const MIDDLES: [(f32, f32); 2] = [(23.5, 32.5), (104.5, 32.5)];
 const REACH: f32 = 21.5;
-/// Half the width of the line, the radius of the moving spot and the gap around it, subpixels.
+/// Half the width of the line, the radius of the moving spot, and the gap around it, subpixels.
 const HALF_WIDTH: u8 = 36;
 const SPOT_RADIUS: u8 = 120;
 const GAP: u8 = 12;
 /// The amplitude of angle 2 in each mode, degrees.
 const AMPLITUDE: f32 = 12.0;
 
-/// Equal rods with the slow mode at its turning point and the fast mode on its way through rest, both with one
-/// amplitude of angle 2.
-#[inline(never)] // no second copy
+/// Returns equal rods with the slow mode at its turning point, and the fast mode on its way through
+/// rest. Both modes have the same amplitude of angle 2.
+#[inline(never)] // Not inlined, to save flash.
 pub fn closing(mass_ratio: f32) -> Settings {
     let gravity = GRAVITY as f32;
     let parameters = Parameters::equal_rods(mass_ratio, ROD, gravity);
@@ -37,17 +38,23 @@ pub fn closing(mass_ratio: f32) -> Settings {
     }
 }
 
-/// The fast mode's share of angle 2 over the slow mode's: the linear motion on the left, the exact one on the right. The
-/// clock is that of the right one; what the left one misses is what the scene is about.
+/// The part of angle 2 in the fast mode over the part in the slow mode: the linear motion on the
+/// left, the exact motion on the right.
+///
+/// The clock belongs to the exact motion. The linear motion is not accurate; its difference is the
+/// subject of the scene.
 #[derive(Clone, Debug)]
 pub struct Beats {
     simulation: Simulation,
     linear: SmallOscillations<f32>,
+    /// The amplitude of angle 2 relative to angle 1, in the fast mode and in the slow mode.
     shape: [f32; 2],
+    /// Pixels per radian.
     scale: f32,
+    /// The ends of the two curves.
     spots: [Spot; 2],
     mass_ratio: f32,
-    /// Both angles of the exact motion, within half a turn either way, rad.
+    /// The angles of the exact motion, within half a turn either way, rad.
     exact: [f32; 2],
 }
 
@@ -58,11 +65,11 @@ impl Beats {
         directions.map(|[sin, cos]| libm::atan2f(sin, cos))
     }
 
-    /// Where the linear and the exact motion are, each in its figure.
+    /// Returns the positions of the linear and of the exact motion, each in its figure.
     fn spots(&self) -> [Spot; 2] {
         let [fast_shape, slow_shape] = self.shape;
         let spot = |(x, y): (f32, f32), [a1, a2]: [f32; 2]| {
-            // The slow mode's share of angle 2 across, the fast mode's upwards.
+            // The part in the slow mode is drawn across, the part in the fast mode upwards.
             let across = slow_shape * (a2 - fast_shape * a1) / (slow_shape - fast_shape);
             Spot::at(x + self.scale * across, y - self.scale * (a2 - across))
         };
@@ -75,6 +82,8 @@ impl Beats {
 impl Scene for Beats {
     fn new(settings: &Settings, resources: &Resources) -> Result<(Self, Option<f32>), Error> {
         let simulation = Simulation::new(settings, resources)?;
+
+        // Scale the larger amplitude to the figure.
         let modes = Modes::new(&settings.parameters.cast())?;
         let linear = SmallOscillations::new(modes, &settings.motion());
         let amplitude = |part: Oscillation<f32>, shape: f32| part.amplitude() * shape.abs();
@@ -85,6 +94,7 @@ impl Scene for Beats {
         } else {
             0.0
         };
+
         let spots = [Spot::default(); 2];
         let mut scene = Self {
             simulation,
@@ -98,7 +108,7 @@ impl Scene for Beats {
         scene.exact = scene.exact_angles();
         scene.spots = scene.spots();
 
-        // An error of both angles moves a spot by less than that of one times this.
+        // If both angles have an error, a spot moves by less than the error of one times this gain.
         let [fast_shape, _] = shape;
         let gain = libm::sqrtf(0.5 * (1.0 + fast_shape * fast_shape));
         Ok((scene, (scale > 0.0).then_some(4.0 * scale * gain)))
@@ -110,8 +120,8 @@ impl Scene for Beats {
         self.exact = self.exact_angles();
         let spots = self.spots();
 
-        // An angle that passes straight up goes on at the other edge of the figure, without a line
-        // across it.
+        // A curve whose angle passes straight up continues at the other edge of the figure, without
+        // a line across it.
         let wraps = |(from, to): (f32, f32)| (from - to).abs() > core::f32::consts::PI;
         let is_cut = [false, before.into_iter().zip(self.exact).any(wraps)];
         for ((from, to), is_cut) in self.spots.into_iter().zip(spots).zip(is_cut) {
@@ -130,6 +140,7 @@ impl Scene for Beats {
             plot::axis(canvas, x - REACH as i32, x + REACH as i32 + 1, y);
             plot::upright_axis(canvas, x, y - REACH as i32, y + REACH as i32 + 1);
         }
+
         for centre in self.spots {
             Disc {
                 centre,
@@ -138,6 +149,7 @@ impl Scene for Beats {
             }
             .draw(canvas, u8::MAX);
         }
+
         text::write(canvas, "linear", Anchor::Left(0));
         text::write(canvas, "exact", Anchor::Right(0));
         let mass_ratio = label::mass_ratio(self.mass_ratio);

@@ -1,4 +1,5 @@
-//! The butterfly: two pendulums that start a millionth of a radian apart, and how that grows.
+//! The butterfly effect: two pendulums that start a millionth of a radian apart, and the growth of
+//! their separation.
 
 use double_pendulum::Error;
 use double_pendulum::plan::PlannedRun;
@@ -12,56 +13,62 @@ use crate::graphics::{
 use crate::motion::{Resources, Settings, Simulation};
 use crate::scenes::{Report, Scene, draw_clock};
 
-/// Angle 1 of the second twin ahead of the first's at the start, rad.
+/// The initial difference of angle 1 between the second pendulum and the first, rad.
 const APART: f64 = 1e-6;
-/// The plot takes the right half but for a gap, columns.
+/// The width of the plot, columns: the right half without a gap.
 const PLOT_COLUMNS: usize = 60;
 const PLOT_LEFT: i32 = (WIDTH - PLOT_COLUMNS) as i32;
-/// The row of e-folding 0, and pixels per e-folding: ln(sqrt 2 pi/1e-6) = 15.3 is as far apart as twins can get.
+/// The row of e-folding 0, and the number of pixels per e-folding. The largest possible separation
+/// is ln(sqrt 2 pi/1e-6) = 15.3 e-foldings.
 const ZERO_ROW: f32 = 53.0;
 const SCALE: f32 = 2.6;
-/// The rows that carry the scale, and what they are.
+/// The rows of the scale, and their labels.
 const AXES: [(i32, &str); 4] = [
     (row(0.0), "0"),
     (row(5.0), "5"),
     (row(10.0), "10"),
     (row(15.0), "15"),
 ];
-/// The plot holds 60 columns of a quarter of a second: 15 s.
+/// The number of columns per second. The 60 columns of the plot are 15 s.
 const COLUMNS_PER_SECOND: u64 = 4;
 const TICKS_PER_COLUMN: u64 = TICK_RATE as u64 / COLUMNS_PER_SECOND;
-/// Brightness of the second twin, of 255.
+/// The brightness of the second pendulum, of 255.
 const SECOND: u8 = 110;
 
+/// Returns the row of this number of e-foldings.
 const fn row(e_foldings: f32) -> i32 {
     plot::height(e_foldings, ZERO_ROW, SCALE) as i32 / SUBPIXELS
 }
 
-/// Both pendulums at one pivot, and the e-foldings of their separation over time.
+/// Two pendulums at one pivot, and the e-foldings of their separation over time.
 ///
-/// Both go by what is right for longest, and the plan does not change it: one that is right to half a pixel may be off by far
-/// more than a millionth of a radian, and would soon hide what the twins do.
+/// Both use the initial method, the most accurate one within half the budget of a frame, or the
+/// method that the user has selected. The plan does not change it: a method that is accurate to
+/// half a pixel can be off by far more than a millionth of a radian, and would soon hide the growth
+/// of the separation.
 #[derive(Clone, Debug)]
 pub struct Butterfly {
     first: Simulation,
     second: PlannedRun,
     views: [View; 2],
-    /// The e-foldings in the plot, the oldest first.
+    /// The curve in the plot, the oldest value first.
     strip: Deque<Height, PLOT_COLUMNS>,
 }
 
 impl Butterfly {
-    /// The distance of the twins in the plane of the angles, rad; whole turns do not count.
+    /// Returns the distance of the two motions in the plane of the angles, rad. Whole turns are not
+    /// counted.
     fn separation(&self) -> f64 {
-        let ([first, second], turn) = (
-            [self.first.motion.state(), self.second.state()],
-            core::f64::consts::TAU,
-        );
+        let first = self.first.motion.state();
+        let second = self.second.state();
+        let turn = core::f64::consts::TAU;
+
         let [d1, d2] = [second.a1 - first.a1, second.a2 - first.a2]
             .map(|apart| apart - turn * libm::rint(apart / turn));
         libm::sqrt(d1 * d1 + d2 * d2)
     }
 
+    /// Appends the separation to the plot.
     fn put_down(&mut self) {
         let ratio = (self.separation() / APART) as f32;
         let e_foldings = libm::logf(ratio.max(f32::MIN_POSITIVE));
@@ -75,9 +82,9 @@ impl Butterfly {
 }
 
 impl Scene for Butterfly {
-    #[inline(never)] // all scenes' preparations would stand side by side on the stack
+    #[inline(never)] // Inlined, the preparations of all scenes would be on the stack together.
     fn new(settings: &Settings, resources: &Resources) -> Result<(Self, Option<f32>), Error> {
-        // A frame pays for both twins.
+        // A frame pays for both motions.
         let &Resources { processor, method } = resources;
         let each = Processor {
             frame: 0.5 * processor.frame,
@@ -89,6 +96,7 @@ impl Scene for Butterfly {
         };
         let first = Simulation::new(settings, &resources)?;
         let second = settings.run(APART, first.motion.stepping())?;
+
         let views = [first.motion.directions(), second.directions()]
             .map(|directions| View::new(&settings.parameters, Place::HALVES[0], directions));
         let mut scene = Self {
@@ -105,6 +113,7 @@ impl Scene for Butterfly {
         self.first.tick();
         let _is_lost = self.second.advance(1);
         let [first, second] = &mut self.views;
+
         first.trace(
             self.first.motion.directions(),
             ink,
@@ -112,6 +121,7 @@ impl Scene for Butterfly {
             u8::MAX,
         );
         second.turn(self.second.directions());
+
         if ticks.is_multiple_of(TICKS_PER_COLUMN) {
             self.put_down();
         }
@@ -121,6 +131,7 @@ impl Scene for Butterfly {
         let [first, second] = &self.views;
         second.draw(canvas, SECOND);
         first.draw(canvas, u8::MAX);
+
         for (row, e_foldings) in AXES {
             plot::axis(canvas, PLOT_LEFT, WIDTH as i32, row);
             text::write(
@@ -129,11 +140,15 @@ impl Scene for Butterfly {
                 Anchor::EndingAt(PLOT_LEFT, row - LINE / 2),
             );
         }
+
+        // The curve.
         let mut before = self.strip.front();
         for (x, now) in (PLOT_LEFT..).zip(&self.strip) {
             plot::column(canvas, x, *before.unwrap_or(now), *now, u8::MAX);
             before = Some(now);
         }
+
+        // The times at both ends of the plot.
         let span = (PLOT_COLUMNS as u64 / COLUMNS_PER_SECOND) as f32;
         let end = (report.time as f32).max(span);
         text::write(

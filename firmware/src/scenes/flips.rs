@@ -1,7 +1,9 @@
-//! Flips: from which starts a rod ever turns over, and when, computed here, coarse first.
+//! The map of flips: it shows for every start whether a rod turns over, and when. It is computed on
+//! the board, coarse first.
 
 use double_pendulum::flips::{Falling, Flip, Flips as Search, step_size};
-// What a processor with a floating-point unit computes in, and one without. A board links its own alone.
+// The numbers with and without a floating-point unit. A board links only the numbers of its own
+// processor.
 #[cfg(target_abi = "eabihf")]
 use double_pendulum::{DirectionF32Plain as Float, DirectionF32Plain as Fixed};
 #[cfg(not(target_os = "none"))]
@@ -15,28 +17,30 @@ use crate::graphics::{Anchor, Canvas, FadeLayer, Fading, HEIGHT, WIDTH, label, t
 use crate::motion::{Resources, Settings};
 use crate::scenes::{Report, Scene, time};
 
-/// A rod has so long to turn over, sqrt(l1/g).
+/// The time that is searched for a flip, in units of sqrt(l1/g).
 const LIMIT: f32 = 100.0;
-/// Greys for the time of the turn-over, by its logarithm from sqrt(l1/g) to the limit: 15 is soonest. The last one is
-/// for a rod that has not by then, and black for one that cannot.
+/// The number of greys for the time of the flip. They are on a logarithmic scale from sqrt(l1/g) to
+/// the limit; 15 is the soonest. Grey 1 means no flip before the limit, and black means that no
+/// flip is possible.
 pub const GREYS: u8 = 14;
 const LATER: u8 = 1;
 
-/// The first blocks, pixels across and down; the next are half as large.
+/// The size of the first blocks, pixels across and down. The next blocks are half as large.
 const COARSEST: usize = 8;
-/// The lower half is the upper one turned by half a turn: both starts are mirrored.
+/// The number of rows to compute. The lower half of the map is the upper half turned by half a
+/// turn, because both starts are mirror images.
 const ROWS: usize = HEIGHT / 2;
 
-/// The search, in the processor's own numbers, and the motion that it follows.
+/// The search in the processor's numbers, and the motion that it follows.
 #[derive(Clone, Debug)]
 enum Searching {
     Float(Search<Float>, Option<Falling<Float>>),
     Fixed(Search<Fixed>, Option<Falling<Fixed>>),
 }
 
-/// Both starting angles as axes, a1 across and a2 upwards, brightness the time of the first turn-over.
+/// The map of flips, with a1 across and a2 upwards. The brightness is the time of the first flip.
 ///
-/// The ink holds the map. The start angles of the settings do not matter, only the pendulum does.
+/// The ink contains the map. Of the settings only the pendulum matters, not its start.
 #[derive(Clone, Debug)]
 pub struct Flips {
     searching: Searching,
@@ -45,13 +49,15 @@ pub struct Flips {
     /// sqrt(l1/g), s.
     unit: f32,
     block: Block,
-    /// Pixels of the upper half that are done.
+    /// The number of blocks that are done. When all are done, it is the number of pixels of the
+    /// upper half.
     done: u32,
-    /// Ticks until all was done.
+    /// The number of ticks until all was done.
     elapsed: u64,
 }
 
-/// A block of pixels: its size, which is 0 when all is done, and its top left pixel, whose start is computed.
+/// A block of pixels: its size, which is 0 when all is done, and its top left pixel, whose start is
+/// computed.
 #[derive(Clone, Copy, Debug)]
 struct Block {
     size: usize,
@@ -60,7 +66,7 @@ struct Block {
 }
 
 impl Block {
-    /// The next one that is not part of a larger one with the same start.
+    /// Returns the next block, without those whose start was computed for a larger block.
     fn next(self) -> Self {
         let Self {
             mut size,
@@ -70,10 +76,13 @@ impl Block {
         loop {
             x += size;
             if x >= WIDTH {
-                (x, y) = (0, y + size);
+                x = 0;
+                y += size;
             }
             if y >= ROWS {
-                (size, x, y) = (size / 2, 0, 0);
+                size /= 2;
+                x = 0;
+                y = 0;
             }
             if size == 0 || size == COARSEST || (x | y) & size != 0 {
                 return Self { size, x, y };
@@ -81,9 +90,9 @@ impl Block {
         }
     }
 
-    /// Where it starts, rad: the middle of its pixel.
+    /// Returns the start angles of the block, rad: the middle of its top left pixel.
     fn start(self) -> [f32; 2] {
-        // Whole numbers, so that what lies opposite is the mirror image.
+        // The pixels are whole numbers, so that opposite starts are exact mirror images.
         let angle = |pixels: i32, all: usize| pixels as f32 * (core::f32::consts::PI / all as f32);
         let (x, y) = (self.x as i32, self.y as i32);
         [
@@ -92,7 +101,8 @@ impl Block {
         ]
     }
 
-    #[inline(never)] // one copy
+    /// Fills the block and its mirror image with a grey.
+    #[inline(never)] // Not inlined, to save flash.
     fn paint(self, ink: &mut FadeLayer, grey: u8) {
         let map = &mut ink.frame;
         map.all_greys = true;
@@ -106,8 +116,9 @@ impl Block {
 }
 
 impl Flips {
-    /// As [`Scene::new`], at the pace of any processor, in `f32` or in fixed point.
-    #[inline(never)] // one copy
+    /// Creates the map as [`Scene::new`] does, with the pace of any processor, in `f32` or in fixed
+    /// point.
+    #[inline(never)] // Not inlined, to save flash.
     pub fn at_pace(settings: &Settings, pace: FlipsPace, in_float: bool) -> Result<Self, Error> {
         let parameters = &settings.parameters;
         let unit = libm::sqrtf(parameters.l1 / parameters.g);
@@ -118,33 +129,30 @@ impl Flips {
         } else {
             Searching::Fixed(Search::new(parameters, dt, steps)?, None)
         };
-        let (mass_ratio, block) = (
-            settings.mass_ratio(),
-            Block {
+        Ok(Self {
+            searching,
+            pace,
+            mass_ratio: settings.mass_ratio(),
+            unit,
+            block: Block {
                 size: COARSEST,
                 x: 0,
                 y: 0,
             },
-        );
-        Ok(Self {
-            searching,
-            pace,
-            mass_ratio,
-            unit,
-            block,
             done: 0,
             elapsed: 0,
         })
     }
 
+    /// Returns true if all pixels are done.
     pub fn is_done(&self) -> bool {
         self.block.size == 0
     }
 }
 
-/// Makes at most `steps` steps from the start at these angles; what they and a start have cost, in steps, and what is known after
-/// them.
-#[inline(never)] // no second copy
+/// Starts the motion from these angles, or makes at most `steps` steps of it. Returns the cost, in
+/// steps, and the flip when it is known.
+#[inline(never)] // Not inlined, to save flash.
 fn work<F: Form<Real = f32>>(
     search: &Search<F>,
     falling: &mut Option<Falling<F>>,
@@ -153,7 +161,7 @@ fn work<F: Form<Real = f32>>(
     pace: FlipsPace,
 ) -> (u32, Option<Flip<f32>>) {
     let Some(motion) = falling else {
-        // No angle of the map is refused.
+        // The search refuses no angle of the map.
         *falling = search.start(a1, a2).ok().flatten();
         return if falling.is_some() {
             (pace.start, None)
@@ -161,6 +169,7 @@ fn work<F: Form<Real = f32>>(
             (pace.never, Some(Flip::Never))
         };
     };
+
     let before = motion.steps;
     let flip = search.advance(motion, steps);
     let made = motion.steps.wrapping_sub(before);
@@ -170,7 +179,7 @@ fn work<F: Form<Real = f32>>(
     (made.max(1), flip)
 }
 
-/// The grey of a flip, where `unit` is sqrt(l1/g), s.
+/// Returns the grey of a flip, where `unit` is sqrt(l1/g), s.
 fn grey(flip: Flip<f32>, unit: f32) -> u8 {
     match flip {
         Flip::Never => 0,
@@ -203,7 +212,8 @@ impl Scene for Flips {
         self.elapsed = ticks;
         let mut left = self.pace.steps;
         while left > 0 && !self.is_done() {
-            let (start, pace) = (self.block.start(), self.pace);
+            let start = self.block.start();
+            let pace = self.pace;
             let (cost, flip) = match &mut self.searching {
                 Searching::Float(search, falling) => work(search, falling, start, left, pace),
                 Searching::Fixed(search, falling) => work(search, falling, start, left, pace),
@@ -211,7 +221,8 @@ impl Scene for Flips {
             left = left.saturating_sub(cost);
             if let Some(flip) = flip {
                 self.block.paint(ink, grey(flip, self.unit));
-                (self.block, self.done) = (self.block.next(), self.done + 1);
+                self.block = self.block.next();
+                self.done += 1;
             }
         }
     }
@@ -223,6 +234,8 @@ impl Scene for Flips {
             Anchor::Right(0),
             text::WHITE_ON_BLACK,
         );
+
+        // The progress, and the mass ratio at the end.
         let corner = if self.is_done() {
             label::mass_ratio(self.mass_ratio)
         } else {

@@ -1,4 +1,5 @@
-//! Figure 2: the two frequencies of small oscillations over the mass ratio, with the present one marked.
+//! Figure 2 of the page: the two frequencies of small oscillations over the mass ratio. The current
+//! mass ratio is marked.
 
 use double_pendulum::{Error, Modes, Parameters};
 
@@ -8,37 +9,39 @@ use crate::graphics::{
 use crate::motion::{Resources, Settings};
 use crate::scenes::{Report, Scene};
 
-/// The least range of mass ratios across the frame, that of the figure; a heavier bob 2 widens it.
+/// The smallest range of mass ratios across the plot, as in the figure. A heavier bob 2 widens it.
 const LEAST_RANGE: f32 = 5.0;
-/// The mark is at most this far across.
+/// The largest position of the mark, as a fraction of the width of the plot.
 const FARTHEST_MARK: f32 = 0.8;
-/// The plot begins right of the scale's numbers.
+/// The first column of the plot, right of the numbers of its scale.
 const LEFT: i32 = 12;
 const COLUMNS: usize = WIDTH - LEFT as usize;
-/// The row of frequency 0 and how far the greatest is above it, pixels.
+/// The row of frequency 0, and the height of the largest frequency above it, pixels.
 const ZERO_ROW: f32 = 53.0;
 const RISE: f32 = 43.0;
-/// The scale has at most about so many numbers above 0.
+/// The approximate largest number of labels above 0.
 const NUMBERS: f32 = 4.0;
 const COLUMNS_PER_TICK: u32 = 2;
 const MARK_RADIUS: u8 = 112;
 const CURVE: u8 = 200;
 
-/// Both frequencies in sqrt(g/l), so that the mass ratio is all that matters; the curves grow from the left.
+/// The two frequencies in units of sqrt(g/l), so that they depend only on the mass ratio. The
+/// curves grow from the left.
 #[derive(Clone, Debug, Default)]
 pub struct Frequencies {
-    /// The mass ratio across the whole plot.
+    /// The mass ratio at the right edge of the plot.
     range: f32,
     /// Pixels per sqrt(g/l).
     scale: f32,
     mass_ratio: f32,
+    /// The frequencies at the current mass ratio.
     marked: [f32; 2],
-    /// Columns of the curves drawn so far, and where they end.
+    /// The number of columns of the curves that are drawn, and the heights of their ends.
     drawn: u32,
     ends: Option<[Height; 2]>,
 }
 
-/// The fast and the slow frequency of equal rods, in sqrt(g/l).
+/// Returns the fast and the slow frequency of equal rods, in units of sqrt(g/l).
 fn frequencies(mass_ratio: f32) -> Result<[f32; 2], Error> {
     let modes = Modes::new(&Parameters::equal_rods(mass_ratio, 1.0, 1.0))?;
     Ok([modes.fast.frequency, modes.slow.frequency])
@@ -67,7 +70,7 @@ impl Scene for Frequencies {
 
     fn tick(&mut self, _: u64, ink: &mut FadeLayer) {
         for _ in 0..COLUMNS_PER_TICK.min(COLUMNS as u32 - self.drawn) {
-            // The middle of the column; mass ratio 0 itself has no modes.
+            // The mass ratio in the middle of the column. Mass ratio 0 has no modes.
             let mass_ratio = (self.drawn as f32 + 0.5) * self.range / COLUMNS as f32;
             let Ok(frequencies) = frequencies(mass_ratio) else {
                 return;
@@ -77,12 +80,16 @@ impl Scene for Frequencies {
             for (before, now) in self.ends.unwrap_or(heights).into_iter().zip(heights) {
                 plot::column(&mut ink.frame, LEFT + self.drawn as i32, before, now, CURVE);
             }
-            (self.drawn, self.ends) = (self.drawn + 1, Some(heights));
+            self.drawn += 1;
+            self.ends = Some(heights);
         }
     }
 
     fn draw(&self, _: &Report, canvas: &mut Canvas) {
-        let (width, zero) = (WIDTH as i32, ZERO_ROW as i32);
+        let width = WIDTH as i32;
+        let zero = ZERO_ROW as i32;
+
+        // The scale.
         let step = plot::scale_step(RISE / self.scale / NUMBERS);
         for frequency in (0..).map(|number| number as f32 * step) {
             let row = (ZERO_ROW - self.scale * frequency) as i32;
@@ -96,6 +103,8 @@ impl Scene for Frequencies {
                 Anchor::EndingAt(LEFT, row - LINE / 2),
             );
         }
+
+        // The marks.
         let x = LEFT as f32 + self.mass_ratio / self.range * COLUMNS as f32;
         plot::upright_axis(canvas, x as i32, zero - RISE as i32, zero);
         for frequency in self.marked {
@@ -107,6 +116,8 @@ impl Scene for Frequencies {
             }
             .draw(canvas, u8::MAX);
         }
+
+        // The labels.
         let [fast, slow] = self.marked;
         text::write(canvas, &label::label("ω₁ ", fast, 3, ""), Anchor::Left(0));
         text::write(canvas, &label::label("ω₂ ", slow, 3, ""), Anchor::Middle(0));

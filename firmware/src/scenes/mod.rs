@@ -1,4 +1,5 @@
-//! What a scene is, and the catalogue: a row each gives the name, the scene and what it starts with.
+//! The trait of all scenes, and the catalogue. Each row of the catalogue contains a name, a scene
+//! and its initial settings.
 
 mod beats;
 mod butterfly;
@@ -16,27 +17,35 @@ use crate::config::{GREATEST_ANGLE, TICK_RATE};
 use crate::graphics::{Anchor, Canvas, FadeLayer, Fading, label, text};
 use crate::motion::{Horizon, Resources, Settings, Simulation};
 
-/// Something to watch: it starts from settings, moves tick by tick and is drawn when there is time for it.
+/// A figure that moves. It starts from settings, advances tick by tick, and is drawn when there is
+/// time.
 pub trait Scene: Sized {
+    /// The fading of the ink.
     const FADING: Fading = Fading::TRACE;
 
-    /// At the start, and the height of a display, pixels, on which two rods as long as those shown reach from the middle to the edge;
-    /// where angles are shown as curves, a rod is a radian long; `None` if nothing is shown that can be planned. The kernel's error if
-    /// the settings describe no pendulum, or none that this scene can show.
+    /// Creates the scene at its start. Returns also the height of the display for the plan, pixels.
+    ///
+    /// On a display of this height, two rods as long as in the scene extend from the middle to the
+    /// edge. If the scene shows angles as curves, a rod is as long as a radian. The height is
+    /// `None` if there is nothing to plan.
+    ///
+    /// Returns the kernel's error if the settings describe no pendulum, or a pendulum that the
+    /// scene cannot show.
     fn new(settings: &Settings, resources: &Resources) -> Result<(Self, Option<f32>), Error>;
 
-    /// Advances by one tick, to so many `ticks` after the start, and adds to the ink what stays. The frame does not depend on
-    /// which of those before were drawn.
+    /// Advances by one tick, to `ticks` ticks after the start, and adds the lasting part of the
+    /// picture to the ink. The result is the same if earlier ticks were not drawn.
     fn tick(&mut self, ticks: u64, ink: &mut FadeLayer);
 
-    /// Draws over the ink; `report` is what it has just been told in numbers, which need not be found twice.
+    /// Draws the rest of the picture over the ink. `report` is the current report of the scene, so
+    /// that its numbers need not be computed again.
     fn draw(&self, report: &Report, canvas: &mut Canvas);
 
     fn report(&self, ticks: u64) -> Report {
         Report::at(ticks)
     }
 
-    /// The motion whose method and steps the plan may change.
+    /// Returns the motion whose method and step count the plan may change.
     fn planned(&mut self) -> Option<&mut Simulation> {
         None
     }
@@ -48,27 +57,30 @@ pub trait Scene: Sized {
     }
 }
 
-/// The smallest energy error that `f64` can show: the energy is a sum of some 20 rounded numbers.
+/// The smallest energy error that `f64` can resolve. The energy is a sum of some 20 rounded
+/// numbers.
 pub const LEAST_ENERGY_ERROR: f32 = 4e-15;
 
+/// The numbers of a scene at one tick.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Report {
-    /// Ticks of 1/60 s since the start.
+    /// The number of ticks of 1/60 s since the start.
     pub step: u64,
-    /// Simulated time since the start, s.
+    /// The simulated time since the start, s.
     pub time: f64,
-    /// The canonical state of the first pendulum shown, turns counted; zeros where none moves.
+    /// The canonical state of the first pendulum shown, with all turns; zeros if no pendulum moves.
     pub state: State<f32>,
-    /// (E - E0)/(E0 - Emin) of that pendulum as it is computed, before its numbers are rounded for
-    /// this report. Less than [`LEAST_ENERGY_ERROR`] either way is rounding of the energy itself.
+    /// The energy error (E - E0)/(E0 - Emin) of that pendulum, computed before its numbers are
+    /// rounded for this report. An error smaller than [`LEAST_ENERGY_ERROR`] is rounding of the
+    /// energy itself.
     pub energy_error: f32,
     pub horizon: Horizon,
-    /// What it is computed by; `None` where no motion is.
+    /// The method and step count; `None` if no motion is computed.
     pub stepping: Option<Stepping>,
 }
 
 impl Report {
-    /// Of a figure in which no pendulum moves.
+    /// Returns the report of a figure without a moving pendulum.
     fn at(ticks: u64) -> Self {
         Self {
             step: ticks,
@@ -77,8 +89,8 @@ impl Report {
         }
     }
 
-    /// Of a scene whose first pendulum is `simulation`.
-    #[inline(never)] // no second copy
+    /// Returns the report of a scene whose first pendulum is `simulation`.
+    #[inline(never)] // Not inlined, to save flash.
     pub fn of(simulation: &Simulation) -> Self {
         let motion = &simulation.motion;
         Self {
@@ -90,12 +102,12 @@ impl Report {
     }
 }
 
-/// The simulated time after so many ticks, s.
+/// Returns the simulated time after `ticks` ticks, s.
 fn time(ticks: u64) -> f64 {
     ticks as f64 / f64::from(TICK_RATE)
 }
 
-/// Writes the time and until when the frame can be trusted; the time stands out once it is known that it no longer can.
+/// Writes the time and the horizon. The time is highlighted when the horizon is known and past.
 fn draw_clock(canvas: &mut Canvas, report: &Report, time_at: Anchor, trust_at: Anchor) {
     let &Report { time, horizon, .. } = report;
     let shown = label::time(time);
@@ -114,29 +126,47 @@ macro_rules! catalogue {
         }
 
         impl SceneName {
-            /// What it starts with when it is chosen.
+            /// Returns the initial settings of the scene.
             pub fn first_settings(self) -> Settings {
                 match self { $(Self::$row => $first,)* }
             }
         }
 
-        #[expect(clippy::large_enum_variant, reason = "without a heap there is nowhere else to keep it")]
+        #[expect(
+            clippy::large_enum_variant,
+            reason = "without a heap there is nowhere else to keep it"
+        )]
         #[derive(Clone, Debug)]
         pub enum AnyScene { $($row($scene),)* }
 
         impl AnyScene {
-            /// Starts the scene `name` in the place of this one, and its height; if it cannot show `settings`, this one goes on.
-            pub fn start(&mut self, name: SceneName, settings: &Settings, resources: &Resources) -> Result<Option<f32>, Error> {
-                match name { $(SceneName::$row => self.become_one(settings, resources, Self::$row),)* }
+            /// Starts the scene `name` in place of this one, and returns its height for the plan.
+            /// If the scene cannot show `settings`, this one continues.
+            pub fn start(
+                &mut self,
+                name: SceneName,
+                settings: &Settings,
+                resources: &Resources,
+            ) -> Result<Option<f32>, Error> {
+                match name {
+                    $(SceneName::$row => self.become_one(settings, resources, Self::$row),)*
+                }
             }
 
-            /// As [`Scene::tick`]; the ink, which was clear at the start, fades.
+            /// Advances the scene as [`Scene::tick`], and fades the ink. The ink must be clear at
+            /// the start.
             pub fn tick(&mut self, ticks: u64, ink: &mut FadeLayer) {
-                let fading = match self { $(Self::$row(scene) => { scene.tick(ticks, ink); <$scene>::FADING })* };
+                let fading = match self {
+                    $(Self::$row(scene) => {
+                        scene.tick(ticks, ink);
+                        <$scene>::FADING
+                    })*
+                };
                 ink.fade(fading);
             }
 
-            /// Draws the whole frame over what was there; `report` is the scene's, as of now.
+            /// Draws the whole frame, over the previous one. `report` is the current report of the
+            /// scene.
             pub fn draw(&self, report: &Report, ink: &FadeLayer, canvas: &mut Canvas) {
                 canvas.clone_from(&ink.frame);
                 match self { $(Self::$row(scene) => scene.draw(report, canvas),)* }
@@ -146,7 +176,7 @@ macro_rules! catalogue {
                 match self { $(Self::$row(scene) => scene.planned(),)* }
             }
 
-            /// As [`Scene::is_too_fast`].
+            /// Returns [`Scene::is_too_fast`].
             pub fn is_too_fast(&self) -> bool {
                 match self { $(Self::$row(scene) => scene.is_too_fast(),)* }
             }
@@ -175,12 +205,12 @@ catalogue! {
 }
 
 impl AnyScene {
-    /// An empty figure, until a scene is started in its place.
+    /// Returns an empty figure, which is shown until a scene starts.
     pub fn empty() -> Self {
         Self::Frequencies(frequencies::Frequencies::default())
     }
 
-    #[inline(never)] // the scenes of all the catalogue would stand side by side on the stack of who chooses one
+    #[inline(never)] // Inlined, all scenes of the catalogue would be on the stack of the caller.
     fn become_one<S: Scene>(
         &mut self,
         settings: &Settings,
@@ -194,7 +224,7 @@ impl AnyScene {
 }
 
 impl SceneName {
-    /// Whether it shows a motion, which starts from two angles.
+    /// Returns true if the scene shows a motion, which starts from two angles.
     pub fn has_angles(self) -> bool {
         !matches!(self, Self::Frequencies | Self::Flips)
     }
@@ -204,16 +234,17 @@ impl SceneName {
         matches!(self, Self::SmallLight | Self::SmallEqual | Self::SmallHeavy)
     }
 
-    /// The next one in the catalogue; after the last the first.
+    /// Returns the next scene of the catalogue; after the last the first.
     pub fn next(self) -> Self {
         self.turned(1)
     }
 
-    /// The one before; before the first the last.
+    /// Returns the previous scene of the catalogue; before the first the last.
     pub fn previous(self) -> Self {
         self.turned(Self::ALL.len() - 1)
     }
 
+    /// Returns the scene `by` rows further in the catalogue, which is cyclic.
     fn turned(self, by: usize) -> Self {
         let place = Self::ALL
             .iter()

@@ -1,6 +1,9 @@
-//! Pendulums with bob 2's trace. The page's animation; and two motions side by side: figure 7, the page's chaotic motion by the right
-//! equations and by the ones it prints, and upright, both rods at exactly 180 degrees, where the pendulum would stand for ever if the
-//! number pi could be held.
+//! Pendulums with the trace of bob 2. There are three scenes:
+//!
+//! - `page`: the animation of the page;
+//! - `figure-7`: the page's chaotic motion, by the correct equations and by the misprinted ones;
+//! - `upright`: both rods start at exactly 180 degrees, where the pendulum would remain for ever if
+//!   the number pi could be represented exactly.
 
 use double_pendulum::plan::Stepping;
 use double_pendulum::{DirectionF32, Error, Method, Parameters, Pendulum, Real, Run, State};
@@ -16,7 +19,8 @@ use crate::graphics::{
 use crate::motion::{Horizon, Misprinted, Resources, Settings, Simulation};
 use crate::scenes::{Report, Scene, draw_clock, time};
 
-/// One pendulum, bob 2's trail, and settings and time in the corners, the one place the motion never reaches.
+/// A pendulum and the trail of bob 2. The settings and the time are in the corners, which the
+/// motion never reaches.
 #[derive(Clone, Debug)]
 pub struct Page {
     settings: Settings,
@@ -60,12 +64,14 @@ impl Scene for Page {
 
     fn draw(&self, report: &Report, canvas: &mut Canvas) {
         self.view.draw(canvas, u8::MAX);
+
         let [degrees1, degrees2] = self.settings.degrees;
         text::write(
             canvas,
             &label::mass_ratio(self.settings.mass_ratio()),
             Anchor::Left(0),
         );
+
         if degrees1 == degrees2 {
             text::write(
                 canvas,
@@ -100,7 +106,7 @@ impl Scene for Page {
     }
 }
 
-/// Two motions in their halves of the frame, each with bob 2's whole trace.
+/// Two motions in the two halves of the frame, each with the whole trace of bob 2.
 #[derive(Clone, Debug)]
 struct Halves([View; 2]);
 
@@ -117,7 +123,7 @@ impl Halves {
         }
     }
 
-    /// Draws both pendulums or, if the right one `is_lost`, the left one.
+    /// Draws both pendulums, with a label for each. If `is_lost`, draws only the left one.
     fn draw(&self, [left, right]: [&str; 2], is_lost: bool, report: &Report, canvas: &mut Canvas) {
         let Self([left_view, right_view]) = self;
         left_view.draw(canvas, u8::MAX);
@@ -135,8 +141,10 @@ impl Halves {
     }
 }
 
-/// The figure's start: mass ratio 2.75, both rods at 171 degrees, let go from rest. The page gives no more; gravity is that
-/// of its worked example, and the rods are 1 m.
+/// Returns the settings of the figure: mass ratio 2.75, both rods at 171 degrees, released from
+/// rest.
+///
+/// The page gives no more. The gravity is from its worked example, and the rods are 1 m long.
 pub fn figure_7() -> Settings {
     let parameters = Parameters::equal_rods(2.75, 1.0, PAGE_GRAVITY as f32);
     Settings {
@@ -146,7 +154,8 @@ pub fn figure_7() -> Settings {
     }
 }
 
-/// Both motions and their energies. The clock is that of the right equations.
+/// The correct motion on the left, the misprinted one on the right, and their energies. The clock
+/// belongs to the correct motion.
 #[derive(Clone, Debug)]
 pub struct Figure7 {
     right: Simulation,
@@ -155,7 +164,7 @@ pub struct Figure7 {
 }
 
 impl Scene for Figure7 {
-    #[inline(never)] // all scenes' preparations would stand side by side on the stack
+    #[inline(never)] // Inlined, the preparations of all scenes would be on the stack together.
     fn new(settings: &Settings, resources: &Resources) -> Result<(Self, Option<f32>), Error> {
         let &Parameters { l1, l2, .. } = &settings.parameters;
         if l1 != l2 {
@@ -164,6 +173,7 @@ impl Scene for Figure7 {
                 l2: l2.into(),
             });
         }
+
         let right = Simulation::new(settings, resources)?;
         let misprinted = Misprinted::new(&settings.parameters, &right.motion.rounded_state());
         let halves = Halves::new(
@@ -183,7 +193,7 @@ impl Scene for Figure7 {
     fn tick(&mut self, _: u64, ink: &mut FadeLayer) {
         self.right.tick();
         self.misprinted.tick();
-        // A motion that is lost leaves no more trace.
+        // A motion that has diverged leaves no more trace.
         self.halves.trace(
             [self.right.motion.directions(), self.misprinted.directions()],
             ink,
@@ -216,64 +226,71 @@ impl Scene for Figure7 {
     }
 }
 
-/// The same motion in plain `f32` on the left and in compensated `f32` on the right. The clock is
-/// that of the left one, compared with the same motion in 64 bits, which is not drawn. There is no
-/// plan: both are shown for what their arithmetic does.
+/// A motion in plain `f32` on the left, and the same motion in compensated `f32` on the right.
 ///
-/// The `f32` nearest to pi is 8.7e-8 too large, so the true motion from there falls after about 3 s. Plain `f32` drops
-/// the first tiny increments altogether and stands for minutes: it looks perfect and is wrong. What is kept beside the
-/// state on the right is just what was dropped.
+/// The clock belongs to the left motion. It is compared with the same motion in 64 bits, which is
+/// not drawn. There is no plan, because the scene shows two given arithmetics.
+///
+/// The `f32` nearest to pi is too large by 8.7e-8, so that the exact motion from there falls after
+/// about 3 s. Plain `f32` drops the first tiny increments completely, and stands for minutes: it
+/// looks perfect and is wrong. The compensation on the right keeps the dropped parts.
 #[derive(Clone, Debug)]
 pub struct Upright {
     pendulum: Pendulum<f32>,
     plain: State<f32>,
+    /// The directions of `plain`.
     plain_directions: RodDirections,
     compensated: Run<DirectionF32>,
-    /// Steps of both to a tick.
+    /// The number of steps of both motions in a tick.
     steps: u32,
+    /// The motion in 64 bits.
     exact: Simulation,
     halves: Halves,
     horizon: Horizon,
 }
 
-/// The number of times that a step in plain `f32` costs as much as the two sines and cosines of a
-/// frame in closed form: RK4 evaluates the equations four times.
+/// The cost of a step in plain `f32`, in units of the cost of the two sines and cosines of a frame
+/// in closed form. It is 4 because RK4 evaluates the equations four times.
 const PLAIN_STEP: f32 = 4.0;
 
-/// The largest distance of a bob from that of the motion in 64 bits, pixels, that is less than half a
-/// pixel from the exact one: steps of that motion may be the longest that resolve it.
+/// The largest distance of a bob from the motion in 64 bits, pixels, that is certainly less than
+/// half a pixel from the exact motion. The margin is for the steps of the motion in 64 bits, which
+/// may be the longest that resolve it.
 const NEAR: f32 = HALF_PIXEL / 1.1;
 
 impl Upright {
-    /// Returns true if a bob of the plain motion may no longer be shown where the exact one is.
+    /// Returns true if a bob of the plain motion may no longer be within half a pixel of the exact
+    /// one.
     fn have_parted(&self) -> bool {
         let Halves([left, _]) = &self.halves;
         let [plain, exact] =
             [self.plain_directions, self.exact.motion.directions()].map(|to| left.bobs(to));
         let is_near = |((x, y), (exact_x, exact_y)): ((f32, f32), (f32, f32))| {
-            let (dx, dy) = (x - exact_x, y - exact_y);
+            let dx = x - exact_x;
+            let dy = y - exact_y;
             dx * dx + dy * dy <= NEAR * NEAR
         };
         !plain.into_iter().zip(exact).all(is_near)
     }
 }
 
+/// Returns the directions of both rods.
 fn directions(state: &State<f32>) -> RodDirections {
     state.angles().map(|angle| angle.own_sin_cos().into())
 }
 
 impl Scene for Upright {
-    #[inline(never)] // all scenes' preparations would stand side by side on the stack
+    #[inline(never)] // Inlined, the preparations of all scenes would be on the stack together.
     fn new(settings: &Settings, resources: &Resources) -> Result<(Self, Option<f32>), Error> {
         let (pendulum, plain) = settings.start()?;
 
-        // RK4 in steps that a search would try first, and no fewer than at power-on.
+        // RK4 with the step count that a search would try first, and at least the one at power-on.
         let steps = Stepping::of(&settings.problem(HEIGHT as f32), Method::Rk4F32Direction)?.steps;
         let steps = steps.max(STEPS_PER_TICK);
         let dt = 1.0 / f64::from(TICK_RATE * steps);
         pendulum.check_step(dt)?;
 
-        // The motion in 64 bits may take the rest of a frame.
+        // The motion in 64 bits may spend the rest of the budget of a frame.
         let Processor { costs, frame, .. } = &resources.processor;
         let both = steps as f32 * (PLAIN_STEP * costs.closed_form + costs.direction);
         let resources = Resources {
@@ -308,8 +325,11 @@ impl Scene for Upright {
             self.plain = self.pendulum.step(&self.plain, dt);
         }
         self.plain_directions = directions(&self.plain);
-        // One that is lost stands still.
+
+        // A motion that has diverged does not move.
         let _stays = self.compensated.advance(self.steps);
+
+        // Compare with the motion in 64 bits until the first difference.
         if self.horizon.is_open() {
             self.exact.tick();
             self.horizon = if self.have_parted() {
@@ -318,6 +338,7 @@ impl Scene for Upright {
                 Horizon::AtLeast(time(ticks) as f32)
             };
         }
+
         self.halves
             .trace([self.plain_directions, self.compensated.directions()], ink);
     }

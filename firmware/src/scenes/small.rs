@@ -1,4 +1,5 @@
-//! Figures 3 to 5: small oscillations, both angles as scrolling curves within their envelopes, in closed form.
+//! Figures 3 to 5 of the page: small oscillations in closed form. Both angles are scrolling curves
+//! within their envelopes.
 
 use double_pendulum::plan::Stepping;
 use double_pendulum::{Error, Method, Modes, Parameters, Pendulum, Real, SmallOscillations};
@@ -10,25 +11,27 @@ use crate::graphics::{
 use crate::motion::{Resources, Settings};
 use crate::scenes::{Report, Scene, draw_clock, time};
 
-/// The rows of rest of angle 1 and angle 2, pixels from the top, and the greatest swing about them.
+/// The rows of angle 0 for angle 1 and angle 2, pixels from the top, and the largest swing about
+/// them.
 const ROWS: [f32; 2] = [20.5, 43.5];
 const SWING: f32 = 10.5;
-/// The plots begin right of their names and scales.
+/// The first column of the plots, right of their names and scales.
 const LEFT: i32 = 18;
 const RIGHT: i32 = WIDTH as i32 - 1;
-/// An exchange of energy between the rods and back takes about this many columns.
+/// The approximate time in which the energy is exchanged between the rods and back, columns.
 const COLUMNS_PER_EXCHANGE: f32 = 60.0;
-/// The bar that tells a length of time is at least this long, columns.
+/// The smallest length of the scale bar for time, columns.
 const LEAST_BAR: f32 = 16.0;
 const ENVELOPE_GREY: u8 = 5;
 
-/// The scene shows the linear model and does not follow the plan.
+/// The method of the scene. It shows the linear model, and does not follow the plan.
 const CLOSED_FORM: Stepping = Stepping {
     method: Method::ClosedFormF32,
     steps: 1,
 };
 
-/// The page's worked example: equal rods of 0.25 m, g = 9.8 m/s^2, a1 = 0, a2 = 30 degrees, let go from rest.
+/// Returns the worked example of the page: equal rods of 0.25 m, g = 9.8 m/s^2, a1 = 0, a2 = 30
+/// degrees, released from rest.
 pub fn example(mass_ratio: f32) -> Settings {
     let parameters = Parameters::equal_rods(mass_ratio, 0.25, PAGE_GRAVITY as f32);
     Settings {
@@ -38,26 +41,30 @@ pub fn example(mass_ratio: f32) -> Settings {
     }
 }
 
-/// Both angles over time, by the linear model. The clock says until when the exact motion has them there, too.
+/// The two angles over time, by the linear model. The clock shows the horizon of the exact motion:
+/// until then it has the same angles.
 #[derive(Clone, Debug)]
 pub struct Small {
     pendulum: Pendulum<f32>,
     motion: SmallOscillations<f32>,
-    /// Amplitudes of the fast and the slow mode in angle 1 and in angle 2, rad; of one sign if the modes are in phase.
+    /// The amplitudes of the fast and the slow mode in angle 1 and in angle 2, rad. They have the
+    /// same sign if the modes are in phase.
     amplitudes: [[f32; 2]; 2],
-    /// w1 - w2, turns per second, and f1 - f2, rad.
+    /// The differences of the modes: w1 - w2, turns per second, and f1 - f2, rad.
     exchange: f64,
     phase: f32,
     /// Pixels per radian.
     scale: f32,
     ticks_per_column: u32,
-    /// Where the curves end.
+    /// The heights of the ends of the curves.
     ends: Option<[Height; 2]>,
 }
 
 impl Small {
-    /// How far each angle can swing at time `t` while its two modes beat, rad: of C1 cos(w1 t + f1) + C2 cos(w2 t + f2) the amplitude
-    /// is sqrt(C1^2 + C2^2 + 2 C1 C2 cos((w1 - w2) t + f1 - f2)).
+    /// Returns the envelopes of both angles at time `t`, rad.
+    ///
+    /// The amplitude of C1 cos(w1 t + f1) + C2 cos(w2 t + f2) is sqrt(C1^2 + C2^2 + 2 C1 C2 cos((w1
+    /// - w2) t + f1 - f2)).
     fn envelopes(&self, t: f64) -> [f32; 2] {
         let turns = self.exchange * t;
         let exchanged = (turns - libm::rint(turns)) as f32 * core::f32::consts::TAU;
@@ -71,6 +78,8 @@ impl Small {
         ink.scroll(LEFT);
         let [row1, row2] = ROWS;
         let height = |(angle, row): (f32, f32)| plot::height(angle, row, self.scale);
+
+        // Each envelope has a point above and one below.
         let [envelope1, envelope2] = self.envelopes(time);
         for envelope in [(envelope1, row1), (envelope2, row2)] {
             let mirrored =
@@ -83,6 +92,8 @@ impl Small {
                 );
             }
         }
+
+        // The curves.
         let [a1, a2] = self.motion.at(time).angles();
         let heights = [(a1, row1), (a2, row2)].map(height);
         for (before, now) in self.ends.unwrap_or(heights).into_iter().zip(heights) {
@@ -99,16 +110,19 @@ impl Scene for Small {
         let (pendulum, _) = settings.start()?;
         let modes = Modes::new(&settings.parameters.cast())?;
         let motion = SmallOscillations::new(modes, &settings.motion());
+
+        // The amplitudes, and the largest value of an angle, rad.
         let [c1, c2] = [motion.fast, motion.slow].map(|part| part.amplitude());
         let amplitudes = [
             [c1, c2],
             [modes.fast.shape as f32 * c1, modes.slow.shape as f32 * c2],
         ];
-        // The greatest that an angle becomes, rad.
         let greatest = amplitudes
             .map(|[c1, c2]| c1.abs() + c2.abs())
             .into_iter()
             .fold(0.0, f32::max);
+
+        // The scales.
         let exchange = core::f32::consts::TAU / modes.exchange() as f32;
         let ticks_per_column = (exchange * TICK_RATE as f32 / COLUMNS_PER_EXCHANGE) as u32;
         let scale = if greatest > 0.0 {
@@ -155,19 +169,19 @@ impl Scene for Small {
                 Anchor::EndingAt(LEFT - 2, row - swing),
             );
         }
-        // A bar as long as a round time.
+
+        // A scale bar as long as a round time.
         let columns_per_second = TICK_RATE as f32 / self.ticks_per_column as f32;
         let seconds = plot::scale_step(LEAST_BAR / columns_per_second);
-        let (end, row) = (
-            LEFT + (seconds * columns_per_second) as i32,
-            LOWEST + LINE / 2,
-        );
+        let end = LEFT + (seconds * columns_per_second) as i32;
+        let row = LOWEST + LINE / 2;
         plot::bar(canvas, (LEFT, row), (end, row));
         text::write(
             canvas,
             &label::tick(seconds, " s"),
             Anchor::At(end + 4, LOWEST),
         );
+
         text::write(
             canvas,
             &label::mass_ratio(self.pendulum.parameters().mass_ratio()),
@@ -179,7 +193,7 @@ impl Scene for Small {
 
     fn report(&self, ticks: u64) -> Report {
         let state = self.pendulum.to_state(&self.motion.at(time(ticks)));
-        // The energy of the linear motion says nothing about its arithmetic.
+        // The energy of the linear motion contains no information about its arithmetic.
         Report {
             state,
             stepping: Some(CLOSED_FORM),

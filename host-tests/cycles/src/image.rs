@@ -1,4 +1,4 @@
-//! The program as the linker left it: code and symbols.
+//! A linked program: its code and symbols.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -13,22 +13,25 @@ use crate::instruction::{Instruction, is_long};
 #[derive(Debug)]
 pub struct Image {
     path: PathBuf,
-    /// Start address and bytes of all that is loaded, functions that run in RAM included.
+    /// The start address and bytes of everything that is loaded, including functions that run in
+    /// RAM.
     loaded: Vec<(u32, Vec<u8>)>,
     code: Vec<(u32, Vec<u8>)>,
     functions: Vec<Function>,
-    /// Where code begins (`true`) and where data in the midst of it, by the mapping symbols `$t` and `$d`.
+    /// The addresses at which code begins (`true`) and at which data between code begins (`false`),
+    /// from the mapping symbols `$t` and `$d`.
     marks: BTreeMap<u32, bool>,
 }
 
-/// A function, literal pools and paths never taken included; or a label in code that the assembler was not told to be one.
+/// A function, including its literal pools and the paths that are never taken. It may also be a
+/// label in assembly code that is not declared as a function.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Function {
     pub address: u32,
-    /// Bytes; 0 if the assembler was not told.
+    /// The size in bytes, or 0 if the assembly code does not declare it.
     pub size: u32,
     pub name: String,
-    /// As the linker knows it.
+    /// The mangled name, which the linker uses.
     pub symbol: String,
 }
 
@@ -45,6 +48,8 @@ impl Image {
             architecture == Architecture::Arm,
             "no program for ARM but for {architecture:?}"
         );
+
+        // The loaded segments, and the sections with code.
         let loaded = file
             .segments()
             .map(|segment| Ok((segment.address() as u32, segment.data()?.to_vec())));
@@ -52,21 +57,26 @@ impl Image {
             .sections()
             .filter(|section| section.kind() == SectionKind::Text);
         let code = sections.map(|section| Ok((section.address() as u32, section.data()?.to_vec())));
+
+        // The symbols: functions, labels in code, and marks of code and data.
         let is_in_code = |symbol: &object::Symbol| {
             let section = symbol
                 .section_index()
                 .and_then(|index| file.section_by_index(index).ok());
             section.is_some_and(|section| section.kind() == SectionKind::Text)
         };
-        let (mut functions, mut marks) = (Vec::new(), BTreeMap::new());
+        let mut functions = Vec::new();
+        let mut marks = BTreeMap::new();
+
         for symbol in file.symbols() {
-            let (address, name) = (symbol.address() as u32, symbol.name().unwrap_or_default());
+            let address = symbol.address() as u32;
+            let name = symbol.name().unwrap_or_default();
             let is_function = symbol.kind() == SymbolKind::Text;
             match name.split('.').next() {
                 _ if !is_function && !is_in_code(&symbol) => {}
                 Some(mark @ ("$t" | "$d")) => drop(marks.insert(address, mark == "$t")),
                 _ => functions.push(Function {
-                    // bit 0 only says that the code is Thumb
+                    // Bit 0 only marks the code as Thumb.
                     address: address & !1,
                     size: symbol.size() as u32,
                     name: format!("{:#}", rustc_demangle::demangle(name)),
@@ -74,6 +84,7 @@ impl Image {
                 }),
             }
         }
+
         functions.sort();
         let (loaded, code) = (loaded.collect::<Result<_>>()?, code.collect::<Result<_>>()?);
         Ok(Self {
@@ -91,20 +102,23 @@ impl Image {
             .filter(move |function| function.name.contains(part))
     }
 
-    /// The one function or label of this name, mangled or demangled, or the one function whose demangled name contains it.
+    /// Returns the function or label with this name, mangled or demangled. If no name is equal,
+    /// returns the only function whose demangled name contains `name`.
     pub fn function(&self, name: &str) -> Result<&Function> {
         let is_it = |function: &&Function| function.name == name || function.symbol == name;
         let mut found: Vec<_> = self.functions.iter().filter(is_it).collect();
         if found.is_empty() {
             found = self.functions_named(name).collect();
         }
-        // Several names of one place are no question.
+
+        // Several names of the same address are not ambiguous.
         found.dedup_by_key(|function| function.address);
         match found[..] {
             [] => Err(self.lacks(name)),
             [function] => Ok(function),
             [one, another, ..] => {
-                let ([one, another], number) = ([&one.symbol, &another.symbol], found.len());
+                let [one, another] = [&one.symbol, &another.symbol];
+                let number = found.len();
                 bail!("{name} may be any of {number}, such as {one} and {another}")
             }
         }
@@ -116,7 +130,7 @@ impl Image {
             .any(|(start, bytes)| address.wrapping_sub(*start) < bytes.len() as u32)
     }
 
-    /// Returns the word at an address of what is loaded.
+    /// Returns the word at an address within the loaded bytes.
     pub fn word(&self, address: u32) -> Option<u32> {
         self.loaded.iter().find_map(|(start, bytes)| {
             let at = address.checked_sub(*start)? as usize;
@@ -138,7 +152,8 @@ impl Image {
             .rfind(|function| address - function.address < function.size)
     }
 
-    /// Every instruction there is, as its address and its halfwords, the second only if it has one.
+    /// Returns every instruction as its address, its first halfword, and its second halfword if it
+    /// has one.
     pub fn words(&self) -> Vec<(u32, u16, Option<u16>)> {
         let mut words = Vec::new();
         for (start, bytes) in &self.code {

@@ -1,4 +1,4 @@
-//! One instruction as far as its timing goes.
+//! A decoded instruction, as needed for its timing.
 
 use std::sync::LazyLock;
 
@@ -11,7 +11,8 @@ pub fn is_long(first: u16) -> bool {
     first >= 0xe800
 }
 
-/// The rows that an instruction may be of, by its first byte: millions are looked up.
+/// The rows that can match an instruction, by its first byte. This index is needed for speed:
+/// millions of instructions are looked up.
 static ROWS: LazyLock<Vec<Vec<&Row>>> = LazyLock::new(|| {
     let begin = |byte: u32| {
         TIMINGS
@@ -28,8 +29,8 @@ pub struct Instruction {
 }
 
 impl Instruction {
-    /// The instruction of these halfwords, the second of which is ignored if the first is an instruction by itself;
-    /// `None` if the table has no row for it.
+    /// Returns the instruction of these halfwords, or `None` if the table has no row for it. The
+    /// second halfword is ignored if the first is a 16-bit instruction.
     pub fn decode(first: u16, second: u16) -> Option<Self> {
         let word = u32::from(first) << 16 | if is_long(first) { u32::from(second) } else { 0 };
         let row = ROWS[(word >> 24) as usize]
@@ -46,7 +47,8 @@ impl Instruction {
         }
     }
 
-    /// The cycles it takes by itself, if it does not branch, with these contents of the registers.
+    /// Returns the cycles of the instruction alone, without a branch, for these contents of the
+    /// registers.
     pub fn cycles(&self, core: Core, registers: &Registers) -> u64 {
         let more = match self.row.class {
             Class::LoadList | Class::StoreList => {
@@ -71,7 +73,8 @@ impl Instruction {
         self.word >> 26 == 0b11_1011
     }
 
-    /// Whether the core has no such instruction. Of a division, the table leaves the cycles to the operands.
+    /// Returns true if the core does not have this instruction. The table contains no cycles for a
+    /// division, because they depend on the operands.
     pub fn is_missing_on(&self, core: Core) -> bool {
         self.row.cycles(core) == 0 && (self.row.class != Class::Divide || core == Core::M0Plus)
     }
@@ -79,20 +82,21 @@ impl Instruction {
     pub fn is_addressed_by(&self, before: &Self) -> bool {
         let registers =
             |fields: &'static [Field], word| fields.iter().map(move |field| field.register(word));
-        // A comparison has the program counter where others have what they write.
+
+        // In a comparison, the field for the written register contains the program counter.
         let written = |register| {
             register != 15 && registers(before.row.writes, before.word).any(|it| it == register)
         };
         registers(self.row.address, self.word).any(written)
     }
 
-    /// The floating-point register whose value comes late, if it has one.
+    /// Returns the floating-point register whose value is ready late, if there is one.
     pub fn late_result(&self) -> Option<u32> {
         matches!(self.row.class, Class::Arithmetic(_) | Class::Aside(_))
             .then(|| Float::D.register(self.word))
     }
 
-    /// Whether it needs the floating-point register `s` at its start.
+    /// Returns true if the instruction needs the floating-point register `s` at its start.
     pub fn consumes(&self, s: u32) -> bool {
         match self.row.class {
             Class::Arithmetic(reads) | Class::Aside(reads) | Class::Move(reads) => {
@@ -102,8 +106,11 @@ impl Instruction {
         }
     }
 
-    /// Cycles of a division, by the lengths of its operands without their signs: measured for all lengths on a Cortex-M4
-    /// (compendium.i-0.nl, "Division timing"). Both manuals say 2 to 12, "based on the number of leading ones and zeroes".
+    /// Returns the cycles of a division.
+    ///
+    /// They depend on the lengths of the operands without their signs, as measured for all lengths
+    /// on a Cortex-M4 (compendium.i-0.nl, "Division timing"). Both manuals say 2 to 12 cycles,
+    /// "based on the number of leading ones and zeroes".
     fn division(&self, registers: &Registers) -> u64 {
         let is_signed = self.word & 1 << 21 == 0;
         let bits = |register: u32| {
@@ -122,7 +129,8 @@ impl Instruction {
         }
     }
 
-    /// The bits that stand for one register each. push and pop have one more than ldm and stm: lr or pc.
+    /// Returns the bits that each represent one register. push and pop have one more than stm and
+    /// ldm: lr or pc.
     fn register_list(&self) -> u32 {
         match self.word >> 28 {
             0xb => 0x01ff_0000,
@@ -131,7 +139,7 @@ impl Instruction {
         }
     }
 
-    /// Whether it stores `s`: vstr, vstm and vpush.
+    /// Returns true if the instruction is a vstr, vstm or vpush that stores `s`.
     fn stores(&self, s: u32) -> bool {
         let is_float_store = self.word & 0xfe10_0e00 == 0xec00_0a00;
         let double = self.word & 0x100 != 0;

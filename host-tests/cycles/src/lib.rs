@@ -1,7 +1,10 @@
-//! What a Cortex-M executes and what it costs: instructions (exact) out of QEMU's log, and cycles (an **estimate** from the
-//! published instruction timings) through a model of the pipeline.
+//! Counts the instructions that a Cortex-M executes and estimates their cycles.
 //!
-//! Apart from the commands, because it is optimised in every profile: millions of instructions are read.
+//! The instructions are exact: they are read from QEMU's log. The cycles are an **estimate**: a
+//! model of the pipeline computes them from the published instruction timings.
+//!
+//! This is a package of its own because it is optimised in every profile: it reads millions of
+//! instructions.
 
 #![forbid(unsafe_code)]
 #![allow(
@@ -30,13 +33,13 @@ pub enum Core {
     M3,
     /// Cortex-M4 with the single-precision floating-point unit.
     M4F,
-    /// Cortex-M0+ with the multiplier of 1 cycle, no floating-point unit. QEMU knows it as the Cortex-M0, whose instructions are the
-    /// same.
+    /// Cortex-M0+ with the 1-cycle multiplier and without a floating-point unit. In QEMU it is the
+    /// Cortex-M0, which has the same instructions.
     M0Plus,
 }
 
 impl Core {
-    /// As on its manual.
+    /// Returns the name in the processor's manual.
     pub fn name(self) -> &'static str {
         match self {
             Self::M3 => "Cortex-M3",

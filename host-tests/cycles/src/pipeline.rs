@@ -1,30 +1,52 @@
-//! The estimate: what the published timings say of an executed stream, and what neighbours in it do to each other.
+//! The estimate of cycles: published instruction timings, and the effects of neighbouring
+//! instructions on each other.
 //!
-//! | rule | source |
-//! |---|---|
-//! | A load after a load takes 1 cycle, unless its address is what the first one loads. | DDI 0337, "Load/store timings"; 200 loads in 201 cycles, in 400 if each address is the load before |
-//! | A store with an immediate offset takes 1 cycle, and 1 more if a load follows; with an offset in a register 2. After a load it fills the load's second cycle (the manual's example counts a cycle more). vldr and vstr are taken to do the same: no count was found. | DDI 0337, there; jnk0le/random, measured on an STM32F103 and an STM32F407 |
-//! | A taken branch refills the pipeline in 1 cycle, one to an address from a register or the stack in 2; a 32-bit instruction off a word's boundary begins 1 cycle later, for it takes two fetches. | DDI 0337, table of instructions: 1 to 3 by \"the alignment and width of the target instruction\"; compendium.i-0.nl, \"Alignment rules\" |
-//! | `it` after a 16-bit instruction takes no time. | both manuals: "can be folded" |
-//! | An address register that the instruction just before writes costs 1 cycle. | DDI 0337, "Load/store timings"; jnk0le/random |
-//! | On the M3 a long product takes 5 cycles, with accumulation 7; a division 2 to 12 by the lengths of its operands. | `timing`; compendium.i-0.nl, "Division timing" |
-//! | A floating-point quotient or root takes the unit 14 cycles, the core 1. | DDI 0439, notes of table 7-1 |
-//! | A move of one register to or from the floating-point unit takes 1 cycle. | DDI 0439, table 7-1 |
-//! | A floating-point result is there 1 cycle later for the very next instruction. | DDI 0439, there; 200 dependent sums in 401 cycles, 200 independent ones in 201 on an STM32F429 |
-//! | On the M0+ nothing waits for its neighbours; a taken branch refills the pipeline in 1 cycle, a pop of pc in 2. | DDI 0484C, table 3-1; the RP2040's own delay loop of `subs` and `bcs`, "3 cycles per loop" (pico-sdk, `busy_wait_at_least_cycles`) |
-//! | On the M3, what leaves a new address in its register (pre- and post-indexed) is not pipelined after a load. | jnk0le/random |
+//! The rules, each with its source:
 //!
-//! What the rules leave out: memory with wait states, tables in the flash that code is fetched from, several 32-bit
-//! instructions in a row off a word's boundary, which "might not pipeline optimally" (DDI 0439), accesses that are not
-//! aligned, and an interrupt's entry. An instruction whose condition fails counts as if it were executed. No counts of chips
-//! were found for vmul, vsqrt, vfma, vldm, and for vldr and vstr in a row.
+//! - A load after a load takes 1 cycle, unless its address is what the first one loads. Source: DDI
+//!   0337, "Load/store timings"; 200 loads in 201 cycles, in 400 if each address is the load
+//!   before.
+//! - A store with an immediate offset takes 1 cycle, and 1 more if a load follows. With an offset
+//!   in a register it takes 2. After a load it fills the load's second cycle (the manual's example
+//!   counts a cycle more). The same is assumed for vldr and vstr, because no count was found.
+//!   Source: DDI 0337, there; jnk0le/random, measured on an STM32F103 and an STM32F407.
+//! - A taken branch refills the pipeline in 1 cycle, a branch to an address from a register or the
+//!   stack in 2. A 32-bit instruction off a word's boundary begins 1 cycle later, because it takes
+//!   two fetches. Source: DDI 0337, table of instructions: 1 to 3 by "the alignment and width of
+//!   the target instruction"; compendium.i-0.nl, "Alignment rules".
+//! - An `it` after a 16-bit instruction takes no time. Source: both manuals: "can be folded".
+//! - An address register that is written by the previous instruction costs 1 cycle. Source: DDI
+//!   0337, "Load/store timings"; jnk0le/random.
+//! - On the M3 a long product takes 5 cycles, with accumulation 7. A division takes 2 to 12,
+//!   depending on the lengths of its operands. Source: `timing`; compendium.i-0.nl, "Division
+//!   timing".
+//! - A floating-point quotient or root takes 14 cycles of the unit and 1 cycle of the core. Source:
+//!   DDI 0439, notes of table 7-1.
+//! - A move of one register to or from the floating-point unit takes 1 cycle. Source: DDI 0439,
+//!   table 7-1.
+//! - A floating-point result is ready 1 cycle later for the very next instruction. Source: DDI
+//!   0439, there; 200 dependent sums in 401 cycles, 200 independent ones in 201 on an STM32F429.
+//! - On the M0+ no instruction waits for its neighbours. A taken branch refills the pipeline in 1
+//!   cycle, a pop of pc in 2. Source: DDI 0484C, table 3-1; the RP2040's own delay loop of `subs`
+//!   and `bcs`, "3 cycles per loop" (pico-sdk, `busy_wait_at_least_cycles`).
+//! - On the M3, an instruction that writes a new address to its address register (pre- and
+//!   post-indexed) is not pipelined after a load. Source: jnk0le/random.
 //!
-//! [`ERROR_BAR`] is what these rules gave for 76 kernels of others, which are not in this repository, against the counts that
-//! their authors measured on chips at zero wait states. On an STM32F407 with tables in flash: -2.0 to -0.5 %; on an STM32L100
-//! -2.8 % at worst; an STM32L4R5 takes 3 to 5 % more than an STM32F407 for the same code, which no rule here accounts for.
-//! Anyone can repeat it: `cargo count --elf FILE --function NAME`, and 1 cycle for each argument and 2 for the call. Not among
-//! them: dilithium-cortexm on an ATSAM3X8E (3 figures, -9.2 to -2.7 %), whose bus matrix keeps the first load of each group
-//! waiting for a cycle; with that cycle they are within 0.2 %.
+//! The rules do not cover memory with wait states, tables in the flash that code is fetched from,
+//! accesses that are not aligned, and the entry of an interrupt. They do not cover several 32-bit
+//! instructions in a row off a word's boundary, which "might not pipeline optimally" (DDI 0439). An
+//! instruction whose condition fails counts as if it were executed. No counts of chips were found
+//! for vmul, vsqrt, vfma, vldm, and for vldr and vstr in a row.
+//!
+//! [`ERROR_BAR`] compares these rules with 76 published kernels, which are not in this repository.
+//! The authors of the kernels measured them on chips at zero wait states. On an STM32F407 with
+//! tables in flash, the error is -2.0 to -0.5 %. On an STM32L100 it is -2.8 % at worst. An
+//! STM32L4R5 takes 3 to 5 % more than an STM32F407 for the same code, and no rule here explains it.
+//!
+//! To repeat the comparison, run `cargo count --elf FILE --function NAME`, and add 1 cycle for each
+//! argument and 2 for the call. The 76 kernels do not include dilithium-cortexm on an ATSAM3X8E (3
+//! figures, -9.2 to -2.7 %). The bus matrix of that chip delays the first load of each group by a
+//! cycle; with that cycle the figures are within 0.2 %.
 
 use std::ops::AddAssign;
 
@@ -34,18 +56,19 @@ use crate::row::Class;
 use crate::stream::Registers;
 use crate::timing::{DIRECT_REFILL, INDIRECT_REFILL, RESULT_USE_STALL, UNALIGNED_TARGET};
 
-/// What every table of cycles says about them.
+/// The accuracy statement that is printed with every table of cycles.
 pub const ERROR_BAR: &str = "Cycles are estimated: 1.6 % off (root mean square) and at most 5.0 % for 76 published kernels, 3 to 5 % \
      too low on an STM32L4R5, no data for the M0+; floating-point timing checked for VADD, VDIV and moves only; \
      wait states cost extra (34 % at 2 on an STM32F1 for one AES).";
 
-/// Executed instructions, which are exact, and the cycles they take by the published timings, which are an estimate.
+/// The cost of executed code: an exact number of instructions and an estimated number of cycles.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Cost {
-    /// Executed instructions. One whose condition fails counts like any other.
+    /// The number of executed instructions. An instruction whose condition fails counts as well.
     pub instructions: u64,
     pub cycles: u64,
-    /// Those of the cycles that wait for a floating-point result or for the unit that makes one.
+    /// The part of the cycles that waits for a floating-point result or for the floating-point
+    /// unit.
     pub stalls: u64,
 }
 
@@ -57,7 +80,7 @@ impl AddAssign for Cost {
     }
 }
 
-/// The processor, one instruction after the other.
+/// A model of the processor, which executes one instruction after the other.
 #[derive(Clone, Copy, Debug)]
 pub struct Pipeline {
     core: Core,
@@ -65,7 +88,8 @@ pub struct Pipeline {
     branched: bool,
     now: u64,
     unit_free: u64,
-    /// The register with the last floating-point result, and when that can be consumed.
+    /// The register with the last floating-point result, and the cycle from which it can be
+    /// consumed.
     result: Option<(u32, u64)>,
 }
 
@@ -81,8 +105,10 @@ impl Pipeline {
         }
     }
 
-    /// The cost of the next instruction executed, with the contents of the registers before it; `branches`: not followed by
-    /// the next one in memory.
+    /// Returns the cost of the next executed instruction.
+    ///
+    /// `registers` are the contents of the registers before it. `branches` is true if the next
+    /// executed instruction is not the next one in memory.
     pub fn execute(
         &mut self,
         instruction: Instruction,
@@ -92,6 +118,8 @@ impl Pipeline {
         let start = self.now;
         let stalls = self.start_of_float(&instruction) - start;
         let own = instruction.cycles(self.core, registers);
+
+        // The cycles of the instruction, and those to refill the pipeline after a branch.
         let taken = match instruction.row.class {
             Class::IfThen if self.previous.is_some_and(|previous| previous.size() == 2) => 0,
             Class::Aside(_) => 1,
@@ -104,6 +132,8 @@ impl Pipeline {
             _ if self.core == Core::M0Plus => DIRECT_REFILL,
             _ => INDIRECT_REFILL,
         };
+
+        // The delays by the fetch of a branch target, and by the neighbours.
         let is_split = instruction.size() == 4 && registers.pc() % 4 == 2;
         let fetch = if self.branched && is_split && self.core != Core::M0Plus {
             UNALIGNED_TARGET
@@ -113,11 +143,14 @@ impl Pipeline {
         let (waits, saved) = self
             .previous
             .map_or((0, 0), |previous| self.neighbours(&previous, &instruction));
+
+        // Update the state of the processor.
         if let Some(register) = instruction.late_result() {
             self.unit_free = start + stalls + own;
             self.result = Some((register, self.unit_free + RESULT_USE_STALL));
         }
-        (self.previous, self.branched) = (Some(instruction), branches);
+        self.previous = Some(instruction);
+        self.branched = branches;
         let cycles = fetch + stalls + waits + taken - saved + refill;
         self.now += cycles;
         Cost {
@@ -127,7 +160,8 @@ impl Pipeline {
         }
     }
 
-    /// When the floating-point unit and what `instruction` consumes of it are there.
+    /// Returns the cycle in which the floating-point unit and the operands of `instruction` are
+    /// ready.
     fn start_of_float(&self, instruction: &Instruction) -> u64 {
         let unit = if instruction.is_float() {
             self.unit_free
@@ -141,7 +175,8 @@ impl Pipeline {
         self.now.max(unit).max(result)
     }
 
-    /// The cycles that `instruction` waits for `previous`, and those it saves by following it.
+    /// Returns the cycles that `instruction` waits for `previous`, and the cycles it saves by
+    /// following `previous`.
     fn neighbours(&self, previous: &Instruction, instruction: &Instruction) -> (u64, u64) {
         if self.core == Core::M0Plus {
             return (0, 0);

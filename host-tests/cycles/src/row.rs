@@ -1,43 +1,49 @@
-//! What a row of the timing table says of its instructions.
+//! A row of the timing table.
 
 use crate::Core;
 
-/// What else decides the time of an instruction.
+/// The additional effect on the time of an instruction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Class {
     Fixed,
-    /// A branch to an address that it holds itself: refills the pipeline sooner than one to an address in a register.
+    /// A branch to an address in the instruction. It refills the pipeline sooner than a branch to
+    /// an address in a register.
     Branch,
-    /// Nothing, or no time at all after a 16-bit instruction.
+    /// An `it` instruction, which takes no time after a 16-bit instruction.
     IfThen,
-    /// A division of integers: the lengths of its operands.
+    /// A division of integers. Its time depends on the lengths of the operands.
     Divide,
-    /// A single load: 1 cycle less if it follows another one and is pipelined with it.
+    /// A single load. It takes 1 cycle less if it follows another one and is pipelined with it.
     Load,
-    /// A single store: likewise. 1 cycle more for a load that follows, unless the address has an offset in a register.
+    /// A single store. It takes 1 cycle less if it follows a load. A load after it takes 1 cycle
+    /// more, unless the address has an offset in a register.
     Store,
     /// A load of two words, which is not pipelined.
     LoadPair,
-    /// Loads, 1 cycle more for each core register in the list.
+    /// Several loads, with 1 cycle more for each core register in the list.
     LoadList,
-    /// Stores, 1 cycle more for each core register in the list.
+    /// Several stores, with 1 cycle more for each core register in the list.
     StoreList,
-    /// A load or store of as many words as the floating-point register list has, 1 cycle for each.
+    /// A load or store of the floating-point registers in the list, with 1 cycle for each word.
     FloatList,
-    /// Floating-point arithmetic and conversions: a result that the next instruction may have to wait for.
+    /// Floating-point arithmetic and conversions. The next instruction may have to wait for the
+    /// result.
     Arithmetic(Reads),
-    /// A floating-point quotient or root: the unit is busy for as long, the core goes on after 1 cycle.
+    /// A floating-point quotient or root. The unit is busy for the whole time, and the core
+    /// continues after 1 cycle.
     Aside(Reads),
-    /// Other uses of floating-point registers: consume results, give none that is late.
+    /// Other uses of floating-point registers. They consume results, and their own result is not
+    /// late.
     Move(Reads),
 }
 
 /// The floating-point registers that an instruction reads early.
 ///
-/// A multiply-accumulate reads its addend `d` a cycle later than its factors, so it never waits for that one.
+/// A multiply-accumulate reads its addend `d` a cycle later than its factors, so it never waits for
+/// the addend.
 pub type Reads = &'static [Float];
 
-/// Where an encoding names a floating-point register.
+/// The position of a floating-point register in an encoding.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Float {
     /// The destination.
@@ -61,7 +67,7 @@ impl Float {
     }
 }
 
-/// Where an encoding names a core register.
+/// The position of a core register in an encoding.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Field {
     Low0,
@@ -93,7 +99,8 @@ impl Field {
     }
 }
 
-/// One row: the instructions `word & mask == value`, their cycles and the core registers that matter for others' cycles.
+/// A row of the table: the instructions with `word & mask == value`, their cycles, and the core
+/// registers that affect the cycles of other instructions.
 ///
 /// `word` is the first halfword in the upper half and the second, if there is one, in the lower half.
 #[derive(Clone, Copy, Debug)]
@@ -101,21 +108,23 @@ pub struct Row {
     pub name: &'static str,
     pub(super) mask: u32,
     pub(super) value: u32,
-    /// On the M3, the M4 and the M0+.
+    /// The cycles on the M3, the M4 and the M0+.
     pub(super) cycles: [u64; 3],
     pub class: Class,
     pub(super) writes: &'static [Field],
-    /// What a load or store makes its address of.
+    /// The registers that form the address of a load or store.
     pub(super) address: &'static [Field],
 }
 
 impl Row {
-    /// The cycles before anything that [`Class`], a refill or the instruction before adds.
+    /// Returns the cycles without the effects of the [`Class`], a refill or the previous
+    /// instruction.
     pub fn cycles(&self, core: Core) -> u64 {
         self.cycles[core as usize]
     }
 
-    /// Whether it leaves a new address in the register that it made its own of: pre- and post-indexed.
+    /// Returns true if the instruction writes a new address to the register of its address (pre-
+    /// and post-indexed).
     pub fn updates_base(&self) -> bool {
         self.address.iter().any(|field| self.writes.contains(field))
     }

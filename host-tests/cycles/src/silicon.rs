@@ -1,19 +1,21 @@
-//! The rules of the core, each by a small loop of our own: through the decoder and the pipeline as all else goes.
+//! Tests of the timing rules. Each rule has a small loop, which passes through the decoder and the
+//! pipeline like any other code.
 //!
-//! Published counts of chips: 200 loads and 200 sums (STM32F429), an STM32F103 and an STM32F407 measured by
-//! jnk0le/random ("pipeline cycle test"), divisions of all lengths on a Cortex-M4 (compendium.i-0.nl, "Division timing"),
-//! and the examples of the Cortex-M3's manual (DDI 0337, "Load/store timings"). No counts were found for vmul, vsqrt, vfma,
-//! vldm, and for vldr and vstr in a row: where a test here has one of those, the manual alone stands behind it.
+//! The expected values are published counts of chips: 200 loads and 200 sums (STM32F429), an
+//! STM32F103 and an STM32F407 measured by jnk0le/random ("pipeline cycle test"), divisions of all
+//! lengths on a Cortex-M4 (compendium.i-0.nl, "Division timing"), and the examples of the
+//! Cortex-M3's manual (DDI 0337, "Load/store timings"). No counts were found for vmul, vsqrt, vfma,
+//! vldm, and for vldr and vstr in a row. Tests that contain one of these rely on the manual alone.
 
 use crate::Core::{self, M0Plus, M3, M4F};
 use crate::instruction::Instruction;
 use crate::pipeline::{Cost, Pipeline};
 use crate::stream::Registers;
 
-/// An instruction's halfwords as one number; a 16-bit one has the lower half 0.
+/// The halfwords of an instruction as one number; the lower half of a 16-bit instruction is 0.
 type Word = u32;
 
-/// A sum of integers that has to do with nothing else.
+/// A sum of integers that depends on no other instruction here.
 const ADDS_R4_R5_R6: Word = 0x19ac_0000;
 const ADDS_R0_4: Word = 0x3004_0000;
 const CMP_R0: Word = 0x2800_0000;
@@ -71,7 +73,8 @@ fn decoded(word: Word) -> Instruction {
     instruction.unwrap_or_else(|| panic!("no row for {word:#010x}"))
 }
 
-/// The cost of straight code, `times` over, with these contents of r0 to r2 all along.
+/// Returns the cost of straight code that is executed `times` times, with constant contents of r0
+/// to r2.
 fn run(core: Core, times: usize, code: &[Word], [r0, r1, r2]: [u32; 3]) -> Cost {
     let mut registers = Registers::default();
     registers.general[..3].copy_from_slice(&[r0, r1, r2]);
@@ -91,8 +94,8 @@ fn taken(core: Core, word: Word) -> u64 {
 
 const BOTH: &[Core] = &[M3, M4F];
 
-/// What shows a rule: cores, how often the code is run, the code, the cycles of it all, and those that wait for a
-/// floating-point result.
+/// A test of a rule: its name, the cores, the number of repetitions, the code, the total cycles,
+/// and the cycles that wait for a floating-point result.
 type Row = (
     &'static str,
     &'static [Core],
@@ -167,6 +170,7 @@ fn straight_code_takes_what_the_rules_say() {
             );
         }
     }
+
     let beside = [
         [VDIV_S0_S1_S2].as_slice(),
         &[ADDS_R4_R5_R6; 14],
@@ -183,9 +187,12 @@ fn a_taken_branch_refills_in_a_cycle_and_a_return_in_two() {
         [M3, M4F, M0Plus].map(branches),
         [[2, 2, 3, 4], [2, 2, 3, 4], [2, 3, 2, 4]]
     );
-    // the delay loops of the crate cortex-m, "4 cycles", and of the Pico's kit for C, "3 cycles per loop"
+
+    // The delay loops of the crate cortex-m, "4 cycles", and of the Pico's C SDK, "3 cycles per
+    // loop".
     for core in [M3, M4F] {
-        let (mut pipeline, registers) = (Pipeline::new(core), Registers::default());
+        let mut pipeline = Pipeline::new(core);
+        let registers = Registers::default();
         let mut step =
             |word, branches| pipeline.execute(decoded(word), &registers, branches).cycles;
         let turns: u64 = (0..10)
@@ -240,7 +247,7 @@ fn a_division_takes_as_long_as_its_quotient_is() {
     }
 }
 
-/// By encodings as LLVM's assembler gives them.
+/// The encodings are those of LLVM's assembler.
 #[test]
 fn multiply_accumulate_is_recognised() {
     for (name, encodings) in [

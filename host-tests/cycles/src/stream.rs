@@ -1,5 +1,8 @@
-//! What a core executes, by the registers before every instruction out of QEMU's log (`-d cpu`); and the calls of a function in that
-//! stream: from its first instruction to its return, with all that it calls and that interrupts it.
+//! The stream of instructions that a core executes, and the calls of functions in it.
+//!
+//! QEMU's log (`-d cpu`) contains the registers before every instruction. A call lasts from the
+//! first instruction of the function to its return. It includes all functions that it calls and all
+//! interrupts.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::io::{BufRead, BufReader, Read};
@@ -30,7 +33,7 @@ impl Registers {
         self.general[15]
     }
 
-    /// Of an instruction's lines in the log.
+    /// Reads the registers from an instruction's lines in the log.
     fn read(first: &[u8], rest: &[u8]) -> Self {
         let mut words = first.chunks_exact(WORD).chain(rest.chunks_exact(WORD));
         Self {
@@ -39,15 +42,18 @@ impl Registers {
     }
 }
 
-/// Bytes of `R01=00000002` and what follows it: of an instruction there are four lines of four such words.
+/// The number of bytes of a word such as `R01=00000002` and its separator. The log has four lines
+/// of four words for each instruction.
 const WORD: usize = 13;
 
-/// The eight digits of a word, all at once, for millions are read.
+/// Returns the value of a word's eight digits. They are computed together for speed, because
+/// millions of words are read.
 fn hexadecimal(word: &[u8]) -> u32 {
     let digits = word[4..]
         .first_chunk()
         .map_or(0, |digits| u64::from_be_bytes(*digits));
-    // Letters are 9 more than their last four bits; then neighbours are put together.
+
+    // The value of a letter is its last four bits plus 9. Then neighbouring digits are combined.
     let is_letter = digits >> 6 & 0x0101_0101_0101_0101;
     let nibbles = (digits & 0x0f0f_0f0f_0f0f_0f0f) + 9 * is_letter;
     let bytes = (nibbles | nibbles >> 4) & 0x00ff_00ff_00ff_00ff;
@@ -55,14 +61,15 @@ fn hexadecimal(word: &[u8]) -> u32 {
     (halves | halves >> 16) as u32
 }
 
-/// Calls `each` with the registers before every instruction of a log, until it refuses. One whose lines are cut short is the
-/// last.
+/// Calls `each` with the registers before every instruction of a log, until `each` returns an
+/// error. An instruction whose lines are incomplete ends the log.
 pub fn for_each_instruction(
     log: &mut dyn Read,
     each: &mut dyn FnMut(Registers) -> Result<()>,
 ) -> Result<()> {
     let mut log = BufReader::with_capacity(1 << 20, log);
-    let (mut first, mut rest) = (Vec::new(), [0; 12 * WORD]);
+    let mut first = Vec::new();
+    let mut rest = [0; 12 * WORD];
     while log.read_until(b'\n', &mut first).context("QEMU's log")? > 0 {
         if first.starts_with(b"R00=") && log.read_exact(&mut rest).is_ok() {
             each(Registers::read(&first, &rest))?;
@@ -72,23 +79,23 @@ pub fn for_each_instruction(
     Ok(())
 }
 
-/// Every call of one of the functions that begin at some addresses.
+/// The calls of the functions that begin at some addresses.
 #[derive(Debug)]
 pub struct Calls<'a> {
     image: &'a Image,
     core: Core,
     entries: BTreeSet<u32>,
-    /// Where the call that is running came from, the stream since then, and what it has cost.
+    /// The running call: the registers at its entry, its stream since then, and its cost.
     pub running: Option<(Registers, Stream<'a>, Cost)>,
-    /// What each call that returned cost, in order.
+    /// The cost of each call that has returned, in order.
     pub ended: Vec<Cost>,
-    /// By its address, an instruction and what all its executions together cost.
+    /// The instructions by address, each with the total cost of its executions.
     pub spots: BTreeMap<u32, (Instruction, Cost)>,
-    /// The deepest the stack pointer went below where the caller had it.
+    /// The largest distance of the stack pointer below its value at the entry of a call, bytes.
     pub stack_bytes: u32,
 }
 
-/// What a core executes, one instruction after the other.
+/// The instructions that a core executes, one after the other.
 #[derive(Debug)]
 pub struct Stream<'a> {
     image: &'a Image,
@@ -106,7 +113,8 @@ impl<'a> Stream<'a> {
         }
     }
 
-    /// Takes the registers before the next instruction; of the one before that, if there is one: its address, itself and its cost.
+    /// Takes the registers before the next instruction. Returns the address, the instruction and
+    /// the cost of the previous one, if there is one.
     pub fn see(&mut self, next: Registers) -> Result<Option<(u32, Instruction, Cost)>> {
         let Some(before) = self.before.replace(next) else {
             return Ok(None);
@@ -123,7 +131,8 @@ impl<'a> Stream<'a> {
 
 impl<'a> Calls<'a> {
     pub fn of(image: &'a Image, core: Core, entries: BTreeSet<u32>) -> Self {
-        let (ended, spots) = (Vec::new(), BTreeMap::new());
+        let ended = Vec::new();
+        let spots = BTreeMap::new();
         Self {
             image,
             core,
@@ -143,6 +152,8 @@ impl<'a> Calls<'a> {
                 Cost::default(),
             ));
         }
+
+        // Count the executed instruction for the running call.
         let Some((caller, stream, cost)) = &mut self.running else {
             return Ok(());
         };
@@ -157,6 +168,8 @@ impl<'a> Calls<'a> {
             .stack_bytes
             .max(caller.sp().saturating_sub(registers.sp()));
         *cost += executed;
+
+        // The call has returned.
         if registers.pc() == caller.lr() & !1 && registers.sp() == caller.sp() {
             self.ended.push(*cost);
             self.running = None;
@@ -164,14 +177,14 @@ impl<'a> Calls<'a> {
         Ok(())
     }
 
-    /// Of all calls that returned.
+    /// Returns the total cost of all calls that have returned.
     pub fn cost(&self) -> Cost {
         let mut all = Cost::default();
         self.ended.iter().for_each(|call| all += *call);
         all
     }
 
-    /// Bytes of the distinct instructions executed.
+    /// Returns the size of all distinct executed instructions, in bytes.
     pub fn hot_bytes(&self) -> u32 {
         self.spots
             .values()
@@ -179,7 +192,7 @@ impl<'a> Calls<'a> {
             .sum()
     }
 
-    /// Bytes of the functions entered.
+    /// Returns the size of all entered functions, in bytes.
     pub fn code_bytes(&self) -> u32 {
         let functions: BTreeSet<_> = self
             .spots

@@ -1,13 +1,16 @@
 //! Published instruction timings of the Cortex-M3, Cortex-M4 and Cortex-M0+, as data.
 //!
-//! Sources: Cortex-M3 TRM (Arm DDI 0337) and Cortex-M4 TRM r0p1 (Arm DDI 0439), "Instruction set summary" (table 3-1),
-//! and DDI 0439 "FPU instruction set" (table 7-1) with its notes; Cortex-M0+ TRM r0p1 (Arm DDI 0484C), "Instruction set summary"
-//! (table 3-1), with the multiplier of 1 cycle (that of the RP2040) and no single-cycle port. The encodings are those of the ARMv7-M Architecture
-//! Reference Manual (Arm DDI 0403), chapters A5 and A6. All assume memory without wait states.
+//! Sources: Cortex-M3 TRM (Arm DDI 0337) and Cortex-M4 TRM r0p1 (Arm DDI 0439), "Instruction set
+//! summary" (table 3-1), and DDI 0439 "FPU instruction set" (table 7-1) with its notes; Cortex-M0+
+//! TRM r0p1 (Arm DDI 0484C), "Instruction set summary" (table 3-1), with the 1-cycle multiplier of
+//! the RP2040 and without a single-cycle port. The encodings are those of the ARMv7-M Architecture
+//! Reference Manual (Arm DDI 0403), chapters A5 and A6. All timings assume memory without wait
+//! states.
 //!
-//! Where the manuals give a range for a long product of the M3 (3 to 5, with accumulation 4 to 7), the table has its end:
-//! that is what fits published measurements best. A single store takes 1 as measured, where table 3-1 has 2; so vstr is
-//! taken to, for which no measurement was found. What neighbours do to each other is in `pipeline`.
+//! For a long product on the M3 the manuals give a range (3 to 5, with accumulation 4 to 7). The
+//! table has the upper end because it fits published measurements best. A single store takes 1
+//! cycle as measured, although table 3-1 says 2. The table assumes the same for vstr, for which no
+//! measurement was found. The module `pipeline` contains the effects of neighbouring instructions.
 
 use crate::row::Class::{
     Arithmetic, Aside, Branch, Divide, Fixed, FloatList, IfThen, Load, LoadList, LoadPair, Move,
@@ -17,17 +20,20 @@ use crate::row::Field::{Any, Low0, Low3, Low6, Low8, Sp, Wide0, Wide8, Wide12, W
 use crate::row::Float::{D, Half, M, N};
 use crate::row::{Row, row};
 
-/// Cycles to refill the pipeline after a taken branch to an address that the instruction holds: "normally 1" (DDI 0337,
-/// table 3-1 of older issues).
+/// The cycles to refill the pipeline after a taken branch to an address in the instruction:
+/// "normally 1" (DDI 0337, table 3-1 of older issues).
 pub const DIRECT_REFILL: u64 = 1;
-/// The same after any other instruction that the next one in memory does not follow: bx, a pop of pc; "normally 2".
+/// The cycles to refill the pipeline after any other instruction that is not followed by the next
+/// one in memory, such as bx or a pop of pc: "normally 2".
 pub const INDIRECT_REFILL: u64 = 2;
-/// Cycles more if a taken branch leads to a 32-bit instruction off a word's boundary, of which the first fetch brings half.
+/// The additional cycles if a taken branch leads to a 32-bit instruction off a word's boundary. The
+/// first fetch then brings only half of it.
 pub const UNALIGNED_TARGET: u64 = 1;
-/// Cycles more until a floating-point result can be consumed (DDI 0439, notes of table 7-1).
+/// The additional cycles until a floating-point result can be consumed (DDI 0439, notes of table
+/// 7-1).
 pub const RESULT_USE_STALL: u64 = 1;
 
-/// The table; the first row that fits an instruction holds.
+/// The table of timings. The first row that matches an instruction is used.
 #[rustfmt::skip]
 pub const TIMINGS: &[Row] = &[
     // 16-bit loads and stores

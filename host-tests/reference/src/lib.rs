@@ -1,5 +1,6 @@
-//! The exact motion, which everything is held against, by two roads that have nothing in common but the book: a set that it is proved
-//! to be in, and, many times faster, about 30 digits of it.
+//! The exact motion, the standard of comparison for all methods. It is computed in two ways that
+//! have only the book's equations in common: a set that is proved to contain the motion, and, many
+//! times faster, about 30 digits of the motion.
 
 #![forbid(unsafe_code)]
 
@@ -12,12 +13,14 @@ use double_pendulum::flips::{Flip, Flips};
 use double_pendulum::parts::DirectionF64;
 use double_pendulum::{Error, Run};
 
-/// Advances RK4 in compensated `f64`, beside which RK4 in fewer bits is tested for as long as a day: from here it is optimised.
+/// Advances RK4 in compensated `f64`. Tests compare RK4 in fewer bits with it for as long as a day.
+/// This function is in this package because the package is optimised in every profile.
 pub fn advance(run: &mut Run<DirectionF64>, steps: u32) -> Result<(), Error> {
     run.advance(steps)
 }
 
-/// When a rod first turns over, by the same method: the map of flips is judged by it.
+/// Returns the time when a rod first turns over, by RK4 in compensated `f64`. The map of flips is
+/// compared with it.
 pub fn flip(search: &Flips<DirectionF64>, a1: f64, a2: f64) -> Result<Flip<f64>, Error> {
     search.of(a1, a2)
 }

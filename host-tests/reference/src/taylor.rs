@@ -1,47 +1,49 @@
-//! The reference: the exact motion, to about 30 digits, by an independent road.
+//! The reference: the exact motion to about 30 digits, computed independently of the kernel.
 //!
-//! Lagrange's two second-order equations (not Hamilton's), written anew from the book, as power series in time of order
-//! 36 (not Runge-Kutta), in double-double arithmetic of 106 bits (not f32 or f64). Of the kernel it uses the plain
-//! structures of numbers only.
+//! It integrates Lagrange's two second-order equations (not Hamilton's), written again from the
+//! book, by power series in time of order 36 (not Runge-Kutta), in double-double arithmetic of 106
+//! bits (not f32 or f64). It uses only the kernel's plain data structures.
 //!
-//! It is inside what the [enclosure](crate::enclosure) proves of random motions, the hard cases and the scenes, to 1e-31 times the growth
-//! of a small error (tests `known_answers` and `motions`).
+//! Its results are within the [enclosure](crate::enclosure) of random motions, of the hard cases
+//! and of the scenes, to 1e-31 times the growth of a small error (tests `known_answers` and
+//! `motions`).
 
 use double_pendulum::{Motion, Parameters, State};
 use twofloat::TwoFloat;
 use twofloat::consts::FRAC_PI_2;
 
-/// The highest power of time kept, unless another is asked for.
+/// The highest power of time in the series, unless [`Reference::of_order`] sets another.
 const ORDER: usize = 36;
 
 /// The first power of time whose coefficient is computed in `f64`.
 ///
-/// A step is so long that each term is about a ninth of the one before it. Term 20 is about 1e-19 of the
-/// value, and 16 digits of it are 35 digits of the value.
+/// A step is so long that each term is about a ninth of the one before it. Term 20 is about 1e-19
+/// of the value, so 16 digits of it are 35 digits of the value.
 const FIRST_IN_F64: usize = 20;
 
 /// A double pendulum in exact motion, to about 30 digits.
 ///
-/// Costs about 0.1 ms for each step of its own, of which a rod of 1 m needs 20 to 50 a second.
+/// A step takes about 0.1 ms. A rod of 1 m needs 20 to 50 steps a second.
 #[derive(Clone, Debug)]
 pub struct Reference {
     parameters: Parameters<TwoFloat>,
-    /// The highest power of time kept.
+    /// The highest power of time in the series.
     order: usize,
     time: TwoFloat,
     /// a1, a2 (rad); w1, w2 (rad/s).
     motion: [TwoFloat; 4],
-    /// Their power series about an earlier time, ...
+    /// The power series of the motion about the time `about`.
     series: [Vec<TwoFloat>; 4],
     about: TwoFloat,
-    /// ... and until when these are the motion.
+    /// The time until which the series represent the motion.
     end: TwoFloat,
 }
 
 impl Reference {
-    /// Starts at time 0 from `motion`; every f64 given is taken as exact.
+    /// Starts at time 0 from `motion`. Every `f64` is taken as exact.
     pub fn new(parameters: &Parameters<f64>, motion: &Motion<f64>) -> Self {
-        let (&Parameters { m1, m2, l1, l2, g }, &Motion { a1, a2, w1, w2 }) = (parameters, motion);
+        let &Parameters { m1, m2, l1, l2, g } = parameters;
+        let &Motion { a1, a2, w1, w2 } = motion;
         let [m1, m2, l1, l2, g] = [m1, m2, l1, l2, g].map(TwoFloat::from);
         Self::exact(
             Parameters { m1, m2, l1, l2, g },
@@ -49,7 +51,8 @@ impl Reference {
         )
     }
 
-    /// As [`Reference::new`] from numbers of full precision: angles in rad, velocities in rad/s.
+    /// Starts like [`Reference::new`] from numbers of full precision: angles in rad, velocities in
+    /// rad/s.
     pub fn exact(parameters: Parameters<TwoFloat>, motion: [TwoFloat; 4]) -> Self {
         let zero = TwoFloat::from(0.0);
         Self {
@@ -63,21 +66,23 @@ impl Reference {
         }
     }
 
-    /// Takes power series of another order, from 24 on, and with it other steps. The distance between the results of two
-    /// orders shows how accurate both are.
+    /// Uses power series of another order, at least 24, and with it other steps. The distance
+    /// between the results of two orders shows how accurate both are.
     #[must_use]
     pub fn of_order(self, order: usize) -> Self {
         Self { order, ..self }
     }
 
-    /// Moves to time `t`, s; goes forward only, an earlier time changes nothing.
+    /// Advances to time `t`, s. An earlier time changes nothing.
     pub fn advance_to(&mut self, t: f64) {
         let t = TwoFloat::from(t);
         while self.time < t {
             if self.time >= self.end {
-                (self.series, self.about) = (self.series_now(), self.time);
+                self.series = self.series_now();
+                self.about = self.time;
                 self.end = self.time + longest_step(&self.series, self.order);
             }
+
             self.time = if self.end < t { self.end } else { t };
             let h = self.time - self.about;
             let sum = |series: &Vec<TwoFloat>| {
@@ -92,25 +97,25 @@ impl Reference {
         }
     }
 
-    /// Angles and velocities now.
+    /// Returns the angles and velocities at the current time.
     pub fn motion(&self) -> Motion<f64> {
         let [a1, a2, w1, w2] = self.motion.map(f64::from);
         Motion { a1, a2, w1, w2 }
     }
 
-    /// Angles and canonical momenta now.
+    /// Returns the angles and canonical momenta at the current time.
     pub fn state(&self) -> State<f64> {
         self.exact_state().map(f64::from).into()
     }
 
-    /// (sin a1, cos a1, sin a2, cos a2) now, in full precision.
+    /// Returns (sin a1, cos a1, sin a2, cos a2) at the current time, in full precision.
     pub fn directions(&self) -> [TwoFloat; 4] {
         let [a1, a2, ..] = self.motion;
         let [[sin1, cos1], [sin2, cos2]] = [a1, a2].map(sin_cos);
         [sin1, cos1, sin2, cos2]
     }
 
-    /// (a1, a2, p1, p2) now, in full precision: p_i = dL/dw_i.
+    /// Returns (a1, a2, p1, p2) at the current time, in full precision: p_i = dL/dw_i.
     pub fn exact_state(&self) -> [TwoFloat; 4] {
         let Parameters { m1, m2, l1, l2, .. } = self.parameters;
         let [a1, a2, w1, w2] = self.motion;
@@ -120,12 +125,15 @@ impl Reference {
         [a1, a2, p1, p2]
     }
 
-    /// The coefficients up to the order of the power series of a1, a2, w1, w2 about now.
+    /// Returns the coefficients of the power series of a1, a2, w1, w2 about the current time, up to
+    /// the order.
     ///
-    /// Beside them those of the sine and cosine of a1, a2 and D = a1 - a2 by s' = c a' and c' = -s a'.
+    /// The series of the sine and cosine of a1, a2 and D = a1 - a2 are computed along with them by
+    /// s' = c a' and c' = -s a'.
     fn series_now(&self) -> [Vec<TwoFloat>; 4] {
         let Parameters { m1, m2, l1, l2, g } = self.parameters;
-        let (total, [a1, a2, w1, w2]) = (m1 + m2, self.motion);
+        let total = m1 + m2;
+        let [a1, a2, w1, w2] = self.motion;
         let [[sin1, cos1], [sin2, cos2], [sin_d, cos_d]] = [a1, a2, a1 - a2].map(sin_cos);
         let mut z = [a1, a2, w1, w2, sin1, cos1, sin2, cos2, sin_d, cos_d].map(|value| vec![value]);
         let [mut square1, mut square2, mut f1, mut f2, mut den, mut turn] =
@@ -134,7 +142,9 @@ impl Reference {
 
         for k in 0..self.order {
             let [_, _, w1, w2, sin1, cos1, sin2, cos2, sin_d, cos_d] = &z;
-            // (m1 + m2) l1 w1' + m2 l2 w2' cos D = f1,  l1 w1' cos D + l2 w2' = f2
+
+            // The accelerations follow from (m1 + m2) l1 w1' + m2 l2 w2' cos D = f1 and l1 w1' cos
+            // D + l2 w2' = f2.
             square1.push(product(w1, w1));
             square2.push(product(w2, w2));
             f1.push(-m2 * l2 * product(&square2, sin_d) - total * g * sin1[k]);
@@ -169,12 +179,14 @@ impl Reference {
                 z.push(slope / (k + 1) as f64);
             }
         }
+
         let [a1, a2, w1, w2, ..] = z;
         [a1, a2, w1, w2]
     }
 }
 
-/// Coefficient k of the product of two power series, of which `a` and `b` are the coefficients 0 to k.
+/// Returns coefficient k of the product of two power series; `a` and `b` are their coefficients 0
+/// to k.
 fn product(a: &[TwoFloat], b: &[TwoFloat]) -> TwoFloat {
     if a.len() > FIRST_IN_F64 {
         let terms = a.iter().zip(b.iter().rev());
@@ -185,12 +197,13 @@ fn product(a: &[TwoFloat], b: &[TwoFloat]) -> TwoFloat {
         .fold(TwoFloat::from(0.0), |sum, (&a, &b)| sum + a * b)
 }
 
-/// The sine and cosine by their own power series about the nearest multiple of pi/2.
+/// Returns the sine and cosine, computed by their power series about the nearest multiple of pi/2.
 fn sin_cos(angle: TwoFloat) -> [TwoFloat; 2] {
     let quarter_turns = f64::from(angle / FRAC_PI_2).round();
     let x = angle - FRAC_PI_2 * quarter_turns;
     let alternating = |first: TwoFloat, mut power: f64| {
-        let (mut sum, mut term) = (first, first);
+        let mut sum = first;
+        let mut term = first;
         while term.hi().abs() > 1e-36 {
             term = -(term * x * x) / ((power + 1.0) * (power + 2.0));
             sum += term;
@@ -198,7 +211,8 @@ fn sin_cos(angle: TwoFloat) -> [TwoFloat; 2] {
         }
         sum
     };
-    let (sin, cos) = (alternating(x, 1.0), alternating(1.0.into(), 0.0));
+    let sin = alternating(x, 1.0);
+    let cos = alternating(1.0.into(), 0.0);
     match quarter_turns.rem_euclid(4.0) as u8 {
         0 => [sin, cos],
         1 => [cos, -sin],
@@ -207,13 +221,14 @@ fn sin_cos(angle: TwoFloat) -> [TwoFloat; 2] {
     }
 }
 
-/// a/b to full precision: the quotient of twofloat 0.8.4 is good to 1e-16 only, so its remainder is divided as well.
+/// Returns a/b to full precision. The quotient of twofloat 0.8.4 is accurate to 1e-16 only, so its
+/// remainder is divided as well.
 pub fn divide(a: TwoFloat, b: TwoFloat) -> TwoFloat {
     let quotient = a / b;
     quotient + (a - quotient * b) / b
 }
 
-/// The states at `times` (s, ascending) of the motion that starts as `start`.
+/// Returns the states at `times` (s, ascending) of the motion that begins at `start`.
 pub fn states(
     parameters: &Parameters<f64>,
     start: &Motion<f64>,
@@ -227,12 +242,13 @@ pub fn states(
     times.map(state).collect()
 }
 
-/// The least term of a series kept, relative to the rates of the motion.
+/// The smallest term of a series that is kept, relative to the rates of the motion.
 const RESOLUTION: f64 = 1e-33;
 
-/// The step at which the last terms of each series fall below the resolution of its value (A. Jorba, M. Zou, "A
-/// software package for the numerical integration of ODEs by means of high-order Taylor methods", 2005). Four terms
-/// are looked at, because a motion with a symmetry in time has only every second or fourth.
+/// Returns the step at which the last terms of each series fall below the resolution of its value
+/// (A. Jorba, M. Zou, "A software package for the numerical integration of ODEs by means of
+/// high-order Taylor methods", 2005). Four terms are checked, because a motion with a symmetry in
+/// time has only every second or fourth.
 fn longest_step(motion: &[Vec<TwoFloat>; 4], order: usize) -> f64 {
     let magnitude = |x: TwoFloat| f64::from(x).abs();
     let rate = magnitude(motion[2][0])

@@ -1,4 +1,5 @@
-//! `cargo setup`, `cargo fw` and `cargo verify`: the tools brought, any firmware run on an emulated board, every test run.
+//! `cargo setup`, `cargo fw` and `cargo verify`: install the tools, run a firmware on an emulated
+//! board, run every test.
 
 use std::io::{self, Write, stdout};
 use std::path::{Path, PathBuf};
@@ -49,7 +50,7 @@ pub fn setup(options: &SetupOptions) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// How long a firmware may run if `--seconds` does not say.
+/// The time limit of a firmware without `--seconds`.
 const LIMIT: Duration = Duration::from_secs(3600);
 
 /// Builds a firmware binary, runs it in QEMU and prints its log; exits as the firmware does.
@@ -70,7 +71,7 @@ pub struct FwOptions {
     check: bool,
 }
 
-/// Also cargo's own runner for the ARM targets.
+/// Runs a firmware. Cargo also uses this command as the runner for the ARM targets.
 pub fn fw(options: &FwOptions) -> anyhow::Result<ExitCode> {
     let Some(binary) = &options.binary else {
         toolchain::set_up()?.check()?;
@@ -78,12 +79,14 @@ pub fn fw(options: &FwOptions) -> anyhow::Result<ExitCode> {
     };
     let name = binary.to_string_lossy();
     let is_path = name.contains('/');
+
     if !is_path && !binaries().iter().any(|binary| *binary == name) {
         bail!(Refused::because(format_args!(
             "no binary {name}; there are {}",
             binaries().join(", ")
         )));
     }
+
     let board = options.board.unwrap_or_else(|| board_for(binary));
     let toolchain = toolchain::set_up()?;
     let elf = if is_path {
@@ -104,11 +107,13 @@ pub fn fw(options: &FwOptions) -> anyhow::Result<ExitCode> {
     };
     let mut machine = Machine::start(&settings)?;
     let mut output = stdout().lock();
-    // Whoever stops reading does not stop the board.
+
+    // The board continues if the reader of the output has stopped.
     let ended = machine.wait(|line| drop(writeln!(output, "{line}").and_then(|()| output.flush())));
     let is_late = |error: &anyhow::Error| {
         error.downcast_ref().map(io::Error::kind) == Some(io::ErrorKind::TimedOut)
     };
+
     match (ended, options.seconds) {
         (Err(error), Some(seconds)) if is_late(&error) => {
             complain(format_args!("stopped after {seconds} s, as requested"));
@@ -118,8 +123,9 @@ pub fn fw(options: &FwOptions) -> anyhow::Result<ExitCode> {
     }
 }
 
-/// The first board that has a binary as its application; else the first. Where the file says its target, as in
-/// `target/thumbv7m-none-eabi/release/x`, only boards of that target count.
+/// Returns the first board whose application is this binary, or else the first board. If the path
+/// contains a target, as in `target/thumbv7m-none-eabi/release/x`, only boards with that target are
+/// considered.
 fn board_for(binary: &Path) -> &'static Board {
     let is_target = |board: &&Board| {
         binary
@@ -145,7 +151,8 @@ fn runnable() -> String {
             board.hertz / 1_000_000
         )
     });
-    let (binaries, boards) = (binaries().join("\n  "), boards.join("\n"));
+    let binaries = binaries().join("\n  ");
+    let boards = boards.join("\n");
     format!(
         "Example: cargo fw mps2-an386 --seconds 10\n\nBinaries:\n  {binaries}\n\nBoards:\n{boards}"
     )
@@ -173,13 +180,15 @@ pub struct TestOptions {
     yes: bool,
 }
 
-/// For every test, the compiling included, on a slow, busy machine; and for the long ones too.
+/// The time limits of all tests, including their compilation, on a slow, busy machine: without and
+/// with the long tests.
 const LIMITS: [Duration; 2] = [Duration::from_secs(3600), Duration::from_secs(12 * 3600)];
-/// How many tests run side by side. Unless the user has set it, twice as many as there are processors: many wait for an
-/// emulator or a clock.
+/// The environment variable with the number of concurrent tests. If the user has not set it, it is
+/// twice the number of processors, because many tests wait for an emulator or a clock.
 const THREADS: &str = "RUST_TEST_THREADS";
 
-/// The set-up, the firmware, then exactly `cargo test`, with its own output and exit code.
+/// Runs the set-up, builds the firmware, then runs exactly `cargo test`, with its own output and
+/// exit code.
 pub fn verify(options: &TestOptions) -> anyhow::Result<ExitCode> {
     let toolchain = toolchain::set_up()?;
     toolchain::set_up_pico_with(consent(options.yes))?;
@@ -201,10 +210,13 @@ pub fn verify(options: &TestOptions) -> anyhow::Result<ExitCode> {
     } else {
         "note: all tests take some ten minutes"
     });
-    // Tests and firmware are compiled side by side: neither keeps all processors busy by itself.
+
+    // Tests and firmware are compiled at the same time, because neither keeps all processors busy
+    // alone.
     let mut compiling = test(&["--no-run", "--quiet"])?;
     toolchain.build_ahead()?;
     compiling.wait()?;
+
     let arguments: &[&str] = if options.long {
         &["--", "--include-ignored"]
     } else {

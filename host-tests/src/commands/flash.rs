@@ -1,4 +1,5 @@
-//! `cargo pico` and `cargo flash-f4`: the firmware brought onto a board, as a file or by a program that flashes.
+//! `cargo pico` and `cargo flash-f4`: transfer the firmware to a board, as a file or by a flashing
+//! program.
 
 use std::fs;
 use std::io::{BufRead, BufReader, Write};
@@ -17,16 +18,16 @@ use crate::emulator::flash::{flash_image, uf2};
 use crate::emulator::toolchain::{self, Toolchain, target};
 use crate::link::{running_board, touch};
 
-/// The file, and the one by which a board's drive says whose it is.
+/// The name of the firmware's file, and that of the label on a board's drive.
 pub const FILE: &str = "pico.uf2";
 const LABEL: &str = "INFO_UF2.TXT";
-/// What the label of an RP2040 says.
+/// The line in the label of an RP2040.
 const OURS: &str = "Board-ID: RPI-RP2";
 
-/// The file system of the drive, which the boot ROM makes up.
+/// The type of the drive's file system, which the boot ROM emulates.
 const DRIVE_TYPE: &str = "vfat";
-/// How long the drive may take to appear after the board was sent into its boot loader: the
-/// enumeration takes a second, the desktop's mounting another.
+/// The time that the drive may take to appear after the board was sent to its boot loader. The
+/// enumeration takes a second, and the desktop's mounting another.
 const MOUNTING: Duration = Duration::from_secs(10);
 const LOOK: Duration = Duration::from_millis(250);
 
@@ -43,8 +44,8 @@ pub struct PicoOptions {
     drive: Option<PathBuf>,
 }
 
-/// Builds the firmware of the Raspberry Pi Pico and writes it to the target folder as UF2; returns
-/// the bytes of flash that it takes, and the file.
+/// Builds the firmware of the Raspberry Pi Pico and writes it to the target folder as UF2. Returns
+/// the number of bytes in the flash, and the file.
 pub fn uf2_file(toolchain: &Toolchain) -> anyhow::Result<(usize, PathBuf)> {
     let (start, image) = flash_image(&fs::read(toolchain.build_for(&PICO)?)?)?;
     let file = target().join(FILE);
@@ -68,7 +69,9 @@ pub fn pico(options: &PicoOptions) -> anyhow::Result<()> {
         }
     };
     let to = drive.join(FILE);
-    // Until the drive has it. Not `fs::copy`, which sets the file's mode as well: a drive that root has mounted refuses that.
+
+    // Wait until the drive has the data. `fs::copy` is not suitable, because it also sets the
+    // file's mode, which a drive mounted by root refuses.
     let written = fs::File::create(&to)
         .and_then(|mut file| file.write_all(&blocks).and_then(|()| file.sync_all()));
     written.with_context(|| to.display().to_string())?;
@@ -109,8 +112,8 @@ fn drive(folder: &str) -> Result<PathBuf, String> {
     }
 }
 
-/// The drive of an RP2040 among those that are mounted. Only drives of its type are looked into:
-/// a file system of the network whose server is gone would never answer.
+/// Returns the drive of an RP2040 among the mounted ones. Only drives of its type are searched,
+/// because a network file system whose server is gone would never answer.
 fn mounted(mounts: &str) -> Option<PathBuf> {
     let folder = |line: &str| {
         let mut fields = line.split(' ').skip(1);
@@ -124,7 +127,7 @@ fn mounted(mounts: &str) -> Option<PathBuf> {
         .find_map(|folder| drive(&folder).ok())
 }
 
-/// Chips alike in all that the firmware uses.
+/// The chips that have everything the firmware uses.
 const CHIPS: [&str; 4] = ["STM32F405", "STM32F407", "STM32F415", "STM32F417"];
 
 const EXAMPLES: &str = "Examples:
@@ -166,7 +169,8 @@ pub fn stm32f405(options: &FlashOptions) -> anyhow::Result<()> {
             "https://probe.rs/docs/getting-started/installation",
         )
     };
-    // Before the build, which takes its time.
+
+    // This check precedes the build, which takes a long time.
     if toolchain::find(program).is_none() {
         bail!(Refused::because(format_args!(
             "flashing needs {program}, which is not installed; see {source}"
@@ -174,12 +178,15 @@ pub fn stm32f405(options: &FlashOptions) -> anyhow::Result<()> {
     }
     let elf = toolchain::ready()?.build_for(&STM32F405)?;
     let mut command = Command::new(program);
+
     if options.dfu {
         let (start, image) = flash_image(&fs::read(&elf)?)?;
         let file = elf.with_extension("bin");
         fs::write(&file, image).with_context(|| file.display().to_string())?;
-        // ST's loader and its flash. Without `:leave`, because a program started by the loader
-        // finds its USB interrupt pending, and `dfu-util` fails when the device is gone.
+
+        // The options select ST's loader and its flash. They do not contain `:leave`, because a
+        // program started by the loader finds its USB interrupt pending, and `dfu-util` fails when
+        // the device is gone.
         command
             .args([
                 "-d",
@@ -195,6 +202,7 @@ pub fn stm32f405(options: &FlashOptions) -> anyhow::Result<()> {
     } else {
         command.args(["run", "--chip", &options.chip]).arg(elf);
     }
+
     let start = |error| Refused::because(format_args!("cannot start {program}: {error}"));
     if options.dfu {
         let mut child = command.stdout(Stdio::piped()).spawn().map_err(start)?;
@@ -208,21 +216,25 @@ pub fn stm32f405(options: &FlashOptions) -> anyhow::Result<()> {
             "the program is in the flash: take the wire off BOOT0, then press reset",
         )?);
     }
-    // It takes the place of this process, so that the terminal, Ctrl-C and the exit code are its own.
+
+    // The flashing program replaces this process, so that it has the terminal and Ctrl-C, and its
+    // exit code is the result.
     bail!(start(command.exec()))
 }
 
-/// What `dfu-util` prints when the whole file is in the flash.
+/// The line that `dfu-util` prints when the whole file is in the flash.
 ///
-/// Its exit code does not tell: where the device goes away before it has answered for its state,
-/// that is 74 (EX_IOERR) although all is written.
+/// The exit code is not reliable: if the device disappears before it has answered a status request,
+/// the code is 74 (EX_IOERR) although everything is written.
 const DOWNLOADED: &str = "File downloaded successfully";
 
-/// Passes the output of `dfu-util` on. Returns true if it reports that the file is written.
+/// Copies the output of `dfu-util`. Returns true if it reports that the file is written.
 fn copy_until_written(mut output: impl BufRead, to: &mut impl Write) -> std::io::Result<bool> {
     let mut is_written = false;
     let mut line = Vec::new();
-    // A progress bar ends in a carriage return, and its lines are long: whatever is there is shown.
+
+    // A progress bar ends in a carriage return, and its lines are long, so all available bytes are
+    // shown at once.
     loop {
         let bytes = output.fill_buf()?;
         let count = bytes.len();

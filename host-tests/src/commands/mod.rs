@@ -1,4 +1,4 @@
-//! What the commands do, one room each.
+//! The commands, one room each.
 
 pub mod count;
 pub mod demo;

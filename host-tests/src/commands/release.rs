@@ -1,5 +1,5 @@
-//! `cargo release-files`: all that a release hands out, in one folder. The same commit and compiler
-//! make the same bytes anywhere.
+//! `cargo release-files`: all files of a release, in one folder. The same commit and compiler make
+//! the same bytes on any machine.
 
 use std::fs;
 use std::path::Path;
@@ -15,14 +15,14 @@ use crate::emulator::boards::every_board;
 use crate::emulator::process;
 use crate::emulator::toolchain::{self, QUICK, target, workspace};
 
-/// The folder, in the target folder.
+/// The name of the folder, in the target folder.
 const FOLDER: &str = "release-files";
-/// The sums, in the format that `sha256sum --check` reads.
+/// The file of checksums, in the format that `sha256sum --check` reads.
 const SUMS: &str = "SHA256SUMS";
-/// For packaging the kernel, an index of the registry fetched if need be.
+/// The time limit to package the kernel, including a download of the registry's index.
 const PACKAGE: Duration = Duration::from_secs(300);
 const KERNEL: &str = "double-pendulum-kernel";
-/// Programs that print sums in that format, and their arguments.
+/// The programs that print checksums in that format, with their arguments.
 const HASHERS: [(&str, &[&str]); 2] = [("sha256sum", &[]), ("shasum", &["-a", "256"])];
 
 /// Makes target/release-files/: the Pico's UF2, the ELF file of every board, the packaged kernel,
@@ -85,8 +85,8 @@ fn copy(from: &Path, to: &Path) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Packages the kernel as a registry takes it. Cargo asks the registry only if what is on this
-/// machine is not enough.
+/// Packages the kernel as for a registry. Cargo contacts the registry only if the data on this
+/// machine is not sufficient.
 fn package(into: &Path) -> anyhow::Result<()> {
     let attempt = |more: &[&str]| {
         let mut cargo = Command::new("cargo");

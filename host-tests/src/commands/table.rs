@@ -1,6 +1,6 @@
-//! A table, in two notations.
+//! A table that can be written as CSV and as Markdown.
 
-/// Headings of the columns, with units, and rows of as many cells.
+/// The headings of the columns, with units, and rows with a cell for each column.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Table {
     pub columns: Vec<&'static str>,
@@ -8,7 +8,7 @@ pub struct Table {
 }
 
 impl Table {
-    /// Comma-separated; no cell contains a comma or a quote.
+    /// Returns the table as CSV. No cell may contain a comma or a quote.
     pub fn csv(&self) -> String {
         let lines = std::iter::once(self.columns.join(","))
             .chain(self.rows.iter().map(|row| row.join(",")));
@@ -27,14 +27,14 @@ impl Table {
     }
 }
 
-/// `page` with something else between its two marks, if it has them.
+/// Returns `page` with `text` between its two marks, or `None` if it lacks them.
 pub fn between(page: &str, [start, end]: [&str; 2], text: &str) -> Option<String> {
     let (head, rest) = page.split_once(start)?;
     let (_, tail) = rest.split_once(end)?;
     Some(format!("{head}{start}{text}{end}{tail}"))
 }
 
-/// An error or a drift: two digits, or what it is not.
+/// Returns an error or a drift with two digits, or "none" if it is not finite.
 pub fn small(value: f64) -> String {
     if value.is_finite() {
         format!("{value:.1e}")
@@ -46,7 +46,8 @@ pub fn small(value: f64) -> String {
 /// Returns a bound of two digits, in exponent form, that is no less than `value`.
 pub fn at_most(value: f64) -> String {
     let rounded = format!("{value:.1e}");
-    // A decimal may be below the `f64` that it is read as, by half a unit of its last place.
+
+    // A decimal may be below the `f64` that it is parsed to, by half a unit of its last place.
     let is_enough = |text: &str| text.parse::<f64>().is_ok_and(|bound| bound > value);
     if value == 0.0 || !value.is_finite() || is_enough(&rounded) {
         return rounded;

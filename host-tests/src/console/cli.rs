@@ -1,4 +1,4 @@
-//! What every command does alike: its options, what it says, one clear line for an error, and the exit code.
+//! The behaviour that all commands share: options, output, errors in one line, and the exit code.
 
 use std::env;
 use std::fmt::{self, Display};
@@ -9,15 +9,16 @@ use std::process::{ExitCode, Termination};
 use clap::Parser;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 
-/// The exit code for a request that cannot be served as asked: wrong options, missing tools.
+/// The exit code of a request that cannot be served: wrong options, missing tools.
 pub const REFUSED: u8 = 2;
 
-/// A request that cannot be served as asked, and why, in one line: exit code 2. Any other error is exit code 1.
+/// A request that cannot be served, with the reason in one line. The exit code is 2; that of any
+/// other error is 1.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Refused(String);
 
 impl Refused {
-    /// With the reason that is printed after `error: `.
+    /// Returns a refusal with the reason that is printed after `error: `.
     pub fn because(reason: impl Display) -> Self {
         Self(reason.to_string())
     }
@@ -31,9 +32,11 @@ impl Display for Refused {
     }
 }
 
-/// Runs a command with the options of this run, and gives its exit code after saying what went wrong.
+/// Runs a command with the options of the command line. Prints an error if it fails, and returns
+/// its exit code.
 ///
-/// Who reads its output may stop at any time (`| head`): the command then ends quietly and with success.
+/// The reader of the output may stop at any time (`| head`). The command then ends quietly and with
+/// success.
 pub fn main<Options: Parser, Done: Termination>(
     run: impl FnOnce(&Options) -> anyhow::Result<Done>,
 ) -> ExitCode {
@@ -41,7 +44,9 @@ pub fn main<Options: Parser, Done: Termination>(
         Ok(options) => options,
         Err(code) => return code,
     };
-    // The reader of our output has seen enough. (A broken pipe to a child comes wrapped in an error of its own.)
+
+    // The reader has closed our output. (A broken pipe to a child process is wrapped in another
+    // error.)
     let is_closed = |error: &io::Error| error.kind() == ErrorKind::BrokenPipe;
     match run(&options) {
         Ok(done) => done.report(),
@@ -57,22 +62,23 @@ pub fn main<Options: Parser, Done: Termination>(
     }
 }
 
-/// The exit code of a command that has looked for faults: whether all was well.
+/// Returns the exit code of a command that checks for faults: success if `well`.
 pub fn verdict(well: bool) -> ExitCode {
     ExitCode::from(u8::from(!well))
 }
 
-/// Prints a line of the command's result. A closed output is an error that [`main`] takes for a quiet end.
+/// Prints a line of the command's result. If the output is closed, returns an error for which
+/// [`main`] ends the command quietly.
 pub fn say(line: impl Display) -> io::Result<()> {
     writeln!(stdout(), "{line}")
 }
 
-/// Prints a line beside the result: an error, a warning, progress. That it cannot be read is no failure.
+/// Prints a line to standard error: an error, a warning, progress. A failure to print is ignored.
 pub fn complain(line: impl Display) {
     let _ = writeln!(stderr(), "{line}");
 }
 
-/// The refusal of a file that cannot be written.
+/// Returns the refusal of a file that cannot be written.
 pub fn unwritable(option: &str, path: &Path, error: &io::Error) -> Refused {
     Refused::because(format_args!(
         "{option}: cannot write {}: {error}",
@@ -102,9 +108,11 @@ where
     )
 }
 
-/// The options of this run; if they are wrong, or help is asked for, the exit code after saying so.
+/// Parses the command line. If it is wrong or requests help, prints a message and returns the exit
+/// code.
 fn parse<Options: Parser>() -> Result<Options, ExitCode> {
-    // A number is the value of its option with a sign, too: what is wrong with it, the option says.
+    // A negative number is also accepted as the value of an option. The option itself then reports
+    // why the number is invalid.
     let command = Options::command();
     let name = command.get_name().to_owned();
     let own = name.trim_start_matches("cargo ");
@@ -115,7 +123,8 @@ fn parse<Options: Parser>() -> Result<Options, ExitCode> {
             option
         }
     });
-    // Its name comes first.
+
+    // When cargo runs the program, the first argument is the command's name, which is skipped.
     let words = env::args_os()
         .enumerate()
         .filter(|(place, word)| *place != 1 || word.to_str() != Some(own));
@@ -127,14 +136,15 @@ fn parse<Options: Parser>() -> Result<Options, ExitCode> {
                 complain(one_line(&error.to_string()));
                 return ExitCode::from(REFUSED);
             }
-            // Help was asked for. A closed output is no failure of ours.
+
+            // Help was requested. A closed output is not a failure.
             let _ = error.print();
             ExitCode::SUCCESS
         })
 }
 
-/// The first paragraph of clap's report as one line, and its tip; the usage that follows is left to
-/// `--help`.
+/// Returns the first paragraph of clap's report as one line, with its tip. The usage is omitted;
+/// `--help` prints it.
 fn one_line(report: &str) -> String {
     let first = report.lines().take_while(|line| !line.is_empty());
     let line = first.map(str::trim).collect::<Vec<_>>().join(" ");
@@ -142,7 +152,8 @@ fn one_line(report: &str) -> String {
         .lines()
         .find_map(|line| line.trim().strip_prefix("tip: a similar "))
         .map_or(String::new(), |tip| format!("; a similar {tip}"));
-    // The standard library's words for a number that is none.
+
+    // Replace the standard library's messages about invalid numbers.
     let line = line
         .replace("invalid digit found in string", "not a whole number")
         .replace("invalid float literal", "not a number");

@@ -1,4 +1,4 @@
-//! How every command talks: its options, its errors, its progress.
+//! The console interface of all commands: options, errors, progress.
 
 pub mod cli;
 pub mod progress;

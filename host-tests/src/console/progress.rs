@@ -1,4 +1,5 @@
-//! What a command is doing and that it is alive: a spinner or a bar on a terminal, elsewhere a plain line now and then.
+//! The progress of a command: a spinner or a bar on a terminal, elsewhere a plain line from time to
+//! time.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
@@ -7,13 +8,13 @@ use indicatif::{ProgressBar, ProgressStyle};
 
 use super::cli::complain;
 
-/// Seconds from one line to the next.
+/// The seconds between two lines.
 const REMINDER: u64 = 15;
 const TURN: Duration = Duration::from_millis(120);
-/// How much of a child's latest line the spinner shows.
+/// The number of characters of a child's last line that the spinner shows.
 const SHOWN: usize = 60;
 
-/// Work that is going on. Dropping it takes the bar or spinner away.
+/// Work in progress. Dropping it removes the bar or spinner.
 #[derive(Debug)]
 pub struct Progress {
     bar: ProgressBar,
@@ -21,7 +22,7 @@ pub struct Progress {
 }
 
 impl Progress {
-    /// Says what begins now; how long it takes, nobody knows.
+    /// Begins work of unknown length and announces it.
     pub fn start(doing: &str) -> Self {
         let progress = Self::new(
             doing,
@@ -36,7 +37,7 @@ impl Progress {
         progress
     }
 
-    /// Says what begins now, and how many pieces it has.
+    /// Begins work with a known number of pieces and announces it.
     pub fn of(doing: &str, length: u64) -> Self {
         let style = "{prefix} {elapsed} {wide_bar} {pos}/{len}, {per_sec}, {eta} left";
         Self::new(doing, ProgressBar::new(length), style)
@@ -56,7 +57,8 @@ impl Progress {
         self.remind();
     }
 
-    /// To be called often: with the latest line of the one who works, or with `None` while there is none.
+    /// Shows that the work continues. It is called often, with the last line of a child process, or
+    /// with `None` if there is no new line.
     pub fn alive(&self, line: Option<&str>) {
         if let Some(line) = line {
             self.bar

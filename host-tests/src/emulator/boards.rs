@@ -1,4 +1,4 @@
-//! The emulated boards: one row each, with all that QEMU and the build need to know.
+//! The table of emulated boards: everything that QEMU and the build need to know about each.
 
 use cycles::Core;
 use firmware::config::{self, Processor};
@@ -14,16 +14,17 @@ pub struct Board {
     pub binary: &'static str,
     /// The cargo feature that this binary needs; empty if none.
     pub feature: &'static str,
-    /// Which of QEMU's serial ports is the link, counted from 0.
+    /// The number of QEMU's serial port that is the link, counted from 0.
     pub serial_port: usize,
-    /// Its clock, which it measures time by, Hz.
+    /// The frequency of the clock by which the board measures time, Hz.
     pub hertz: u32,
-    /// Whether it has the OLED panel and the five buttons.
+    /// True if the board has the OLED panel and the five buttons.
     pub has_panel: bool,
 }
 
 impl Board {
-    /// The clock of the processor that it stands for, Hz: QEMU's machine with a Cortex-M0+ stands for a Raspberry Pi Pico.
+    /// Returns the clock frequency of the processor that the board represents, Hz. QEMU's machine
+    /// with a Cortex-M0+ represents a Raspberry Pi Pico.
     pub fn processor_hertz(&self) -> u32 {
         if self.core() == Core::M0Plus {
             125_000_000
@@ -32,8 +33,11 @@ impl Board {
         }
     }
 
-    /// How long an instruction takes where the clock counts them, as a power of two of a nanosecond, for QEMU knows no others:
-    /// on the STM32F405 1.3 cycles, on the Cortex-M0+ 2 of 125 MHz, on the others 1.6 of 50 MHz.
+    /// Returns the duration of an instruction when the clock counts instructions, as the exponent
+    /// of a power of two in nanoseconds; QEMU allows no other durations.
+    ///
+    /// An instruction takes 1.3 cycles on the STM32F405, 2 cycles of 125 MHz on the Cortex-M0+, and
+    /// 1.6 cycles of 50 MHz on the others.
     pub fn instruction_shift(&self) -> u32 {
         match self.processor_hertz() {
             ..=50_000_000 => 5,
@@ -42,7 +46,7 @@ impl Board {
         }
     }
 
-    /// The same in seconds.
+    /// Returns the duration of an instruction in seconds.
     pub fn instruction(&self) -> f64 {
         f64::from(1 << self.instruction_shift()) * 1e-9
     }
@@ -56,8 +60,8 @@ impl Board {
         }
     }
 
-    /// Whether its processor has a memory protection unit and tells the cause of a fault. An M0+ tells none, and QEMU's has no
-    /// such unit.
+    /// Returns true if the processor has a memory protection unit and reports the cause of a fault.
+    /// An M0+ does not report the cause, and QEMU's M0+ has no memory protection unit.
     pub fn is_guarded(&self) -> bool {
         self.core() != Core::M0Plus
     }
@@ -78,7 +82,7 @@ impl Board {
     }
 }
 
-/// QEMU's board with the OLED panel, which knows several processors.
+/// QEMU's board with the OLED panel, which supports several processors.
 pub const LM3S6965EVB: Board = Board {
     name: "lm3s6965evb",
     machine: "lm3s6965evb",
@@ -91,7 +95,7 @@ pub const LM3S6965EVB: Board = Board {
     has_panel: true,
 };
 
-/// ARM's, with neither panel nor buttons: quick to emulate.
+/// ARM's board without a panel and buttons, which is quick to emulate.
 pub const MPS2_AN386: Board = Board {
     name: "mps2-an386",
     machine: "mps2-an386",
@@ -121,7 +125,8 @@ pub const BOARDS: [Board; 5] = [
     },
 ];
 
-/// The board that exists: the one ELF file is flashed and emulated. Its panel, button and I2C are not emulated.
+/// The board that exists as hardware: the same ELF file is flashed and emulated. QEMU does not
+/// emulate its panel, button and I2C.
 pub const STM32F405: Board = Board {
     name: "stm32f405",
     machine: "netduinoplus2",
@@ -134,7 +139,7 @@ pub const STM32F405: Board = Board {
     has_panel: false,
 };
 
-/// The Raspberry Pi Pico, which not QEMU but rp2040js emulates.
+/// The Raspberry Pi Pico, which is emulated by rp2040js instead of QEMU.
 pub const PICO: Board = Board {
     name: "pico",
     machine: "rp2040js",
@@ -146,7 +151,7 @@ pub const PICO: Board = Board {
     ..LM3S6965EVB
 };
 
-/// Every board that the firmware is built for: those that QEMU emulates, and the Pico.
+/// Returns every board that the firmware is built for: those that QEMU emulates, and the Pico.
 pub fn every_board() -> impl Iterator<Item = &'static Board> + Clone {
     BOARDS.iter().chain([&PICO])
 }

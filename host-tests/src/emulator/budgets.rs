@@ -1,36 +1,48 @@
-//! The one table of budgets: what a board may spend, and why.
+//! The table of budgets: the limits of time and memory for each board, and their reasons.
 
-/// What a scene may take of a frame of 1/60 s, on a 50 MHz Cortex-M3 in the tick that prepares a motion, on a Cortex-M0+ at
-/// 125 MHz for the map of flips: the rest is for the panel's bus, the serial link, commands, and motions asked for.
+/// The part of a frame of 1/60 s that a scene may take.
+///
+/// It applies to a 50 MHz Cortex-M3 in the tick that prepares a motion, and to a Cortex-M0+ at 125
+/// MHz for the map of flips. The rest is for the panel's bus, the serial link, commands, and
+/// requested motions.
 pub const SCENE: f64 = 0.55;
-/// Cycles in which a Cortex-M3 draws and sends a frame of any scene, moving it apart: a seventh of a frame at 50 MHz. The most
-/// expensive one, figure 7, takes 98,700.
+/// The cycles in which a Cortex-M3 draws and sends a frame of any scene, without computing its
+/// motion: a seventh of a frame at 50 MHz. The most expensive one, figure 7, takes 98,700.
 pub const SHOWING: u64 = 110_000;
-/// What is left of a frame when the frame is on the panel and sent: enough for a command a frame, for a log line, and
-/// to compute motions on request in reasonable time. QEMU's buses take no time; see the README for those of a real board.
+/// The part of a frame that must remain after the frame is on the panel and sent.
+///
+/// It is enough for a command in each frame, for a log line, and to compute requested motions in
+/// reasonable time. QEMU's buses take no time; the README has the times of a real board's buses.
 pub const IDLE: f64 = 0.4;
 
-/// Bytes of a board's memory.
+/// The memory of a board, in bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Memory {
-    /// Program and constants, in flash.
+    /// The program and constants, in flash.
     pub text: u32,
-    /// Statics with values to start from: in flash and in memory.
+    /// The statics with initial values, in flash and in memory.
     pub data: u32,
-    /// Statics that start as zeros or as anything.
+    /// The statics that start as zeros or are not initialised.
     pub bss: u32,
     pub stack: u32,
 }
 
-/// What each application may take.
+/// The memory limits of each application.
 ///
-/// Text: the smallest chip has 256 KiB of flash, and it keeps a sixteenth free, with a Cortex-M0+, whose code is longer, 12 KiB; the
-/// F405 has 1 MiB, of which three quarters are left to those who build on it. Data:
-/// nothing needs a start value but a few words. Bss: the two frames are 8 KiB, the application with its planner and a motion by two methods 9, the
-/// queue of received bytes 1, what a panel shows 4 more, or on the F405 with its log 2; a twentieth is left to grow, within what
-/// the memory map lets the statics have. Stack: making a scene takes most of it; an eighth of the 32 KiB that the guard leaves to
-/// the stack is for what no run has met: an interrupt at the deepest place, the report of a crash. The Pico has 2 MiB of flash and
-/// more memory than the others: an M0+ takes more instructions, and there is USB.
+/// - Text: the smallest chip has 256 KiB of flash. A sixteenth of it stays free; with a Cortex-M0+,
+///   whose code is longer, 12 KiB. The F405 has 1 MiB, and three quarters of it stay free for
+///   applications that build on the firmware.
+/// - Data: only a few words need an initial value.
+/// - Bss: the two frames take 8 KiB. The application with its planner and a motion by two methods
+///   takes 9 KiB, the queue of received bytes 1 KiB, and the panel's copy of its picture 4 KiB
+///   more, or 2 KiB on the F405 with its log. A twentieth is left for growth, within the memory
+///   map's limit for statics.
+/// - Stack: the preparation of a scene takes most of it. The guard leaves 32 KiB to the stack. An
+///   eighth of that is for cases that no run has met: an interrupt at the deepest place, the report
+///   of a crash.
+///
+/// The Pico has 2 MiB of flash and more memory than the others. Its limits are higher because an
+/// M0+ takes more instructions and because of USB.
 pub const MEMORY: [(&str, Memory); 6] = [
     (
         "lm3s6965evb",

@@ -1,5 +1,7 @@
-//! What of an ELF file goes into flash, byte for byte, and as UF2: what a chip's boot loader takes as a file on a drive, blocks of
-//! 512 bytes, each with its place in flash.
+//! The flash image of an ELF file, as plain bytes and as a UF2 file.
+//!
+//! A chip's boot loader appears as a drive and takes a UF2 file. The file consists of blocks of 512
+//! bytes, each with its address in flash.
 //!
 //! Source: <https://github.com/microsoft/uf2>.
 
@@ -8,30 +10,33 @@ use object::Endianness;
 use object::elf::{FileHeader32, PT_LOAD};
 use object::read::elf::{FileHeader, ProgramHeader};
 
-/// The RP2040, and no other chip.
+/// The family ID of the RP2040.
 const RP2040: u32 = 0xe48b_ff56;
-/// A family of chips is named.
+/// The flag of a block that contains a family ID.
 const HAS_FAMILY: u32 = 0x2000;
 const MAGIC: [u32; 2] = [0x0a32_4655, 0x9e5d_5157];
 const MAGIC_END: u32 = 0x0ab1_6f30;
-/// What a block brings, bytes, of the room that it has for that.
+/// The number of data bytes that a block carries, out of the `ROOM` bytes it has for them.
 const BROUGHT: usize = 256;
 const ROOM: usize = 476;
-/// What stands in flash where the program has nothing.
+/// The value of a byte in erased flash.
 pub const ERASED: u8 = 0xff;
-/// More than any chip's: a gap longer than this is none.
+/// The largest image, in bytes; no chip here has more flash. A longer gap between segments is an
+/// error.
 const MOST: usize = 1 << 21;
 
-/// The program as it lies in flash: its first address, and its bytes from there on.
+/// Returns the program as it is stored in flash: its first address and its bytes from there.
 pub fn flash_image(elf: &[u8]) -> Result<(u32, Vec<u8>)> {
     flash_image_over(elf, ERASED)
 }
 
-/// The same where the loader leaves `unused` between the parts of the program: erased flash, or zeros as QEMU does.
+/// Returns the program as it is stored in flash, with `unused` between its parts: erased flash, or
+/// zeros as QEMU's loader leaves.
 pub fn flash_image_over(elf: &[u8], unused: u8) -> Result<(u32, Vec<u8>)> {
     let header = FileHeader32::<Endianness>::parse(elf)?;
     let endian = header.endian()?;
     let mut parts = Vec::new();
+
     for segment in header.program_headers(endian, elf)? {
         let data = segment
             .data(endian, elf)
@@ -41,11 +46,13 @@ pub fn flash_image_over(elf: &[u8], unused: u8) -> Result<(u32, Vec<u8>)> {
             parts.push((segment.p_paddr(endian), data));
         }
     }
+
     let start = parts
         .iter()
         .map(|(address, _)| *address)
         .min()
         .context("nothing to load")?;
+
     let mut image = Vec::new();
     for (address, data) in parts {
         let from = (address - start) as usize;
@@ -58,10 +65,11 @@ pub fn flash_image_over(elf: &[u8], unused: u8) -> Result<(u32, Vec<u8>)> {
         }
         image[from..from + data.len()].copy_from_slice(data);
     }
+
     Ok((start, image))
 }
 
-/// The file that puts `image` into an RP2040's flash at `start`.
+/// Returns the UF2 file that writes `image` to an RP2040's flash at `start`.
 pub fn uf2(start: u32, image: &[u8]) -> Vec<u8> {
     let parts = image.chunks(BROUGHT);
     let count = parts.len() as u32;

@@ -1,4 +1,4 @@
-//! Scenes and applications on the host, with the memory that a board would give them.
+//! Scenes and applications on the host, with the same memory as on a board.
 
 use double_pendulum::Error;
 use firmware::app::{PlannerEvent, Player};
@@ -11,17 +11,17 @@ use firmware::scenes::{Report, SceneName};
 #[derive(Debug)]
 pub struct Show {
     pub player: Player<'static>,
-    /// What planning has found, and the tick.
+    /// The events of the planner, each with its tick.
     pub news: Vec<(u64, PlannerEvent)>,
 }
 
 impl Show {
-    /// At the start; the error of a scene that cannot show `settings`.
+    /// Starts a scene. Returns an error if the scene cannot show `settings`.
     pub fn new(name: SceneName, settings: &Settings) -> Result<Self, Error> {
         Self::on(PROCESSOR, name, settings)
     }
 
-    /// The same as a board of this class plays it.
+    /// Starts a scene as on a board with this `processor`.
     pub fn on(processor: Processor, name: SceneName, settings: &Settings) -> Result<Self, Error> {
         let ink = Box::leak(Box::new(FadeLayer::NONE));
         let mut player = Player::new(processor, ink);
@@ -36,7 +36,8 @@ impl Show {
         let Self { player, news } = self;
         let step = player.report.step + 1;
         player.tick(|one| news.push((step, one)));
-        // What is not finite is told by the report.
+
+        // The report contains the error of a motion that is not finite.
         let _ = player.check();
     }
 
@@ -46,7 +47,8 @@ impl Show {
         canvas
     }
 
-    /// Goes on to the tick of a board's `frame`: what the board should have sent, but for what only it can know.
+    /// Advances to the tick of a board's `frame` and returns the frame that the board should have
+    /// sent. The fields that only the board can know are copied from `frame`.
     pub fn expected(&mut self, frame: &Frame) -> Frame {
         while self.report().step < frame.report.step {
             self.tick();
@@ -74,7 +76,7 @@ impl Show {
     }
 }
 
-/// Frame buffers for an application that may live for ever, as those of a board do.
+/// Returns frame buffers that live for the rest of the program, like those of a board.
 pub fn sheets() -> &'static mut FrameBuffers {
     Box::leak(Box::new(FrameBuffers::BLANK))
 }

@@ -1,4 +1,4 @@
-//! Where the firmware runs without a board.
+//! Environments that run the firmware without a board: emulators and the host.
 
 pub mod boards;
 pub mod budgets;
@@ -14,7 +14,8 @@ pub mod toolchain;
 use anyhow::bail;
 use firmware::protocol::ToHost;
 
-/// All messages that `next` gives until there is a frame among them; an error if there is none so `often`.
+/// Returns all messages from `next` up to the first call whose messages contain a frame. Returns an
+/// error if `often` calls bring no frame.
 fn up_to_frame(
     often: u32,
     mut next: impl FnMut() -> anyhow::Result<Vec<ToHost>>,

@@ -1,5 +1,8 @@
-//! The Raspberry Pi Pico in rp2040js, as an instrument: its serial link, log, panel and buttons. A conversation of lines, bytes as
-//! hexadecimal digits; see `host-tests/rp2040/main.js`.
+//! The Raspberry Pi Pico in the emulator rp2040js, as a test instrument: its serial link, log,
+//! panel and buttons.
+//!
+//! The emulator is controlled by lines of text, with bytes as hexadecimal digits; see
+//! `host-tests/rp2040/main.js`.
 
 use std::io::{BufRead, BufReader, Write};
 use std::path::Path;
@@ -19,15 +22,18 @@ use crate::emulator::up_to_frame;
 use crate::link::{Counts, Inbox};
 
 const SLICE: Duration = Duration::from_millis(1);
-/// A board that sends no frame for this many of them sends none.
+/// The number of slices without a frame after which the board counts as silent.
 const PATIENCE: u32 = 5000;
 
-/// The board. Its time passes only in [`Self::run`], so all that it does is repeatable bit for bit. Dropping it ends it.
+/// An emulated Pico.
+///
+/// Its time advances only while the emulator processes a command such as that of [`Self::run`], so
+/// its results are bit-identical in every run. Dropping it ends the emulator.
 pub struct PicoMachine {
     input: ChildStdin,
     output: BufReader<ChildStdout>,
     _process: Running,
-    /// Of the program's file; removed after the emulator has ended.
+    /// The folder of the program's file. It is removed after the emulator has ended.
     _folder: Scratch,
     usb: Inbox,
     uart: Inbox,
@@ -39,14 +45,15 @@ pub struct PicoMachine {
 }
 
 impl PicoMachine {
-    /// Switches a board on with this firmware in its flash: what `cargo pico` copies, and nothing else. Node.js runs it.
+    /// Starts a board with this firmware in its flash, exactly as `cargo pico` copies it. Node.js
+    /// runs the emulator.
     pub fn start(node: &Path, elf: &Path, limit: Duration) -> anyhow::Result<Self> {
         let (start, image) = flash_image(&std::fs::read(elf)?)?;
         Self::flashed(node, &uf2(start, &image), elf, limit)
     }
 
-    /// Switches a board on whose flash has been written by this UF2 file. Its log is read by the ELF
-    /// file.
+    /// Starts a board whose flash has been written by this UF2 file. The ELF file is used to decode
+    /// the log.
     pub fn flashed(
         node: &Path,
         blocks: &[u8],
@@ -56,6 +63,7 @@ impl PicoMachine {
         let folder = Scratch::new()?;
         let file = folder.path().join("pico.uf2");
         std::fs::write(&file, blocks)?;
+
         let mut command = Command::new(node);
         command
             .arg(workspace().join("host-tests/rp2040/main.js"))
@@ -66,8 +74,11 @@ impl PicoMachine {
         let (input, output) = pipes.context("the emulator of the Pico has no pipes")?;
         let output = BufReader::new(output);
         let log = LogDecoder::new(elf)?;
-        let (usb, uart) = (Inbox::default(), Inbox::default());
-        let (lines, heard_by_usb, heard_by_uart) = (Vec::new(), Vec::new(), Vec::new());
+        let usb = Inbox::default();
+        let uart = Inbox::default();
+        let lines = Vec::new();
+        let heard_by_usb = Vec::new();
+        let heard_by_uart = Vec::new();
         Ok(Self {
             input,
             output,
@@ -83,13 +94,13 @@ impl PicoMachine {
         })
     }
 
-    /// Lets time pass by the board's clock; what it has sent over USB.
+    /// Advances the board's time and returns the messages that it has sent over USB.
     pub fn run(&mut self, time: Duration) -> anyhow::Result<Vec<ToHost>> {
         self.tell(&format!("run {}", time.as_micros()))?;
         Ok(std::mem::take(&mut self.heard_by_usb))
     }
 
-    /// Runs to the next frame: all messages up to it.
+    /// Runs to the next frame and returns all messages up to it.
     pub fn run_to_frame(&mut self) -> anyhow::Result<Vec<ToHost>> {
         up_to_frame(PATIENCE, || self.run(SLICE))
     }
@@ -122,7 +133,8 @@ impl PicoMachine {
         .map(drop)
     }
 
-    /// Opens the port over USB at this speed, or closes it: 0. It is open at first.
+    /// Opens the USB serial port at this speed, or closes it if `baud` is 0. The port is open at
+    /// the start.
     pub fn set_port(&mut self, baud: u32) -> anyhow::Result<()> {
         self.tell(&format!("port {baud}")).map(drop)
     }
@@ -140,7 +152,7 @@ impl PicoMachine {
         std::mem::take(&mut self.lines)
     }
 
-    /// What the USB link has been through, and the UART.
+    /// Returns the counts of the USB link and of the UART.
     pub fn counts(&self) -> [Counts; 2] {
         [self.usb.counts, self.uart.counts]
     }
@@ -161,16 +173,19 @@ impl PicoMachine {
             .map(drop)
     }
 
-    /// Gives the emulator a command; the bytes that it asks for, if it asks for any: the panel's memory, the board's.
+    /// Sends a command to the emulator. Returns the bytes that it requests, if any, such as the
+    /// panel's memory.
     pub fn tell(&mut self, command: &str) -> anyhow::Result<Vec<u8>> {
         const GONE: &str = "the emulator of the Pico no longer answers";
         writeln!(self.input, "{command}")
             .and_then(|()| self.input.flush())
             .context(GONE)?;
         let mut asked = Vec::new();
+
         loop {
             let mut answer = String::new();
             ensure!(self.output.read_line(&mut answer).context(GONE)? > 0, GONE);
+
             let (word, digits) = answer
                 .trim_end()
                 .split_once(' ')
@@ -190,7 +205,7 @@ impl PicoMachine {
                     .heard_by_uart
                     .extend(bytes.iter().filter_map(|&byte| self.uart.take(byte))),
                 "log" => self.lines.extend(self.log.take(&bytes)),
-                // Bytes cut off by it are no damage of the link's.
+                // Bytes that were cut off by the restart are no damage of the link.
                 "restarted" => (self.usb.decoder, self.uart.decoder) = Default::default(),
                 "bootloader" => self.is_in_boot_loader = true,
                 "done" => return Ok(asked),
@@ -200,7 +215,7 @@ impl PicoMachine {
     }
 }
 
-/// Bytes as the emulator takes them.
+/// Returns bytes in the emulator's format.
 fn digits(bytes: &[u8]) -> String {
     bytes.iter().map(|byte| format!("{byte:02x}")).collect()
 }

@@ -1,8 +1,10 @@
-//! Supervised child processes: each has a time limit and its own process group, and the whole group
-//! is killed when its owner lets go of it, when the time is up, and when this process ends,
-//! interrupted (Ctrl-C, SIGQUIT, SIGTERM, SIGHUP) or killed.
+//! Supervised child processes. Each has a time limit and its own process group.
 //!
-//! A shell in the group, the warden, does it. Groups within groups end too, for each has a warden of its own.
+//! The whole group is killed when its [`Running`] is dropped, when the time is up, and when this
+//! process ends: normally, interrupted (Ctrl-C, SIGQUIT, SIGTERM, SIGHUP) or killed.
+//!
+//! A shell in the group, the warden, kills the group. Nested groups end too, because each has its
+//! own warden.
 
 use std::io::{self, ErrorKind};
 use std::os::unix::process::{CommandExt, ExitStatusExt};
@@ -19,35 +21,41 @@ use signal_hook::iterator::Signals;
 
 use super::stream::{Stream, wait};
 
-/// Kills the group when the time is up, and when the other end of its input closes, which this process alone has: when this
-/// process ends, by any signal. Any Unix can do that, and it reaches the children's children.
+/// The program of the warden.
+///
+/// It kills the group when the time is up, and when the other end of its input is closed. Only this
+/// process has the other end, so it is closed when this process ends for any reason. This works on
+/// any Unix and reaches the children's children.
 const WARDEN: &str = "(sleep $0; kill -KILL 0) & read -r _; kill -KILL 0";
 
 /// A running child. Dropping it kills its whole process group.
 #[derive(Debug)]
 pub struct Running {
     pub child: Child,
-    /// Waiting for it closes its input, and it kills what is left of the group.
+    /// Waiting for the warden closes its input, and the warden then kills the rest of the group.
     warden: Child,
     program: String,
     started: Instant,
     limit: Duration,
 }
 
-/// Starts `command` in a process group of its own, to be killed at the latest after `limit`, waited for or not.
+/// Starts `command` in its own process group. The group is killed after `limit` at the latest, even
+/// if nothing waits for it.
 ///
 /// A child in the background must not read the terminal, so give it `Stdio::null()` or a pipe as its standard input.
 pub fn spawn(command: &mut Command, limit: Duration) -> io::Result<Running> {
     let program = command.get_program().to_string_lossy().into_owned();
     let failed = |error: io::Error| io::Error::other(format!("cannot run {program}: {error}"));
     let started = Instant::now();
+
     let mut warden = Command::new("sh");
     warden.args(["-c", WARDEN, &limit.as_secs_f64().to_string()]);
     warden
         .stdin(Stdio::piped())
         .stdout(Stdio::null())
         .stderr(Stdio::null());
-    // Is in the group from before the child, and gives it its number.
+
+    // The warden starts before the child, and its process ID becomes the ID of the group.
     let mut warden = warden.process_group(0).spawn().map_err(failed)?;
     let child = command.process_group(warden.id().cast_signed()).spawn();
     let child = child.map_err(failed).inspect_err(|_| drop(warden.wait()))?;
@@ -61,12 +69,14 @@ pub fn spawn(command: &mut Command, limit: Duration) -> io::Result<Running> {
 }
 
 impl Running {
-    /// Waits for the child's end. What is left of its group is killed. If it was killed at its time limit, the error's kind says so.
+    /// Waits until the child ends, and kills the rest of its group. Returns an error of kind
+    /// `TimedOut` if the child was killed at its time limit.
     pub fn wait(&mut self) -> io::Result<ExitStatus> {
         let status = self.child.wait()?;
         let _ = self.warden.wait();
         let is_stopped = status.signal() == Some(SIGKILL) && self.started.elapsed() >= self.limit;
-        let (program, seconds) = (&self.program, self.limit.as_secs_f32());
+        let program = &self.program;
+        let seconds = self.limit.as_secs_f32();
         let late = || format!("{program} was still running after {seconds} s and was stopped");
         if is_stopped {
             Err(io::Error::new(ErrorKind::TimedOut, late()))
@@ -75,12 +85,13 @@ impl Running {
         }
     }
 
-    /// The child's exit status if it has ended, without waiting.
+    /// Returns the child's exit status if it has ended, without waiting.
     pub fn try_wait(&mut self) -> io::Result<Option<ExitStatus>> {
         self.child.try_wait()?.map(|_| self.wait()).transpose()
     }
 
-    /// As [`Self::try_wait`]; but if these [`streams`](Self::streams) have ended, the child's end is near, and waited for.
+    /// Returns the child's exit status if it has ended. If all of these [`streams`](Self::streams)
+    /// have ended, the child is about to end, and this waits for it.
     pub fn ended(&mut self, streams: &[Stream]) -> io::Result<Option<ExitStatus>> {
         if streams.iter().any(|stream| stream.is_open) {
             self.try_wait()
@@ -89,7 +100,7 @@ impl Running {
         }
     }
 
-    /// Both outputs, which are pipes.
+    /// Returns the two outputs of the child, which must be pipes.
     pub fn streams(&mut self) -> io::Result<[Stream; 2]> {
         let pipes = self.child.stdout.take().zip(self.child.stderr.take());
         let (stdout, stderr) = pipes.ok_or_else(|| io::Error::other("a child without pipes"))?;
@@ -100,13 +111,14 @@ impl Running {
 impl Drop for Running {
     fn drop(&mut self) {
         let _ = self.warden.wait();
-        // Should the warden be gone.
+
+        // This is for the case that the warden itself was killed.
         let _ = self.child.kill();
         let _ = self.child.wait();
     }
 }
 
-/// A child's exit status as our own; failure if it was ended by a signal.
+/// Returns a child's exit status as an exit code; failure if the child was ended by a signal.
 pub fn exit_code(status: ExitStatus) -> ExitCode {
     status
         .code()
@@ -121,13 +133,16 @@ pub struct Output {
     pub stderr: String,
 }
 
-/// Runs `command` to its end, captured, without input; at the latest after `limit` it is killed.
+/// Runs `command` to its end without input and captures its output. The command is killed after
+/// `limit` at the latest.
 pub fn run(command: &mut Command, limit: Duration) -> io::Result<Output> {
     run_watched(command, limit, |_| {})
 }
 
-/// As [`run`]; meanwhile `watch` is called with the last line that has come, and with `None` at least ten times a second while
-/// there is none: the child is alive.
+/// Runs a command like [`run`] and reports its progress to `watch`.
+///
+/// `watch` is called with the last line of new output. While no output arrives, it is called with
+/// `None` at least ten times a second to show that the child is alive.
 pub fn run_watched(
     command: &mut Command,
     limit: Duration,
@@ -139,19 +154,22 @@ pub fn run_watched(
         .stderr(Stdio::piped());
     let mut child = spawn(command, limit)?;
     let mut streams = child.streams()?;
+
     loop {
-        // Whoever has left the group may hold the pipes open for longer.
+        // A process that has left the group can hold the pipes open for longer.
         let ended = child.ended(&streams)?;
         let new = streams
             .iter_mut()
             .map(Stream::take_in)
             .filter(|new| !new.is_empty())
             .last();
+
         watch(
             new.map(String::from_utf8_lossy)
                 .as_deref()
                 .and_then(|text| text.lines().last()),
         );
+
         if let Some(status) = ended {
             let [stdout, stderr] =
                 streams.map(|stream| String::from_utf8_lossy(&stream.bytes).into_owned());
@@ -169,12 +187,14 @@ pub fn run_watched(
 /// closed.
 const INTERRUPTS: [i32; 4] = [SIGINT, SIGQUIT, SIGTERM, SIGHUP];
 
-/// The exit code that the shell has for a command ended by a signal, 130 after Ctrl-C; success for 0, which is none.
+/// Returns the shell's exit code for a command ended by this signal, such as 130 after Ctrl-C.
+/// Returns success for 0, which means no signal.
 pub fn interrupted_by(signal: usize) -> ExitCode {
     ExitCode::from(if signal == 0 { 0 } else { 128 + signal as u8 })
 }
 
-/// The signal that has interrupted this process since, 0 as long as none has; it goes on meanwhile.
+/// Returns a variable that receives the signal by which this process is interrupted; it is 0 until
+/// then. The process then continues instead of ending.
 pub fn interrupted() -> io::Result<Arc<AtomicUsize>> {
     let signal = Arc::default();
     for each in INTERRUPTS {
@@ -183,15 +203,17 @@ pub fn interrupted() -> io::Result<Arc<AtomicUsize>> {
     Ok(signal)
 }
 
-/// Runs `hook` when this process is interrupted, before it exits: for what must be put back, such as the terminal's mode.
+/// Runs `hook` when this process is interrupted, before it exits. It is for things that must be
+/// restored, such as the terminal's mode.
 pub fn on_interrupt(hook: impl FnOnce() + Send + 'static) {
     type Hook = Box<dyn FnOnce() + Send>;
     static HOOKS: Mutex<Vec<Hook>> = Mutex::new(Vec::new());
     static HANDLER: Once = Once::new();
-    // A panic elsewhere must not keep a hook from running, so a poisoned lock is as good as any.
+
+    // A panic elsewhere must not prevent a hook from running, so a poisoned lock is accepted.
     let hooks = || HOOKS.lock().unwrap_or_else(PoisonError::into_inner);
     HANDLER.call_once(|| {
-        // Fails only for signals that no program may handle.
+        // This fails only for signals that no program may handle.
         let Ok(mut signals) = Signals::new(INTERRUPTS) else {
             return;
         };
@@ -206,10 +228,12 @@ pub fn on_interrupt(hook: impl FnOnce() + Send + 'static) {
     hooks().push(Box::new(hook));
 }
 
-/// Removes this file or folder when this process is interrupted, for then no value is dropped.
+/// Removes this file or folder when this process is interrupted, because values are not dropped
+/// then.
 pub fn remove_on_interrupt(path: &Path) {
     let path = path.to_owned();
-    // It may be gone already.
+
+    // The path may be gone already.
     on_interrupt(move || {
         drop(std::fs::remove_file(&path).or_else(|_| std::fs::remove_dir_all(path)))
     });

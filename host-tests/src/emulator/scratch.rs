@@ -1,5 +1,5 @@
-//! Temporary folders of emulators. One that a killed command has left is removed when the next
-//! begins.
+//! Temporary folders of emulators. A folder that a killed command has left is removed when the next
+//! command starts.
 
 use std::fs::{self, File};
 use std::io;
@@ -11,21 +11,22 @@ use tempfile::TempDir;
 
 use super::process::remove_on_interrupt;
 
-/// The folders' names begin so; no other files do.
+/// The prefix of the folders' names. No other files have it.
 const PREFIX: &str = "double-pendulum-run-";
-/// A folder older than this has been locked by its owner, unless that is gone.
+/// The age after which a folder has been locked by its owner. An older folder without a lock is
+/// abandoned.
 const LOCKED_BY_THEN: Duration = Duration::from_secs(60);
 
 /// A temporary folder of this process. Dropping it removes it.
 #[derive(Debug)]
 pub struct Scratch {
     folder: TempDir,
-    /// Ends with this process, however that ends.
+    /// The lock is released when this process ends, for any reason.
     _lock: Flock<File>,
 }
 
 impl Scratch {
-    /// Makes a folder, and removes those that killed processes have left beside it.
+    /// Makes a folder, and removes folders of killed processes from the same directory.
     pub fn new() -> io::Result<Self> {
         let folder = tempfile::Builder::new().prefix(PREFIX).tempdir()?;
         remove_on_interrupt(folder.path());
@@ -33,7 +34,7 @@ impl Scratch {
         let lock = Flock::lock(opened, FlockArg::LockExclusiveNonblock);
         let lock = lock.map_err(|(_, error)| error)?;
         for abandoned in abandoned(folder.path().parent()) {
-            // Another process may be removing it, too.
+            // Another process may remove the same folder at the same time.
             let _ = fs::remove_dir_all(abandoned);
         }
         Ok(Self {
@@ -47,7 +48,7 @@ impl Scratch {
     }
 }
 
-/// The folders beside each other whose owners are gone.
+/// Returns the folders in the directory `beside` whose owners have ended.
 fn abandoned(beside: Option<&Path>) -> Vec<PathBuf> {
     let entries = beside.and_then(|folder| fs::read_dir(folder).ok());
     let is_ours = |path: &PathBuf| {
@@ -76,7 +77,7 @@ fn is_abandoned(path: &Path) -> io::Result<bool> {
 mod tests {
     use super::*;
 
-    /// A folder beside others, as old as a killed command's.
+    /// Makes a folder in the directory `beside` that is as old as that of a killed command.
     fn old(beside: &Path, name: &str) -> PathBuf {
         let path = beside.join(name);
         fs::create_dir(&path).expect("a folder");

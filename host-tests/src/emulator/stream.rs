@@ -1,4 +1,4 @@
-//! What comes from children through pipes, read by whoever waits for it: no thread stands between.
+//! Pipes from and to child processes, read by the waiting thread itself; no other threads are used.
 
 use std::fs::File;
 use std::io::{self, ErrorKind, Read};
@@ -11,16 +11,16 @@ use nix::poll::{PollFd, PollFlags, poll};
 use nix::sys::stat::Mode;
 use nix::unistd::mkfifo;
 
-/// The longest wait for something to read, ms.
+/// The longest wait for input, ms.
 const TICK: u8 = 100;
 
-/// The host's end of a pipe from a child, read without waiting.
+/// The host's end of a pipe from a child. It is read without waiting.
 #[derive(Debug)]
 pub struct Stream {
     pipe: File,
-    /// What has come, and nobody has taken away.
+    /// The bytes that have arrived and have not been consumed.
     pub bytes: Vec<u8>,
-    /// Whether more may come.
+    /// True if more bytes may arrive.
     pub is_open: bool,
 }
 
@@ -35,7 +35,7 @@ impl Stream {
         })
     }
 
-    /// Takes all that is there; what is new.
+    /// Reads everything that is available and returns the new bytes.
     pub fn take_in(&mut self) -> &[u8] {
         let before = self.bytes.len();
         let read = self.pipe.read_to_end(&mut self.bytes);
@@ -43,7 +43,7 @@ impl Stream {
         &self.bytes[before..]
     }
 
-    /// The next line that is complete, or the last.
+    /// Returns the next complete line, or the last line if the stream has ended.
     pub fn line(&mut self) -> Option<String> {
         let last = (!self.is_open && !self.bytes.is_empty()).then_some(self.bytes.len());
         let end = self
@@ -57,18 +57,21 @@ impl Stream {
     }
 }
 
-/// Waits until something has come in one of the streams, or its end, or for a moment.
+/// Waits until one of the streams has new bytes or has ended, for at most `TICK` milliseconds.
 pub fn wait<'a>(streams: impl Iterator<Item = &'a Stream>) {
     let open = streams.filter(|stream| stream.is_open);
     let mut polled: Vec<_> = open
         .map(|stream| PollFd::new(stream.pipe.as_fd(), PollFlags::POLLIN))
         .collect();
-    // A signal ends it early.
+
+    // A signal ends the wait early, which does no harm.
     let _ = poll(&mut polled, TICK);
 }
 
-/// A channel to QEMU: a pair of named pipes. They hold a second's worth of single bytes, where a socket holds a few frames, and not
-/// every emulated board stands still by itself when its bytes are not taken.
+/// A channel to QEMU: a pair of named pipes.
+///
+/// Pipes are used because they hold a second of single bytes, while a socket holds only a few
+/// frames. Not every emulated board waits while its bytes are not read.
 #[derive(Debug)]
 pub struct Channel {
     pub sender: File,
@@ -76,12 +79,14 @@ pub struct Channel {
 }
 
 impl Channel {
-    /// For QEMU's `-chardev pipe` of this path: QEMU reads `path.in` and writes `path.out`.
+    /// Makes the pipes for QEMU's `-chardev pipe` with this path: QEMU reads `path.in` and writes
+    /// `path.out`.
     pub fn make(path: &Path) -> io::Result<Self> {
         let pipe = |end| {
             let path = path.with_extension(end);
             mkfifo(&path, Mode::S_IRUSR | Mode::S_IWUSR)?;
-            // Open for both, it waits for nobody at the other end.
+
+            // A pipe that is opened for both directions does not wait for its other end.
             File::options()
                 .read(true)
                 .write(true)

@@ -1,11 +1,11 @@
-//! What the firmware needs from outside, found or brought: the ARM core library, `qemu-system-arm` and, for the Raspberry Pi
-//! Pico, rp2040js.
+//! The tools that build and run the firmware: the ARM core library, `qemu-system-arm` and, for the
+//! Raspberry Pi Pico, rp2040js. This module finds or installs them.
 //!
-//! [`ready`] only looks. [`set_up`] brings what is missing and changes nothing on the system: the
-//! core library by `rustup target add`, or else Debian's compiler and sources, unpacked into `rust`
-//! in the target folder; QEMU from Debian's packages, unpacked into `qemu` there. Both ways build
-//! the same firmware with the same flags. Only Node.js, which runs rp2040js, is installed on the
-//! system, and only after the user has agreed ([`Consent`]).
+//! [`ready`] only searches for the tools. [`set_up`] provides the missing ones and changes nothing
+//! on the system. It gets the core library by `rustup target add`, or else it unpacks Debian's
+//! compiler and sources into `rust` in the target folder. It unpacks QEMU from Debian's packages
+//! into `qemu` there. Both ways build the same firmware with the same flags. Only Node.js, which
+//! runs rp2040js, is installed on the system, and only after the user has agreed ([`Consent`]).
 
 mod bring;
 mod build;
@@ -33,14 +33,14 @@ pub const TARGETS: [&str; 3] = [
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Toolchain {
-    /// Debian's compiler, where rustup has no ready-made core library.
+    /// Debian's compiler. It is used if rustup has no ready-made core library.
     from_source: Option<FromSource>,
     /// The emulator of the core: QEMU, or Node.js for WebAssembly.
     pub qemu: PathBuf,
 }
 
-/// The refusal of a command that misses something: why, and what to do, in a line. The command
-/// `setup` is left out if it `is_tried` already.
+/// Returns the error of a command that lacks a tool: a line with the reason and the remedy. The
+/// command `setup` is omitted from the remedy if it `is_tried` already.
 fn missing(is_tried: bool, what: &str, why: &str, setup: &str, by_hand: &str) -> Refused {
     let setup = if is_tried {
         String::new()
@@ -50,13 +50,14 @@ fn missing(is_tried: bool, what: &str, why: &str, setup: &str, by_hand: &str) ->
     Refused::because(format_args!("{what} is missing: {why}; {setup}{by_hand}"))
 }
 
-/// The tools, if all are there; installs nothing. Looks once per process.
+/// Returns the tools if all are present. Installs nothing, and searches once per process.
 pub fn ready() -> Result<Toolchain, Refused> {
     static READY: OnceLock<Result<Toolchain, Refused>> = OnceLock::new();
     READY.get_or_init(|| both(false, &TARGETS, arm)).clone()
 }
 
-/// The tools, brought if need be; what was done for it is said. Two set-ups at once take turns.
+/// Returns the tools and provides the missing ones, with a report of each. Two set-ups at the same
+/// time take turns.
 pub fn set_up() -> Result<Toolchain, Refused> {
     let refused = |_| {
         Refused::because(format_args!(
@@ -71,10 +72,10 @@ pub fn set_up() -> Result<Toolchain, Refused> {
     })
 }
 
-/// The same for another target: its core library and its emulator.
+/// Returns the core library and the emulator for another target, and provides them if necessary.
 ///
-/// QEMU emulates a board for an ARM microcontroller, and Linux for a RISC-V and for an aarch64. Node.js
-/// runs WebAssembly.
+/// QEMU emulates a board for an ARM microcontroller, and Linux for RISC-V and aarch64. Node.js runs
+/// WebAssembly.
 pub fn set_up_for(target: &str) -> Result<Toolchain, Refused> {
     let emulator = match target.split('-').next() {
         Some("wasm32") => |installs: bool| tools::node(installs.then_some(Consent::Ask)),
@@ -86,7 +87,7 @@ pub fn set_up_for(target: &str) -> Result<Toolchain, Refused> {
     both(true, &[target], emulator)
 }
 
-/// The core library of these targets and an emulator, or a line for each that is missing.
+/// Returns the core library of these targets and an emulator, or a line for each that is missing.
 fn both(
     installs: bool,
     targets: &[&str],
@@ -108,7 +109,7 @@ fn both(
 
 const SETUP: &str = "cargo setup";
 
-/// Finds or brings QEMU for the boards.
+/// Finds or provides QEMU for the boards.
 fn arm(installs: bool) -> Result<PathBuf, Refused> {
     qemu(installs, &QEMU)
 }
@@ -122,17 +123,19 @@ fn qemu(installs: bool, emulator: &Emulator) -> Result<PathBuf, Refused> {
         .map_err(|why| missing(installs, emulator.program, &why, SETUP, &by_hand))
 }
 
-/// Node.js with the emulator of the Raspberry Pi Pico, if it is there; installs nothing.
+/// Returns Node.js with the emulator of the Raspberry Pi Pico if it is present. Installs nothing.
 pub fn ready_for_pico() -> Result<PathBuf, Refused> {
     tools::rp2040js(None)
 }
 
-/// The same, brought if need be; the user is asked before anything is installed on the system.
+/// Returns Node.js with the emulator of the Pico and provides them if necessary. The user is asked
+/// before anything is installed on the system.
 pub fn set_up_pico() -> Result<PathBuf, Refused> {
     set_up_pico_with(Consent::Ask)
 }
 
-/// The same, where the user may have agreed already.
+/// Returns Node.js with the emulator of the Pico and provides them if necessary, with this consent
+/// of the user.
 pub fn set_up_pico_with(consent: Consent) -> Result<PathBuf, Refused> {
     ready_for_pico().or_else(|_| {
         let _turn = turn()?;
@@ -161,15 +164,19 @@ impl fmt::Display for Toolchain {
     }
 }
 
-/// What the workspace alone has, and no folder above or beside it.
+/// The files by which the workspace is recognised. No folder above or next to it has all of them.
 const MARKS: [&str; 3] = [
     "kernel/Cargo.toml",
     "firmware/Cargo.toml",
     "host-tests/Cargo.toml",
 ];
 
-/// The project's folder, found as a command runs, for a checkout may be moved or copied with its programs already built: above the package that cargo runs, else above the current folder, else above this program.
-/// Where there is none the process ends as any command does that cannot be served: one line, exit code 2.
+/// Returns the project's folder.
+///
+/// The folder is searched at run time, because a checkout may be moved or copied with its programs
+/// already built. The search starts at the package that cargo runs, then at the current folder,
+/// then at this program, and proceeds upwards. If it finds no folder, the process prints one line
+/// and ends with exit code 2.
 pub fn workspace() -> &'static Path {
     static FOUND: OnceLock<PathBuf> = OnceLock::new();
     FOUND.get_or_init(|| {
@@ -182,13 +189,14 @@ pub fn workspace() -> &'static Path {
     })
 }
 
-/// The workspace that `start` is in.
+/// Returns the workspace that contains `start`.
 fn above(start: &Path) -> Option<PathBuf> {
     let is_it = |folder: &&Path| MARKS.iter().all(|mark| folder.join(mark).is_file());
     start.ancestors().find(is_it).map(Path::to_owned)
 }
 
-/// Where everything built goes: `CARGO_TARGET_DIR`, as cargo has it, or else the workspace's own folder.
+/// Returns the folder of everything built: `CARGO_TARGET_DIR` as for cargo, or else `target` in the
+/// workspace.
 pub fn target() -> PathBuf {
     let chosen = env::var_os("CARGO_TARGET_DIR").filter(|folder| !folder.is_empty());
     chosen

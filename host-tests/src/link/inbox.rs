@@ -1,43 +1,45 @@
-//! Bytes that arrive, cut into messages and counted.
+//! The decoder of received bytes into messages, with counts.
 
 use firmware::protocol::{Decoder, Field, Frame, LinkError, ToHost, read};
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counts {
     pub messages: u64,
-    /// Messages damaged on the way: wrong CRC, framing, length, version or fields.
+    /// The messages damaged in transmission: wrong CRC, framing, length, version or fields.
     pub damaged: u64,
     pub lost: u64,
-    /// Times that the board began to count its frames anew.
+    /// The number of times that the board began to count its frames from 0 again.
     pub restarts: u64,
 }
 
-/// What a board refuses, in words.
+/// Returns the name of a field that a board refuses, in words.
 pub fn refusal(field: Field) -> &'static str {
     match field {
-        // It can read what this host sends, unless that has another table of methods.
+        // A board of this version can read every message of this host, unless the two have
+        // different tables of methods.
         Field::Message => "message; its firmware is not of this version, flash it anew",
         Field::Panel => "panel; the board has none with a choice of controllers",
         field => field.name(),
     }
 }
 
-/// Cuts what arrives into messages.
+/// A decoder of received bytes into messages.
 #[derive(Debug, Default)]
 pub struct Inbox {
     pub decoder: Decoder,
     pub counts: Counts,
-    /// The sequence number the next frame should have.
+    /// The expected sequence number of the next frame.
     expected: Option<u32>,
-    /// The next frame is the first of a connection: those before it were not for this host.
+    /// True if the next frame is the first of a connection. Frames before it were not sent to this
+    /// host, so they are not lost.
     is_joining: bool,
     pub damage: Option<LinkError>,
-    /// What comes may begin in the middle of a message.
+    /// True if the next bytes may begin in the middle of a message.
     joins: bool,
 }
 
 impl Inbox {
-    /// Takes a byte; the message that it ends.
+    /// Takes a byte and returns the message that it completes.
     pub fn take(&mut self, byte: u8) -> Option<ToHost> {
         let message = match self
             .decoder
@@ -53,12 +55,14 @@ impl Inbox {
         };
         self.joins = false;
         self.counts.messages += 1;
+
         match message {
             ToHost::Frame(Frame { sequence, .. }) => {
                 let missing = self
                     .expected
                     .map_or(0, |expected| sequence.wrapping_sub(expected));
-                // One that lies behind is of a board that has started to count anew.
+
+                // A smaller number than expected comes from a board that counts from 0 again.
                 let restarted = missing > u32::MAX / 2;
                 self.counts.restarts += u64::from(restarted);
                 if !restarted && !std::mem::take(&mut self.is_joining) {
@@ -73,13 +77,15 @@ impl Inbox {
             }
             ToHost::Answer(..) => {}
         }
+
         Some(message)
     }
 
-    /// Begins a connection to a board that may be in the middle of a message and of its count.
+    /// Begins a connection to a board that may be in the middle of a message and of its count of
+    /// frames.
     ///
-    /// The sequence number of the connection before is kept: a smaller one shows that the board
-    /// has restarted meanwhile.
+    /// The expected sequence number of the previous connection is kept. A smaller number shows that
+    /// the board has restarted in between.
     pub fn join(&mut self) {
         self.decoder = Decoder::default();
         self.damage = None;

@@ -1,5 +1,5 @@
-//! The serial link to a board, emulated or real: bytes to messages, and the port that they come through, the one named or the only
-//! one that is a USB device's.
+//! The serial link to a board, emulated or real: the decoding of bytes into messages, and the
+//! serial port. The port is named by the user or is the only one of a USB device.
 
 mod inbox;
 mod panel;
@@ -13,18 +13,18 @@ pub use panel::{is_well, panel};
 pub use port::{BAUD_OF_BOOT_LOADER, Port, touch};
 pub use restarts::{Restarts, describe_restart};
 
-/// The word that stands for the only serial port over USB. Not the only one of some ids, for those of the Pico are lent to whoever
-/// does not go by them.
+/// The name that selects the only serial port over USB. The USB ids are not used, because the ids
+/// of the Pico are shared with other devices, which only differ by their names.
 const AUTO: &str = "auto";
 
-/// Names by which a board with a USB port of its own presents itself (`board/pico/usb.rs`).
+/// The names in the USB descriptor of a board with its own USB port (`board/pico/usb.rs`).
 const MANUFACTURER: &str = "double-pendulum";
 const PRODUCT: &str = "Double pendulum";
 
-/// Returns the port of the only board that runs this firmware and has a USB port of its own.
+/// Returns the port of the only board that runs this firmware and has its own USB port.
 ///
-/// Its USB ids are lent to anybody who goes by the names (rule 7 of V-USB's
-/// `USB-IDs-for-free.txt`), so the names decide.
+/// The board is recognised by its names, because its USB ids are shared with every device that
+/// distinguishes itself by names (rule 7 of V-USB's `USB-IDs-for-free.txt`).
 pub fn running_board(ports: &[SerialPortInfo]) -> Option<&str> {
     let is_it = |port: &&SerialPortInfo| {
         usb(port).is_some_and(|usb| {
@@ -45,17 +45,17 @@ fn usb(port: &SerialPortInfo) -> Option<&UsbPortInfo> {
     }
 }
 
-/// A USB device that was at a port, and may come back under another name: Linux gives a new one
-/// while any program still holds the old node.
+/// A USB device that was at a port and may return under another name. Linux assigns a new name
+/// while a program still has the old node open.
 #[derive(Clone, Debug)]
 struct Device {
     usb: UsbPortInfo,
-    /// The ports that were there beside it when it went.
+    /// The other ports that existed when the device went.
     others: Vec<String>,
 }
 
 impl Device {
-    /// Returns the device at the port `name`, if that is a USB device's.
+    /// Returns the device at the port `name` if it is a USB device.
     fn at(name: &str, ports: &[SerialPortInfo]) -> Option<Self> {
         let port = ports.iter().find(|port| port.port_name == name)?;
         Some(Self {
@@ -64,14 +64,13 @@ impl Device {
         })
     }
 
-    /// Notes which ports are there while the device at `name` is not.
+    /// Stores the ports that exist while the device at `name` is absent.
     fn gone(&mut self, name: &str, ports: Vec<SerialPortInfo>) {
         let names = ports.into_iter().map(|port| port.port_name);
         self.others = names.filter(|other| other != name).collect();
     }
 
-    /// Returns the port at which it is back: the only one that has come since with the same ids
-    /// and names.
+    /// Returns the port at which the device is back: the only new port with the same ids and names.
     fn back<'a>(&self, ports: &'a [SerialPortInfo]) -> Option<&'a str> {
         let is_it = |port: &&SerialPortInfo| {
             usb(port) == Some(&self.usb) && !self.others.contains(&port.port_name)

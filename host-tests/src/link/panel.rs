@@ -3,7 +3,8 @@
 use firmware::config::TICK_RATE;
 use firmware::display::{BusFault, Controller, Found, PanelReport, PanelState};
 
-/// The panel in one line; `None` if the board has none that can be asked.
+/// Returns the panel's state in one line, or `None` if the board has no panel that reports its
+/// state.
 pub fn panel(report: &PanelReport) -> Option<String> {
     let line = match report.state {
         PanelState::Unknown => return None,
@@ -14,7 +15,7 @@ pub fn panel(report: &PanelReport) -> Option<String> {
     Some(line)
 }
 
-/// The controller, how it was identified and its status byte.
+/// Returns the controller's name, the way it was identified, and its status byte.
 fn identified(found: &Found) -> String {
     let Found {
         controller,
@@ -30,7 +31,7 @@ fn identified(found: &Found) -> String {
     format!("{} {}{status}{tried}", controller.name(), by.name())
 }
 
-/// The frames of the last second.
+/// Returns the number of frames shown in the last second.
 fn frames(report: &PanelReport) -> String {
     let shown = report.shown;
     match u32::from(shown) {
@@ -56,7 +57,7 @@ fn remedy(fault: BusFault) -> &'static str {
     }
 }
 
-/// Returns true if the panel is well, or cannot be asked.
+/// Returns true if the panel works, or does not report its state.
 pub fn is_well(report: &PanelReport) -> bool {
     let all = u32::from(report.shown) == TICK_RATE || report.shown == 0;
     match report.state {

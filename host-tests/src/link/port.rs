@@ -1,4 +1,5 @@
-//! A real serial port, with a board at its other end or not: it says what is the matter, and goes on when the board is back.
+//! A real serial port, with or without a board at its other end. It reports problems and reconnects
+//! when the board is back.
 
 use std::fs;
 use std::io::{ErrorKind, Read, Write};
@@ -13,19 +14,20 @@ use serialport::{SerialPort, SerialPortInfo};
 
 use super::{AUTO, Device, Inbox, Restarts, choose};
 
-/// How long bytes are waited for: they are looked for often enough.
+/// The time to wait for bytes in one read. It is short because reads are frequent.
 const WAIT: Duration = Duration::from_millis(1);
-/// How long the port may take to accept a message, which the board takes within a tick.
+/// The time limit for the port to accept a message. The board takes it within a tick.
 const ACCEPTANCE: Duration = Duration::from_millis(500);
 const RETRY: Duration = Duration::from_millis(250);
-/// How long `auto` waits for a port: a board that was flashed just now enumerates within a second,
-/// and its node gets its group a little later.
+/// The time that `auto` waits for a port. A board that was just flashed enumerates within a second,
+/// and its device node gets its group a little later.
 const ARRIVAL: Duration = Duration::from_secs(3);
-/// A board that plays sends 60 messages a second: without one for so long, something is the matter.
+/// The time without a message after which a problem is reported. A board that plays sends 60
+/// messages a second.
 const PATIENCE: Duration = Duration::from_secs(2);
-/// Bytes looked at in one go at most; a foreign device may send without end.
+/// The largest number of bytes read in one call, because a foreign device may send without end.
 const MOST_BYTES: usize = 1 << 16;
-/// The number of the question about restarts; the answer is known by its kind.
+/// The request number of the question about restarts. The answer is recognised by its kind.
 const QUESTION: u16 = u16::MAX - 1;
 /// The speed at which a board restarts in its boot loader, bits per second: the convention of
 /// Arduino's boards. The Pico obeys when the port is closed at this speed.
@@ -34,20 +36,21 @@ pub const BAUD_OF_BOOT_LOADER: u32 = 1200;
 pub struct Port {
     pub name: String,
     open: Option<Box<dyn SerialPort>>,
-    /// The USB device at the port, by which it is found under another name.
+    /// The USB device at the port. By it, the device is found under another name.
     device: Option<Device>,
     pub inbox: Inbox,
     pub restarts: Restarts,
-    /// What is the matter, or is well again: a line each, said once. To be drained.
+    /// Reports of problems and recoveries, one line each, reported once. The caller drains them.
     pub notices: Vec<String>,
-    /// When an intact message came last, or the port was opened, or last tried.
+    /// The time of the last intact message, of the opening of the port, or of the last attempt to
+    /// open it.
     since: Instant,
     bytes: usize,
     complained: bool,
 }
 
 impl Port {
-    /// Opens the port of this name, or the only one over USB; what is wrong in one line.
+    /// Opens the port of this name, or the only one over USB. Returns an error as one line.
     pub fn open(name: &str) -> Result<Self, String> {
         let (name, open) = if name == AUTO {
             let since = Instant::now();
@@ -77,7 +80,8 @@ impl Port {
         Ok(port)
     }
 
-    /// The messages that have come since the last call. A port that is gone is opened again once it is back.
+    /// Returns the messages that have arrived since the last call. A port that has gone is opened
+    /// again when it is back.
     pub fn messages(&mut self) -> Vec<ToHost> {
         if self.open.is_none() {
             self.reopen();
@@ -99,7 +103,7 @@ impl Port {
         messages
     }
 
-    /// Sends a command; while the port is gone it goes nowhere.
+    /// Sends a command. While the port is gone, the command is dropped.
     pub fn send(&mut self, request: u16, command: Command) {
         self.send_bytes(encode_command(request, command, &mut [0; MAX_WIRE]));
     }
@@ -116,7 +120,8 @@ impl Port {
     }
 
     fn read(&mut self) -> Vec<u8> {
-        let (mut bytes, mut buffer) = (Vec::new(), [0; 4096]);
+        let mut bytes = Vec::new();
+        let mut buffer = [0; 4096];
         while bytes.len() < MOST_BYTES
             && let Some(port) = &mut self.open
         {
@@ -149,7 +154,9 @@ impl Port {
         if self.since.elapsed() < RETRY {
             return;
         }
-        (self.since, self.bytes, self.complained) = (Instant::now(), 0, false);
+        self.since = Instant::now();
+        self.bytes = 0;
+        self.complained = false;
         self.open = open(&self.name).ok();
         let mut notice = format!("{} is back", self.name);
         if self.open.is_none()
@@ -169,14 +176,16 @@ impl Port {
         }
     }
 
-    /// What the messages, or their absence, say of the other end.
+    /// Reports a problem of the other end, or its recovery, by the messages or their absence.
     fn note(&mut self, messages: &[ToHost]) {
         if !messages.is_empty() {
             if self.complained {
                 self.notices
                     .push(format!("{}: the board sends again", self.name));
             }
-            (self.since, self.bytes, self.complained) = (Instant::now(), 0, false);
+            self.since = Instant::now();
+            self.bytes = 0;
+            self.complained = false;
         } else if self.open.is_some() && !self.complained && self.since.elapsed() >= PATIENCE {
             self.complained = true;
             self.notices.push(self.silence());
@@ -204,8 +213,8 @@ impl Port {
     }
 }
 
-/// A port that has ended. Over USB a board's restart looks like a pulled cable; the board tells
-/// which it was when it is back.
+/// Returns the notice of a port that has gone. Over USB, a board's restart looks like an unplugged
+/// cable; the board reports the cause when it is back.
 fn gone(name: &str, why: &str) -> String {
     format!("{name} is gone ({why}): the cable is out, or the board restarts; waiting for it")
 }
@@ -218,13 +227,13 @@ fn ports() -> Vec<SerialPortInfo> {
     serialport::available_ports().unwrap_or_default()
 }
 
-/// Returns the device node that a name, which may be a link of udev's, stands for.
+/// Returns the device node of a name, which may be a symbolic link made by udev.
 fn node(name: &str) -> String {
     fs::canonicalize(name).map_or(name.to_owned(), |path| path.display().to_string())
 }
 
-/// Opens the only port over USB. As long as `waits` returns true, a port that is not there yet is
-/// waited for, and one that has just come may still lack its rights.
+/// Opens the only port over USB. While `waits` returns true, this waits for a port that does not
+/// exist yet, and for the access rights of a new port.
 fn only_one<P>(
     mut ports: impl FnMut() -> Vec<SerialPortInfo>,
     mut open: impl FnMut(&str) -> serialport::Result<P>,
@@ -251,7 +260,7 @@ fn only_one<P>(
     }
 }
 
-/// Has a board at this port restart in its boot loader, by closing the port at a certain speed.
+/// Makes a board at this port restart in its boot loader, by closing the port at a certain speed.
 ///
 /// # Errors
 ///
@@ -260,12 +269,13 @@ pub fn touch(name: &str) -> Result<(), String> {
     let mut port = serialport::new(name, BAUD_OF_BOOT_LOADER)
         .open()
         .map_err(|error| reason(name, &error))?;
-    // A board that is quick is gone before this is answered. To close the port does the same.
+
+    // A quick board is gone before this is answered. Closing the port has the same effect.
     let _ = port.write_data_terminal_ready(false);
     Ok(())
 }
 
-/// Why a port does not open, in one line.
+/// Returns the reason why a port does not open, in one line.
 fn reason(name: &str, error: &serialport::Error) -> String {
     use serialport::ErrorKind::{Io, NoDevice};
     match error.kind() {
@@ -278,7 +288,8 @@ fn reason(name: &str, error: &serialport::Error) -> String {
     }
 }
 
-/// The group whose members may open the port; `None` if that is root's, or has no right either.
+/// Returns the group whose members may open the port. Returns `None` if it is root's group or has
+/// no access either.
 fn group(name: &str) -> Option<String> {
     const GROUP_READS_AND_WRITES: u32 = 0o060;
     let node = fs::metadata(name).ok()?;
@@ -290,7 +301,7 @@ fn group(name: &str) -> Option<String> {
     Some(group.name)
 }
 
-/// The right to open the port is missing.
+/// Returns the reason that the right to open the port is missing, with the remedy.
 fn denied(name: &str, group: Option<&str>) -> String {
     let remedy = match group {
         Some(group) => format!("as root: usermod -aG {group} USER, then log in again"),
@@ -339,7 +350,9 @@ mod tests {
     #[test]
     fn the_group_is_that_of_the_port_and_not_a_distributions_habit() {
         assert!(denied("/dev/ttyX", Some("uucp")).contains("usermod -aG uucp USER"));
-        // A terminal is its group's to write to, and not to read; these two are root's.
+
+        // The group of a terminal may write to it but not read it, and root is the group of these
+        // two.
         for name in ["/dev/null", "/nowhere/tty"] {
             assert_eq!(group(name), None, "{name}");
         }
@@ -363,10 +376,12 @@ mod tests {
         serialport::Error::new(kind, "denied")
     }
 
-    /// The port comes with the third look, and its rights with the fifth.
+    /// The port appears in the third search, and its access rights in the fifth.
     #[test]
     fn auto_waits_for_a_port_that_comes_and_for_its_rights() {
-        let (mut looks, mut tries, mut waits) = (0, 0, 0);
+        let mut looks = 0;
+        let mut tries = 0;
+        let mut waits = 0;
         let ports = || {
             looks += 1;
             Vec::from_iter((looks > 2).then(|| usb_port("/dev/ttyACM0")))

@@ -1,34 +1,36 @@
-//! The restarts of a board, as far as a host at its port learns of them.
+//! The restarts of a board, as a host at its port observes them.
 //!
-//! A restart ends a USB connection, so the board's own message about it reaches nobody. The host
-//! asks for the last restart each time that it has opened the port, and whenever the frames are
-//! counted anew.
+//! A restart ends a USB connection, so the board's own message about it reaches no host. The host
+//! therefore asks for the last restart after opening the port, and whenever the frames are counted
+//! from 0 again.
 
 use firmware::protocol::{Answer, Cause, Restarted, ToHost};
 
-/// Messages after which an unanswered question is repeated: a board sends 60 a second.
+/// The number of messages after which an unanswered question is repeated. A board sends 60 messages
+/// a second.
 const PATIENCE: u32 = 60;
 
-/// The restarts that a host has learnt of.
+/// The restarts that a host has observed.
 #[derive(Debug, Default)]
 pub struct Restarts {
-    /// The last restart that the board has reported, from before the connection too.
+    /// The last restart that the board has reported, including one before the connection.
     pub last: Option<Restarted>,
-    /// Restarts since the host first opened the port, those by the power switch included.
+    /// The number of restarts since the host first opened the port, including those by the power
+    /// switch.
     pub count: u32,
     question: Question,
-    /// The frames have been counted anew, and the board has not yet answered why.
+    /// True if the frames are counted from 0 again and the board has not yet reported the cause.
     recounted: bool,
-    /// The board has answered once.
+    /// True if the board has answered at least once.
     is_known: bool,
 }
 
 #[derive(Debug, Default, PartialEq)]
 enum Question {
-    /// To be asked with the next message that comes.
+    /// The question is sent after the next message.
     #[default]
     Due,
-    /// Asked, and not answered for this number of messages.
+    /// The question was sent, and this number of messages has arrived without an answer.
     Asked(u32),
     Answered,
 }
@@ -39,8 +41,8 @@ impl Restarts {
         self.question = Question::Due;
     }
 
-    /// Takes a message and whether it shows that the frames are counted anew. Returns a line for
-    /// the user if there is something new.
+    /// Takes a message. `recounted` is true if the message shows that the frames are counted from 0
+    /// again. Returns a line for the user if there is something new.
     pub fn take(&mut self, message: &ToHost, recounted: bool) -> Option<String> {
         match *message {
             ToHost::Restarted(end) => {
@@ -62,8 +64,8 @@ impl Restarts {
         }
     }
 
-    /// Returns true if the board is to be asked now. To be called after each message, so that
-    /// nothing is sent to a device that is no board.
+    /// Returns true if the question must be sent now. It is called after each message, so that
+    /// nothing is sent to a device that is not a board.
     pub fn is_question_due(&mut self) -> bool {
         let (is_due, next) = match self.question {
             Question::Due | Question::Asked(PATIENCE..) => (true, Question::Asked(0)),
@@ -88,7 +90,8 @@ impl Restarts {
     }
 }
 
-/// A restart in one line: cause, place as far as it is known, and count.
+/// Returns a restart in one line: the cause, the place if it is known, and the number of restarts
+/// in a row.
 pub fn describe_restart(end: &Restarted) -> String {
     let place = match end.pc {
         0 => String::new(),
@@ -151,10 +154,12 @@ mod tests {
             "unknown"
         );
         assert_eq!(restarts.count, 0, "it was before");
-        // The cable is pulled and plugged in again.
+
+        // The cable is unplugged and plugged in again.
         restarts.join();
         assert_eq!(restarts.take(&answer(Some(end(1))), false), None);
-        // The next restart took the connection with it.
+
+        // The next restart ended the connection.
         restarts.join();
         assert!(restarts.take(&answer(Some(end(2))), false).is_some());
         assert_eq!((restarts.count, restarts.last), (1, Some(end(2))));

@@ -1,38 +1,49 @@
-//! The hard cases, `data/hard_cases.csv`: motions that break a careless arithmetic, and how far off the direction form may be on them.
+//! The hard cases, `data/hard_cases.csv`: motions on which careless arithmetic fails, and the
+//! allowed errors of the direction form.
 
 use double_pendulum::{Parameters, State};
 
 use crate::oracle::trials::Trial;
 
-/// A motion, and starts like it, each a little farther on: one start's error is an accident, that of many is not.
+/// A motion, and starts near it, each a little further from it. The typical error of many starts is
+/// meaningful, while that of one start can be accidental.
 #[derive(Clone, Copy, Debug)]
 pub struct HardCase {
-    /// For messages.
+    /// The name, for messages.
     pub name: &'static str,
     /// The first start.
     pub trial: Trial,
-    /// How far the angle of rod 1 is turned from one start to the next, rad; that of rod 2 half as far.
+    /// The difference of rod 1's angle from one start to the next, rad. The difference of rod 2's
+    /// angle is half as large.
     pub spread: f64,
-    /// The typical error of compensated `f32` with the finest steps, at most, rad: twice what was measured.
+    /// The largest allowed typical error of compensated `f32` with the finest steps, rad. It is
+    /// twice the measured error.
     pub floor: f64,
-    /// The error in fixed point of 32 and 64 bits below which a halved step need not be better, and within which the finest is, rad:
-    /// twice to four times what was measured, at most `floor` but with a heavy elbow and near the upright position. With a heavy elbow
-    /// the unit of time in 32 bits, which goes with the step, is half of what it may be (in steps a quarter longer the error is a third,
-    /// measured 2.8e-8). Near the upright position 2^-30 of a sine near 0 is more than an `f32` would lose; in 64 bits the roundings of
-    /// each step add up, for no sum is compensated. NaN: what is refused, for masses of too unlike a size, or because the light elbow
-    /// needs steps finer than any here.
+    /// The error in fixed point of 32 and 64 bits, rad. Below it a halved step need not be better,
+    /// and the error of the finest step must be within it.
+    ///
+    /// It is twice to four times the measured error, and at most `floor` except with a heavy elbow
+    /// and near the upright position. NaN means that the case is refused, because the masses differ
+    /// too much, or because the light elbow needs finer steps than any here.
+    ///
+    /// With a heavy elbow the unit of time in 32 bits, which depends on the step, is half of its
+    /// largest value (in steps that are a quarter longer the error is a third, measured 2.8e-8).
+    /// Near the upright position an error of 2^-30 of a sine near 0 is larger than that of an
+    /// `f32`. In 64 bits the roundings of each step accumulate, because no sum is compensated.
     pub fixed: [f64; 2],
-    /// The error of `f64` with the finest steps, at most, rad: the method's own.
+    /// The largest allowed error of `f64` with the finest steps, rad. It is the error of the
+    /// method.
     pub method: f64,
-    /// How many times more plain sums lose in angles, whose last place is coarse: far turns away, or where an error grows as it falls.
+    /// The factor by which plain sums may lose more in angles, whose last place is coarse many
+    /// turns away, or where an error grows while the pendulum falls.
     pub in_angles: f64,
-    /// By how much halving the step may make a typical error grow.
+    /// The largest factor by which a typical error may grow when the step is halved.
     pub growth: f64,
-    /// Why it is hard, and why the budgets are what they are.
+    /// The reason why the case is hard, and the reasons for the budgets.
     pub reason: &'static str,
 }
 
-/// Every line, in the file's order.
+/// Returns every line, in the file's order.
 pub fn hard_cases() -> Vec<HardCase> {
     let lines = include_str!("../../data/hard_cases.csv").lines().skip(1);
     lines

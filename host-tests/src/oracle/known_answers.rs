@@ -1,6 +1,7 @@
-//! The table of known answers, `data/known_answers.csv`: where the rods of exact motions point, every digit proved.
+//! The table of known answers, `data/known_answers.csv`: the directions of the rods in exact
+//! motions, with every digit proved.
 //!
-//! `cargo prove --known-answers` makes it again, digit for digit.
+//! `cargo prove --known-answers` reproduces it digit for digit.
 
 use std::str::FromStr;
 
@@ -10,34 +11,34 @@ use reference::taylor::{Reference, divide};
 use reference::twofloat::TwoFloat;
 use reference::twofloat::consts::PI;
 
-/// One line of the table: a scene at one time.
+/// A line of the table: a scene at one time.
 #[derive(Clone, Debug)]
 pub struct KnownAnswer {
     /// The scene's name.
     pub scene: &'static str,
-    /// Its name, what is given, and the time: as written.
+    /// The scene's name, its given numbers and the time, as written in the file.
     pub given: &'static str,
     /// The scene at its start, in full precision.
     pub start: Reference,
-    /// Its masses (kg), lengths (m), gravity (m/s^2), rounded to f64.
+    /// The masses (kg), lengths (m), gravity (m/s^2), rounded to f64.
     pub parameters: Parameters<f64>,
     /// The time, s.
     pub time: f64,
     /// (sin a1, cos a1, sin a2, cos a2) at that time.
     pub directions: [TwoFloat; 4],
-    /// What these may be off by: two units of the last digit written.
+    /// The largest error of the directions: two units of the last digit written.
     pub radius: [f64; 4],
-    /// How many times larger a small error of the start has become by then.
+    /// The factor by which a small error of the start has grown by that time.
     pub growth: f64,
 }
 
-/// The columns.
+/// The names of the columns.
 pub const HEADING: &str =
     "scene,a1_deg,a2_deg,w1_start,w2_start,m1,m2,l1,l2,g,t,sin_a1,cos_a1,sin_a2,cos_a2,growth";
-/// How many of these are what is given, and the time.
+/// The number of columns that contain the scene, its given numbers and the time.
 const GIVEN: usize = 11;
 
-/// Every line, in the file's order.
+/// Returns every line, in the file's order.
 ///
 /// # Errors
 /// Names the first line that cannot be read.
@@ -63,6 +64,7 @@ impl KnownAnswer {
             .split(',')
             .map(|text| 2.0 * 10_f64.powi(-places(text)))
             .collect();
+
         let numbers: Vec<TwoFloat> = numbers.split(',').map(decimal).collect::<Option<_>>()?;
         let &[
             a1,
@@ -106,7 +108,8 @@ impl KnownAnswer {
     }
 }
 
-/// A decimal number in double-double precision: up to 38 digits, with or without a point and an exponent.
+/// Parses a decimal number in double-double precision: up to 38 digits, with or without a point and
+/// an exponent.
 fn decimal(text: &str) -> Option<TwoFloat> {
     let (mantissa, exponent) = text.split_once('e').unwrap_or((text, "0"));
     let (whole, fraction) = mantissa.split_once('.').unwrap_or((mantissa, ""));

@@ -1,4 +1,4 @@
-//! What every number is held against.
+//! The standards of comparison for tests: exact motions, known answers and tolerances.
 
 pub mod hard_cases;
 pub mod known_answers;

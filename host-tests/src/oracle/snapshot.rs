@@ -1,19 +1,19 @@
-//! Snapshots: pictures as text, one character per pixel, so that a change of a picture shows in a
-//! diff; and files of checksums.
+//! Snapshots of pictures and files of checksums. A picture is stored as text with one character per
+//! pixel, so that a change of a picture is visible in a diff.
 
 use std::env;
 use std::fs;
 
 use crate::emulator::toolchain::workspace;
 
-/// One character for each of the panel's 16 greys, from black to white.
+/// The character of each of the panel's 16 greys, from black to white.
 pub const GREYS: &[u8; 16] = b" .,:;-~=+*oaOX#@";
 
-/// Set to anything, this environment variable makes [`check`] and [`check_lines`] write the files
-/// instead of comparing them.
+/// The environment variable that makes [`check`] and [`check_lines`] write the files instead of
+/// comparing them. Any value has this effect.
 pub const BLESS: &str = "BLESS";
 
-/// Greys of 0 to 15, row by row, as lines of `width` characters.
+/// Returns a picture as lines of `width` characters. `greys` are 0 to 15, row by row.
 pub fn text(greys: &[u8], width: usize) -> String {
     let line = |row: &[u8]| {
         row.iter()
@@ -24,7 +24,8 @@ pub fn text(greys: &[u8], width: usize) -> String {
     greys.chunks(width).map(line).collect()
 }
 
-/// Compares a picture with the committed one called `name`; the message of what differs, with the command that accepts it.
+/// Compares a picture with the committed one called `name`. The error lists the differences and the
+/// command that accepts them.
 pub fn check(name: &str, picture: &str) -> Result<(), String> {
     let path = workspace()
         .join("host-tests/pictures/scenes")
@@ -57,8 +58,8 @@ pub fn check(name: &str, picture: &str) -> Result<(), String> {
     ))
 }
 
-/// Compares `text` line by line with a committed file of the project; returns the lines that
-/// differ, with the command that accepts them.
+/// Compares `text` line by line with a committed file of the project. The error lists the lines
+/// that differ and the command that accepts them.
 pub fn check_lines(file: &str, text: &str) -> Result<(), String> {
     let path = workspace().join(file);
     if env::var_os(BLESS).is_some() {

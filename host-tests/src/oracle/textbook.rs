@@ -1,8 +1,10 @@
-//! The source page's equal-rod form ("Double Pendulum", math24.net), misprint and all: for comparison only.
+//! The equal-rod form of the source page ("Double Pendulum", math24.net) with its misprint, for
+//! comparison only.
 
-/// The equal-rod equations exactly as printed, for m1 = 1 kg: the denominator of the second lacks the factor mu.
+/// Returns the rates of the equal-rod equations exactly as printed, for m1 = 1 kg. The denominator
+/// of the second equation lacks the factor mu.
 ///
-/// Unless mu = 1 they are not Hamilton's equations of anything, and they lose or gain energy.
+/// Unless mu = 1, they are not Hamilton's equations of any system, and they lose or gain energy.
 pub fn misprinted_equal_rods(mu: f64, l: f64, g: f64, &[a1, a2, p1, p2]: &[f64; 4]) -> [f64; 4] {
     let (sin_d, cos_d) = libm::sincos(a1 - a2);
     let den = 1.0 + mu * sin_d * sin_d;

@@ -1,4 +1,4 @@
-//! Methods of the table run beside the reference.
+//! Trials: motions that are computed by the methods of the table and compared with the reference.
 
 use std::f64::consts::TAU;
 
@@ -7,7 +7,8 @@ use double_pendulum::{Equations, Error, Method, Parameters, Pendulum, State};
 use firmware::job::AnyRun;
 use reference::{advance, taylor};
 
-/// All methods but those whose errors are not the steps': in closed form of their equations, in `micromath` of the sines.
+/// Returns all methods whose errors depend on the step. The closed form has the error of its linear
+/// equations, and the `micromath` method has the error of its sines.
 pub fn exact_methods() -> impl Iterator<Item = Method> {
     let is_exact = |method: &Method| {
         method.equations() != Equations::Linear && *method != Method::Rk4F32Micromath
@@ -15,7 +16,7 @@ pub fn exact_methods() -> impl Iterator<Item = Method> {
     Method::ALL.iter().copied().filter(is_exact)
 }
 
-/// The motion of a pendulum from its start by `method`, in steps of `dt` s.
+/// Returns the motion of a pendulum from its start by `method`, in steps of `dt` s.
 pub fn run(
     method: Method,
     parameters: &Parameters<f64>,
@@ -25,22 +26,23 @@ pub fn run(
     AnyRun::new(method, &Pendulum::new(parameters)?, start, dt)
 }
 
-/// A motion to try: everything in SI units.
+/// A motion to try, in SI units.
 #[derive(Clone, Copy, Debug)]
 pub struct Trial {
     /// Masses, lengths and gravity.
     pub parameters: Parameters<f64>,
-    /// Where it starts.
+    /// The start of the motion.
     pub start: State<f64>,
-    /// How long it is followed.
+    /// The duration, s.
     pub seconds: f64,
 }
 
-/// Moments at which the errors are taken, evenly spread.
+/// The number of moments at which the errors are measured, evenly spread.
 pub const MOMENTS: u32 = 16;
 
 impl Trial {
-    /// Held still at (`a1`, `a2`), rad: rods of 1 m, a bob 1 of 1 kg, g = 9.81 m/s^2.
+    /// Returns a motion from rest at (`a1`, `a2`), rad, with rods of 1 m, a bob 1 of 1 kg, and g =
+    /// 9.81 m/s^2.
     pub fn at_rest(mass_ratio: f64, a1: f64, a2: f64, seconds: f64) -> Self {
         Self {
             parameters: Parameters::equal_rods(mass_ratio, 1.0, 9.81),
@@ -49,17 +51,17 @@ impl Trial {
         }
     }
 
-    /// 0.5 rad, at rest: no chaos.
+    /// Returns a regular motion, from rest at 0.5 rad.
     pub fn regular(seconds: f64) -> Self {
         Self::at_rest(1.0, 0.5, 0.5, seconds)
     }
 
-    /// 2 rad, at rest: chaotic, it turns over.
+    /// Returns a chaotic motion with turns, from rest at 2 rad.
     pub fn chaotic(seconds: f64) -> Self {
         Self::at_rest(1.0, 2.0, 2.0, seconds)
     }
 
-    /// Masses and lengths all different, in motion.
+    /// Returns a motion with different masses and lengths that is in motion at the start.
     pub fn unlike(seconds: f64) -> Self {
         let parameters = Parameters {
             m1: 0.7,
@@ -80,12 +82,13 @@ impl Trial {
         }
     }
 
-    /// The trial as the numbers of `method` hold it, each rounded once.
+    /// Returns the trial with its numbers rounded once to those of `method`.
     pub fn held_by(&self, method: Method) -> Self {
         if !method.is_single() {
             return *self;
         }
-        let (parameters, start) = (self.parameters.cast::<f32>(), self.start.cast::<f32>());
+        let parameters = self.parameters.cast::<f32>();
+        let start = self.start.cast::<f32>();
         Self {
             parameters: parameters.cast(),
             start: start.cast(),
@@ -93,12 +96,13 @@ impl Trial {
         }
     }
 
-    /// The steps of `dt`, s, from one of so many moments to the next.
+    /// Returns the number of steps of `dt`, s, from one of `moments` moments to the next.
     fn steps(&self, dt: f64, moments: u32) -> u32 {
         (self.seconds / dt / f64::from(moments)).round() as u32
     }
 
-    /// The states by `method` at the moments, in steps of `dt`, s; NaN once the motion is lost.
+    /// Returns the states by `method` at the moments, in steps of `dt`, s. They are NaN after the
+    /// motion has diverged.
     pub fn states(&self, method: Method, dt: f64) -> Result<Vec<State<f64>>, Error> {
         let mut run = run(method, &self.parameters, &self.start, dt)?;
         let steps = self.steps(dt, MOMENTS);
@@ -109,7 +113,8 @@ impl Trial {
         Ok((0..MOMENTS).map(next).collect())
     }
 
-    /// The same at so many moments by RK4 in compensated `f64`, which is not in the table.
+    /// Returns the states at `moments` moments by RK4 in compensated `f64`, which is not in the
+    /// table.
     pub fn states_in_f64(&self, dt: f64, moments: u32) -> Result<Vec<State<f64>>, Error> {
         let mut run = Pendulum::new(&self.parameters)?.run::<DirectionF64>(&self.start, dt)?;
         let steps = self.steps(dt, moments);
@@ -118,7 +123,7 @@ impl Trial {
             .collect()
     }
 
-    /// The exact states at the moments.
+    /// Returns the exact states at the moments.
     pub fn exact(&self) -> Result<Vec<State<f64>>, Error> {
         let pendulum = Pendulum::new(&self.parameters)?;
         let at = |moment: u32| self.seconds * f64::from(moment) / f64::from(MOMENTS);
@@ -129,8 +134,8 @@ impl Trial {
         ))
     }
 
-    /// The largest error of an angle, rad, by `method` with steps of `dt`, s, beside the exact motion of the numbers as it holds
-    /// them.
+    /// Returns the largest error of an angle, rad, by `method` with steps of `dt`, s. The reference
+    /// is the exact motion of the rounded numbers.
     pub fn error(&self, method: Method, dt: f64) -> Result<f64, Error> {
         Ok(largest_difference(
             &self.states(method, dt)?,
@@ -139,7 +144,8 @@ impl Trial {
     }
 }
 
-/// How far apart two angles point, rad, at most pi; infinite if one is not a number.
+/// Returns the angle between two directions, rad, at most pi. It is infinite if one of the angles
+/// is not a number.
 pub fn apart(a: f64, b: f64) -> f64 {
     let turns = (a - b) / TAU;
     let apart = (turns - turns.round()).abs() * TAU;
@@ -150,7 +156,7 @@ pub fn apart(a: f64, b: f64) -> f64 {
     }
 }
 
-/// The largest difference of the angles, rad, whole turns apart.
+/// Returns the largest difference of the angles, rad, without whole turns.
 pub fn largest_difference(states: &[State<f64>], others: &[State<f64>]) -> f64 {
     let pairs = states.iter().zip(others);
     pairs

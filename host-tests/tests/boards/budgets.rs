@@ -1,4 +1,4 @@
-//! What a board's application takes of its memory, and the commands that it is tried with.
+//! The memory use of a board's application, and the commands that exercise it.
 
 use std::path::Path;
 
@@ -11,23 +11,25 @@ use host_tests::emulator::budgets::{self, MEMORY, Memory};
 use object::elf::{SHF_ALLOC, SHF_WRITE};
 use object::{Object, ObjectSection, SectionFlags, SectionKind};
 
-/// Frames after a command that may be costly, and frames in which a motion asked for is computed.
+/// The number of frames after a command that may be expensive, and of frames in which a requested
+/// motion is computed.
 const FRAMES: usize = 24;
 const COMPUTING: usize = 2;
 
-/// What a board sends up to its next frame when it has been told this.
+/// A function that sends bytes to a board and returns its messages up to the next frame.
 pub type Next<'a> = &'a mut dyn FnMut(&[u8]) -> anyhow::Result<Vec<ToHost>>;
 
 pub fn wire(command: Command) -> Vec<u8> {
     encode_command(1, command, &mut [0; MAX_WIRE]).to_vec()
 }
 
-/// Sends every command, good and bad, requests of every kind, and garbage.
+/// Sends every command, valid and invalid, requests of every kind, and garbage.
 pub fn exercise(next: Next) -> anyhow::Result<()> {
     let mut play = |words: &[u8], frames: usize| {
         next(words)?;
         (1..frames).try_for_each(|_| next(&[]).map(drop))
     };
+
     for field in Field::ALL {
         for value in [0.75, f64::NAN, -1e30] {
             play(
@@ -39,6 +41,7 @@ pub fn exercise(next: Next) -> anyhow::Result<()> {
             )?;
         }
     }
+
     let unreadable = frame(&[0x80, 1, 0xEE], &mut [0; MAX_WIRE]).to_vec();
     play(
         &[
@@ -61,6 +64,7 @@ pub fn exercise(next: Next) -> anyhow::Result<()> {
         &[Command::Restart, Command::Pause(false)].map(wire).concat(),
         1,
     )?;
+
     for &method in ON_BOARDS {
         for dt in [1.0 / 256.0, 0.5, 0.0] {
             let request = Request {
@@ -79,6 +83,7 @@ pub fn exercise(next: Next) -> anyhow::Result<()> {
             )?;
         }
     }
+
     for &method in Method::DRAWN {
         play(
             &[
@@ -91,6 +96,7 @@ pub fn exercise(next: Next) -> anyhow::Result<()> {
             COMPUTING,
         )?;
     }
+
     let taps = [
         Command::Heavier,
         Command::Lighter,
@@ -108,11 +114,12 @@ pub fn exercise(next: Next) -> anyhow::Result<()> {
         .chain(leaving)
         .try_for_each(|command| play(&wire(command), COMPUTING))?;
     play(&[0x55; 300], FRAMES)?;
-    // A line of the log says that frames were dropped, if any were.
+
+    // If frames were dropped, a line of the log reports it.
     play(&[0; 2], TICK_RATE as usize)
 }
 
-/// Text, data and bss as the linker left them.
+/// Returns the sizes of text, data and bss in the linked program.
 fn sections(elf: &Path) -> Memory {
     let bytes = std::fs::read(elf).unwrap_or_else(|error| panic!("{error}"));
     let file = object::File::parse(&*bytes).unwrap_or_else(|error| panic!("{error}"));
@@ -141,7 +148,8 @@ fn sections(elf: &Path) -> Memory {
     memory
 }
 
-/// Prints the README's row of a board whose stack has reached so deep; what is beyond its budget.
+/// Prints the README's row of a board whose stack had this depth. Returns the items that exceed
+/// their budget.
 pub fn beyond(board: &Board, elf: &Path, stack: u32, idle: f64) -> Vec<String> {
     let Memory {
         text, data, bss, ..

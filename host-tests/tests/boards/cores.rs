@@ -1,8 +1,8 @@
-//! The golden bits on cores that people own, boards or not: every method, four motions of 640
+//! The golden bits on common cores, with or without a board here: every method, four motions of 640
 //! steps.
 //!
-//! What a core needs is fetched by its test alone: the compiler's core library, its emulator. Where
-//! it cannot be had the test says so.
+//! Each test loads the tools of its own core: the compiler's core library and the emulator. If they
+//! are not available, the test says so.
 
 use std::fs;
 use std::io::{Write, stderr};
@@ -12,7 +12,7 @@ use crate::support::LIMIT;
 use host_tests::emulator::{process, toolchain};
 use rayon::prelude::*;
 
-/// What runs the program of a core.
+/// The emulator that runs the program of a core.
 enum Emulator {
     /// QEMU's machine and processor.
     Machine(&'static str, &'static str),
@@ -22,11 +22,12 @@ enum Emulator {
 }
 use Emulator::{Linux, Machine, Node};
 
-/// A core: its name, the compiler's target, and its emulator; and what the compiler calls it if it
-/// is to compute `f64` itself, the kernel's feature `double-fpu`.
+/// A core: its name, the compiler's target, and its emulator. If the core computes `f64` in
+/// hardware (the kernel's feature `double-fpu`), the last field is the compiler's name of the
+/// processor.
 struct Core(&'static str, &'static str, Emulator, Option<&'static str>);
 
-/// Its emulator with the image.
+/// Returns the command that runs the core's emulator with the image.
 fn emulated(Core(_, target, emulator, double): &Core) -> anyhow::Result<Command> {
     let toolchain = toolchain::set_up_for(target)?;
     let mut command = Command::new(&toolchain.qemu);
@@ -54,7 +55,7 @@ fn computes_the_golden_bits(core: &Core, golden: &str) {
     let mut command = match emulated(core) {
         Err(missing) if is_ours => panic!("{}: {missing}", name),
         Ok(command) => command,
-        // The test's output is captured; this is not.
+        // The output of the test is captured, but this message is not.
         Err(missing) => {
             return writeln!(stderr(), "SKIPPED, {}: {missing}", name).expect("someone listens");
         }

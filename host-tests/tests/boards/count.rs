@@ -1,4 +1,4 @@
-//! The counter against a second way of counting, goals and prices.
+//! The counter compared with a second way of counting, with goals and with the price lists.
 
 use std::ops::RangeInclusive;
 
@@ -11,10 +11,11 @@ use firmware::job::Request;
 use host_tests::commands::count::{FULL_CYCLE, affordable_cost, prices, step_cost};
 use host_tests::commands::report::accuracy::{self, SCENES};
 
-/// A tick of the board's clock, 12.5 MHz after reset, under `-icount`, where an instruction takes 1 ns.
+/// The instructions in a tick of the board's clock, 12.5 MHz after reset, under `-icount`, where an
+/// instruction takes 1 ns.
 const INSTRUCTIONS_PER_TICK: f64 = 80.0;
 
-/// Steps of 1/256 s from rest.
+/// Returns a request for steps of 1/256 s from rest.
 fn request(method: Method, angle: f64, stride: u32) -> Request {
     Request {
         angles: [angle; 2],
@@ -35,7 +36,8 @@ fn the_log_counts_as_many_instructions_as_the_clock() -> Result<()> {
             target.run(&request(1 + steps))?.1,
         ];
         let clocked = (all - one) as f64 * INSTRUCTIONS_PER_TICK / f64::from(steps);
-        // Either reading of the clock may be off by a tick.
+
+        // Each of the two readings of the clock may have an error of a tick.
         let tolerance = 2.0 * INSTRUCTIONS_PER_TICK / f64::from(steps);
         assert!(
             (logged - clocked).abs() <= tolerance,
@@ -45,7 +47,8 @@ fn the_log_counts_as_many_instructions_as_the_clock() -> Result<()> {
     Ok(())
 }
 
-/// 23,692 were counted apart from this project, averaged over other states and with another version of the compiler.
+/// A count outside of this project gave 23,692, averaged over other states and with another version
+/// of the compiler.
 #[test]
 fn the_book_by_the_libm_crate_takes_twenty_thousand_instructions() -> Result<()> {
     for target in targets().iter().filter(|target| target.board.cpu == M4F) {
@@ -66,8 +69,8 @@ fn the_book_by_the_libm_crate_takes_twenty_thousand_instructions() -> Result<()>
 const M3: &str = "cortex-m3";
 const M4F: &str = "cortex-m4";
 
-/// The most cycles (estimated) that a step from rest at 0.5 rad may take on a core, with the mass of bob 2, kg, and the length
-/// of rod 2, m; those of bob 1 and rod 1 are 1.
+/// The largest number of cycles (estimated) of a step from rest at 0.5 rad on a core, with the mass
+/// of bob 2, kg, and the length of rod 2, m. Those of bob 1 and rod 1 are 1.
 const GOALS: [(Method, &str, [f64; 2], f64); 4] = [
     (Method::Rk4F32Direction, M4F, [1.0, 1.0], 220.0), // 205 counted
     (Method::Rk4F32DirectionPlain, M4F, [1.0, 1.0], 170.0), // 160 counted; no division
@@ -102,11 +105,12 @@ fn a_step_costs_no_more_than_its_goal() -> Result<()> {
             assert!(cost.cycles <= most, "{method}: {cost:?}, {most} asked");
         }
     }
+
     Ok(())
 }
 
-/// The most cycles (estimated) that a second of a scene may cost with an error, rad: by the method, and the number of steps
-/// through the scene, that were found to be the cheapest.
+/// The largest number of cycles (estimated) of a second of a scene with an error, rad. The method
+/// and its number of steps through the scene are the cheapest that were found.
 const SECONDS: [(usize, f64, &str, Method, u32, f64); 4] = [
     (0, 1e-9, M4F, Method::Extrapolation12Fixed64, 62, 120_000.0), // seven a second, the fewest whole ones: 131,000
     (0, 1e-12, M4F, Method::Extrapolation16Fixed64, 58, 210_000.0), // cheaper than order 12
@@ -147,7 +151,8 @@ fn a_simulated_second_costs_no_more_than_its_goal() -> Result<()> {
     Ok(())
 }
 
-/// How near the price lists must be: compilers depend on their version.
+/// The allowed ratio of counted costs to those of the price lists, which depend on the version of
+/// the compiler.
 const PRICED: RangeInclusive<f32> = 0.97..=1.03;
 
 #[test]
@@ -182,6 +187,7 @@ fn the_price_lists_are_what_is_counted() -> Result<()> {
             ));
         }
     }
+
     assert!(
         wrong.is_empty(),
         "accept by cargo count --write-prices: {wrong:#?}"

@@ -1,4 +1,4 @@
-//! `cargo count --elf`: any function of any program, and a clear word for what cannot be counted.
+//! `cargo count --elf`: any function of any program, and a clear message if it cannot be counted.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -8,7 +8,8 @@ use cycles::{ERROR_BAR, Image};
 use host_tests::emulator::boards::BOARDS;
 use host_tests::emulator::process::{self, Output};
 
-/// A program at an address that calls a function and a label three times each and then executes `last`.
+/// Builds a program at an address that calls a function and a label three times each and then
+/// executes `last`.
 fn program(folder: &Path, address: &str, last: &str) -> PathBuf {
     const SOURCE: &str = r#"
 #![no_std]
@@ -73,9 +74,11 @@ fn panic(_: &core::panic::PanicInfo) -> ! { loop {} }
     elf
 }
 
-/// For a program that never ends by itself: many times what it takes to the wait, on a busy machine too.
+/// The time limit of a program that never ends: many times the time until it waits, on a busy
+/// machine too.
 const SECONDS: [&str; 2] = ["--seconds", "3"];
-/// It ends itself, well or as failed; it waits for ever; it needs a floating-point unit.
+/// The ends of programs: it ends with success or failure, it waits for ever, or it needs a
+/// floating-point unit.
 const ENDS: &str = "ldr r1, =0x20026";
 const FAILS: &str = "ldr r1, =0x020023";
 const WAITS: &str = "b wait";
@@ -139,7 +142,7 @@ fn functions_and_labels_are_counted_and_the_end_is_told() -> anyhow::Result<()> 
     );
     assert_eq!(count(&elf, mangled, &[]).stdout, by_name.stdout);
 
-    // One that is stopped is counted until then.
+    // Counting ends when the program is stopped.
     let output = count(&program(folder.path(), "0x0", WAITS), "label", &SECONDS);
     assert!(
         output.status.success() && output.stdout.contains(": calls 3\n"),
@@ -154,13 +157,14 @@ fn functions_and_labels_are_counted_and_the_end_is_told() -> anyhow::Result<()> 
 
 #[test]
 fn what_cannot_be_counted_is_said_in_a_line() -> anyhow::Result<()> {
-    // Says why it refuses an empty request and ends itself as failed.
+    // The program reports why it refuses an empty request and ends with failure.
     let measure = toolchain().build("measure", BOARDS[0].target)?;
     let host = Path::new(env!("CARGO_BIN_EXE_host-tests"));
     let folder = tempfile::tempdir()?;
     let [ends, fails, floats] =
         [ENDS, FAILS, NEEDS_FLOATS].map(|last| program(folder.path(), "0x0", last));
     let elsewhere = program(folder.path(), "0x8000000", ENDS);
+
     for (elf, function, reason, code) in [
         (
             Path::new("/nowhere/to/be/found.elf"),
@@ -224,5 +228,6 @@ fn what_cannot_be_counted_is_said_in_a_line() -> anyhow::Result<()> {
             "{reason}: {output:?}"
         );
     }
+
     Ok(())
 }

@@ -1,5 +1,5 @@
-//! The same bits from the host and from the boards, from optimised and unoptimised code, after every single step; on more cores,
-//! the golden bits, test `cores`.
+//! Bit-identical results of the host and the boards, of optimised and unoptimised code, after every
+//! single step. The test `cores` compares the golden bits on more cores.
 
 use std::io::Write;
 use std::process::{Command, Stdio};
@@ -13,16 +13,16 @@ use host_tests::commands::report::accuracy::{SCENES, Scene, request};
 use host_tests::emulator::toolchain;
 use rayon::prelude::*;
 
-/// Steps compared; on the Cortex-M0+, which has no long products, fewer.
+/// The number of compared steps. It is smaller on the Cortex-M0+, which has no long products.
 const STEPS: [u32; 2] = [1_000_000, 100_000];
-/// Unoptimised code is slow.
+/// The number of steps of unoptimised code, which is slow.
 const STEPS_UNOPTIMISED: u32 = 10_000;
 /// Steps a second.
 const RATE: u32 = 256;
 /// A regular and a chaotic motion.
 const MOTIONS: [&Scene; 2] = [&SCENES[0], &SCENES[1]];
 
-/// Whose CRC is over all that is carried from step to step, after each of the first steps.
+/// Returns a request whose CRC covers the whole state after each of the first steps.
 fn every_state(method: Method, scene: &Scene, steps: u32) -> Request {
     Request {
         samples: steps,
@@ -48,7 +48,8 @@ fn host_and_targets_agree_after_every_one_of_a_million_steps() -> Result<()> {
         .try_for_each(|(target, (scene, method))| {
             let steps = STEPS[usize::from(target.board.core() == Core::M0Plus)];
             let request = every_state(method, scene, steps);
-            let (host, (crc, _)) = (request.crc()?, target.run(&request)?);
+            let host = request.crc()?;
+            let (crc, _) = target.run(&request)?;
             assert_eq!(
                 crc, host,
                 "{method}, {} on {}",
@@ -58,7 +59,7 @@ fn host_and_targets_agree_after_every_one_of_a_million_steps() -> Result<()> {
         })
 }
 
-/// The kernel's own code, and what it is compiled with, unoptimised: overflow checks and all.
+/// The kernel and its dependencies are compiled without optimisation and with overflow checks.
 #[test]
 fn unoptimised_code_computes_the_same_bits() {
     let requests: Vec<Request> = Method::ALL
@@ -74,12 +75,14 @@ fn unoptimised_code_computes_the_same_bits() {
         "--example",
         "crc",
     ]);
+
     for package in ["double-pendulum-kernel", "firmware", "libm"] {
         cargo.args([
             "--config",
             &format!("profile.dev.package.{package}.opt-level=0"),
         ]);
     }
+
     let mut child = cargo
         .stdin(Stdio::piped())
         .stdout(Stdio::piped())
@@ -101,9 +104,10 @@ fn unoptimised_code_computes_the_same_bits() {
     }
 }
 
-/// Rows of the table of timings: what rounds once where the kernel rounds twice.
+/// The rows of the timing table for instructions that round once where the kernel rounds twice.
 const CONTRACTED: [&str; 4] = ["vmla, vmls", "vnmla, vnmls", "vfma, vfms", "vfnma, vfnms"];
-/// So many has the kernel at least, or the search would not see its code.
+/// The rows for the separate instructions. The kernel must contain them; otherwise the search does
+/// not see its code.
 const SEPARATE: [&str; 2] = ["vmul, vnmul", "vadd, vsub"];
 
 #[test]

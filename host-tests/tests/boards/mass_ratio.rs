@@ -1,5 +1,5 @@
-//! The largest mass ratio that keys reach, on the emulated board that is slowest at it: up is pressed
-//! until nothing changes any more.
+//! The largest mass ratio that the keys reach, on the emulated board that is slowest with it. Up is
+//! pressed until nothing changes any more.
 
 use firmware::config::{MASS_RATIOS, TICK_RATE};
 use firmware::protocol::{Answer, Command, PlayState};
@@ -10,11 +10,12 @@ use host_tests::emulator::qemu::Machine;
 
 use crate::support::on;
 
-/// The time for which each scene is followed, ticks. With steps that do not resolve the motion it left
-/// the finite numbers after 2.6 s, and `figure-7` after 1 s.
+/// The time for which each scene is followed, ticks. With steps that do not resolve the motion, it
+/// diverged after 2.6 s, and `figure-7` after 1 s.
 const FOLLOWED: u64 = 4 * TICK_RATE as u64;
 
-/// The largest relative energy error of a frame; 1 % shows after some seconds.
+/// The largest relative energy error of a frame. An error of 1 % becomes visible after some
+/// seconds.
 const ENERGY: f32 = 1e-3;
 
 #[test]
@@ -22,6 +23,7 @@ fn up_held_down_shows_the_hosts_motion_at_mass_ratio_100() -> anyhow::Result<()>
     let board = &LM3S6965EVB;
     let mut machine = on(board, Machine::start)?;
     machine.next_frame()?;
+
     for name in [SceneName::Page, SceneName::Figure7] {
         let mut settings = name.first_settings();
         machine.send(1, Command::Choose(name))?;
@@ -53,6 +55,7 @@ fn up_held_down_shows_the_hosts_motion_at_mass_ratio_100() -> anyhow::Result<()>
             }
         }
     }
+
     let bad: Vec<_> = machine
         .lines()
         .into_iter()

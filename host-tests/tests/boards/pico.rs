@@ -1,4 +1,5 @@
-//! The file that `cargo pico` makes, in an emulated Raspberry Pi Pico with a panel, buttons, a USB host and a serial adapter.
+//! The file that `cargo pico` makes, in an emulated Raspberry Pi Pico with a panel, buttons, a USB
+//! host and a serial adapter.
 
 use std::time::Duration;
 
@@ -24,18 +25,18 @@ use host_tests::emulator::pico::PicoMachine;
 use host_tests::emulator::toolchain;
 use host_tests::link::{BAUD_OF_BOOT_LOADER, Restarts};
 
-/// Long enough for the panel to take a whole picture.
+/// A time in which the panel receives a whole picture.
 const PICTURE: Duration = Duration::from_millis(50);
-/// Processor cycles for finding out what changes on the panel and for handing a frame over: 1.6 ms. It takes 1.3; to wait for the
-/// UART would take 0.9 more.
+/// The processor cycles to find the changes on the panel and to hand over a frame: 1.6 ms. It takes
+/// 1.3 ms; waiting for the UART would take 0.9 ms more.
 const SHOWING: u32 = 200_000;
 const TICK: Duration = Duration::from_nanos(1_000_000_000 / TICK_RATE as u64);
 
-/// A restart takes this long at most: the watchdog's time, and that in which the host finds the
-/// board again.
+/// The longest time of a restart: that of the watchdog, and that in which the host finds the board
+/// again.
 const RESTART: Duration = Duration::from_millis(2000 * WATCHDOG_SECONDS as u64 + 400);
 
-/// A board to which the host has just opened its port.
+/// Returns a board to which the host has just opened its port.
 fn board() -> anyhow::Result<PicoMachine> {
     let mut board = switched_on()?;
     board.next_frame()?;
@@ -47,7 +48,7 @@ fn switched_on() -> anyhow::Result<PicoMachine> {
     PicoMachine::start(&emulator, &application(&PICO), LIMIT)
 }
 
-/// A motion with a sample after each of its steps.
+/// Returns a request for a motion with a sample after each of its steps.
 fn request(method: Method, samples: u32) -> Request {
     Request {
         angles: [0.5; 2],
@@ -61,7 +62,8 @@ fn request(method: Method, samples: u32) -> Request {
 fn the_file_is_for_the_chips_flash_and_its_boot_rom() -> anyhow::Result<()> {
     let (start, image) = flash_image(&std::fs::read(application(&PICO))?)?;
     assert_eq!(start, 0x1000_0000);
-    // The ROM starts nothing that lacks this sum.
+
+    // The ROM does not start a program without this checksum.
     let (boot, sum) = image[..256].split_at(252);
     let bit = |crc: u32, _| crc << 1 ^ if crc >> 31 == 0 { 0 } else { 0x04c1_1db7 };
     let crc = boot.iter().fold(u32::MAX, |crc, byte| {
@@ -78,9 +80,11 @@ fn usb_and_uart_carry_the_hosts_bits_and_every_command() -> anyhow::Result<()> {
     let mut board = switched_on()?;
     let mut show = show(&PICO, SceneName::Page);
     let mut sent = vec![board.next_frame()?];
-    // Those before nobody heard: the host takes its time to find the board.
+
+    // The earlier frames were not received, because the host needs time to find the board.
     let first = sent[0].sequence;
     assert!((6..12).contains(&first), "{first}");
+
     for sequence in first + 1..first + FRAMES {
         let frame = board.next_frame()?;
         assert_eq!(
@@ -90,6 +94,7 @@ fn usb_and_uart_carry_the_hosts_bits_and_every_command() -> anyhow::Result<()> {
         assert_eq!(frame, show.expected(&frame));
         sent.push(frame);
     }
+
     board.run(TICK / 4)?;
     let through_uart: Vec<Frame> = board
         .heard_by_uart()
@@ -98,13 +103,15 @@ fn usb_and_uart_carry_the_hosts_bits_and_every_command() -> anyhow::Result<()> {
         .skip(first as usize)
         .collect();
     assert_eq!(through_uart, sent);
+
     // No frame waits for the UART.
     let showing = sent
         .windows(2)
         .map(|frames| frames[1].busy_cycles - frames[0].scene_cycles)
         .max();
     assert!(showing < Some(SHOWING), "{showing:?}");
-    // By its crystal and PLL.
+
+    // The clock is derived from the crystal by the PLL.
     assert!(
         board
             .lines()
@@ -112,7 +119,7 @@ fn usb_and_uart_carry_the_hosts_bits_and_every_command() -> anyhow::Result<()> {
             .any(|line| line.text == "boot: pico, 125000000 Hz")
     );
 
-    // Which board and which program it is.
+    // The identity of the board and of its program.
     let (_, image) = flash_image(&std::fs::read(application(&PICO))?)?;
     board.send(1, Command::Identify)?;
     let [(1, Answer::Identity(identity))] = answers(board.run(4 * TICK)?)[..] else {
@@ -126,7 +133,7 @@ fn usb_and_uart_carry_the_hosts_bits_and_every_command() -> anyhow::Result<()> {
     assert_eq!(identity.image, CRC.checksum(program));
     assert!(image.len() - 256 - program.len() < 256, "nearly all of it");
 
-    // Samples that are made faster than the UART sends them arrive whole.
+    // Samples that are computed faster than the UART sends them arrive completely.
     board.heard_by_uart();
     board.send(1, Command::Simulate(request(Method::Rk4Fixed32, SAMPLES)))?;
     board.run(60 * TICK)?;
@@ -138,7 +145,7 @@ fn usb_and_uart_carry_the_hosts_bits_and_every_command() -> anyhow::Result<()> {
         });
     assert!(indices.eq(0..=SAMPLES));
 
-    // Commands are taken from either side, and both hear both answers.
+    // Commands are accepted from both links, and both receive both answers.
     board.send(1, Command::Choose(SceneName::Butterfly))?;
     let mut messages = board.run(4 * TICK)?;
     board.send_through_uart(
@@ -155,7 +162,8 @@ fn usb_and_uart_carry_the_hosts_bits_and_every_command() -> anyhow::Result<()> {
     let frame = board.next_frame()?;
     assert_eq!((frame.scene, frame.mass_ratio), (SceneName::Butterfly, 2.5));
 
-    // A flood over USB, more than it takes in many ticks, in which its queue is full, loses nothing: the host waits.
+    // A flood over USB, more than the board reads in many ticks, fills its queue. Nothing is lost,
+    // because the host waits.
     let mut flood = vec![1; 5 * RECEIVE_QUEUE];
     for request in 0..100 {
         flood.extend_from_slice(encode_command(request, Command::Ask, &mut [0; MAX_WIRE]));
@@ -180,7 +188,7 @@ fn answers(messages: Vec<ToHost>) -> Vec<(u16, Answer)> {
     messages.into_iter().filter_map(ToHost::answer).collect()
 }
 
-/// The cycles of the motion's next steps, in flash or in memory.
+/// Returns the cycles of the motion's next steps, in flash or in memory.
 fn measured(board: &mut PicoMachine, in_ram: bool) -> anyhow::Result<u32> {
     board.send(
         2,
@@ -195,8 +203,9 @@ fn measured(board: &mut PicoMachine, in_ram: bool) -> anyhow::Result<u32> {
     }
 }
 
-/// The emulator counts cycles by itself: a second opinion on the prices of `cargo count`, which QEMU's instructions are given. In it
-/// neither flash nor memory waits, so both take the same; where the copy in memory is spoilt, only what runs there is.
+/// The emulator counts cycles on its own, which verifies the prices of `cargo count` independently
+/// of QEMU. Its flash and memory have no wait states, so both take the same time. If the copy in
+/// memory is damaged, only the steps that run there are affected.
 #[test]
 fn the_emulator_counts_the_cycles_that_are_estimated_in_flash_and_in_memory() -> anyhow::Result<()>
 {
@@ -211,6 +220,7 @@ fn the_emulator_counts_the_cycles_that_are_estimated_in_flash_and_in_memory() ->
         .find(|board| board.core() == Core::M0Plus)
         .expect("QEMU's");
     let target = Target::build(&toolchain::ready()?, emulated)?;
+
     for method in [single, fixed64, Method::Rk4Fixed32] {
         board.send(1, Command::Simulate(request(method, 0)))?;
         board.run(4 * TICK)?;
@@ -230,12 +240,14 @@ fn the_emulator_counts_the_cycles_that_are_estimated_in_flash_and_in_memory() ->
             "{method}: {counted} counted, {estimated} estimated"
         );
     }
+
     let steps = Code::read(&application(&PICO)).expect("the program");
     let entry = steps
         .functions_named(|name| name.contains("OnBoards as firmware::job::run::Run>::advance"))
         .next();
     let entry = entry.expect("the entry");
-    let (flash, ram) = (measured(&mut board, false)?, measured(&mut board, true)?);
+    let flash = measured(&mut board, false)?;
+    let ram = measured(&mut board, true)?;
     assert!(
         flash > 1000 * MOST_MEASURED_STEPS && flash.abs_diff(ram) < flash / 10,
         "{flash} and {ram} cycles"
@@ -249,7 +261,7 @@ fn the_emulator_counts_the_cycles_that_are_estimated_in_flash_and_in_memory() ->
     Ok(())
 }
 
-/// The board stands still, so that the panel has time to take all of a picture.
+/// Pauses the board, so that the panel has time to receive a whole picture.
 fn stand_still(board: &mut PicoMachine) -> anyhow::Result<Frame> {
     board.send(9, Command::Pause(true))?;
     board.run(PICTURE)?;
@@ -277,10 +289,11 @@ fn the_panel_shows_the_hosts_picture_whichever_it_is_and_however_often_it_is_pul
         "panel: ssd1306, by reading its memory back, status ",
         "panel: sh1106, by reading its memory back, status ",
     ];
+
     for (name, panel, found) in [
         (SceneName::Page, "ssd1306 6", ssd1306),
         (SceneName::Figure7, "none", ""),
-        // Its status is that of the other.
+        // Its status byte is the one of the other controller.
         (SceneName::Butterfly, "sh1106 6", sh1106),
         // Its power fails for a moment.
         (SceneName::Flips, "sh1106 8", sh1106),
@@ -289,7 +302,8 @@ fn the_panel_shows_the_hosts_picture_whichever_it_is_and_however_often_it_is_pul
         board.send(1, Command::Choose(name))?;
         board.send(2, Command::Pause(false))?;
         board.tell(&format!("plug {panel}"))?;
-        // A new one is looked for within a second, and has what was lost in one more.
+
+        // A new panel is found within a second, and receives the missing data in one more.
         board.run(if panel == "none" {
             4 * PICTURE
         } else {
@@ -313,7 +327,8 @@ fn the_panel_shows_the_hosts_picture_whichever_it_is_and_however_often_it_is_pul
         (0..frame.report.step).for_each(|_| show.tick());
         let mut canvas = show.frame();
         firmware::graphics::text::pause_mark(&mut canvas);
-        let (shown, picture) = (board.tell("panel")?, Bitmap::from(&canvas));
+        let shown = board.tell("panel")?;
+        let picture = Bitmap::from(&canvas);
         let expected = if panel == "none" {
             &[]
         } else {
@@ -326,6 +341,7 @@ fn the_panel_shows_the_hosts_picture_whichever_it_is_and_however_often_it_is_pul
             board.screenshot()?
         );
     }
+
     Ok(())
 }
 
@@ -338,7 +354,7 @@ fn panel_report(board: &mut PicoMachine) -> anyhow::Result<PanelReport> {
     }
 }
 
-/// The scene that changes most, at the usual speed of the bus and at the worst.
+/// The scene with the most changes, at the usual speed of the bus and at the lowest.
 #[test]
 fn every_frame_reaches_a_panel_on_a_slow_bus() -> anyhow::Result<()> {
     for nanos in [26_000, 34_000] {
@@ -346,7 +362,8 @@ fn every_frame_reaches_a_panel_on_a_slow_bus() -> anyhow::Result<()> {
         board.tell(&format!("bus {nanos}"))?;
         board.run(PICTURE)?;
         board.send(1, Command::Choose(SceneName::SmallHeavy))?;
-        // In the first second the panel is identified. Then planning makes frames late.
+
+        // In the first second the panel is identified. Then planning delays frames.
         board.run(TICK * TICK_RATE)?;
         for _ in 0..4 {
             board.run(TICK * (TICK_RATE - 4))?;
@@ -372,7 +389,7 @@ fn chosen_controller_outlasts_a_restart() -> anyhow::Result<()> {
     };
     assert!(is_driven(panel_report(&mut board)?));
 
-    // By the watchdog, and from outside.
+    // The restarts are by the watchdog and from outside.
     board.tell("hang")?;
     board.run(Duration::from_secs(u64::from(WATCHDOG_SECONDS) * 2) + 8 * PICTURE)?;
     assert!(is_driven(panel_report(&mut board)?));
@@ -404,6 +421,7 @@ fn every_button_does_its_own() -> anyhow::Result<()> {
         (Key::Down, Command::Lighter),
         (Key::Left, Command::TurnLeft),
     ];
+
     for (key, command) in [up, up, left, right, right, down] {
         board.set_key(key, true)?;
         board.run(6 * TICK)?;
@@ -418,6 +436,7 @@ fn every_button_does_its_own() -> anyhow::Result<()> {
             key.name()
         );
     }
+
     board.set_key(Key::Select, true)?;
     board.run(TICK * (u32::from(HOLD_TICKS) + 6))?;
     assert_eq!(board.next_frame()?.scene, SceneName::Page.next());
@@ -457,7 +476,9 @@ fn the_watchdog_restarts_the_board_in_its_scene() -> anyhow::Result<()> {
         (u64::from(frame.sequence) + 1, 0),
         "from its start, and all frames since"
     );
-    // A reset from outside starts afresh: it is not for the watchdog's that was before, nor for the one by which the boot ROM does it.
+
+    // After a reset from outside the board starts from its defaults. It must not be mistaken for
+    // the watchdog's earlier reset, nor for the one by which the boot ROM starts the program.
     for after_download in [false, true, false] {
         board.tell(&format!("reset {}", u8::from(after_download)))?;
         let messages = board.run(8 * PICTURE)?;
@@ -470,10 +491,11 @@ fn the_watchdog_restarts_the_board_in_its_scene() -> anyhow::Result<()> {
         board.run(4 * TICK)?;
         assert_eq!(last_restart(&mut board)?, None, "{after_download}");
     }
+
     Ok(())
 }
 
-/// The answer over USB to the question about restarts.
+/// Returns the answer over USB to the question about restarts.
 fn last_restart(board: &mut PicoMachine) -> anyhow::Result<Option<Restarted>> {
     board.send(4, Command::AskRestart)?;
     match answers(board.run(4 * TICK)?)[..] {
@@ -482,15 +504,17 @@ fn last_restart(board: &mut PicoMachine) -> anyhow::Result<Option<Restarted>> {
     }
 }
 
-/// By a fault the processor alone is reset, by a hang the whole chip. Either way the connection is
-/// gone and the message about the restart with it, but whoever opens the port is told.
+/// A fault resets only the processor, a hang the whole chip. Both end the connection, and the
+/// message about the restart is lost. A host that opens the port later still learns the reason.
 #[test]
 fn a_host_that_opens_the_port_late_learns_of_a_crash_and_of_a_hang() -> anyhow::Result<()> {
-    let (mut board, mut restarts) = (board()?, Restarts::default());
+    let mut board = board()?;
+    let mut restarts = Restarts::default();
     let mut told = |end| restarts.take(&ToHost::Answer(4, Answer::Restart(end)), false);
     assert_eq!(told(last_restart(&mut board)?), None);
     board.send(1, Command::Choose(SceneName::Butterfly))?;
     board.run(10 * TICK)?;
+
     for (number, (end, cause)) in (1..).zip([("fault", Cause::Fault), ("hang", Cause::Hang)]) {
         let before = board.next_frame()?;
         board.set_port(0)?;
@@ -505,18 +529,20 @@ fn a_host_that_opens_the_port_late_learns_of_a_crash_and_of_a_hang() -> anyhow::
         assert_eq!((restarted.cause, restarted.restarts), (Some(cause), number));
         assert_eq!(restarted.scene, SceneName::Butterfly);
         assert!(restarted.step > before.report.step, "{end}");
-        // The chip's watchdog has no interrupt, so nothing notes where a program hangs.
+
+        // The chip's watchdog has no interrupt, so the place of a hang is unknown.
         let is_place_known = restarted.pc > 0x1000_0000;
         assert_eq!(is_place_known, cause == Cause::Fault, "{restarted:?}");
         let line = told(Some(restarted)).expect("it is new");
         let place = format!("after a {} in scene butterfly, step", cause.name());
         assert!(line.contains(&place), "{line}");
     }
+
     Ok(())
 }
 
-/// The host has the port open all the time: it must see the board go, or it would go on talking to
-/// an address that the board has forgotten.
+/// The host keeps the port open. It must notice that the board disconnects; otherwise it continues
+/// to use an address that the board has forgotten.
 #[test]
 fn every_restart_disconnects_the_board() -> anyhow::Result<()> {
     for end in ["fault", "hang", "reset 0", "reset 1"] {
@@ -534,8 +560,8 @@ fn every_restart_disconnects_the_board() -> anyhow::Result<()> {
     Ok(())
 }
 
-/// The libraries leave the first packet of a transfer that is too long for them where it is, and
-/// the controller's interrupt is one of level.
+/// The libraries do not read the first packet of a transfer that is too long for them, and the
+/// controller's interrupt is level-triggered.
 #[test]
 fn a_broken_off_control_transfer_does_not_stop_the_board() -> anyhow::Result<()> {
     let mut board = board()?;
@@ -548,7 +574,8 @@ fn a_broken_off_control_transfer_does_not_stop_the_board() -> anyhow::Result<()>
     assert!(frames.abs_diff(TICK_RATE) < 4, "{frames}");
     let counts = board.counts()[0];
     assert_eq!((counts.damaged, counts.lost, counts.restarts), (0, 0, 0));
-    // The next request puts it right.
+
+    // The next request restores the transfer.
     board.set_port(0)?;
     assert!(board.run(10 * TICK)?.len() < 3);
     board.set_port(BAUD)?;

@@ -8,9 +8,10 @@ use firmware::scenes::SceneName;
 use host_tests::emulator::boards::{BOARDS, Board};
 use host_tests::emulator::qemu::Machine;
 
-/// Frames until the firmware has noticed that a button is released, however late the host's word reaches it.
+/// The number of frames in which the firmware notices that a button is released, even if the host
+/// is slow.
 const SETTLING: usize = 60;
-/// Frames by which a press must have shown.
+/// The number of frames in which a press must have an effect.
 const PATIENCE: usize = 2000;
 
 #[test]
@@ -37,6 +38,7 @@ fn choose_and_restart(board: &Board) -> anyhow::Result<()> {
             .expect("one of them")
     };
     let degrees = |frame: &Frame| frame.start_angle.to_degrees().round();
+
     for (key, ratios, turn) in [
         (Key::Up, 1, 0.0),
         (Key::Down, -1, 0.0),
@@ -60,13 +62,15 @@ fn choose_and_restart(board: &Board) -> anyhow::Result<()> {
             "{key:?}: both rods near the start angle"
         );
     }
-    // Held, it is for the next scene.
+
+    // If select is held, it chooses the next scene.
     let (_, after) = press(&mut machine, Key::Select)?;
     assert_eq!(after.scene, SceneName::Page.next(), "{}", board.name);
     Ok(())
 }
 
-/// Holds a button until a motion starts, and lets go: the frames before and after that.
+/// Holds a button until a motion starts, and releases it. Returns the frames before and after the
+/// start.
 fn press(machine: &mut Machine, key: Key) -> anyhow::Result<(Frame, Frame)> {
     let mut before = settle(machine)?;
     machine.set_key(key, true)?;
@@ -85,7 +89,7 @@ fn press(machine: &mut Machine, key: Key) -> anyhow::Result<(Frame, Frame)> {
     panic!("{key:?} had no effect")
 }
 
-/// Lets go by what is under way; the last frame of it, since which nothing has restarted for a while.
+/// Waits until nothing has restarted for a while and returns the last frame.
 fn settle(machine: &mut Machine) -> anyhow::Result<Frame> {
     let mut last = machine.next_frame()?;
     let mut quiet = 0;

@@ -1,10 +1,10 @@
-//! Registers of the emulated LM3S6965, which says that it is of revision A2.
+//! Registers of the emulated LM3S6965, which reports revision A2.
 
 use crate::support::{address, application, on};
 use host_tests::emulator::boards::BOARDS;
 use host_tests::emulator::qemu::Machine;
 
-/// The regulator's control, and its value for 2.75 V.
+/// The register of the voltage regulator, and its value for 2.75 V.
 const LDOPCTL: u32 = 0x400f_e034;
 const LDO_2_75_V: u8 = 0x1b;
 

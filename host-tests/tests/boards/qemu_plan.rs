@@ -1,5 +1,5 @@
-//! The plan on the emulated boards: found in the very tick, and followed from the very tick, that the host says, without
-//! delaying a frame; answered and logged.
+//! The plan on the emulated boards: it is found and followed in exactly the same ticks as on the
+//! host, without delaying a frame. It is reported in answers and in the log.
 
 use crate::support::{on, show};
 use double_pendulum::Method;
@@ -12,14 +12,15 @@ use host_tests::emulator::boards::{BOARDS, Board};
 use host_tests::emulator::qemu::Machine;
 use rayon::prelude::*;
 
-/// One that changes its method soon, nothing that moves; a motion that ends early, a model.
+/// A scene that soon changes its method, one in which nothing moves, a motion that ends early, and
+/// a model.
 const SCENES: [SceneName; 4] = [
     SceneName::Beats2To1,
     SceneName::Frequencies,
     SceneName::Page,
     SceneName::SmallLight,
 ];
-/// By then all is found, ticks.
+/// The number of ticks by which all plans are found.
 const FOLLOWED: u64 = 18 * TICK_RATE as u64;
 
 #[test]
@@ -49,7 +50,7 @@ fn every_board_plans(scenes: &[SceneName]) -> anyhow::Result<()> {
     })
 }
 
-/// Frame by frame as the host shows it, then the answer and the log.
+/// Follows a scene frame by frame as the host shows it, then checks the answer and the log.
 fn followed(machine: &mut Machine, board: &Board, name: SceneName) -> anyhow::Result<()> {
     let mut show = show(board, name);
     loop {
@@ -66,6 +67,7 @@ fn followed(machine: &mut Machine, board: &Board, name: SceneName) -> anyhow::Re
             break;
         }
     }
+
     let changes = show
         .news
         .iter()
@@ -106,7 +108,8 @@ fn followed(machine: &mut Machine, board: &Board, name: SceneName) -> anyhow::Re
         board.name,
         name.name()
     );
-    // What is said at the start may have come before the first frame of it.
+
+    // The lines at the start may have arrived before the first frame of the scene.
     assert!(
         logged("plan: ") == 1 && (changes..=1 + changes).contains(&logged("shown: ")),
         "{lines:#?}"

@@ -1,7 +1,7 @@
-//! Things that go wrong in the running application: what is said of them, and how the board comes back.
+//! Faults in the running application: their reports, and the restart of the board.
 //!
-//! All but the panic are injected into the images that are flashed, from outside: a debugger stops the board in the middle of a frame
-//! that is drawn but not yet sent, and sends its processor elsewhere.
+//! All faults except the panic are injected into the images that are flashed. A debugger stops the
+//! board in the middle of a frame that is drawn but not yet sent, and diverts its processor.
 
 use std::path::PathBuf;
 use std::time::Duration;
@@ -14,23 +14,25 @@ use firmware::scenes::SceneName;
 use host_tests::emulator::boards::{BOARDS, Board, STM32F405};
 use host_tests::emulator::qemu::{Machine, Register, Settings};
 
-/// The lowest addresses of the stack, where it never reaches.
+/// An address at the low end of the stack, which is never used.
 const UNUSED: u32 = 0x2000_8000;
-/// Two instructions: `b .`, an endless loop, and `udf #0`, which is none.
+/// Two instructions: `b .`, an endless loop, and `udf #0`, which is undefined.
 const HANG: [u8; 2] = [0xfe, 0xe7];
 const UNDEFINED: [u8; 2] = [0x00, 0xde];
-/// Frames of the scene that are waited for.
+/// The number of frames of the scene to wait for.
 const FRAMES: usize = 20;
-/// The stopwatch is read when a frame is begun, when it is drawn, and when it is sent.
+/// The function that reads the cycle counter. It is called at the beginning of a frame, after
+/// drawing, and after sending.
 const STOPWATCH: &str = "clock::cycles";
-/// The mass ratio that the tests set, unlike any scene's own.
+/// The mass ratio that the tests set; no scene has it at the start.
 const MASS_RATIO: f32 = 0.7;
 
-/// A board that nothing restarts is given up after this long, by the host's clock: many times what a restart takes.
+/// The time limit of a restart by the host's clock: many times its usual duration.
 const PATIENCE: Duration = Duration::from_secs(120);
 
-/// A board, with a debugger that takes its log or without, that stands still in the middle of a frame of `scene`, with a mass ratio of
-/// its own: its program, and the last frame it has sent.
+/// Returns the program of a board, the board, and its last sent frame. The board is stopped in the
+/// middle of a frame of `scene` with the tests' mass ratio. It has a debugger that takes its log,
+/// or none.
 fn within(
     board: &Board,
     scene: SceneName,
@@ -44,7 +46,8 @@ fn within(
             ..*settings
         })
     })?;
-    // A serial port that is not yet on takes no bytes.
+
+    // A serial port that is not yet enabled receives no bytes.
     let stopwatch = address(&elf, STOPWATCH);
     probe.run_to(stopwatch)?;
     probe.send(1, Command::Choose(scene))?;
@@ -55,7 +58,8 @@ fn within(
             value: MASS_RATIO.into(),
         },
     )?;
-    // To stop rarely is quicker: QEMU then forgets what it has translated.
+
+    // Rare stops are faster, because QEMU discards its translated code at each stop.
     let is_it = |frame: &Frame| frame.scene == scene && frame.mass_ratio == MASS_RATIO;
     let machine = probe.run()?;
     let mut seen = 0;
@@ -64,11 +68,14 @@ fn within(
     }
     probe.stop()?;
     probe.messages()?;
+
     loop {
         probe.run_to(stopwatch)?;
         if let Some(frame) = probe.messages()?.into_iter().rev().find_map(ToHost::frame) {
             assert!(is_it(&frame), "{frame:?}");
-            // This reading was for the end of the frame; the next is for the beginning, then the frame is drawn.
+
+            // This reading was at the end of the frame. The next is at the beginning, and the one
+            // after it follows the drawing.
             probe.run_to(stopwatch)?;
             probe.run_to(stopwatch)?;
             return Ok((elf, probe, frame));
@@ -76,23 +83,23 @@ fn within(
     }
 }
 
-/// Puts an instruction where it disturbs nothing, and the processor there.
+/// Writes an instruction to the unused address and makes the processor continue there.
 fn execute(probe: &mut Machine, instruction: [u8; 2]) -> anyhow::Result<()> {
     probe.write(UNUSED, &instruction)?;
     probe.divert(&[(Register::Pc, UNUSED)])
 }
 
-/// The boards whose watchdog is emulated.
+/// Returns the boards whose watchdog is emulated.
 fn watched() -> impl Iterator<Item = &'static Board> {
     BOARDS.iter().filter(|board| **board != STM32F405)
 }
 
-/// Where a report says that the board was.
+/// Returns the place in a crash report of this frame.
 fn place(frame: &Frame) -> String {
     format!("scene {}, step {}\n", frame.scene.name(), frame.report.step)
 }
 
-/// Holds that a board has said all `parts`.
+/// Checks that the output of a board contains all `parts`.
 fn assert_said(board: &Board, said: &str, parts: &[&str]) {
     for part in parts {
         assert!(
@@ -103,7 +110,8 @@ fn assert_said(board: &Board, said: &str, parts: &[&str]) {
     }
 }
 
-/// The last words of a machine that ends as a failure, which hold all `parts`.
+/// Returns the last output of a machine that ends with a failure, and checks that it contains all
+/// `parts`.
 fn last_words(board: &Board, machine: &mut Machine, parts: &[&str]) -> anyhow::Result<String> {
     let mut report = String::new();
     let status = machine.wait(|line| report += &format!("{line}\n"))?;
@@ -161,7 +169,7 @@ fn a_stack_that_overflows_in_a_picture_meets_the_guard_and_changes_nothing_below
     Ok(())
 }
 
-/// The name of the function at the address that the report gives after `what`.
+/// Returns the name of the function at the address that follows `what` in the report.
 fn function_after(what: &str, report: &str, image: &Image) -> String {
     let digits = report
         .split_once(what)
@@ -200,6 +208,7 @@ fn a_panic_tells_where_and_why_and_ends_the_run_as_a_failure() -> anyhow::Result
             );
         }
     }
+
     Ok(())
 }
 
@@ -264,6 +273,7 @@ fn a_board_that_hangs_comes_back_where_it_was_and_says_why() -> anyhow::Result<(
             ],
         );
     }
+
     Ok(())
 }
 
@@ -272,18 +282,21 @@ fn without_a_debugger_a_fault_restarts_the_board() -> anyhow::Result<()> {
     for board in watched() {
         let (elf, mut probe, before) = within(board, SceneName::Figure7, false)?;
         for restarts in 1..=MOST_RESTARTS + 1 {
-            // As where the program ends while it writes the first copy.
+            // This is the state if the program ends while it writes the first copy.
             probe.write(address(&elf, "retained::KEPT") + 8, &[0; 8])?;
             execute(&mut probe, UNDEFINED)?;
-            // This one comes while the scene is started, after the first scene was.
+
+            // This crash happens while the scene is started, after the first scene was started.
             if restarts == 2 {
-                probe.run_to(address(&elf, "Player::play"))?;
-                probe.run_to(address(&elf, "Player::play"))?;
+                probe.run_to(address(&elf, "Player::play_by"))?;
+                probe.run_to(address(&elf, "Player::play_by"))?;
                 continue;
             }
-            // To the first frame after the restart.
+
+            // Run to the first frame after the restart.
             let stopwatch = address(&elf, STOPWATCH);
-            let (mut restarted, mut frame) = (None, None);
+            let mut restarted = None;
+            let mut frame = None;
             while frame.is_none() {
                 probe.run_to(stopwatch)?;
                 for message in probe.messages()? {
@@ -301,7 +314,8 @@ fn without_a_debugger_a_fault_restarts_the_board() -> anyhow::Result<()> {
                 board.name
             );
             assert_eq!(restarted.scene, before.scene, "{}", board.name);
-            // What ends the board each time is given up.
+
+            // A scene that ends the board every time is abandoned.
             let scene = if restarts <= MOST_RESTARTS {
                 SceneName::Figure7
             } else {
@@ -315,10 +329,12 @@ fn without_a_debugger_a_fault_restarts_the_board() -> anyhow::Result<()> {
             );
         }
     }
+
     Ok(())
 }
 
-/// The watchdog's call that cannot be masked comes in the middle of a report that takes long: the fault stays the reason.
+/// The watchdog's non-maskable interrupt arrives in the middle of a long report. The fault remains
+/// the reported reason.
 #[test]
 fn a_report_that_takes_long_is_no_hang() -> anyhow::Result<()> {
     for board in watched() {

@@ -1,4 +1,5 @@
-//! The image that is flashed runs in the emulator as well, where it finds neither clock control nor panel nor button.
+//! The image that is flashed also runs in the emulator, which has no clock control, no panel and no
+//! button.
 
 use crate::support::{address, application, on};
 use firmware::config::MOST_MEASURED_STEPS;
@@ -11,14 +12,17 @@ use host_tests::emulator::qemu::Machine;
 fn it_starts_from_anywhere_goes_on_without_a_panel_and_steps_in_flash_and_in_memory()
 -> anyhow::Result<()> {
     const VTOR: u32 = 0xe000_ed08;
-    /// Long enough for the panel to be looked for again, several times.
+    /// This is long enough for several searches for the panel.
     const FRAMES: u32 = 300;
-    // The chip's own loader starts the program while its ROM stands at address 0: the processor must be told where the vectors are.
+
+    // The chip's own loader starts the program while the ROM is at address 0, so the program must
+    // set the address of the vectors.
     let mut probe = on(&STM32F405, Machine::halted)?;
     assert_eq!(probe.read(VTOR..VTOR + 4)?, [0; 4]);
     probe.run_to(address(&application(&STM32F405), "clock::cycles"))?;
     assert_eq!(probe.read(VTOR..VTOR + 4)?, 0x0800_0000_u32.to_le_bytes());
     let machine = probe.run()?;
+
     for sequence in 0..FRAMES {
         let frame = machine.next_frame()?;
         assert_eq!(
@@ -32,7 +36,8 @@ fn it_starts_from_anywhere_goes_on_without_a_panel_and_steps_in_flash_and_in_mem
             "a line that reads low for ever presses no button"
         );
     }
-    // The plan's line comes as soon as it is found.
+
+    // The line about the plan is logged as soon as the plan is found.
     let log: Vec<_> = machine
         .lines()
         .into_iter()
@@ -43,7 +48,9 @@ fn it_starts_from_anywhere_goes_on_without_a_panel_and_steps_in_flash_and_in_mem
         log,
         ["boot: stm32f405, 168000000 Hz", "panel: Absent(Other)"]
     );
-    // Every method's from its copy in memory: a branch into nowhere would end the application.
+
+    // Run every method from its copy in memory. A branch to a wrong address would end the
+    // application.
     for (&method, request) in ON_BOARDS.iter().zip(0..) {
         let motion = Request {
             samples: 0,
@@ -59,7 +66,8 @@ fn it_starts_from_anywhere_goes_on_without_a_panel_and_steps_in_flash_and_in_mem
                     in_ram,
                 },
             )?;
-            // QEMU counts none.
+
+            // QEMU does not count cycles.
             let measured = Answer::Measured {
                 steps: MOST_MEASURED_STEPS,
                 cycles: 0,
@@ -67,5 +75,6 @@ fn it_starts_from_anywhere_goes_on_without_a_panel_and_steps_in_flash_and_in_mem
             assert_eq!(machine.next_answer()?, (request, measured));
         }
     }
+
     machine.next_frame().map(drop)
 }

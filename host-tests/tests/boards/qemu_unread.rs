@@ -1,5 +1,6 @@
-//! The host stops reading: the board's motion does not wait for it, and the stream goes on as soon as it reads again. It sends
-//! more than the board reads, or stops the emulator.
+//! The host stops reading: the board's motion does not wait for it, and the stream continues as
+//! soon as the host reads again. The host also sends more than the board reads, or stops the
+//! emulator.
 
 use std::thread::sleep;
 use std::time::{Duration, Instant};
@@ -13,19 +14,21 @@ use nix::sys::signal::{Signal, kill};
 use nix::unistd::Pid;
 use rayon::prelude::*;
 
-/// How often the log is looked at.
+/// The interval between two reads of the log.
 const POLL: Duration = Duration::from_millis(20);
-/// Frames read after the gap.
+/// The number of frames read after the gap.
 const FRAMES: usize = 120;
 
-/// On the one board whose emulated port says that it is full; the others' stand still with the whole machine.
+/// This applies to the one board whose emulated port reports that it is full. The other machines
+/// stop as a whole.
 #[test]
 fn a_host_that_stops_reading_loses_frames_and_nothing_else() -> anyhow::Result<()> {
     let mut machine = on(BOARD, Machine::start)?;
     let first = machine.next_frame()?;
 
     machine.listens = false;
-    let (mut said, since) = (String::new(), Instant::now());
+    let mut said = String::new();
+    let since = Instant::now();
     while !said.contains("serial link") {
         assert!(since.elapsed() < LIMIT, "{said}");
         said += &machine.said();
@@ -34,10 +37,13 @@ fn a_host_that_stops_reading_loses_frames_and_nothing_else() -> anyhow::Result<(
     machine.listens = true;
 
     let mut show = show(BOARD, SceneName::Page);
-    let (mut last, mut after) = (first, 0);
+    let mut last = first;
+    let mut after = 0;
+
     while after < FRAMES {
         let frame = machine.next_frame()?;
         assert_eq!(frame, show.expected(&frame));
+
         // No tick is left out, even if its frame is.
         assert_eq!(
             frame.report.step,
@@ -46,6 +52,7 @@ fn a_host_that_stops_reading_loses_frames_and_nothing_else() -> anyhow::Result<(
         after += usize::from(after > 0 || frame.sequence > last.sequence + 1);
         last = frame;
     }
+
     let counts = machine.counts();
     assert!(counts.lost > 0, "{counts:?}");
     assert!(
@@ -61,10 +68,11 @@ fn a_host_that_stops_reading_loses_frames_and_nothing_else() -> anyhow::Result<(
     Ok(())
 }
 
-/// A host that stops QEMU, or has no time for it, is no fault of the firmware: its clock has not ticked meanwhile.
+/// If the host stops QEMU or has no time for it, the firmware is not at fault: its clock does not
+/// advance meanwhile.
 #[test]
 fn a_board_whose_emulator_pauses_does_not_take_it_for_a_hang() -> anyhow::Result<()> {
-    /// Longer than the watchdog's two stages.
+    /// This is longer than the watchdog's two stages.
     const PAUSE: Duration = Duration::from_millis(2500);
     const FRAMES: usize = 20;
     BOARDS
@@ -98,22 +106,26 @@ fn a_board_whose_emulator_pauses_does_not_take_it_for_a_hang() -> anyhow::Result
         })
 }
 
-/// A host that sends faster than the board reads is told how much it has lost.
+/// A host that sends faster than the board reads receives the number of lost bytes.
 #[test]
 fn received_bytes_that_are_lost_are_counted() -> anyhow::Result<()> {
-    // Broken messages of a byte each, of which a board takes no more than four a tick: many times what its queue holds.
+    // Broken messages of a byte each. A board reads at most four of them in a tick, and they are
+    // many times the size of its queue.
     let flood = [0, 1].repeat(10_000);
     for board in &BOARDS {
         let mut machine = on(board, Machine::start)?;
         assert_eq!(machine.next_frame()?.lost, 0, "{}", board.name);
         machine.send_bytes(&flood)?;
-        // The log comes by another way than the frames, and may be later.
-        let (mut lost, mut log) = (0, String::new());
+
+        // The log uses another channel than the frames and may arrive later.
+        let mut lost = 0;
+        let mut log = String::new();
         while lost == 0 || !log.contains("received bytes lost") {
             lost = machine.next_frame()?.lost;
             log += &machine.said();
         }
         assert!(lost < flood.len() as u32, "{}: {lost}", board.name);
+
         // The log is complete from the start.
         let has_no_guard = log.contains("no memory protection unit: the stack has no guard");
         assert_eq!(has_no_guard, !board.is_guarded(), "{}: {log}", board.name);

@@ -1,9 +1,12 @@
-//! Every board plays every scene as the host does, each frame on time and bit for bit, on the panel too, within its budgets of memory
-//! and time; and a second time with the stack no deeper than an interrupt takes it. Drift, leaks or a count that runs over show.
+//! Every board plays every scene like the host. Each frame is on time and bit-identical, on the
+//! panel too, and within the board's budgets of memory and time. The scenes are played twice: in
+//! the second round the stack may be deeper only by one interrupt, so that drift, leaks and
+//! overflows of counters are detected.
 //!
-//! The clock of an emulated board is the counted one, so that an hour of it takes minutes. The long one:
-//! `cargo test -p host-tests --test boards scenes:: -- --ignored`, or `cargo verify --long`. The table in the README is what
-//! `cargo test -p host-tests --test boards scenes:: -- --nocapture` prints.
+//! The clock of an emulated board counts instructions, so that an hour of it takes minutes. The
+//! long test is run by `cargo test -p host-tests --test boards scenes:: -- --ignored` or `cargo
+//! verify --long`. The command `cargo test -p host-tests --test boards scenes:: -- --nocapture`
+//! prints the README's table.
 
 use std::time::Duration;
 
@@ -23,25 +26,29 @@ use host_tests::emulator::toolchain;
 use host_tests::link::Counts;
 use rayon::prelude::*;
 
-/// Every so many frames the panel is compared.
+/// The number of frames between two comparisons of the panel.
 const EVERY: u32 = 25;
-/// Frames after the start of a scene whose cost is not watched.
+/// The number of frames after the start of a scene whose cost is not checked.
 const SETTLING: u32 = 6;
-/// An hour of all scenes, twice.
+/// The number of frames of a scene in an hour of all scenes, twice.
 const LONG: u32 = 3600 * TICK_RATE / (2 * SceneName::ALL.len() as u32);
-/// Guards a long run against a hang: the slowest board on a slow host takes a tenth of it.
+/// The time limit of a long run. The slowest board on a slow host takes a tenth of it.
 const LONG_LIMIT: Duration = Duration::from_secs(6 * 3600);
-/// The most that one interrupt puts on the stack, bytes: the processor, which saves its floating-point registers too, and the
-/// handler. No second one comes on top. When the host's bytes come is not up to the counted clock, so an interrupt may strike
-/// where the stack is deepest in one round and not in the other.
+/// The largest stack use of one interrupt, bytes: the processor's, which also saves the
+/// floating-point registers, and the handler's. Interrupts do not nest. The counted clock does not
+/// determine when the host's bytes arrive, so an interrupt may occur at the deepest place of the
+/// stack in one round only.
 const INTERRUPT: u32 = 108 + 96;
-/// What a firmware says whose panel QEMU does not emulate.
+/// The log line of a firmware whose panel QEMU does not emulate.
 const NO_PANEL: &str = "panel: Absent";
-/// No frame takes as many cycles for an instruction on average: 1.3 to 1.7 are found.
+/// The largest number of cycles per instruction, averaged over a frame; 1.3 to 1.7 were found.
 const MOST_CYCLES: f64 = 3.0;
 
-/// Frames of a scene in a short run. Within 1.1 s the stack has been as deep as it gets in an hour, an interrupt apart, whichever
-/// tick a scene is left at. On the M3 the butterfly's curve grows, and the most expensive frame comes after 10 s.
+/// Returns the number of frames of a scene in a short run.
+///
+/// Within 1.1 s the stack has been as deep as in an hour, except for an interrupt, whichever tick a
+/// scene is left at. On the M3 the butterfly's curve grows, and the most expensive frame is after
+/// 10 s.
 fn short(board: &Board, name: SceneName) -> u32 {
     if (board.core(), name) == (Core::M3, SceneName::Butterfly) {
         10 * TICK_RATE
@@ -74,7 +81,7 @@ fn every_board_plays(limit: Duration, ticks: fn(&Board, SceneName) -> u32) -> an
     Ok(())
 }
 
-/// Tells a board that runs freely something, and waits for its next frame.
+/// Sends bytes to a board that runs freely, and waits for its next frame.
 fn told(machine: &mut Machine, words: &[u8]) -> anyhow::Result<Vec<ToHost>> {
     machine.send_bytes(words)?;
     let mut messages = Vec::new();
@@ -87,14 +94,14 @@ fn told(machine: &mut Machine, words: &[u8]) -> anyhow::Result<Vec<ToHost>> {
     Ok(messages)
 }
 
-/// A scene on a board beside the same on the host.
+/// A scene on a board, with the same scene on the host.
 struct SceneRun<'a> {
     board: &'a Board,
     name: SceneName,
     show: Show,
-    /// What the board is yet to be told.
+    /// The bytes that are still to be sent to the board.
     words: Vec<u8>,
-    /// The highest costs of the scene and of a whole frame, counts of the board's clock.
+    /// The largest costs of the scene and of a whole frame, in counts of the board's clock.
     highest: [u32; 2],
 }
 
@@ -114,10 +121,12 @@ impl<'a> SceneRun<'a> {
         self.show.report().step as u32
     }
 
-    /// Goes on to a tick of the scene: each frame is the host's, none is late.
+    /// Advances to a tick of the scene, and checks that each frame equals the host's and none is
+    /// late.
     fn to(&mut self, until: u32, next: Next) -> anyhow::Result<()> {
         while self.step() < until {
             let messages = next(&std::mem::take(&mut self.words))?;
+
             // The command may not have been executed yet.
             let is_here = |frame: &Frame| frame.scene == self.name;
             for frame in messages
@@ -141,37 +150,45 @@ impl<'a> SceneRun<'a> {
                 }
             }
         }
+
         Ok(())
     }
 }
 
-/// Plays all scenes twice, the panel compared now and then; what is beyond the board's budgets.
+/// Plays all scenes twice and compares the panel at intervals. Returns what exceeds the board's
+/// budgets.
 fn plays(
     board: &'static Board,
     limit: Duration,
     ticks: fn(&Board, SceneName) -> u32,
 ) -> anyhow::Result<Vec<String>> {
     let elf = application(board);
-    let (image, stack) = (Image::read(&elf)?, stack(&elf));
+    let image = Image::read(&elf)?;
+    let stack = stack(&elf);
     let mut machine = on(board, |settings| {
         Machine::halted(&Settings { limit, ..*settings })
     })?;
     machine.write(stack.start, &vec![PAINT; stack.len()])?;
-    // The link is up once a frame has come.
+
+    // The link is open once a frame has arrived.
     (0..EVERY).try_for_each(|_| machine.run_to_frame().map(drop))?;
-    let (mut too_much, mut reached, mut least_idle) = (Vec::new(), Vec::new(), 1.0_f64);
+    let mut too_much = Vec::new();
+    let mut reached = Vec::new();
+    let mut least_idle = 1.0_f64;
     let mut profile = FrameProfile::of_next(&mut machine, &image, board.core())?;
+
     for round in 0..2 {
         let mut name = SceneName::Page;
         for _ in SceneName::ALL {
-            // Never the one that is on.
+            // The current scene is never chosen again.
             name = name.next();
             let mut run = SceneRun::new(board, name);
             for until in (EVERY..=ticks(board, name)).step_by(EVERY as usize) {
                 machine.run()?;
                 run.to(until, &mut |words| told(&mut machine, words))?;
                 machine.stop()?;
-                // The panel shows exactly the frame that has come when the processor is about to sleep.
+
+                // When the processor is about to sleep, the panel shows exactly the received frame.
                 run.to(run.step() + 1, &mut |_| machine.run_to_frame())?;
                 let shown = board.has_panel.then(|| machine.screenshot()).transpose()?;
                 let is_it = shown
@@ -179,7 +196,8 @@ fn plays(
                     .is_none_or(|shown| *shown == Screenshot::from(&run.show.frame()));
                 assert!(is_it, "{}: {}\n{shown:?}", board.name, name.name());
             }
-            // The cost is taken in the first round.
+
+            // The cost is measured in the first round only.
             if round > 0 {
                 continue;
             }
@@ -199,7 +217,9 @@ fn plays(
             if is_profiled {
                 profile = FrameProfile::of_next(&mut machine, &image, board.core())?;
             }
-            // The board's clock counts instructions; how many cycles one takes is estimated on a frame that QEMU logs whole.
+
+            // The board's clock counts instructions. The number of cycles per instruction is
+            // estimated from one frame that QEMU logs completely.
             let Cost {
                 instructions,
                 cycles,
@@ -216,6 +236,7 @@ fn plays(
                 100.0 * idle
             );
             println!("{found}");
+
             // The budgets of a scene and of showing it are for the slower cores.
             let is_long = board.core() != Core::M4F && scene > budgets::SCENE;
             if is_long
@@ -228,6 +249,7 @@ fn plays(
         }
         reached.push(depth(&machine.read(stack.clone())?));
     }
+
     assert!(
         reached[1] <= reached[0] + INTERRUPT,
         "{}: the stack reaches ever deeper: {reached:?}",
@@ -252,7 +274,8 @@ fn plays(
     Ok(too_much)
 }
 
-/// Its emulator counts cycles itself, by the processor's manual; it knows of no waiting for the flash.
+/// The Pico's emulator counts cycles by the processor's manual. It does not model wait states of
+/// the flash.
 #[test]
 fn the_pico_plays_every_scene_as_the_host_does_within_its_budgets() -> anyhow::Result<()> {
     let node = toolchain::ready_for_pico().unwrap_or_else(|missing| panic!("{missing}"));
@@ -265,13 +288,16 @@ fn the_pico_plays_every_scene_as_the_host_does_within_its_budgets() -> anyhow::R
         machine.send_bytes(words)?;
         machine.run_to_frame()
     };
-    let (mut name, mut highest) = (SceneName::Page, 0);
+    let mut name = SceneName::Page;
+    let mut highest = 0;
+
     for _ in SceneName::ALL {
         name = name.next();
         let mut run = SceneRun::new(&PICO, name);
         run.to(EVERY, &mut next)?;
         highest = highest.max(run.highest[1]);
     }
+
     exercise(&mut next)?;
     let idle = 1.0 - f64::from(highest * TICK_RATE) / f64::from(PICO.hertz);
     let too_much = beyond(

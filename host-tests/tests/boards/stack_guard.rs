@@ -1,4 +1,5 @@
-//! No function of the firmware takes so much of the stack at once that it could step over the guard.
+//! No function of the firmware takes so much of the stack at once that it could step over the
+//! guard.
 
 use std::collections::BTreeMap;
 
@@ -6,34 +7,38 @@ use crate::support::{address, application};
 use cycles::Image;
 use host_tests::emulator::boards::every_board;
 
-/// The part of memory that statics and guard share, and what it can be divided by, as in `board/cortex_m/stack.rs`.
+/// The part of memory that statics and guard share, and the size of its subregions, as in
+/// `board/cortex_m/stack.rs`.
 const REGION: u32 = 32 * 1024;
 const EIGHTH: u32 = REGION / 8;
-/// Registers that a function pushes before it takes what it needs: 9 of 4 bytes and 8 of 8, and those that it may be
-/// given by number.
+/// The size of the registers that a function pushes before its local variables: 9 of 4 bytes, 8 of
+/// 8, and the 4 of 4 bytes in which arguments may be passed.
 const PUSHED: u32 = 9 * 4 + 8 * 8 + 4 * 4;
 
-/// What follows at the deepest place before the guard is touched at all: the registers that the
-/// next function pushes, or those of an interrupt with a floating-point unit's.
+/// The bytes that may follow at the deepest place before the guard is accessed: the registers that
+/// the next function pushes, or those of an interrupt with a floating-point unit.
 const NEXT: u32 = if PUSHED > 104 { PUSHED } else { 104 };
-/// Bytes of every guard that no frame may use, for the next change of the code or the compiler.
+/// The bytes of every guard that no stack frame may use, reserved for changes of the code or the
+/// compiler.
 const MARGIN: u32 = 512;
 
-/// Bytes that an instruction takes of the stack for local variables. `literal` is the constant
-/// that the instruction before has loaded, with its register.
+/// Returns the bytes of stack that an instruction takes for local variables. `literal` is the
+/// constant that the previous instruction has loaded, with its register.
 ///
-/// `mov sp, rN` is not looked for: it is how a function gives back what it took.
+/// `mov sp, rN` is ignored, because functions use it to release the stack.
 fn taken(first: u16, second: u16, literal: Option<(u16, u32)>) -> Option<u32> {
     let second = u32::from(second);
     let imm12 = (u32::from(first) >> 10 & 1) << 11 | second >> 4 & 0x700 | second & 0xff;
-    // add sp, rN: a Cortex-M0+ takes more than 508 bytes so, by a negative constant.
+
+    // add sp, rN: a Cortex-M0+ uses this with a negative constant to take more than 508 bytes.
     if first & 0xff87 == 0x4485 {
         return match literal {
             Some((register, constant)) if register == first >> 3 & 0xf => {
                 let change = constant.cast_signed();
                 (change < 0).then(|| change.unsigned_abs())
             }
-            // Whatever it holds.
+
+            // The register may have any value.
             _ => Some(u32::MAX),
         };
     }
@@ -41,20 +46,20 @@ fn taken(first: u16, second: u16, literal: Option<(u16, u32)>) -> Option<u32> {
         _ if first & 0xff80 == 0xb080 => Some(u32::from(first & 0x7f) * 4),
         (0xf2ad, 0xd) => Some(imm12),
         (0xf1ad, 0xd) => Some(expanded(imm12)),
-        // By a register: whatever it holds.
+        // The register may have any value.
         (0xebad, 0xd) => Some(u32::MAX),
         _ => None,
     }
 }
 
-/// The constant that `ldr rN, [pc, #...]` at this address loads, with its register.
+/// Returns the constant that `ldr rN, [pc, #...]` at this address loads, with its register.
 fn literal(image: &Image, address: u32, first: u16) -> Option<(u16, u32)> {
     let is_load = first & 0xf800 == 0x4800;
     let at = ((address + 4) & !3) + 4 * u32::from(first & 0xff);
     is_load.then(|| Some((first >> 8 & 7, image.word(at)?)))?
 }
 
-/// A 12-bit constant of an instruction as the number it stands for (ThumbExpandImm, ARM DDI 0403, A5.3.2).
+/// Returns the value of an instruction's 12-bit constant (ThumbExpandImm, ARM DDI 0403, A5.3.2).
 fn expanded(imm12: u32) -> u32 {
     let byte = imm12 & 0xff;
     match imm12 >> 8 {
@@ -68,7 +73,8 @@ fn expanded(imm12: u32) -> u32 {
 
 #[test]
 fn instructions_that_take_stack_are_recognised() {
-    // As the assembler gives them: sub sp, #412; sub.w sp, sp, #8896; subw sp, sp, #1420; sub.w sp, sp, r12.
+    // The encodings are the assembler's: sub sp, #412; sub.w sp, sp, #8896; subw sp, sp, #1420;
+    // sub.w sp, sp, r12.
     for (first, second, bytes) in [
         (0xb0e7, 0, Some(412)),
         (0xf5ad, 0x5d0b, Some(8896)),
@@ -80,8 +86,9 @@ fn instructions_that_take_stack_are_recognised() {
     ] {
         assert_eq!(taken(first, second, None), bytes, "{first:#x} {second:#x}");
     }
-    // Thumb-1's: add sp, r6 after ldr r6, to take and to give back; after ldr r5; add sp, r0 after
-    // another instruction; add r8, r6.
+
+    // Thumb-1 instructions: add sp, r6 after ldr r6, to take and to release; after ldr r5; add sp,
+    // r0 after another instruction; add r8, r6.
     let minus = |bytes: u32| 0_u32.wrapping_sub(bytes);
     for (first, literal, bytes) in [
         (0x44b5, Some((6, minus(8016))), Some(8016)),
@@ -113,7 +120,8 @@ fn no_function_steps_over_the_guard() {
             .into_iter()
             .max_by_key(|(_, bytes)| *bytes)
             .expect("functions have frames");
-        // What the statics leave of the region, in whole eighths.
+
+        // The part of the region that the statics leave, in whole eighths.
         let guard = REGION
             - (address(&elf, "__euninit") - address(&elf, "_ram_start")).next_multiple_of(EIGHTH);
         let largest = function.map_or("", |function| &function.name);
@@ -129,5 +137,6 @@ fn no_function_steps_over_the_guard() {
             ));
         }
     }
+
     assert!(too_large.is_empty(), "{too_large:#?}");
 }

@@ -1,4 +1,5 @@
-//! The steps of every method, which real boards have twice, in flash and in memory: they run wherever they are copied.
+//! The steps of every method, which real boards store twice, in flash and in memory. They must run
+//! wherever they are copied.
 
 use std::collections::BTreeSet;
 
@@ -7,7 +8,8 @@ use crate::support::code::Code;
 use host_tests::emulator::boards::{PICO, STM32F405};
 use object::{Object, ObjectSection};
 
-/// What is measured, and what the scenes spend most of their time in, by a part and the end of its name.
+/// The functions that are measured and that take most of the scenes' time, each by a part and the
+/// end of its name.
 const STEPS: [(&str, &str); 4] = [
     ("OnBoards as firmware::job::run::Run>", "advance"),
     ("double_pendulum::methods::Form>", "advance"),
@@ -18,6 +20,7 @@ const STEPS: [(&str, &str); 4] = [
 #[test]
 fn no_branch_leads_out_of_the_steps() -> anyhow::Result<()> {
     const RAM: u32 = 0x2000_0000;
+
     for (board, runs_in_ram) in [(&STM32F405, false), (&PICO, true)] {
         let elf = application(board);
         let bytes = std::fs::read(&elf)?;
@@ -48,7 +51,8 @@ fn no_branch_leads_out_of_the_steps() -> anyhow::Result<()> {
             .map(|(at, to)| (name(at), name(to)))
             .collect();
         assert!(out.is_empty(), "{}: {out:#?}", board.name);
-        // By which the linker reaches what is too far for a branch.
+
+        // The linker inserts these functions for targets that are too far for a branch.
         let far: Vec<_> = code
             .functions_named(|name| name.contains("Thunk"))
             .filter(|at| steps.contains(at))
@@ -56,10 +60,11 @@ fn no_branch_leads_out_of_the_steps() -> anyhow::Result<()> {
             .collect();
         assert!(far.is_empty(), "{}: {far:#?}", board.name);
     }
+
     Ok(())
 }
 
-/// The functions that steps of the form `form` reach in the Pico's application.
+/// Returns the functions that steps of the form `form` reach in the Pico's application.
 fn reached(code: &Code, form: &str) -> BTreeSet<String> {
     let is_step =
         |name: &str| name.contains(form) && name.contains("Form>") && name.ends_with("advance");
@@ -79,7 +84,8 @@ fn reached(code: &Code, form: &str) -> BTreeSet<String> {
         .collect()
 }
 
-/// As the kernel's example `fixed_point` says: on a Cortex-M0+ a step in 32 bits is made of integers, one of `f32` is not.
+/// This is the claim of the kernel's example `fixed_point`: on a Cortex-M0+ a step in 32 bits
+/// consists of integer operations, while a step in `f32` does not.
 #[test]
 fn steps_in_fixed_point_reach_no_soft_float() -> anyhow::Result<()> {
     let code = Code::read(&application(&PICO))?;

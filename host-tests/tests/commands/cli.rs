@@ -1,7 +1,8 @@
-//! The commands' own words: `snapshots/*.txt` hold command lines, and what each says and ends with. `BLESS=1` writes them anew.
+//! The output of the commands. The files `snapshots/*.txt` contain command lines with their outputs
+//! and exit codes; `BLESS=1` writes them again.
 //!
-//! After `$` a command and its arguments; then a line for each on stdout, after `> `, and on stderr, after `! `; and the exit code.
-//! And a reader who has seen enough of them (`| head`).
+//! A command and its arguments follow `$`. Then come the lines on stdout after `> ` and those on
+//! stderr after `! `, and the exit code. Another test closes the output early (`| head`).
 
 use std::path::Path;
 use std::process::{Command, Stdio};
@@ -18,19 +19,19 @@ use rayon::prelude::*;
 
 use crate::support::{LIMIT, toolchain};
 
-/// A command of this project.
+/// Returns a command of this project.
 pub fn program(name: &str) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_host-tests"));
     command.arg(name);
     command
 }
 
-/// What it says, and how it ends.
+/// Runs a command and returns its output and exit status.
 pub fn output(command: &mut Command) -> Output {
     run(command, LIMIT).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// What a command line of this project's does in `folder`, as a snapshot has it.
+/// Runs a command line of this project in `folder` and returns the text for a snapshot.
 fn played(line: &str, folder: &Path) -> String {
     let mut words = line.split_whitespace();
     let output = output(
@@ -40,7 +41,7 @@ fn played(line: &str, folder: &Path) -> String {
     );
     let mut text = format!("$ {line}\n");
     for (mark, said) in [('>', output.stdout), ('!', output.stderr)] {
-        // a slow machine says that work goes on
+        // A slow machine also prints progress, which is left out.
         text.extend(
             said.lines()
                 .filter(|line| !line.contains(" ..."))
@@ -59,6 +60,7 @@ fn commands_say_what_they_said() {
         .expect("the snapshots")
         .map(|file| file.expect("a file").path());
     let mut differences = Vec::new();
+
     for file in files {
         let old =
             fs::read_to_string(&file).unwrap_or_else(|error| panic!("{}: {error}", file.display()));
@@ -70,7 +72,8 @@ fn commands_say_what_they_said() {
             .par_iter()
             .map(|line| played(line, empty.path()))
             .collect();
-        // Every refusal: one line, nothing on stdout, exit code 2, nothing written.
+
+        // Every refusal has one line, nothing on stdout, exit code 2, and writes nothing.
         for block in blocks.iter().filter(|_| file.ends_with("refused.txt")) {
             let lines: Vec<_> = block.lines().collect();
             assert!(
@@ -91,6 +94,7 @@ fn commands_say_what_they_said() {
             );
         }
     }
+
     assert_eq!(
         fs::read_dir(&empty).expect("a folder").count(),
         0,
@@ -103,7 +107,7 @@ fn commands_say_what_they_said() {
     );
 }
 
-/// What ends after little work; of others, what is their own to print.
+/// Commands that end after little work. Other commands use the same functions to print.
 const COMMANDS: [&str; 12] = [
     "count closed-form-f32 --on lm3s6965evb --steps 4",
     "count closed-form-f32 --on lm3s6965evb --steps 4 --listing",
@@ -119,7 +123,7 @@ const COMMANDS: [&str; 12] = [
     "verify --help",
 ];
 
-/// A pipe that is closed at its other end.
+/// Returns a pipe whose other end is closed.
 fn closed() -> io::Result<Stdio> {
     let (reader, writer) = io::pipe()?;
     drop(reader);
@@ -139,13 +143,15 @@ fn a_closed_output_ends_every_command_quietly() -> io::Result<()> {
             .output()?;
         let report = String::from_utf8_lossy(&output.stderr);
         assert_eq!(output.status.code(), Some(0), "{line}: {report}");
-        // What is going on may be said there, but nothing went wrong.
+
+        // Progress may be printed there, but no error.
         assert!(
             !report.contains("error") && !report.contains("panicked"),
             "{line}: {report}"
         );
     }
-    // An error that is read by no one is still told by the exit code.
+
+    // An error that nobody reads is still reported by the exit code.
     let status = program("simulate")
         .args(["--until", "-1"])
         .stdout(closed()?)
@@ -155,7 +161,7 @@ fn a_closed_output_ends_every_command_quietly() -> io::Result<()> {
     Ok(())
 }
 
-/// The boards' own scene starts from the nearest `f32` to 120 degrees, which is another motion in the end.
+/// The boards' scene starts from the nearest `f32` to 120 degrees, which leads to another motion.
 #[test]
 fn a_scene_is_planned_as_the_boards_start_it() {
     let name = SceneName::Page;
@@ -176,7 +182,7 @@ fn a_scene_is_planned_as_the_boards_start_it() {
     }
 }
 
-/// Waits until a process handles SIGTERM itself; by then `prove` has its plan.
+/// Waits until a process handles SIGTERM itself. By then `prove` has its plan.
 #[cfg(target_os = "linux")]
 fn wait_for_handler(process: u32) {
     const SIGTERM_BIT: u64 = 1 << (15 - 1);

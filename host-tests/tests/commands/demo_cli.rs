@@ -1,4 +1,4 @@
-//! `cargo demo` from outside: exit codes, summary, and the files it saves.
+//! `cargo demo` as a process: exit codes, summary, and the files it saves.
 
 use std::f32::consts::PI;
 use std::fs::File;
@@ -16,12 +16,13 @@ use host_tests::emulator::host::Show;
 use host_tests::emulator::qemu::Screenshot;
 use tempfile::TempDir;
 
-/// Seconds recorded, and what that makes: 30 frames per second, 3 x 3 dots for each of 128 x 64 pixels.
+/// The recorded seconds and the number of pictures: 30 frames per second, 3 x 3 dots for each of
+/// 128 x 64 pixels.
 const SECONDS: u32 = 2;
 const FRAMES: usize = 60;
 const SIZE: (u32, u32) = (384, 192);
 
-/// Records this long on a board, without a fault; the files, and what it says.
+/// Records on a board and checks that there is no fault. Returns the files and the output.
 fn recorded(board: &str, folder: &TempDir, name: &str) -> ([PathBuf; 2], String) {
     toolchain();
     let files = ["gif", "png"].map(|kind| folder.path().join(format!("{name}.{kind}")));
@@ -43,7 +44,8 @@ fn recorded(board: &str, folder: &TempDir, name: &str) -> ([PathBuf; 2], String)
     (files, output.stdout)
 }
 
-/// By QEMU, and by the emulator of the Pico, whose panel is seen through its own bus.
+/// The boards are those of QEMU, and the Pico in its own emulator, whose panel is read through its
+/// own bus.
 #[test]
 fn a_recording_shows_a_swinging_pendulum_and_is_the_same_every_time() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -58,7 +60,8 @@ fn a_recording_shows_a_swinging_pendulum_and_is_the_same_every_time() {
         ] {
             assert!(summary.contains(line), "no {line:?} in\n{summary}");
         }
-        // The Pico has played for some frames when the host has found it at its USB port.
+
+        // The Pico has played for some frames before the host has found it at its USB port.
         let late = if board == "pico" {
             0.1..0.2
         } else {
@@ -79,7 +82,8 @@ fn a_recording_shows_a_swinging_pendulum_and_is_the_same_every_time() {
             .windows(2)
             .filter(|pair| pair[0].0 != pair[1].0)
             .count();
-        // The Pico first identifies its panel, which stays dark meanwhile: for 0.1 s at most.
+
+        // The Pico first identifies its panel, which stays dark meanwhile, for 0.1 s at most.
         let dark = frames
             .iter()
             .take_while(|(dots, _)| dots.iter().all(|dot| *dot == dots[0]))
@@ -116,7 +120,7 @@ fn the_method_can_be_chosen_and_is_named() {
     }
 }
 
-/// What the host cannot see it draws itself, from the numbers that come.
+/// If the host cannot read the panel, it draws it from the received numbers.
 #[test]
 fn of_a_board_without_a_panel_the_redrawn_one_is_shown() {
     toolchain();
@@ -148,6 +152,7 @@ fn of_a_board_without_a_panel_the_redrawn_one_is_shown() {
         Show::on(STM32F405, name, &name.first_settings()).expect("a scene of the catalogue");
     let played = played(&animation).expect("a GIF file");
     assert_eq!(played.len(), 30);
+
     for (number, (greys, _)) in played.iter().enumerate() {
         scene.tick();
         assert!(
@@ -158,7 +163,7 @@ fn of_a_board_without_a_panel_the_redrawn_one_is_shown() {
     }
 }
 
-/// The animation begins with it, and each frame is the host's.
+/// The animation begins with the motion, and each frame is equal to the host's.
 #[test]
 fn a_motion_of_ones_own_is_played_recorded_and_compared() {
     toolchain();
@@ -202,7 +207,8 @@ fn a_motion_of_ones_own_is_played_recorded_and_compared() {
     let mut scene = Show::on(STM32F405, SceneName::Page, &own).expect("a motion");
     let played = played(&animation).expect("a GIF file");
     assert_eq!(played.len(), 30);
-    // Its first frame is the first that comes after the board has said that it plays this.
+
+    // The first picture is of the first frame after the board has reported this motion.
     while Screenshot::from(&scene.frame()).greys != played[0].0 {
         scene.tick();
         assert!(scene.report().step < 10, "it is another motion");
@@ -266,7 +272,7 @@ fn without_a_terminal_it_says_so_and_how_to_see_something() {
     assert!(!as_asked.contains("no terminal"), "{as_asked}");
 }
 
-/// What QEMU is reached by lies there.
+/// The folder contains the pipes to QEMU.
 #[test]
 fn a_folder_for_pipes_that_cannot_be_had_is_named() {
     let output = output(

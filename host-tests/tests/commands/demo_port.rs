@@ -13,15 +13,15 @@ use firmware::protocol::{Answer, Cause, Frame, Restarted, ToHost};
 use firmware::scenes::{Report, SceneName};
 use nix::pty::{OpenptyResult, Winsize, openpty};
 
-/// A cable stays out for so long.
+/// The time for which a cable is unplugged.
 const OUT: Duration = Duration::from_millis(700);
-/// A terminal is looked at for so long.
+/// The time for which the terminal is watched.
 const SILENCE: Duration = Duration::from_secs(3);
-/// A foreign device, and how long it is there.
+/// The data of a foreign device, and the time for which it is connected.
 const FOREIGNER: &[u8] = b"$GPGGA,123519,4807.038,N,01131.000,E,1,08,0.9,545.4,M,46.9,M,,*47\r\n";
 const FOREIGN: Duration = Duration::from_secs(4);
 
-/// What it says when it has ended with `code`, on stdout and on stderr.
+/// Returns the output on stdout and on stderr, and checks that the command ends with `code`.
 fn demo(code: i32, arguments: &str, play: impl FnMut(&mut Bench)) -> [String; 2] {
     let mut command = program("demo");
     command.arg("--headless").args(arguments.split_whitespace());
@@ -56,7 +56,7 @@ fn a_motion_of_ones_own_is_played_at_a_port_too() {
     assert!(said.contains("frames, all identical to the host"), "{said}");
 }
 
-/// The fastest board could pay for these steps, so only this one can tell.
+/// The fastest board could execute these steps in time, so only this board can refuse them.
 #[test]
 fn a_method_that_the_board_refuses_is_named() {
     let arguments = "--method extrapolation10-fixed64 --angles 120,120 --degrees --lengths 1,1/10";
@@ -84,7 +84,7 @@ fn one_flipped_bit_is_named_and_fails() {
     assert!(told.lines().any(is_it), "{told}");
 }
 
-/// Returns the message, with this state of the panel in it.
+/// Returns the message with this state of the panel.
 fn with_panel(mut message: ToHost, report: PanelReport) -> ToHost {
     if let ToHost::Answer(_, Answer::Status(status)) = &mut message {
         status.panel = report;
@@ -137,7 +137,7 @@ fn board_without_a_choice_of_controllers_refuses_one() {
     );
 }
 
-/// Its frames come, and are of another scene for ever.
+/// The board's frames arrive, but they are always of another scene.
 #[test]
 fn a_board_that_does_not_play_what_it_is_told_is_given_up() {
     let mut sequence = 0;
@@ -160,7 +160,8 @@ fn a_board_that_does_not_play_what_it_is_told_is_given_up() {
 
 #[test]
 fn a_pulled_cable_is_said_and_waited_for_and_a_board_that_restarts_is_followed_again() {
-    let (mut pulled, mut restarted) = (None, false);
+    let mut pulled = None;
+    let mut restarted = false;
     let [said, told] = demo(0, "--seconds 8", |bench| {
         bench.carry(wire);
         match pulled {
@@ -170,7 +171,8 @@ fn a_pulled_cable_is_said_and_waited_for_and_a_board_that_restarts_is_followed_a
             }
             Some(since) if bench.cable.is_none() && since.elapsed() > OUT => bench.plug(),
             Some(_) if !restarted && bench.frame > 300 => {
-                (bench.machine, restarted) = (board(), true)
+                bench.machine = board();
+                restarted = true;
             }
             _ => {}
         }
@@ -191,8 +193,8 @@ fn a_pulled_cable_is_said_and_waited_for_and_a_board_that_restarts_is_followed_a
     assert!(said.contains("frames, all identical to the host"), "{said}");
 }
 
-/// Over USB a restart takes the port away, and with it the board's message: what is left is the
-/// answer to the question that is asked when the port is back.
+/// Over USB a restart disconnects the port, and the board's message about it is lost. Only the
+/// answer to the question that is asked when the port is back remains.
 #[test]
 fn a_board_that_comes_back_after_a_hang_is_not_taken_for_a_pulled_cable() {
     let end = Restarted {
@@ -249,7 +251,8 @@ fn a_foreign_device_is_said_and_a_board_in_its_place_is_taken() {
     );
 }
 
-/// In a terminal nothing is given up: the one who looks at it ends it, and is told no number that did not come.
+/// In a terminal no time limit applies, because the user can quit. The terminal shows no number
+/// that was not received.
 #[test]
 fn of_a_silent_or_foreign_device_the_terminal_shows_no_number() {
     for says in [b"", FOREIGNER] {
@@ -278,7 +281,8 @@ fn of_a_silent_or_foreign_device_the_terminal_shows_no_number() {
         );
         let shown = spawn(move || {
             let mut bytes = Vec::new();
-            // That its other end is closed is an error on Linux.
+
+            // On Linux, a closed other end is an error.
             let _ = screen.read_to_end(&mut bytes);
             String::from_utf8_lossy(&bytes).into_owned()
         });

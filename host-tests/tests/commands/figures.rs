@@ -1,4 +1,5 @@
-//! `cargo figures` and `cargo flips`: the curves against what is known of them, and the committed files against the kernel.
+//! `cargo figures` and `cargo flips`: the curves compared with known values, and the committed
+//! files with the kernel's results.
 
 use std::f64::consts::PI;
 use std::fs;
@@ -15,13 +16,14 @@ use reference::taylor::Reference;
 
 use super::cli::{output, program};
 
-/// Figures 3 to 5: w1, w2 (rad/s), the envelope's period (s), the largest |a1| (degrees).
+/// The expected values of figures 3 to 5: w1, w2 (rad/s), the envelope's period (s), the largest
+/// |a1| (degrees).
 const SMALL: [[f64; 4]; 3] = [
     [8.139042, 5.275983, 2.194571, 12.2474],
     [11.568802, 4.791955, 0.927155, 21.2132],
     [21.211017, 4.526893, 0.376597, 27.3861],
 ];
-/// The angle 2 that they start with, degrees, which is also the largest.
+/// The angle 2 at the start, degrees, which is also the largest.
 const START: f64 = 30.0;
 
 #[test]
@@ -34,11 +36,13 @@ fn the_committed_files_are_what_the_kernel_gives() {
     }
 }
 
-/// Every so many frames of an animation are compared; two ticks pass from one to the next.
+/// The number of pictures between two comparisons of an animation, and of ticks between two
+/// pictures.
 const EVERY: usize = 30;
 const TICKS_PER_FRAME: usize = 2;
 
-/// The host's frames are the emulated panel's (test `boards scenes`), so neither may be older than the firmware.
+/// The host's frames equal the emulated panel's (test `boards scenes`), so neither may be older
+/// than the firmware.
 #[test]
 fn the_committed_animations_show_what_the_host_draws() {
     let outdated: Vec<_> = SceneName::ALL
@@ -52,7 +56,8 @@ fn the_committed_animations_show_what_the_host_draws() {
     );
 }
 
-/// A recording starts with the first screenshot that was drawn, at most two ticks after the start.
+/// Returns true if the committed animation shows the host's frames. A recording starts with the
+/// first screenshot, at most two ticks after the start.
 fn is_shown(name: SceneName) -> bool {
     let Ok(frames) = played(&animation(name, &folder())) else {
         return false;
@@ -77,7 +82,7 @@ fn is_shown(name: SceneName) -> bool {
     !frames.is_empty() && (0..=2).any(is_shown_from)
 }
 
-/// The mean time from one crossing of zero to the next, s.
+/// Returns the mean time between two zero crossings, s.
 fn between_crossings(points: &[CurvePoint], value: impl Fn(&CurvePoint) -> f64) -> f64 {
     let crossing = |pair: &[CurvePoint]| {
         let [(t, before), (later, after)] =
@@ -102,7 +107,8 @@ fn assert_close(value: f64, expected: f64, relative: f64, what: &str) {
 fn figures_3_to_5_show_the_frequencies_envelopes_and_amplitudes_of_the_table() {
     for (mu, [w1, w2, envelope, largest_a1]) in MASS_RATIOS.into_iter().zip(SMALL) {
         let points = points(modes(mu).expect("a pendulum"));
-        // a2 - r a1 is the fast mode alone, a2 + r a1 the slow one.
+
+        // a2 - r a1 contains the fast mode only, and a2 + r a1 the slow one.
         let r = ((1.0 + mu) / mu).sqrt();
         for (w, r) in [(w1, -r), (w2, r)] {
             let half_period =
@@ -115,7 +121,7 @@ fn figures_3_to_5_show_the_frequencies_envelopes_and_amplitudes_of_the_table() {
             );
         }
         for (rod, largest) in [largest_a1, START].into_iter().enumerate() {
-            // Its square is a cosine about half its maximum.
+            // The square of the envelope is a cosine about half its maximum.
             let half_period = between_crossings(&points, |point| {
                 point.envelopes[rod].powi(2) - largest.powi(2) / 2.0
             });
@@ -130,7 +136,8 @@ fn figures_3_to_5_show_the_frequencies_envelopes_and_amplitudes_of_the_table() {
                 .map(|point| point.envelopes[rod])
                 .fold(0.0, f64::max);
             assert_close(highest, largest, tolerances::PLOTTED_AMPLITUDE, "amplitude");
-            // The curve touches it and never leaves it.
+
+            // The curve touches the envelope and never leaves it.
             let beyond = |point: &CurvePoint| point.angles[rod].abs() - point.envelopes[rod];
             let farthest = points.iter().map(beyond).fold(f64::NEG_INFINITY, f64::max);
             assert!(
@@ -146,10 +153,12 @@ fn figures_3_to_5_show_the_frequencies_envelopes_and_amplitudes_of_the_table() {
     }
 }
 
-/// There is no exact solution of a misprint at hand, so its path is compared with one of half the step.
+/// No exact solution of the misprinted equations is available, so the path is compared with one of
+/// half the step.
 #[test]
 fn the_right_path_of_figure_7_is_the_exact_one_and_the_printed_one_does_not_depend_on_the_step() {
-    let (pendulum, State { a1, a2, .. }) = (chaos::pendulum().expect("a pendulum"), chaos::start());
+    let pendulum = chaos::pendulum().expect("a pendulum");
+    let State { a1, a2, .. } = chaos::start();
     let mut exact = Reference::new(pendulum.parameters(), &Motion::at_rest(a1, a2));
     let [[right, printed], [_, finer]] =
         [1, 2].map(|refinement| chaos::paths(refinement).expect("a pendulum"));
@@ -159,6 +168,7 @@ fn the_right_path_of_figure_7_is_the_exact_one_and_the_printed_one_does_not_depe
         let [_, bob2] = pendulum.positions(exact.motion().angles());
         (bob2.x, bob2.y)
     });
+
     for (path, other) in [(&right, exact.collect()), (&printed, finer.points)] {
         assert_eq!(path.points.len(), other.len());
         for (i, ((x, y), (other_x, other_y))) in path.points.iter().zip(other).enumerate() {
@@ -166,12 +176,14 @@ fn the_right_path_of_figure_7_is_the_exact_one_and_the_printed_one_does_not_depe
             assert!(off < tolerances::FIGURE_7_PATH, "{off} m off at point {i}");
         }
     }
+
     let [least, greatest] = right.energies;
     assert!(
         greatest - least < tolerances::FIGURE_7_ENERGY,
         "{least} J to {greatest} J"
     );
-    // The energy of the printed one is not kept.
+
+    // The printed equations do not conserve the energy.
     let [least, greatest] = printed.energies;
     let swing = least..greatest;
     assert!(
@@ -182,7 +194,7 @@ fn the_right_path_of_figure_7_is_the_exact_one_and_the_printed_one_does_not_depe
     );
 }
 
-/// The file that `cargo flips` writes.
+/// Returns the file that `cargo flips` writes.
 fn flips(arguments: &[&str], name: &str) -> Vec<u8> {
     let folder = tempfile::tempdir().expect("a folder");
     let out = folder.path().join(name);
@@ -210,7 +222,8 @@ fn a_table_has_every_start_and_is_its_own_mirror_image() {
         .filter_map(|line| line.split(',').nth(2))
         .collect();
     assert_eq!(times.len(), 72);
-    // Both angles mirrored: the same motion.
+
+    // Mirroring both angles gives the same motion.
     assert!(times.iter().eq(times.iter().rev()));
     let [never, later] = ["", "inf"].map(|word| times.iter().filter(|time| **time == word).count());
     assert!(never > 10 && never < 40 && later > 0, "{table}");
@@ -221,6 +234,7 @@ fn a_table_has_every_start_and_is_its_own_mirror_image() {
             .all(|time| time > 0.0 && (time <= 20.0 || time.is_infinite())),
         "{table}"
     );
+
     // Every cell is a number or empty, as programs that read tables expect.
     let cells = table.lines().skip(1).flat_map(|line| line.split(','));
     assert!(

@@ -1,5 +1,6 @@
-//! `cargo fw`: how it ends, and which project it works on. `cargo flash-f4` with a stand-in for `probe-rs`, and without any;
-//! `cargo pico`, the file that it makes, and the drive that it copies it onto. `cargo count`, what it lists.
+//! `cargo fw`: its end, and the project that it uses. `cargo flash-f4` with a stand-in for
+//! `probe-rs`, and without one. `cargo pico`: the file that it makes, and the drive that it copies
+//! it to. `cargo count`: its listing.
 
 use std::env;
 use std::fs::{self, Permissions};
@@ -41,7 +42,7 @@ fn what_runs_for_ever_ends_well_when_it_is_told_to() {
     );
 }
 
-/// A row is the difference of two runs, so that calling cancels.
+/// A row is the difference of two runs, so that the cost of the call cancels.
 #[test]
 fn a_listing_adds_up_to_the_row() {
     let numbers = |options: &str, place| -> Vec<f64> {
@@ -72,7 +73,7 @@ fn a_listing_adds_up_to_the_row() {
 }
 
 /// Starts a board whose folder is in `temporary`, and ends the command by a signal once the board
-/// runs; the exit code.
+/// runs. Returns the exit code.
 fn ended_by(signal: Signal, temporary: &Path) -> Option<i32> {
     let mut command = program("fw");
     command.arg("lm3s6965evb").env("TMPDIR", temporary);
@@ -92,7 +93,7 @@ fn ended_by(signal: Signal, temporary: &Path) -> Option<i32> {
     fw.wait().expect("it ends").code()
 }
 
-/// What is in a folder.
+/// Returns the entries of a folder.
 fn left(folder: &Path) -> Vec<PathBuf> {
     let entries = fs::read_dir(folder).expect("it is there");
     entries
@@ -127,12 +128,15 @@ fn the_folder_of_a_killed_command_is_removed_by_the_next() {
     assert_eq!(left(temporary.path()), [""; 0].map(PathBuf::from));
 }
 
-/// A command that was built in one checkout and is run in another works on that one; outside of any it says so.
+/// A command that was built in one checkout and is run in another uses the latter. Outside of any
+/// checkout it reports an error.
 #[test]
 fn the_project_is_the_one_that_a_command_is_run_in() {
     let folder = tempfile::tempdir().expect("a folder");
-    let (copy, checkout) = (folder.path().join("fw"), folder.path().join("checkout"));
+    let copy = folder.path().join("fw");
+    let checkout = folder.path().join("checkout");
     fs::copy(env!("CARGO_BIN_EXE_host-tests"), &copy).expect("a copy");
+
     for file in [
         "kernel/Cargo.toml",
         "firmware/Cargo.toml",
@@ -189,8 +193,9 @@ fn without_probe_rs_it_says_what_is_missing() -> io::Result<()> {
     Ok(())
 }
 
-/// Runs the command with a stand-in of this name found first, which prints its arguments, `said`,
-/// then does what `ends` says; the command must end with `code`. Returns the last argument, a file.
+/// Runs the command with a stand-in of this name first on the PATH. The stand-in prints its
+/// arguments and `said`, then executes `ends`. Checks that the command ends with `code`. Returns
+/// the last argument, a file.
 fn handed(
     name: &str,
     arguments: &[&str],
@@ -235,7 +240,7 @@ fn it_hands_the_image_to_probe_rs() -> io::Result<()> {
     Ok(())
 }
 
-/// What goes over USB is the program: QEMU, which gets nothing else, runs it.
+/// The program is sent over USB. QEMU runs exactly these bytes.
 #[test]
 fn it_hands_the_bytes_of_the_flash_to_dfu_util() -> io::Result<()> {
     let bin = handed(
@@ -276,14 +281,14 @@ fn a_download_that_is_not_reported_as_complete_fails_whatever_its_exit_code_is()
     handed("dfu-util", &["--dfu"], said, "exit 0", 1).map(drop)
 }
 
-/// What the label on an RP2040's drive says.
+/// The label on an RP2040's drive.
 const LABEL: &str = "UF2 Bootloader v3.0\nModel: Raspberry Pi RP2\nBoard-ID: RPI-RP2\n";
 
 fn pico(drive: &Path) -> Output {
     output(program("pico").arg("--drive").arg(drive))
 }
 
-/// Block by block, as the boot ROM takes it.
+/// The blocks are read as by the boot ROM.
 #[test]
 fn the_copied_file_brings_the_program_into_flash() {
     let drive = tempfile::tempdir().expect("a folder");
@@ -299,6 +304,7 @@ fn the_copied_file_brings_the_program_into_flash() {
         .expect("the firmware");
     let (start, image) = flash_image(&fs::read(elf).expect("a file")).expect("a program");
     let mut flashed = Vec::new();
+
     for (number, block) in blocks.iter().enumerate() {
         let words: Vec<_> = block
             .as_chunks()
@@ -307,7 +313,9 @@ fn the_copied_file_brings_the_program_into_flash() {
             .map(|bytes| u32::from_le_bytes(*bytes))
             .collect();
         let place = start + 256 * number as u32;
-        // Magic, a family is named, where, how many, which of how many, the family of the RP2040.
+
+        // The magic numbers, the flag of a family, the address, the size, the number of the block,
+        // the number of blocks, and the family of the RP2040.
         let head = [
             0x0a32_4655,
             0x9e5d_5157,
@@ -321,6 +329,7 @@ fn the_copied_file_brings_the_program_into_flash() {
         assert_eq!((&words[..8], words[127]), (&head[..], 0x0ab1_6f30));
         flashed.extend(&block[32..][..256]);
     }
+
     assert_eq!(flashed.len(), image.len().next_multiple_of(256));
     assert!(flashed.starts_with(&image));
 }

@@ -1,5 +1,6 @@
-//! What the project is made of: every dependency has its reason. That `unsafe` stands where the hardware is reached, `unsafe_code`
-//! sees to, and that each of its blocks says why it is sound, `clippy::undocumented_unsafe_blocks`.
+//! The dependencies of the project, each with its reason. The lint `unsafe_code` checks that
+//! `unsafe` is used for hardware access only, and `clippy::undocumented_unsafe_blocks` that each
+//! block has its reason.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -11,7 +12,7 @@ use serde_json::Value;
 
 use super::cli::output;
 
-/// The paths of the sources in a folder of the project.
+/// Returns the paths of the sources in a folder of the project.
 pub fn sources(folder: &str) -> Vec<PathBuf> {
     let folder = workspace().join(folder);
     let entries =
@@ -30,7 +31,7 @@ pub fn sources(folder: &str) -> Vec<PathBuf> {
         .collect()
 }
 
-/// The text of a file of the project.
+/// Returns the text of a file of the project.
 pub fn read(file: impl AsRef<Path>) -> String {
     let file = workspace().join(file);
     fs::read_to_string(&file).unwrap_or_else(|error| panic!("{}: {error}", file.display()))
@@ -53,6 +54,7 @@ fn every_dependency_has_its_reason() {
     let direct = all(&metadata["packages"])
         .into_iter()
         .flat_map(|package| all(&package["dependencies"]));
+
     // The project's own crates come from no registry.
     let named = direct
         .filter(|one| !one["source"].is_null())
@@ -64,7 +66,7 @@ fn every_dependency_has_its_reason() {
     assert_eq!(named.collect::<BTreeSet<_>>(), rows.collect());
 }
 
-/// The most lines of an example of the kernel, a page, and the most names that each imports.
+/// The largest number of lines of a kernel example, a page, and of names that it imports.
 const LINES: usize = 50;
 const NAMES: usize = 6;
 

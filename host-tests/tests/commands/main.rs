@@ -1,4 +1,4 @@
-//! The commands as they are called, the READMEs and what the report says.
+//! The commands as processes, the READMEs, and the contents of the report.
 
 mod cli;
 mod demo_cli;

@@ -1,4 +1,4 @@
-//! The files that commands write: complete or not there.
+//! The files that commands write are complete or do not exist.
 
 use std::fs;
 use std::os::unix::fs::symlink;
@@ -9,8 +9,8 @@ use host_tests::emulator::process::Output;
 
 use super::cli::{output, program};
 
-/// Runs a command of this project in `folder` where no file may be longer than a kilobyte, as if
-/// the disk were full.
+/// Runs a command of this project in `folder` with a limit of a kilobyte for files, as if the disk
+/// were full.
 fn on_a_full_disk(line: &str, folder: &Path) -> Output {
     let script = format!(
         "trap '' XFSZ; ulimit -f 1; exec {} {line}",
@@ -87,7 +87,7 @@ fn what_is_there_stays_until_the_new_file_is_complete() {
     assert_eq!(said.status.code(), Some(1), "{said:?}");
     assert_eq!(fs::read_to_string(&file).expect("the old one"), "old");
 
-    // A link stays a link, and a device a device.
+    // A link remains a link, and a device a device.
     let link = folder.path().join("link.csv");
     symlink("swing.csv", &link).expect("a link");
     let to = |file: &str| {
@@ -109,7 +109,7 @@ fn what_is_there_stays_until_the_new_file_is_complete() {
     assert_eq!(names(folder.path()).len(), 2);
 }
 
-/// A motion that leaves the finite numbers: the rows before are right.
+/// The rows before a motion leaves the finite numbers are correct.
 #[test]
 fn the_rows_before_an_error_are_in_the_file() {
     let folder = tempfile::tempdir().expect("a folder");

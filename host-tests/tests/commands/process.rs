@@ -1,5 +1,6 @@
-//! Supervised children are gone when they should be. Whether a process is gone is seen from a pipe it inherited: the
-//! end of file comes when the last holder has gone, and one that outlives its owner writes "late" first.
+//! Supervised child processes end when they should. A test detects the end of a process by a pipe
+//! that the process inherited: the pipe ends when its last holder has ended. A process that
+//! outlives its owner writes "late" first.
 
 use std::io::{BufRead, BufReader, ErrorKind, Read};
 use std::process::{ChildStdout, Command, Stdio};
@@ -11,13 +12,14 @@ use host_tests::emulator::process::{
 use nix::sys::signal::{Signal, kill};
 use nix::unistd::Pid;
 
-/// Far longer than any of these children needs.
+/// A limit far above the time that any of these children needs.
 const AMPLE: Duration = Duration::from_secs(60);
-/// For those that must be stopped.
+/// The limit of children that must be stopped.
 const SHORT: Duration = Duration::from_millis(300);
-/// A leader with a child of its own, neither of which wants to end.
+/// A process with a child of its own, neither of which ends on request.
 const FAMILY: &str = "trap '' TERM; (sleep 20; echo late) & echo ready; sleep 20; echo late";
-/// The environment variable that turns [`interrupted_helper`] from an empty test into the process to interrupt.
+/// The environment variable that turns [`interrupted_helper`] from an empty test into the process
+/// to interrupt.
 const HELPER: &str = "PROCESS_TEST_HELPER";
 
 fn shell(script: &str) -> Command {
@@ -43,7 +45,8 @@ fn rest(mut pipe: BufReader<ChildStdout>) -> String {
 #[test]
 fn output_and_exit_code_are_captured_while_a_watcher_sees_lines_and_silence() {
     let script = "i=0; while [ $i -lt 20000 ]; do echo 0123456789; echo 0123456789 >&2; i=$((i+1)); done; sleep 1; exit 7";
-    let (mut lines, mut ticks) = (0, 0);
+    let mut lines = 0;
+    let mut ticks = 0;
     let watch = |line: Option<&str>| match line {
         Some(line) => lines += usize::from(line == "0123456789"),
         None => ticks += 1,
@@ -122,7 +125,7 @@ fn children_end_with_an_interrupted_or_killed_process() {
     }
 }
 
-/// Not a test of its own: the process that the test above interrupts.
+/// This is not a test of its own. It is the process that the test above interrupts.
 #[test]
 fn interrupted_helper() {
     if let Some(folder) = std::env::var_os(HELPER) {

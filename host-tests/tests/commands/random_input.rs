@@ -1,5 +1,6 @@
-//! Random input for everything that takes input from outside: nothing may panic or hang, what is accepted is good, and what
-//! is refused changes nothing. `PROPTEST_CASES=1000000 cargo test -p host-tests --test commands random_input::` tries more.
+//! Random input for everything that takes input from outside. Nothing may panic or hang, accepted
+//! input is valid, and refused input changes nothing. `PROPTEST_CASES=1000000 cargo test -p
+//! host-tests --test commands random_input::` runs more cases.
 
 use clap::Parser;
 use double_pendulum::plan::{Budget, Limit, Problem, Search, Stepping};
@@ -24,7 +25,8 @@ use proptest::prelude::*;
 use proptest::sample::{Index, select};
 use proptest::test_runner::RngSeed;
 
-/// The same cases in every run, more of them where the environment asks for more.
+/// Returns a configuration with the same cases in every run, and more of them if the environment
+/// requests it.
 fn cases(least: u32) -> ProptestConfig {
     let usual = ProptestConfig::default();
     let cases = if usual.cases == 256 {
@@ -40,7 +42,7 @@ fn cases(least: u32) -> ProptestConfig {
     }
 }
 
-/// Any bit pattern, and numbers as they are typed.
+/// Returns any bit pattern, and numbers as users type them.
 fn number() -> impl Strategy<Value = f64> {
     const USUAL: &[f64] = &[
         0.0,
@@ -61,7 +63,7 @@ fn parameters() -> impl Strategy<Value = Parameters<f64>> {
     uniform5(number()).prop_map(|[m1, m2, l1, l2, g]| Parameters { m1, m2, l1, l2, g })
 }
 
-/// The intact messages in a stream.
+/// Returns the intact messages in a stream.
 fn intact(bytes: &[u8]) -> Vec<Vec<u8>> {
     let mut decoder = Decoder::default();
     bytes
@@ -74,7 +76,8 @@ fn wire(message: &[u8]) -> Vec<u8> {
     frame(message, &mut [0; MAX_WIRE]).to_vec()
 }
 
-/// A part of a stream, and the message in it if that is intact: noise, or a message some of whose bytes may be changed.
+/// Returns a part of a stream, and the message in it if it is intact. The part is noise, or a
+/// message with some bytes possibly changed.
 fn part() -> impl Strategy<Value = (Vec<u8>, Option<Vec<u8>>)> {
     let noise = vec(any::<u8>(), 0..200).prop_map(|noise| (noise, None));
     let changes = vec((any::<Index>(), any::<u8>()), 0..4);
@@ -90,7 +93,7 @@ fn part() -> impl Strategy<Value = (Vec<u8>, Option<Vec<u8>>)> {
     prop_oneof![1 => noise, 4 => sent]
 }
 
-/// A command of any kind, its fields as long as they should be or not, as an intact message.
+/// Returns a command of any kind as an intact message, whose fields may have a wrong length.
 fn command() -> impl Strategy<Value = Vec<u8>> {
     let set = (select(Field::ALL), number()).prop_map(|(field, value)| {
         encode_command(1, Command::Set { field, value }, &mut [0; MAX_WIRE]).to_vec()
@@ -101,7 +104,7 @@ fn command() -> impl Strategy<Value = Vec<u8>> {
     prop_oneof![4 => set, 4 => short, 1 => any]
 }
 
-/// What a method's steps lead to: twelve of them at most, each finite or refused.
+/// Makes up to twelve steps by a method. Each result is finite or refused.
 fn stepped(
     method: Method,
     parameters: &Parameters<f64>,
@@ -129,7 +132,9 @@ fn constructed<R: Real>(
     dt: f64,
     state: State<f64>,
 ) -> Result<(), Error> {
-    let (parameters, state) = (parameters.cast::<R>(), state.cast::<R>());
+    let parameters = parameters.cast::<R>();
+    let state = state.cast::<R>();
+
     if let Ok(modes) = Modes::new(&parameters) {
         let frequencies = [modes.fast.frequency, modes.slow.frequency];
         assert!(
@@ -137,8 +142,10 @@ fn constructed<R: Real>(
             "{frequencies:?} of {parameters:?}"
         );
     }
+
     let pendulum = Pendulum::new(&parameters)?;
-    // Hanging still is a motion of every pendulum, and it stays one.
+
+    // Hanging at rest is a motion of every pendulum, and it remains one.
     let still = State::at_rest(R::ZERO, R::ZERO);
     assert_eq!(
         pendulum.derivatives(&still.into()),
@@ -164,14 +171,15 @@ fn constructed<R: Real>(
 proptest! {
     #![proptest_config(cases(1000))]
 
-    /// Whatever comes between them: no damaged message is taken for good, and no good one is missed.
+    /// With any bytes between the messages, no damaged message is accepted and no intact one is
+    /// missed.
     #[test]
     fn intact_messages_are_received_and_nothing_else(stream in vec(part(), 0..40)) {
         let (bytes, messages): (Vec<_>, Vec<_>) = stream.into_iter().unzip();
         prop_assert_eq!(intact(&bytes.concat()), messages.into_iter().flatten().collect::<Vec<_>>());
     }
 
-    /// Each intact command has one answer, a refused one changes nothing, and the scene plays on.
+    /// Each intact command has one answer, a refused one changes nothing, and the scene continues.
     #[test]
     fn every_command_is_answered(commands in vec(command(), 1..3)) {
         let mut sheets = FrameBuffers::BLANK;
@@ -179,7 +187,8 @@ proptest! {
         let mut app = App::new(CORTEX_M4F, &mut sheets, &mut panel, Vec::new(), NoButtons);
         app.player.play(SceneName::Page, Settings::default()).expect("good settings");
         for (tick, bytes) in (1..).zip(commands) {
-            let (status, sent) = (app.player.status(), app.link.len());
+            let status = app.player.status();
+            let sent = app.link.len();
             app.receive(bytes.iter().copied(), |_| ());
             let mut inbox = Inbox::default();
             let answers: Vec<_> = app.link[sent..].iter().filter_map(|&byte| inbox.take(byte)).collect();
@@ -218,7 +227,7 @@ proptest! {
         }
     }
 
-    /// Parameters are refused or good for every method, steps are finite or refused.
+    /// Parameters are refused, or valid for every method. Steps are finite or refused.
     #[test]
     fn the_kernel_refuses_or_stays_finite(parameters in parameters(), dt in number(), state in uniform4(number())) {
         let state = State::from(state);
@@ -229,8 +238,8 @@ proptest! {
         }
     }
 
-    /// A plan keeps to its budget and its scene, or is refused by name; a piece of the search makes steps that together cost no more
-    /// than is allowed, or one that does.
+    /// A plan is within its budget and its scene, or is refused with a reason. The steps of a piece
+    /// of the search together cost no more than allowed, or the piece is a single step.
     #[test]
     fn a_plan_is_within_its_budget(
         (pendulum, [a1, a2, w1, w2], rate) in (parameters(), uniform4(number()), prop_oneof![Just(60), any::<u16>()]),
@@ -240,12 +249,14 @@ proptest! {
         let start = Motion { a1, a2, w1, w2 };
         let scene = Problem { pendulum, start, tolerance: tolerance.abs(), duration: duration.abs(), rate };
         let [frame, planning, piece] = [frame * 1e4, planning * 1e5, piece * 1e5].map(|number| number.abs() as f32);
-        let (costs, budget) = (CORTEX_M4F.costs, Budget { frame, planning });
+        let costs = CORTEX_M4F.costs;
+        let budget = Budget { frame, planning };
         let search = match asked {
             Some(method) => Search::of(Stepping { method, steps }, &scene, &costs, &budget),
             None => Search::new(&scene, &costs, &budget),
         };
         let Ok(mut search) = search else { return Ok(()) };
+
         for _ in 0..60 {
             let before = search.spent();
             let most = if search.is_preparing() { costs.preparation } else { piece.max(costs.fixed64) };
@@ -270,7 +281,7 @@ proptest! {
         }
     }
 
-    /// What is shown of a number can be typed, and is the same number.
+    /// A displayed number can be parsed and is the same number.
     #[test]
     fn numbers_are_read_as_they_are_shown(text in "[-+]?[0-9]{0,4}\\.?[0-9]{0,4}(e-?[0-9]{1,4})?(/[0-9]{1,3})?|\\PC{0,8}") {
         if let Ok(number) = text.parse::<Number>() {
@@ -279,7 +290,7 @@ proptest! {
         }
     }
 
-    /// A command line is refused, or asks for a motion forwards in time.
+    /// A command line is refused, or requests a motion forwards in time.
     #[test]
     fn command_lines_are_refused_or_good(
         words in vec(

@@ -1,5 +1,6 @@
-//! The READMEs: the commands in them are there, none is taken by one of cargo's own, which nothing can replace, what they link to
-//! exists, and the kernel's first example runs for its users: with the package in an empty crate.
+//! The READMEs: their commands exist, no name is that of one of cargo's own commands, which cannot
+//! be replaced, and their links lead to existing files. The kernel's first example works for users,
+//! with the package in an empty crate.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -11,17 +12,17 @@ use host_tests::emulator::toolchain::workspace;
 use super::cli::{output, program};
 use super::hygiene::read;
 
-/// The first page, and those of the crates.
+/// The first README, and those of the crates.
 const README: [&str; 4] = [
     "README.md",
     "kernel/README.md",
     "firmware/README.md",
     "host-tests/README.md",
 ];
-/// Commands that a README names and a user installs.
+/// The commands in READMEs that a user installs.
 const INSTALLED: [&str; 3] = ["deny", "mutants", "public-api"];
 
-/// The names of the project's commands.
+/// Returns the names of the project's commands.
 fn ours() -> BTreeSet<String> {
     let config = read(".cargo/config.toml");
     let aliases = config
@@ -34,7 +35,8 @@ fn ours() -> BTreeSet<String> {
         .collect()
 }
 
-/// The command's own name, and if it has options, examples with no others.
+/// Every help contains the command's own name, and if it has options, examples that use no other
+/// options.
 #[test]
 fn every_help_has_examples_of_what_it_lists() {
     for name in ours() {
@@ -61,7 +63,8 @@ fn every_help_has_examples_of_what_it_lists() {
     }
 }
 
-/// The names of cargo's own commands: what it knows where there is no project and nothing is installed.
+/// Returns the names of cargo's own commands, which are available without a project and without any
+/// installed command.
 fn built_in() -> BTreeSet<String> {
     let nowhere = tempfile::tempdir().expect("a temporary folder");
     let mut cargo = Command::new(env!("CARGO"));
@@ -88,7 +91,7 @@ fn no_command_is_shadowed() {
     );
 }
 
-/// The commands in a page's text: in `backquotes` and in indented blocks.
+/// Returns the commands in a page's text: in `backquotes` and in indented blocks.
 fn named(page: &str) -> BTreeSet<String> {
     let words = page
         .split("`cargo ")
@@ -113,7 +116,7 @@ fn the_readmes_name_every_command_and_no_other() {
     );
 }
 
-/// Every file and folder that a README links to is there.
+/// Every file and folder that a README links to exists.
 #[test]
 fn the_readmes_link_to_what_is_there() {
     for file in README {
@@ -140,7 +143,7 @@ fn the_first_readme_is_short() {
     assert!(read(README[0]).lines().count() <= 120);
 }
 
-/// The messages, and the version, as the firmware's README lists them.
+/// The firmware's README lists the messages and the version correctly.
 #[test]
 fn the_readme_lists_the_messages_as_they_are() {
     let readme = read("firmware/README.md");
@@ -177,7 +180,7 @@ fn the_readme_lists_the_messages_as_they_are() {
     assert!(page.contains(&version), "{version}");
 }
 
-/// Runs cargo with what is on this machine, and only if that is not enough with the registry.
+/// Runs cargo offline, and with the registry only if that fails.
 fn cargo(arguments: &[&str], folder: &Path) {
     let run = |more: &[&str]| {
         output(
@@ -197,7 +200,7 @@ fn cargo(arguments: &[&str], folder: &Path) {
     }
 }
 
-/// The first block of `kind` in a page.
+/// Returns the first block of `kind` in a page.
 fn block<'a>(page: &'a str, kind: &str) -> &'a str {
     let blocks = page
         .split_once(&format!("```{kind}\n"))
@@ -209,7 +212,8 @@ fn block<'a>(page: &'a str, kind: &str) -> &'a str {
 fn the_readmes_example_runs_in_an_empty_crate() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let target = folder.path().join("target").display().to_string();
-    // Cargo unpacks what it has packaged, and compiles it.
+
+    // Cargo unpacks and compiles the package that it has made.
     cargo(
         &[
             "package",

@@ -1,5 +1,6 @@
-//! The firmware's images are the same wherever they are built: no folder of the builder is in them,
-//! and `cargo release-files` makes the same files in another checkout with another folder of cargo.
+//! The firmware's images are the same wherever they are built. They contain no folder of the
+//! builder, and `cargo release-files` makes the same files in another checkout with another cargo
+//! folder.
 
 use std::env;
 use std::fs;
@@ -22,8 +23,8 @@ use crate::support::{application, toolchain};
 /// A small image that every kind of core runs.
 const SMALL: (&str, &str) = ("inject-panic", "thumbv7m-none-eabi");
 
-/// Guards the emulated Pico against a hang: a whole verification takes it 25 s of its own time,
-/// minutes of ours.
+/// The time limit of the emulated Pico. A whole verification takes 25 s of its own time, and
+/// minutes of real time.
 const LONG: Duration = Duration::from_secs(3600);
 
 fn cargo_home() -> PathBuf {
@@ -31,7 +32,7 @@ fn cargo_home() -> PathBuf {
     env::var_os("CARGO_HOME").map_or_else(home, PathBuf::from)
 }
 
-/// A copy of the checkout, with a folder of cargo and a target folder of its own.
+/// A copy of the checkout with its own cargo folder and target folder.
 struct Elsewhere(tempfile::TempDir);
 
 impl Elsewhere {
@@ -42,7 +43,8 @@ impl Elsewhere {
             History::LeftOut => &[&LEFT_OUT[..], &[".git"]].concat(),
         };
         copy(workspace(), &folder.path().join("checkout"), left_out)?;
-        // What has been fetched already, by other names.
+
+        // The downloaded crates, under other names.
         let home = folder.path().join("cargo");
         fs::create_dir_all(&home)?;
         for name in ["registry", "config.toml"] {
@@ -77,16 +79,16 @@ impl Elsewhere {
     }
 }
 
-/// What is built or fetched.
+/// The folders that are built or downloaded.
 const LEFT_OUT: [&str; 2] = ["target", "node_modules"];
 
-/// The commits of a checkout. The packaged kernel names the last.
+/// The commits of a checkout. The packaged kernel contains the last one.
 enum History {
     Copied,
     LeftOut,
 }
 
-/// Copies the files of a folder, but for those of these names.
+/// Copies the files of a folder, except those with these names.
 fn copy(from: &Path, to: &Path, left_out: &[&str]) -> io::Result<()> {
     fs::create_dir_all(to)?;
     for entry in fs::read_dir(from)? {
@@ -132,7 +134,8 @@ fn an_image_built_elsewhere_has_the_same_bytes() -> anyhow::Result<()> {
         .build(binary, chip)
         .unwrap_or_else(|error| panic!("{error}"));
     let elsewhere = Elsewhere::new(History::LeftOut)?;
-    // Runs it, too: it ends with a panic, as it should.
+
+    // The command also runs the image, which ends with a panic as intended.
     let mut command = program("fw");
     command.arg(binary);
     let ran = elsewhere.output(&mut command);
@@ -153,8 +156,8 @@ fn an_image_built_elsewhere_has_the_same_bytes() -> anyhow::Result<()> {
     Ok(())
 }
 
-/// The files of a release, made here and elsewhere; and a board that has been flashed with the
-/// other's file.
+/// The release files that are made here and elsewhere are equal, and a board that was flashed with
+/// the other's file is verified.
 #[test]
 #[ignore = "builds every image twice, and a board answers for minutes"]
 fn a_release_made_elsewhere_is_the_same_and_is_verified_here() -> anyhow::Result<()> {
@@ -164,7 +167,8 @@ fn a_release_made_elsewhere_is_the_same_and_is_verified_here() -> anyhow::Result
     let there = elsewhere.output(&mut program("release-files"));
     assert!(there.status.success(), "{}", there.stderr);
     let sums = |folder: PathBuf| fs::read_to_string(folder.join("release-files/SHA256SUMS"));
-    let (here, there) = (sums(target())?, sums(elsewhere.target())?);
+    let here = sums(target())?;
+    let there = sums(elsewhere.target())?;
     assert_eq!(here, there);
     assert_eq!(here.lines().count(), every_board().count() + 2, "{here}");
 

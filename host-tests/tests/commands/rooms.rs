@@ -1,4 +1,5 @@
-//! Rooms, the top modules of a crate: each imports only from those below it, there are few, and a public type has a name of its own.
+//! Rooms are the top modules of a crate. Each imports only from the rooms below it, there are few,
+//! and the name of a public type is unique.
 
 use std::collections::BTreeSet;
 
@@ -6,10 +7,10 @@ use host_tests::emulator::toolchain::workspace;
 
 use super::hygiene::{read, sources};
 
-/// The most rooms that a crate has.
+/// The largest number of rooms in a crate.
 const MOST: usize = 12;
 
-/// The rooms of each crate, from the uppermost down.
+/// The rooms of each crate, from top to bottom.
 const ROOMS: [(&str, &[&str]); 3] = [
     (
         "kernel",
@@ -30,7 +31,8 @@ const ROOMS: [(&str, &[&str]); 3] = [
         &["commands", "oracle", "emulator", "console", "link"],
     ),
 ];
-/// The lines of each room's files; programs and the list of rooms itself stand above all.
+/// Returns the lines of each room's files. Programs and the list of rooms itself are above all
+/// rooms.
 fn lines(krate: &str) -> Vec<(String, String)> {
     let source = workspace().join(krate).join("src");
     let mut lines = Vec::new();
@@ -54,7 +56,7 @@ fn lines(krate: &str) -> Vec<(String, String)> {
     lines
 }
 
-/// The name at the head of a text.
+/// Returns the name at the beginning of a text.
 fn name(text: &str) -> &str {
     text.split(|c: char| !c.is_alphanumeric() && c != '_')
         .next()
@@ -69,7 +71,8 @@ fn a_room_imports_only_from_those_below_it() {
         let found: BTreeSet<_> = lines.iter().map(|(room, _)| room.as_str()).collect();
         assert_eq!(found, rooms.iter().copied().collect(), "{krate}");
         assert!(rooms.len() <= MOST, "{krate} has {} rooms", rooms.len());
-        // In an import or otherwise.
+
+        // The name of a room may be in an import or elsewhere.
         let code = lines
             .iter()
             .map(|(room, line)| (room, line.split("//").next().unwrap_or_default()));
@@ -98,7 +101,8 @@ fn a_public_type_has_a_name_of_its_own() {
         let declared = lines
             .iter()
             .filter_map(|(_, line)| types.iter().find_map(|keyword| line.strip_prefix(keyword)));
-        // A macro's placeholder is no name.
+
+        // The placeholder of a macro is not a name.
         let twice: Vec<_> = declared
             .map(name)
             .filter(|name| !name.is_empty() && !seen.insert(*name))

@@ -1,5 +1,5 @@
-//! `cargo setup` with stand-ins for the system's programs: what it unpacks for this project alone,
-//! and what it installs on the system only after a question.
+//! `cargo setup` with stand-ins for the system's programs: it unpacks packages for this project,
+//! and installs packages on the system only after a question.
 
 use std::fs::{self, File, Permissions};
 use std::io::{Read, Write};
@@ -20,8 +20,8 @@ const GOOD_QEMU: &str = "echo QEMU emulator version 9.0.2";
 const GOOD_NODE: &str = "echo v20.1.0";
 const OLD_NODE: &str = "echo v12.22.12";
 
-/// Notes how it is called. Asked for a package it names one file, which it then makes; what is
-/// installed is a new Node.js.
+/// A stand-in that logs its calls. If a package is requested, it prints the name of a file and then
+/// makes the file. An installation makes a new Node.js.
 const APT_GET: &str = r#"
 echo "$@" >> "$LOG"
 case "$*" in
@@ -30,13 +30,13 @@ case "$*" in
     *update*) ;;
     *install*) printf '#!/bin/sh\necho v20.1.0\n' > "$(dirname "$0")/node" ;;
 esac"#;
-/// Extracts a QEMU from any package.
+/// A stand-in that extracts a QEMU from any package.
 const DPKG_DEB: &str = r#"
 mkdir -p usr/bin
 printf '#!/bin/sh\necho QEMU emulator version 9.0.2\n' > usr/bin/qemu-system-arm
 chmod 755 usr/bin/qemu-system-arm"#;
 
-/// A system whose programs are stand-ins, and a target folder with nothing in it.
+/// A system whose programs are stand-ins, and an empty target folder.
 struct System {
     folder: TempDir,
 }
@@ -79,7 +79,7 @@ impl System {
         command
     }
 
-    /// The calls of apt-get that install something on the system.
+    /// Returns the calls of apt-get that install packages on the system.
     fn installed(&self) -> Vec<String> {
         let log = fs::read_to_string(self.path("log")).unwrap_or_default();
         let installs = |line: &&str| line.contains("install") && !line.contains("--print-uris");
@@ -105,7 +105,8 @@ fn a_qemu_that_is_old_or_broken_is_replaced_by_an_unpacked_one() {
         let line = format!("QEMU: {}\n", unpacked.display());
         assert!(said.stdout.contains(&line), "{said:?}");
         assert_eq!(system.installed(), [""; 0]);
-        // The next set-up finds it.
+
+        // The next set-up finds the unpacked program.
         let again = output(&mut system.setup(&[]));
         assert!(again.stdout.contains("nothing had to be done"), "{again:?}");
     }
@@ -153,7 +154,8 @@ fn without_a_terminal_packages_are_installed_by_yes_only() {
     }
 }
 
-/// Runs the set-up on a terminal where this is typed; what appears there, too.
+/// Runs the set-up on a terminal where this text is typed. Returns its output and the text on the
+/// terminal.
 fn typed(system: &System, text: &str) -> (Output, String) {
     let master =
         posix_openpt(OFlag::O_RDWR | OFlag::O_NOCTTY | OFlag::O_CLOEXEC).expect("a terminal");
@@ -176,7 +178,8 @@ fn typed(system: &System, text: &str) -> (Output, String) {
     let mut running = spawn(&mut command, LIMIT).expect("it starts");
     drop(command);
     let status = running.wait().expect("it ends");
-    // A terminal without users ends by an error.
+
+    // A terminal without users ends with an error.
     let mut shown = Vec::new();
     let _ = master.read_to_end(&mut shown);
     let shown = String::from_utf8_lossy(&shown).into_owned();
@@ -190,7 +193,7 @@ fn typed(system: &System, text: &str) -> (Output, String) {
 
 #[test]
 fn on_a_terminal_the_user_is_asked() {
-    // Only root is asked: nobody else may install packages.
+    // Only root is asked, because nobody else may install packages.
     if !geteuid().is_root() {
         return;
     }

@@ -1,5 +1,6 @@
-//! `cargo simulate`, whose digits and bits the snapshots show: a board's rows are the host's. What it chooses for a tolerance keeps the
-//! error in every row, and costs no more than it must.
+//! `cargo simulate`, whose digits and bits are in the snapshots. The rows of a board are equal to
+//! the host's. The method that is chosen for a tolerance keeps the error in every row and costs no
+//! more than necessary.
 
 use clap::Parser;
 use double_pendulum::{Integrator, Method, Motion};
@@ -16,7 +17,7 @@ fn simulate(arguments: &str) -> String {
     output.stdout
 }
 
-/// Test `verify_board` compares every method, `identity` every step.
+/// The test `verify_board` compares every method, and `identity` every step.
 #[test]
 fn unequal_rods_with_velocities_have_the_same_bits_on_every_board() {
     let rods = "--masses 2,0.5 --lengths 0.3,1.1 --velocities 3,-4 --step 1/256 --until 4 --every 1/2 --bits";
@@ -37,7 +38,7 @@ fn chosen(arguments: &str) -> Result<(Plan, f64), String> {
     choose(&options, tolerance).map_err(|error| format!("{error:#}"))
 }
 
-/// The largest error of an angle in any row, rad, by the double-double reference.
+/// Returns the largest error of an angle in any row, rad, by the double-double reference.
 fn error(request: &Request) -> Result<f64, double_pendulum::Error> {
     let mut rows = Vec::new();
     request.readings::<double_pendulum::Error>(|reading| {
@@ -46,7 +47,8 @@ fn error(request: &Request) -> Result<f64, double_pendulum::Error> {
     })?;
     let every = f64::from(request.stride) * request.dt;
     let times = (0..rows.len()).map(|row| row as f64 * every);
-    let ([a1, a2], [w1, w2]) = (request.angles, request.velocities);
+    let [a1, a2] = request.angles;
+    let [w1, w2] = request.velocities;
     let exact = taylor::states(&request.parameters, &Motion { a1, a2, w1, w2 }, times);
     let errors = rows
         .iter()
@@ -55,7 +57,8 @@ fn error(request: &Request) -> Result<f64, double_pendulum::Error> {
     Ok(errors.fold(0.0, f64::max))
 }
 
-/// Times of rows are multiples of the step here, and of the time between rows there.
+/// The allowed ratio of the errors: the times of rows are multiples of the step in one computation,
+/// and of the time between rows in the other.
 const ROUNDING: f64 = 1.01;
 
 const MOTIONS: [&str; 6] = [
@@ -86,7 +89,9 @@ fn every_row_is_within_the_tolerance_and_no_longer_step_would_do()
                     found <= told * ROUNDING && told <= *tolerance,
                     "{case}: {found:e} rad"
                 );
-                // One of three steps, or two of three, from row to row fewer.
+
+                // Fewer steps between rows: three quarters of a power of two, or two thirds of the
+                // others.
                 let fewer = if request.stride.is_power_of_two() {
                     3 * request.stride / 4
                 } else {
@@ -106,6 +111,7 @@ fn every_row_is_within_the_tolerance_and_no_longer_step_would_do()
             }
         }
     }
+
     Ok(())
 }
 
@@ -118,6 +124,7 @@ fn planned(arguments: &str) -> Result<Plan, Box<dyn std::error::Error>> {
 fn without_a_step_the_longest_that_fits_the_rows_is_chosen()
 -> Result<(), Box<dyn std::error::Error>> {
     const USUAL: f64 = 1.0 / 1024.0;
+
     for (arguments, stride) in [
         ("--every 0.1", 103),
         ("--every 0.01", 11),
@@ -125,7 +132,7 @@ fn without_a_step_the_longest_that_fits_the_rows_is_chosen()
         ("--every 5/2", 2560),
         ("--every 1/4096", 1),
         ("--until 1 --every 1/3", 342),
-        // A hundred rows.
+        // The default is a hundred rows.
         ("", 103),
         ("--until 0", 11),
         ("--method closed-form-f64 --every 5", 1),
@@ -141,7 +148,8 @@ fn without_a_step_the_longest_that_fits_the_rows_is_chosen()
         let is_closed = request.method.integrator() == Integrator::ClosedForm;
         assert!(is_closed || request.dt <= USUAL, "{arguments}");
     }
-    // A shorter one where the method or the fastest motion of the energy needs it.
+
+    // The step is shorter if the method or the fastest motion of the energy needs it.
     for arguments in [
         "--masses 1,1000 --until 1",
         "--masses 1,1000 --until 1 --method extrapolation12-f64",
@@ -157,10 +165,11 @@ fn without_a_step_the_longest_that_fits_the_rows_is_chosen()
         let halved = 2.0 * request.dt;
         assert!(halved > safe.min(USUAL), "{arguments}: {request:?}");
     }
+
     Ok(())
 }
 
-/// Motions whose energy is that of the velocities, at places where the velocities change fast.
+/// Motions whose energy is that of the velocities, from positions where the velocities change fast.
 const FAST: [&str; 5] = [
     "--angles 0.3,-0.2 --velocities 0,30",
     "--angles 0,0.1 --velocities 20,-40 --masses 1,100",
@@ -172,7 +181,7 @@ const FAST: [&str; 5] = [
 /// The error of RK4's longest step that causes no warning, rad: 0.0072/4^5
 /// ([`Pendulum::admissible_step`](double_pendulum::Pendulum::admissible_step)).
 const SAFE_STEP_ERROR: f64 = 7.2e-6;
-/// Roundings of an angle in one step, rad.
+/// The roundings of an angle in one step, rad.
 const ROUNDINGS: f64 = 1e-13;
 
 #[test]
@@ -185,6 +194,7 @@ fn a_step_is_called_too_long_by_the_order_of_its_method() -> Result<(), Box<dyn 
         Method::Extrapolation12F64,
         Method::Extrapolation16F64,
     ];
+
     for motion in FAST {
         let mut rk4 = 0.0;
         for method in methods {
@@ -206,12 +216,15 @@ fn a_step_is_called_too_long_by_the_order_of_its_method() -> Result<(), Box<dyn 
             }
         }
     }
-    // What --tolerance takes, and what it would take from there down to the last digit.
+
+    // The steps that --tolerance chooses here, and those for smaller tolerances down to the last
+    // digit, cause no warning.
     for (motion, step) in [("120,120", "1/24"), ("120,120", "1/64"), ("2,2", "1/16")] {
         let degrees = if motion == "2,2" { "" } else { "--degrees" };
         let case =
             format!("--angles {motion} {degrees} --method extrapolation16-fixed64 --step {step}");
         assert_eq!(planned(&format!("{case} --until 1"))?.note, None, "{case}");
     }
+
     Ok(())
 }

@@ -18,7 +18,7 @@ use firmware::scenes::SceneName;
 use host_tests::emulator::boards::BOARDS;
 use host_tests::emulator::process;
 
-/// Of a method whose cycles no one counts.
+/// The cells of a method without a cycle count.
 const UNCOUNTED: &str = "| no cycle counter | no cycle counter | - |";
 
 #[test]
@@ -58,7 +58,8 @@ fn a_board_with_the_hosts_bits_is_told_so_and_reported() {
         head.iter().all(|part| markdown.contains(part)),
         "{markdown}"
     );
-    // What the board says of restarts, and what is its owner's to find out.
+
+    // The board's report of restarts, and the checks for its owner.
     for row in [
         "| restarts during this verification | 0 |",
         "| last restart by itself | none since it was switched on |",
@@ -79,10 +80,11 @@ fn a_board_with_the_hosts_bits_is_told_so_and_reported() {
     );
 }
 
-/// A button that has done nothing for so long is let go.
+/// The time after which a button without an effect is released.
 const PATIENCE: Duration = Duration::from_secs(10);
 
-/// What the person does who is asked this: the button that is tapped, and the line that is entered; `None` ends the input.
+/// Returns the person's reaction to a question: the button to tap, and the line to enter; `None`
+/// ends the input.
 fn person(question: &str) -> Option<(Option<Key>, Option<&'static str>)> {
     if question.contains("the panel shows a swinging pendulum") {
         return Some((None, Some("n\n")));
@@ -99,14 +101,17 @@ fn person(question: &str) -> Option<(Option<Key>, Option<&'static str>)> {
     })
 }
 
-/// The cycles of a frame that has ended 15 ms before it began, by a clock that is read wrongly: 86
-/// s at 50 MHz.
+/// The cycles of a frame that ended 15 ms before it began, by a clock that is read wrongly: 86 s at
+/// 50 MHz.
 const OVERLONG: u32 = 0_u32.wrapping_sub(750_000);
 
-/// A chip that counts 100 cycles for a step of the second arithmetic from flash, 50 from RAM, and
-/// none else, which no emulated one does. Of an arithmetic that is not counted it is asked once for
-/// each place, of the others until 256 steps are made. A bit is flipped in the second motion of the
-/// second arithmetic and in a scene. In another scene a frame takes longer than the run.
+/// Changes the messages of an emulated board into those of a chip that has a cycle counter, which
+/// no emulated board has.
+///
+/// The chip counts 100 cycles for a step of the second arithmetic from flash, 50 from RAM, and none
+/// for the others. An arithmetic without a count is measured once for each place, and the others
+/// until 256 steps are made. One bit is flipped in the second motion of the second arithmetic, and
+/// one in a scene. In another scene a frame takes longer than the run.
 fn counting(mut message: ToHost, asked: &mut u32) -> Vec<u8> {
     match &mut message {
         ToHost::Answer(_, Answer::Measured { steps, cycles }) => {
@@ -154,8 +159,11 @@ fn what_differs_what_the_person_says_and_the_chip_counts_is_in_the_report() {
     let lines = lines(BufReader::new(
         verification.child.stderr.take().expect("a pipe"),
     ));
-    let (mut said, mut asked, mut step) = (Vec::new(), 0, 0);
-    // The step that the motion has come to.
+    let mut said = Vec::new();
+    let mut asked = 0;
+    let mut step = 0;
+
+    // Returns the current step of the motion.
     let mut carry = |bench: &mut Bench| {
         bench.carry(|message| {
             step = message.frame().map_or(step, |frame| frame.report.step);
@@ -171,9 +179,11 @@ fn what_differs_what_the_person_says_and_the_chip_counts_is_in_the_report() {
         let Ok(line) = lines.try_recv() else { continue };
         if let Some((key, entered)) = person(&line) {
             if let Some(key) = key {
-                let (before, since) = (carry(&mut bench), Instant::now());
+                let before = carry(&mut bench);
+                let since = Instant::now();
                 bench.machine.set_key(key, true).expect("buttons");
-                // Until the motion starts again.
+
+                // The button is held until the motion starts again.
                 while carry(&mut bench) >= before && since.elapsed() < PATIENCE {}
                 bench.machine.set_key(key, false).expect("buttons");
             }
@@ -204,7 +214,8 @@ fn what_differs_what_the_person_says_and_the_chip_counts_is_in_the_report() {
         said.iter().any(|line| line.starts_with(too_long)),
         "no {too_long:?} in {said:#?}"
     );
-    // Beside the panel and a button.
+
+    // In addition to the panel and a button.
     assert!(
         markdown.contains("5 not well") && markdown.contains("step 160: w2 is 0x"),
         "{markdown}"
@@ -217,6 +228,7 @@ fn what_differs_what_the_person_says_and_the_chip_counts_is_in_the_report() {
         )
     };
     let answers = ["no", "yes", "no", "not answered", "yes", "not answered"];
+
     for (what, answer) in [panel]
         .into_iter()
         .chain(Key::ALL.iter().map(button))
@@ -232,11 +244,13 @@ fn what_differs_what_the_person_says_and_the_chip_counts_is_in_the_report() {
             "{said:#?}"
         );
     }
+
     let counted = format!("| {} | 100.0 | 50.0 | ", ON_BOARDS[1]);
     let estimate: Option<f64> = markdown
         .split_once(&counted)
         .and_then(|(_, rest)| rest.split(' ').next()?.parse().ok());
-    // A step of it takes some 23,000 cycles (`cargo count`).
+
+    // A step takes some 23,000 cycles (`cargo count`).
     assert!(
         estimate.is_some_and(|estimate| (1e4..4e4).contains(&estimate)),
         "{markdown}"
@@ -248,7 +262,7 @@ fn what_differs_what_the_person_says_and_the_chip_counts_is_in_the_report() {
     );
 }
 
-/// The lines as they come.
+/// Returns the lines as they arrive.
 fn lines(source: impl BufRead + Send + 'static) -> Receiver<String> {
     let (line, lines) = channel();
     spawn(move || {

@@ -1,4 +1,4 @@
-//! Panels by other people's drivers: every scene in a frame buffer of embedded-graphics' own.
+//! Panels with drivers of other projects: every scene in a frame buffer of embedded-graphics.
 
 use embedded_graphics::framebuffer::{Framebuffer, buffer_size};
 use embedded_graphics::geometry::{Dimensions, Point};
@@ -10,12 +10,12 @@ use firmware::display::{AnyPanel, Display};
 use firmware::scenes::SceneName;
 use host_tests::emulator::host::Show;
 
-/// Where on the panel the frame is.
+/// The position of the frame on the panel.
 const CORNER: Point = Point::new(11, 9);
-/// Frames of each scene.
+/// The number of frames of each scene.
 const FRAMES: usize = 30;
 
-/// On a black panel, which stays black around the frame.
+/// The panel is black and stays black around the frame.
 #[test]
 fn every_scene_is_the_canvas_through_the_map_of_colours() {
     type Target =

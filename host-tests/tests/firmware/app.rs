@@ -1,4 +1,5 @@
-//! The application as it runs on the boards, with a panel in memory, a growing byte vector and scripted buttons.
+//! The application that runs on the boards, with a panel in memory, a byte vector as its link, and
+//! scripted buttons.
 
 use double_pendulum::plan::Stepping;
 use double_pendulum::{Method, Parameters, Pendulum, State};
@@ -58,6 +59,7 @@ fn every_frame_carries_the_kernels_state_bit_identically() {
         steps: 3,
     };
     let mut expected = Settings::default().run(0.0, stepping).expect("good");
+
     for (sequence, frame) in (0..).zip(frames) {
         expected.advance(1).expect("a finite motion");
         let Report {
@@ -79,7 +81,9 @@ fn every_frame_carries_the_kernels_state_bit_identically() {
         );
         assert_eq!(time, f64::from(sequence + 1) / 60.0);
         assert_eq!((frame.mass_ratio, frame.start_angle), (1.0, start_angle));
-        // Of the motion as computed: the state in the frame, rounded to f32, is off by some 1e-7.
+
+        // This is the error of the computed motion. The state in the frame, rounded to f32, has an
+        // error of some 1e-7.
         let error = (pendulum.energy(&expected.state()) - start_energy) / scale;
         assert!(
             (f64::from(energy_error) - error).abs() <= ENERGY_SHOWN,
@@ -102,6 +106,7 @@ fn dropped_pictures_are_counted_and_no_tick_is_lost() {
     );
     assert_eq!(events, [], "at most one line a second");
     assert!(app.run_to(late + 2, |event| events.push(event)));
+
     while !app.run_to(90, |event| events.push(event)) {}
 
     let frames = frames(&app.link);
@@ -136,14 +141,16 @@ fn dropped_pictures_are_counted_and_no_tick_is_lost() {
 fn losses_are_said_once_a_second_and_lost_bytes_sent_with_each_frame() {
     let mut app = app();
     let mut events = Vec::new();
-    // Each tick one more is lost, and a message damaged.
+
+    // In each tick one more byte is lost, and a message damaged.
     for tick in 1..=2 * TICK_RATE {
         app.run_to(tick, |_| ());
         app.note_lost(tick, |event| events.push((tick, event)));
         app.receive([1, 0], |event| events.push((tick, event)));
     }
     let said = |tick| {
-        let (grown, last) = (TICK_RATE, LinkError::Malformed);
+        let grown = TICK_RATE;
+        let last = LinkError::Malformed;
         [
             Event::Lost {
                 bytes: grown,
@@ -165,7 +172,8 @@ fn losses_are_said_once_a_second_and_lost_bytes_sent_with_each_frame() {
     assert_eq!(counts, (0..2 * TICK_RATE).collect::<Vec<_>>());
 }
 
-/// After 828 days the counts of ticks, of frames and of those dropped begin again at 0: nothing else is to be seen of it.
+/// After 828 days the counts of ticks, of frames and of dropped frames begin again at 0, without
+/// any other effect.
 #[test]
 fn counts_wrap_unnoticed() {
     const AHEAD: u32 = 60;
@@ -179,7 +187,8 @@ fn counts_wrap_unnoticed() {
         (frames(&app.link), app.canvas.clone(), events)
     };
     let begin = 0_u32.wrapping_sub(AHEAD / 3);
-    let (plain, wrapped) = (run(0), run(begin));
+    let plain = run(0);
+    let wrapped = run(begin);
     assert_eq!((&plain.1, plain.0.len()), (&wrapped.1, wrapped.0.len()));
     for (mut plain, wrapped) in plain.0.into_iter().zip(wrapped.0) {
         plain.sequence = plain.sequence.wrapping_add(begin);
@@ -252,7 +261,7 @@ fn buttons_restart_with_the_new_settings() {
     assert_eq!((frames[53].report.step, frames[53].sequence), (1, 53));
 }
 
-/// Fails in the first frame, and from the tenth to the nineteenth.
+/// A panel that fails in the first frame, and from the tenth to the nineteenth.
 #[derive(Default)]
 struct BrokenPanel(u32);
 
@@ -269,7 +278,7 @@ impl Display for BrokenPanel {
     }
 }
 
-/// Fails for the writes from 5 to 9, each time after half of the bytes.
+/// A link that fails for the writes from 5 to 9, each time after half of the bytes.
 #[derive(Default)]
 struct Faulty {
     bytes: Vec<u8>,
@@ -314,7 +323,9 @@ fn a_failing_panel_or_link_is_reported_once_and_only_what_the_link_cut_is_lost()
         events,
         [(1, Event::Panel("bus")), link, (10, Event::Panel("bus"))]
     );
-    // Writes: frames 0 to 3 (1 to 4), frames 4 to 8 broken off in the middle (5 to 9), then all is well.
+
+    // The writes are frames 0 to 3 (1 to 4), and frames 4 to 8, which are interrupted in the middle
+    // (5 to 9). Then all is well.
     let mut inbox = Inbox::default();
     let frames = app
         .link
@@ -325,7 +336,7 @@ fn a_failing_panel_or_link_is_reported_once_and_only_what_the_link_cut_is_lost()
     assert_eq!(inbox.counts.damaged, 5);
 }
 
-/// Where the rods point, by the state reported.
+/// Returns the directions of the rods from the reported state.
 fn directions(app: &Plain) -> RodDirections {
     let State { a1, a2, .. } = app.player.report.state;
     [a1, a2].map(|angle| angle.sin_cos().into())
@@ -354,7 +365,9 @@ fn bobs_are_drawn_where_the_state_puts_them() {
 #[test]
 fn the_motion_never_touches_the_labels() {
     let mut app = starting_with(Settings::equal_rods(0.0125, -179.0));
-    // Boxes of the three labels at their longest in use: 8 and 7 characters of 5 pixels, and a time below 1000 s.
+
+    // The boxes of the three labels at their longest: 8 and 7 characters of 5 pixels, and a time
+    // below 1000 s.
     let boxes = [(0..40, 0..8), (0..35, 56..64), (93..128, 0..8)];
     for now in 1..=3600 {
         app.run_to(now, |_| ());
@@ -373,12 +386,14 @@ fn the_motion_never_touches_the_labels() {
     }
 }
 
-/// What was played before a restart goes on, and the host is told why the board restarted; what cannot be played is left.
+/// After a restart the scene continues, and the host receives the reason of the restart. A scene
+/// that cannot be played is dropped.
 #[test]
 fn a_restart_goes_on_with_what_was_played() {
     let before = Show::new(SceneName::Butterfly, &Settings::equal_rods(2.5, 90.0)).expect("good");
     let played = before.player.status();
-    let (cause, scene) = (Some(Cause::Hang), SceneName::Butterfly);
+    let cause = Some(Cause::Hang);
+    let scene = SceneName::Butterfly;
     let end = Restarted {
         cause,
         restarts: 1,
@@ -400,6 +415,7 @@ fn a_restart_goes_on_with_what_was_played() {
         speed: f32::NAN,
         ..played
     };
+
     for (played, end, resumed) in [
         (played, end, true),
         (massless, end, false),
@@ -413,7 +429,8 @@ fn a_restart_goes_on_with_what_was_played() {
         assert_eq!(events, [Event::Restarted(end, resumed)]);
         assert_eq!(app.player.status(), if resumed { played } else { first });
         assert_eq!(messages(&app.link), [ToHost::Restarted(end)]);
-        // Nobody may have heard that; whoever asks is told, each time.
+
+        // The report may not have been received, so every question is answered.
         for _ in 0..2 {
             app.receive(wire(5, Command::AskRestart), |_| ());
             let answer = ToHost::Answer(5, Answer::Restart(Some(end)));

@@ -1,4 +1,5 @@
-//! The application as it runs on the boards, without panel and buttons, what it sends, and the places of a frame.
+//! The application that runs on the boards, without panel and buttons, its messages, and the places
+//! of a frame.
 
 use embedded_io::Write;
 use firmware::app::{App, Buttons, NoButtons};
@@ -13,7 +14,7 @@ use host_tests::link::Inbox;
 
 pub type Plain = App<'static, NoDisplay, Vec<u8>, NoButtons>;
 
-/// The application as it begins, with such devices.
+/// Returns the application at its start with these devices.
 pub fn of<P: Display + 'static, L: Write, K: Buttons>(
     panel: P,
     link: L,
@@ -43,7 +44,7 @@ pub fn wire(request: u16, command: Command) -> Vec<u8> {
     encode_command(request, command, &mut [0; MAX_WIRE]).to_vec()
 }
 
-/// The messages in a stream in which nothing is damaged.
+/// Returns the messages in a stream without damage.
 pub fn messages(bytes: &[u8]) -> Vec<ToHost> {
     let mut inbox = Inbox::default();
     let messages = bytes.iter().filter_map(|&byte| inbox.take(byte)).collect();
@@ -65,7 +66,7 @@ pub fn answers(bytes: &[u8]) -> Vec<(u16, Answer)> {
         .collect()
 }
 
-/// All pixels of the frame, row by row.
+/// Returns all places of the frame, row by row.
 pub fn places() -> impl Iterator<Item = (i32, i32)> {
     (0..HEIGHT as i32).flat_map(|y| (0..WIDTH as i32).map(move |x| (x, y)))
 }

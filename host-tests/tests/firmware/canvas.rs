@@ -1,4 +1,4 @@
-//! The framebuffer and the brush: layout, clipping, and that a disc is where it was put.
+//! The framebuffer and the brush: layout, clipping, and the position of discs.
 
 use embedded_graphics::geometry::Point;
 use embedded_graphics::image::GetPixel;
@@ -10,11 +10,12 @@ use firmware::graphics::{Canvas, Disc, Glyph, HEIGHT, SUBPIXELS, Spot, Stroke, W
 
 use crate::bench::places;
 
-/// Greys are rounded down to one of 16, which shifts a disc's centre of light by far less than this, pixels.
+/// The tolerance of a disc's centre of light, pixels. Greys are rounded down to one of 16, which
+/// shifts it by far less.
 const CENTRE_TOLERANCE: f64 = 0.1;
 
-/// A ramp one pixel wide is not quite the share of a pixel that is covered: where a narrow stroke ends they differ most, by 2.3
-/// of 15 greys.
+/// The tolerance of a grey. A ramp one pixel wide differs from the covered share of a pixel, at
+/// most by 2.3 of 15 greys, at the end of a narrow stroke.
 const GREY_TOLERANCE: f64 = 2.5;
 
 fn grey(canvas: &Canvas, x: i32, y: i32) -> u8 {
@@ -45,7 +46,8 @@ fn the_left_pixel_is_the_high_nibble() {
 #[test]
 fn what_lies_outside_is_not_drawn() {
     let mut canvas = Canvas::default();
-    let (width, height) = (WIDTH as i32, HEIGHT as i32);
+    let width = WIDTH as i32;
+    let height = HEIGHT as i32;
     for out in [-1, i32::MIN, i32::MAX, width.max(height)] {
         for (x, y) in [(out, 0), (0, out), (out, out), (width, 0), (0, height)] {
             canvas.update(x, y, |_| 15);
@@ -114,7 +116,8 @@ fn a_disc_is_where_it_was_put() {
                 sum[2] + grey * (f64::from(row) + 0.5),
             ];
         }
-        let (found_x, found_y) = (sum[1] / sum[0], sum[2] / sum[0]);
+        let found_x = sum[1] / sum[0];
+        let found_y = sum[2] / sum[0];
         assert!(
             (found_x - f64::from(x)).abs() < CENTRE_TOLERANCE,
             "x {x}: {found_x}"
@@ -144,6 +147,7 @@ fn a_stroke_of_any_numbers_is_safe() {
         .iter()
         .flat_map(|&x| numbers.map(|y| Spot::at(x, y)))
         .collect();
+
     for &from in &spots {
         for &to in &spots {
             let mut canvas = Canvas::default();
@@ -169,8 +173,8 @@ fn a_stroke_of_any_numbers_is_safe() {
     }
 }
 
-/// How far the middle of a pixel is from the straight line between two places, and the share of its area within `radius` of
-/// that line, by 16 x 16 points.
+/// Returns the distance of a pixel's middle from the straight line between two places, and the
+/// share of its area within `radius` of that line, by 16 x 16 points.
 fn covered((x, y): (i32, i32), [from, to]: [(f64, f64); 2], radius: f64) -> f64 {
     let along = (to.0 - from.0, to.1 - from.1);
     let squared = along.0 * along.0 + along.1 * along.1;
@@ -198,14 +202,17 @@ fn covered((x, y): (i32, i32), [from, to]: [(f64, f64); 2], radius: f64) -> f64 
     points.filter(|point| is_inside(*point)).count() as f64 / 256.0
 }
 
-/// Strokes as wide as those of scenes and wider, of any direction and length, some across the edges.
+/// The strokes are as wide as those of scenes and wider, of any direction and length, and some
+/// cross the edges.
 #[test]
 fn a_pixel_is_as_bright_as_it_is_covered() {
     let mut rng = Rng::with_seed(7);
     let mut greatest = 0.0_f64;
+
     for _ in 0..100 {
         let mut place = || (rng.f64() * 160.0 - 16.0, rng.f64() * 80.0 - 8.0);
-        let (from, mut to) = (place(), place());
+        let from = place();
+        let mut to = place();
         if rng.bool() {
             to = (
                 from.0 + 4.0 * rng.f64() - 2.0,
@@ -232,6 +239,7 @@ fn a_pixel_is_as_bright_as_it_is_covered() {
             greatest = greatest.max(error);
         }
     }
+
     println!("off by {greatest} greys at most");
 }
 
@@ -239,7 +247,8 @@ fn a_pixel_is_as_bright_as_it_is_covered() {
 fn a_gap_sets_a_disc_off() {
     let mut canvas = Canvas::default();
     places().for_each(|(x, y)| canvas.update(x, y, |_| 15));
-    let (x, y) = (30.3_f32, 20.7_f32);
+    let x = 30.3_f32;
+    let y = 20.7_f32;
     Disc {
         gap: 2 * SUBPIXELS as u8,
         ..disc(x, y, 3.0)
@@ -275,7 +284,8 @@ fn a_line_is_as_bright_in_every_direction() {
         .lighten(&mut canvas, u8::MAX);
         f64::from(light(&canvas))
     };
-    // A stroke 2 wide and 20 long with round ends, all white: (2 x 20 + pi) x 15.
+
+    // A white stroke 2 wide and 20 long with round ends has a light of (2 x 20 + pi) x 15.
     let expected = (2.0 * f64::from(length) + std::f64::consts::PI) * 15.0;
     for degrees in 0..360 {
         let ratio = total(degrees as f32) / expected;

@@ -1,4 +1,4 @@
-//! Commands over the serial link, answered by the very application that runs on the boards.
+//! Commands over the serial link, answered by the application that runs on the boards.
 
 use std::f64::consts::PI;
 
@@ -21,7 +21,7 @@ use host_tests::link::refusal;
 
 use crate::bench::{Plain, answers, app, frames, wire};
 
-/// The answer to a command.
+/// Returns the answer to a command.
 fn answer(app: &mut Plain, command: Command) -> Answer {
     app.receive(wire(9, command), |_| ());
     last(app, 9)
@@ -80,12 +80,14 @@ fn every_parameter_is_set_in_si_units() {
     }
 }
 
-/// Taps that come all at once are all executed, in their order, as the board's own buttons are.
+/// Taps that arrive at the same time are all executed in order, like those of the board's own
+/// buttons.
 #[test]
 fn no_tap_is_lost_however_quick() {
     let mut app = app();
     let before = app.player.settings;
-    let (right, left) = (Command::TurnRight, Command::TurnLeft);
+    let right = Command::TurnRight;
+    let left = Command::TurnLeft;
     let taps = [
         right,
         right,
@@ -112,7 +114,7 @@ fn no_tap_is_lost_however_quick() {
     assert_eq!(answers(&app.link), [(1, Answer::Done); 9]);
 }
 
-/// A board of 1 MHz whose steps take 100 cycles, and that knows what it is.
+/// A board of 1 MHz whose steps take 100 cycles, and that knows its identity.
 #[test]
 fn a_board_tells_what_it_is_and_how_long_steps_take() {
     let mut app = app();
@@ -132,7 +134,8 @@ fn a_board_tells_what_it_is_and_how_long_steps_take() {
         image: || b"123456789",
         ..Instruments::default()
     };
-    // The check value of CRC-32/ISO-HDLC.
+
+    // This is the check value of CRC-32/ISO-HDLC.
     let expected = Identity {
         image: 0xCBF4_3926,
         image_bytes: 9,
@@ -157,8 +160,10 @@ fn a_board_tells_what_it_is_and_how_long_steps_take() {
         ..Request::on_any_core(Method::Rk4F32)
     };
     app.receive(wire(3, Command::Simulate(request)), |_| ());
+
     while app.work(|_| ()) {}
     assert!(matches!(last(&app, 3), Answer::Sample { index: 1, .. }));
+
     for (in_ram, cycles) in [(false, 1600), (true, 800), (false, 1600)] {
         assert_eq!(
             answer(&mut app, measure(in_ram)),
@@ -168,6 +173,7 @@ fn a_board_tells_what_it_is_and_how_long_steps_take() {
             }
         );
     }
+
     assert!(!app.work(|_| ()), "and no sample follows");
 }
 
@@ -176,6 +182,7 @@ fn a_bad_command_is_answered_with_the_field_and_changes_nothing() {
     let mut app = app();
     app.run_to(30, |_| ());
     let before = (status(&mut app), app.player.report);
+
     for (message, field) in [
         (set(Field::M1, 0.0), Field::M1),
         (set(Field::M2, -1.0), Field::M2),
@@ -203,11 +210,12 @@ fn a_bad_command_is_answered_with_the_field_and_changes_nothing() {
             "{message:?}"
         );
     }
+
     assert_eq!((status(&mut app), app.player.report), before);
 }
 
-/// The panel says so in words, the frames say that the scene has stopped, and the log says it once;
-/// other settings start it again.
+/// The panel shows it in words, the frames report that the scene has stopped, and the log reports
+/// it once. Other settings start the scene again.
 #[test]
 fn motion_that_is_too_fast_is_stopped_and_said_to_be() {
     let mut app = app();
@@ -230,6 +238,7 @@ fn motion_that_is_too_fast_is_stopped_and_said_to_be() {
         assert_eq!(frame.report.horizon, Horizon::Until(0.0));
     }
     let mut expected = Canvas::default();
+
     for (row, text) in [
         (2, "too fast"),
         (3, "for this chip"),
@@ -246,7 +255,7 @@ fn motion_that_is_too_fast_is_stopped_and_said_to_be() {
     assert_eq!(app.player.report.step, 1);
 }
 
-/// A user's pause is not a stop, and does not outlive one.
+/// A user's pause is not a stop, and is still in effect after one.
 #[test]
 fn paused_and_stopped_are_told_apart() {
     let mut app = app();
@@ -263,7 +272,8 @@ fn paused_and_stopped_are_told_apart() {
     }
 }
 
-/// Of an unknown kind, with too few fields, too many, a scene, a setting or a method that is none, and without a number.
+/// The commands have an unknown kind, too few or too many fields, an invalid scene, setting or
+/// method, or no number.
 #[test]
 fn an_intact_command_that_cannot_be_read_is_answered_too() {
     let mut app = app();
@@ -286,7 +296,7 @@ fn an_intact_command_that_cannot_be_read_is_answered_too() {
     assert!(refusal(Field::Message).ends_with("flash it anew"));
 }
 
-/// Of a link that is looped back the board hears what it has sent.
+/// On a looped-back link the board receives its own messages.
 #[test]
 fn what_is_no_command_is_not_answered() {
     let mut app = app();
@@ -415,7 +425,7 @@ fn the_plan_is_found_in_some_tick_told_when_asked_and_followed() {
     assert_eq!(asked(&mut app), None);
 }
 
-/// A method that is asked for is taken, and stays until the plan may choose again.
+/// A requested method is used, and remains until the plan may choose again.
 #[test]
 fn a_method_can_be_forced() {
     let mut app = app();
@@ -430,7 +440,8 @@ fn a_method_can_be_forced() {
     }
 }
 
-/// What no frame of a Cortex-M3 can pay for by this method: a short rod swings fast.
+/// A method whose steps are too expensive for a frame of a Cortex-M3, because a short rod swings
+/// fast.
 const COSTLY: Method = Method::Rk4F32DirectionPlain;
 
 fn fast() -> Settings {
@@ -439,7 +450,7 @@ fn fast() -> Settings {
     settings
 }
 
-/// So Tab never gets stuck, whatever method is requested.
+/// The key Tab therefore always reaches the next scene, with any requested method.
 #[test]
 fn a_scene_that_cannot_use_the_requested_method_follows_its_plan() {
     let mut app = app();
@@ -463,7 +474,7 @@ fn a_scene_that_cannot_use_the_requested_method_follows_its_plan() {
     );
     assert_eq!(status(&mut app), fallen_back, "and changes nothing");
 
-    // What the host replays from the status is the same.
+    // The host's replay of the status is the same.
     let mut replayed = self::app();
     assert_eq!(replayed.player.resume(&fallen_back), Ok(()));
     assert_eq!(replayed.player.report, app.player.report);
@@ -477,7 +488,7 @@ fn a_scene_that_cannot_use_the_requested_method_follows_its_plan() {
     );
 }
 
-/// By every method, from every scene to the next and back.
+/// Every method is requested, from every scene to the next and back.
 #[test]
 fn every_scene_is_reached_whatever_method_is_requested() {
     for &method in Method::DRAWN {
@@ -525,7 +536,7 @@ fn a_scene_that_has_fallen_back_takes_what_the_plan_finds() {
     );
 }
 
-/// Many steps of a slow method would keep the board from its frames, and the watchdog would bite.
+/// Many steps of a slow method would delay the board's frames, and the watchdog would restart it.
 #[test]
 fn a_requested_method_that_a_frame_cannot_pay_for_is_not_used() {
     let mut app = app();
@@ -543,7 +554,7 @@ fn a_requested_method_that_a_frame_cannot_pay_for_is_not_used() {
     assert_eq!(app.player.settings.mass_ratio(), 100.0);
 }
 
-/// All at once, for a few of them alone may be impossible.
+/// All settings are sent at once, because some of them alone may be impossible.
 #[test]
 fn a_scene_is_played_with_settings_of_ones_own() {
     let mut app = app();
@@ -574,6 +585,7 @@ fn a_scene_is_played_with_settings_of_ones_own() {
         change(&mut settings);
         settings
     };
+
     for (scene, settings, field) in [
         (
             SceneName::Page,
@@ -642,11 +654,11 @@ fn speed_is_exact_in_the_long_run() {
     }
 }
 
-/// What arrives in one tick at most: 460,800 bits per second.
+/// The largest number of bytes that arrive in a tick, at 460,800 bits per second.
 const BYTES_PER_TICK: usize = 768;
 
-/// Feeds `bytes` as fast as the link can bring them, one frame per tick; checks that every tick has its intact frame
-/// and that the log stays short. The application afterwards.
+/// Feeds `bytes` as fast as the link can deliver them, one frame per tick. Checks that every tick
+/// has its intact frame and that the log stays short. Returns the application.
 fn flood(mut bytes: impl Iterator<Item = u8>, seconds: u32) -> Plain {
     let mut app = app();
     let mut lines = 0;

@@ -1,4 +1,4 @@
-//! Buttons to commands, commands to settings, settings to labels.
+//! The conversion of buttons to commands, of commands to settings, and of settings to labels.
 
 use firmware::app::{Controls, Pressed};
 use firmware::config::{
@@ -21,7 +21,7 @@ const SELECT: Pressed = Pressed {
     ..NONE
 };
 
-/// The ticks, counted from 0, at which commands come.
+/// Returns the ticks, counted from 0, in which commands occur.
 fn commands(
     controls: &mut Controls,
     readings: impl IntoIterator<Item = Pressed>,
@@ -35,7 +35,7 @@ fn commands(
     readings.into_iter().enumerate().flat_map(each).collect()
 }
 
-/// Controls that have seen every button released.
+/// Returns controls that have seen every button released.
 fn proven() -> Controls {
     let mut controls = Controls::default();
     assert_eq!(commands(&mut controls, [NONE; 10]), []);
@@ -116,6 +116,7 @@ fn readings_become_commands() {
             vec![(next_scene, Command::NextScene)],
         ),
     ];
+
     for (arrow, command) in [
         (Pressed { up: true, ..SELECT }, Command::TogglePause),
         (
@@ -147,12 +148,13 @@ fn readings_become_commands() {
             vec![(10 + first, command)],
         ));
     }
+
     for (what, readings, fired) in cases {
         assert_eq!(commands(&mut proven(), readings), fired, "{what}");
     }
 }
 
-/// With one button: so many taps, and then it is held.
+/// A single button is tapped a number of times and then held.
 #[test]
 fn taps_before_a_hold_choose_what_the_hold_does() {
     let tap = || [SELECT; 5].into_iter().chain([NONE; 5]);
@@ -171,6 +173,7 @@ fn taps_before_a_hold_choose_what_the_hold_does() {
             .collect::<Vec<_>>()
     };
     let held = usize::from(HOLD_TICKS) + 2 * usize::from(REPEAT_PERIOD_TICKS) + 2;
+
     for (taps, command) in [
         Command::Heavier,
         Command::Lighter,
@@ -193,6 +196,7 @@ fn taps_before_a_hold_choose_what_the_hold_does() {
             taps + 1
         );
     }
+
     assert_eq!(after(5, 0, held), [], "there is nothing for five taps");
     assert_eq!(after(3, 0, 20), [], "not held long enough");
 }

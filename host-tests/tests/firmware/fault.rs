@@ -1,4 +1,4 @@
-//! A fault's registers in words.
+//! The registers of a fault in words.
 
 use firmware::fault::{Fault, Stacked, call_size};
 
@@ -29,6 +29,7 @@ fn names_the_cause() {
         mmfar,
         ..fault(cfsr, 0x4000_0000)
     };
+
     for (fault, cause) in [
         (fault(0x0001_0000, 0x4000_0000), "undefined instruction"),
         (fault(0x0200_0000, 0x4000_0000), "division by zero"),
@@ -48,7 +49,7 @@ fn names_the_cause() {
         (fault(0, 0x0000_0002), "vector table could not be read"),
         (fault(0, 0x8000_0000), "breakpoint without a debugger"),
         (fault(0, 0), "unknown cause (a Cortex-M0+ tells none)"),
-        // What is refused just below the stack is an overflow, if the address is valid.
+        // A refused access just below the stack is an overflow, if the address is valid.
         (fault_at(0x0000_0082, 0x2000_8014), stray),
         (fault_at(0x0000_0082, 0x2000_8010), stray),
         (fault_at(0x0000_0082, 0x2000_800f), overflow),
@@ -69,6 +70,7 @@ fn a_fault_reads_well_and_says_what_is_lost_or_not_told() {
     let stacked = "pc 0x00000456  lr 0x00001234  xpsr 0x01000000";
     let registers =
         |cfsr| format!("  cfsr {cfsr}  hfsr 0x40000000  mmfar 0x20001234  bfar 0x00000000");
+
     for (fault, cause, place, registers) in [
         (
             fault(0x0001_0000, 0x4000_0000),
@@ -103,6 +105,7 @@ fn a_fault_reads_well_and_says_what_is_lost_or_not_told() {
             format!("HARDFAULT: {cause}\n  {place}\n  sp 0x20008010{registers}")
         );
     }
+
     let stacked = Some(Stacked {
         pc: 0x456,
         lr: 0x1234,

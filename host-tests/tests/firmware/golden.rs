@@ -1,5 +1,5 @@
-//! The first 10 s of every scene on every class of processors are those that `golden/frames.csv`
-//! keeps: each picture's greys and each report's bits.
+//! The first 10 s of every scene on every class of processors are those stored in
+//! `golden/frames.csv`: each picture's greys and each report's bits.
 
 use double_pendulum::golden::{FNV_OFFSET, fnv_1a};
 use firmware::config::{
@@ -19,7 +19,7 @@ const CLASSES: [(&str, Processor); 4] = [
     ("stm32f405", STM32F405),
 ];
 
-/// Returns the line of a scene: the FNV-1a hashes, 64 bits, of all its pictures and of all its
+/// Returns the line of a scene: the 64-bit FNV-1a hashes of all its pictures and of all its
 /// messages.
 fn line((class, processor): (&str, Processor), scene: SceneName) -> String {
     let mut show = Show::on(processor, scene, &scene.first_settings())

@@ -1,5 +1,5 @@
-//! What the frames show against the exact motion: right to half a pixel until the time that the panel predicts, and hardly
-//! longer, before and after their method changes.
+//! The frames compared with the exact motion. They are accurate to half a pixel until the time that
+//! the panel predicts, and hardly longer, before and after a change of the method.
 
 use double_pendulum::{Parameters, Pendulum};
 use firmware::config::{
@@ -13,16 +13,17 @@ use host_tests::oracle::tolerances::PLAN_SHARE;
 use rayon::prelude::*;
 use reference::taylor::Reference;
 
-/// How long each motion is followed, s.
+/// The time for which each motion is followed, s.
 const FOLLOWED: f64 = 25.0;
 
-/// Ticks from one comparison with the exact motion to the next.
+/// The number of ticks between two comparisons with the exact motion.
 const EVERY: u32 = 2;
 
-/// A scene on a class of processors, and how far both rods reach on its frame, pixels.
+/// A scene on a class of processors, and the length of both rods on its frame, pixels.
 type Case = (Processor, SceneName, Settings, f32);
 
-/// The page from calm to wild, rods of other lengths, and the other scenes that follow a plan, on both cores.
+/// The page from regular to chaotic, rods of other lengths, and the other scenes that follow a
+/// plan, on both cores.
 fn cases() -> Vec<Case> {
     let page = |settings| (SceneName::Page, settings, REACH);
     let ratios = MASS_RATIOS.into_iter().skip(5).step_by(10);
@@ -54,24 +55,27 @@ fn cases() -> Vec<Case> {
 
 #[derive(Clone, Debug)]
 struct Horizon {
-    /// Until when the panel says that the frames are right, and until when they really are, s.
+    /// The time until which the panel predicts accurate frames, and the true time, s.
     predicted: f64,
     exact: f64,
-    /// Whether the first wrong frame was shown as a right one.
+    /// True if the first wrong frame was shown as an accurate one.
     is_violated: bool,
-    /// Whether the method or its steps changed.
+    /// True if the method or its steps changed.
     is_changed: bool,
 }
 
 fn horizon((processor, name, settings, reach): &Case) -> Horizon {
-    let (parameters, motion) = (settings.parameters.cast::<f64>(), settings.motion().cast());
+    let parameters = settings.parameters.cast::<f64>();
+    let motion = settings.motion().cast();
     let pendulum = Pendulum::new(&parameters).expect("the scene took it");
     let mut reference = Reference::new(&parameters, &motion);
     let mut scene = Show::on(*processor, *name, settings).expect("good settings");
     let first = scene.report().stepping;
     let scale = f64::from(*reach) / (parameters.l1 + parameters.l2);
 
-    let (mut exact, mut is_violated) = (f64::INFINITY, false);
+    let mut exact = f64::INFINITY;
+    let mut is_violated = false;
+
     for tick in 1..=(FOLLOWED * f64::from(TICK_RATE)) as u32 {
         scene.tick();
         let time = f64::from(tick) / f64::from(TICK_RATE);
@@ -90,6 +94,7 @@ fn horizon((processor, name, settings, reach): &Case) -> Horizon {
             }
         }
     }
+
     let report = scene.report();
     Horizon {
         predicted: report.horizon.verified().into(),
@@ -141,12 +146,13 @@ fn half_a_pixel_is_kept_until_the_time_on_the_panel_and_hardly_longer() {
     assert!(share >= PLAN_SHARE, "{share}");
 }
 
-/// How many of the motions must cease to be right, and change their method, so that there is something to test.
+/// The smallest number of motions that must become inaccurate, and that must change their method,
+/// so that the test is meaningful.
 const LEAST_ENDING: usize = 10;
 const LEAST_CHANGES: usize = 10;
 
-/// What the page and figure 7 bring on every class of processors: goals, s. The page may take 15 % of a frame of a Cortex-M3 at
-/// 50 MHz, and is known to be right for 20 s when it has played there for 12 s.
+/// The goals of the page and figure 7 on every class of processors, s. The page may take 15 % of a
+/// frame of a Cortex-M3 at 50 MHz. After 12 s it must be known to be accurate for 20 s.
 #[test]
 fn the_page_and_figure_7_are_right_for_as_long_as_they_should() {
     for (name, least, most) in [
@@ -156,7 +162,8 @@ fn the_page_and_figure_7_are_right_for_as_long_as_they_should() {
         for processor in [CORTEX_M3, CORTEX_M4F] {
             let mut show = Show::on(processor, name, &name.first_settings())
                 .expect("a scene of the catalogue");
-            let (ticks, early) = (40 * TICK_RATE, 12 * TICK_RATE);
+            let ticks = 40 * TICK_RATE;
+            let early = 12 * TICK_RATE;
             (0..early).for_each(|_| show.tick());
             let is_early = name == SceneName::Page && processor == CORTEX_M3;
             let horizon = f64::from(show.report().horizon.verified());

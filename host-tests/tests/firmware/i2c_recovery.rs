@@ -1,4 +1,4 @@
-//! A panel that holds the bus's data line low is clocked until it lets go.
+//! A panel that holds the bus's data line low receives clock pulses until it releases the line.
 
 use firmware::display::free_bus;
 
@@ -6,9 +6,9 @@ use firmware::display::free_bus;
 #[derive(Debug)]
 struct Wires {
     clock: bool,
-    /// What the board drives the data line to.
+    /// The level to which the board drives the data line.
     data: bool,
-    /// Clocks until the panel lets go.
+    /// The number of clocks until the panel releases the line.
     held_for: u32,
     clocks: u32,
     stops: u32,

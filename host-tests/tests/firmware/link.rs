@@ -1,4 +1,4 @@
-//! What the check of a message detects.
+//! The errors that the check of a message detects.
 
 use std::collections::HashSet;
 use std::fmt::Debug;
@@ -19,7 +19,7 @@ use host_tests::oracle::snapshot;
 
 use crate::bench::messages;
 
-/// What the decoder says of a wire.
+/// Returns the decoder's result for the bytes of a message.
 fn decoded(wire: &[u8]) -> Option<Result<Vec<u8>, LinkError>> {
     let mut decoder = Decoder::default();
     wire.iter().fold(None, |last, &byte| {
@@ -34,7 +34,8 @@ fn wire(message: &[u8]) -> Vec<u8> {
     frame(message, &mut [0; MAX_WIRE]).to_vec()
 }
 
-/// The four bytes of the check, found by what the decoder takes: the body is version, message, CRC.
+/// Returns the four bytes of the check, found by trying what the decoder accepts. The body is
+/// version, message, CRC.
 fn crc(message: &[u8]) -> u32 {
     let mut body = wire(message).split_off(1);
     let length = cobs::decode_in_place(&mut body).expect("a COBS encoding");
@@ -42,15 +43,18 @@ fn crc(message: &[u8]) -> u32 {
     u32::from_le_bytes(*crc)
 }
 
-/// Every change of up to four bits of a body is detected, in the longest message and so in every shorter one.
+/// Every change of up to four bits of a body is detected, in the longest message and so in every
+/// shorter one.
 ///
-/// A CRC is linear: the change that a flipped bit makes in it does not depend on the message. Four flips go unseen if their
-/// changes cancel, that is if two pairs of flips make the same change, or a single one that of three.
+/// A CRC is linear: the change that a flipped bit makes in it does not depend on the message. Four
+/// flips are not detected if their changes cancel, that is if two pairs of flips make the same
+/// change, or a single flip makes the change of three.
 #[test]
 fn every_change_of_four_bits_is_detected() {
     let clean = crc(&[0; MAX_MESSAGE]);
-    // The version cannot be changed here, but stands at the head of a shorter message where a flip here reaches. A flip in the CRC
-    // changes one bit of it.
+
+    // The version cannot be changed here, but a flip here reaches the version of a shorter message.
+    // A flip in the CRC changes one bit of it.
     let mut changes: Vec<u32> = (0..8 * MAX_MESSAGE)
         .map(|bit| {
             let mut message = [0; MAX_MESSAGE];
@@ -60,6 +64,7 @@ fn every_change_of_four_bits_is_detected() {
         .collect();
     changes.extend((0..32).map(|bit| 1_u32 << bit));
     let mut pairs = HashSet::new();
+
     for (index, one) in changes.iter().enumerate() {
         assert_ne!(*one, 0);
         assert!(
@@ -69,6 +74,7 @@ fn every_change_of_four_bits_is_detected() {
             "two pairs of flips cancel"
         );
     }
+
     assert!(
         changes.iter().all(|one| !pairs.contains(one)),
         "three flips cancel"
@@ -76,12 +82,13 @@ fn every_change_of_four_bits_is_detected() {
     assert!(!pairs.contains(&0), "two flips cancel");
 }
 
-/// Each single flipped bit on the wire, delimiters included, costs the message and nothing else: most leave the framing right, and
-/// it is the check that finds them.
+/// Each single flipped bit on the wire, delimiters included, damages one message only. Most flips
+/// leave the framing intact, and the check detects them.
 #[test]
 fn every_flipped_bit_on_the_wire_is_detected() {
     let message = [0x82, 7, 0, 0, 255, 0, 1, 2, 0, 0, 3];
-    let (good, next) = (wire(&message), wire(&[9; MAX_MESSAGE]));
+    let good = wire(&message);
+    let next = wire(&[9; MAX_MESSAGE]);
     assert_eq!(decoded(&good), Some(Ok(message.to_vec())));
     let mut by_check = 0;
     for bit in 0..8 * good.len() {
@@ -99,10 +106,13 @@ fn every_flipped_bit_on_the_wire_is_detected() {
     assert!(by_check > 4 * good.len(), "{by_check} by the check");
 }
 
-/// The longest messages, their whole numbers as large as they can be.
+/// The messages are the longest, with the largest possible whole numbers.
 #[test]
 fn every_message_fits() {
-    let (method, steps, number, step) = (Method::TextbookF32, u32::MAX, u32::MAX, u64::MAX);
+    let method = Method::TextbookF32;
+    let steps = u32::MAX;
+    let number = u32::MAX;
+    let step = u64::MAX;
     let report = Report {
         step,
         stepping: Some(Stepping { method, steps }),
@@ -121,7 +131,12 @@ fn every_message_fits() {
         busy_cycles: number,
         ..counts
     };
-    let (dt, horizon, error, cost, spent, limit) = (1.0, 1.0, 1.0, 1.0, 1.0, Limit::End);
+    let dt = 1.0;
+    let horizon = 1.0;
+    let error = 1.0;
+    let cost = 1.0;
+    let spent = 1.0;
+    let limit = Limit::End;
     let found = Some(Ok(Plan {
         method,
         steps,
@@ -150,7 +165,8 @@ fn every_message_fits() {
         [94, 71, 74]
     );
 
-    let (cause, scene) = (Some(Cause::Fault), SceneName::Flips);
+    let cause = Some(Cause::Fault);
+    let scene = SceneName::Flips;
     let end = Restarted {
         cause,
         restarts: u8::MAX,
@@ -167,7 +183,8 @@ fn every_message_fits() {
         ),
         (Some(end), None)
     );
-    let (settings, method) = (Settings::default(), Some(method));
+    let settings = Settings::default();
+    let method = Some(method);
     let panel = PanelReport {
         state: PanelState::Shown(Found {
             controller: Controller::Sh1107,
@@ -207,7 +224,7 @@ fn every_message_fits() {
     );
 }
 
-/// The values that a message of each number reads as, all their fields zero.
+/// Returns the values that a message of each number is read as, with all fields zero.
 fn variants<T: Debug>(read: fn(&[u8]) -> Option<T>) -> String {
     let zeros =
         |number: u8| (0..MAX_MESSAGE).map(move |count| [vec![number], vec![0; count]].concat());
@@ -220,7 +237,8 @@ fn variants<T: Debug>(read: fn(&[u8]) -> Option<T>) -> String {
         .collect()
 }
 
-/// Whoever changes what a number means raises the version, by which the two sides know each other.
+/// A change of a number's meaning requires a new version, by which the two sides recognise each
+/// other.
 #[test]
 fn numbers_mean_the_same_as_long_as_the_version_does() -> Result<(), String> {
     let messages = variants(read::<ToHost>)
@@ -253,7 +271,7 @@ fn numbers_mean_the_same_as_long_as_the_version_does() -> Result<(), String> {
     )
 }
 
-/// Its bytes on the wire.
+/// Returns the number of bytes of a message on the wire.
 fn length(message: ToHost) -> usize {
     let mut wire = [0; MAX_WIRE];
     let wire = encode(&message, &mut wire);

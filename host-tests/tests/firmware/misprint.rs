@@ -1,4 +1,5 @@
-//! The page's equal-rod form as printed, against the right one, at the settings of its figure 7.
+//! The page's equal-rod form as printed, compared with the right one, at the settings of its figure
+//! 7.
 
 use double_pendulum::{Parameters, Pendulum, State, rk4};
 use firmware::config::{HALF_PIXEL, MASS_RATIOS, TICK_RATE};
@@ -11,7 +12,8 @@ use host_tests::oracle::{textbook, tolerances};
 const MU: f64 = 2.75;
 const STEPS_PER_SECOND: usize = 512;
 const SECONDS: usize = 100;
-/// Either system is chaotic, so one run says little: the start is varied by as many millionths of a radian.
+/// The number of runs. Both systems are chaotic, so one run is not meaningful. The starts of the
+/// runs differ by millionths of a radian.
 const RUNS: usize = 32;
 
 fn figure_7() -> (Pendulum<f64>, State<f64>) {
@@ -23,10 +25,13 @@ fn figure_7() -> (Pendulum<f64>, State<f64>) {
     )
 }
 
-/// Of all runs the mean energy and the largest error of it, J, and bob 2's share of the time above the pivot.
+/// Returns the mean energy of all runs and its largest error, J, and bob 2's share of the time
+/// above the pivot.
 fn run(rhs: impl Fn(&[f64; 4]) -> [f64; 4]) -> [f64; 3] {
     let (pendulum, figure_7) = figure_7();
-    let (mut energy, mut error, mut above) = (0.0, 0.0_f64, 0.0);
+    let mut energy = 0.0;
+    let mut error = 0.0_f64;
+    let mut above = 0.0;
     for run in 0..RUNS {
         let angle = figure_7.a1 + 1e-6 * run as f64;
         let start = State::at_rest(angle, angle);
@@ -87,11 +92,12 @@ fn with_equal_masses_the_printed_form_is_right() {
     }
 }
 
-/// The motion is shown at any mass ratio for as long as steps resolve it, and is then lost for good.
+/// The motion is shown at any mass ratio while the steps resolve it, and then ends permanently.
 #[test]
 fn printed_form_is_shown_only_while_it_is_resolved() {
     const STEPS_PER_TICK: usize = 128;
     let mut lost = Vec::new();
+
     for (mass_ratio, degrees) in MASS_RATIOS
         .into_iter()
         .step_by(2)
@@ -135,6 +141,7 @@ fn printed_form_is_shown_only_while_it_is_resolved() {
             );
         }
     }
+
     let least = lost.iter().copied().fold(f32::INFINITY, f32::min);
     assert!(lost.len() > 10 && least > MU as f32, "{lost:?}");
 }
@@ -151,7 +158,7 @@ fn figure_7_shows_the_printed_form_for_ten_minutes() {
     }
 }
 
-/// In the scene a rod that is lost is not drawn, and words stand in the place of its energy.
+/// In the scene a rod of a diverged motion is not drawn, and words replace its energy.
 #[test]
 fn lost_motion_is_not_drawn() {
     let settings = SceneName::Figure7.first_settings().with_mass_ratio(100.0);
@@ -165,6 +172,7 @@ fn lost_motion_is_not_drawn() {
     for (x, y) in words.filter(|&(x, y)| expected.get(x, y) != Some(0)) {
         assert_eq!(frame.get(x, y), expected.get(x, y), "{x}, {y}");
     }
+
     // The pivot of the right pendulum is drawn with its rods.
     let (x, y) = Place::HALVES[1].pivot;
     assert_eq!(frame.get(x as i32, y as i32), Some(0));
@@ -181,6 +189,7 @@ fn what_is_shown_of_the_printed_form_is_right_to_half_a_pixel_for_10_s() {
         shown.directions(),
     );
     let mut z = start.into();
+
     for tick in 1..=10 * TICK_RATE {
         shown.tick();
         for _ in 0..STEPS_PER_TICK {

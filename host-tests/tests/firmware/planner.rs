@@ -1,4 +1,4 @@
-//! The planner beside the scene: what it does in a tick, what it finds, and how that is written on the wire.
+//! The planner of a scene: its work in a tick, its results, and their format in messages.
 
 use double_pendulum::Method;
 use double_pendulum::plan::{Limit, PlanError, Stepping};
@@ -7,13 +7,14 @@ use firmware::config::{
 };
 use firmware::motion::{Planner, Settings};
 
-/// What these begin by, in finer steps than any reference: right wherever any other is.
+/// The initial stepping of these tests, with finer steps than any reference. It is accurate
+/// wherever any other is.
 const LASTING: Stepping = Stepping {
     method: Method::Extrapolation10Fixed64,
     steps: 8,
 };
 const HEIGHT: f32 = 57.0;
-/// Ticks by which everything here is found.
+/// The number of ticks by which all results here are found.
 const PATIENCE: u64 = 1200;
 
 fn planner(processor: Processor, settings: &Settings) -> Planner {
@@ -22,7 +23,7 @@ fn planner(processor: Processor, settings: &Settings) -> Planner {
     planner
 }
 
-/// A button that is held starts the scene anew before anything is looked at.
+/// A held button restarts the scene before any planning.
 #[test]
 fn nothing_is_looked_at_before_the_start_has_settled() {
     let mut planner = planner(CORTEX_M3, &Settings::default());
@@ -40,7 +41,7 @@ fn nothing_is_looked_at_before_the_start_has_settled() {
     assert!((0..PATIENCE).any(|_| planner.tick().is_some() || planner.horizon(LASTING) > 0.0));
 }
 
-/// Whether pieces are done ahead of their tick, all of them or some, decides nothing.
+/// The results do not depend on whether all or some of the planning is done before its tick.
 #[test]
 fn what_is_found_in_a_tick_does_not_depend_on_when_the_work_is_done() {
     for settings in [Settings::default(), Settings::equal_rods(1.0, 20.0)] {
@@ -95,8 +96,9 @@ fn there_is_nothing_to_do_without_a_motion_or_when_all_is_found() {
     );
 }
 
-/// In 64 bits steps as fine as those of the reference, which takes four to a frame here, are right wherever any others are; longer
-/// ones only as far as they have been looked at themselves.
+/// Steps in 64 bits that are as fine as those of the reference, four to a frame here, are accurate
+/// wherever any others are. Longer steps are accurate only as far as they have been verified
+/// themselves.
 #[test]
 fn only_steps_that_resolve_a_motion_are_right_wherever_others_are() {
     let in_32_bits = |planner: &Planner| {
@@ -109,6 +111,7 @@ fn only_steps_that_resolve_a_motion_are_right_wherever_others_are() {
             .into_iter()
             .fold(0.0, f64::max)
     };
+
     for (steps, is_right) in [(2, false), (4, true)] {
         let begun = Stepping {
             method: Method::Extrapolation10Fixed64,
@@ -128,11 +131,12 @@ fn only_steps_that_resolve_a_motion_are_right_wherever_others_are() {
     }
 }
 
-/// To follow what is found takes time: until it is told nothing else is done. Then what is right for as long as is planned is looked
-/// at farther, always so far ahead and no farther.
+/// Following a result takes time, so nothing else is done until it is reported. A motion that is
+/// accurate for the whole planned time is then verified further, always by the same time ahead.
 #[test]
 fn a_calm_motion_is_looked_at_for_as_long_as_it_is_played() {
-    let (mut planner, mut told) = (planner(STM32F405, &Settings::equal_rods(1.0, 20.0)), 1);
+    let mut planner = planner(STM32F405, &Settings::equal_rods(1.0, 20.0));
+    let mut told = 1;
     while planner
         .planned()
         .is_some_and(|answer| answer.found.is_none())
@@ -188,8 +192,8 @@ fn where_nothing_holds_that_is_what_is_told() {
     );
 }
 
-/// Only what was asked for is looked at, even if it costs more than a frame allows.
-/// `cargo prove --scene page --method rk4-f32-direction --steps 4` proves it right until 10.5 s.
+/// Only the requested method is verified, even if it costs more than a frame allows. `cargo prove
+/// --scene page --method rk4-f32-direction --steps 4` proves it accurate until 10.5 s.
 #[test]
 fn a_stepping_that_is_given_stays() {
     let mut planner = Planner::new(STM32F405);
@@ -209,7 +213,7 @@ fn a_stepping_that_is_given_stays() {
     assert!((9.5..=10.5).contains(&plan.horizon), "{plan:?}");
 }
 
-/// What hosts know a class of processors by.
+/// The code by which hosts identify a class of processors.
 #[test]
 fn every_processor_has_its_place_for_a_code() {
     assert!(

@@ -1,4 +1,5 @@
-//! Every scene of the catalogue, on the host: its frame to the pixel, and what all scenes have in common.
+//! Every scene of the catalogue on the host: its frame to the pixel, and the properties that all
+//! scenes share.
 
 use double_pendulum::State;
 use firmware::app::PlannerEvent;
@@ -17,13 +18,14 @@ use host_tests::oracle::tolerances::SHOWN_HEIGHT;
 
 use crate::bench::{app, places, wire};
 
-/// What a board without a floating-point unit may spend.
+/// The resources of a board without a floating-point unit.
 const RESOURCES: Resources = Resources {
     processor: PROCESSOR,
     method: None,
 };
 
-/// The ticks after which each scene is pictured: one second, when all is in view, and four.
+/// The ticks after which a picture of each scene is taken: one second, when everything is visible,
+/// and four.
 const PICTURED: [u32; 2] = [60, 240];
 
 fn scene(name: SceneName) -> Show {
@@ -41,7 +43,7 @@ fn picture(canvas: &Canvas) -> String {
     snapshot::text(&Screenshot::from(canvas).greys, WIDTH)
 }
 
-/// Each scene's frame, drawn over another's.
+/// Each scene's frame is drawn over the frame of another scene.
 #[test]
 fn every_scene_looks_as_it_did() {
     let before = after(SceneName::Page, 100).frame();
@@ -58,17 +60,19 @@ fn every_scene_looks_as_it_did() {
     assert!(differences.is_empty(), "{}", differences.join("\n"));
 }
 
-/// The page's trail is bob 2's path, by the state that the scene tells: as bright as its age says wherever it has not been since,
-/// and elsewhere there is none.
+/// The page's trail is the path of bob 2 by the reported states. Its brightness depends on its age
+/// where it has not been visited since, and there is no other trail.
 #[test]
 fn the_trail_is_the_path_and_fades_with_age() {
     const FRESH: f64 = 11.0; // of 15 greys: 184/17 rounded
     const FADED: f64 = 64.0 / TRAIL_FADING as f64; // ticks to a grey
-    let (mut ink, mut path) = (FadeLayer::NONE, Vec::new());
+    let mut ink = FadeLayer::NONE;
+    let mut path = Vec::new();
     let mut scene = AnyScene::empty();
     scene
         .start(SceneName::Page, &Settings::default(), &RESOURCES)
         .expect("the page");
+
     for ticks in 1..=400 {
         scene.tick(ticks, &mut ink);
         let State { a1, a2, .. } = scene.report(ticks).state;
@@ -78,6 +82,7 @@ fn the_trail_is_the_path_and_fades_with_age() {
             PIVOT.1 + rod * (a1.cos() + a2.cos()),
         ));
     }
+
     path.reverse();
     let distance = |at: (f32, f32), [from, to]: [(f32, f32); 2]| {
         let along = (to.0 - from.0, to.1 - from.1);
@@ -87,6 +92,7 @@ fn the_trail_is_the_path_and_fades_with_age() {
         (at.0 - from.0 - part * along.0).hypot(at.1 - from.1 - part * along.1)
     };
     let mut compared = 0;
+
     for (x, y) in places() {
         let middle = (x as f32 + 0.5, y as f32 + 0.5);
         let grey = f64::from(ink.frame.get(x, y).expect("inside"));
@@ -111,10 +117,11 @@ fn the_trail_is_the_path_and_fades_with_age() {
             compared += usize::from(expected > 0.0);
         }
     }
+
     assert!(compared > 50, "{compared} pixels compared");
 }
 
-/// Time that stands still is marked by two bars below the top right corner, and by nothing else.
+/// A pause is marked by two bars below the top right corner, and nothing else is.
 #[test]
 fn a_pause_is_marked_and_only_a_pause() -> Result<(), String> {
     let mut app = app();
@@ -133,9 +140,9 @@ fn a_pause_is_marked_and_only_a_pause() -> Result<(), String> {
     Ok(())
 }
 
-/// A scene of curves shows its motion as large as it is drawn: the pendulum planned for has two rods
-/// as long as a radian is on the frame. A figure of two modes shows angle 1 larger than that:
-/// sqrt((1 + mu)/mu) times, and both together by the root of the mean square.
+/// A scene of curves plans its motion in the scale of the picture: the two rods of the planned
+/// pendulum are as long as a radian on the frame. A figure of two modes shows angle 1 larger by
+/// sqrt((1 + mu)/mu), and both together by the root of the mean square.
 #[test]
 fn what_is_planned_is_what_is_shown() {
     let start = |scene: &mut AnyScene, name: SceneName| {
@@ -144,6 +151,7 @@ fn what_is_planned_is_what_is_shown() {
             .expect("a scene")
     };
     let mut scene = AnyScene::empty();
+
     for name in [
         SceneName::Beats3To2,
         SceneName::Beats2To1,
@@ -156,7 +164,8 @@ fn what_is_planned_is_what_is_shown() {
             "{} follows its plan",
             name.name()
         );
-        // Its greatest swing, 12 degrees, is 21.5 pixels long.
+
+        // Its largest swing, 12 degrees, is 21.5 pixels long.
         let mass_ratio = name.first_settings().mass_ratio();
         let gain = (0.5 * (1.0 + (1.0 + mass_ratio) / mass_ratio)).sqrt();
         let expected = 4.0 * 21.5 / 12.0_f32.to_radians() * gain;
@@ -166,11 +175,13 @@ fn what_is_planned_is_what_is_shown() {
             name.name()
         );
     }
+
     assert_eq!(start(&mut scene, SceneName::Frequencies), None);
 }
 
-/// The map as each class of processors computes it, on any host: in `f32` where there is a unit for that; and it is finished in time,
-/// on the chip of 168 MHz and on those that are slower or have no floating-point unit.
+/// The map as each class of processors computes it, on any host: in `f32` if the processor has a
+/// unit for it. The map is complete in time on the chip of 168 MHz, and on slower ones or ones
+/// without a floating-point unit.
 #[test]
 fn the_map_of_flips_is_that_of_the_boards_processor_and_finished_in_time() {
     let settings = Settings::default();
@@ -192,6 +203,7 @@ fn the_map_of_flips_is_that_of_the_boards_processor_and_finished_in_time() {
         (CORTEX_M3, false, 60),
         (CORTEX_M0PLUS, false, 60),
     ];
+
     for (processor, in_float, seconds) in processors {
         let mut show = Show::on(processor, SceneName::Flips, &settings).expect("a map");
         (0..60).for_each(|_| show.tick());
@@ -206,7 +218,7 @@ fn the_map_of_flips_is_that_of_the_boards_processor_and_finished_in_time() {
     }
 }
 
-/// What shows no motion goes on when the start angle is turned.
+/// A scene without a motion continues when the start angle is turned.
 #[test]
 fn only_what_starts_from_angles_starts_again_when_they_are_turned() {
     for &name in SceneName::ALL {
@@ -256,7 +268,7 @@ fn scales_have_round_steps() {
     assert_eq!(steps, [0.01, 0.5, 1.0, 2.0, 5.0, 50.0, 100.0]);
 }
 
-/// What no plan can alter is looked at as it goes.
+/// A motion that no plan can change is verified while it is played.
 #[test]
 fn the_butterfly_is_looked_at_as_it_goes() {
     let mut show = Show::new(SceneName::Butterfly, &Settings::equal_rods(1.0, 20.0))

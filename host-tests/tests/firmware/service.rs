@@ -1,4 +1,4 @@
-//! Requests over the serial link, answered by the very application that runs on the boards.
+//! Requests over the serial link, answered by the application that runs on the boards.
 
 use std::f64::consts::PI;
 
@@ -26,7 +26,8 @@ const REQUEST: Request = Request {
     samples: 5,
 };
 
-/// The answers to these requests, numbered from 1, once all that they ask for is computed.
+/// Returns the answers to these requests, numbered from 1, after all requested motions are
+/// computed.
 fn asked(requests: &[Request]) -> Vec<(u16, Answer)> {
     let mut app = app();
     for (number, request) in (1..).zip(requests) {
@@ -41,14 +42,14 @@ fn asked(requests: &[Request]) -> Vec<(u16, Answer)> {
     answers(&app.link)
 }
 
-/// How many of the answers are samples of the request with this number.
+/// Returns the number of answers that are samples of the request with this number.
 fn samples(answers: &[(u16, Answer)], request: u16) -> usize {
     let is_sample =
         |&&(to, answer): &&(u16, Answer)| to == request && matches!(answer, Answer::Sample { .. });
     answers.iter().filter(is_sample).count()
 }
 
-/// The readings of a request, all at once.
+/// Returns all readings of a request.
 fn readings(request: &Request) -> Result<Vec<Reading>, Error> {
     let mut readings = Vec::new();
     request.readings(|reading| {
@@ -58,7 +59,8 @@ fn readings(request: &Request) -> Result<Vec<Reading>, Error> {
     Ok(readings)
 }
 
-/// One step at a time or all at once: the same readings from the same method, whoever asks.
+/// One step at a time and all steps at once give the same readings with the same method, for any
+/// client.
 #[test]
 fn every_method_of_the_boards_is_answered_in_full_with_what_the_host_computes() {
     for &method in ON_BOARDS {
@@ -80,7 +82,8 @@ fn every_method_of_the_boards_is_answered_in_full_with_what_the_host_computes() 
     }
 }
 
-/// Every method goes where the canonical one does, whole turns of either rod included; the linear ones where it hardly moves.
+/// Every method follows the canonical one, including whole turns of both rods. The linear methods
+/// follow it in a small motion.
 #[test]
 fn every_method_moves_alike() {
     let turning = Request {
@@ -106,6 +109,7 @@ fn every_method_moves_alike() {
         last[0].abs() > PI && last[1].abs() > PI,
         "both rods turn over: {last:?}"
     );
+
     for &method in Method::ALL {
         let [double, single, micromath] = tolerances::TURNING;
         let (motion, near) = match method {
@@ -135,7 +139,7 @@ fn every_method_moves_alike() {
     }
 }
 
-/// Whose ends are the same, but not the samples before.
+/// The two motions have equal ends, but different samples before.
 #[test]
 fn a_check_is_over_every_sample() -> Result<(), Error> {
     for &method in Method::ALL {
@@ -210,6 +214,7 @@ fn a_refusal_names_the_field_and_leaves_the_work_alone() {
         parameters: Parameters { m1, m2, l1, l2, g },
         ..REQUEST
     };
+
     for (wrong, field) in [
         (
             Request {

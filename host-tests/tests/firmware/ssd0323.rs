@@ -1,4 +1,5 @@
-//! The panel's driver against a controller that is stricter than the real one; QEMU's shows every scene (test `boards scenes`).
+//! The panel's driver with a controller that is stricter than the real one. QEMU's panel shows
+//! every scene (test `boards scenes`).
 
 use std::cell::RefCell;
 use std::convert::Infallible;
@@ -8,7 +9,7 @@ use embedded_hal::spi::{ErrorKind, ErrorType, Operation, SpiDevice};
 use firmware::display::{Display, Ssd0323};
 use firmware::graphics::Canvas;
 
-/// How many arguments a command takes, from the data sheet's command table.
+/// Returns the number of arguments of a command, from the data sheet's command table.
 fn arguments(command: u8) -> usize {
     match command {
         0x84..=0x86 | 0xA4 | 0xAE | 0xAF => 0,
@@ -19,24 +20,24 @@ fn arguments(command: u8) -> usize {
     }
 }
 
-/// An SSD0323: panics on anything that the data sheet does not allow.
+/// An SSD0323 that panics on anything that the data sheet does not allow.
 struct Controller {
     /// The data/command pin, unknown until driven.
     data: Option<bool>,
-    /// The window, first and last, of columns and of rows.
+    /// The window of columns and rows, first and last.
     columns: Option<(u8, u8)>,
     rows: Option<(u8, u8)>,
     at: (u8, u8),
     memory: Vec<Option<u8>>,
     on: bool,
-    /// Bytes and commands taken since the last look.
+    /// The number of bytes and commands received since the last check.
     received: usize,
-    /// Writes taken until the bus fails.
+    /// The number of writes until the bus fails.
     fails_after: usize,
 }
 
 impl Controller {
-    /// Of this memory, on a bus that fails after so many writes.
+    /// Returns a controller with this memory, on a bus that fails after `fails_after` writes.
     fn holding(byte: Option<u8>, fails_after: usize) -> Self {
         let memory = vec![byte; 64 * 64];
         Self {
@@ -83,7 +84,8 @@ impl Controller {
         }
     }
 
-    /// Along the row, then to the next; beyond the last row is an error here.
+    /// Stores a byte and advances along the row, then to the next row. Going beyond the last row is
+    /// an error here.
     fn store(&mut self, byte: u8) {
         let ((first, last), (_, last_row)) = (
             self.columns.expect("columns first"),
@@ -99,7 +101,7 @@ impl Controller {
         };
     }
 
-    /// Whether it shows this frame.
+    /// Returns true if the panel shows this frame.
     fn shows(&self, canvas: &Canvas) -> bool {
         self.on && self.memory.iter().copied().eq(canvas.bytes().map(Some))
     }
@@ -151,12 +153,13 @@ impl OutputPin for Wires<'_> {
     }
 }
 
-/// What has not changed is not sent: of a row the words between two that have changed are. A row below one that was sent needs
-/// no address of its own.
+/// Unchanged data is not sent. In a row, the words between two changed ones are sent. A row below
+/// one that was sent needs no address.
 #[test]
 fn switches_on_with_a_black_frame_and_sends_what_has_changed() {
     let controller = RefCell::new(Controller::holding(None, usize::MAX));
-    let (mut memory, mut canvas) = (Canvas::default(), Canvas::default());
+    let mut memory = Canvas::default();
+    let mut canvas = Canvas::default();
     let mut panel = Ssd0323::new(Wires(&controller), Wires(&controller), &mut memory);
     panel.init().expect("the bus works");
     assert!(controller.borrow().shows(&canvas));
@@ -176,11 +179,13 @@ fn switches_on_with_a_black_frame_and_sends_what_has_changed() {
     }
 }
 
-/// A bus that fails in the middle of a frame leaves who knows what in the panel: the next frame is sent whole.
+/// If the bus fails in the middle of a frame, the contents of the panel are unknown, so the next
+/// frame is sent completely.
 #[test]
 fn hands_on_the_error_of_the_bus_and_shows_the_frame_after_one_that_failed() {
     let controller = RefCell::new(Controller::holding(None, 0));
-    let (mut memory, mut canvas) = (Canvas::default(), Canvas::default());
+    let mut memory = Canvas::default();
+    let mut canvas = Canvas::default();
     let mut panel = Ssd0323::new(Wires(&controller), Wires(&controller), &mut memory);
     assert_eq!(
         (panel.init(), panel.flush(&canvas)),

@@ -1,5 +1,6 @@
-//! Every setting that keys reach, on every class of processors: no scene stops, no motion leaves its
-//! energy, and every frame is within half a pixel of the exact motion until the time on the panel.
+//! Every setting that the keys reach, on every class of processors. No scene stops, no motion loses
+//! its energy, and every frame is within half a pixel of the exact motion until the time on the
+//! panel.
 
 use double_pendulum::{Modes, Parameters, Pendulum, SmallOscillations};
 use firmware::config::{HALF_PIXEL, MASS_RATIOS, PROCESSORS, Processor, REACH, TICK_RATE};
@@ -18,11 +19,11 @@ const TICKS: u32 = 20 * TICK_RATE;
 /// loses several percent within seconds.
 const ENERGY: f32 = 1e-2;
 
-/// A scene of every 500 may be inaccurate a little before its predicted horizon: planning compares
+/// A scene of every 500 may be inaccurate a little before its predicted horizon. Planning compares
 /// computed motions with each other, and roundings may be alike by chance (test `plan_study`).
 const SCENES_TO_A_VIOLATION: usize = 500;
 
-/// A scene, and a setting that keys reach from its start.
+/// A scene, with a setting that keys reach from its start.
 #[derive(Clone, Copy, Debug)]
 struct Case {
     name: SceneName,
@@ -30,7 +31,8 @@ struct Case {
 }
 
 impl Case {
-    /// The scene with this mass ratio, and both rods turned to where rod 2 starts at `degrees`.
+    /// Returns the scene with this mass ratio, and with both rods turned so that rod 2 starts at
+    /// `degrees`.
     fn new(name: SceneName, mass_ratio: f32, degrees: f32) -> Self {
         let first = name.first_settings();
         let turn = degrees - first.degrees[1];
@@ -44,15 +46,15 @@ impl Case {
     }
 }
 
-/// The scene in numbers, as a class of processors shows it.
+/// The numbers of the scene on a class of processors.
 struct Shown {
     processor: Processor,
-    /// Both angles in each frame, and where the height of the planned display is known, that.
+    /// The angles in each frame, and the height of the planned display if it is known.
     angles: Vec<[f64; 2]>,
     height: Option<f64>,
     /// The latest time, s, until which any frame claimed to be accurate.
     claimed: f64,
-    /// Frames that claimed nothing, because planning had not verified them yet.
+    /// The number of frames that claimed nothing, because planning had not verified them yet.
     undecided: u32,
     energy_error: f32,
     states: Vec<PlayState>,
@@ -70,6 +72,7 @@ impl Shown {
             energy_error: 0.0,
             states: vec![show.player.state()],
         };
+
         for _ in 0..TICKS {
             show.tick();
             let report = show.report();
@@ -87,6 +90,7 @@ impl Shown {
                 Horizon::Until(_) | Horizon::Always => {}
             }
         }
+
         shown
     }
 
@@ -94,7 +98,7 @@ impl Shown {
         self.states.contains(&PlayState::Stopped)
     }
 
-    /// The frames that claimed to be accurate.
+    /// Returns the number of frames that claimed to be accurate.
     fn claimed_frames(&self) -> usize {
         if self.is_too_fast() {
             return 0;
@@ -104,16 +108,17 @@ impl Shown {
     }
 }
 
-/// Returns how far what is drawn is from where the exact angles would have it, pixels.
+/// Returns the distance between the drawn and the exact picture, pixels.
 fn distance(case: &Case, height: Option<f64>, exact: [f64; 2], shown: [f64; 2]) -> f64 {
     let parameters = case.settings.parameters.cast::<f64>();
     let off = [0, 1].map(|rod| {
         let off = shown[rod] - exact[rod];
         off - std::f64::consts::TAU * (off / std::f64::consts::TAU).round()
     });
+
     match case.name {
         SceneName::SmallLight | SceneName::SmallEqual | SceneName::SmallHeavy => {
-            // A rod is as long as a radian.
+            // A radian is as long as a rod.
             let scale = height.expect("it is planned") / 4.0;
             off.map(|off| scale * off.abs())
                 .into_iter()
@@ -140,15 +145,17 @@ fn distance(case: &Case, height: Option<f64>, exact: [f64; 2], shown: [f64; 2]) 
     }
 }
 
-/// The share of the slow mode and of the fast mode in angle 2.
+/// Returns the shares of the slow mode and of the fast mode in angle 2.
 fn in_modes(parameters: &Parameters<f64>, [a1, a2]: [f64; 2]) -> [f64; 2] {
     let modes = Modes::new(parameters).expect("good settings");
-    let (fast, slow) = (modes.fast.shape, modes.slow.shape);
+    let fast = modes.fast.shape;
+    let slow = modes.slow.shape;
     let across = slow * (a2 - fast * a1) / (slow - fast);
     [across, a2 - across]
 }
 
-/// Pixels to a radian in the figures of `beats`: the mode that swings farther is 21.5 pixels large.
+/// Returns the pixels of a radian in the figures of `beats`. The mode with the larger swing is 21.5
+/// pixels large.
 fn figure_scale(settings: &Settings) -> f64 {
     let modes = Modes::new(&settings.parameters.cast()).expect("good settings");
     let linear = SmallOscillations::<f64>::new(modes, &settings.motion().cast());
@@ -157,28 +164,29 @@ fn figure_scale(settings: &Settings) -> f64 {
     21.5 / fast.max(slow)
 }
 
-/// What is wrong with a scene on a class of processors.
+/// A fault of a scene on a class of processors.
 #[derive(Debug)]
 #[expect(dead_code, reason = "the numbers are printed")]
 enum Fault {
-    /// It stopped.
+    /// The scene stopped.
     Stopped,
     Energy,
-    /// A frame at this time, s, is farther off than half a pixel, but a later horizon was claimed.
+    /// A frame at this time, s, has an error of more than half a pixel, but a later horizon was
+    /// claimed.
     Violation {
         wrong: f64,
         claimed: f64,
     },
 }
 
-/// Plays a scene on all classes of processors.
+/// Plays a scene on all classes of processors and returns its faults.
 fn faults(case: &Case) -> Vec<(Case, u8, Fault)> {
     let shown: Vec<_> = PROCESSORS
         .iter()
         .map(|&processor| Shown::new(case, processor))
         .collect();
 
-    // The exact motion, for as long as anything is claimed.
+    // The exact motion, until the latest claimed time.
     let frames = shown.iter().map(Shown::claimed_frames).max().unwrap_or(0);
     let start = case.settings.motion().cast();
     let mut reference = Reference::new(&case.settings.parameters.cast(), &start);
@@ -194,7 +202,7 @@ fn faults(case: &Case) -> Vec<(Case, u8, Fault)> {
         let code = shown.processor.code;
         let mut found = |fault| faults.push((*case, code, fault));
         if shown.is_too_fast() {
-            // Plain `f32` computes sines, and its scene needs a motion in 64 bits as well.
+            // Plain `f32` computes sines, and its scene also needs a motion in 64 bits.
             let is_said_at_once = shown
                 .states
                 .iter()
@@ -223,10 +231,11 @@ fn faults(case: &Case) -> Vec<(Case, u8, Fault)> {
             });
         }
     }
+
     faults
 }
 
-/// Plays all `cases`; at most a few violations are forgiven.
+/// Plays all `cases`. A few violations are allowed.
 fn sweep(cases: &[Case]) {
     let faults: Vec<_> = cases.par_iter().flat_map_iter(faults).collect();
     let scenes = cases.len() * PROCESSORS.len();
@@ -239,7 +248,7 @@ fn sweep(cases: &[Case]) {
     assert!(violations <= scenes / SCENES_TO_A_VIOLATION, "{violations}");
 }
 
-/// The scenes that show a motion from two angles, but for the page.
+/// The scenes, other than the page, that show a motion from two angles.
 const OTHERS: [SceneName; 10] = [
     SceneName::Figure7,
     SceneName::Butterfly,
@@ -274,7 +283,7 @@ fn settings_of_all_kinds_are_shown_as_claimed() {
     sweep(&cases);
 }
 
-/// All angles of the page, and in every other scene those of every 15 degrees, 1 and 179.
+/// All angles of the page. In the other scenes every 15 degrees, and 1 and 179 degrees.
 #[test]
 #[ignore = "an hour"]
 fn all_settings_are_shown_as_claimed() {
@@ -292,7 +301,7 @@ fn all_settings_are_shown_as_claimed() {
     sweep(&cases);
 }
 
-/// The scenes without a motion take every mass ratio.
+/// The scenes without a motion accept every mass ratio.
 #[test]
 fn maps_and_frequencies_take_every_mass_ratio() {
     for name in [SceneName::Frequencies, SceneName::Flips] {

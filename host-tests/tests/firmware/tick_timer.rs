@@ -8,13 +8,13 @@ mod code;
 use code::{TickTimer, elapsed};
 
 const PERIOD: u32 = 50;
-/// Cycles from the end of a period to the first instruction of the interrupt's handler, and to its
-/// end.
+/// The cycles from the end of a period to the first instruction of the interrupt's handler, and to
+/// its end.
 const ENTRY: u32 = 12;
 
-/// A SysTick: each reading takes some cycles, in which it goes on counting.
+/// A SysTick that continues to count during each reading, which takes some cycles.
 struct FakeTimer {
-    /// Cycles since the start of tick 0.
+    /// The cycles since the start of tick 0.
     now: Cell<u32>,
     ticks: Cell<u32>,
     is_pending: Cell<bool>,
@@ -26,7 +26,8 @@ impl FakeTimer {
     fn pass(&self, cycles: u32) {
         for _ in 0..cycles {
             self.now.set(self.now.get() + 1);
-            // The exception becomes pending as the counter reaches 0.
+
+            // The exception becomes pending when the counter reaches 0.
             if self.counter_now() == 0 {
                 self.is_pending.set(true);
             }
@@ -46,7 +47,7 @@ impl FakeTimer {
         PERIOD - 1 - self.now.get() % PERIOD
     }
 
-    /// Reads something in the middle of the time that the reading takes.
+    /// Reads a value in the middle of the time that the reading takes.
     fn read<T>(&self, value: impl Fn() -> T) -> T {
         self.interrupt();
         self.pass(self.reading.div_ceil(2));
@@ -70,7 +71,8 @@ impl TickTimer for FakeTimer {
     }
 }
 
-/// Every moment of two periods, interrupts on and masked, slow and fast buses.
+/// Every moment of two periods is tested, with interrupts enabled and masked, and with slow and
+/// fast buses.
 #[test]
 fn a_time_read_at_any_moment_is_between_the_moments_before_and_after() {
     // The interrupt handler and all readings together must fit into a period.
@@ -87,7 +89,8 @@ fn a_time_read_at_any_moment_is_between_the_moments_before_and_after() {
                     };
                     (0..start).for_each(|_| {
                         timer.pass(1);
-                        // As long as other code is interrupted.
+
+                        // A pending interrupt is handled in the middle of a period.
                         if timer.now.get() % PERIOD == PERIOD / 2 {
                             timer.interrupt();
                         }

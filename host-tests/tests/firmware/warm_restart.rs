@@ -1,4 +1,5 @@
-//! What is kept across a reset is trusted only if it is intact, and is played again as it was.
+//! The record that is kept across a reset is trusted only if it is intact, and is played again
+//! unchanged.
 
 use fastrand::Rng;
 use firmware::app::{Journal, MOST_RESTARTS, Player, Record, SOUND_FRAMES};
@@ -115,7 +116,8 @@ fn what_ends_the_board_each_time_is_given_up() {
 
 #[test]
 fn a_minute_without_a_restart_forgets_those_before() {
-    let (player, restart) = (player(), record().restart(false));
+    let player = player();
+    let restart = record().restart(false);
     let mut journal = Journal::new(restart.as_ref());
     for frame in 1..=SOUND_FRAMES + 10 {
         let restarts = if frame < SOUND_FRAMES { 2 } else { 0 };

@@ -1,4 +1,5 @@
-//! The bounds: never exceeded, reached, and the certificate against turning over.
+//! Bounds from the energy: no motion exceeds them and some state reaches each; and the certificate
+//! that no rod turns over.
 
 use std::f64::consts::PI;
 
@@ -9,7 +10,7 @@ use host_tests::oracle::trials::apart;
 use host_tests::oracle::{random, tolerances};
 use reference::taylor::Reference;
 
-/// |w1|, |w2|, |w1 - w2|, |p1|, |p2|, v1, v2 of a state, each divided by its bound.
+/// Returns |w1|, |w2|, |w1 - w2|, |p1|, |p2|, v1 and v2 of a state, each divided by its bound.
 fn shares<R: Real>(pendulum: &Pendulum<R>, bounds: &Bounds<R>, state: &State<R>) -> [f64; 7] {
     let motion = pendulum.to_motion(state);
     let [v1, v2] = pendulum
@@ -25,6 +26,7 @@ fn shares<R: Real>(pendulum: &Pendulum<R>, bounds: &Bounds<R>, state: &State<R>)
         v1,
         v2,
     ];
+
     let Bounds {
         w1,
         w2,
@@ -34,12 +36,16 @@ fn shares<R: Real>(pendulum: &Pendulum<R>, bounds: &Bounds<R>, state: &State<R>)
         v1,
         v2,
     } = *bounds;
+
     let bounds = [w1, w2, elbow, p1, p2, v1, v2];
     std::array::from_fn(|i| (reached[i] / bounds[i]).to_f64())
 }
 
-/// Bounds are never exceeded; and the admissible step is the same in either precision. Without energy every step will do, and
-/// without gravity only the speed counts.
+/// Asserts that bounds are never exceeded, and that the admissible step is the same in either
+/// precision.
+///
+/// Without energy every step is admissible. Without gravity the admissible step depends on the
+/// speed only.
 fn hold<R: Real>() -> Result<(), Error> {
     let in_f64 = random::pendulums::<f64>(1, 10_000);
     for ((pendulum, start), (exact, start_in_f64)) in random::pendulums::<R>(1, 10_000).zip(in_f64)
@@ -59,6 +65,7 @@ fn hold<R: Real>() -> Result<(), Error> {
                 pendulum.parameters()
             );
         }
+
         let step = pendulum.admissible_step(&start)?.to_f64();
         let error = (step / exact.admissible_step(&start_in_f64)? - 1.0).abs();
         assert!(
@@ -67,6 +74,7 @@ fn hold<R: Real>() -> Result<(), Error> {
             pendulum.parameters()
         );
     }
+
     let free = Pendulum::new(&Parameters::equal_rods(R::ONE, R::ONE, R::ZERO))?;
     let hanging = State::at_rest(R::ZERO, R::ZERO);
     assert!(!free.admissible_step(&hanging)?.is_finite());
@@ -83,36 +91,48 @@ fn bounds_and_admissible_steps_hold_in_either_precision() -> Result<(), Error> {
     hold::<f64>()
 }
 
-/// Hanging straight, one push each that spends all its energy on one quantity.
+/// A pendulum that hangs straight is pushed such that a single quantity takes the largest value
+/// that its energy allows.
 #[test]
 fn each_bound_is_reached_by_some_state() {
     for (pendulum, _) in random::pendulums::<f64>(2, 1000) {
         let &Parameters { m1, m2, l1, l2, .. } = pendulum.parameters();
+
+        // Bob 2 is at rest: w1 and v1 reach their bounds.
         let still2 = Motion {
             w1: 1.0,
             w2: -l1 / l2,
             ..Motion::default()
-        }; // bob 2 at rest: all in w1, v1
+        };
+
+        // p1 = 0: w2 reaches its bound.
         let opposed = Motion {
             w1: -m2 * l2 / ((m1 + m2) * l1),
             w2: 1.0,
             ..Motion::default()
-        }; // p1 = 0: all in w2
+        };
+
+        // Both bobs have the same velocity: p1 reaches its bound.
         let straight = Motion {
             w1: 1.0,
             w2: 0.0,
             ..Motion::default()
-        }; // both bobs alike: all in p1
+        };
+
+        // Bob 1 is at rest: p2 and v2 reach their bounds.
         let lower = Motion {
             w1: 0.0,
             w2: 1.0,
             ..Motion::default()
-        }; // bob 1 at rest: all in p2, v2
+        };
+
+        // p1 + p2 = 0: w1 - w2 reaches its bound.
         let bending = Motion {
             w1: m2 * l2 * (l1 + l2),
             w2: -l1 * (m2 * l2 + (m1 + m2) * l1),
             ..Motion::default()
         };
+
         let motions = [
             (still2, [0, 5]),
             (opposed, [1, 1]),
@@ -120,6 +140,7 @@ fn each_bound_is_reached_by_some_state() {
             (straight, [3, 3]),
             (lower, [4, 6]),
         ];
+
         for (motion, reached) in motions {
             let state = pendulum.to_state(&motion);
             let shares = shares(&pendulum, &pendulum.bounds(&state), &state);
@@ -151,17 +172,20 @@ fn certified_motions_do_not_turn_over() {
             }
         }
     }
+
     assert!(certified > 200, "only {certified} of 2000 certified");
 }
 
-/// A rod held at its lower saddle has exactly the limit's energy: a little less is certified, a little more turns over.
+/// A rod at rest at its lower saddle has exactly the energy of the limit. A start with slightly
+/// less energy is certified, and one with slightly more is not.
 #[test]
-fn certificate_is_sharp() {
+fn certificate_ends_at_the_energy_of_the_saddle() {
     for (pendulum, _) in random::pendulums::<f64>(4, 10_000) {
         let &Parameters { m1, m2, l1, l2, .. } = pendulum.parameters();
         let first = usize::from(m2 * l2 < (m1 + m2) * l1);
         let limit = pendulum.turnover_energy();
-        // the rod that turns over first at `angle`, with so much more of the limit
+        // The rod that turns over first is at `angle`, and its kinetic energy is `share` of the
+        // limit.
         let at = |angle: f64, share: f64| {
             let mut motion = [0.0; 4];
             motion[first] = angle;
@@ -184,7 +208,8 @@ fn certificate_is_sharp() {
     }
 }
 
-/// Any mass 1, mass ratios within a factor of a million, lengths within a hundred, now and then without gravity.
+/// Returns random parameters: m1 and the lengths within a factor of 100, mass ratios from 1e-6 to
+/// 1e6, a quarter of them without gravity.
 fn extreme_parameters(rng: &mut Rng) -> Parameters<f64> {
     let [m1, ratio, l1, l2] = [(0.1, 10.0), (1e-6, 1e6), (0.1, 10.0), (0.1, 10.0)]
         .map(|(low, high)| random::log_uniform(rng, low, high));
@@ -197,7 +222,8 @@ fn extreme_parameters(rng: &mut Rng) -> Parameters<f64> {
     }
 }
 
-/// Any angles and velocities, half of them near the straight position, where a light bob 1 is fastest.
+/// Returns a random motion. In half of the motions the rods are almost straight, because a light
+/// bob 1 is fastest there.
 fn fast_motion(rng: &mut Rng, &Parameters { m1, m2, l1, l2, .. }: &Parameters<f64>) -> Motion<f64> {
     let a1 = PI * random::symmetric(rng);
     let snap = if rng.bool() {
@@ -205,6 +231,7 @@ fn fast_motion(rng: &mut Rng, &Parameters { m1, m2, l1, l2, .. }: &Parameters<f6
     } else {
         PI
     };
+
     let speed = random::log_uniform(rng, 0.01, 100.0) * (9.81 * (l1 + l2)).sqrt();
     let w1 = speed / l1 * random::symmetric(rng);
     let w2 = if rng.bool() {
@@ -220,7 +247,8 @@ fn fast_motion(rng: &mut Rng, &Parameters { m1, m2, l1, l2, .. }: &Parameters<f6
     }
 }
 
-/// What `next` misses of the exact motion from `start` after `dt`: of the angles, and of the velocities per `rate`.
+/// Returns the error of `next` compared with the exact motion from `start` after `dt`: the largest
+/// of the errors of the angles, rad, and of the velocities divided by `rate`.
 fn miss(
     pendulum: &Pendulum<f64>,
     start: &Motion<f64>,
@@ -230,7 +258,8 @@ fn miss(
 ) -> f64 {
     let mut reference = Reference::new(pendulum.parameters(), start);
     reference.advance_to(dt);
-    let (exact, next) = (reference.motion(), pendulum.to_motion(next));
+    let exact = reference.motion();
+    let next = pendulum.to_motion(next);
     let [w1, w2] = [next.w1 - exact.w1, next.w2 - exact.w2].map(f64::abs);
     apart(next.a1, exact.a1)
         .max(apart(next.a2, exact.a2))
@@ -238,7 +267,8 @@ fn miss(
         .max(w2 / rate)
 }
 
-/// From anywhere a step misses no more than the fastest rate allows; and not much less, or the limit would be timid.
+/// An admissible step from any start has an error within its bound. The largest error reaches a
+/// third of the bound, otherwise the steps would be too short.
 #[test]
 fn an_admissible_step_resolves_every_motion() -> Result<(), Error> {
     let mut rng = Rng::with_seed(5);
@@ -248,10 +278,9 @@ fn an_admissible_step_resolves_every_motion() -> Result<(), Error> {
         let pendulum = Pendulum::new(&parameters)?;
         let start = fast_motion(&mut rng, &parameters);
         let state = pendulum.to_state(&start);
-        let (rate, dt) = (
-            pendulum.fastest_rate(&state)?,
-            pendulum.admissible_step(&state)?,
-        );
+        let rate = pendulum.fastest_rate(&state)?;
+        let dt = pendulum.admissible_step(&state)?;
+
         let mut direction = DirectionF64::new(&parameters, &state, dt)?;
         direction.advance(1);
         let after = [pendulum.step(&state, dt), direction.state()];
@@ -264,6 +293,7 @@ fn an_admissible_step_resolves_every_motion() -> Result<(), Error> {
             largest[i] = largest[i].max(miss);
         }
     }
+
     println!("classical step and direction form miss at most {largest:?}");
     for (largest, allowed) in largest.into_iter().zip(tolerances::ADMISSIBLE) {
         assert!(
@@ -271,5 +301,6 @@ fn an_admissible_step_resolves_every_motion() -> Result<(), Error> {
             "never above {largest:e}: the limit is timid"
         );
     }
+
     Ok(())
 }

@@ -1,4 +1,5 @@
-//! The scenes in closed form, as they are played: their angles, where they draw them, and which figures close.
+//! The scenes in closed form: their angles, their figures on the display, and the figures that
+//! close.
 
 use std::f64::consts::{FRAC_PI_6, PI, TAU};
 
@@ -9,41 +10,45 @@ use host_tests::emulator::host::Show;
 use host_tests::oracle::tolerances::{CLOSED, CLOSED_FORM, NOT_CLOSED};
 use reference::taylor::Reference;
 
-/// Figures 3 to 5 and their mass ratios.
+/// The scenes of figures 3 to 5, with their mass ratios.
 const SMALL: [(SceneName, f64); 3] = [
     (SceneName::SmallLight, 0.2),
     (SceneName::SmallEqual, 1.0),
     (SceneName::SmallHeavy, 5.0),
 ];
-/// Beats that close: the mass ratio, and the periods of the fast mode after which they do, and the slow one as well.
+/// The scenes of closed figures, with the mass ratio and the number of periods of the fast mode
+/// until the figure closes. It is a whole number of periods of the slow mode, too.
 const BEATS: [(SceneName, f64, f64); 4] = [
     (SceneName::Beats3To2, 25.0 / 144.0, 3.0),
     (SceneName::Beats2To1, 9.0 / 16.0, 2.0),
     (SceneName::Beats5To2, 441.0 / 400.0, 5.0),
     (SceneName::Beats3To1, 16.0 / 9.0, 3.0),
 ];
-/// The amplitude of angle 2 in each mode of the beats, rad, and how far it reaches in the figures, pixels.
+/// The amplitude of angle 2 in each mode of these scenes, rad.
 const AMPLITUDE: f64 = 12.0 / 180.0 * PI;
+/// The distance that the figures reach for this amplitude, pixels.
 const REACH: f64 = 21.5;
-/// The middles of the linear figure and of the exact one, pixels.
+/// The centres of the linear and of the exact figure, pixels.
 const MIDDLES: [[f64; 2]; 2] = [[23.5, 32.5], [104.5, 32.5]];
 
-/// For how long the small oscillations are followed, s.
+/// The time that the small oscillations are compared for, s.
 const FOLLOWED: u32 = 3600;
 
 fn show(name: SceneName) -> Show {
     Show::new(name, &name.first_settings()).expect("a scene of the catalogue")
 }
 
-/// w = sqrt(g/l (1 + mu +- sqrt(mu (1 + mu)))) of equal rods, fast and slow, rad/s.
+/// Returns the fast and the slow frequency of equal rods, rad/s: w = sqrt(g/l (1 + mu +- sqrt(mu (1
+/// + mu)))).
 fn frequencies(mass_ratio: f64, gravity: f64, rod: f64) -> [f64; 2] {
     let root = (mass_ratio * (1.0 + mass_ratio)).sqrt();
     [root, -root].map(|root| (gravity / rod * (1.0 + mass_ratio + root)).sqrt())
 }
 
-/// a1 = (pi/12) sqrt(mu/(1 + mu)) (cos w2 t - cos w1 t), a2 = (pi/12)(cos w1 t + cos w2 t), for an hour.
+/// The angles follow a1 = (pi/12) sqrt(mu/(1 + mu)) (cos w2 t - cos w1 t) and a2 = (pi/12)(cos w1 t
+/// + cos w2 t) for an hour.
 #[test]
-fn small_oscillations_are_played_as_the_theory_has_them() {
+fn small_oscillation_scenes_follow_the_formulas_for_an_hour() {
     for (name, mass_ratio) in SMALL {
         let mut scene = show(name);
         let [mass_ratio, gravity] = [mass_ratio, 9.8].map(|number| f64::from(number as f32));
@@ -53,7 +58,9 @@ fn small_oscillations_are_played_as_the_theory_has_them() {
             scene.tick();
             let t = f64::from(tick) / f64::from(TICK_RATE);
             let report = scene.report();
-            let (slow, fast) = ((w2 * t).cos(), (w1 * t).cos());
+            let slow = (w2 * t).cos();
+            let fast = (w1 * t).cos();
+
             let a1 = FRAC_PI_6 / 2.0 * (mass_ratio / (1.0 + mass_ratio)).sqrt() * (slow - fast);
             let a2 = FRAC_PI_6 / 2.0 * (fast + slow);
             let error = (f64::from(report.state.a1) - a1)
@@ -63,22 +70,25 @@ fn small_oscillations_are_played_as_the_theory_has_them() {
             assert!(share <= 1.0, "{name:?} at {t} s: off by {error:e} rad");
             worst = worst.max(share);
         }
+
         println!("{}: at most {worst:.2} of the bound", name.name());
     }
 }
 
-/// Where the figures of the beats are at angles (a1, a2), pixels.
+/// Returns the position of a figure with the centre (x, y) at angles (a1, a2), pixels.
 fn place([x, y]: [f64; 2], mass_ratio: f64, [a1, a2]: [f64; 2]) -> [f64; 2] {
-    // a2/a1 in the modes is -shape (fast) and +shape (slow).
+    // The ratio a2/a1 is -shape in the fast mode and +shape in the slow one.
     let shape = ((1.0 + mass_ratio) / mass_ratio).sqrt();
-    let (slow, fast) = ((a2 + shape * a1) / 2.0, (a2 - shape * a1) / 2.0);
+    let slow = (a2 + shape * a1) / 2.0;
+    let fast = (a2 - shape * a1) / 2.0;
     [x + REACH / AMPLITUDE * slow, y - REACH / AMPLITUDE * fast]
 }
 
-/// In both figures the spot is drawn where it should be: on the left by cos w2 t and sin w1 t, on the right by the
-/// high-precision motion. When the frequencies say so the left one closes, and the right one does not.
+/// The spots of both figures are drawn at the right position. The left one follows cos w2 t and sin
+/// w1 t, the right one the high-precision motion. After the period of the frequencies the left
+/// figure closes, and the right one does not.
 #[test]
-fn the_beats_are_where_the_theory_has_them_and_only_the_linear_ones_close() {
+fn beats_follow_the_formulas_and_only_the_linear_figure_closes() {
     for (name, mass_ratio, periods) in BEATS {
         let [w1, w2] = frequencies(mass_ratio, 9.81, 1.0);
         let period = periods * TAU / w1;
@@ -98,6 +108,7 @@ fn the_beats_are_where_the_theory_has_them_and_only_the_linear_ones_close() {
                 ],
                 place(right, mass_ratio, exact.motion().angles()),
             ];
+
             let canvas = scene.frame();
             for [x, y] in places {
                 assert_eq!(

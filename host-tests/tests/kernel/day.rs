@@ -1,4 +1,4 @@
-//! A simulated day: no method that steps in 32 bits loses its energy or its time to its number type.
+//! A simulated day: no method with steps in 32 bits loses energy or time by rounding.
 
 use double_pendulum::parts::DirectionF64;
 use double_pendulum::plan::Stepping;
@@ -10,12 +10,14 @@ use host_tests::oracle::tolerances::{DAY_ENERGY, DAY_READING};
 use host_tests::oracle::trials::{self, Trial};
 use reference::advance;
 
+/// The duration of a day, s.
 const DAY: f64 = 86_400.0;
-/// Looks at the motion, one in three minutes.
+/// The number of samples in a day, one every three minutes.
 const SAMPLES: u32 = 480;
+/// The number of samples of a scene in a day.
 const LOOKS_OF_A_SCENE: u32 = 240;
 
-/// The methods that step in 32 bits and could lose it.
+/// Returns the methods in the direction form with numbers of 32 bits.
 fn narrow() -> impl Iterator<Item = Method> {
     let is_narrow = |method: &Method| method.is_single() || method.numbers() == Numbers::Fixed32;
     Method::ALL
@@ -25,8 +27,10 @@ fn narrow() -> impl Iterator<Item = Method> {
         .filter(is_narrow)
 }
 
-/// The states at the looks by `method`, and the greatest difference of the energy that directions and momenta have from that of the
-/// state, over the energy above rest.
+/// Returns the states at all samples by `method`.
+///
+/// The second result is the largest difference between two energies, divided by the energy above
+/// rest: the energy of the directions and momenta, and the energy of the state.
 fn followed(trial: &Trial, method: Method, dt: f64) -> Result<(Vec<State<f64>>, f64), Error> {
     let Trial {
         parameters, start, ..
@@ -40,13 +44,15 @@ fn followed(trial: &Trial, method: Method, dt: f64) -> Result<(Vec<State<f64>>, 
         apart = apart.max((pendulum.energy(&run.state()) - run.energy()).abs());
         Ok(run.state())
     });
+
     Ok((
         states.collect::<Result<_, Error>>()?,
         apart / pendulum.energy_above_rest(&start),
     ))
 }
 
-/// At every look the energy is that of `f64` in the same steps, and so is the energy told of directions and momenta.
+/// Asserts that at every sample the energy is the same as in `f64` with the same steps, and that
+/// directions and momenta have the same energy as the state.
 fn a_day(mass_ratio: f64, dt: f64) -> Result<(), Error> {
     let trial = Trial::at_rest(mass_ratio, 0.5, 0.5, DAY);
     let pendulum = Pendulum::new(&trial.parameters)?;
@@ -56,7 +62,7 @@ fn a_day(mass_ratio: f64, dt: f64) -> Result<(), Error> {
     let exact = trial.states_in_f64(dt, SAMPLES)?;
     for method in narrow() {
         let (states, apart) = match followed(&trial, method, dt) {
-            // with a light bob 1 steps of 1/100 s are too long for it, and it says so
+            // With a light bob 1 fixed point refuses steps of 1/100 s as too long.
             Err(Error::TooLarge { .. })
                 if method.is_fixed_point() && mass_ratio == 20.0 && dt == 0.01 =>
             {
@@ -64,6 +70,7 @@ fn a_day(mass_ratio: f64, dt: f64) -> Result<(), Error> {
             }
             followed => followed?,
         };
+
         let errors = states
             .iter()
             .zip(&exact)
@@ -76,38 +83,41 @@ fn a_day(mass_ratio: f64, dt: f64) -> Result<(), Error> {
         println!("{about}");
         assert!(error <= DAY_ENERGY && apart <= DAY_READING, "{about}");
     }
+
     Ok(())
 }
 
 #[test]
-fn a_day_costs_no_energy() -> Result<(), Error> {
+fn energy_is_kept_for_a_day() -> Result<(), Error> {
     a_day(0.2, 1.0 / 100.0)?;
     a_day(5.0, 1.0 / 100.0)
 }
 
-/// `cargo test -p host-tests --test kernel day:: -- --ignored --nocapture`
+/// Run it with `cargo test -p host-tests --test kernel day:: -- --ignored --nocapture`.
 #[test]
 #[ignore = "a minute: a day of four forms at fifteen mass ratios and steps"]
-fn a_day_costs_no_energy_at_any_mass_ratio_and_step() -> Result<(), Error> {
+fn energy_is_kept_for_a_day_at_any_mass_ratio_and_step() -> Result<(), Error> {
     for mass_ratio in [0.05, 0.2, 1.0, 5.0, 20.0] {
         for steps in [100.0, 240.0, 256.0] {
             a_day(mass_ratio, 1.0 / steps)?;
         }
     }
+
     Ok(())
 }
 
-/// A swing in the slow mode, so small that its period does not depend on its energy: after a day it is where `f64` has it,
-/// within what it moves in one step.
+/// The phase of an oscillation in the slow mode is that of `f64` for a day, to within one step.
+///
+/// The amplitude is so small that the period does not depend on the energy.
 #[test]
-fn after_a_day_the_time_told_is_right_to_one_step() -> Result<(), Error> {
+fn time_is_accurate_to_one_step_after_a_day() -> Result<(), Error> {
     for mass_ratio in [0.2, 5.0] {
         let dt = 1.0 / 100.0;
         let pendulum = Pendulum::new(&Trial::at_rest(mass_ratio, 0.0, 0.0, DAY).parameters)?;
         let slow = pendulum.modes()?.slow;
         let trial = Trial::at_rest(mass_ratio, 0.01, 0.01 * slow.shape, DAY);
         let exact = trial.states_in_f64(dt, SAMPLES)?;
-        // momentum and angle turn at the mode's frequency
+        // The angle and the scaled momentum turn at the mode's frequency.
         let scale = trial.parameters.m2 * slow.frequency;
         let phase =
             |state: &State<f64>| (state.p2 / scale / (1.0 + 1.0 / slow.shape)).atan2(state.a2);
@@ -119,13 +129,16 @@ fn after_a_day_the_time_told_is_right_to_one_step() -> Result<(), Error> {
             }
         }
     }
+
     Ok(())
 }
 
-/// What a frame tells as energy error is that of one instant: a day of a scene by the STM32F405's prices, by what it begins
-/// in and by each that steps in 32 bits.
+/// The energy error of a report belongs to a single instant.
+///
+/// A scene runs for a day at the costs of the STM32F405: by its initial method, and by each method
+/// with steps in 32 bits.
 #[test]
-fn a_frame_tells_the_energy_of_one_instant_all_day() -> Result<(), Error> {
+fn reported_energy_is_that_of_one_instant_all_day() -> Result<(), Error> {
     let settings = SceneName::Beats2To1.first_settings();
     let pendulum = Pendulum::new(&settings.parameters.cast::<f64>())?;
     let start = pendulum.to_state(&settings.motion().cast());
@@ -143,6 +156,7 @@ fn a_frame_tells_the_energy_of_one_instant_all_day() -> Result<(), Error> {
                 method,
             },
         )?;
+
         let Stepping { method, steps } = simulation.motion.stepping();
         let dt = 1.0 / f64::from(TICK_RATE * steps);
         let mut exact = pendulum.run::<DirectionF64>(&start, dt)?;
@@ -150,7 +164,7 @@ fn a_frame_tells_the_energy_of_one_instant_all_day() -> Result<(), Error> {
         for _ in 0..LOOKS_OF_A_SCENE {
             let ticks = DAY as u32 * TICK_RATE / LOOKS_OF_A_SCENE;
             (0..ticks).for_each(|_| simulation.tick());
-            // extrapolation loses nothing
+            // Extrapolation loses no energy.
             let lost = if method == Method::Extrapolation10Fixed64 {
                 0.0
             } else {
@@ -159,6 +173,7 @@ fn a_frame_tells_the_energy_of_one_instant_all_day() -> Result<(), Error> {
             };
             worst = worst.max((f64::from(Report::of(&simulation).energy_error) - lost).abs());
         }
+
         println!("{}, {steps} steps a frame: {worst:.1e}", method.name());
         assert!(
             worst <= DAY_ENERGY,
@@ -166,5 +181,6 @@ fn a_frame_tells_the_energy_of_one_instant_all_day() -> Result<(), Error> {
             method.name()
         );
     }
+
     Ok(())
 }

@@ -1,4 +1,5 @@
-//! A step that is too long for a motion: a typed error, and the last good state is kept. Never NaN.
+//! Steps that are too long for a motion: the error has a type, the last good state is kept, and no
+//! result is NaN.
 
 use double_pendulum::{Error, Integrator, Method, Parameter, Parameters, State};
 use firmware::app::{App, NoButtons};
@@ -11,7 +12,7 @@ use firmware::scenes::SceneName;
 use host_tests::emulator::host::sheets;
 use host_tests::oracle::trials;
 
-/// Below the stability limit of 0.49 s, but far too long for a motion of 300 rad/s.
+/// A step below the stability limit of 0.49 s, but far too long for a motion of 300 rad/s.
 const TOO_LONG: f64 = 0.3;
 const FAST: State<f64> = State {
     a1: 3.0,
@@ -19,9 +20,9 @@ const FAST: State<f64> = State {
     p1: 300.0,
     p2: -300.0,
 };
-/// The closed form has no such limit, but time is finite.
+/// A step of the closed form. It has no such limit, but the time must be finite.
 const AGES: f64 = 1e307;
-/// More than enough of them.
+/// A number of steps that is more than sufficient.
 const MANY: u32 = 100_000;
 
 const EVEN: Parameters<f64> = Parameters {
@@ -32,15 +33,16 @@ const EVEN: Parameters<f64> = Parameters {
     g: 9.8,
 };
 
-/// By every method; fixed point refuses such steps.
+/// A run that diverges keeps its last good state, by every method. Fixed point refuses such steps.
 #[test]
-fn every_method_stops_at_its_last_good_state() -> Result<(), Error> {
+fn diverged_run_keeps_its_last_good_state_in_every_method() -> Result<(), Error> {
     for &method in Method::ALL {
         let dt = if method.integrator() == Integrator::ClosedForm {
             AGES
         } else {
             TOO_LONG
         };
+
         let mut run = match trials::run(method, &EVEN, &FAST, dt) {
             Err(Error::TooLarge {
                 parameter: Parameter::Dt,
@@ -48,6 +50,7 @@ fn every_method_stops_at_its_last_good_state() -> Result<(), Error> {
             }) if method.is_fixed_point() => continue,
             run => run?,
         };
+
         let stopped = (0..MANY).find_map(|_| {
             let before = run.state();
             run.advance(1).err().map(|error| (error, before))
@@ -58,23 +61,25 @@ fn every_method_stops_at_its_last_good_state() -> Result<(), Error> {
         assert_eq!(run.state(), before, "{method}: the run stays as it was");
         assert_eq!(before.check(), Ok(()), "{method}");
     }
+
     Ok(())
 }
 
-/// A step within the limit for small motions, which is all that can be known beforehand, but too long for this one.
+/// A step that is too long for this motion, but within the limit of small motions. Only that limit
+/// can be checked before the start.
 #[test]
-fn a_job_is_refused_when_its_motion_is_lost() {
+fn job_reports_its_step_when_the_motion_has_diverged() {
     let parameters = Parameters { m2: 100.0, ..EVEN };
-    let (angles, velocities) = ([3.0, 1.0], [3000.0, -3000.0]);
     let request = Request {
         method: Method::Rk4F32,
         parameters,
-        angles,
-        velocities,
+        angles: [3.0, 1.0],
+        velocities: [3000.0, -3000.0],
         dt: 0.06,
         stride: 1,
         samples: MANY,
     };
+
     let run = OnBoards::start(&request)
         .expect("of the boards")
         .expect("within the limit");
@@ -88,6 +93,7 @@ fn a_job_is_refused_when_its_motion_is_lost() {
         "after {} readings",
         readings.len()
     );
+
     let is_finite = |answer: &Result<Option<Reading>, Error>| {
         let reading = answer.unwrap_or_default().unwrap_or_default();
         answer.is_ok()
@@ -111,11 +117,13 @@ fn too_fast_motion_is_stopped_before_it_diverges() {
         l2: 1e-4,
         g: 9.8,
     };
+
     let settings = Settings {
         parameters,
         degrees: [179.0, 60.0],
         velocities: [3e8, -3e8],
     };
+
     let mut panel = NoDisplay;
     let mut app = App::new(PROCESSOR, sheets(), &mut panel, Vec::new(), NoButtons);
     app.player

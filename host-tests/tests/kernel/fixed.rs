@@ -1,4 +1,4 @@
-//! Fixed point: as accurate as documented, refused where it has no room, the same however it is stepped.
+//! Fixed point: its accuracy, its refusals, and its independence of the units.
 
 use std::f64::consts::PI;
 
@@ -9,13 +9,14 @@ use host_tests::oracle::random::{self, log_uniform, symmetric};
 use host_tests::oracle::tolerances;
 use host_tests::oracle::trials::{MOMENTS, Trial, largest_difference};
 
-/// Starts that are searched.
+/// The number of random starts per order.
 const TRIALS: u32 = 3000;
 
-/// What the documentation says of each, and what there is no other test of.
+/// The documented accuracy of each method, and cases that no other test covers.
 #[test]
 fn fixed_point_is_as_accurate_as_documented() -> Result<(), Error> {
-    // a short, light rod 2 that whirls: of a quarter of a million stages a second each rounds a little
+    // A short, light rod 2 that rotates fast. Each of a quarter of a million stages per second adds
+    // a small rounding error.
     let parameters = Parameters {
         m1: 1.0,
         m2: 0.0087,
@@ -23,11 +24,12 @@ fn fixed_point_is_as_accurate_as_documented() -> Result<(), Error> {
         l2: 0.0825,
         g: 9.81,
     };
+
     let whirling = Trial {
         parameters,
         ..Trial::at_rest(1.0, 1.94, 1.94, 8.0)
     };
-    // another, so quick that gravity is weak beside its motion, and has few digits
+    // A similar pendulum, so fast that gravity is weak in comparison and has few digits.
     let parameters = Parameters {
         m1: 1.0,
         m2: 0.0510598,
@@ -35,18 +37,21 @@ fn fixed_point_is_as_accurate_as_documented() -> Result<(), Error> {
         l2: 0.116394,
         g: GRAVITY,
     };
+
     let motion = Motion {
         a1: -2.7479,
         a2: 2.3154,
         w1: -11.11,
         w2: 55.97,
     };
+
     let quick = Trial {
         parameters,
         start: Pendulum::new(&parameters)?.to_state(&motion),
         seconds: 13.9,
     };
-    // a light elbow that snaps through
+
+    // A light elbow that snaps through.
     let light = Trial::at_rest(128.0, 0.5, 0.5, 2.0);
     let page = Trial::at_rest(
         1.0,
@@ -54,10 +59,11 @@ fn fixed_point_is_as_accurate_as_documented() -> Result<(), Error> {
         120_f64.to_radians(),
         1024.0 / 60.0,
     );
+
     for (trial, method, steps, most) in [
-        // the method's own 1.2e-8 (measured as much)
+        // The truncation error is 1.2e-8 (measured: the same).
         (Trial::regular(10.0), Method::Rk4Fixed32, 256.0, 2e-8),
-        // the method's own 2.9e-6 (measured 2.5e-6)
+        // The truncation error is 2.9e-6 (measured: 2.5e-6).
         (Trial::chaotic(5.0), Method::Rk4Fixed32, 240.0, 3e-6),
         (
             Trial::regular(10.0),
@@ -71,22 +77,24 @@ fn fixed_point_is_as_accurate_as_documented() -> Result<(), Error> {
             4096.0,
             tolerances::FIXED_32_FLOOR,
         ),
-        // rods and masses all different: their units leave some bits empty (measured 2.3e-8)
+        // All rods and masses are different, so that some bits are unused (measured: 2.3e-8).
         (Trial::unlike(10.0), Method::Rk4Fixed32, 1024.0, 5e-8),
-        // twice what compensated `f32` has
+        // The error is twice that of compensated `f32`.
         (light, Method::Rk4Fixed32, 4096.0, 4e-7),
-        // 32 steps a frame: the goal is a hundredth of half a pixel on a display of 64 (measured 8.6e-5, rod 2, as in `f64`)
+        // With 32 steps per frame the goal is a hundredth of half a pixel on a display of 64 pixels
+        // (measured: 8.6e-5 for rod 2, as in `f64`).
         (quick, Method::Rk4Fixed32, 32.0 * 60.0, 1.5e-4),
-        // as in `f64` (measured 3e-13)
+        // The error is that of `f64` (measured: 3e-13).
         (
             Trial::regular(12.0),
             Method::Extrapolation12Fixed64,
             12.0,
             1e-12,
         ),
-        // the goal after 17 s (measured 2.2e-5): roundings, which have grown by 3e10
+        // The goal after 17 s (measured: 2.2e-5). The error is due to rounding errors that have
+        // grown by 3e10.
         (page, Method::Extrapolation12Fixed64, 60.0, 4e-5),
-        // three times what is measured, 1.9e-8, a sixth of what it is with roundings that lean to one side, 3e-7
+        // Three times the measured error of 1.9e-8. With biased rounding the error would be 3e-7.
         (whirling, Method::Extrapolation10Fixed64, 7680.0, 6e-8),
     ] {
         let error = trial.error(method, 1.0 / steps)?;
@@ -96,6 +104,7 @@ fn fixed_point_is_as_accurate_as_documented() -> Result<(), Error> {
             "{method}, {steps} steps a second: {error:e} rad for {trial:?}"
         );
     }
+
     let refused = light.states(Method::Rk4Fixed32, 1.0 / 512.0);
     assert!(
         matches!(
@@ -107,7 +116,8 @@ fn fixed_point_is_as_accurate_as_documented() -> Result<(), Error> {
         ),
         "{refused:?}"
     );
-    // momenta are told and taken in units of their own
+
+    // Momenta are converted from and to units of their own.
     let trial = Trial::unlike(10.0);
     let start = Pendulum::new(&trial.parameters)?
         .run::<Fixed32>(&trial.start, 1.0 / 1024.0)?
@@ -118,11 +128,12 @@ fn fixed_point_is_as_accurate_as_documented() -> Result<(), Error> {
             "{told} for {taken} kg m^2/s"
         );
     }
+
     Ok(())
 }
 
 #[test]
-fn chaos_is_as_good_as_in_double_precision() -> Result<(), Error> {
+fn chaotic_motion_is_as_accurate_as_in_f64() -> Result<(), Error> {
     let trial = Trial::chaotic(5.0);
     let exact = trial.exact()?;
     for steps in [32.0, 48.0, 64.0, 80.0, 128.0, 256.0, 512.0] {
@@ -132,6 +143,7 @@ fn chaos_is_as_good_as_in_double_precision() -> Result<(), Error> {
                 &exact,
             ))
         };
+
         let [double, fixed] = [
             error(Method::Extrapolation12F64)?,
             error(Method::Extrapolation12Fixed64)?,
@@ -143,13 +155,17 @@ fn chaos_is_as_good_as_in_double_precision() -> Result<(), Error> {
             "{fixed:e} against {double:e} rad with {steps} steps a second"
         );
     }
+
     Ok(())
 }
 
-/// Mass ratios from 1/128 to 32 and unlike rods: with steps so fine that only roundings are left, no worse than compensated
-/// `f32`, typically (the geometric mean over neighbouring starts).
+/// The rounding errors of fixed point are no larger than those of compensated `f32`, with mass
+/// ratios from 1/128 to 32 and with different rods.
+///
+/// The steps are so fine that only rounding errors remain. The errors are geometric means over
+/// neighbouring starts.
 #[test]
-fn no_pendulum_is_worse_off_than_in_single_precision() -> Result<(), Error> {
+fn fixed32_rounds_no_worse_than_compensated_f32() -> Result<(), Error> {
     let parameters = |l1, l2| Parameters {
         m1: 0.75,
         m2: 1.25,
@@ -157,6 +173,7 @@ fn no_pendulum_is_worse_off_than_in_single_precision() -> Result<(), Error> {
         l2,
         g: 9.8125,
     };
+
     let rods = |l1, l2| Trial {
         parameters: parameters(l1, l2),
         ..Trial::at_rest(1.0, 0.3, -0.2, 5.0)
@@ -170,6 +187,7 @@ fn no_pendulum_is_worse_off_than_in_single_precision() -> Result<(), Error> {
         },
         ..Trial::regular(5.0)
     };
+
     let ratios = [1.0, 0.0078125, 0.1, 0.125, 8.0, 10.0, 32.0]
         .map(|ratio| Trial::at_rest(ratio, 0.5, 0.5, 5.0));
     let unlike = [rods(0.625, 1.125), rods(0.125, 1.125), rods(1.125, 0.125)];
@@ -183,6 +201,7 @@ fn no_pendulum_is_worse_off_than_in_single_precision() -> Result<(), Error> {
             near.map(|trial| Ok(trial.error(method, 1.0 / 4096.0)?.ln() / 4.0))
                 .sum::<Result<f64, Error>>()
         };
+
         let [fixed, single] = [
             typical(Method::Rk4Fixed32)?.exp(),
             typical(Method::Rk4F32Direction)?.exp(),
@@ -192,13 +211,15 @@ fn no_pendulum_is_worse_off_than_in_single_precision() -> Result<(), Error> {
             "{fixed:e} against {single:e} rad for {trial:?}"
         );
     }
+
     Ok(())
 }
 
-/// Random motions of up to 60 rad/s, mass ratios from 0.01 to 300, length ratios from 0.1 to 10, from the longest step that is
-/// accepted: where the method shows its order in `f64`, it does so in 32 bits, above what roundings leave.
+/// Random motions of up to 60 rad/s, with mass ratios from 0.01 to 300 and length ratios from 0.1
+/// to 10, in steps from the longest accepted one downwards. If RK4 shows its order in `f64`, it
+/// does so in 32 bits, above the rounding errors.
 #[test]
-fn thirty_two_bits_are_of_order_four_at_any_speed() -> Result<(), Error> {
+fn fixed32_is_of_order_four_at_any_speed() -> Result<(), Error> {
     const MOTIONS: u32 = 200;
     let mut rng = fastrand::Rng::with_seed(3);
     let mut measured = 0;
@@ -212,6 +233,7 @@ fn thirty_two_bits_are_of_order_four_at_any_speed() -> Result<(), Error> {
             l2,
             g: GRAVITY,
         };
+
         let speed = log_uniform(&mut rng, 1.0, 60.0);
         let [a1, a2, w1, w2] = [PI, PI, speed, speed].map(|most| most * symmetric(&mut rng));
         let pendulum = Pendulum::new(&parameters)?;
@@ -222,9 +244,11 @@ fn thirty_two_bits_are_of_order_four_at_any_speed() -> Result<(), Error> {
             start,
             seconds: 512.0 * dt,
         };
-        // far finer than what is measured, at a tenth of the reference's price
+
+        // This is far more accurate than the measured errors, at a tenth of the cost of the
+        // reference.
         let exact = trial.states(Method::Extrapolation16F64, 0.5 * dt)?;
-        // each with half the step of the one before
+        // Each error belongs to half the step of the previous one.
         let errors = |states: &dyn Fn(f64) -> Result<Vec<State<f64>>, Error>| {
             let error = |halvings| {
                 Ok(largest_difference(
@@ -234,6 +258,7 @@ fn thirty_two_bits_are_of_order_four_at_any_speed() -> Result<(), Error> {
             };
             (0..6).map(error).collect::<Result<Vec<f64>, Error>>()
         };
+
         let fixed = errors(&|dt| trial.states(Method::Rk4Fixed32, dt))?;
         let double = errors(&|dt| trial.states_in_f64(dt, MOMENTS))?;
         let floor = tolerances::FIXED_32_ORDER_MEASURABLE.max(16.0 * fixed[4].max(fixed[5]));
@@ -249,12 +274,14 @@ fn thirty_two_bits_are_of_order_four_at_any_speed() -> Result<(), Error> {
             }
         }
     }
-    // measured 67; of a method that errs in the unit of time 51 are left above its floor, two of them below order 2
+
+    // Measured: 67. If the unit of time is wrong, 51 are above the floor, and two of these are
+    // below order 2.
     assert!(measured >= 60, "{measured} orders");
     Ok(())
 }
 
-/// The longest step that is accepted, s, as the refusal of a longer one tells it.
+/// Returns the longest accepted step, s, which the refusal of a longer one contains.
 fn longest_step<F: Form>(pendulum: &Pendulum<f64>, start: &State<f64>) -> f64 {
     match pendulum.run::<F>(start, 1e3).map(drop) {
         Err(Error::TooLarge { limit, .. }) => limit,
@@ -263,7 +290,7 @@ fn longest_step<F: Form>(pendulum: &Pendulum<f64>, start: &State<f64>) -> f64 {
 }
 
 #[test]
-fn what_has_no_room_is_refused_by_name() -> Result<(), Error> {
+fn inputs_out_of_range_are_refused_by_name() -> Result<(), Error> {
     let good = Parameters::equal_rods(1.0, 1.0, 9.81);
     let start = State::at_rest(2.0, 2.0);
     fn refusal<F: Form>(
@@ -273,6 +300,7 @@ fn what_has_no_room_is_refused_by_name() -> Result<(), Error> {
     ) -> Option<Error> {
         Pendulum::new(parameters).ok()?.run::<F>(start, dt).err()
     }
+
     for refuse in [refusal::<Fixed32>, refusal::<Fixed64<12>>] {
         assert_eq!(refuse(&good, &start, 1.0 / 64.0), None);
         for dt in [0.5, -0.5, 1e300] {
@@ -288,6 +316,7 @@ fn what_has_no_room_is_refused_by_name() -> Result<(), Error> {
                 "{refused:?}"
             );
         }
+
         for (parameters, parameter, value) in [
             (Parameters { m2: 1e5, ..good }, Parameter::M2, 1e5),
             (Parameters { m2: 1e-5, ..good }, Parameter::M2, 1e-5),
@@ -298,6 +327,7 @@ fn what_has_no_room_is_refused_by_name() -> Result<(), Error> {
                 Some(Error::OutOfRange { parameter, value })
             );
         }
+
         let refused = refuse(&good, &State { p1: 1e300, ..start }, 1e-3);
         assert!(refused.is_some(), "an energy beyond all bounds");
         let Some(Error::TooLarge { limit, .. }) = refuse(&good, &start, 1.0) else {
@@ -308,11 +338,13 @@ fn what_has_no_room_is_refused_by_name() -> Result<(), Error> {
             None,
             "the limit it names is accepted"
         );
+
         let heavy = Parameters {
             m1: 1024.0,
             m2: 1024.0,
             ..good
         };
+
         let heavy = refuse(&heavy, &start, 1.0);
         assert_eq!(
             heavy,
@@ -320,6 +352,8 @@ fn what_has_no_room_is_refused_by_name() -> Result<(), Error> {
             "only the ratio of the masses counts"
         );
     }
+
+    // The lightest bob 2.
     let light = |places| Parameters {
         m2: 0.5_f64.powi(places),
         ..good
@@ -334,13 +368,17 @@ fn what_has_no_room_is_refused_by_name() -> Result<(), Error> {
         None,
         "the lightest bob 2"
     );
+
     Ok(())
 }
 
-/// Any masses, rods and starts, in steps about as long as there may be: stages overshoot in many ways. Half of the motions
-/// are lost, which is said; the others are what the same method gives in `f64`, which has no range to leave.
+/// Random masses, rods and starts, in steps of the longest accepted length or of at least half of
+/// it. The stages overshoot in many ways.
+///
+/// A part of the motions diverges, which is reported. All others agree with the same method in
+/// `f64`, whose range is not limited.
 #[test]
-fn a_motion_of_64_bits_is_right_or_said_to_be_lost() -> Result<(), Error> {
+fn fixed64_motion_is_accurate_or_reported_as_diverged() -> Result<(), Error> {
     fn compared<const ORDER: u32>(rng: &mut fastrand::Rng) -> Result<Option<f64>, Error> {
         let parameters = random::parameters(rng);
         let start = random::state(rng, &parameters);
@@ -355,6 +393,7 @@ fn a_motion_of_64_bits_is_right_or_said_to_be_lost() -> Result<(), Error> {
         }
         Ok(is_right.then(|| largest_difference(&[fixed.state()], &[double.state()])))
     }
+
     let mut rng = fastrand::Rng::with_seed(14);
     let mut lost = 0;
     for _ in 0..TRIALS {
@@ -372,6 +411,7 @@ fn a_motion_of_64_bits_is_right_or_said_to_be_lost() -> Result<(), Error> {
             }
         }
     }
+
     println!("{lost} of {} lost", 3 * TRIALS);
     assert!(
         (TRIALS / 30..3 * TRIALS / 2).contains(&lost),
@@ -380,16 +420,18 @@ fn a_motion_of_64_bits_is_right_or_said_to_be_lost() -> Result<(), Error> {
     Ok(())
 }
 
-/// A motion in the units of one of more energy is the same.
+/// A motion is the same in the units of a motion with more energy.
 #[test]
-fn less_energy_goes_in_the_same_units() -> Result<(), Error> {
-    let (parameters, dt) = (Parameters::equal_rods(1.0, 1.0, 9.81), 1.0 / 256.0);
+fn motion_of_less_energy_runs_in_the_same_units() -> Result<(), Error> {
+    let parameters = Parameters::equal_rods(1.0, 1.0, 9.81);
+    let dt = 1.0 / 256.0;
     let low = State {
         a1: 1.0,
         a2: 0.5,
         p1: 0.3,
         p2: -0.2,
     };
+
     let highest = Fixed64::<10>::new(&parameters, &State::at_rest(PI, PI), dt)?;
     let [lower, own] =
         [highest.started(&low)?, Form::new(&parameters, &low, dt)?].map(|mut motion| {

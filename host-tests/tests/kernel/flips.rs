@@ -1,4 +1,4 @@
-//! The map of flips: what is known of it, and how many of its points are right.
+//! The map of flips: the number of correct points, and the points in doubt.
 
 use std::f64::consts::PI;
 
@@ -10,20 +10,21 @@ use host_tests::commands::flips::map::{FlipPair, Map};
 use host_tests::oracle::tolerances;
 use reference::taylor::Reference;
 
-/// The judge's steps are so many times finer; its arithmetic is compensated `f64`.
+/// The steps of the comparison are this many times finer. Its arithmetic is compensated `f64`.
 const FINER: u32 = 16;
-/// Times between which the exact motion is looked at, sqrt(l1/g).
+/// The time between two samples of the exact motion, sqrt(l1/g).
 const LOOKS: f64 = 0.1;
-/// Points that the reference judges: 0.1 s each.
+/// The number of points that are compared with the reference. Each takes 0.1 s.
 const JUDGED: usize = 60;
 
-/// Equal rods and bobs; times in sqrt(l/g).
+/// Returns a map of equal rods and bobs. Times are in sqrt(l/g).
 fn map(limit: f32, size: usize) -> Map {
     Map::new(Parameters::equal_rods(1.0, 1.0, 1.0), limit, [size, size]).expect("a pendulum")
 }
 
-/// The points of the upper half of a map that may turn over, with their starts: the energy says that no rod turns over where
-/// 2 cos a1 + cos a2 > 1.
+/// Returns the points of the upper half of a map that may turn over, with their starts.
+///
+/// By its energy no rod turns over if 2 cos a1 + cos a2 > 1.
 fn turning(map: &Map) -> Result<Vec<([f32; 2], FlipPair)>, Error> {
     let points = map.starts().into_iter().zip(map.points(|_| ())?);
     let may_turn = |([a1, a2], [flip, _]): &([f32; 2], FlipPair)| {
@@ -31,11 +32,14 @@ fn turning(map: &Map) -> Result<Vec<([f32; 2], FlipPair)>, Error> {
         assert_eq!(*flip == Flip::Never, cannot, "{a1} {a2}");
         !cannot
     };
+
     Ok(points.filter(may_turn).collect())
 }
 
-/// How a map's points are judged by fine steps in `f64`: how many are more than a grey level off, how many of these are not in
-/// doubt, how many are in doubt, and how many there are.
+/// Compares the points of a map with fine steps in `f64`.
+///
+/// Returns the numbers of points that are wrong by more than a grey level, of wrong points that are
+/// not in doubt, of points in doubt, and of all points.
 fn judge(map: &Map) -> Result<[usize; 4], Error> {
     let dt = map.dt / f64::from(FINER);
     let fine = Flips::<DirectionF64>::new(
@@ -52,13 +56,15 @@ fn judge(map: &Map) -> Result<[usize; 4], Error> {
                 Flip::After(time) => Flip::After(time as f32),
                 Flip::Later => Flip::Later,
             };
-            let (wrong, doubtful) = (map.differ([point[0], exact]), map.differ(point));
+
+            let wrong = map.differ([point[0], exact]);
+            let doubtful = map.differ(point);
             let these = [wrong, wrong && !doubtful, doubtful, true];
             Ok(std::array::from_fn(|i| counts[i] + usize::from(these[i])))
         })
 }
 
-/// The flip of the exact motion, to 30 digits.
+/// Returns the flip of the exact motion, which is computed to 30 digits.
 fn exact(map: &Map, [a1, a2]: [f32; 2]) -> Flip<f32> {
     let mut motion = Reference::new(
         &map.parameters.cast(),
@@ -81,9 +87,10 @@ fn exact(map: &Map, [a1, a2]: [f32; 2]) -> Flip<f32> {
     Flip::Later
 }
 
-/// All of a map by fine steps in `f64`, and those steps on some points, the same in each run, by the reference.
+/// The points of a map are compared with fine steps in `f64`. A fixed random sample of them is
+/// compared with the reference.
 #[test]
-fn points_are_right_to_a_grey_level() -> Result<(), Error> {
+fn points_are_accurate_to_a_grey_level() -> Result<(), Error> {
     let short = map(10.0, 64);
     let [wrong, .., points] = judge(&short)?;
     println!("limit 10: {wrong} of {points} wrong");
@@ -101,12 +108,14 @@ fn points_are_right_to_a_grey_level() -> Result<(), Error> {
             "{start:?}: {point:?}"
         );
     }
+
     Ok(())
 }
 
-/// With a limit ten times as long, chaos has made the map partly noise; doubt finds most of what is wrong.
+/// A map with a limit ten times as long is partly noise, because of chaos. Most of the wrong points
+/// are in doubt.
 #[test]
-fn doubt_tells_what_is_wrong() -> Result<(), Error> {
+fn most_wrong_points_are_in_doubt() -> Result<(), Error> {
     let [wrong, unsuspected, doubtful, points] = judge(&map(100.0, 32))?;
     println!(
         "limit 100: {wrong} wrong, {unsuspected} not in doubt, {doubtful} in doubt of {points}"

@@ -1,4 +1,4 @@
-//! The fast forms: the same method, its order, its accuracy, and what is carried besides.
+//! The fast forms: their accuracy, their directions and their count of turns.
 
 use std::f64::consts::TAU;
 
@@ -10,8 +10,11 @@ use fastrand::Rng;
 use host_tests::oracle::trials::{self, Trial, exact_methods, largest_difference};
 use host_tests::oracle::{random, tolerances};
 
-/// Root mean square of the errors over neighbouring starts in steps of `dt`, compensated `f32`. The truth is order 16 in
-/// `f64`, which keeps 1e-12 rad here and costs a thousandth of the reference's time.
+/// Returns the root mean square error of compensated `f32` over neighbouring starts, in steps of
+/// `dt`.
+///
+/// The exact motion is computed by order 16 in `f64`. Its error is 1e-12 rad here, and it takes a
+/// thousandth of the reference's time.
 fn typical_error(seconds: f64, dt: f64) -> Result<f64, Error> {
     const STARTS: u32 = 32;
     let mut squares = 0.0;
@@ -23,20 +26,26 @@ fn typical_error(seconds: f64, dt: f64) -> Result<f64, Error> {
             .states(Method::Extrapolation16F64, 1.0 / 16.0)?;
         squares += largest_difference(&trial.states(Method::Rk4F32Direction, dt)?, &exact).powi(2);
     }
+
     Ok((squares / f64::from(STARTS)).sqrt())
 }
 
-/// One regular motion, and what one may count on, for a single motion is 3 times luckier or less. What is not the method's own error
-/// are the roundings of the evaluations, 6e-8 each, of which none stands out.
+/// Checks the error of one regular motion, and the typical error over neighbouring starts. A single
+/// error may be three times smaller or larger than the typical one.
+///
+/// The errors are the truncation error and the rounding errors of the evaluations, 6e-8 each. None
+/// of the latter dominates.
 #[test]
 fn compensated_single_precision_keeps_its_budgets() -> Result<(), Error> {
     for (seconds, steps, goal, typical) in [
-        // the method's own error is 1.1e-8 (measured 4.0e-8 and typically 4.3e-8); plain sums miss the goal by far
+        // The truncation error is 1.1e-8 (measured: 4.0e-8, typically 4.3e-8). Plain sums have a
+        // far larger error.
         (10.0, 256.0, 5e-8, 5e-8),
-        // 1.0e-7 (measured 2.5e-7 and 4.0e-7)
+        // The truncation error is 1.0e-7 (measured: 2.5e-7, typically 4.0e-7).
         (100.0, 256.0, 2.5e-7, 4.5e-7),
-        // (256/240)^4 of that with 256 (measured over 192 starts: 1.32 times 4.2e-8, 1.20 to 1.42 over 32 of them); of a step of
-        // 1/240 s `f32` would make one that is 3e-7 s longer in 10 s, and the error 30 times
+        // The error is (256/240)^4 times that with 256 steps. Measured over 192 starts: 1.32 times
+        // 4.2e-8; 1.20 to 1.42 times over 32 of them. A step that is 1/240 s rounded to `f32` would
+        // be 3e-7 s too long in 10 s, and the error 30 times as large.
         (10.0, 240.0, 6.5e-8, 6.5e-8),
     ] {
         let error = Trial::regular(seconds).error(Method::Rk4F32Direction, 1.0 / steps)?;
@@ -47,22 +56,24 @@ fn compensated_single_precision_keeps_its_budgets() -> Result<(), Error> {
             "{seconds} s, {steps} steps a second: {error:e} {typically:e}"
         );
     }
+
     Ok(())
 }
 
 #[test]
-fn compensation_pays() -> Result<(), Error> {
+fn compensation_reduces_the_error_by_its_gain() -> Result<(), Error> {
     for dt in [1.0 / 256.0, 1.0 / 1024.0] {
         let error = |method| Trial::regular(10.0).error(method, dt);
         let gain = error(Method::Rk4F32DirectionPlain)? / error(Method::Rk4F32Direction)?;
         assert!(gain >= tolerances::COMPENSATION_GAIN, "{gain}");
     }
+
     Ok(())
 }
 
-/// Rods and masses unlike, in motion; and back, and in steps dealt out otherwise.
+/// A motion with different rods and masses is run forwards and backwards, and in single steps.
 #[test]
-fn backwards_is_forwards_undone_and_how_steps_are_dealt_out_changes_nothing() -> Result<(), Error> {
+fn backward_steps_return_to_the_start_and_single_steps_are_bit_identical() -> Result<(), Error> {
     let parameters = Parameters {
         l2: 0.4,
         ..Parameters::equal_rods(3.0, 1.0, 9.81)
@@ -73,6 +84,7 @@ fn backwards_is_forwards_undone_and_how_steps_are_dealt_out_changes_nothing() ->
         p1: 0.1,
         p2: 0.2,
     };
+
     let [carried, plain] = tolerances::RETURN_OF_32_BITS;
     for &method in Method::ALL {
         let mut forth = trials::run(method, &parameters, &start, 1.0 / 1024.0)?;
@@ -84,6 +96,7 @@ fn backwards_is_forwards_undone_and_how_steps_are_dealt_out_changes_nothing() ->
             (each.state(), each.directions()),
             "{method}"
         );
+
         let mut back = trials::run(method, &parameters, &forth.state(), -1.0 / 1024.0)?;
         back.advance(1024)?;
         let budget = match method.numbers() {
@@ -91,30 +104,33 @@ fn backwards_is_forwards_undone_and_how_steps_are_dealt_out_changes_nothing() ->
             Numbers::CompensatedF32 | Numbers::Fixed32 => carried,
             Numbers::F64 | Numbers::CompensatedF64 | Numbers::Fixed64 => tolerances::RETURN,
         };
+
         let difference = largest_difference(&[back.state()], &[start]);
         assert!(difference <= budget, "{method}: {difference:e}");
     }
+
     Ok(())
 }
 
-/// But in closed form, where they are the first terms of their series.
+/// The closed form is excluded, because its directions are the first terms of a series.
 #[test]
 fn directions_are_those_of_the_angles() -> Result<(), Error> {
-    /// No rod turns faster in these motions, rad/s.
+    /// The largest rate of a rod in these motions, rad/s.
     const FASTEST: f64 = 10.0;
     let both = |method| [Trial::chaotic(1.0), Trial::unlike(1.0)].map(|trial| (method, trial));
     for (method, trial) in exact_methods().flat_map(both) {
         let mut motion = trials::run(method, &trial.parameters, &trial.start, 1.0 / 64.0)?;
-        // fixed point tells them in single precision
+        // The directions of fixed point are `f32`.
         let is_double = matches!(method.numbers(), Numbers::F64 | Numbers::CompensatedF64);
         let epsilon = if is_double {
             f64::EPSILON
         } else {
             f32::EPSILON.into()
         };
+
         for look in 1..=10 {
             motion.advance(7)?;
-            // the directions are ahead of the state by as much as the steps are longer than dt
+            // The directions are ahead of the state, because the steps are longer than dt.
             let ahead = tolerances::LONGER * epsilon * f64::from(look * 7) / 64.0;
             let budget = tolerances::DIRECTIONS * epsilon + FASTEST * ahead;
             for ([sine, cosine], angle) in
@@ -130,23 +146,27 @@ fn directions_are_those_of_the_angles() -> Result<(), Error> {
             }
         }
     }
+
     Ok(())
 }
 
-/// The turns that a rod has made since its start follow from its angular velocity, step by step.
+/// The whole turns of a rod agree with its angular velocity, integrated step by step.
 #[test]
-fn turns_are_those_that_the_velocity_makes() -> Result<(), Error> {
+fn turns_follow_the_angular_velocity() -> Result<(), Error> {
     let Trial {
         parameters, start, ..
     } = Trial::at_rest(2.75, 3.0, 3.0, 1.0);
-    let (pendulum, dt) = (Pendulum::new(&parameters)?, 1.0 / 2048.0);
+    let pendulum = Pendulum::new(&parameters)?;
+    let dt = 1.0 / 2048.0;
     let velocities = |state: &State<f64>| {
         let Motion { w1, w2, .. } = pendulum.to_motion(state);
         [w1, w2]
     };
     for method in exact_methods() {
         let mut motion = trials::run(method, &parameters, &start, dt)?;
-        let (mut angles, mut before, mut most) = (start.angles(), velocities(&start), 0.0_f64);
+        let mut angles = start.angles();
+        let mut before = velocities(&start);
+        let mut most = 0.0_f64;
         for _ in 0..10 * 2048 {
             motion.advance(1)?;
             let now = velocities(&motion.state());
@@ -160,17 +180,20 @@ fn turns_are_those_that_the_velocity_makes() -> Result<(), Error> {
             }
             before = now;
         }
+
         assert!(
             most > 2.0 * TAU,
             "{method}: it never turned over twice: {most}"
         );
     }
+
     Ok(())
 }
 
-/// Any angle, moved on by less than a quarter turn at a time, is known from its directions, and from itself but for its turns.
+/// The count of turns follows an angle that changes by less than a quarter turn at a time. The
+/// angle is restored from its direction, or from itself without whole turns.
 #[test]
-fn turns_follow_an_angle_either_way() {
+fn turns_follow_an_angle_in_either_direction() {
     let mut rng = Rng::with_seed(7);
     let mut angle = 1.0_f64;
     let signs = |angle: f64| [[angle.sin(), angle.cos()].map(|part| -i32::from(part < 0.0)); 2];
@@ -181,6 +204,7 @@ fn turns_follow_an_angle_either_way() {
             ..
         })
     ));
+
     for start in (-100..=100).map(|i| 0.37 * f64::from(i)) {
         let [turns, _] = Turns::of([start; 2], signs(start)).expect("few turns");
         assert!(
@@ -188,6 +212,7 @@ fn turns_follow_an_angle_either_way() {
             "{start}"
         );
     }
+
     let mut turns = Turns::of([angle; 2], signs(angle)).expect("few turns");
     let mut farthest = 0.0_f64;
     for _ in 0..100_000 {
@@ -202,12 +227,14 @@ fn turns_follow_an_angle_either_way() {
             unwrapped.a1,
             unwrapped.a2,
         ];
+
         assert!(
             known.iter().all(|known| (known - angle).abs() < 1e-9),
             "{known:?} for {angle}"
         );
         farthest = farthest.max(angle.abs());
     }
+
     assert!(farthest > 10.0 * TAU, "{farthest}");
 }
 
@@ -222,6 +249,7 @@ fn bad_input_is_refused_by_name() -> Result<(), Error> {
         l2: 1.0,
         g: 9.81,
     };
+
     let still = State::at_rest(1.0, 1.0);
     for &method in Method::ALL {
         let refused = |parameters: &Parameters<f64>, start: &State<f64>, dt: f64| {
@@ -229,6 +257,7 @@ fn bad_input_is_refused_by_name() -> Result<(), Error> {
                 .err()
                 .unwrap_or_else(|| panic!("{method} takes it"))
         };
+
         for dt in [f64::NAN, f64::INFINITY] {
             assert!(matches!(
                 refused(&good, &still, dt),
@@ -238,6 +267,7 @@ fn bad_input_is_refused_by_name() -> Result<(), Error> {
                 }
             ));
         }
+
         for dt in [0.0, 1e-310] {
             assert!(matches!(
                 refused(&good, &still, dt),
@@ -247,6 +277,7 @@ fn bad_input_is_refused_by_name() -> Result<(), Error> {
                 }
             ));
         }
+
         let nowhere = refused(&good, &State::at_rest(f64::NAN, 0.0), 0.01);
         assert!(
             matches!(
@@ -258,6 +289,7 @@ fn bad_input_is_refused_by_name() -> Result<(), Error> {
             ),
             "{method}: {nowhere:?}"
         );
+
         let negative = refused(&Parameters { m2: -1.0, ..good }, &still, 0.01);
         assert!(matches!(
             negative,
@@ -266,6 +298,7 @@ fn bad_input_is_refused_by_name() -> Result<(), Error> {
                 ..
             }
         ));
+
         if method.is_single() {
             let extreme = refused(
                 &Parameters {
@@ -282,11 +315,13 @@ fn bad_input_is_refused_by_name() -> Result<(), Error> {
             );
         }
     }
+
     let light = Pendulum::new(&Parameters {
         m2: 0.1,
         l2: 0.1,
         ..good
     })?;
+
     let light = light
         .run::<DirectionF32>(&State { p1: 3e38, ..still }, 0.01)
         .expect_err("refused");
@@ -300,5 +335,6 @@ fn bad_input_is_refused_by_name() -> Result<(), Error> {
         ),
         "{light:?}"
     );
+
     Ok(())
 }

@@ -1,11 +1,11 @@
-//! Every method of the table computes the bits that the kernel's `golden/bits.csv` keeps, those of
-//! the firmware's own too.
+//! The methods of the table compute the bits that are stored in the kernel's `golden/bits.csv`,
+//! including the methods of the firmware.
 
 use firmware::job::write_golden;
 use host_tests::oracle::snapshot;
 
-/// With `BLESS=1` this renews the file. A test of the kernel then wants an entry in its list of
-/// changes.
+/// The test updates the file if `BLESS=1` is set. A test of the kernel then requires an entry in
+/// its change log.
 #[test]
 fn every_method_computes_the_golden_bits() -> Result<(), String> {
     let mut lines = String::new();

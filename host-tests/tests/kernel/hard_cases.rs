@@ -1,4 +1,4 @@
-//! The hard cases: every method of the table on motions that break a careless one.
+//! The hard cases: the methods of the table on motions that are difficult for their numbers.
 
 use double_pendulum::{Equations, Error, Method, Numbers, Parameter, State};
 use host_tests::oracle::hard_cases::{HardCase, hard_cases};
@@ -6,16 +6,19 @@ use host_tests::oracle::tolerances;
 use host_tests::oracle::trials::{MOMENTS, Trial, exact_methods, largest_difference};
 use rayon::prelude::*;
 
-/// The steps tried, 2^-k s.
+/// The steps, 2^-k s.
 pub const HALVINGS: std::ops::RangeInclusive<i32> = 4..=13;
 
-/// Starts of a case. The logarithm of an error at its floor spreads by about 0.5, the mean of so many by 0.1.
+/// The number of starts of a case. The logarithm of an error at its floor spreads by about 0.5, and
+/// the mean over this number of starts by 0.1.
 const STARTS: u32 = 24;
 
-/// Plain sums with the finest steps, over the floor of compensated ones: measured up to 610.
+/// The error of plain sums in the finest steps, divided by the floor of compensated sums (measured:
+/// up to 610).
 const PLAIN: f64 = 2000.0;
 
-/// What halving the step may make of a typical error, above what error, and the most that the finest steps leave.
+/// Returns three limits on a typical error: the largest factor by which it may grow if the step is
+/// halved, the error up to which any growth is allowed, and the largest error in the finest steps.
 fn budget(
     &HardCase {
         floor,
@@ -44,17 +47,21 @@ fn budget(
     }
 }
 
-/// Halving the step never makes the typical error worse by more than `growth` above `least`, and in the end it is within `last`;
-/// where that is NaN all is refused.
+/// Asserts that half the step never increases the typical error by more than `growth` above
+/// `least`, and that the error in the finest steps is at most `last`.
+///
+/// If `last` is NaN, all steps must be refused.
 fn refining_pays(case: &HardCase, method: Method) -> Result<(), Error> {
     let [growth, least, last] = budget(case, method);
-    // of an error of the method itself one start says all
+    // For a truncation error one start is enough.
     let starts = match method.numbers() {
         Numbers::CompensatedF32 => STARTS,
         Numbers::F32 | Numbers::Fixed32 => 8,
         _ => 1,
     };
-    // beside 32 bits, order 16 in f64 is as good as exact, at a tenth of the reference's price
+
+    // For methods in 32 bits, order 16 in `f64` is accurate enough, at a tenth of the reference's
+    // cost.
     let is_narrow = method.is_single() || method.numbers() == Numbers::Fixed32;
     let with_exact = |i| {
         let on = f64::from(i) * case.spread;
@@ -68,6 +75,7 @@ fn refining_pays(case: &HardCase, method: Method) -> Result<(), Error> {
             },
             ..case.trial
         };
+
         let held = trial.held_by(method);
         Ok((
             trial,
@@ -78,10 +86,11 @@ fn refining_pays(case: &HardCase, method: Method) -> Result<(), Error> {
             },
         ))
     };
+
     let starts = (0..starts)
         .map(with_exact)
         .collect::<Result<Vec<_>, Error>>()?;
-    // the geometric mean, rad; infinite where a motion is lost
+    // The geometric mean of the errors, rad.
     let typical_error = |halvings| {
         let error = |(trial, exact): &(Trial, Vec<State<f64>>)| {
             let states = trial.states(method, 0.5_f64.powi(halvings))?;
@@ -89,9 +98,11 @@ fn refining_pays(case: &HardCase, method: Method) -> Result<(), Error> {
                 .max(f64::MIN_POSITIVE)
                 .ln())
         };
+
         let logarithms = starts.iter().map(error).sum::<Result<f64, Error>>()?;
         Ok((logarithms / starts.len() as f64).exp())
     };
+
     let is_too_long = |error: &_| {
         matches!(
             error,
@@ -101,6 +112,7 @@ fn refining_pays(case: &HardCase, method: Method) -> Result<(), Error> {
             })
         )
     };
+
     let errors = match HALVINGS
         .map(typical_error)
         .filter(|error| !is_too_long(error))
@@ -112,27 +124,28 @@ fn refining_pays(case: &HardCase, method: Method) -> Result<(), Error> {
     let about = format!("{}, {method} ({}): {errors:?}", case.name, case.reason);
     assert_eq!(errors.is_empty(), last.is_nan(), "{about}");
     for pair in errors.windows(2) {
-        // beyond a tenth of a radian an error says nothing but that the motion is lost
+        // An error above a tenth of a radian shows only that the motion is wrong.
         assert!(
             pair[0] > 0.1 || pair[1] <= (growth * pair[0]).max(least),
             "{about}"
         );
     }
+
     assert!(errors.last().is_none_or(|&error| error <= last), "{about}");
     Ok(())
 }
 
 #[test]
-fn every_hard_case_is_taken() -> Result<(), Error> {
+fn finer_steps_are_no_worse_in_every_hard_case() -> Result<(), Error> {
     let all = |case| exact_methods().map(move |method| (case, method));
     let all: Vec<_> = hard_cases().into_iter().flat_map(all).collect();
     all.into_par_iter()
         .try_for_each(|(case, method)| refining_pays(&case, method))
 }
 
-/// A million steps of 2^-13 s: compensated sums do not care how many there are.
+/// The error of compensated sums does not grow with the number of steps: a million of 2^-13 s.
 #[test]
-fn a_million_steps() -> Result<(), Error> {
+fn compensated_sums_stay_accurate_for_a_million_steps() -> Result<(), Error> {
     let dt = 1.0 / 8192.0;
     let trial = Trial::regular(1e6 * dt);
     let single = trial.error(Method::Rk4F32Direction, dt)?;

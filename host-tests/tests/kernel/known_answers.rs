@@ -1,4 +1,5 @@
-//! The table of known answers: the reference to its last digits, every method within each row's budget.
+//! The table of known answers: the reference agrees with all its digits, and every method with each
+//! row to within its tolerance.
 
 use std::sync::LazyLock;
 
@@ -10,7 +11,7 @@ use rayon::prelude::*;
 use reference::taylor::Reference;
 use reference::twofloat::TwoFloat;
 
-/// How far the directions are from all that they may be.
+/// Returns the distance of the directions from the interval of each row's value.
 fn distance(row: &KnownAnswer, directions: [TwoFloat; 4]) -> f64 {
     let off = |i: usize| f64::from(directions[i] - row.directions[i]).abs() - row.radius[i];
     (0..4)
@@ -19,7 +20,7 @@ fn distance(row: &KnownAnswer, directions: [TwoFloat; 4]) -> f64 {
         .fold(0.0, f64::max)
 }
 
-/// Every row with the reference there.
+/// The rows of the table, each with the reference at its time.
 static ROWS: LazyLock<Vec<(KnownAnswer, Reference)>> = LazyLock::new(|| {
     let at_its_time = |row: KnownAnswer| {
         let mut reference = row.start.clone();
@@ -36,10 +37,8 @@ static ROWS: LazyLock<Vec<(KnownAnswer, Reference)>> = LazyLock::new(|| {
 #[test]
 fn reference_reaches_the_tables_digits() {
     for (row, reference) in &*ROWS {
-        let (distance, budget) = (
-            distance(row, reference.directions()),
-            tolerances::REFERENCE * row.growth,
-        );
+        let distance = distance(row, reference.directions());
+        let budget = tolerances::REFERENCE * row.growth;
         assert!(
             distance <= budget,
             "{} at {} s: {distance:e}, budget {budget:e}",
@@ -62,6 +61,7 @@ fn keeps_its_budgets(rows: &[(KnownAnswer, Reference)], method: Method) {
             }) if method.is_fixed_point() => continue,
             run => run.unwrap_or_else(|error| panic!("{method}, {}: {error}", first.scene)),
         };
+
         let mut made = 0;
         for (row, exact) in scene {
             let left = (row.time * f64::from(steps_per_second)) as u32 - made;
@@ -83,6 +83,7 @@ fn keeps_its_budgets(rows: &[(KnownAnswer, Reference)], method: Method) {
             tested += u32::from(budget < 1.0);
         }
     }
+
     println!("{method}: {tested}");
     let claimed = tolerances::KNOWN_ANSWERS_CLAIMED.by(method);
     assert!(
@@ -92,8 +93,9 @@ fn keeps_its_budgets(rows: &[(KnownAnswer, Reference)], method: Method) {
 }
 
 #[test]
-fn every_method_keeps_its_budgets() {
-    // here, as a job that waited for the rows would keep a thread from the jobs that compute them
+fn every_method_keeps_its_tolerance_in_the_table() {
+    // The rows are computed here first. A job that waited for them would block a thread of the jobs
+    // that compute them.
     let rows = &*ROWS;
     exact_methods()
         .collect::<Vec<_>>()

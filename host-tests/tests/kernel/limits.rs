@@ -1,4 +1,5 @@
-//! Where the answer is known without a computation: upright, straight, at rest, tiny, and at the edge of stability.
+//! Motions that are known without a computation: upright, straight, at rest, tiny, and at the edge
+//! of stability.
 
 use std::f64::consts::{PI, TAU};
 
@@ -11,30 +12,31 @@ use reference::taylor::Reference;
 
 use super::hard_cases::HALVINGS;
 
-/// Rods of 1 m and bobs of 1 kg.
+/// Returns the parameters of rods of 1 m and bobs of 1 kg.
 fn even(gravity: f64) -> Parameters<f64> {
     Parameters::equal_rods(1.0, 1.0, gravity)
 }
 
-/// When rod 1 is a radian from where it started, s; looked at every 1/64 s.
+/// Returns the first time when rod 1 is a radian away from its start, s, in units of 1/64 s.
 fn fall(mut angle: impl FnMut() -> f64) -> f64 {
     let start = angle();
     let looks = (1..=16 * 64).find(|_| (angle() - start).abs() > 1.0);
     looks.map_or(f64::INFINITY, |looks| f64::from(looks) / 64.0)
 }
 
-/// Straight up, to the last digit that an angle has: directions in floating point fall when the exact motion from there does,
-/// whatever the step. (In angles increments are lost, see below; in fixed point a sine has too few digits.)
+/// A pendulum starts upright, to the last digit of an angle. In the direction form in floating
+/// point it falls when the exact motion from this start falls, in steps of any size.
+///
+/// In angles small increments are lost by rounding, which the next test covers. In fixed point a
+/// sine has too few digits.
 #[test]
-fn upright_falls_when_theory_says() -> Result<(), Error> {
+fn upright_pendulum_falls_with_the_exact_motion_in_direction_form() -> Result<(), Error> {
     let is_meant =
         |method: &&Method| method.equations() == Equations::Directions && !method.is_fixed_point();
     for &method in Method::ALL.iter().filter(is_meant) {
         let single = f64::from(std::f32::consts::PI);
-        let (up, parameters) = (
-            if method.is_single() { single } else { PI },
-            even(9.81_f64 as f32 as f64),
-        );
+        let up = if method.is_single() { single } else { PI };
+        let parameters = even(9.81_f64 as f32 as f64);
         let mut reference = Reference::new(&parameters, &Motion::at_rest(up, up));
         let mut time = 0.0;
         let exact = fall(|| {
@@ -42,6 +44,7 @@ fn upright_falls_when_theory_says() -> Result<(), Error> {
             time += 1.0 / 64.0;
             reference.motion().a1
         });
+
         assert!(exact.is_finite());
         for halvings in HALVINGS.skip(2) {
             let mut motion = run(
@@ -50,12 +53,14 @@ fn upright_falls_when_theory_says() -> Result<(), Error> {
                 &State::at_rest(up, up),
                 0.5_f64.powi(halvings),
             )?;
+
             let mut steps = 0;
             let falls = fall(|| {
                 motion.advance(steps).expect("a finite motion");
                 steps = 1 << (halvings - 6);
                 motion.angles()[0].rem_euclid(TAU)
             });
+
             let error = (falls - exact).abs();
             assert!(
                 error <= tolerances::FALL,
@@ -63,13 +68,17 @@ fn upright_falls_when_theory_says() -> Result<(), Error> {
             );
         }
     }
+
     Ok(())
 }
 
-/// As one writes the method down, the angle stands still until an increment reaches half a unit of its last place: the
-/// momentum grows by the torque, so after (ulp/2)/(g error dt), the error being that of pi. Then it falls.
+/// The angle stays constant in plain sums of angles, until an increment reaches half a unit of its
+/// last place.
+///
+/// The momentum grows by the torque. The angle therefore stays for (ulp/2)/(g error dt), where the
+/// error is that of pi. Then the pendulum falls.
 #[test]
-fn upright_stays_as_long_as_theory_says_in_plain_sums() -> Result<(), Error> {
+fn upright_pendulum_stays_for_the_predicted_time_in_plain_sums() -> Result<(), Error> {
     let single = f64::from(std::f32::consts::PI);
     for (method, up, ulp, error) in [
         (
@@ -101,12 +110,13 @@ fn upright_stays_as_long_as_theory_says_in_plain_sums() -> Result<(), Error> {
             );
         }
     }
+
     Ok(())
 }
 
-/// Straight and turning as one, without gravity: a = a(0) + w t, to the roundings of the turning.
+/// A straight pendulum turns uniformly without gravity: a = a(0) + w t, up to rounding errors.
 #[test]
-fn straight_rods_turn_evenly_without_gravity() -> Result<(), Error> {
+fn straight_rods_turn_uniformly_without_gravity() -> Result<(), Error> {
     let parameters = Parameters {
         l2: 0.5,
         ..even(0.0)
@@ -117,6 +127,7 @@ fn straight_rods_turn_evenly_without_gravity() -> Result<(), Error> {
         w1: 2.0,
         w2: 2.0,
     });
+
     for method in exact_methods() {
         let mut motion = run(method, &parameters, &start, 1.0 / 256.0)?;
         for seconds in 1..=20 {
@@ -132,16 +143,18 @@ fn straight_rods_turn_evenly_without_gravity() -> Result<(), Error> {
             );
         }
     }
+
     Ok(())
 }
 
-/// Hanging, and without gravity anywhere: what is at rest stays there, bit-identical but for 64-bit fixed point.
+/// A pendulum at rest stays at rest: hanging, and without gravity at any angles. The motion is
+/// bit-identical, except in 64-bit fixed point.
 #[test]
-fn what_is_at_rest_stays() -> Result<(), Error> {
+fn pendulum_at_rest_stays_at_rest() -> Result<(), Error> {
     for &method in Method::ALL {
         for (gravity, a1, a2) in [(9.81, 0.0, 0.0), (0.0, 3.0, -2.0)] {
             if gravity == 0.0 && method.equations() == Equations::Linear {
-                continue; // nothing swings
+                continue; // There are no normal modes.
             }
             let mut motion = run(method, &even(gravity), &State::at_rest(a1, a2), 1.0 / 64.0)?;
             let start = motion.state();
@@ -153,6 +166,7 @@ fn what_is_at_rest_stays() -> Result<(), Error> {
                 _ if method.is_single() => [f32::EPSILON.into(), 0.0],
                 _ => [f64::EPSILON, 0.0],
             };
+
             let pushed = now.p1.abs().max(now.p2.abs());
             assert!(
                 moved <= angle && pushed <= momentum,
@@ -160,29 +174,33 @@ fn what_is_at_rest_stays() -> Result<(), Error> {
             );
         }
     }
+
     Ok(())
 }
 
-/// In floating point, a swing so small that every square vanishes is the linear one; one of subnormal numbers stays as small as
-/// it was.
+/// An oscillation whose squares all underflow is the linear one, in floating point. An oscillation
+/// in subnormal numbers stays small.
 #[test]
-fn denormals_do_no_harm() -> Result<(), Error> {
+fn tiny_oscillations_are_linear_and_subnormal_ones_stay_small() -> Result<(), Error> {
     let parameters = even(9.81);
     let slow = Modes::new(&parameters)?.slow;
     for method in exact_methods().filter(|method| !method.is_fixed_point()) {
-        // far above the least normal number, and at a few units of the least of all
+        // The first number is far above the smallest normal number, and the second is a few units
+        // of the smallest subnormal number.
         let [tiny, subnormal] = if method.is_single() {
             [-80, -146]
         } else {
             [-900, -1071]
         }
         .map(|n| 2_f64.powi(n));
+
         let mut motion = run(
             method,
             &parameters,
             &State::at_rest(tiny, tiny * slow.shape),
             1.0 / 256.0,
         )?;
+
         for step in 1..=10 * 64 {
             motion.advance(4)?;
             let expected = (slow.frequency * f64::from(step) / 64.0).cos();
@@ -192,6 +210,7 @@ fn denormals_do_no_harm() -> Result<(), Error> {
                 "{method}: {miss:e} at step {step}"
             );
         }
+
         let mut motion = run(
             method,
             &parameters,
@@ -206,13 +225,16 @@ fn denormals_do_no_harm() -> Result<(), Error> {
             "{method}: {a1:e}, {a2:e} from {subnormal:e}"
         );
     }
+
     Ok(())
 }
 
-/// The fast mode just below the step limit of RK4 decays, just above it grows: by 15 % a step, until it is so wide that its
-/// frequency is another, which may be at less than 0.001 rad. Runs refuse such steps.
+/// The fast mode decays in steps just below the limit of RK4, and grows just above it.
+///
+/// It grows by 15 % per step until its amplitude changes its frequency, which may be at less than
+/// 0.001 rad. Runs refuse such steps.
 #[test]
-fn the_edge_of_stability_is_where_it_should_be() -> Result<(), Error> {
+fn fast_mode_decays_below_the_step_limit_and_grows_above() -> Result<(), Error> {
     const SMALL: f64 = 1e-5;
     let is_meant =
         |method: &Method| method.integrator() == Integrator::Rk4 && !method.is_fixed_point();
@@ -234,12 +256,14 @@ fn the_edge_of_stability_is_where_it_should_be() -> Result<(), Error> {
                 .iter()
                 .all(|dt| modes.check_step(*dt).is_err())
         );
+
         let shape = modes.fast.shape;
         let start = if shape.abs() > 1.0 {
             State::at_rest(SMALL / shape, SMALL)
         } else {
             State::at_rest(SMALL, SMALL * shape)
         };
+
         let [decayed, grown] = tolerances::STABILITY_EDGE;
         for method in exact_methods().filter(is_meant) {
             let mut motion = run(method, &parameters, &start, 0.98 * modes.step_limit())?;
@@ -266,8 +290,10 @@ fn the_edge_of_stability_is_where_it_should_be() -> Result<(), Error> {
                 above = largest_angle(&state).max(above);
             }
         }
+
         assert!(above > grown, "{above:e} above the limit");
     }
+
     Ok(())
 }
 

@@ -1,4 +1,4 @@
-//! The kernel, held against the reference, closed forms and its own symmetries.
+//! Tests of the kernel: compared with the reference, with closed forms and with its own symmetries.
 
 mod bounds;
 mod closed_form;

@@ -1,10 +1,11 @@
-//! The order of each method in the table that makes steps, and of extrapolation of any equation.
+//! The orders of all methods with steps, and of extrapolation of any equation.
 
 use double_pendulum::{Error, Extrapolation, Method, Parameter, Parameters, State};
 use host_tests::oracle::tolerances;
 use host_tests::oracle::trials::{Trial, exact_methods, largest_difference};
 
-/// The order that shows between two numbers of steps a second, beside the `exact` states.
+/// Returns the order that follows from the errors with two numbers of steps per second, compared
+/// with the `exact` states.
 fn order(
     method: Method,
     trial: &Trial,
@@ -17,10 +18,12 @@ fn order(
             exact,
         ))
     };
+
     Ok((error(coarse)? / error(fine)?).ln() / (f64::from(fine) / f64::from(coarse)).ln())
 }
 
-/// Between which an order shows: above what roundings leave, and where no step is refused.
+/// Returns two numbers of steps per second whose errors are above the rounding errors, and which no
+/// method refuses.
 fn steps(method: Method) -> [u32; 2] {
     match method.order() {
         4 if method.is_fixed_point() => [32, 64],
@@ -30,9 +33,10 @@ fn steps(method: Method) -> [u32; 2] {
     }
 }
 
-/// Regular motions, in which errors grow no faster than the time, of numbers that single precision holds as well.
+/// The motions are regular, so that errors grow no faster than the time. Single precision
+/// represents their numbers exactly.
 #[test]
-fn every_method_is_of_its_order() -> Result<(), Error> {
+fn every_method_has_its_order() -> Result<(), Error> {
     let trial = Trial::regular(16.0).held_by(Method::Rk4F32);
     let exact = trial.exact()?;
     let [coarse, fine] = tolerances::ORDER_OF_METHODS;
@@ -44,8 +48,9 @@ fn every_method_is_of_its_order() -> Result<(), Error> {
             "{method}: order {order}"
         );
     }
-    // the classical one of masses and lengths alike and unlike; steps so fine that the next order is small, and so coarse that
-    // rounding is
+
+    // RK4 in `f64` with equal and different masses and lengths. The steps are so fine that the next
+    // order is small, and so coarse that rounding errors are small.
     let parameters = Parameters {
         m1: 3.0,
         m2: 0.5,
@@ -53,6 +58,7 @@ fn every_method_is_of_its_order() -> Result<(), Error> {
         l2: 0.4,
         g: 1.62,
     };
+
     let weak = Trial {
         parameters,
         start: State {
@@ -63,6 +69,7 @@ fn every_method_is_of_its_order() -> Result<(), Error> {
         },
         seconds: 20.0,
     };
+
     for (trial, steps) in [
         (Trial::regular(20.0), 128),
         (Trial::unlike(20.0), 1024),
@@ -78,12 +85,14 @@ fn every_method_is_of_its_order() -> Result<(), Error> {
             );
         }
     }
+
     Ok(())
 }
 
-/// A swing z'' = -z followed for 20 s, at the finest steps whose error is clearly above the roundings.
+/// The oscillation z'' = -z for 20 s, in the finest steps whose error is well above the rounding
+/// errors.
 #[test]
-fn extrapolation_of_any_equation_is_of_the_order_asked_for() -> Result<(), Error> {
+fn extrapolation_of_any_equation_has_the_requested_order() -> Result<(), Error> {
     for (order, steps) in [(6, 196), (8, 49), (12, 12), (16, 5)] {
         let method = Extrapolation::new(order)?;
         let error = |steps: u32| {
@@ -93,6 +102,7 @@ fn extrapolation_of_any_equation_is_of_the_order_asked_for() -> Result<(), Error
             });
             (x - 20.0_f64.sin()).abs().max((v - 20.0_f64.cos()).abs())
         };
+
         let measured = (error(2 * steps) / error(3 * steps)).ln() / 1.5_f64.ln();
         println!("order {order}: {measured:.2}");
         let apart = (measured - f64::from(order)).abs();
@@ -101,6 +111,8 @@ fn extrapolation_of_any_equation_is_of_the_order_asked_for() -> Result<(), Error
             "order {measured} instead of {order}"
         );
     }
+
+    // Other orders are refused.
     for order in [0, 1, 7, 18, u32::MAX] {
         assert!(matches!(
             Extrapolation::<f64>::new(order),
@@ -110,5 +122,6 @@ fn extrapolation_of_any_equation_is_of_the_order_asked_for() -> Result<(), Error
             })
         ));
     }
+
     Ok(())
 }

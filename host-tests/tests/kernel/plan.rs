@@ -1,4 +1,4 @@
-//! The planner: what it chooses for scenes that one knows, its budgets, and what it refuses.
+//! The planner: its choices for known scenes, its budgets, and its refusals.
 
 use std::f64::consts::PI;
 use std::ops::RangeInclusive;
@@ -15,7 +15,7 @@ const RATE: u16 = 60;
 const M3: Costs = CORTEX_M3.costs;
 const M4F: Costs = STM32F405.costs;
 
-/// Both rods at rest at `degrees`, on a display of 64 pixels.
+/// Returns a problem with both rods at rest at `degrees`, on a display of 64 pixels.
 fn scene(mass_ratio: f64, degrees: f64, duration: f64) -> Problem {
     let angle = degrees * (PI / 180.0);
     let pendulum = Parameters::equal_rods(mass_ratio, 1.0, 9.81);
@@ -29,7 +29,7 @@ fn scene(mass_ratio: f64, degrees: f64, duration: f64) -> Problem {
     }
 }
 
-/// The plan for a Cortex-M4F that may spend so much on a frame.
+/// Returns the plan for a Cortex-M4F with this frame budget.
 fn within(scene: &Problem, frame: f32) -> Result<Plan, PlanError> {
     Plan::search(
         scene,
@@ -49,7 +49,8 @@ fn finished(search: &mut Search) -> Plan {
     }
 }
 
-/// Costs and what a frame may cost; the scene; what is chosen, what ends it, and until when it is right.
+/// A case: the costs and the frame budget, the problem, and the expected method, step count, limit
+/// and horizon.
 type Row = (
     Costs,
     f32,
@@ -60,21 +61,19 @@ type Row = (
 );
 
 #[test]
-fn the_cheapest_that_is_right_for_longest_is_chosen() {
+fn planner_chooses_the_cheapest_method_with_the_longest_horizon() {
     use Method::{
         ClosedFormF32, Extrapolation10Fixed64, Rk4F32Direction, Rk4F32DirectionPlain, Rk4Fixed32,
     };
-    let (small, large, figure7) = (
-        scene(1.0, 3.0, 10.0),
-        scene(1.0, 60.0, 10.0),
-        scene(2.75, 171.0, 30.0),
-    );
+    let small = scene(1.0, 3.0, 10.0);
+    let large = scene(1.0, 60.0, 10.0);
+    let figure7 = scene(2.75, 171.0, 30.0);
     let costly = Costs {
         fixed32: 20e3,
         ..M3
     };
     let rows: [Row; 10] = [
-        // One step costs less than the closed form where it is made of integers, or by the floating-point unit.
+        // A step costs less than the closed form if it uses integers or a floating-point unit.
         (
             costly,
             CORTEX_M3.frame,
@@ -107,7 +106,8 @@ fn the_cheapest_that_is_right_for_longest_is_chosen() {
             Limit::End,
             10.0..=10.0,
         ),
-        // Chaos is predicted for as long as it can be. What a frame cannot pay for is not looked at.
+        // Chaotic motions get the longest possible horizon. Methods beyond the frame budget are not
+        // tried.
         (
             M4F,
             STM32F405.frame,
@@ -124,7 +124,7 @@ fn the_cheapest_that_is_right_for_longest_is_chosen() {
             Limit::Budget,
             8.0..=10.0,
         ),
-        // A light elbow takes fine steps.
+        // A light elbow needs fine steps.
         (
             M4F,
             STM32F405.frame,
@@ -141,7 +141,7 @@ fn the_cheapest_that_is_right_for_longest_is_chosen() {
             Limit::End,
             2.0..=2.0,
         ),
-        // Twice the steps are right for longer, but not by a tenth.
+        // Twice the steps have a longer horizon, but not by a tenth.
         (
             M4F,
             13e3,
@@ -150,7 +150,7 @@ fn the_cheapest_that_is_right_for_longest_is_chosen() {
             Limit::Budget,
             5.0..=10.0,
         ),
-        // A pendulum out of the range of fixed point is looked at in floating point.
+        // A pendulum out of the range of fixed point is planned in floating point.
         (
             M3,
             1e6,
@@ -160,6 +160,7 @@ fn the_cheapest_that_is_right_for_longest_is_chosen() {
             0.4..=0.6,
         ),
     ];
+
     for (costs, frame, scene, (method, steps), limit, horizon) in rows {
         let plan = Plan::search(
             &scene,
@@ -192,10 +193,10 @@ fn the_cheapest_that_is_right_for_longest_is_chosen() {
     }
 }
 
-/// What a frame cannot pay for is not looked at. A costlier one that is right for less than a tenth longer is worth it if it is right
-/// to the end.
+/// Methods beyond the frame budget are not tried. A method that costs more, and is accurate for
+/// less than a tenth longer, is chosen if it is accurate to the end.
 #[test]
-fn looking_ahead_ends_where_the_frame_does_and_the_end_is_worth_its_cost() {
+fn planner_keeps_to_the_frame_budget_and_pays_for_the_end() {
     let figure7 = scene(2.75, 171.0, 30.0);
     let frugal = within(&figure7, 5e3).expect("a good scene");
     assert!(
@@ -216,9 +217,10 @@ fn looking_ahead_ends_where_the_frame_does_and_the_end_is_worth_its_cost() {
     );
 }
 
-/// By the same method, it is right for less than a tenth longer: too little to be worth a costlier one.
+/// The extended horizon is less than a tenth longer than the first. This would not be worth a
+/// method that costs more, but it is the same method.
 #[test]
-fn a_plan_that_is_looked_at_farther_is_told_anew_where_it_ends() {
+fn extended_search_returns_the_plan_again_with_its_longer_horizon() {
     let whole = within(&scene(2.75, 171.0, 30.0), STM32F405.frame).expect("a good scene");
     let short = scene(2.75, 171.0, 0.95 * whole.horizon);
     let mut search = Search::new(&short, &M4F, &STM32F405.budget(&short)).expect("a good scene");
@@ -230,7 +232,7 @@ fn a_plan_that_is_looked_at_farther_is_told_anew_where_it_ends() {
         (second.method, second.steps, second.horizon),
         (whole.method, whole.steps, whole.horizon)
     );
-    // It is in 64 bits, and finer steps are right wherever it is.
+    // The method is in 64 bits. Finer steps are accurate for at least as long.
     let Stepping { method, steps } = second.stepping();
     let steppings = [
         (method, steps),
@@ -238,12 +240,13 @@ fn a_plan_that_is_looked_at_farther_is_told_anew_where_it_ends() {
         (method, steps - 1),
         (Method::Rk4Fixed32, steps),
     ];
+
     let horizons = steppings.map(|(method, steps)| search.horizon(Stepping { method, steps }));
     assert_eq!(horizons, [second.horizon, second.horizon, 0.0, 0.0]);
 }
 
 #[test]
-fn budgets_are_kept() {
+fn plans_keep_to_both_budgets() {
     let mut found = 0;
     for frame in [200.0, 1e3, 1e4, 1e6] {
         for planning in [1e5, 1e6, 1e7, 1e9] {
@@ -266,11 +269,13 @@ fn budgets_are_kept() {
             }
         }
     }
+
     assert!(
         (20..64).contains(&found),
         "{found} of 64: some hold, some cannot be had"
     );
-    // As far as what is right goes, planning could not pay for a comparison with 64 bits, so none is begun.
+    // Planning cannot pay for a run in 64 bits for as long as the method is accurate, and does not
+    // start one.
     let plan = Plan::search(
         &scene(1.0, 120.0, 20.0),
         &M3,
@@ -280,15 +285,17 @@ fn budgets_are_kept() {
         },
     )
     .expect("a plan");
+
     assert_eq!(
         (plan.method, plan.steps, plan.limit),
         (Method::Rk4Fixed32, 2, Limit::Budget)
     );
 }
 
-/// What a plan costs is just enough for it; by less, another is found that costs less.
+/// A frame budget that equals the cost of a plan gives the same plan. A slightly smaller one gives
+/// a plan that costs less.
 #[test]
-fn a_budget_that_is_just_enough_is_enough() {
+fn frame_budget_of_the_exact_cost_is_enough() {
     for (mass_ratio, degrees) in [(1.0, 60.0), (1.0, 120.0), (2.75, 171.0), (1e3, 30.0)] {
         let scene = scene(mass_ratio, degrees, 20.0);
         for costs in [&M3, &M4F] {
@@ -302,6 +309,7 @@ fn a_budget_that_is_just_enough_is_enough() {
                     },
                 )
             };
+
             let lavish = within(1e6).expect("a good scene");
             let enough = within(lavish.cost).expect("a good scene");
             assert_eq!(
@@ -315,13 +323,13 @@ fn a_budget_that_is_just_enough_is_enough() {
     }
 }
 
-/// The initial method of `scene`, if a frame may cost this.
+/// Returns the initial method of `scene` with this frame budget.
 fn initial(scene: &Problem, costs: &Costs, frame: f32) -> Option<Stepping> {
     Stepping::initial(scene, costs, frame).expect("a pendulum")
 }
 
 #[test]
-fn initial_method_is_in_64_bits_where_a_frame_pays_for_it() {
+fn initial_method_is_in_64_bits_if_a_frame_pays_for_it() {
     for degrees in [60.0, 120.0, 171.0] {
         let scene = scene(2.75, degrees, 20.0);
         for costs in [&M3, &M4F] {
@@ -329,6 +337,7 @@ fn initial_method_is_in_64_bits_where_a_frame_pays_for_it() {
             let lavish = within(1e7);
             assert_eq!(lavish.method, Method::Extrapolation10Fixed64);
             assert_eq!(within(costs.of_frame(lavish)), lavish);
+
             let frugal = within(costs.of_frame(lavish).next_down());
             assert!(
                 costs.of_frame(frugal) < costs.of_frame(lavish),
@@ -348,7 +357,7 @@ fn initial_method_is_in_64_bits_where_a_frame_pays_for_it() {
 /// up to 5e-3.
 const INITIAL_ENERGY: f64 = 2e-3;
 
-/// Mass ratio 100 is the largest that keys reach.
+/// The mass ratio 100 is the largest that can be set by keys.
 #[test]
 fn initial_method_resolves_the_energy_of_the_fastest_scenes() -> Result<(), Error> {
     let mut in_32_bits = 0;
@@ -360,6 +369,7 @@ fn initial_method_resolves_the_energy_of_the_fastest_scenes() -> Result<(), Erro
         let stepping = initial(&scene, &processor.costs, processor.frame).expect("a method");
         assert!(processor.costs.of_frame(stepping) <= processor.frame);
         in_32_bits += u32::from(stepping.method != Method::Extrapolation10Fixed64);
+
         let pendulum = Pendulum::new(&scene.pendulum)?;
         let start = pendulum.energy_above_rest(&pendulum.to_state(&scene.start));
         let mut run = PlannedRun::new(&scene, stepping)?;
@@ -370,6 +380,7 @@ fn initial_method_resolves_the_energy_of_the_fastest_scenes() -> Result<(), Erro
         }
         assert!(worst <= INITIAL_ENERGY, "{stepping:?} {degrees}: {worst:e}");
     }
+
     assert!(in_32_bits >= 6, "{in_32_bits}");
     Ok(())
 }
@@ -407,7 +418,7 @@ fn initial_method_can_be_run() {
     }
 }
 
-/// Fixed point refuses the steps that are tried first.
+/// Fixed point refuses the longest steps, which are tried first.
 #[test]
 fn requested_method_takes_steps_that_it_accepts() {
     for degrees in [60.0, 120.0, 180.0] {
@@ -422,10 +433,12 @@ fn requested_method_takes_steps_that_it_accepts() {
     }
 }
 
-/// In steps as long as resolve the motion: in 64 bits those are of a high order, but shorter than the first that others try. Fixed
-/// point refuses 2 here.
+/// A requested method has the longest steps that resolve the motion.
+///
+/// Steps in 64 bits have a high order, but are shorter than the first steps of other methods. Fixed
+/// point refuses 2 steps here.
 #[test]
-fn a_method_that_is_asked_for_resolves_the_motion() {
+fn requested_method_has_steps_that_resolve_the_motion() {
     let scene = scene(2.75, 171.0, 20.0);
     let steps = |method| Stepping::of(&scene, method).expect("a pendulum").steps;
     assert_eq!(
@@ -439,14 +452,16 @@ fn a_method_that_is_asked_for_resolves_the_motion() {
     );
 }
 
-/// What fixed point takes ends just beyond equal rods: the runs beside the motion must not be refused where it is not.
+/// Equal rods are close to the end of the range of fixed point. The runs that a motion is compared
+/// with must not be refused if the motion itself is not.
 #[test]
-fn what_can_be_run_is_looked_at() {
+fn methods_that_can_be_run_can_be_evaluated() {
     let methods = [
         Method::Rk4Fixed32,
         Method::Rk4F32Direction,
         Method::Extrapolation10Fixed64,
     ];
+
     let large = [60.0, 90.0, 120.0]
         .into_iter()
         .flat_map(|degrees| methods.map(|method| (degrees, method)));
@@ -466,13 +481,14 @@ fn what_can_be_run_is_looked_at() {
         } else {
             stepping.steps
         };
+
         let horizons = [plan.horizon, search.horizon(Stepping { method, steps })];
         assert_eq!(horizons, [scene.duration; 2], "{plan:?} at {degrees}");
     }
 }
 
 #[test]
-fn what_is_refused_is_named_with_its_value() {
+fn errors_contain_the_parameter_and_its_value() {
     let good = scene(1.0, 90.0, 10.0);
     let budget = STM32F405.budget(&good);
     let refused = |scene: Problem, costs: Costs, budget: Budget, expected: Error| {
@@ -482,18 +498,17 @@ fn what_is_refused_is_named_with_its_value() {
             format!("{:?}", PlanError::Refused(expected))
         );
     };
+
     for value in [f64::NAN, f64::INFINITY, 0.0, -1.0] {
         let error = |parameter| match value.is_finite() {
             true => Error::NotPositive { parameter, value },
             false => Error::NotFinite { parameter, value },
         };
-        let (single, pendulum) = (
-            value as f32,
-            Parameters {
-                m2: value,
-                ..good.pendulum
-            },
-        );
+        let single = value as f32;
+        let pendulum = Parameters {
+            m2: value,
+            ..good.pendulum
+        };
         refused(
             Problem {
                 tolerance: value,
@@ -503,6 +518,7 @@ fn what_is_refused_is_named_with_its_value() {
             budget,
             error(Parameter::Tolerance),
         );
+
         refused(
             Problem {
                 duration: value,
@@ -512,12 +528,14 @@ fn what_is_refused_is_named_with_its_value() {
             budget,
             error(Parameter::Duration),
         );
+
         refused(
             Problem { pendulum, ..good },
             M4F,
             budget,
             error(Parameter::M2),
         );
+
         refused(
             good,
             Costs {
@@ -527,6 +545,7 @@ fn what_is_refused_is_named_with_its_value() {
             budget,
             error(Parameter::Cost),
         );
+
         refused(
             good,
             M4F,
@@ -536,6 +555,7 @@ fn what_is_refused_is_named_with_its_value() {
             },
             error(Parameter::Budget),
         );
+
         refused(
             good,
             M4F,
@@ -546,6 +566,7 @@ fn what_is_refused_is_named_with_its_value() {
             error(Parameter::Budget),
         );
     }
+
     let parameter = Parameter::Rate;
     refused(
         Problem { rate: 0, ..good },
@@ -556,7 +577,9 @@ fn what_is_refused_is_named_with_its_value() {
             value: 0.0,
         },
     );
-    let (parameter, value) = (Parameter::W1, f64::NEG_INFINITY);
+
+    let parameter = Parameter::W1;
+    let value = f64::NEG_INFINITY;
     let start = Motion {
         w1: value,
         ..good.start
@@ -567,12 +590,15 @@ fn what_is_refused_is_named_with_its_value() {
         budget,
         Error::NotFinite { parameter, value },
     );
-    let (parameter, limit) = (Parameter::Duration, f64::from(u32::MAX) / f64::from(RATE));
+
+    let parameter = Parameter::Duration;
+    let limit = f64::from(u32::MAX) / f64::from(RATE);
     let too_long = Error::TooLarge {
         parameter,
         value: 1e9,
         limit,
     };
+
     refused(
         Problem {
             duration: 1e9,
@@ -582,6 +608,7 @@ fn what_is_refused_is_named_with_its_value() {
         budget,
         too_long,
     );
+
     // Out of the range of f32.
     let pendulum = Parameters {
         m1: 1e60,
@@ -594,11 +621,13 @@ fn what_is_refused_is_named_with_its_value() {
     ));
 }
 
-/// Where no method meets the tolerance, the limit is what to raise: the planning budget while an affordable candidate has not
-/// failed yet, else the frame budget. A light elbow at 90 degrees: steps that resolve it cost several times what a Cortex-M3 has, and
-/// the closed form is right for two frames.
+/// If no method meets the tolerance, the limit is the budget to raise: the planning budget if an
+/// affordable candidate has not failed yet, otherwise the frame budget.
+///
+/// The example is a light elbow at 90 degrees. Steps that resolve it cost several times the frame
+/// budget of a Cortex-M3, and the closed form is accurate for two frames.
 #[test]
-fn the_limit_is_what_would_help() {
+fn limit_without_a_method_is_the_budget_to_raise() {
     let light = Problem {
         tolerance: 2.0 / 240.0,
         ..scene(1e3, 90.0, 20.0)
@@ -634,7 +663,7 @@ fn the_limit_is_what_would_help() {
         (Method::ClosedFormF32, 2.0 / 60.0)
     );
 
-    // Beside `f32`, as fixed point takes no such pendulum.
+    // The same in a trial of `f32`, because fixed point refuses this pendulum.
     let heavy = scene(1e5, 10.0, 0.3);
     let stepping = Stepping {
         steps: 512,
@@ -650,6 +679,7 @@ fn the_limit_is_what_would_help() {
         },
     )
     .expect("a good scene");
+
     let asked = finished(&mut search);
     assert_eq!(
         (asked.method, asked.limit, asked.horizon),

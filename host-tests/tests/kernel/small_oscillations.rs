@@ -1,4 +1,4 @@
-//! Small oscillations: the frequencies to the last place, and the limit of the exact motion.
+//! Small oscillations: frequencies accurate to the last place, and the limit of the exact motion.
 
 use double_pendulum::{Mode, Modes, Motion, Parameters, Real, SmallOscillations};
 use fastrand::Rng;
@@ -7,7 +7,8 @@ use host_tests::oracle::tolerances;
 use reference::taylor::{Reference, divide};
 use reference::twofloat::TwoFloat;
 
-/// The modes by the book's own formulas, differences and all, in double-double precision.
+/// Returns the modes by the formulas of the book, including their differences, in double-double
+/// precision.
 fn exact_modes(&Parameters { m1, m2, l1, l2, g }: &Parameters<f64>) -> [TwoFloat; 5] {
     let [m1, m2, l1, l2, g] = [m1, m2, l1, l2, g].map(TwoFloat::from);
     let total = m1 + m2;
@@ -15,7 +16,8 @@ fn exact_modes(&Parameters { m1, m2, l1, l2, g }: &Parameters<f64>) -> [TwoFloat
     let root = (total * (total * sum * sum - m1 * l1 * l2 * 4.0)).sqrt();
     let square = |sign: f64| divide(g * (total * sum + root * sign), m1 * l1 * l2 * 2.0);
     let shape = |square: TwoFloat| divide(square * l1, g - square * l2);
-    let (fast, slow) = (square(1.0), square(-1.0));
+    let fast = square(1.0);
+    let slow = square(-1.0);
     [
         fast.sqrt(),
         slow.sqrt(),
@@ -25,7 +27,7 @@ fn exact_modes(&Parameters { m1, m2, l1, l2, g }: &Parameters<f64>) -> [TwoFloat
     ]
 }
 
-/// How far `value` is from `exact`, in units of the last place of `R` there.
+/// Returns the error of `value` in units of the last place of `R` at `exact`.
 fn ulps<R: Real>(value: R, exact: TwoFloat) -> f64 {
     let binade = 2_f64.powi(f64::from(exact).abs().log2().floor() as i32);
     f64::from(exact - value.to_f64()).abs() / (binade * R::EPSILON.to_f64())
@@ -42,7 +44,8 @@ fn modes_to_the_last_places<R: Real>() {
             (1.0, 20.0),
         ]
         .map(|(low, high)| log_uniform(&mut rng, low, high));
-        // every other pendulum has equal rods, where the plain formula cancels
+
+        // Every other pendulum has equal rods. The plain formula would cancel there.
         let l2 = if n % 2 == 0 { l1 } else { l1 * rods };
         let parameters = Parameters {
             m1,
@@ -53,6 +56,7 @@ fn modes_to_the_last_places<R: Real>() {
         }
         .cast::<R>()
         .cast::<f64>();
+
         let modes = Modes::new(&parameters.cast::<R>()).expect("valid parameters");
         let values = [
             modes.fast.frequency,
@@ -61,6 +65,7 @@ fn modes_to_the_last_places<R: Real>() {
             modes.slow.shape,
             modes.exchange(),
         ];
+
         for ((value, exact), most) in values
             .into_iter()
             .zip(exact_modes(&parameters))
@@ -76,12 +81,13 @@ fn modes_to_the_last_places<R: Real>() {
 }
 
 #[test]
-fn modes_are_right_to_the_last_places() {
+fn modes_are_accurate_to_the_last_places() {
     modes_to_the_last_places::<f32>();
     modes_to_the_last_places::<f64>();
 }
 
-/// Whatever the masses, lengths, angles and velocities: at 1e-6 rad the exact motion is the linear one.
+/// The exact motion at 1e-6 rad is the linear one, for random masses, lengths, angles and
+/// velocities.
 #[test]
 fn linear_motion_is_the_limit_of_the_exact_motion() {
     let mut rng = Rng::with_seed(3);
@@ -111,9 +117,10 @@ fn linear_motion_is_the_limit_of_the_exact_motion() {
     }
 }
 
-/// About the inverted rest the two frequencies are growth rates: a push along a mode's shape grows as e^(wt).
+/// The two frequencies are growth rates at the inverted rest: a push along a mode's shape grows as
+/// e^(wt).
 #[test]
-fn inverted_rest_falls_at_the_same_two_rates() {
+fn upright_pendulum_falls_at_the_rates_of_the_modes() {
     let parameters @ Parameters { m1, m2, l1, l2, g } = Parameters {
         m1: 1.3,
         m2: 0.4,
@@ -121,6 +128,7 @@ fn inverted_rest_falls_at_the_same_two_rates() {
         l2: 1.1,
         g: 9.81,
     };
+
     let modes = Modes::new(&parameters).expect("valid parameters");
     let upright = reference::twofloat::consts::PI;
     for Mode { frequency, shape } in [modes.fast, modes.slow] {
@@ -133,6 +141,7 @@ fn inverted_rest_falls_at_the_same_two_rates() {
             l2: l2.into(),
             g: g.into(),
         };
+
         let mut exact =
             Reference::exact(constants, [upright + push, upright + push * shape, w1, w2]);
         exact.advance_to(1.0);

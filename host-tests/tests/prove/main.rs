@@ -1,4 +1,5 @@
-//! The enclosure: the exact motion is in it, and leaves it when any of its allowances is taken away.
+//! The enclosure contains the exact motion, and no longer contains it when any of its allowances is
+//! removed.
 
 mod motions;
 mod periodic_orbits;
@@ -11,10 +12,10 @@ use host_tests::oracle::known_answers::table;
 use host_tests::oracle::random::symmetric;
 use reference::enclosure::{Enclosure, Fineness, Fixed, Start, sin_cos};
 
-/// Frames per second: their times are numbers of `f64`.
+/// The frames per second. The times of frames are exact in `f64`.
 const RATE: u16 = 64;
 
-/// Equal rods of 1 m that are let go at 2 rad, P1 being `p1`.
+/// Returns an enclosure of equal rods of 1 m that are let go at 2 rad, with P1 equal to `p1`.
 fn equal_rods(g: f64, rate: u16, p1: Fixed, fineness: Fineness) -> Enclosure {
     let parameters = Parameters {
         m1: 1.0,
@@ -29,13 +30,13 @@ fn equal_rods(g: f64, rate: u16, p1: Fixed, fineness: Fineness) -> Enclosure {
     Enclosure::new(set.equations, set.frame, start, fineness)
 }
 
-/// Moves on by so many frames.
+/// Advances by this number of frames.
 fn after(frames: u32, mut set: Enclosure) -> Enclosure {
     (0..frames).for_each(|_| set.advance().expect("it can be followed"));
     set
 }
 
-/// Whether two sets of numbers may have one in common, `more` apart at most.
+/// Returns true if two sets of numbers may have a common element, or elements at most `more` apart.
 fn meet(one: &[Fixed], other: &[Fixed], more: f64) -> bool {
     one.iter()
         .zip(other)
@@ -71,7 +72,8 @@ fn the_known_answers_are_those_that_the_command_makes() {
     );
 }
 
-/// Sums, products and quotients whose exact results are known: inside, and not without the allowance for rounding.
+/// Sums, products and quotients with known exact results are inside, and are not without the
+/// allowance for rounding.
 #[test]
 fn what_is_rounded_is_counted() {
     let mut rng = Rng::with_seed(1);
@@ -96,7 +98,9 @@ fn what_is_rounded_is_counted() {
             "{a}"
         );
     }
-    let (third, three) = (Fixed::ONE.over(3), Fixed::of(3.0));
+
+    let third = Fixed::ONE.over(3);
+    let three = Fixed::of(3.0);
     assert!(
         (third * three - Fixed::ONE).is_positive().is_none()
             && (third.middle() * three).middle() != Fixed::ONE
@@ -114,7 +118,7 @@ fn what_is_rounded_is_counted() {
     assert_eq!(third.wider(9e-5).decimal(33.0), "0.3333");
 }
 
-/// The sines of large angles, computed with 90 digits.
+/// The expected sines of large angles were computed with 90 digits.
 #[test]
 fn whole_turns_are_removed_exactly() {
     let [zero, one] = [(0, 1), (1, 1)];
@@ -152,7 +156,7 @@ fn whole_turns_are_removed_exactly() {
         );
     }
 
-    // 300 degrees are -60, and a million degrees 280, which is -80.
+    // 300 degrees equal -60, and a million degrees equal 280, which equals -80.
     for (angle, less) in [
         ((300, 1), (-60, 1)),
         ((1_000_000, 1), (-80, 1)),
@@ -162,14 +166,15 @@ fn whole_turns_are_removed_exactly() {
         assert_eq!(large, small, "{angle:?} degrees");
     }
 
-    // As an `f64`, a large angle is taken as it is.
+    // A large angle in `f64` is exact.
     let (exact, double) = hull([(1000, 1), (-700, 1)], false);
     assert_eq!(exact, double);
 }
 
 #[test]
 fn nothing_is_known_of_what_leaves_the_range_or_is_divided_by_what_may_be_zero() {
-    let (large, wide) = (Fixed::of(200.0), Fixed::ZERO.wider(1e-30));
+    let large = Fixed::of(200.0);
+    let wide = Fixed::ZERO.wider(1e-30);
     let quotients =
         [wide, Fixed::fraction(1, 1000, 0), Fixed::of(0.5).wider(0.5)].map(Fixed::inverse);
     let outside = [
@@ -183,7 +188,8 @@ fn nothing_is_known_of_what_leaves_the_range_or_is_divided_by_what_may_be_zero()
     }
 }
 
-/// Whether a set that is a segment at the start, `reach` to both sides along P1, loses its end within a second.
+/// Returns true if a set that is a segment at the start, `reach` to both sides along P1, loses its
+/// end within a second.
 fn is_left(reach: f64, fineness: Fineness) -> bool {
     let mut set = equal_rods(9.81, RATE, Fixed::ZERO.wider(reach), fineness);
     let mut end = equal_rods(9.81, RATE, Fixed::of(reach), Fineness::default());
@@ -196,7 +202,8 @@ fn is_left(reach: f64, fineness: Fineness) -> bool {
         .any(|meets| !meets)
 }
 
-/// By the rest of their series, by the bend of the motion, and by what a quotient of differences is off.
+/// The errors of the derivatives are the remainder of their series, the curvature of the motion,
+/// and the error of a difference quotient.
 #[test]
 fn what_the_derivatives_lack_is_counted() {
     let fine = Fineness::default();
@@ -217,6 +224,7 @@ fn what_the_derivatives_lack_is_counted() {
             },
         ),
     ];
+
     for (reach, fineness) in cases {
         let without = Fineness {
             allowances: [1.0, 1.0, 0.0, 1.0],
@@ -229,7 +237,7 @@ fn what_the_derivatives_lack_is_counted() {
     }
 }
 
-/// Those of differences so small that they show.
+/// The differences are so small that their roundings are visible.
 #[test]
 fn roundings_of_the_segments_are_counted() {
     let fineness = Fineness {
@@ -258,8 +266,9 @@ fn the_series_of_the_midpoint_is_bounded_to_its_last_term() {
     assert!(meet(&exact, &hull(coarse), 0.0) && !meet(&exact, &hull(without), 0.0));
 }
 
-/// One point, in steps of two lengths, which have other roundings: a second later it is in both sets. (The rest of the series, which
-/// would hide that, is less than one rounding.)
+/// One point is advanced in steps of two lengths, which have different roundings. A second later it
+/// is in both sets. (The remainder of the series, which would hide that, is smaller than one
+/// rounding.)
 #[test]
 fn roundings_of_the_midpoint_are_counted() {
     let hull = |rate: u16, rounding: f64| {

@@ -1,4 +1,4 @@
-//! The exact motion is inside, and so is the reference.
+//! The enclosure contains the exact motion and the reference.
 
 use double_pendulum::{Motion, Parameters, Pendulum};
 use fastrand::Rng;
@@ -11,7 +11,8 @@ use reference::taylor::Reference;
 
 use crate::{RATE, after, equal_rods, meet};
 
-/// Ratios of masses and of rods over three decades each, angles up to 3 rad, half of them with velocities.
+/// Returns a random pendulum and its motion: ratios of masses and of rods over three decades each,
+/// angles up to 3 rad, half of them with velocities.
 fn random(rng: &mut Rng) -> (Parameters<f64>, Motion<f64>) {
     let [m1, m2, l1, l2] =
         [(); 4].map(|()| log_uniform(rng, 10_f64.powf(-0.75), 10_f64.powf(0.75)));
@@ -29,13 +30,15 @@ fn random(rng: &mut Rng) -> (Parameters<f64>, Motion<f64>) {
     )
 }
 
-/// The reference is in the box every five frames, to what it may itself be off by; and the energy is that of the start.
+/// Checks every five frames that the box contains the reference, within the reference's own error,
+/// and that the energy is that of the start.
 fn is_inside(parameters: &Parameters<f64>, motion: &Motion<f64>, frames: u32) {
     let mut reference = Reference::new(parameters, motion);
     let mut set = Start::of(parameters, motion).enclose(RATE);
     let energy = |set: &Enclosure| set.equations.energy(&set.hull());
     let first = energy(&set);
-    // The reference takes whole turns from an angle in double-double arithmetic.
+
+    // The reference removes whole turns from an angle in double-double arithmetic.
     let farthest = motion.a1.abs().max(motion.a2.abs()).max(1.0);
     for frame in (5..=frames).step_by(5) {
         set = after(5, set);
@@ -84,7 +87,7 @@ fn random_motions_are_inside_for_long() {
     random_motions_are_inside(300);
 }
 
-/// Where the reference judges: the hard cases and the scenes.
+/// The motions for which the reference is the standard: the hard cases and the scenes.
 #[test]
 fn the_reference_is_inside_where_it_is_used() {
     for case in hard_cases() {
@@ -96,6 +99,7 @@ fn the_reference_is_inside_where_it_is_used() {
             frames,
         );
     }
+
     let weightless = Parameters {
         m1: 1.0,
         m2: 1.0,
@@ -113,6 +117,7 @@ fn the_reference_is_inside_where_it_is_used() {
         },
         60,
     );
+
     for name in moving() {
         let settings = name.first_settings();
         is_inside(
@@ -123,7 +128,7 @@ fn the_reference_is_inside_where_it_is_used() {
     }
 }
 
-/// Within a second, by g alone.
+/// Two motions that differ only in one bit of g separate within a second.
 #[test]
 fn one_bit_of_g_is_told_apart() {
     let hull = |g: f64| after(60, equal_rods(g, RATE, Fixed::ZERO, Fineness::default())).hull();

@@ -1,4 +1,5 @@
-//! A pseudo-terminal with an emulated board behind it, whose cable can be pulled. Not every test uses all of it.
+//! A pseudo-terminal with an emulated board behind it, whose cable can be pulled. Not every test
+//! uses all of this module.
 #![allow(dead_code)]
 
 use std::fs;
@@ -19,15 +20,15 @@ use nix::pty::{PtyMaster, grantpt, posix_openpt, ptsname_r, unlockpt};
 
 use crate::support::{LIMIT, on};
 
-/// A board that is quick to emulate, and has neither panel nor buttons.
+/// A board that is quick to emulate and has no panel and no buttons.
 pub const BOARD: &Board = &MPS2_AN386;
-/// From one look at the cable to the next.
+/// The interval between two checks of the cable.
 pub const WAIT: Duration = Duration::from_millis(1);
-/// An emulated board that takes bytes and sends messages.
+/// An emulated board that receives bytes and sends messages.
 pub trait Linked {
     fn take(&mut self, bytes: &[u8]) -> anyhow::Result<()>;
 
-    /// The messages that have come since the last call.
+    /// Returns the messages that have arrived since the last call.
     fn sent(&mut self) -> anyhow::Result<Vec<ToHost>>;
 }
 
@@ -41,7 +42,7 @@ impl Linked for Machine {
     }
 }
 
-/// Its time passes only while messages are asked for.
+/// The Pico's time advances only while messages are requested.
 impl Linked for PicoMachine {
     fn take(&mut self, bytes: &[u8]) -> anyhow::Result<()> {
         self.send_bytes(bytes)
@@ -52,16 +53,16 @@ impl Linked for PicoMachine {
     }
 }
 
-/// How long a Pico runs from one look at the cable to the next, by its own clock.
+/// The time that a Pico runs between two checks of the cable, by its own clock.
 const SLICE: Duration = Duration::from_millis(4);
 
-/// A board at a port, by a name that stays when the cable is pulled.
+/// A board at a port whose name stays the same when the cable is pulled.
 pub struct Bench<M = Machine> {
     pub machine: M,
     pub cable: Option<PtyMaster>,
-    /// The host has said something.
+    /// True if the host has sent something.
     pub heard: bool,
-    /// The sequence number of the last frame that was carried.
+    /// The sequence number of the last frame that was transferred.
     pub frame: u32,
     _folder: tempfile::TempDir,
     pub name: PathBuf,
@@ -108,7 +109,7 @@ impl<M: Linked> Bench<M> {
         fs::remove_file(&self.name).expect("the link");
     }
 
-    /// Takes what the host has said; whether anybody listens at its end.
+    /// Receives the host's bytes. Returns true if a program has the other end open.
     pub fn is_heard(&mut self) -> bool {
         let Some(cable) = &mut self.cable else {
             return false;
@@ -126,7 +127,7 @@ impl<M: Linked> Bench<M> {
         }
     }
 
-    /// Sends bytes to the host, as fast as it takes them.
+    /// Sends bytes to the host as fast as it reads them.
     pub fn say(&mut self, mut bytes: &[u8]) {
         while let Some(cable) = self.cable.as_mut().filter(|_| !bytes.is_empty()) {
             match cable.write(bytes) {
@@ -134,13 +135,15 @@ impl<M: Linked> Bench<M> {
                 Err(error) if error.kind() == ErrorKind::WouldBlock && self.is_heard() => {
                     sleep(WAIT)
                 }
-                // It has stopped listening.
+
+                // The host has stopped reading.
                 Err(_) => return,
             }
         }
     }
 
-    /// Carries what is there both ways; `wire` makes bytes of the board's messages.
+    /// Transfers the available data in both directions. `wire` converts the board's messages to
+    /// bytes.
     pub fn carry(&mut self, mut wire: impl FnMut(ToHost) -> Vec<u8>) {
         let is_heard = self.is_heard();
         let messages = self
@@ -160,7 +163,7 @@ pub fn board() -> Machine {
 }
 
 fn machine(board: &Board) -> Machine {
-    // As fast as a real one: what the host says must reach it in time.
+    // The board runs as fast as a real one, so that the host's messages reach it in time.
     let start = |settings: &Settings| {
         Machine::start(&Settings {
             clock: Clock::Real,
@@ -170,12 +173,13 @@ fn machine(board: &Board) -> Machine {
     on(board, start).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// A message as the board has sent it.
+/// Returns the bytes of a message as the board has sent it.
 pub fn wire(message: ToHost) -> Vec<u8> {
     encode(&message, &mut [0; MAX_WIRE]).to_vec()
 }
 
-/// Runs a command at the bench's port beside `play`, which is called until it has ended.
+/// Runs a command at the bench's port while `play` is called repeatedly until the command has
+/// ended.
 pub fn at_port<M: Linked>(
     bench: &mut Bench<M>,
     command: &mut Command,
@@ -184,7 +188,7 @@ pub fn at_port<M: Linked>(
     at_port_for(LIMIT, bench, command, play)
 }
 
-/// The same for a command that takes up to `limit`.
+/// Runs a command that takes up to `limit` at the bench's port, like [`at_port`].
 pub fn at_port_for<M: Linked>(
     limit: Duration,
     bench: &mut Bench<M>,

@@ -1,5 +1,5 @@
-//! An ELF file's functions, and where they are called or pointed to, by the linker's notes (`--emit-relocs`). Not every test uses all
-//! of it.
+//! The functions of an ELF file, and the places where they are called or referenced, from the
+//! linker's relocations (`--emit-relocs`). Not every test uses all of this module.
 #![allow(dead_code)]
 
 use std::ops::Range;
@@ -9,16 +9,18 @@ use cycles::{Function, Image};
 use object::elf::SHF_ALLOC;
 use object::{Object, ObjectSection, ObjectSymbol, RelocationTarget, SectionFlags};
 
-/// A program for a Cortex-M, as the linker left it.
+/// A linked program for a Cortex-M.
 pub struct Code {
     image: Image,
-    /// Where a branch, an instruction or a word names a function, and where that begins; but no branch within a function.
+    /// The places where a branch, an instruction or a word refers to a function, and the address of
+    /// that function. Branches within a function are not included.
     names: Vec<(u32, u32)>,
 }
 
 impl Code {
     pub fn read(path: &Path) -> anyhow::Result<Self> {
-        let (image, bytes) = (Image::read(path)?, std::fs::read(path)?);
+        let image = Image::read(path)?;
+        let bytes = std::fs::read(path)?;
         let file = object::File::parse(&*bytes)?;
         let is_loaded = |flags| matches!(flags, SectionFlags::Elf { sh_flags } if sh_flags & u64::from(SHF_ALLOC) != 0);
         let mut names = Vec::new();
@@ -27,7 +29,8 @@ impl Code {
                 let RelocationTarget::Symbol(index) = note.target() else {
                     continue;
                 };
-                // Bit 0 says that the code is Thumb.
+
+                // Bit 0 marks the code as Thumb.
                 let address = file.symbol_by_index(index)?.address() as u32 & !1;
                 if image
                     .function_at(address)
@@ -45,7 +48,7 @@ impl Code {
         Ok(Self { image, names })
     }
 
-    /// The functions whose name `is_wanted`, by address.
+    /// Returns the functions whose name satisfies `is_wanted`, by address.
     pub fn functions_named(&self, is_wanted: impl Fn(&str) -> bool) -> impl Iterator<Item = u32> {
         let functions = self
             .image
@@ -56,14 +59,14 @@ impl Code {
             .map(|function| function.address)
     }
 
-    /// The address and the name of the function that holds `address`.
+    /// Returns the address and the name of the function that contains `address`.
     pub fn function_at(&self, address: u32) -> Option<(u32, &str)> {
         self.image
             .function_at(address)
             .map(|Function { address, name, .. }| (*address, &**name))
     }
 
-    /// Where code between these addresses names a function elsewhere.
+    /// Returns the places between these addresses that refer to a function elsewhere.
     pub fn leads_out_of<'a>(
         &'a self,
         addresses: &'a Range<u32>,
@@ -74,7 +77,7 @@ impl Code {
             .filter(|(at, to)| addresses.contains(at) && !addresses.contains(to))
     }
 
-    /// Where others than `function` itself name it.
+    /// Returns the places outside of `function` that refer to it.
     pub fn names_of(&self, function: u32) -> impl Iterator<Item = u32> {
         let is_other = move |at| {
             self.function_at(at)
@@ -86,7 +89,7 @@ impl Code {
             .map(|(at, _)| *at)
     }
 
-    /// The functions that `function` names.
+    /// Returns the functions that `function` refers to.
     pub fn named_by(&self, function: u32) -> impl Iterator<Item = u32> {
         let is_own = move |at| {
             self.function_at(at)

@@ -1,4 +1,4 @@
-//! What the tests on emulated boards share. Not every test uses all of it.
+//! Functions shared by the tests on emulated boards. Not every test uses all of this module.
 #![allow(dead_code)]
 
 pub mod bench;
@@ -16,27 +16,28 @@ use host_tests::emulator::qemu::{Clock, Settings};
 use host_tests::emulator::toolchain::{self, Toolchain};
 use object::{Object, ObjectSymbol};
 
-/// Guards against hanging, nothing else: many times what any of these runs takes, on a slow and busy machine too.
+/// The time limit against hanging: many times the duration of any run, on a slow and busy machine
+/// too.
 pub const LIMIT: Duration = Duration::from_secs(900);
 
-/// The tools; a test without them fails and says what brings them.
+/// Returns the tools. A test without them fails with the command that installs them.
 pub fn toolchain() -> Toolchain {
     toolchain::ready().unwrap_or_else(|missing| panic!("{missing}"))
 }
 
-/// The program that measures, on a board for each kind of core.
+/// Returns the program that measures, on a board for each kind of core.
 pub fn targets() -> Vec<Target> {
     Target::build_all(&toolchain()).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// A board's application.
+/// Builds a board's application.
 pub fn application(board: &Board) -> PathBuf {
     toolchain()
         .build_for(board)
         .unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// Repeatable bit for bit.
+/// Returns settings for runs with bit-identical results.
 pub fn settings<'a>(toolchain: &'a Toolchain, board: &'a Board, elf: &'a Path) -> Settings<'a> {
     Settings {
         qemu: &toolchain.qemu,
@@ -48,38 +49,42 @@ pub fn settings<'a>(toolchain: &'a Toolchain, board: &'a Board, elf: &'a Path) -
     }
 }
 
-/// What `start` makes of a board with its application: a machine that runs, or one in lockstep.
+/// Returns the machine that `start` makes of a board with its application: one that runs, or one in
+/// lockstep.
 pub fn on<M>(
     board: &Board,
     start: impl FnOnce(&Settings) -> anyhow::Result<M>,
 ) -> anyhow::Result<M> {
-    let (toolchain, elf) = (toolchain(), application(board));
+    let toolchain = toolchain();
+    let elf = application(board);
     start(&settings(&toolchain, board, &elf))
 }
 
 /// The stack's share of memory, from its top (`board/cortex_m/stack.rs`).
 const STACK: u32 = 32 * 1024;
-/// No byte that is common in memory: where it is gone, the stack has been.
+/// A byte that is rare in memory. Where it is gone, the stack has been used.
 pub const PAINT: u8 = 0xA5;
 
-/// The addresses of a program's stack.
+/// Returns the addresses of a program's stack.
 pub fn stack(elf: &Path) -> Range<u32> {
     let top = address(elf, "_stack_start");
     top - STACK..top
 }
 
-/// The most bytes that a stack has held since it was painted, by what stands there now.
+/// Returns the largest number of bytes that a stack has contained since it was painted, from its
+/// memory.
 pub fn depth(memory: &[u8]) -> u32 {
     STACK - memory.iter().take_while(|byte| **byte == PAINT).count() as u32
 }
 
-/// A scene of the host's, as this board plays it from its start.
+/// Returns a scene on the host, as this board plays it from its start.
 pub fn show(board: &Board, name: SceneName) -> Show {
     Show::on(board.processor(), name, &name.first_settings()).expect("a scene of the catalogue")
 }
 
-/// The address of a symbol, by its name without the path before it: `Player::execute`, which one version of the compiler calls
-/// `firmware::app::player::Player::execute` and the next `<firmware::app::player::Player>::execute`.
+/// Returns the address of a symbol by its name without the path before it. For example,
+/// `Player::execute` is `firmware::app::player::Player::execute` in one version of the compiler and
+/// `<firmware::app::player::Player>::execute` in another.
 pub fn address(elf: &Path, name: &str) -> u32 {
     let bytes = std::fs::read(elf).unwrap_or_else(|error| panic!("{}: {error}", elf.display()));
     let file =

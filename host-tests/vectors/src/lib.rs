@@ -1,23 +1,27 @@
-//! The map of flips in vectors. The kernel's search is inlined into its caller: in a package of its own it is compiled with full
-//! optimisation in every profile, while the commands around it compile fast.
+//! The map of flips, computed with vector instructions.
+//!
+//! The kernel's search is inlined into its caller. This is a package of its own so that the search
+//! is compiled with full optimisation in every profile, while the commands around it compile fast.
 
 use double_pendulum::flips::{Flip, Flips};
 use double_pendulum::{DirectionF32Plain, Error};
 use multiversion::multiversion;
 
-/// The kernel's search with the cheapest steps.
+/// The kernel's search with the method whose steps cost least.
 pub type Search = Flips<DirectionF32Plain>;
 
-/// Numbers in a row: a vector of 8 with AVX2, two of 4 without.
+/// The number of starts that are computed side by side: a vector of 8 with AVX2, two vectors of 4
+/// without.
 const LANES: usize = 8;
 
-/// The flips of some starts, by the widest vectors that this processor has.
+/// Returns the flips of some starts, computed with the widest vectors of this processor.
 #[multiversion(targets("x86_64+avx2+bmi1+bmi2+fma+lzcnt+popcnt"))]
 pub fn flips(search: &Search, starts: &[[f32; 2]]) -> Result<Vec<Flip<f32>>, Error> {
     each(search, starts)
 }
 
-/// The same for any processor of this kind, without a look at what this one has.
+/// Returns the flips of some starts, computed with instructions that every processor of this
+/// architecture has.
 pub fn baseline(search: &Search, starts: &[[f32; 2]]) -> Result<Vec<Flip<f32>>, Error> {
     each(search, starts)
 }

@@ -1,4 +1,4 @@
-//! The motion of small oscillations in closed form: both angles at any time without a step; and read step by step.
+//! Small oscillations in closed form: the linear motion at any time, and as a method with steps.
 
 use super::Form;
 use super::scaling::lost;
@@ -8,7 +8,7 @@ use crate::numbers::{Real, Sealed};
 use crate::pendulum::{Direction, Motion, Parameters, Pendulum, State};
 use crate::small::{Mode, Modes};
 
-/// What one mode contributes to the angle of rod 1: C cos wt + S sin wt.
+/// The share of one normal mode in the angle of rod 1: C cos wt + S sin wt.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[doc(hidden)]
 pub struct Oscillation<R> {
@@ -19,31 +19,34 @@ pub struct Oscillation<R> {
 }
 
 impl<R: Real> Oscillation<R> {
-    /// The amplitude sqrt(C^2 + S^2) of rod 1, rad; that of rod 2 is the mode's shape times this.
+    /// Returns the amplitude of rod 1, sqrt(C^2 + S^2), rad. The amplitude of rod 2 is the mode's
+    /// shape times this.
     #[must_use]
     pub fn amplitude(&self) -> R {
         (self.cosine * self.cosine + self.sine * self.sine).sqrt()
     }
 
-    /// The phase, rad, in [-pi, pi]: C cos wt + S sin wt = amplitude cos(wt + phase).
+    /// Returns the phase, rad, in [-pi, pi]: C cos wt + S sin wt = amplitude cos(wt + phase).
     #[must_use]
     pub fn phase(&self) -> R {
         (-self.sine).atan2(self.cosine)
     }
 }
 
-/// The linear motion of a pendulum from given angles and velocities (`[math24]`, "Small oscillations").
+/// The linear motion of a pendulum (`[math24]`, "Small oscillations").
 ///
-/// With r1, r2 the shapes of the fast mode w1 and the slow mode w2,
+/// The fast mode has the frequency w1 and the shape r1, the slow mode w2 and r2:
 ///
 /// - a1(t) = C1 cos w1 t + S1 sin w1 t + C2 cos w2 t + S2 sin w2 t
 /// - a2(t) = r1 (C1 cos w1 t + S1 sin w1 t) + r2 (C2 cos w2 t + S2 sin w2 t)
 ///
-/// It is the exact motion's limit for small angles; at 30 degrees and equal masses the two are 1 degree apart after
-/// 0.07 s, at 5 degrees they stay within 0.4 pixels of a 240-pixel display for 10 s.
+/// It is the limit of the exact motion for small angles. At 30 degrees and equal masses the two are
+/// 1 degree apart after 0.07 s. At 5 degrees they stay within 0.4 pixels of a 240-pixel display for
+/// 10 s.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SmallOscillations<R> {
-    /// The frequencies in turns per second, in `f64`: after a day in `f32` the phase would be anywhere.
+    /// The frequencies in turns per second. They are `f64`, because in `f32` the phase would be
+    /// arbitrary after a day.
     turns: [f64; 2],
     modes: [Mode<R>; 2],
     #[doc(hidden)]
@@ -54,13 +57,14 @@ pub struct SmallOscillations<R> {
     is_wide: bool,
 }
 
-/// The largest angle, rad, whose direction is drawn by the first terms of its series.
+/// The largest angle, rad, whose direction is computed by the first terms of its series.
 const SMALL: f64 = 0.6;
 
 impl<R: Real> SmallOscillations<R> {
-    /// The motion that starts as `start`.
+    /// Returns the linear motion in `modes` that starts as `start`.
     ///
-    /// C1 = (r2 a1 - a2)/(r2 - r1), C2 = (a2 - r1 a1)/(r2 - r1); w1 S1 and w2 S2 are the same with velocities.
+    /// C1 = (r2 a1 - a2)/(r2 - r1) and C2 = (a2 - r1 a1)/(r2 - r1). w1 S1 and w2 S2 follow in the
+    /// same way from the angular velocities.
     #[must_use]
     pub fn new(modes: Modes<f64>, start: &Motion<R>) -> Self {
         let turns = [modes.fast, modes.slow].map(|mode| mode.frequency / core::f64::consts::TAU);
@@ -78,6 +82,8 @@ impl<R: Real> SmallOscillations<R> {
                 shape: r2,
             },
         ] = modes;
+
+        // Split the start into the two modes.
         let split = |x1: R, x2: R| [(r2 * x1 - x2) / (r2 - r1), (x2 - r1 * x1) / (r2 - r1)];
         let [c1, c2] = split(start.a1, start.a2);
         let [v1, v2] = split(start.w1, start.w2);
@@ -89,6 +95,7 @@ impl<R: Real> SmallOscillations<R> {
             cosine: c2,
             sine: v2 / slow,
         };
+
         let mut linear = Self {
             turns,
             modes,
@@ -101,16 +108,17 @@ impl<R: Real> SmallOscillations<R> {
         linear
     }
 
-    /// Returns what neither angle ever exceeds, rad: the sum of the modes' amplitudes.
+    /// Returns upper bounds of both angles, rad: the sums of the amplitudes of the modes.
     fn reach(&self) -> [R; 2] {
         let [fast, slow] = [&self.fast, &self.slow].map(Oscillation::amplitude);
         let [of_fast, of_slow] = self.modes.map(|mode| mode.shape.abs());
         [fast + slow, of_fast * fast + of_slow * slow]
     }
 
-    /// Angles and angular velocities a time `t` (s) after the start; `t` may be negative.
+    /// Returns the angles and angular velocities a time `t`, s, after the start.
     ///
-    /// The phase w t is reduced to a turn in `f64`: its error grows as some roundings of w t there, 1e-9 rad in a day.
+    /// `t` may be negative. The phase w t is reduced to a turn in `f64`. Its error grows as the
+    /// rounding error of w t in `f64`, to 1e-9 rad in a day.
     #[must_use]
     pub fn at(&self, t: f64) -> Motion<R> {
         let phases = self.phases(t);
@@ -126,11 +134,14 @@ impl<R: Real> SmallOscillations<R> {
         }
     }
 
-    /// (sin, cos) of both angles a time `t` (s) after the start: all that a drawing needs.
+    /// Returns the directions of both rods, (sin, cos) each, a time `t`, s, after the start.
     ///
-    /// If neither angle of the motion ever exceeds 0.6 rad, by the first terms of their series, sin a = a - a^3/6 and
-    /// cos a = 1 - a^2/2 + a^4/24: off by a^5/120, 7e-4 at most, and far less than the linear motion itself. Two sincos and
-    /// no division. Otherwise by the sines and cosines of the angles, which costs two sincos more. The length is 1 to 4e-4.
+    /// If the angles of the motion never exceed 0.6 rad, the first terms of the series are used:
+    /// sin a = a - a^3/6 and cos a = 1 - a^2/2 + a^4/24. The error is a^5/120, at most 7e-4. The
+    /// length is 1 to within 4e-4. Both errors are far less than the error of the linear motion.
+    /// This costs two sincos and no division.
+    ///
+    /// Otherwise the sines and cosines of the angles are computed, which costs two more sincos.
     #[must_use]
     pub fn directions(&self, t: f64) -> [Direction<R>; 2] {
         let angles = self.angles(self.phases(t));
@@ -147,7 +158,7 @@ impl<R: Real> SmallOscillations<R> {
         })
     }
 
-    /// (sin wt, cos wt) of the fast and the slow mode.
+    /// Returns (sin wt, cos wt) of the fast and the slow mode.
     #[inline]
     fn phases(&self, t: f64) -> [(R, R); 2] {
         let phase = |turns: f64| {
@@ -158,7 +169,7 @@ impl<R: Real> SmallOscillations<R> {
         [phase(self.turns[0]), phase(self.turns[1])]
     }
 
-    /// a1 and a2 at these phases.
+    /// Returns a1 and a2 at these phases.
     #[inline]
     fn angles(&self, [(sin_fast, cos_fast), (sin_slow, cos_slow)]: [(R, R); 2]) -> [R; 2] {
         let a_fast = self.fast.cosine * cos_fast + self.fast.sine * sin_fast;
@@ -168,11 +179,12 @@ impl<R: Real> SmallOscillations<R> {
     }
 }
 
-/// The [`SmallOscillations`] of a pendulum, read step by step: a step is one reading.
+/// A motion by the closed form: the [`SmallOscillations`] of a pendulum, computed at the time of
+/// each step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ClosedForm<R> {
     parameters: Parameters<f64>,
-    /// Steps per second, of which times are exact where they are whole.
+    /// The number of steps per second. If it is whole, the times of whole seconds are exact.
     rate: f64,
     pendulum: Pendulum<R>,
     pub(crate) oscillations: SmallOscillations<R>,
@@ -193,13 +205,15 @@ impl<R: Real> Form for ClosedForm<R> {
     type Real = R;
     const HAS_TURNS: bool = true;
     const STABLE: f64 = f64::INFINITY;
-    const CHECKS_ENERGY: bool = true; // it keeps that of the linear motion
+    const CHECKS_ENERGY: bool = true; // The linear motion keeps its own energy.
 
     fn new(parameters: &Parameters<f64>, start: &State<f64>, dt: f64) -> Result<Self, Error> {
         check_step::<f64>(dt)?;
         let oscillations = SmallOscillations::new(Modes::new(parameters)?, &Motion::default());
+
         let whole = libm::rint(1.0 / dt);
         let rate = if 1.0 / whole == dt { whole } else { 1.0 / dt };
+
         let pendulum = Pendulum::new(&parameters.cast())?;
         let directions = oscillations.directions(0.0);
         Self {
@@ -223,6 +237,7 @@ impl<R: Real> Form for ClosedForm<R> {
             steps: 0,
             ..*self
         };
+
         let most_turns = R::from_f64(f64::from(i32::MAX) * core::f64::consts::TAU);
         let has_turns = oscillations.reach().map(|most| most <= most_turns) == [true; 2];
         if has_turns && started.check().is_ok() {

@@ -1,4 +1,6 @@
-//! How each method of the [table](crate::Method) makes its steps: the types that [`Pendulum::run`](crate::Pendulum::run) is called with.
+//! The numerical methods: a type for each row of the [table](crate::Method).
+//!
+//! [`Pendulum::run`](crate::Pendulum::run) takes the type of a method and returns a motion.
 
 mod closed_form;
 pub(crate) mod direction;
@@ -26,92 +28,108 @@ use crate::error::Error;
 use crate::numbers::{Real, Sealed};
 use crate::pendulum::{Direction, Parameters, Pendulum, State};
 
-/// Hamilton's equations as one writes them down, stepped by RK4 in `f32`: `rk4-f32`.
+/// RK4 on Hamilton's equations in angles and momenta, in `f32`: `rk4-f32`.
 pub type HamiltonF32 = Canonical<f32>;
 /// The same in `f64`: `rk4-f64`.
 pub type HamiltonF64 = Canonical<f64>;
-/// Directions of the rods, RK4, `f32` with compensated sums: `rk4-f32-direction`. On a Cortex-M4F 205 cycles a step; within
-/// 4e-8 rad in 10 s of regular motion (0.5 rad, 256 steps a second), root mean square over neighbouring starts.
+/// RK4 in the direction form, in `f32` with compensated sums: `rk4-f32-direction`.
+///
+/// A step takes 205 cycles on a Cortex-M4F. The error is within 4e-8 rad in 10 s of a regular
+/// motion (0.5 rad, 256 steps per second), as the root mean square over neighbouring starts.
 pub type DirectionF32 = Rk4Direction<f32, true>;
-/// The same in plain sums: `rk4-f32-direction-plain`. 160 cycles, within 3e-6 rad.
+/// The same with plain sums: `rk4-f32-direction-plain`. A step takes 160 cycles; the error is
+/// within 3e-6 rad.
 pub type DirectionF32Plain = Rk4Direction<f32, false>;
-/// The same in `f64`, compensated.
+/// The same in `f64`, with compensated sums.
 pub type DirectionF64 = Rk4Direction<f64, true>;
-/// Small oscillations at any time without a step, in `f32`: `closed-form-f32`.
+/// Small oscillations in closed form, in `f32`: `closed-form-f32`.
 pub type ClosedFormF32 = ClosedForm<f32>;
 /// The same in `f64`.
 pub type ClosedFormF64 = ClosedForm<f64>;
 
-/// A method's equations, numbers and integrator as one type: a motion of a pendulum in steps, unchecked, and as a rule without its turns;
-/// sealed.
+/// A method: its equations, its numbers and its integrator. A value is a motion of a pendulum.
 ///
-/// [`Pendulum::run`](crate::Pendulum::run) is called with it. Its items are machinery.
+/// The trait is sealed, and its items are implementation details. Pass the type to
+/// [`Pendulum::run`](crate::Pendulum::run), which returns a motion with checks and with turns.
 ///
-/// A step of 1/240 s is as good as one of 1/256 s, though no `f32` holds it: constants are rounded so that a step is longer
-/// than dt by a share that is known, up to 2e-6 in `f32`. Half a step ahead, one step is left out; [`Run::state`] takes back
-/// the rest. Directions may be half a step ahead.
+/// # Time
+///
+/// A step of 1/240 s is as accurate as one of 1/256 s, although no `f32` is 1/240. The rounded
+/// constants of a method make a step longer than dt by a known share, up to 2e-6 in `f32`. If the
+/// motion would be more than half a step ahead of the time, one step is left out. [`Run::state`]
+/// takes back the remaining difference. The directions may be half a step ahead.
 pub trait Form: Sealed + Copy + Debug + PartialEq + 'static {
-    /// What [`Run::directions`] and [`Run::angles`] are told in.
+    /// The numbers that [`Run::directions`] and [`Run::angles`] return.
     #[doc(hidden)]
     type Real: Real;
 
-    /// The phase w1 dt, rad, up to which [`Pendulum::run`](crate::Pendulum::run) takes the method for
-    /// stable; w1 is the fast normal frequency.
+    /// The largest phase w1 dt, rad, of a stable step; w1 is the frequency of the fast normal mode.
+    /// [`Pendulum::run`](crate::Pendulum::run) refuses longer steps.
     #[doc(hidden)]
     const STABLE: f64 = RK4_STABLE;
 
-    /// True if [`check`](Self::check) notices every energy that is far too large, and every direction
-    /// that is far too long. If not, [`Run`] looks at both.
+    /// True if [`check`](Self::check) refuses every energy that is far too large, and every
+    /// direction that is far too long. If it is false, [`Run`] checks both.
     #[doc(hidden)]
     const CHECKS_ENERGY: bool = false;
 
-    /// Checks the parameters and prepares the motion from `start` in steps of `dt` seconds; a negative one runs backwards.
+    /// Checks the parameters and prepares the motion from `start`, in steps of `dt` seconds.
+    ///
+    /// A negative `dt` runs backwards.
     #[doc(hidden)]
     fn new(parameters: &Parameters<f64>, start: &State<f64>, dt: f64) -> Result<Self, Error>;
 
-    /// The same pendulum from another start, whose energy is no greater: in the same units.
+    /// Returns a motion of the same pendulum from another start, in the same units. Its energy must
+    /// be no greater.
     #[doc(hidden)]
     fn started(&self, start: &State<f64>) -> Result<Self, Error>;
 
-    /// Makes `steps` steps. How they are dealt out to calls makes no difference to any bit.
+    /// Advances the motion by `steps` steps.
+    ///
+    /// `advance(a); advance(b)` is bit-identical to `advance(a + b)`.
     #[doc(hidden)]
     fn advance(&mut self, steps: u32);
 
-    /// [`advance`](Self::advance) by one step, for a loop that looks at each.
+    /// Advances the motion by one step. A loop that reads the motion after each step uses it.
     #[doc(hidden)]
     #[inline(always)]
     fn advance_one(&mut self) {
         self.advance(1);
     }
 
-    /// Refuses a motion that has left the finite numbers, at the cost of a few comparisons.
+    /// Refuses a motion that has left the finite numbers. It costs a few comparisons.
     #[doc(hidden)]
     fn check(&self) -> Result<(), Error>;
 
-    /// Returns sine and cosine of both rods as words with the sign in the highest bit. The signs
-    /// show when a rod turns over; the other bits are those of the method's numbers.
+    /// Returns the sine and cosine of both rods as words whose highest bit is the sign.
+    ///
+    /// The signs show when a rod turns over. The other bits are in the format of the method's
+    /// numbers.
     #[doc(hidden)]
     fn sides(&self) -> [[i32; 2]; 2];
 
-    /// Returns the number of a word of [`sides`](Self::sides), in any unit.
+    /// Returns the number that a word of [`sides`](Self::sides) represents, in an arbitrary unit.
     #[doc(hidden)]
     fn side_value(side: i32) -> Self::Real;
 
-    /// The directions of both rods, in `Q`; no trigonometry where they are what is carried.
+    /// Returns the directions of both rods in the numbers `Q`. In the direction form this needs no
+    /// trigonometry.
     #[doc(hidden)]
     fn directions<Q: Real>(&self) -> [Direction<Q>; 2];
 
-    /// The momenta p1 and p2, kg m^2/s, when the rods point to the [`directions`](Self::directions).
+    /// Returns the momenta p1 and p2, kg m^2/s, at the time of the
+    /// [`directions`](Self::directions).
     #[doc(hidden)]
     fn momenta<Q: Real>(&self) -> [Q; 2];
 
-    /// The canonical state in SI units, to the last digit carried, at the number of steps times dt.
+    /// Returns the canonical state in SI units at the number of steps times dt, with all digits
+    /// that the method carries.
     #[doc(hidden)]
     fn state(&self) -> State<f64>;
 
-    /// Returns the energy above rest, J, to the last digit carried.
+    /// Returns the energy above rest, J, with all digits that the method carries.
     ///
-    /// `pendulum` is the pendulum of this motion. The energy is that of the directions and
+    /// `pendulum` is the pendulum of this motion. The energy follows from the directions and
     /// momenta, which may be up to half a step ahead of the [`state`](Self::state).
     #[doc(hidden)]
     fn energy_above_rest(&self, pendulum: &Pendulum<f64>) -> f64 {
@@ -119,11 +137,11 @@ pub trait Form: Sealed + Copy + Debug + PartialEq + 'static {
         pendulum.energy_above_rest_at([unit(upper), unit(lower)], self.momenta())
     }
 
-    /// Whether [`state`](Self::state) has angles with all their turns.
+    /// True if the angles of [`state`](Self::state) include whole turns.
     #[doc(hidden)]
     const HAS_TURNS: bool = false;
 
-    /// Gives `feed` the bit patterns of all that is carried, the number of steps among them, to compare machines by.
+    /// Passes all words of the motion and its number of steps to `feed`, to compare machines.
     #[doc(hidden)]
     fn bits(&self, feed: impl FnMut(u64));
 }

@@ -1,4 +1,5 @@
-//! The classical Runge-Kutta step of order 4, for any system of first-order equations, and the motions made of it.
+//! The classical Runge-Kutta method of order 4 (RK4), for any system of first-order equations and
+//! for Hamilton's equations in angles and momenta.
 
 use core::fmt::Debug;
 
@@ -8,12 +9,16 @@ use crate::error::Error;
 use crate::numbers::{Real, Sealed};
 use crate::pendulum::{Direction, Parameters, Pendulum, State};
 
-/// One step of the classical Runge-Kutta method for z' = f(z): the state a time `dt` after `z`.
+/// Computes one step of RK4 for z' = f(z): returns the state a time `dt` after `z`.
 ///
-/// Y1 = dt f(z), Y2 = dt f(z + Y1/2), Y3 = dt f(z + Y2/2), Y4 = dt f(z + Y3),
-/// z' = z + (Y1 + 2 Y2 + 2 Y3 + Y4)/6.
+/// ```text
+/// Y1 = dt f(z)      Y2 = dt f(z + Y1/2)      Y3 = dt f(z + Y2/2)      Y4 = dt f(z + Y3)
 ///
-/// The error of one step is O(dt^5), of a fixed interval O(dt^4). A negative `dt` steps backwards.
+/// z(t + dt) = z + (Y1 + 2 Y2 + 2 Y3 + Y4)/6
+/// ```
+///
+/// The error is O(dt^5) after one step, and O(dt^4) after a fixed time. A negative `dt` steps
+/// backwards.
 #[must_use]
 #[inline]
 pub fn step<R: Real, const N: usize>(f: impl Fn(&[R; N]) -> [R; N], z: &[R; N], dt: R) -> [R; N] {
@@ -26,18 +31,20 @@ pub fn step<R: Real, const N: usize>(f: impl Fn(&[R; N]) -> [R; N], z: &[R; N], 
     core::array::from_fn(|i| z[i] + sixth * (k1[i] + R::TWO * (k2[i] + k3[i]) + k4[i]))
 }
 
-/// z + dt k, component by component.
+/// Returns z + dt k.
 #[inline(always)]
 fn advanced<R: Real, const N: usize>(z: &[R; N], dt: R, k: &[R; N]) -> [R; N] {
     core::array::from_fn(|i| z[i] + dt * k[i])
 }
 
 impl<R: Real> Pendulum<R> {
-    /// The state a time `dt` (s) after `state`, by one classical RK4 step; a negative `dt` steps backwards.
+    /// Computes one step of RK4: returns the state a time `dt`, s, after `state`.
     ///
-    /// Nothing is refused: a state or a step that is NaN gives NaN, and a step too long for the motion gives what has
-    /// nothing to do with it, infinite or NaN in the end. Ask [`check_step`](Self::check_step) or
-    /// [`admissible_step`](Self::admissible_step) before the first step, and [`State::finite`] after each.
+    /// A negative `dt` steps backwards. The inputs are not checked. A state or a step that is NaN
+    /// gives NaN. A step that is too long for the motion gives a meaningless state, which in the
+    /// end is infinite or NaN. Call [`check_step`](Self::check_step) or
+    /// [`admissible_step`](Self::admissible_step) before the first step, and [`State::finite`]
+    /// after each.
     #[must_use]
     #[inline]
     pub fn step(&self, state: &State<R>, dt: R) -> State<R> {
@@ -45,12 +52,12 @@ impl<R: Real> Pendulum<R> {
     }
 }
 
-/// Equations of motion.
+/// The equations of motion of a pendulum.
 #[doc(hidden)]
 pub trait Derivatives<R: Real>: Copy + Debug + PartialEq + 'static {
-    /// Refuses what they do not hold for.
+    /// Prepares the equations. Refuses parameters out of their range.
     fn prepare(parameters: &Parameters<R>) -> Result<Self, Error>;
-    /// The time derivatives of (a1, a2, p1, p2).
+    /// Returns the time derivatives of (a1, a2, p1, p2).
     fn derivatives(&self, z: &[R; 4]) -> [R; 4];
 }
 
@@ -65,7 +72,7 @@ impl<R: Real> Derivatives<R> for Pendulum<R> {
     }
 }
 
-/// The state (a1, a2, p1, p2) stepped by the equations `E`; nothing is carried along but the state.
+/// A motion by RK4 on the equations `E`. It carries the state (a1, a2, p1, p2) only.
 #[doc(hidden)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Canonical<R, E = Pendulum<R>> {

@@ -1,4 +1,4 @@
-//! A motion under way: checked, and its turns counted.
+//! Motions in progress, with checks and with a count of whole turns.
 
 use super::{Fixed32, Form};
 use crate::bounds::stable_step;
@@ -6,13 +6,14 @@ use crate::error::{Error, Parameter};
 use crate::numbers::Real;
 use crate::pendulum::{Direction, Parameters, Pendulum, State};
 
-/// A motion by the method that `F` is: made by [`Pendulum::run`].
+/// A motion in progress by the method `F`. [`Pendulum::run`] returns it.
 ///
-/// A few hundred bytes, all it needs. A step must not turn a rod by more than a quarter turn, or turns are miscounted.
+/// It takes a few hundred bytes and no heap. A step must not turn a rod by more than a quarter
+/// turn, otherwise whole turns are miscounted.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Run<F: Form> {
     pendulum: Pendulum<F::Real>,
-    /// The energy H, J, above which the motion counts as diverged; unused if `F` checks its energy.
+    /// The energy H, J, above which the motion counts as diverged. Unused if `F` checks its energy.
     most_energy: F::Real,
     motion: F,
     turns: [Turns; 2],
@@ -21,16 +22,28 @@ pub struct Run<F: Form> {
 }
 
 impl<R: Real> Pendulum<R> {
-    /// The motion from `start` in steps of `dt` seconds by the method that `F` is; a negative step runs backwards.
+    /// Returns the motion from `start` in steps of `dt` seconds by the method `F`.
     ///
-    /// Only that method is linked. Refuses a step that is NaN, infinite, zero or subnormal, a start that is not finite, one of
-    /// more than 2^31 turns where directions are carried, and what is out of the range of the method's numbers.
+    /// A negative `dt` runs backwards. Only the code of the method `F` is linked.
     ///
-    /// Refuses a step beyond the method's limit of stability on the fast mode, w1 dt = 2.83 for RK4
-    /// ([`check_step`](Self::check_step)). Extrapolation of the orders 2, 4 .. 16 is stable, or lets the mode grow by less
-    /// than a tenth in a step, up to w1 dt = 0.95, 2.86, 2.51, 3.67, 5.28, 4.77, 6.37 and 7.35. A faster motion may need far
-    /// shorter steps: [`admissible_step`](Self::admissible_step) resolves every motion of an energy.
+    /// # Errors
+    ///
+    /// Refuses:
+    ///
+    /// - a step that is NaN, infinite, zero or subnormal;
+    /// - a start that is not finite;
+    /// - a start of more than 2^31 turns, if the method carries directions;
+    /// - a pendulum or a start out of the range of the method's numbers;
+    /// - a step beyond the limit of stability of the fast mode, of frequency w1.
+    ///
+    /// The limit of RK4 is w1 dt = 2.83 ([`check_step`](Self::check_step)). Extrapolation of the
+    /// orders 2, 4 .. 16 is stable, or lets the mode grow by less than a tenth in a step, up to w1
+    /// dt = 0.95, 2.86, 2.51, 3.67, 5.28, 4.77, 6.37 and 7.35.
+    ///
+    /// A fast motion may need far shorter steps: [`admissible_step`](Self::admissible_step)
+    /// resolves every motion of an energy.
     pub fn run<F: Form>(&self, start: &State<R>, dt: f64) -> Result<Run<F>, Error> {
+        // Prepare the motion and count the turns of its start.
         let parameters = self.parameters().cast();
         let motion: F = start_within(&parameters, &start.cast(), dt)?;
         let angles = if F::HAS_TURNS {
@@ -39,6 +52,8 @@ impl<R: Real> Pendulum<R> {
             start.angles().map(R::to_f64)
         };
         let turns = Turns::of(angles, motion.sides())?;
+
+        // Compute the limit on its energy.
         let pendulum = Pendulum::new(&parameters.cast())?;
         let most_energy = if F::CHECKS_ENERGY {
             F::Real::ZERO
@@ -57,7 +72,7 @@ impl<R: Real> Pendulum<R> {
     }
 }
 
-/// Prepares the motion; refuses a step beyond the method's limit of stability, or of its numbers.
+/// Prepares the motion. Refuses a step beyond the limit of stability or of the method's numbers.
 fn start_within<F: Form>(
     parameters: &Parameters<f64>,
     start: &State<f64>,
@@ -80,20 +95,30 @@ fn start_within<F: Form>(
     }
 }
 
-/// The energy H at which a motion counts as diverged, in energies above rest of its start.
+/// The energy H above which a motion counts as diverged, divided by the energy above rest of the
+/// start.
 ///
-/// Measured from rest, that is a hundred times the energy of the start and, on top, what lifts both
-/// bobs by the length of their rods.
+/// H is zero for horizontal rods at rest. The energy above rest may therefore be a hundred times as
+/// large as at the start, plus the energy that lifts both bobs from rest to the height of the
+/// pivot.
 const ENERGY_GROWTH: f64 = 100.0;
 
 impl<F: Form> Run<F> {
-    /// Makes `steps` steps, or none: [`Error::Diverged`] if they led out of the finite numbers, and the run stays as it was.
-    /// How steps are dealt out to calls makes no difference to any bit.
+    /// Advances the motion by `steps` steps.
     ///
-    /// Also refuses an energy far above that of the start, because a step was too long for the motion. The energy above rest
-    /// is at most 100 times that of the start, and (m1 + m2) g l1 + m2 g l2 more; [`Fixed32`] allows 9/8 of that of the start
-    /// and what rounding may add. Refuses directions shorter than 1/2 or longer than 2. Energy and lengths are checked once at
-    /// the end of each call, not after every step.
+    /// `advance(a); advance(b)` is bit-identical to `advance(a + b)`.
+    ///
+    /// # Errors
+    ///
+    /// Returns [`Error::Diverged`], and leaves the run unchanged, if the steps have led to:
+    ///
+    /// - numbers that are not finite;
+    /// - directions shorter than 1/2 or longer than 2;
+    /// - an energy far above the initial one, because the step was too long for the motion.
+    ///
+    /// The limit on the energy above rest is 100 times its initial value, plus (m1 + m2) g l1 + m2
+    /// g l2. The limit of [`Fixed32`] is 9/8 of the initial value, plus an allowance for rounding.
+    /// Energy and lengths are checked once at the end of each call, not after every step.
     pub fn advance(&mut self, steps: u32) -> Result<(), Error> {
         let Self {
             mut motion,
@@ -108,17 +133,20 @@ impl<F: Form> Run<F> {
                 Turns::observe(&mut turns, motion.sides());
             }
         }
+
+        // Check the result before it is stored.
         motion.check()?;
         if !F::CHECKS_ENERGY {
             self.check_energy(&motion)?;
         }
-        (self.motion, self.turns) = (motion, turns);
+        self.motion = motion;
+        self.turns = turns;
         self.steps += u64::from(steps);
         Ok(())
     }
 
     /// Refuses directions that are far too short or too long, and an energy that is far too large.
-    #[inline(never)] // never inlined, because it is called once for many steps
+    #[inline(never)] // Not inlined, because it is called once for many steps.
     fn check_energy(&self, motion: &F) -> Result<(), Error> {
         let directions = motion.directions();
         let [shortest, longest] = [0.25, 4.0].map(F::Real::from_f64);
@@ -141,13 +169,16 @@ impl<F: Form> Run<F> {
         Ok(())
     }
 
-    /// Where the rods point, (sin, cos) each: all that a drawing needs. Up to half a step ahead of the [`state`](Self::state).
+    /// Returns the directions of both rods, (sin, cos) each. A drawing needs no more.
+    ///
+    /// They may be up to half a step ahead of the [`state`](Self::state).
     #[must_use]
     pub fn directions(&self) -> [Direction<F::Real>; 2] {
         self.motion.directions()
     }
 
-    /// Both angles with all their turns, rad, when the rods point to the [`directions`](Self::directions); by an arc tangent.
+    /// Returns both angles, rad, including whole turns, at the time of the
+    /// [`directions`](Self::directions). The cost is that of two arc tangents.
     #[must_use]
     pub fn angles(&self) -> [F::Real; 2] {
         if F::HAS_TURNS {
@@ -158,10 +189,12 @@ impl<F: Form> Run<F> {
         [turns1.angle(direction1), turns2.angle(direction2)]
     }
 
-    /// The canonical state in SI units, to the last digit carried, the angles with all their turns.
+    /// Returns the canonical state in SI units, with all digits that the method carries. The angles
+    /// include whole turns.
     ///
-    /// Of the number of steps times dt, even where the motion carried is ahead of that ([`Form`]). It is taken back, which
-    /// alters the energy by 1e-4 of itself at most where the fastest frequency times dt is 0.2 or less (asserted over a day).
+    /// The state is that at the number of steps times dt, even if the motion itself is ahead of
+    /// that time ([`Form`]). The difference is taken back. This changes the energy by at most a
+    /// share of 1e-4 if the fastest frequency times dt is 0.2 or less (asserted over a day).
     #[must_use]
     pub fn state(&self) -> State<f64> {
         let state = self.motion.state();
@@ -172,19 +205,20 @@ impl<F: Form> Run<F> {
         }
     }
 
-    /// The energy H, J, when the rods point to the [`directions`](Self::directions) ([`Pendulum::energy`]).
+    /// Returns the energy H, J, at the time of the [`directions`](Self::directions)
+    /// ([`Pendulum::energy`]).
     #[must_use]
     pub fn energy(&self) -> F::Real {
         self.pendulum
             .energy_at(self.directions(), self.motion.momenta())
     }
 
-    /// Gives `feed` the bit patterns of all that the method carries from step to step.
+    /// Passes all words that the method carries from step to step to `feed`.
     pub(crate) fn bits(&self, feed: impl FnMut(u64)) {
         self.motion.bits(feed);
     }
 
-    /// Seconds since the start.
+    /// Returns the time since the start, s.
     #[must_use]
     pub fn time(&self) -> f64 {
         self.steps as f64 * self.dt
@@ -192,25 +226,26 @@ impl<F: Form> Run<F> {
 }
 
 impl Run<Fixed32> {
-    /// Where the rods point, (sin, cos) each times 2^30: by integers alone, to 2^-27.
+    /// Returns the directions of both rods, (sin, cos) each times 2^30, accurate to 2^-27.
     ///
-    /// Steps are made of integers, too: no soft float is linked into such a loop.
+    /// They are computed in integers only, as are the steps. A loop of both links no software
+    /// floating point.
     #[must_use]
     pub fn directions_q30(&self) -> [Direction<i32>; 2] {
         self.motion.q30()
     }
 }
 
-/// Returns a negative number if the sine, before and after, has changed its sign and the cosine is
+/// Returns a negative number if the sine has changed its sign, from `from` to `to`, and `cos` is
 /// negative.
 #[inline(always)]
 pub(crate) fn turns_over([from, to, cos]: [i32; 3]) -> i32 {
     (from ^ to) & cos
 }
 
-/// Counts how often a direction passes straight up, by the signs of its sine and cosine.
+/// Counts the whole turns of a direction, by the signs of its sine and cosine.
 ///
-/// To be shown them at least once every quarter turn.
+/// A direction must be observed at least once per quarter turn.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Turns {
     whole: i32,
@@ -218,8 +253,12 @@ pub struct Turns {
 }
 
 impl Turns {
-    /// For angles of `start` rad, whose directions have these signs. Refuses more turns than can be counted.
-    #[inline(never)] // never inlined, to avoid a second copy
+    /// Starts the count at the angles `start`, rad, whose directions have the signs `now`.
+    ///
+    /// # Errors
+    ///
+    /// Refuses 2^31 - 1 turns or more.
+    #[inline(never)] // Not inlined, to save flash.
     pub fn of(start: [f64; 2], now: [[i32; 2]; 2]) -> Result<[Self; 2], Error> {
         let mut turns = start.map(|angle| {
             let whole = libm::rint(angle / core::f64::consts::TAU);
@@ -242,7 +281,8 @@ impl Turns {
         Ok(turns)
     }
 
-    /// Takes note of the signs that the directions have now.
+    /// Observes the signs that the directions have now, and counts a turn for each that has turned
+    /// over.
     #[inline]
     pub fn observe(both: &mut [Self; 2], now: [[i32; 2]; 2]) {
         for (turns, now) in both.iter_mut().zip(now) {
@@ -253,16 +293,18 @@ impl Turns {
         }
     }
 
-    /// The angle with its turns, rad, of the direction last observed.
-    #[inline(never)] // never inlined, to avoid a second copy
+    /// Returns the angle, rad, including whole turns, of the direction that was observed last.
+    #[inline(never)] // Not inlined, to save flash.
     pub fn angle<R: Real>(&self, [s, c]: Direction<R>) -> R {
         R::from_f64(f64::from(self.whole) * core::f64::consts::TAU) + s.atan2(c)
     }
 
-    /// `state`, whose angles are known but for whole turns, with as many turns on as bring each nearest to the last direction.
+    /// Returns `state` with whole turns added to its angles, so that each is as close as possible
+    /// to the direction that was observed last.
     ///
-    /// No trigonometry: a quarter turn to the side of that is within half a turn of it, near enough.
-    #[inline(never)] // never inlined, to avoid a second copy
+    /// This needs no trigonometry. The sign of the sine gives the direction to within a quarter
+    /// turn, and half a turn would be enough.
+    #[inline(never)] // Not inlined, to save flash.
     #[must_use]
     pub fn unwrap([turns1, turns2]: &[Self; 2], state: State<f64>) -> State<f64> {
         use core::f64::consts::{FRAC_PI_2, TAU};

@@ -1,25 +1,26 @@
-//! How wrong a method is that is tried: how far two frames are apart, and in how many it was right.
+//! Candidates: the number of accurate frames of a method and step count, and the distance of two
+//! frames.
 
 use super::cost::Stepping;
 use super::run::Directions;
 
-/// A bob may be off by this much where the tolerance is the unit.
+/// The largest allowed error, in units of the tolerance.
 const TOLERATED: f32 = 1.0;
 
-/// A method must be right for this much longer than another to be worth its cost.
+/// A horizon must be this many times as long as another one to be worth a higher cost.
 const WORTH: f64 = 1.1;
 
-/// How a method has fared so far.
+/// A method and step count with the accuracy that was measured for it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Candidate {
     pub stepping: Stepping,
-    /// The number of frames from the start that are accurate to the tolerance.
+    /// The number of frames from the start that are within the tolerance.
     pub accurate_frames: u32,
-    /// The largest error measured in them, over the tolerance.
+    /// The largest error in these frames, divided by the tolerance.
     pub error: f32,
     /// True if a frame was inaccurate, or if the candidate is excluded.
     pub failed: bool,
-    /// The steps per frame of the fine run that it was compared with; `u32::MAX` if there was none.
+    /// The steps per frame of the fine run of the reference; `u32::MAX` without a reference.
     pub judge_steps: u32,
 }
 
@@ -34,14 +35,17 @@ impl Candidate {
         }
     }
 
-    /// Whether it is right for so much longer than `other` that it is worth more.
+    /// Returns true if the horizon is enough longer than that of `other` to be worth a higher cost.
     pub fn has_longer_horizon(&self, other: &Self) -> bool {
         f64::from(self.accurate_frames) > WORTH * f64::from(other.accurate_frames)
     }
 
-    /// Takes note of a frame with an error of about `error`, and hardly ever more than `bound`. NaN is
-    /// wrong. After the first inaccurate frame nothing is noted.
-    #[inline(never)] // one copy
+    /// Records the next frame.
+    ///
+    /// `error` is an estimate of its error, and `bound` is an upper bound that is exceeded only in
+    /// rare cases. Both are in units of the tolerance. A NaN bound counts as inaccurate. After the
+    /// first inaccurate frame nothing more is recorded.
+    #[inline(never)] // Not inlined, to save flash.
     pub fn note(&mut self, error: f32, bound: f32) {
         if self.failed {
             return;
@@ -59,11 +63,13 @@ impl Candidate {
     }
 }
 
-/// How far the farther of the two bobs is off, or bob 2 as seen from bob 1, where the rods are as long as `rods`, in their
-/// unit; NaN if anything is.
+/// Returns the distance of two frames: the largest of the distances between their bobs 1, between
+/// their bobs 2, and between their positions of bob 2 relative to bob 1.
 ///
-/// The last keeps curves of the angles right, too: opposite errors of both may leave bob 2 where it belongs.
-#[inline(never)] // one copy
+/// `rods` are the lengths of the rods; the result has the same unit. It is NaN if any direction is
+/// NaN. The relative position is included so that the angles are accurate, too: if both rods have
+/// opposite errors, bob 2 may be where it belongs.
+#[inline(never)] // Not inlined, to save flash.
 pub(super) fn distance(rods: [f32; 2], a: &Directions, b: &Directions) -> f32 {
     let difference = |rod: usize, axis: usize| rods[rod] * (a[rod][axis] - b[rod][axis]);
     let [bob1, relative] = [0, 1].map(|rod| [difference(rod, 0), difference(rod, 1)]);
@@ -72,7 +78,7 @@ pub(super) fn distance(rods: [f32; 2], a: &Directions, b: &Directions) -> f32 {
     libm::sqrtf(greater(greater(bob1, relative), bob2))
 }
 
-/// The greater; NaN if either is.
+/// Returns the greater number, or NaN if either is NaN.
 pub(super) fn greater(a: f32, b: f32) -> f32 {
     if a > b || a.is_nan() { a } else { b }
 }
@@ -81,9 +87,10 @@ pub(super) fn greater(a: f32, b: f32) -> f32 {
 mod tests {
     use super::*;
 
-    /// Bob 2 is where both rods lead, and may be less far off than either.
+    /// The displacement of bob 2 is the sum of the displacements along both rods. It may be shorter
+    /// than either.
     #[test]
-    fn the_farthest_of_what_is_seen_counts() {
+    fn distance_is_the_largest_of_bobs_and_relative_position() {
         let from = |a: Directions| distance([2.0, 3.0], &a, &[[0.0; 2]; 2]);
         assert_eq!(from([[1.0, 0.0], [0.0, 1.0]]), 13.0_f32.sqrt());
         assert_eq!(from([[0.5, 0.0], [1.0, 0.0]]), 4.0);

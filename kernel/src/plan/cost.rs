@@ -1,31 +1,34 @@
-//! What each method costs, what may be spent, and the methods and steps that it pays for.
+//! Costs, budgets, and the step counts that a frame can pay for.
 
 use super::{PlannedRun, Problem};
 use crate::error::{Error, Parameter};
 use crate::pendulum::Pendulum;
 use crate::table::Method;
 
-/// The price list: what a step costs by each method, what a frame costs in closed form. In cycles, or in any other unit
-/// that the [`Budget`] is given in, too.
+/// The price list of a processor: the cost of a step by each method, and of a frame by the closed
+/// form.
+///
+/// The unit is arbitrary, usually cycles; the [`Budget`] has the same unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Costs {
-    /// [`Method::ClosedFormF32`], for each frame.
+    /// A frame by [`Method::ClosedFormF32`].
     pub closed_form: f32,
-    /// [`Method::Rk4F32DirectionPlain`].
+    /// A step by [`Method::Rk4F32DirectionPlain`].
     pub direction_plain: f32,
-    /// [`Method::Rk4F32Direction`].
+    /// A step by [`Method::Rk4F32Direction`].
     pub direction: f32,
-    /// [`Method::Rk4Fixed32`].
+    /// A step by [`Method::Rk4Fixed32`].
     pub fixed32: f32,
-    /// [`Method::Extrapolation10Fixed64`].
+    /// A step by [`Method::Extrapolation10Fixed64`].
     pub fixed64: f32,
-    /// To prepare a motion by any of them.
+    /// The preparation of a motion by any of these methods.
     pub preparation: f32,
 }
 
 impl Costs {
-    /// What a frame costs that is computed so; infinite for what no plan chooses from.
-    #[inline(never)] // one copy
+    /// Returns the cost of a frame by this method and step count. It is infinite for a method that
+    /// plans do not use.
+    #[inline(never)] // Not inlined, to save flash.
     #[doc(hidden)]
     #[must_use]
     pub fn of_frame(&self, Stepping { method, steps }: Stepping) -> f32 {
@@ -41,50 +44,62 @@ impl Costs {
     }
 }
 
-/// What may be spent, in the unit of the [`Costs`].
+/// The largest costs that are allowed, in the unit of the [`Costs`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Budget {
-    /// On computing a frame.
+    /// The largest cost of computing a frame.
     pub frame: f32,
-    /// On planning.
+    /// The largest cost of planning.
     pub planning: f32,
 }
 
-/// How a motion is computed: a method, and how fine.
+/// A method and its number of steps per frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[doc(hidden)]
 pub struct Stepping {
     pub method: Method,
-    /// Steps to a frame; of no meaning to the closed form, which has none.
+    /// The number of steps per frame. The closed form has no steps and ignores it.
     pub steps: u32,
 }
 
-/// In steps of this many admissible ones or less, [`Method::Extrapolation10Fixed64`] is accurate for about as long as in any: its
-/// roundings end its horizon, not its steps.
+/// The longest step of [`Method::Extrapolation10Fixed64`] that resolves a motion, in admissible
+/// steps.
+///
+/// Shorter steps give almost the same horizon, because rounding errors end it.
 pub(super) const RESOLVING: f64 = 0.7;
 
-/// A scene begins in the first of these steps that a frame can pay for, in admissible ones.
+/// The steps in 64 bits that a motion may start with before it is planned, in admissible steps. The
+/// first of them is used that a frame can pay for.
 const INITIAL: [f64; 5] = [RESOLVING, 1.0, 1.5, 2.1, FIRST_STEP];
 
-/// The fine run of a reference has steps of this many admissible ones, or of the first of these that planning can pay for. Its error is
-/// measured, so that longer steps shorten a horizon and never make it wrong.
+/// The steps of the fine run of a reference, in admissible steps. The first of them is used that
+/// planning can pay for.
+///
+/// The error of the fine run is measured. Longer steps therefore shorten a horizon, but do not make
+/// it wrong.
 const FINE: [f64; 6] = [0.53, 0.65, 0.8, 1.1, 1.5, 2.1];
 
-/// The first step looked at is no longer than this many admissible ones: the fastest rate that the energy allows turns a
-/// radian in it. In longer steps two runs could miss alike what neither sees.
+/// The longest step of the first trial, in admissible steps.
+///
+/// In this step the fastest rate that the energy allows advances a phase by a radian. In longer
+/// steps, two runs could miss the same fast motion and agree.
 pub(super) const FIRST_STEP: f64 = 4.0;
 
-/// RK4 in 32 bits starts with steps no longer than this many admissible ones, the first of them if a
-/// frame pays for it. In twice as long steps its error is 16 times as large.
+/// The longest steps of RK4 in 32 bits that a motion may start with, in admissible steps. The first
+/// of them is used if a frame can pay for it. In twice as long steps the error is 16 times as
+/// large.
 const RESOLVING_RK4: [f64; 2] = [1.0, 2.0];
 
-/// Finer steps than this many to a frame are never tried.
+/// The largest number of steps per frame. Finer steps are never tried.
 pub(super) const MOST_STEPS: u32 = 1 << 16;
 
-/// The fewest steps by `method` to a frame, of which there are `rate` in a second, that are no longer than `longest` s; in 32
-/// bits a power of two, as the steps that refine them.
-#[inline(never)] // one copy
+/// Returns the smallest number of steps per frame that makes steps of at most `longest` s, at
+/// `rate` frames per second.
+///
+/// In 32 bits it is a power of two, because steps are refined by powers of two. The result is from
+/// 1 to [`MOST_STEPS`].
+#[inline(never)] // Not inlined, to save flash.
 pub(super) fn steps_to_frame(method: Method, rate: u16, longest: f64) -> u32 {
     let fewest = libm::ceil(1.0 / (longest * f64::from(rate)));
     let fewest = (fewest as u32).clamp(1, MOST_STEPS);
@@ -95,17 +110,18 @@ pub(super) fn steps_to_frame(method: Method, rate: u16, longest: f64) -> u32 {
     }
 }
 
-/// A run in 64 bits and a finer one: the reference of candidates in 32 bits, and candidates themselves.
+/// The reference of a trial: a coarse and a fine run in 64 bits. Both may also be candidates.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Pair {
     pub coarse: Stepping,
     pub fine: Stepping,
 }
 
-/// The truncation error of the fine run is taken to be this many times as large as the order says: it may be too low where
-/// steps do not resolve the motion.
+/// A safety factor on the truncation error of the fine run. The order of the method gives too small
+/// a value if the steps do not resolve the motion.
 const TRUST: f32 = 16.0;
-/// The least share of the distance to the coarse run that the fine run is taken to be off by.
+/// The smallest share of the distance to the coarse run that is assumed as the error of the fine
+/// run.
 const LEAST_SHARE: f32 = 1.0 / 32.0;
 
 impl Pair {
@@ -117,16 +133,19 @@ impl Pair {
         Self { coarse, fine }
     }
 
-    /// Returns the pair whose coarse run makes `steps` steps per frame. The fine one makes a third more, or `least` if that is more.
+    /// Returns the pair whose coarse run makes `steps` steps per frame.
+    ///
+    /// The fine run makes a third more, or `least` if that is more.
     pub fn of_coarse(steps: u32, least: u32) -> Self {
         let more = (steps / 3).max(1);
         Self::new(steps, steps.saturating_add(more).max(least))
     }
 
-    /// Returns the pairs whose fine run has one of the [`FINE`] steps, the finest first. The coarse run makes at least `least`
-    /// steps per frame, and at most `most`.
+    /// Returns a pair for each of the [`FINE`] steps of the fine run, the finest pair first.
     ///
-    /// If that is fewer than usual, the fine run makes a third more, if these steps resolve the motion.
+    /// The coarse run makes at least `least` steps per frame and, unless `most` is less than
+    /// `least`, at most `most`. If `most` is less than the usual number, the fine run makes a third
+    /// more than `most`, and at least as many as the longest of the [`FINE`] steps.
     pub fn all(
         rate: u16,
         admissible: f64,
@@ -149,8 +168,9 @@ impl Pair {
         })
     }
 
-    /// Returns the share of the distance between both runs that the fine one may be off by: by its order, it is
-    /// (coarse/fine)^10 if both resolve the motion.
+    /// Returns the share of the distance between both runs that bounds the error of the fine run.
+    ///
+    /// If both runs resolve the motion, the order of the method gives (coarse/fine)^10.
     pub fn share_of_fine(&self) -> f32 {
         let ratio = self.coarse.steps as f32 / self.fine.steps as f32;
         let fifth = ratio * ratio * ratio * ratio * ratio;
@@ -158,13 +178,15 @@ impl Pair {
     }
 }
 
-/// The first of [`FINE`] for a pair that is no candidate itself.
+/// The index of the finest of the [`FINE`] steps for a pair that contains no candidates.
 pub(super) const JUDGING: usize = 4;
 
-/// The longest step that resolves every motion of the problem's energy, s.
+/// Returns the longest step that resolves every motion of the problem's energy, s.
 ///
-/// Refuses what [`Pendulum::new`] and [`Pendulum::admissible_step`] refuse.
-#[inline(never)] // one copy
+/// # Errors
+///
+/// Refuses the inputs that [`Pendulum::new`] and [`Pendulum::admissible_step`] refuse.
+#[inline(never)] // Not inlined, to save flash.
 pub(super) fn admissible_step(problem: &Problem) -> Result<f64, Error> {
     let pendulum = Pendulum::new(&problem.pendulum)?;
     pendulum.admissible_step(&pendulum.to_state(&problem.start))
@@ -196,6 +218,7 @@ impl Stepping {
         } else {
             [Method::Rk4F32Direction, Method::Rk4Fixed32]
         };
+
         let of = |(method, longest): (Method, f64)| {
             Self::affordable(method, problem, longest * admissible, costs, frame)
         };
@@ -226,6 +249,7 @@ impl Stepping {
         } else {
             FIRST_STEP
         };
+
         let steps = steps_to_frame(method, problem.rate, longest * admissible);
         Ok(Self::accepted(method, problem, steps, |_| true).unwrap_or(Self { method, steps }))
     }
@@ -257,8 +281,9 @@ impl Stepping {
         })
     }
 
-    /// Returns `method` in `steps` steps to a frame, or in more if it refuses these as too long.
-    /// Returns `None` if it refuses the motion, or if the step count is not `allowed`.
+    /// Returns `method` with `steps` steps per frame, or with more if it refuses these as too long.
+    ///
+    /// Returns `None` if the method refuses the motion, or if the step count is not `allowed`.
     #[inline(never)] // Not inlined, to save flash.
     fn accepted(
         method: Method,
@@ -289,8 +314,8 @@ impl Stepping {
         None
     }
 
-    /// Refuses a motion that cannot be started so.
-    #[inline(never)] // the motion stands on the stack
+    /// Checks that the motion can be started by this method and step count.
+    #[inline(never)] // The motion is on the stack.
     fn check(self, problem: &Problem) -> Result<(), Error> {
         PlannedRun::new(problem, self).map(|_| ())
     }
@@ -300,9 +325,9 @@ impl Stepping {
 mod tests {
     use super::*;
 
-    /// A pendulum that needs some steps per frame, on a chip that can pay for none, few and many.
+    /// Pendulums that need different step counts, on chips that can pay for few or for many steps.
     #[test]
-    fn pairs_are_two_runs_and_keep_their_limits() {
+    fn pairs_keep_their_step_limits_and_resolve_the_motion() {
         for admissible in [1e-4, 1e-3, 3e-3, 1e-2, 1.0] {
             for [least, most] in [[1, u32::MAX], [1, 3], [2, 9], [5, 3]] {
                 let pairs = || Pair::all(60, admissible, least, most);
@@ -313,7 +338,8 @@ mod tests {
                     assert!(fine.steps <= finer);
                     finer = fine.steps;
                 }
-                // However few steps a frame can pay for, the fine run resolves the motion.
+
+                // The fine run resolves the motion, even if a frame can pay for a few steps only.
                 let [.., longest] = FINE;
                 let resolving = 1.0 / (60.0 * longest * admissible);
                 assert!(pairs().all(|pair| f64::from(pair.fine.steps) >= resolving.floor()));
@@ -321,9 +347,9 @@ mod tests {
         }
     }
 
-    /// Twice the steps reduce an error of order 10 by 2^10; what is allowed for is more.
+    /// Twice the steps reduce an error of order 10 by 2^10. The assumed share is larger.
     #[test]
-    fn the_fine_run_is_off_by_a_share_of_the_distance() {
+    fn share_of_the_fine_run_follows_from_its_order_within_limits() {
         assert_eq!(Pair::new(3, 6).share_of_fine(), LEAST_SHARE);
         assert_eq!(Pair::new(99, 100).share_of_fine(), 1.0);
         let share = Pair::new(3, 4).share_of_fine();

@@ -1,29 +1,30 @@
-//! What ends a plan, and why there is none.
+//! The limits of a plan, and the reasons why planning may fail.
 
 use core::fmt;
 
 use crate::error::Error;
 
-/// What ends a horizon.
+/// The reason why a horizon is not longer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum Limit {
-    /// The duration asked for: all of it is right.
+    /// The duration of the problem: all its frames are accurate.
     End,
     /// The growth of rounding errors in 64 bits, which finer steps do not reduce.
     Growth,
-    /// The budget for a frame: finer steps or `f64` may go farther, and cost more.
+    /// The frame budget. Finer steps or 64 bits may be accurate for longer, but cost more.
     Budget,
-    /// The budget for planning: it covers no later frame, or no trial in finer steps.
+    /// The planning budget. It does not cover the next frame, or a trial in finer steps.
     Planning,
-    /// The method and the step that were asked for: others may go farther ([`Search::of`](super::Search::of)).
+    /// The method and step count, which the caller has fixed ([`Search::of`](super::Search::of)).
+    /// Others may have a longer horizon.
     Method,
 }
 
 impl Limit {
-    /// In words.
+    /// Returns the limit in words.
     #[doc(hidden)]
     #[must_use]
     pub const fn name(self) -> &'static str {
@@ -37,20 +38,22 @@ impl Limit {
     }
 }
 
-/// Why there is no plan: a refused input with its value, or that no method keeps to the tolerance.
+/// The reason why there is no plan.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum PlanError {
-    /// The pendulum or its start describes no motion, or none that `f32` can hold; or a tolerance, duration, rate, cost or budget
-    /// is none.
+    /// An input is refused; the error contains its value.
+    ///
+    /// The pendulum or its start is invalid or out of the range of `f32`, or a tolerance, duration,
+    /// rate, cost or budget is not positive.
     Refused(Error),
-    /// Every input was good, but no method within the budgets meets the tolerance in any frame.
+    /// No method within the budgets has an accurate frame. All inputs are valid.
     NoMethod {
-        /// What forbids finer steps.
+        /// The limit that forbids finer steps.
         limit: Limit,
-        /// Spent on planning.
+        /// The cost of planning.
         spent: f32,
     },
 }

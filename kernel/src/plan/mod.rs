@@ -1,48 +1,82 @@
-//! Compute only what is seen: the cheapest method that keeps both bobs within a tolerance of the exact motion, and until
-//! when it does.
+//! Planning: finds the cheapest method whose frames are accurate, and predicts its accuracy
+//! horizon.
 //!
-//! How fast an error grows is a property of the very motion: of two starts with the same energy one may be regular and
-//! the other chaotic, and no formula in the energy tells them apart. So a search plans. It runs the motion itself, in coarse
-//! steps and in fine ones, and compares where the bobs would be:
+//! A frame is accurate if both bobs are within a tolerance of the exact motion.
 //!
-//! | error of | is measured by |
+//! # Measurement of errors
+//!
+//! The growth of an error depends on the individual motion. Of two starts with the same energy, one
+//! may be regular and the other chaotic, and no formula in the energy distinguishes them. A
+//! [`Search`] therefore runs the motion itself, in coarse steps and in fine ones, and compares the
+//! positions of the bobs:
+//!
+//! | error | measurement |
 //! |---|---|
-//! | any method in 32 bits, the closed form | the distance to a run in 64 bits, and the error of that |
-//! | the same, if planning cannot pay for that | the distances to three runs in finer steps, the numbers given to each an ulp off |
-//! | truncation in 64 bits | the distance to a second run in 64 bits in other steps |
-//! | rounding in 64 bits | its size where it arises, times the growth of small distances since |
+//! | methods in 32 bits, closed form | the distance to a run in 64 bits, plus its error |
+//! | the same, without such a run | the distances to three runs in finer steps, inputs perturbed |
+//! | truncation in 64 bits | the distance to a second run in 64 bits, in other steps |
+//! | rounding in 64 bits | its size where it arises, times the later growth of small distances |
 //!
-//! No run is taken for exact: along the one direction in which errors grow, two runs that are equally wrong may agree by
-//! chance. Growth is measured by motions in 32 bits that are kept close to the one in 64 bits.
+//! The runs in finer steps are used if planning cannot pay for a run in 64 bits. Their inputs are
+//! perturbed by an ulp.
 //!
-//! The coarsest step at which anything stays within the tolerance to the end decides; of all that does the cheapest is
-//! taken. If nothing does (chaos), what does longest is; if no method within the budgets meets the
-//! tolerance in any frame, [`PlanError::NoMethod`] says so. The search begins at a step that resolves all motions of the energy, by the proven
-//! bound of [`Pendulum::admissible_step`](crate::Pendulum::admissible_step), by compensated `f32` or 32 bits of fixed point,
-//! whichever costs less, and at half and a quarter of it. It goes over to 64 bits where rounding is the larger error or these
-//! cost less, in the finest steps that both budgets can pay for. Planning takes no heap, and is done in pieces that a busy
-//! caller can afford ([`Search`]).
+//! No run is assumed to be exact. Errors grow along a single direction, and along it two equally
+//! wrong runs may agree by chance. The growth is measured by motions in 32 bits that are kept close
+//! to the one in 64 bits.
 //!
-//! What a step costs is the caller's business: [`Costs`] is a price list in any unit.
+//! # Choice of the method
+//!
+//! The search starts with coarse steps and refines them until a candidate is accurate to the end of
+//! the problem. If several candidates of that trial are, it chooses the cheapest of them. If no
+//! candidate is accurate to the end, as in chaotic motions, it chooses the longest horizon that is
+//! worth its cost. If no method within the budgets has an accurate frame, it returns
+//! [`PlanError::NoMethod`].
+//!
+//! The first steps are as long as four steps of
+//! [`Pendulum::admissible_step`](crate::Pendulum::admissible_step). In such a step the fastest rate
+//! that the energy allows, a proven bound, advances a phase by a radian. The first trial uses these
+//! steps and, if it has a run in 64 bits, steps of a half and a quarter of their length. Its method
+//! is compensated `f32` or 32 bits of fixed point, whichever costs less. The search changes to 64
+//! bits if rounding is the larger error or if 64 bits cost less. It then takes the finest steps
+//! that both budgets can pay for.
+//!
+//! Planning needs no heap. It is divided into pieces that a busy caller can afford ([`Search`]).
+//! The caller provides the cost of a step: [`Costs`] is a price list in any unit.
+//!
+//! # Example
 //!
 //! ```
 //! use double_pendulum::plan::{Budget, Costs, Plan, PlanError, Problem};
 //! use double_pendulum::{Method, Motion, Parameters};
 //!
-//! // Cycles of a processor without a floating-point unit, and a display with 32 pixels to a metre: half of one may be missed.
-//! let costs =
-//!     Costs { closed_form: 8.2e3, direction_plain: 13e3, direction: 14.8e3, fixed32: 668.0, fixed64: 21.5e3, preparation: 155e3 };
+//! // The costs are cycles of a processor without a floating-point unit.
+//! let costs = Costs {
+//!     closed_form: 8.2e3,
+//!     direction_plain: 13e3,
+//!     direction: 14.8e3,
+//!     fixed32: 668.0,
+//!     fixed64: 21.5e3,
+//!     preparation: 155e3,
+//! };
 //! let budget = Budget { frame: 400e3, planning: 3e9 };
-//! let pendulum = Parameters { m1: 1.0, m2: 1.0, l1: 1.0, l2: 1.0, g: 9.81 };
-//! let small =
-//!     Problem { pendulum, start: Motion::at_rest(0.05, 0.05), tolerance: 0.5 / 32.0, duration: 10.0, rate: 60 };
+//!
+//! // The display has 32 pixels per metre. The tolerance is half a pixel.
+//! let small = Problem {
+//!     pendulum: Parameters { m1: 1.0, m2: 1.0, l1: 1.0, l2: 1.0, g: 9.81 },
+//!     start: Motion::at_rest(0.05, 0.05),
+//!     tolerance: 0.5 / 32.0,
+//!     duration: 10.0,
+//!     rate: 60,
+//! };
 //! let plan = Plan::search(&small, &costs, &budget)?;
 //! assert_eq!((plan.method, plan.horizon), (Method::Rk4Fixed32, 10.0));
 //!
+//! // Advance by the frames of one second.
 //! let mut run = plan.run(&small)?;
-//! run.advance(60)?; // a second of frames
+//! run.advance(60)?;
 //! let [[_sin1, _cos1], [_sin2, _cos2]] = run.directions();
 //!
+//! // This frame budget pays for no step.
 //! let poor = Budget { frame: 500.0, ..budget };
 //! assert!(matches!(Plan::search(&small, &costs, &poor), Err(PlanError::NoMethod { .. })));
 //! # Ok::<(), PlanError>(())
@@ -65,34 +99,40 @@ pub use problem::Problem;
 pub use run::{Directions, PlannedRun};
 pub use search::Search;
 
-/// The cheapest method found, and what it brings.
+/// The result of a search: the chosen method and its accuracy horizon.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Plan {
-    /// The method to compute the motion by.
+    /// The method that computes the motion.
     pub method: Method,
-    /// Steps to a frame; 0 for the closed form.
+    /// The number of steps per frame; 0 for the closed form.
     pub steps: u32,
     /// The step size, s; 0 for the closed form.
     pub dt: f64,
-    /// The largest error expected until the horizon, over the tolerance.
+    /// The largest expected error until the horizon, divided by the tolerance.
     pub error: f32,
-    /// What computing a frame costs, without drawing it; never more than the budget, but where the method was asked for.
+    /// The cost of computing a frame, without drawing it. It is at most the frame budget, unless
+    /// the method was fixed by the caller ([`Search::of`]).
     pub cost: f32,
-    /// Until when every frame is predicted to be right to the tolerance, s: the time of the last of them. It is no proof: the bound
-    /// on roundings is a measured one, and a frame may be wrong a little earlier (the repository's test `plan_study`).
+    /// The accuracy horizon, s: all frames until this time are predicted to be accurate.
+    ///
+    /// The prediction is not a proof, because the bound on rounding errors is a measured one. A
+    /// frame may be inaccurate a little earlier (the repository's test `plan_study`).
     pub horizon: f64,
-    /// What ends the horizon.
+    /// The reason why the horizon is not longer.
     pub limit: Limit,
-    /// What planning has cost; never more than the budget.
+    /// The cost of planning; at most the planning budget.
     pub spent: f32,
 }
 
 impl Plan {
-    /// The plan for `problem` at once: [`Search`] to its end.
+    /// Plans `problem` in one call: runs a [`Search`] to its end.
     ///
-    /// Refuses what [`Search::new`] and [`Search::advance`] refuse; [`PlanError::NoMethod`] if none meets the tolerance.
+    /// # Errors
+    ///
+    /// Refuses the inputs that [`Search::new`] and [`Search::advance`] refuse. Returns
+    /// [`PlanError::NoMethod`] if no method has an accurate frame.
     pub fn search(problem: &Problem, costs: &Costs, budget: &Budget) -> Result<Self, PlanError> {
         let mut search = Search::new(problem, costs, budget)?;
         loop {
@@ -111,9 +151,11 @@ impl Plan {
         }
     }
 
-    /// The motion of `problem`, for which the plan is, at its start.
+    /// Returns the motion of the planned `problem` at its start.
     ///
-    /// Refuses what [`PlannedRun::new`] refuses.
+    /// # Errors
+    ///
+    /// Refuses the inputs that [`PlannedRun::new`] refuses.
     pub fn run(&self, problem: &Problem) -> Result<PlannedRun, Error> {
         PlannedRun::new(problem, self.stepping())
     }

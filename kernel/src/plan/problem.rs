@@ -1,28 +1,31 @@
-//! What is planned.
+//! The problem to plan, and small perturbations of it.
 
 use super::cost::{Budget, Costs};
 use crate::error::{Error, Parameter};
 use crate::pendulum::{Motion, Parameters, State};
 use crate::table::{Method, Numbers};
 
-/// A pendulum, its start, how it is shown, and how wrong that may be.
+/// A pendulum and its start, the frames that show it, and the tolerance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Problem {
-    /// Masses, lengths and gravity.
+    /// The masses, lengths and gravity.
     pub pendulum: Parameters<f64>,
-    /// Angles and angular velocities at the start.
+    /// The angles and angular velocities at the start.
     pub start: Motion<f64>,
-    /// How far either bob, and bob 2 as seen from bob 1, may be from where the exact motion has it, m.
+    /// The largest allowed distance of a bob from its exact position, m. It applies to both bobs,
+    /// and to the position of bob 2 relative to bob 1.
     pub tolerance: f64,
-    /// How long it is shown, s.
+    /// The duration of the motion, s.
     pub duration: f64,
-    /// Frames per second.
+    /// The number of frames per second.
     pub rate: u16,
 }
 
 impl Problem {
-    /// Refuses NaN and infinite values; a tolerance, duration, rate, cost or budget that is not positive; and more frames than can be
-    /// counted. The pendulum is checked where it is used.
+    /// Checks the problem, the costs and the budgets.
+    ///
+    /// Refuses NaN and infinite values, values that are not positive, and more frames than a `u32`
+    /// can count. The pendulum is checked by the functions that use it.
     pub(super) fn check(&self, costs: &Costs, budget: &Budget) -> Result<(), Error> {
         self.start.check()?;
         let Costs {
@@ -33,6 +36,7 @@ impl Problem {
             fixed64,
             preparation,
         } = *costs;
+
         let of = |parameter| move |value: f32| (parameter, f64::from(value));
         let costs = [
             closed_form,
@@ -43,7 +47,9 @@ impl Problem {
             preparation,
         ]
         .map(of(Parameter::Cost));
+
         let budgets = [budget.frame, budget.planning].map(of(Parameter::Budget));
+
         let shown = [
             (Parameter::Tolerance, self.tolerance),
             (Parameter::Duration, self.duration),
@@ -57,11 +63,10 @@ impl Problem {
                 return Err(Error::NotPositive { parameter, value });
             }
         }
-        let (parameter, value, limit) = (
-            Parameter::Duration,
-            self.duration,
-            f64::from(u32::MAX) / f64::from(self.rate),
-        );
+
+        let parameter = Parameter::Duration;
+        let value = self.duration;
+        let limit = f64::from(u32::MAX) / f64::from(self.rate);
         if value > limit {
             Err(Error::TooLarge {
                 parameter,
@@ -73,8 +78,8 @@ impl Problem {
         }
     }
 
-    /// Frames shown after the one at the start, at least one.
-    #[inline(never)] // one copy
+    /// Returns the number of frames after the one at the start, at least 1.
+    #[inline(never)] // Not inlined, to save flash.
     #[doc(hidden)]
     #[must_use]
     pub fn frames(&self) -> u32 {
@@ -82,14 +87,15 @@ impl Problem {
         if frames == 0 { 1 } else { frames }
     }
 
-    /// The time of frame `frame`, s.
+    /// Returns the time of frame `frame`, s.
     #[doc(hidden)]
     #[must_use]
     pub fn time(&self, frame: u32) -> f64 {
         f64::from(frame) / f64::from(self.rate)
     }
 
-    /// The pendulum and its start, which is at `start`, some numbers off by what `method` may round them by.
+    /// Returns the pendulum and `start` with some numbers changed by the rounding error of
+    /// `method`.
     #[inline(never)]
     pub(super) fn perturbed(
         &self,
@@ -118,7 +124,7 @@ impl Problem {
     }
 }
 
-/// By what share of itself a number given to `method` may be off.
+/// Returns the relative rounding error of an input of `method`.
 fn epsilon(method: Method) -> f64 {
     match method.numbers() {
         Numbers::F32 | Numbers::CompensatedF32 => f32::EPSILON.into(),
@@ -127,20 +133,23 @@ fn epsilon(method: Method) -> f64 {
     }
 }
 
-/// An epsilon, and a little more: in `f64` just half of one would round back to the given number. Rounding takes half of one at
-/// most, but the errors of all the numbers come together as chance has it.
+/// The size of a perturbation, in epsilons: slightly more than one.
+///
+/// In `f64`, half an epsilon would round back to the given number. Rounding changes a number by at
+/// most half an epsilon, but the errors of all numbers add up at random.
 const OFF: f64 = 1.0 + 1.0 / 1024.0;
 
-/// By how much the numbers of a problem are off before they are rounded, in epsilons: g and p1, l2 and p2, m2 and a2, a1.
+/// The changes of the numbers of a problem before they are rounded, in epsilons: of g and p1, of l2
+/// and p2, of m2 and a2, and of a1.
 ///
-/// What a motion does goes by quotients of these, as a fast one by g/l2 or m2 g/l2, and two errors may make up for each other.
-/// What one of the perturbations leaves as it is, another alters.
+/// A motion depends on quotients of these numbers, a fast one on g/l2 or m2 g/l2, so that two
+/// changes may cancel. If one perturbation does not change a quotient, another one does.
 pub(super) type Perturbation = [f64; 4];
 
-/// Nothing is off.
+/// The perturbation that changes nothing.
 pub(super) const NONE: Perturbation = [0.0; 4];
 
-/// One half of the numbers off one way, the other half the other way: three such halves.
+/// Perturbations that increase half of the numbers and decrease the others, in three combinations.
 pub(super) const PERTURBATIONS: [Perturbation; 3] = [
     [OFF, OFF, -OFF, -OFF],
     [OFF, -OFF, OFF, -OFF],
@@ -151,24 +160,22 @@ pub(super) const PERTURBATIONS: [Perturbation; 3] = [
 mod tests {
     use super::*;
 
-    /// Numbers that need rounding in `f32` and none in `f64`, and the powers of two that equal rods and masses are.
+    /// The size 0.7 makes numbers that need rounding in `f32` but not in `f64`. The size 1.0 makes
+    /// rods and masses that are powers of two.
     #[test]
-    fn every_perturbation_is_another_problem_to_every_method() {
+    fn perturbations_differ_and_stay_within_two_epsilons_in_every_method() {
         for (&method, one) in Method::DRAWN
             .iter()
             .flat_map(|method| [(method, 1.0), (method, 0.7)])
         {
-            let (pendulum, motion) = (
-                Parameters::equal_rods(one, one, 9.81),
-                Motion::at_rest(0.0, 0.0),
-            );
             let problem = Problem {
-                pendulum,
-                start: motion,
+                pendulum: Parameters::equal_rods(one, one, 9.81),
+                start: Motion::at_rest(0.0, 0.0),
                 tolerance: 0.1,
                 duration: 1.0,
                 rate: 60,
             };
+
             let numbers = |perturbation| {
                 let start = State {
                     a1: 2.0 * one,
@@ -176,6 +183,7 @@ mod tests {
                     p1: -one,
                     p2: 0.3,
                 };
+
                 let (Parameters { m2, g, .. }, state) =
                     problem.perturbed(&start, perturbation, method);
                 let [a1, a2, p1, p2] = <[f64; 4]>::from(state);
@@ -187,6 +195,7 @@ mod tests {
                     }
                 })
             };
+
             let all = [NONE, PERTURBATIONS[0], PERTURBATIONS[1], PERTURBATIONS[2]].map(numbers);
             for (i, other) in all.iter().enumerate() {
                 assert!(!all[..i].contains(other), "{method}: {all:?}");

@@ -1,4 +1,4 @@
-//! A motion by any method that a plan chooses from.
+//! The motion that a plan computes.
 
 use super::{Problem, Stepping};
 use crate::error::Error;
@@ -8,18 +8,22 @@ use crate::methods::{
 use crate::pendulum::{Direction, Parameters, Pendulum, State};
 use crate::table::Method;
 
-/// The order of the steps in 64 bits of fixed point. 8 lasts less long, 12 costs 1.4 times as much and lasts no longer: the
-/// roundings end the horizon.
+/// The order of the steps in 64 bits of fixed point.
+///
+/// Order 8 has a shorter horizon. Order 12 costs 1.4 times as much, and its horizon is no longer,
+/// because rounding errors end it.
 const ORDER: u32 = Method::Extrapolation10Fixed64.order();
 
-/// The directions of both rods as they would be drawn.
+/// The directions of both rods, (sin, cos) each, for drawing.
 #[doc(hidden)]
 pub type Directions = [Direction<f32>; 2];
 
-/// The run in 64 bits that a plan chooses from.
+/// The only run in 64 bits that plans use.
 pub(super) type DoubleRun = Fixed64<ORDER>;
 
-/// A motion by any of [`Method::DRAWN`] in 32 bits, read in `f32`. It takes a third of the memory that one in 64 bits takes.
+/// A motion in 32 bits by a method of [`Method::DRAWN`].
+///
+/// Its results are `f32`. It takes a third of the memory of a motion in 64 bits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum SingleRun {
     ClosedForm(ClosedFormF32),
@@ -28,7 +32,7 @@ pub(super) enum SingleRun {
     Fixed32(Fixed32),
 }
 
-/// A motion by any of [`Method::DRAWN`], read in `f32`.
+/// A motion by a method of [`Method::DRAWN`]. Its results are `f32`.
 #[expect(
     clippy::large_enum_variant,
     reason = "without a heap there is nowhere else to keep it"
@@ -39,7 +43,7 @@ pub(super) enum AnyRun {
     Double(DoubleRun),
 }
 
-/// `$body` with the run in 32 bits of whichever method as `$run`.
+/// Evaluates `$body` with the run in 32 bits, of any method, as `$run`.
 macro_rules! with_single {
     ($any:expr, $run:ident => $body:expr) => {
         match $any {
@@ -51,7 +55,7 @@ macro_rules! with_single {
     };
 }
 
-/// `$body` with the run of whichever method as `$run`.
+/// Evaluates `$body` with the run, of any method, as `$run`.
 macro_rules! with {
     ($any:expr, $run:ident => $body:expr) => {
         match $any {
@@ -62,11 +66,14 @@ macro_rules! with {
 }
 
 impl SingleRun {
-    /// A pendulum from its start, with so many steps a second.
+    /// Creates the motion of a pendulum from its start, in `per_second` steps per second.
     ///
-    /// Refuses what [`Pendulum::run`](crate::Pendulum::run) refuses, what has no normal modes if the method is the closed form,
-    /// and a method that is none of [`Method::DRAWN`] in 32 bits.
-    #[inline(never)] // each kind's preparations would stand side by side on the stack
+    /// # Errors
+    ///
+    /// Refuses the inputs that [`Pendulum::run`](crate::Pendulum::run) refuses, for the closed form
+    /// a pendulum without normal modes, and methods that are not in [`Method::DRAWN`] or not in 32
+    /// bits.
+    #[inline(never)] // Inlined, the motions of all kinds would share a stack frame.
     pub fn new(
         method: Method,
         (parameters, start): &(Parameters<f64>, State<f64>),
@@ -82,7 +89,7 @@ impl SingleRun {
         })
     }
 
-    #[inline(never)] // never inlined: a copy of every method for each caller
+    #[inline(never)] // Not inlined: each caller would contain every method.
     pub fn advance(&mut self, steps: u32) {
         with_single!(self, run => run.advance(steps));
     }
@@ -104,11 +111,13 @@ impl SingleRun {
 }
 
 impl AnyRun {
-    /// A pendulum from its start, with so many steps a second.
+    /// Creates the motion of a pendulum from its start, in `per_second` steps per second.
     ///
-    /// Refuses what [`Pendulum::run`](crate::Pendulum::run) refuses, what has no normal modes if the method is the closed form,
-    /// and a method that is none of [`Method::DRAWN`].
-    #[inline(never)] // each kind's preparations would stand side by side on the stack
+    /// # Errors
+    ///
+    /// Refuses the inputs that [`Pendulum::run`](crate::Pendulum::run) refuses, for the closed form
+    /// a pendulum without normal modes, and methods that are not in [`Method::DRAWN`].
+    #[inline(never)] // Inlined, the motions of all kinds would share a stack frame.
     pub fn new(
         method: Method,
         given: &(Parameters<f64>, State<f64>),
@@ -122,7 +131,7 @@ impl AnyRun {
         }
     }
 
-    #[inline(never)] // never inlined: a copy of every method for each caller
+    #[inline(never)] // Not inlined: each caller would contain every method.
     pub fn advance(&mut self, steps: u32) {
         match self {
             Self::Single(run) => run.advance(steps),
@@ -151,23 +160,27 @@ impl AnyRun {
     }
 }
 
-/// A motion, frame by frame, by the method that was chosen for it: bit-identical to what the search looked at.
+/// A motion in progress, frame by frame, by the method of a plan.
+///
+/// It is bit-identical to the motion that the search has measured.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlannedRun {
     stepping: Stepping,
     rate: u16,
-    /// Frames since the start.
+    /// The number of frames since the start.
     frame: u64,
     run: AnyRun,
     turns: [Turns; 2],
 }
 
 impl PlannedRun {
-    /// The motion of `problem` at its start. No steps count as one.
+    /// Creates the motion of `problem` at its start. A step count of 0 counts as 1.
     ///
-    /// Refuses what [`Pendulum::run`] refuses, what has no normal modes if it is the closed form, and a method
-    /// that is none of [`Method::DRAWN`].
-    #[inline(never)] // one copy
+    /// # Errors
+    ///
+    /// Refuses the inputs that [`Pendulum::run`] refuses, for the closed form a pendulum without
+    /// normal modes, and methods that are not in [`Method::DRAWN`].
+    #[inline(never)] // Not inlined, to save flash.
     #[doc(hidden)]
     pub fn new(
         &Problem {
@@ -185,12 +198,14 @@ impl PlannedRun {
         } else {
             stepping.steps
         };
+
         let state = Pendulum::new(&pendulum)?.to_state(&start);
         let run = AnyRun::new(
             stepping.method,
             &(pendulum, state),
             f64::from(rate) * f64::from(steps),
         )?;
+
         let turns = Turns::of(state.angles(), run.sides())?;
         Ok(Self {
             stepping: Stepping { steps, ..stepping },
@@ -207,8 +222,13 @@ impl PlannedRun {
         self.stepping
     }
 
-    /// Moves on by so many frames; [`Error::Diverged`] if that has led out of the finite numbers, and ever after.
-    #[inline(never)] // never inlined, to avoid a second copy
+    /// Advances the motion by `frames` frames.
+    ///
+    /// # Errors
+    ///
+    /// Returns [`Error::Diverged`] if the motion has left the finite numbers. Every later call then
+    /// returns it, too.
+    #[inline(never)] // Not inlined, to save flash.
     pub fn advance(&mut self, frames: u32) -> Result<(), Error> {
         for _ in 0..frames {
             for _ in 0..self.stepping.steps {
@@ -216,38 +236,43 @@ impl PlannedRun {
                 Turns::observe(&mut self.turns, self.run.sides());
             }
         }
+
         self.frame += u64::from(frames);
         self.run.check()
     }
 
-    /// Frames since the start.
+    /// The number of frames since the start.
     #[doc(hidden)]
     #[must_use]
     pub fn frame(&self) -> u64 {
         self.frame
     }
 
-    /// Seconds since the start.
+    /// Returns the time since the start, s.
     #[must_use]
     pub fn time(&self) -> f64 {
         self.frame as f64 / f64::from(self.rate)
     }
 
-    /// Where the rods point, (sin, cos) each.
+    /// Returns the directions of both rods, (sin, cos) each.
     #[must_use]
     pub fn directions(&self) -> Directions {
         self.run.directions()
     }
 
-    /// Both angles with all their turns, rad, when the rods point to the [`directions`](Self::directions).
+    /// Returns both angles, rad, including whole turns, at the time of the
+    /// [`directions`](Self::directions).
     #[must_use]
     pub fn angles(&self) -> [f32; 2] {
         let ([turns1, turns2], [direction1, direction2]) = (&self.turns, self.directions());
         [turns1.angle(direction1), turns2.angle(direction2)]
     }
 
-    /// The canonical state in SI units when the rods point to the [`directions`](Self::directions), rounded to `f32`, the angles
-    /// with all their turns: what a picture needs, and far cheaper than [`state`](Self::state) where `f64` is software.
+    /// Returns the canonical state in SI units, rounded to `f32`, at the time of the
+    /// [`directions`](Self::directions). The angles include whole turns.
+    ///
+    /// This is enough for a picture, and costs far less than [`state`](Self::state) on a processor
+    /// whose `f64` is software.
     #[inline(never)]
     #[doc(hidden)]
     #[must_use]
@@ -265,7 +290,8 @@ impl PlannedRun {
         with!(&self.run, run => run.energy_above_rest(pendulum))
     }
 
-    /// The canonical state in SI units to the last digit carried, the angles with all their turns.
+    /// Returns the canonical state in SI units, with all digits that the method carries. The angles
+    /// include whole turns.
     #[must_use]
     #[inline(never)]
     pub fn state(&self) -> State<f64> {

@@ -1,19 +1,23 @@
-//! Shadows: motions close to another one, which measure by how much a small error of that one grows.
+//! Shadows: motions close to another one, which measure the growth of its small errors.
 //!
 //! An error that arises in a run is carried on by the motion. In a chaotic motion it grows
-//! exponentially, soon along a single direction of the phase space, and whatever size it began with.
-//! So does the distance of a shadow. A shadow may be computed in 32 bits and coarse steps, because it
-//! is kept so far away, 2^-16 to 2^-6 rad, that its own errors hardly matter: a shadow that has gone
-//! farther is drawn back along the line to the motion.
+//! exponentially. Its direction in phase space soon becomes that of fastest growth, and its growth
+//! does not depend on its initial size. The distance of a shadow grows in the same way.
 //!
-//! Four shadows start, each off by one of the four numbers of the state. An error of any direction is
-//! a sum of theirs, so that the farthest shadow grows at least half as much as any error. When one has
-//! grown by 1000, all that have grown point along the direction of growth, and the farthest is kept.
-//! A small growth says too little: without any instability a push moves a bob farther every second.
+//! A shadow may be computed in 32 bits and in coarse steps. Its distance is kept between 2^-16 and
+//! 2^-6 rad, where its own errors are negligible: at a larger distance it is drawn back along the
+//! line to the motion.
 //!
-//! With G(t) the growth of the farthest shadow since the start, an error e that arises at s is e
-//! G(t)/G(s) at t. The roundings of different frames are independent, so that the squares of e/G(s)
-//! add up.
+//! Four shadows are started. Each differs from the motion in a single number of the state. An error
+//! of any direction is a linear combination of these differences. The farthest shadow therefore
+//! grows at least half as much as any error. When one shadow has grown by 1000, all shadows that
+//! have grown point in the direction of growth, and only the farthest is kept. A smaller growth
+//! does not prove this: even without any instability, a push moves a bob by more and more every
+//! second.
+//!
+//! Let G(t) be the growth of the farthest shadow since the start. An error e that arises at time s
+//! has the size e G(t)/G(s) at time t. The rounding errors of different frames are independent, so
+//! that the squares of e/G(s) add up.
 
 use super::candidate::{distance, greater};
 use super::cost::Stepping;
@@ -23,50 +27,57 @@ use super::trial::Run;
 use crate::error::Error;
 use crate::pendulum::{Parameters, State};
 
-/// The distance at which a shadow starts, rad.
+/// The initial distance of a shadow, rad.
 const NEAR: f64 = 1.0 / (1 << 16) as f64;
-/// The distance at which a shadow is drawn back, rad, and by which factor.
+/// The largest distance of a kept shadow, rad. Beyond it the shadow is drawn back.
 const FAR: f32 = 1.0 / (1 << 6) as f32;
+/// The factor on the distance when a shadow is drawn back.
 const BACK: f32 = 1.0 / (1 << 10) as f32;
-/// The growth after which the farthest shadow is kept alone.
+/// The growth after which only the farthest shadow is kept.
 const ALIGNED: f32 = 1000.0;
 
-/// The rounding error of a run in 64 bits, rad: of its start, for each radian that the fastest motion of
-/// the energy turns, and of each step.
+/// The rounding error of a run in 64 bits, rad: of its start, of each radian of phase at the
+/// fastest rate of the energy, and of each step.
 ///
-/// These are measured: with 12 steps per frame the errors of 60 motions from high starts came to at most
-/// 0.4 of the bound, in the median to 0.04. Test `plan_study` holds the bound against the exact motion.
+/// The values are measured. With 12 steps per frame the errors of 60 motions from high starts came
+/// to at most 0.4 of the bound; the median was 0.04. Test `plan_study` checks the bound against the
+/// exact motion.
 const ROUNDING: [f32; 3] = [2.4e-16, 3.2e-16, 6.4e-17];
 
-/// Four motions close to another one, of which the farthest is kept.
+/// Four motions close to another one. Later only the farthest is kept.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Shadows {
     runs: [Run<SingleRun>; 4],
-    /// The shadow that is kept; `None` while all are.
+    /// The index of the shadow that is kept; `None` while all four are kept.
     kept: Option<usize>,
-    /// True if the one that is kept must be drawn back.
+    /// True if the kept shadow must be drawn back.
     is_far: bool,
     has_begun: bool,
-    /// The growth of a shadow over the growth of its distance since it was last drawn back.
+    /// The product of the factors 1/[`BACK`] of all times that the kept shadow was drawn back.
     drawn_back: f32,
-    /// The greatest growth so far: of directions, rad, and of what is shown, in units of the
-    /// tolerance. Each for a radian at the start.
+    /// The largest growth of a distance since the start, rad per radian at the start.
     growth: f32,
+    /// The largest growth of a distance of the bobs since the start, in units of the tolerance per
+    /// radian at the start.
     shown: f32,
-    /// The root of the sum of squares of all roundings until now, each over the growth when it arose.
+    /// The root of the sum of the squares of all rounding errors since the start, each divided by
+    /// the growth when it arose, rad.
     roundings: f32,
-    /// The fastest rate that the energy allows, rad/s, and the rounding error of a frame, rad.
+    /// The fastest rate that the energy allows, rad/s.
     rate: f64,
+    /// The rounding error of one frame, rad.
     of_frame: f32,
 }
 
 impl Shadows {
     /// Creates the shadows of a motion in 64 bits that makes `steps` steps per frame.
     pub fn new(stepping: Stepping, problem: &Problem, steps: u32) -> Self {
-        // An admissible step is a quarter of the time in which the fastest motion turns a radian.
+        // The fastest rate advances a phase by a radian in four admissible steps.
         let rate = super::cost::admissible_step(problem).map_or(0.0, |step| 0.25 / step);
         let [of_start, of_radian, of_step] = ROUNDING;
-        // The shorter rod 2, the coarser the unit of its rate. Measured, as the bounds are.
+
+        // The unit of the rate of rod 2 is coarser if rod 2 is shorter. The power is measured, as
+        // the bounds are.
         let Parameters { l1, l2, .. } = problem.pendulum;
         let short = if l2 < l1 { (l1 / l2) as f32 } else { 1.0 };
         let coarser = short * short * short;
@@ -98,14 +109,16 @@ impl Shadows {
         self.has_begun
     }
 
-    /// Returns true if [`prepare`](Self::prepare) has something to do.
+    /// Returns true if a shadow must be drawn back by [`prepare`](Self::prepare).
     pub fn must_prepare(&self) -> bool {
         self.is_far
     }
 
-    /// Prepares one shadow close to a motion in the state `motion`, or draws one back to it. Returns
-    /// false if there is nothing to do.
+    /// Prepares one shadow close to a motion in the state `motion`, or draws one back to it.
+    ///
+    /// Returns false if there is nothing to do.
     pub fn prepare(&mut self, problem: &Problem, motion: &State<f64>) -> Result<bool, Error> {
+        // Select a shadow that is too far away or not yet prepared.
         let place = match self.kept {
             Some(place) if self.is_far => place,
             _ => match self.runs.iter().position(|run| run.motion.is_none()) {
@@ -113,6 +126,8 @@ impl Shadows {
                 _ => return Ok(false),
             },
         };
+
+        // Compute its difference from the motion.
         let run = &mut self.runs[place % 4];
         let by = match &run.motion {
             Some(shadow) => {
@@ -126,6 +141,7 @@ impl Shadows {
             }
         };
 
+        // Create it on one side of the motion or, if the method refuses that, on the other.
         let Stepping { method, steps } = run.stepping;
         let per_second = f64::from(problem.rate) * f64::from(steps);
         let prepared = |sign: f64| {
@@ -140,6 +156,7 @@ impl Shadows {
             SingleRun::new(method, &(problem.pendulum, state), per_second)
         };
         run.motion = Some(prepared(1.0).or_else(|_| prepared(-1.0))?);
+
         if self.is_far {
             self.is_far = false;
             self.drawn_back /= BACK;
@@ -147,13 +164,20 @@ impl Shadows {
         Ok(true)
     }
 
-    /// Compares the shadows with the frame `motion`. Returns the rounding error that a run in 64 bits
-    /// may have, in units of the tolerance, which `rods` are measured in; NaN if that is unknown.
+    /// Compares the shadows with the frame `motion`.
+    ///
+    /// Returns the largest rounding error that is expected of a run in 64 bits, in units of the
+    /// tolerance. `rods` are the lengths of the rods in the same unit. The result is NaN if the
+    /// error is unknown.
     pub fn compare(&mut self, rods: [f32; 2], motion: &Directions) -> f32 {
         self.has_begun = true;
+
+        // Find the farthest shadow.
         let frames = self.runs.each_mut().map(Run::frame);
         let is_kept = |place: usize| self.kept.is_none_or(|kept| kept == place);
-        let (mut farthest, mut largest, mut greatest_shown) = (0, 0.0, 0.0);
+        let mut farthest = 0;
+        let mut largest = 0.0;
+        let mut greatest_shown = 0.0;
         for (place, frame) in frames
             .iter()
             .enumerate()
@@ -167,6 +191,7 @@ impl Shadows {
             greatest_shown = greater(greatest_shown, distance(rods, frame, motion));
         }
 
+        // Update the growth, and add the rounding error of this frame.
         let growth = largest * self.drawn_back / NEAR as f32;
         let shown = greatest_shown * self.drawn_back / NEAR as f32;
         self.growth = greater(growth, self.growth);
@@ -174,6 +199,7 @@ impl Shadows {
         let of_frame = self.of_frame / self.growth;
         self.roundings = libm::sqrtf(self.roundings * self.roundings + of_frame * of_frame);
 
+        // Keep the farthest shadow only, once it has grown enough.
         if self.kept.is_none() && growth >= ALIGNED {
             self.kept = Some(farthest);
         }
@@ -182,14 +208,14 @@ impl Shadows {
     }
 }
 
-/// Returns the units of the numbers of a state: radians, and momenta at which the rods turn at about
+/// Returns the units of the numbers of a state: radians, and the momenta of rods that turn at about
 /// half the fastest rate.
 fn scales(&Parameters { m1, m2, l1, l2, .. }: &Parameters<f64>, rate: f64) -> [f64; 4] {
     let half = 0.5 * rate;
     [1.0, 1.0, (m1 + m2) * l1 * l1 * half, m2 * l2 * l2 * half]
 }
 
-/// Returns `one` - `other`, the angles without whole turns.
+/// Returns `one` - `other`, with angles between -pi and pi.
 fn difference(one: &State<f64>, other: &State<f64>) -> [f64; 4] {
     const TURN: f64 = 2.0 * core::f64::consts::PI;
     let turned = |angle: f64| angle - TURN * libm::rint(angle / TURN);

@@ -1,24 +1,29 @@
-//! One trial: several methods and step counts, run side by side and compared frame by frame.
+//! A trial: several methods and step counts, run side by side and compared frame by frame.
 //!
 //! # The errors of a trial with a reference
 //!
-//! The reference is a pair of runs in 64 bits: a *fine* one, and a *coarse* one that makes about three
-//! quarters of its steps. Both have the same order p = 10, so that the truncation error of the coarse
-//! run is (fine/coarse)^p times that of the fine one, and the distance between the two measures it.
+//! The reference is a pair of runs in 64 bits. The *fine* run has more steps, and the *coarse* run
+//! has about three quarters of them. Both have the same order p = 10. The truncation error of the
+//! coarse run is therefore (fine/coarse)^p times as large, and the distance between the two
+//! measures it.
 //!
-//! The rounding errors of both are too much alike to be measured so. How large they may be is known
-//! where they arise; by how much they have grown since is measured by *shadows* ([`Shadows`]).
+//! The rounding errors of the two runs are too similar to be measured by their distance. Their size
+//! is known where they arise. Their growth since then is measured by *shadows* ([`Shadows`]).
 //!
-//! | error of | is at most |
+//! | error | upper bound |
 //! |---|---|
-//! | the fine run | the share of the distance to the coarse run that truncation explains, and grown roundings |
-//! | the coarse run | the distance to the fine run, and the error of that |
-//! | a candidate in 32 bits, the closed form | the distance to the fine run, and the error of that |
+//! | fine run | the share of the distance to the coarse run due to truncation, plus rounding |
+//! | coarse run | the distance to the fine run, plus the error of the fine run |
+//! | 32 bits, closed form | the distance to the fine run, plus its truncation error |
+//!
+//! Rounding means all rounding errors since the start, with their growth. A distance to the fine
+//! run has a margin of a tenth.
 //!
 //! # The errors of a trial without one
 //!
-//! If planning cannot pay for a reference, a candidate in 32 bits is compared with three runs by the
-//! same method in finer steps, the given numbers of each perturbed by about their rounding error.
+//! If planning cannot pay for a reference, a candidate in 32 bits is compared with three runs of
+//! the same method in finer steps. The inputs of these runs are perturbed by about their rounding
+//! error.
 
 use super::candidate::{Candidate, distance, greater};
 use super::cost::{Costs, Pair, Stepping};
@@ -30,7 +35,7 @@ use crate::methods::{ClosedFormF32, Form, SmallOscillations};
 use crate::pendulum::{Pendulum, State};
 use crate::table::Method;
 
-/// A motion that a trial makes steps of.
+/// A motion that a trial advances.
 pub(super) trait Motion {
     fn advance(&mut self, steps: u32);
     fn check(&self) -> Result<(), Error>;
@@ -61,13 +66,14 @@ impl Motion for DoubleRun {
     }
 }
 
-/// A motion that is prepared before its first step, and stepped from frame to frame.
+/// A motion of a trial. It is prepared before its first step, and then advanced from frame to
+/// frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Run<M> {
     pub stepping: Stepping,
     /// The number of steps since the last frame.
     made: u32,
-    /// `None` until it is prepared.
+    /// The motion; `None` until it is prepared.
     pub motion: Option<M>,
 }
 
@@ -80,8 +86,10 @@ impl<M: Motion> Run<M> {
         }
     }
 
-    /// Makes steps towards the next frame: all that are left, or as many as `cost` pays for and at
-    /// least one. Returns their cost; 0 if no step was left.
+    /// Makes steps towards the next frame: all remaining steps, or as many as `cost` pays for, but
+    /// at least one.
+    ///
+    /// Returns the cost of these steps; 0 if no step remained.
     #[inline(never)]
     fn advance(&mut self, costs: &Costs, cost: f32) -> f32 {
         let paid = (cost
@@ -101,9 +109,10 @@ impl<M: Motion> Run<M> {
         })
     }
 
-    /// Returns the frame when all steps towards it are made, and begins the next one.
+    /// Returns the directions at the frame, and begins the next frame. All steps towards the frame
+    /// must have been made.
     ///
-    /// The frame is NaN if the motion has diverged, which its directions need not show.
+    /// The result is NaN if the motion has diverged, because its directions need not show that.
     #[inline(never)]
     pub fn frame(&mut self) -> Directions {
         self.made = 0;
@@ -112,20 +121,23 @@ impl<M: Motion> Run<M> {
     }
 }
 
-/// The margin on the distance to the fine run. Its own error is counted apart.
+/// The factor on the distance to the fine run in the bound of an error. The error of the fine run
+/// is added separately.
 const BESIDE_REFERENCE: f32 = 1.1;
 
-/// The margin on the greatest distance to three runs in finer steps.
+/// The factor on the largest distance to three runs in finer steps in the bound of an error.
 ///
 /// The truncation error is at most 1.7 times the distance to a run with 5/4 of the steps (order 4),
-/// and 1.12 times that to one with 7/4. Roundings are samples of one spread, the run's own and those
-/// of the three. Test `plan_study` holds the bound against the exact motion.
+/// and 1.12 times the distance to a run with 7/4. The rounding errors of the run and of the three
+/// finer runs are samples of one distribution. Test `plan_study` checks the bound against the exact
+/// motion.
 const BESIDE_FINER_STEPS: f32 = 2.9;
 
-/// Returns the steps of the finer runs for each frame: a quarter more, a half, three quarters.
+/// Returns the three finer runs of a trial without a reference: with 5/4, 6/4 and 7/4 of the steps.
 ///
-/// Fixed point has another unit of time in each, and with it other constants and roundings: what a
-/// word drops of a torque is the same for many steps while a pendulum hardly moves.
+/// In fixed point each of them has another unit of time, and therefore other constants and rounding
+/// errors. Otherwise a pendulum that is almost at rest would truncate the same amount of its torque
+/// in all runs.
 fn steps_beside(Stepping { method, steps }: Stepping) -> [Stepping; 3] {
     [1, 2, 3].map(|quarters: u32| {
         let more = (u64::from(steps) * u64::from(quarters) / 4) as u32;
@@ -134,7 +146,7 @@ fn steps_beside(Stepping { method, steps }: Stepping) -> [Stepping; 3] {
     })
 }
 
-/// Returns the candidates of a trial with a reference: once, twice and four times the steps.
+/// Returns the candidates of a trial with a reference: with 1, 2 and 4 times the steps.
 fn tried(stepping: Stepping) -> [Stepping; 3] {
     [1, 2, 4].map(|times| Stepping {
         steps: stepping.steps.saturating_mul(times),
@@ -142,7 +154,7 @@ fn tried(stepping: Stepping) -> [Stepping; 3] {
     })
 }
 
-/// The places of candidates and runs.
+/// The indices of candidates and runs.
 const THIRD: usize = 2;
 const PLAIN: usize = 3;
 const CLOSED: usize = 4;
@@ -152,31 +164,34 @@ const FINE: usize = 6;
 /// Several methods and step counts, run side by side and compared frame by frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Trial {
-    /// With a reference, the first three candidates and plain `f32`. Otherwise a single candidate, two
-    /// finer runs, plain `f32`, and the third finer run.
+    /// The runs in 32 bits.
+    ///
+    /// With a reference they are the first three candidates and plain `f32`; the fifth is unused.
+    /// Without one they are a single candidate, two finer runs, plain `f32`, and the third finer
+    /// run.
     single: [Run<SingleRun>; 5],
     /// The coarse and the fine run of the reference.
     double: [Run<DoubleRun>; 2],
-    /// The reference: the coarse and the fine run. `None` if there is none; then error bounds are
-    /// rough.
+    /// The reference: the coarse and the fine run. Without one, the error bounds are rough.
     pub reference: Option<Pair>,
     shadows: Shadows,
     /// True if the trial began with a candidate in 64 bits.
     pub tries_64_bits: bool,
     closed: Option<SmallOscillations<f32>>,
-    /// The lengths of the rods over the tolerance, so that a bob may be off by 1.
+    /// The lengths of the rods divided by the tolerance. Distances in this unit may be up to 1.
     rods: [f32; 2],
-    /// The first three runs, plain `f32`, the closed form, the coarse and the fine run in 64 bits.
+    /// The candidates: the first three runs, plain `f32`, the closed form, and the coarse and the
+    /// fine run in 64 bits.
     pub candidates: [Candidate; 7],
-    /// True if the error by rounding is larger than that by truncation: of the single candidate, or of
-    /// the fine run.
+    /// True if the rounding error is larger than the truncation error, of the single candidate or
+    /// of the fine run.
     by_rounding: bool,
 }
 
 impl Trial {
-    /// Creates a trial of `stepping`, compared with `reference` if one is given.
+    /// Creates a trial of `stepping` that is compared with `reference`.
     ///
-    /// `stepping` may be in 64 bits if a reference is given: then the trial has no candidates in 32
+    /// If `stepping` is in 64 bits, a reference is required and the trial has no candidates in 32
     /// bits. `shadow` is the method and step count of the shadows.
     pub fn new(
         stepping: Stepping,
@@ -200,11 +215,14 @@ impl Trial {
             coarse: stepping,
             fine: stepping,
         });
+
         let mut candidates =
             [own, second, third, plain, closed, pair.coarse, pair.fine].map(Candidate::new);
         for candidate in &mut candidates {
             candidate.judge_steps = reference.map_or(u32::MAX, |pair| pair.fine.steps);
         }
+
+        // Exclude the candidates that are not part of this trial.
         candidates[0].failed = !is_in_32_bits;
         for several in &mut candidates[1..=THIRD] {
             several.failed = !is_in_32_bits || reference.is_none();
@@ -220,6 +238,7 @@ impl Trial {
             rate,
             ..
         } = problem;
+
         let start = Pendulum::new(pendulum).map(|pendulum| pendulum.to_state(start));
         let closed =
             start.and_then(|start| ClosedFormF32::new(pendulum, &start, 1.0 / f64::from(*rate)));
@@ -241,8 +260,8 @@ impl Trial {
         self.reference.is_some()
     }
 
-    /// Returns the cost of a frame of a trial of `stepping` that is compared with `reference`, without
-    /// shadows.
+    /// Returns the cost of a frame of a trial of `stepping` that is compared with `reference`. The
+    /// shadows are not included.
     pub fn cost_with_reference(
         costs: &Costs,
         stepping: Stepping,
@@ -274,7 +293,7 @@ impl Trial {
         self.candidates[COARSE..].iter().any(|one| !one.failed)
     }
 
-    /// Returns the runs in 32 bits that are still needed, by their places.
+    /// Returns the runs in 32 bits that are still needed, with their indices.
     fn single(&mut self) -> impl Iterator<Item = (usize, &mut Run<SingleRun>)> {
         let all = self.reference.is_none();
         let [own, second, third, plain, ..] = self.candidates.map(|one| !one.failed);
@@ -283,7 +302,7 @@ impl Trial {
         runs.filter(|(_, is_needed)| *is_needed).map(|(run, _)| run)
     }
 
-    /// Returns the runs of the reference, if there is one.
+    /// Returns the runs of the reference, or no runs without a reference.
     fn double(&mut self) -> &mut [Run<DoubleRun>] {
         if self.reference.is_some() {
             &mut self.double
@@ -292,7 +311,7 @@ impl Trial {
         }
     }
 
-    /// Returns the shadows, if a candidate in 64 bits needs them.
+    /// Returns the shadows if a candidate in 64 bits needs them, or no runs.
     fn shadows(&mut self) -> impl Iterator<Item = &mut Run<SingleRun>> {
         let are_needed = self.has_candidate_in_64_bits();
         self.shadows.runs().filter(move |_| are_needed)
@@ -300,14 +319,15 @@ impl Trial {
 
     /// Prepares one motion. Returns false if all motions are prepared.
     ///
-    /// If the method refuses the perturbed start, the opposite perturbation is tried, because a start
-    /// just within the range of a method may have its neighbour on one side outside.
+    /// If a method refuses a perturbed start, the opposite perturbation is used. A start close to
+    /// the end of the range of a method may have a neighbour outside that range on one side only.
     #[inline(never)]
     pub fn prepare(&mut self, problem: &Problem) -> Result<bool, Error> {
         let has_reference = self.has_reference();
         let start = Pendulum::new(&problem.pendulum)?.to_state(&problem.start);
         let per_second = |steps: u32| f64::from(problem.rate) * f64::from(steps);
 
+        // A run in 32 bits. Without a reference, the finer runs have perturbed inputs.
         if let Some((place, run)) = self.single().find(|(_, run)| run.motion.is_none()) {
             let by = match place {
                 _ if has_reference => NONE,
@@ -315,6 +335,7 @@ impl Trial {
                 1 | 2 => PERTURBATIONS[place - 1],
                 _ => PERTURBATIONS[2],
             };
+
             let Stepping { method, steps } = run.stepping;
             let prepared = |by| {
                 let given = problem.perturbed(&start, by, method);
@@ -324,19 +345,21 @@ impl Trial {
             return Ok(true);
         }
 
+        // A run of the reference.
         if let Some(run) = self.double().iter_mut().find(|run| run.motion.is_none()) {
             let dt = 1.0 / per_second(run.stepping.steps);
             run.motion = Some(DoubleRun::new(&problem.pendulum, &start, dt)?);
             return Ok(true);
         }
 
+        // A shadow.
         if self.has_candidate_in_64_bits() {
             return self.shadows.prepare(problem, &self.fine_state(&start));
         }
         Ok(false)
     }
 
-    /// Returns true if a motion must be prepared before the next frame.
+    /// Returns true if a shadow must be drawn back before the next frame.
     pub fn must_prepare(&self) -> bool {
         self.has_candidate_in_64_bits() && self.shadows.must_prepare()
     }
@@ -350,9 +373,10 @@ impl Trial {
         }
     }
 
-    /// Makes steps of one motion towards the next frame, as many as `cost` pays for and at least one.
+    /// Makes steps of one motion towards the next frame: as many as `cost` pays for, but at least
+    /// one.
     ///
-    /// Returns their cost; 0 if every motion has reached the frame.
+    /// Returns the cost of these steps; 0 if every motion has reached the frame.
     pub fn advance(&mut self, costs: &Costs, cost: f32) -> f32 {
         let mut spent = 0.0;
         for (_, run) in self.single() {
@@ -361,12 +385,14 @@ impl Trial {
                 return spent;
             }
         }
+
         for run in self.double() {
             spent = run.advance(costs, cost);
             if spent > 0.0 {
                 return spent;
             }
         }
+
         for run in self.shadows() {
             spent = run.advance(costs, cost);
             if spent > 0.0 {
@@ -376,8 +402,9 @@ impl Trial {
         spent
     }
 
-    /// Compares the frames at time `t`, s, when all steps towards them are made. A candidate fails
-    /// where it may be off by more than the tolerance.
+    /// Compares the frames at time `t`, s. All steps towards them must have been made.
+    ///
+    /// A candidate fails if its error may exceed the tolerance.
     pub fn compare(&mut self, t: f64) {
         let [own, second, third, plain, fourth] = self.single.each_mut().map(Run::frame);
         let closed = self
@@ -385,6 +412,7 @@ impl Trial {
             .map_or([[f32::NAN; 2]; 2], |motion| motion.directions(t));
         let in_32_bits = [own, second, third, plain, closed];
 
+        // Without a reference: the distances of the candidate to the finer runs.
         let Some(pair) = self.reference else {
             let others = [second, third, fourth].map(|other| distance(self.rods, &own, &other));
             let greatest = others.into_iter().fold(0.0, greater);
@@ -397,7 +425,7 @@ impl Trial {
             return;
         };
 
-        // The error of the reference.
+        // With a reference: the error of the fine run by truncation, and the candidates in 32 bits.
         let [coarse, fine] = self.double.each_mut().map(Run::frame);
         let spread = distance(self.rods, &coarse, &fine);
         let of_fine = spread * pair.share_of_fine();
@@ -406,7 +434,7 @@ impl Trial {
             candidate.note(beside + of_fine, BESIDE_REFERENCE * beside + of_fine);
         }
 
-        // Its candidates are judged by the growth of their roundings, too.
+        // The candidates in 64 bits. Their bounds include grown rounding errors.
         if self.has_candidate_in_64_bits() {
             let rounding = self.shadows.compare(self.rods, &fine);
             let of_coarse = BESIDE_REFERENCE * spread + of_fine;
@@ -415,30 +443,32 @@ impl Trial {
             } else {
                 rounding > of_fine
             };
+
             self.candidates[COARSE].note(spread, of_coarse + rounding);
             self.candidates[FINE].note(of_fine, of_fine + rounding);
         }
     }
 
-    /// Excludes the candidates in 64 bits: the reference is too coarse for them.
+    /// Excludes the candidates in 64 bits, because the steps of the reference are too coarse for
+    /// them.
     pub fn exclude_64_bits(&mut self) {
         for in_64_bits in &mut self.candidates[COARSE..] {
             in_64_bits.failed = true;
         }
     }
 
-    /// Returns true if the fine run has failed because of its roundings, which no finer steps reduce.
+    /// Returns true if rounding errors limit the horizon. Finer steps do not reduce these.
     pub fn is_limited_by_rounding(&self) -> bool {
         self.by_rounding
     }
 
-    /// Excludes all candidates, because their roundings may be alike in all runs.
+    /// Excludes all candidates, because their rounding errors may be the same in all runs.
     pub fn exclude_for_rounding(&mut self) {
         self.retain(|_| false);
         self.by_rounding = true;
     }
 
-    /// Excludes the candidates that are not `wanted`.
+    /// Excludes all candidates except the `wanted` ones.
     pub fn retain(&mut self, wanted: impl Fn(&Candidate) -> bool) {
         self.candidates
             .iter_mut()
@@ -446,8 +476,8 @@ impl Trial {
             .for_each(|candidate| candidate.failed = true);
     }
 
-    /// Returns the factor by which to multiply the step count in the next trial, or `None` if finer
-    /// steps do not help because rounding is the larger error.
+    /// Returns the factor on the step count of the next trial, or `None` if finer steps do not help
+    /// because rounding is the larger error.
     pub fn refinement(&self) -> Option<u32> {
         let [_, second, third, ..] = &self.candidates;
         let (helps, times) = if self.has_reference() {
@@ -458,13 +488,14 @@ impl Trial {
         helps.then_some(times)
     }
 
-    /// Returns the cost of a frame of all runs that are still needed.
+    /// Returns the cost of one frame of all runs that are still needed.
     pub fn frame_cost(&mut self, costs: &Costs) -> f32 {
         let closed = if self.candidates[CLOSED].failed {
             0.0
         } else {
             costs.of_frame(self.candidates[CLOSED].stepping)
         };
+
         let single = self.single().map(|(_, run)| costs.of_frame(run.stepping));
         let single: f32 = single.sum();
         let double = self.double().iter().map(|run| costs.of_frame(run.stepping));

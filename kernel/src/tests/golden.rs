@@ -1,5 +1,4 @@
-//! Every method computes the bits that `golden/bits.csv` keeps, and the list of changes names that
-//! file.
+//! Every method computes the bits in `golden/bits.csv`, and the change log names that file.
 
 use std::format;
 use std::fs;
@@ -31,10 +30,10 @@ const METHODS: [(Method, ComputeLine); 13] = [
     (Method::ClosedFormF64, line::<ClosedFormF64>),
     (Method::ClosedFormF32, line::<ClosedFormF32>),
 ];
-/// The methods of the table whose types are the firmware's. Its tests compare them with the same
-/// file.
+/// The methods of the table whose types are in the firmware. The firmware's tests compare them with
+/// the same file.
 const ELSEWHERE: [Method; 2] = [Method::Rk4F32Micromath, Method::TextbookF32];
-/// The method that only these tests have.
+/// The method that exists in these tests only.
 const OF_TESTS: Method = Method::Rk4F64Lagrange;
 
 fn line<F: Form>(method: Method, motion: &Golden) -> String {
@@ -44,7 +43,7 @@ fn line<F: Form>(method: Method, motion: &Golden) -> String {
     }
 }
 
-/// The text of a file of this package.
+/// Returns the text of a file of this package.
 fn read(file: &str) -> String {
     let path = format!("{}/{file}", env!("CARGO_MANIFEST_DIR"));
     fs::read_to_string(&path).unwrap_or_else(|error| panic!("{path}: {error}"))
@@ -85,9 +84,9 @@ fn every_method_computes_the_golden_bits() {
     );
 }
 
-/// The entry may say anything, as long as it names the file's checksum.
+/// The change log has an entry that contains the checksum of the file.
 #[test]
-fn golden_bits_have_an_entry_in_the_list_of_changes() {
+fn golden_bits_have_an_entry_in_the_change_log() {
     let checksum = fnv_1a(FNV_OFFSET, read("golden/bits.csv").as_bytes());
     let name = format!("`golden/bits.csv` {checksum:016x}");
     assert!(

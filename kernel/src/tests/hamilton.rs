@@ -1,4 +1,5 @@
-//! Hamilton's equations: what must hold at every state, against the page's form and the gradient of H.
+//! Hamilton's equations at random states, compared with the printed equations and with the gradient
+//! of H.
 
 use double_pendulum::{Parameters, Pendulum, Real, State};
 
@@ -6,8 +7,10 @@ use super::{EQUATIONS, assert_near, random, tolerances};
 
 const STATES: u32 = 100_000;
 
-/// The terms of the derivatives of a1, a2, p1, p2 in Hamilton's equations as the book prints them ("Double Pendulum",
-/// math24.net), with the page's A1 and A2; given den = m1 + m2 sin^2 D and [sin D, cos D].
+/// Returns the terms of the derivatives of a1, a2, p1 and p2 as the book prints Hamilton's
+/// equations ("Double Pendulum", math24.net), with its A1 and A2.
+///
+/// `den` is m1 + m2 sin^2 D, and the last argument is [sin D, cos D].
 fn page_terms(
     &Parameters { m1, m2, l1, l2, g }: &Parameters<f64>,
     [a1, a2, p1, p2]: [f64; 4],
@@ -33,22 +36,26 @@ fn largest(terms: &[f64]) -> f64 {
         .fold(0.0, |largest: f64, term| largest.max(term.abs()))
 }
 
-/// Relative to the largest of the page's own terms, where nothing within a term is allowed to cancel, neither A2's bracket nor
-/// sin D = sin a1 cos a2 - cos a1 sin a2 and cos D likewise.
+/// Compares the derivatives with the book's terms, relative to the largest term.
+///
+/// For this scale nothing cancels within a term: neither in the bracket of A2, nor in sin D = sin
+/// a1 cos a2 - cos a1 sin a2 and the same formula of cos D.
 fn derivatives_are_the_pages<R: Real>() {
     for (pendulum, state) in random::pendulums::<R>(1, STATES) {
         let parameters = pendulum.parameters().cast::<f64>();
         let z @ [a1, a2, p1, p2]: [f64; 4] = state.cast().into();
-        let ((s1, c1), (s2, c2), (sin_d, cos_d)) =
-            (a1.sin_cos(), a2.sin_cos(), (a1 - a2).sin_cos());
+        let (s1, c1) = a1.sin_cos();
+        let (s2, c2) = a2.sin_cos();
+        let (sin_d, cos_d) = (a1 - a2).sin_cos();
         let den = parameters.m1 + parameters.m2 * sin_d * sin_d;
-        // with this sign of cos D every term of the bracket is positive
+        // With this sign of cos D every term of the bracket is positive.
         let uncancelled = [largest(&[s1 * c2, c1 * s2]), -largest(&[c1 * c2, s1 * s2])];
         let magnitudes = page_terms(&parameters, [a1, a2, p1.abs(), p2.abs()], den, uncancelled);
         let page = page_terms(&parameters, z, den, [sin_d, cos_d]);
         let values = pendulum.derivatives(&state.into()).map(R::to_f64);
         for i in 0..4 {
-            let (exact, scale) = (page[i].iter().sum(), largest(&magnitudes[i]));
+            let exact = page[i].iter().sum();
+            let scale = largest(&magnitudes[i]);
             assert_near(
                 EQUATIONS[i],
                 values[i],
@@ -62,17 +69,21 @@ fn derivatives_are_the_pages<R: Real>() {
 }
 
 #[test]
-fn derivatives_are_the_pages_in_either_precision() {
+fn derivatives_are_those_of_the_book_in_either_precision() {
     derivatives_are_the_pages::<f32>();
     derivatives_are_the_pages::<f64>();
 }
 
-/// The gradient of H by central differences with a step of 2^-17 in the angles, relative to what they are differences of:
-/// truncation 1e-11, rounding 1e-16 / 2^-17 = 1e-11, times the curvature of 1/den for masses 100 : 1.
+/// The tolerance of the gradient of H by central differences with a step of 2^-17 in the angles,
+/// relative to the energies that are subtracted.
+///
+/// The truncation error is 1e-11. The rounding error is 1e-16 / 2^-17 = 1e-11. The factor is the
+/// curvature of 1/den for masses 100 : 1.
 const GRADIENT: f64 = 1e-7;
 const STEP: f64 = 1.0 / 131_072.0;
 
-/// (dH/dp1, dH/dp2, -dH/da1, -dH/da2). H is quadratic in the momenta, so that there a difference of any step is exact.
+/// The derivatives are (dH/dp1, dH/dp2, -dH/da1, -dH/da2). H is quadratic in the momenta, so that a
+/// difference of any step in these is exact.
 #[test]
 fn derivatives_are_the_gradient_of_h() {
     for (pendulum, state) in random::pendulums::<f64>(2, STATES) {
@@ -86,12 +97,14 @@ fn derivatives_are_the_gradient_of_h() {
             });
             (ahead - behind) / (2.0 * step)
         };
+
         let gradient = [
             slope(2, bounds.p1),
             slope(3, bounds.p2),
             -slope(0, STEP),
             -slope(1, STEP),
         ];
+
         let range = pendulum.energy_above_rest(&state) - pendulum.least_energy();
         let scales = [bounds.w1, bounds.w2, range, range];
         let values = pendulum.derivatives(&z);
@@ -109,7 +122,7 @@ fn derivatives_are_the_gradient_of_h() {
 }
 
 #[test]
-fn energy_above_rest_keeps_its_precision_in_the_smallest_motion() {
+fn energy_above_rest_is_accurate_in_a_tiny_motion() {
     let pendulum = Pendulum::new(&Parameters {
         m1: 1.0_f32,
         m2: 1.0,
@@ -118,6 +131,7 @@ fn energy_above_rest_keeps_its_precision_in_the_smallest_motion() {
         g: 9.8,
     })
     .expect("valid");
+
     let above = pendulum.energy_above_rest(&State::at_rest(1e-10, 2e-10));
     let exact = 9.8 * (2.0 * 1e-20 + 4e-20) / 2.0; // K = ((m1 + m2) g l1 a1^2 + m2 g l2 a2^2)/2
     assert!(

@@ -1,13 +1,15 @@
-//! The Lagrangian form, the Legendre transformation and the geometry, each against another road to the same number.
+//! The Lagrangian form, the Legendre transformation and the geometry, each compared with another
+//! way to compute the same number.
 
 use double_pendulum::{Motion, Parameters, Pendulum, Real, State};
 use fastrand::Rng;
 
 use super::{assert_near, random, tolerances};
 
-/// Each paragraph trusts those before it.
+/// Checks all formulas. Each paragraph relies on the paragraphs before it.
 fn all<R: Real>() {
-    let (one, half) = (R::ONE, R::HALF);
+    let one = R::ONE;
+    let half = R::HALF;
     let mut rng = Rng::with_seed(4);
     for _ in 0..20_000 {
         let parameters @ Parameters { m1, m2, l1, l2, g } =
@@ -28,11 +30,9 @@ fn all<R: Real>() {
             );
         };
 
-        // T and V of two bobs, from where they are and how fast
-        let (kinetic, potential) = (
-            pendulum.kinetic_energy(&motion),
-            pendulum.potential_energy([a1, a2]),
-        );
+        // T and V of two bobs, from their positions and velocities.
+        let kinetic = pendulum.kinetic_energy(&motion);
+        let potential = pendulum.potential_energy([a1, a2]);
         let [bob1, bob2] = pendulum.positions([a1, a2]);
         let [v1, v2] = pendulum.velocities(&motion);
         same(
@@ -41,11 +41,13 @@ fn all<R: Real>() {
             m1 * g * bob1.y + m2 * g * bob2.y,
             (m1 + m2) * g * l1 + m2 * g * l2,
         );
+
         let squares = half * (m1 * (v1.x * v1.x + v1.y * v1.y) + m2 * (v2.x * v2.x + v2.y * v2.y));
         let speeds = l1 * w1.abs() + l2 * w2.abs();
         same("T", kinetic, squares, (m1 + m2) * speeds * speeds);
 
-        // p = (dL/dw1, dL/dw2), and w -> p -> w. L is quadratic in w, so that a central difference of any step is exact.
+        // The momenta are (dL/dw1, dL/dw2), and w -> p -> w gives the same w. L is quadratic in w,
+        // so that a central difference of any step is exact.
         let state @ State { p1, p2, .. } = pendulum.to_state(&motion);
         let lagrangian = |w1: R, w2: R| pendulum.lagrangian(&Motion { w1, w2, ..motion });
         let slope1 = half * (lagrangian(w1 + one, w2) - lagrangian(w1 - one, w2));
@@ -67,8 +69,9 @@ fn all<R: Real>() {
             Motion::at_rest(a1, a2)
         );
 
-        // H = T + V = K + min V, and w.p = 2 T
-        let (above, least) = (pendulum.energy_above_rest(&state), pendulum.least_energy());
+        // The energies are H = T + V = K + min V, and w.p = 2 T.
+        let above = pendulum.energy_above_rest(&state);
+        let least = pendulum.least_energy();
         let unlike = (m1 + m2) * (one / m1 + one / m2);
         let scale = (above - least) * unlike;
         same("H", pendulum.energy(&state), kinetic + potential, scale);
@@ -79,6 +82,7 @@ fn all<R: Real>() {
             kinetic + potential,
             scale,
         );
+
         same("K", above, kinetic + potential - least, scale);
         same(
             "L",
@@ -86,9 +90,11 @@ fn all<R: Real>() {
             kinetic - potential,
             scale,
         );
+
         same("w.p", w1 * p1 + w2 * p2, R::TWO * kinetic, scale);
 
-        // Lagrange's accelerations against Hamilton's forces: M w' + M' w = p', the time derivative of p = M w
+        // Lagrange's accelerations agree with Hamilton's forces: M w' + M' w = p', the time
+        // derivative of p = M w.
         let [_, _, force1, force2] = pendulum.derivatives(&state.into());
         let [acceleration1, acceleration2] = pendulum.accelerations(&motion);
         let (sin_d, cos_d) = (a1 - a2).to_f64().sin_cos();
@@ -106,6 +112,7 @@ fn all<R: Real>() {
             force1,
             scale,
         );
+
         same(
             "p2' by Pendulum::accelerations, beside derivatives,",
             p2_rate,
@@ -116,13 +123,13 @@ fn all<R: Real>() {
 }
 
 #[test]
-fn lagrange_in_either_precision() {
+fn lagrangian_formulas_agree_in_either_precision() {
     all::<f32>();
     all::<f64>();
 }
 
 #[test]
-fn bobs_are_where_the_rods_point() {
+fn bobs_follow_the_directions_of_the_rods() {
     let pendulum = Pendulum::new(&Parameters {
         m1: 1.0,
         m2: 2.0,
@@ -131,22 +138,24 @@ fn bobs_are_where_the_rods_point() {
         g: 9.8,
     })
     .expect("valid parameters");
+
+    // Rod 1 points down, rod 2 to the right.
     let motion = Motion {
         a1: 0.0,
         a2: core::f64::consts::FRAC_PI_2,
         w1: 1.0,
         w2: 2.0,
-    }; // down, then right
-    let ([bob1, bob2], [v1, v2]) = (
-        pendulum.positions(motion.angles()),
-        pendulum.velocities(&motion),
-    );
+    };
+
+    let [bob1, bob2] = pendulum.positions(motion.angles());
+    let [v1, v2] = pendulum.velocities(&motion);
     let exact = [
         (bob1, [0.0, -3.0]),
         (bob2, [4.0, -3.0]),
         (v1, [3.0, 0.0]),
         (v2, [3.0, 8.0]),
     ];
+
     for (vector, [x, y]) in exact {
         let off = (vector.x - x).abs().max((vector.y - y).abs());
         assert!(

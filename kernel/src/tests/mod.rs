@@ -1,6 +1,8 @@
-//! The equations, held against the book, against each other and against their own symmetries. What fails says which equation
-//! is off, and by how much. They stand here and not in `kernel/tests`, so that cargo runs them with the unit tests: if one of
-//! those fails, it does not come to the programs of that folder.
+//! Tests of the equations: compared with the book, with each other and with their own symmetries.
+//!
+//! A failure names the equation that is wrong, and the size of its error. The tests are not in
+//! `kernel/tests`, because cargo runs them here together with the unit tests. If a unit test fails,
+//! cargo does not run the programs of that folder.
 
 mod added_method;
 mod forms;
@@ -19,10 +21,11 @@ use core::fmt::{Debug, Display};
 
 use double_pendulum::Real;
 
-/// The equations in the order of [`double_pendulum::Pendulum::derivatives`].
+/// The names of the equations, in the order of [`double_pendulum::Pendulum::derivatives`].
 const EQUATIONS: [&str; 4] = ["w1", "w2", "p1'", "p2'"];
 
-/// `value`, named `name`, is `exact` within `tolerance` of `scale`; `of` is the case.
+/// Asserts that `value` is `exact` within `tolerance` times `scale`. `name` is its name, and `of`
+/// the case.
 #[track_caller]
 fn assert_near<R: Real>(
     name: impl Display,

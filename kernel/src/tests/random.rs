@@ -1,19 +1,21 @@
-//! Random pendulums for the property tests: fixed seeds, so that every run sees the same ones.
+//! Random pendulums for the property tests. The seeds are fixed, so that every run uses the same
+//! ones.
 
 use double_pendulum::{Parameters, Pendulum, Real, State};
 use fastrand::Rng;
 
-/// A number between `low` and `high`, evenly spread in its logarithm.
+/// Returns a random number between `low` and `high`, uniform in its logarithm.
 pub fn log_uniform(rng: &mut Rng, low: f64, high: f64) -> f64 {
     low * (high / low).powf(rng.f64())
 }
 
-/// A number between -1 and 1.
+/// Returns a random number between -1 and 1.
 pub fn symmetric(rng: &mut Rng) -> f64 {
     2.0 * rng.f64() - 1.0
 }
 
-/// Masses within a factor of 100 of each other, lengths within a factor of 10, 1 to 20 m/s^2, rounded to `f32`.
+/// Returns random parameters, rounded to `f32`: masses within a factor of 100 of each other,
+/// lengths within a factor of 10, and gravity from 1 to 20 m/s^2.
 pub fn parameters(rng: &mut Rng) -> Parameters<f64> {
     let [m1, m2, l1, l2, g] = [
         (0.1, 10.0),
@@ -26,7 +28,8 @@ pub fn parameters(rng: &mut Rng) -> Parameters<f64> {
     Parameters { m1, m2, l1, l2, g }
 }
 
-/// Any angles within one turn either way, and momenta of the order of those gravity can give; rounded to `f32`.
+/// Returns a random state, rounded to `f32`: any angles within one turn in either direction, and
+/// momenta of the size that gravity can cause.
 pub fn state(rng: &mut Rng, &Parameters { m1, m2, l1, l2, g }: &Parameters<f64>) -> State<f64> {
     let energy = g * ((m1 + m2) * l1 + m2 * l2);
     let [p1, p2] = [
@@ -39,7 +42,8 @@ pub fn state(rng: &mut Rng, &Parameters { m1, m2, l1, l2, g }: &Parameters<f64>)
         .into()
 }
 
-/// So many pendulums of [`parameters`] with a [`state`] each; the same numbers in either precision.
+/// Returns `count` pendulums of random [`parameters`], each with a random [`state`]. The numbers
+/// are the same in either precision.
 pub fn pendulums<R: Real>(seed: u64, count: u32) -> impl Iterator<Item = (Pendulum<R>, State<R>)> {
     let mut rng = Rng::with_seed(seed);
     (0..count).map(move |_| {

@@ -1,4 +1,4 @@
-//! What the kernel refuses, by name and value.
+//! Refused inputs: the error contains the name and the value of the parameter.
 
 use std::string::ToString;
 
@@ -19,7 +19,7 @@ fn pendulum(parameters: Parameters<f64>) -> Result<(), Error> {
     Pendulum::new(&parameters).map(drop)
 }
 
-/// By the linear motion in `f32`, whose turns are counted in 31 bits.
+/// Runs the linear motion in `f32`, whose turns are counted in 31 bits.
 fn linear(angle: f64) -> Result<(), Error> {
     Pendulum::new(&GOOD)?
         .run::<ClosedFormF32>(&State::at_rest(angle, 0.0), 0.01)
@@ -31,7 +31,7 @@ fn periods(fast: u16, slow: u16, lengths: [f64; 2]) -> Result<(), Error> {
 }
 
 #[test]
-fn what_is_refused_is_named_with_its_value() {
+fn errors_contain_the_parameter_and_its_value() {
     let infinite = f64::INFINITY;
     let not_finite = |parameter, value| Error::NotFinite { parameter, value };
     let not_positive = |parameter, value| Error::NotPositive { parameter, value };
@@ -40,6 +40,7 @@ fn what_is_refused_is_named_with_its_value() {
         value,
         limit,
     };
+
     for (refused, error) in [
         (
             pendulum(Parameters { l1: 0.0, ..GOOD }),
@@ -102,7 +103,7 @@ fn what_is_refused_is_named_with_its_value() {
             periods(3, 2, [4.0, 1.0]),
             too_small(FrequencyRatio, 1.5, 2.0),
         ),
-        // at the limit bob 2 would have no mass
+        // At the limit bob 2 would have no mass.
         (
             periods(2, 1, [4.0, 1.0]),
             too_small(FrequencyRatio, 2.0, 2.0),
@@ -115,6 +116,7 @@ fn what_is_refused_is_named_with_its_value() {
     ] {
         assert_eq!(refused, Err(error));
     }
+
     let nan = pendulum(Parameters {
         m2: f64::NAN,
         ..GOOD
@@ -132,7 +134,7 @@ fn what_is_refused_is_named_with_its_value() {
 }
 
 #[test]
-fn one_line_each() {
+fn errors_are_printed_in_one_line() {
     for (error, line) in [
         (
             Error::NotPositive {

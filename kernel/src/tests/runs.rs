@@ -1,4 +1,4 @@
-//! What a run refuses: a step beyond the limit of stability, and a motion that has left all reason.
+//! Refusals of a run: a step beyond the limit of stability, and a motion that has diverged.
 
 use core::f64::consts::PI;
 
@@ -42,7 +42,7 @@ fn is_stable_up_to<F: Form>(phase: f64) -> Result<(), Error> {
         }
     }
 
-    // Without gravity nothing swings.
+    // Without gravity there is no oscillation, and no limit.
     let free = Pendulum::new(&Parameters { g: 0.0, ..EVEN })?;
     free.run::<F>(&State::at_rest(1.0, 2.0), 1e6)?.advance(2)
 }
@@ -60,9 +60,9 @@ fn run_refuses_steps_beyond_the_limit_of_stability() -> Result<(), Error> {
     is_stable_up_to::<ExtrapolationF64<16>>(7.35)
 }
 
-/// Fixed point has limits of its own, but accepts the one that it names.
+/// Fixed point has its own limits, but accepts a step at the limit that it reports.
 #[test]
-fn fixed_point_accepts_the_limit_that_run_names() -> Result<(), Error> {
+fn fixed_point_accepts_the_limit_that_run_reports() -> Result<(), Error> {
     fn check<F: Form>(m2: f64) -> Result<(), Error> {
         let parameters = Parameters { m2, ..EVEN };
         let pendulum = Pendulum::new(&parameters)?;
@@ -72,15 +72,18 @@ fn fixed_point_accepts_the_limit_that_run_names() -> Result<(), Error> {
         };
         pendulum.run::<F>(&start, 0.999_999 * limit)?.advance(100)
     }
+
     for m2 in [1.0, 100.0, 1000.0, 3000.0] {
         check::<Fixed32>(m2)?;
         check::<Fixed64<4>>(m2)?;
         check::<Fixed64<12>>(m2)?;
     }
+
     Ok(())
 }
 
-/// A motion at rest without gravity may take any step whose square is a number.
+/// A motion at rest without gravity accepts steps of up to 1e150 s. It refuses steps of 1e152 s or
+/// more, whose squares are near the end of the range of `f64` or beyond it.
 #[test]
 fn fixed64_at_rest_without_gravity_stays_at_rest_or_is_refused() -> Result<(), Error> {
     let free = Pendulum::new(&Parameters { g: 0.0, ..EVEN })?;
@@ -94,6 +97,7 @@ fn fixed64_at_rest_without_gravity_stays_at_rest_or_is_refused() -> Result<(), E
             "{state:?}"
         );
     }
+
     for dt in [1e152, 1e303, f64::MAX] {
         let refused = free.run::<Fixed64<8>>(&start, dt);
         assert!(
@@ -101,11 +105,12 @@ fn fixed64_at_rest_without_gravity_stays_at_rest_or_is_refused() -> Result<(), E
             "{dt} s: {refused:?}"
         );
     }
+
     Ok(())
 }
 
-/// Advances motions that are far too fast for their steps, step by step. Each is refused in the end,
-/// and until then its energy and its directions are within the documented bounds.
+/// Advances motions that are far too fast for their steps, step by step. More than half of them are
+/// refused. Until then their energies and directions are within the documented bounds.
 fn energy_stays_within_its_bound<F: Form>() -> Result<(), Error> {
     let mut rng = Rng::with_seed(5);
     let mut symmetric = |most: f64| most * (2.0 * rng.f64() - 1.0);
@@ -116,6 +121,7 @@ fn energy_stays_within_its_bound<F: Form>() -> Result<(), Error> {
             l2: symmetric(2.0).exp2(),
             ..EVEN
         };
+
         let pendulum = Pendulum::new(&parameters)?;
         let motion = Motion {
             a1: symmetric(PI),
@@ -123,6 +129,7 @@ fn energy_stays_within_its_bound<F: Form>() -> Result<(), Error> {
             w1: symmetric(300.0),
             w2: symmetric(300.0),
         };
+
         let start = pendulum.to_state(&motion);
         let most = 100.0 * pendulum.energy_above_rest(&start);
 

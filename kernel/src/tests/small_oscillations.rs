@@ -1,4 +1,4 @@
-//! Small oscillations: the book's figures, and what modes and motions in them are.
+//! Small oscillations: the figures of the book, and the equations of modes and motions.
 
 use core::f64::consts::{FRAC_PI_6, TAU};
 
@@ -10,28 +10,30 @@ use fastrand::Rng;
 use super::random::symmetric;
 use super::{random, tolerances};
 
-/// A linear motion of 0.5 rad after a whole period, rad: the roundings of w t, 40 rad, in both modes.
+/// The error of a linear motion of 0.5 rad after a whole period, rad. It is the rounding error of w
+/// t, 40 rad, in both modes.
 const PERIOD: f64 = 1e-13;
 
-/// Figures 3 to 5: mu, w1, w2, the envelope's period (s), the largest |a1| (degrees), as physics gives them to six digits.
+/// Figures 3 to 5: mu, w1, w2, the period of the envelope (s), and the largest |a1| (degrees),
+/// computed to six digits.
 const FIGURES: [[f64; 5]; 3] = [
     [0.2, 8.139042, 5.275983, 2.194571, 12.2474],
     [1.0, 11.568802, 4.791955, 0.927155, 21.2132],
     [5.0, 21.211017, 4.526893, 0.376597, 27.3861],
 ];
 
-/// All digits of the figures, and their motions by the worked example:
-/// a1 = (pi/12) sqrt(mu/(1 + mu)) (cos w2 t - cos w1 t), a2 = (pi/12)(cos w1 t + cos w2 t). In `f32` no phase is lost in a day.
+/// The book's figures in all digits, and their motions in the worked example: a1 = (pi/12)
+/// sqrt(mu/(1 + mu)) (cos w2 t - cos w1 t), a2 = (pi/12)(cos w1 t + cos w2 t). In `f32` the phase
+/// stays accurate for a day.
 #[test]
-fn figures_3_to_5_are_the_books() {
+fn figures_3_to_5_are_those_of_the_book() {
     for [mu, w1, w2, envelope, largest_a1] in FIGURES {
         let modes = Modes::new(&Parameters::equal_rods(mu, 0.25, 9.8)).expect("valid parameters");
         let start = Motion::at_rest(0.0, FRAC_PI_6);
-        let (double, single) = (
-            SmallOscillations::new(modes, &start),
-            SmallOscillations::new(modes, &start.cast()),
-        );
-        let (fast, slow) = (modes.fast.frequency, modes.slow.frequency);
+        let double = SmallOscillations::new(modes, &start);
+        let single = SmallOscillations::new(modes, &start.cast());
+        let fast = modes.fast.frequency;
+        let slow = modes.slow.frequency;
         let amplitude = (double.fast.amplitude() + double.slow.amplitude()).to_degrees();
         for (value, exact, digits) in [
             (fast, w1, 1e-6),
@@ -48,11 +50,13 @@ fn figures_3_to_5_are_the_books() {
         }
 
         let off = |t: f64, [a1, a2]: [f64; 2]| {
-            let (fast, slow) = ((fast * t).cos(), (slow * t).cos());
+            let fast = (fast * t).cos();
+            let slow = (slow * t).cos();
             let exact1 = FRAC_PI_6 / 2.0 * (mu / (1.0 + mu)).sqrt() * (slow - fast);
             let exact2 = FRAC_PI_6 / 2.0 * (fast + slow);
             (a1 - exact1).abs().max((a2 - exact2).abs())
         };
+
         for t in (0..600).map(|tick| f64::from(tick) / 60.0) {
             let error = off(t, double.at(t).angles());
             assert!(
@@ -69,7 +73,8 @@ fn figures_3_to_5_are_the_books() {
             directions_are_those_of_the_angles::<f64>(&double, t);
             directions_are_those_of_the_angles::<f32>(&single, t);
         }
-        // Not small: 0.9 to 10 rad.
+
+        // Large angles, of 0.9 to 10 rad.
         for start in [0.9, 2.0, 3.0, 10.0].map(|a1| Motion::at_rest(a1, -0.5)) {
             let double = SmallOscillations::new(modes, &start);
             let single = SmallOscillations::new(modes, &start.cast());
@@ -81,7 +86,8 @@ fn figures_3_to_5_are_the_books() {
     }
 }
 
-/// What is drawn are the sines and cosines of the angles but for the terms of the series that are left out, of 0.6 rad at most.
+/// Asserts that the directions are the sines and cosines of the angles, up to the omitted terms of
+/// the series for angles of at most 0.6 rad.
 fn directions_are_those_of_the_angles<R: Real>(motion: &SmallOscillations<R>, t: f64) {
     let rounding = tolerances::FORMULAS.of::<R>();
     for (direction, a) in motion
@@ -102,13 +108,15 @@ fn directions_are_those_of_the_angles<R: Real>(motion: &SmallOscillations<R>, t:
     }
 }
 
-/// K h = w^2 M h for both modes, h = (1, r); and of any motion in them amplitudes and phases tell the same as sines and cosines.
+/// The modes satisfy K h = w^2 M h with h = (1, r). The amplitudes and phases of a motion describe
+/// the same motion as its sines and cosines.
 #[test]
 fn modes_solve_the_matrix_equation_and_motions_have_amplitudes_and_phases() {
     let mut rng = Rng::with_seed(2);
     for _ in 0..1000 {
         let pendulum = Pendulum::new(&random::parameters(&mut rng)).expect("valid parameters");
-        let (mass, stiffness) = (pendulum.mass_matrix(1.0), pendulum.stiffness());
+        let mass = pendulum.mass_matrix(1.0);
+        let stiffness = pendulum.stiffness();
         let modes = pendulum.modes().expect("there is gravity");
         for Mode { frequency, shape } in [modes.fast, modes.slow] {
             for row in 0..2 {
@@ -127,7 +135,8 @@ fn modes_solve_the_matrix_equation_and_motions_have_amplitudes_and_phases() {
         let motion =
             SmallOscillations::<f64>::new(modes, &[0; 4].map(|_| symmetric(&mut rng)).into());
         let t = 3.0 * rng.f64();
-        let (fast, slow) = (motion.fast, motion.slow);
+        let fast = motion.fast;
+        let slow = motion.slow;
         let a1 = fast.amplitude() * (modes.fast.frequency * t + fast.phase()).cos()
             + slow.amplitude() * (modes.slow.frequency * t + slow.phase()).cos();
         let scale = (fast.amplitude() + slow.amplitude()) * (1.0 + modes.fast.frequency * t);
@@ -138,9 +147,10 @@ fn modes_solve_the_matrix_equation_and_motions_have_amplitudes_and_phases() {
     }
 }
 
-/// Of equal rods the mass ratio is a fraction of two whole numbers; motions of any rods repeat.
+/// The mass ratio of equal rods is a fraction of two whole numbers. The motion repeats, with any
+/// rods.
 #[test]
-fn periodic_mass_ratios_repeat() {
+fn motions_with_a_periodic_mass_ratio_repeat() {
     for (fast, slow, lengths @ [l1, l2], exact) in [
         (3, 2, [1.0, 1.0], Some(25.0 / 144.0)),
         (2, 1, [1.0, 1.0], Some(9.0 / 16.0)),
@@ -162,11 +172,13 @@ fn periodic_mass_ratios_repeat() {
             g: 9.8,
         })
         .expect("valid parameters");
+
         let ratio = modes.fast.frequency / modes.slow.frequency;
         assert!(
             (ratio * f64::from(slow) / f64::from(fast) - 1.0).abs() < tolerances::FORMULAS.double,
             "{ratio}"
         );
+
         let motion = SmallOscillations::new(
             modes,
             &Motion {
@@ -176,8 +188,10 @@ fn periodic_mass_ratios_repeat() {
                 w2: 0.4,
             },
         );
+
         let period = TAU * f64::from(fast) / modes.fast.frequency;
-        let (start, later) = (motion.at(0.0), motion.at(period));
+        let start = motion.at(0.0);
+        let later = motion.at(period);
         assert!(
             (later.a1 - start.a1).abs() + (later.a2 - start.a2).abs() < PERIOD,
             "{later:?}"

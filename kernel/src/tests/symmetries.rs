@@ -1,4 +1,4 @@
-//! Time reversal, mirror image and the scaling laws. All but the return to the start hold bit for bit.
+//! Time reversal, mirror image and scaling laws. Only the return to the start is not bit-identical.
 
 use double_pendulum::{Parameters, Pendulum, Real, State};
 
@@ -18,7 +18,11 @@ fn stronger<R: Real>(State { a1, a2, p1, p2 }: State<R>, by: R) -> State<R> {
     }
 }
 
-/// Lengths x 4: time x 2, momenta x 8. Gravity x 4: time / 2, momenta x 2. Masses x 2: momenta x 2.
+/// Checks the mirror image, time reversal of the derivatives, and the scaling laws:
+///
+/// - lengths times 4: time times 2, momenta times 8;
+/// - gravity times 4: time divided by 2, momenta times 2;
+/// - masses times 2: momenta times 2.
 fn hold<R: Real>() {
     let [two, four, eight] = [2.0, 4.0, 8.0].map(R::from_f64);
     for (pendulum, start) in random::pendulums::<R>(3, 200) {
@@ -28,7 +32,7 @@ fn hold<R: Real>() {
             [-w1, -w2, f1, f2]
         );
 
-        // neither rod can turn by more than a twentieth of a radian
+        // The step is so short that neither rod can turn by more than a twentieth of a radian.
         let bounds = pendulum.bounds(&start);
         let dt = R::from_f64(0.05) / (bounds.w1 + bounds.w2);
         let parameters @ &Parameters { m1, m2, l1, l2, g } = pendulum.parameters();
@@ -69,9 +73,10 @@ fn symmetries_hold_in_either_precision() {
 }
 
 #[test]
-fn reversed_momenta_bring_the_start_back() {
+fn reversed_momenta_return_to_the_start() {
     for (pendulum, start) in random::pendulums::<f64>(1, 200) {
-        let (parameters, bounds) = (pendulum.parameters(), pendulum.bounds(&start));
+        let parameters = pendulum.parameters();
+        let bounds = pendulum.bounds(&start);
         let dt = 0.002 / bounds.w1.max(bounds.w2);
         let back = stronger(
             run(parameters, stronger(run(parameters, start, dt), -1.0), dt),

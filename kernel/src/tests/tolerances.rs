@@ -1,18 +1,18 @@
-//! How far a number may be off, and why just so far: what the kernel's tests share with those of the host.
+//! Tolerances and their reasons. The tests of the host use them, too.
 
 use double_pendulum::Real;
 
-/// A budget for each precision.
+/// A tolerance for each precision.
 #[derive(Clone, Copy, Debug)]
 pub struct PerPrecision {
-    /// With `f32`.
+    /// The tolerance in `f32`.
     pub single: f64,
-    /// With `f64`.
+    /// The tolerance in `f64`.
     pub double: f64,
 }
 
 impl PerPrecision {
-    /// The budget for `R`.
+    /// Returns the tolerance for `R`.
     pub fn of<R: Real>(&self) -> f64 {
         if R::EPSILON.to_f64() > f64::EPSILON {
             self.single
@@ -22,23 +22,30 @@ impl PerPrecision {
     }
 }
 
-/// Each derivative against the page's own form, relative to its largest term: some twenty roundings (6e-8 and 1.1e-16 each),
-/// and the momenta of unlike bobs multiply those of the velocities.
+/// Each derivative compared with the printed equations, relative to its largest term.
+///
+/// There are about twenty rounding errors, of 6e-8 and 1.1e-16 each. In the rates of the momenta
+/// the errors of the velocities are multiplied by the momenta, if the bobs are unlike.
 pub const DERIVATIVES: PerPrecision = PerPrecision {
     single: 2e-6,
     double: 1e-13,
 };
 
-/// Energies, momenta and velocities that two formulas give for one state, relative to the sum of the terms' magnitudes:
-/// some thirty roundings, the kinetic energy being divided by den.
+/// Energies, momenta and velocities that two formulas give for one state, relative to the sum of
+/// the magnitudes of the terms.
+///
+/// There are about thirty rounding errors. The kinetic energy is divided by den.
 pub const FORMULAS: PerPrecision = PerPrecision {
     single: 4e-6,
     double: 8e-15,
 };
 
-/// A motion run for a second and back: RK4's own error, twice (measured 6e-12), with a factor of ten.
+/// A motion run for a second and back. It is twice the error of RK4 (measured: 6e-12), with a
+/// factor of ten.
 pub const RETURN: f64 = 1e-10;
 
-/// Angles of the scenes in closed form, per rad of amplitude, at any time: half an epsilon of the phase, up to pi, and some
-/// roundings of amplitudes and sines (measured 3e-7).
+/// Angles of the scenes in closed form, per radian of amplitude, at any time.
+///
+/// It covers half an epsilon of the phase, which is at most pi, and some rounding errors of
+/// amplitudes and sines (measured: 3e-7).
 pub const CLOSED_FORM: f64 = 5.0 * f32::EPSILON as f64;

@@ -1,4 +1,5 @@
-//! The tick: SysTick, which every Cortex-M has, counted by its interrupt.
+//! The clock of the board: the ticks of SysTick, which every Cortex-M has, counted by its
+//! interrupt.
 
 use core::sync::atomic::{AtomicU32, Ordering};
 
@@ -9,21 +10,25 @@ use cortex_m_rt::exception;
 use super::tick_timer::{TickTimer, elapsed};
 use crate::config::TICK_RATE;
 
-/// Where the ticks are counted from: 5 s before they wrap, so that what goes wrong there does so in every test and not
-/// after 828 days.
+/// The number of the first tick. The counter wraps 5 s later, so that an error at the wrap appears
+/// in every test, and not only after 828 days.
 const FIRST: u32 = 0_u32.wrapping_sub(5 * TICK_RATE);
-/// Ticks since the [`start`], and [`FIRST`].
+/// The number of ticks since the [`start`], plus [`FIRST`].
 static TICKS: AtomicU32 = AtomicU32::new(FIRST);
+/// The processor cycles in a tick.
 static PERIOD: AtomicU32 = AtomicU32::new(0);
 
 #[exception]
 fn SysTick() {
-    // Only this writes it: an M0+ cannot add in one go.
+    // A load and a store are sufficient, because only this interrupt writes the counter. An M0+ has
+    // no atomic addition.
     TICKS.store(ticks().wrapping_add(1), Ordering::Relaxed);
 }
 
-/// Starts a clock of [`TICK_RATE`] ticks per second from the processor's of `hertz`. The period is rounded down to whole processor
-/// cycles: at 50 MHz 833,333 instead of 833,333.3, which is 0.4 parts per million fast.
+/// Starts a clock of [`TICK_RATE`] ticks per second; `hertz` is the frequency of the processor.
+///
+/// The period is rounded down to whole processor cycles: at 50 MHz it is 833,333 instead of
+/// 833,333.3, so that the clock is 0.4 parts per million fast.
 pub fn start(mut systick: SYST, hertz: u32) {
     systick.set_clock_source(SystClkSource::Core);
     PERIOD.store(hertz / TICK_RATE, Ordering::Relaxed);
@@ -33,10 +38,11 @@ pub fn start(mut systick: SYST, hertz: u32) {
     systick.enable_counter();
 }
 
-/// Sleeps until the tick after `last`; returns at once if it has passed already.
+/// Sleeps until the tick after `last`, and returns the tick. Returns at once if that tick has
+/// passed already.
 pub fn wait_after(last: u32) -> u32 {
-    // An interrupt between the test and the sleep stays pending only while interrupts are masked: with them
-    // masked `wfi` still wakes, so no tick is slept through.
+    // Interrupts are masked between the test and the sleep, so that an interrupt in between stays
+    // pending. A pending interrupt wakes `wfi` even while masked, so no tick is slept through.
     loop {
         let now = cortex_m::interrupt::free(|_| {
             if ticks() == last {
@@ -50,7 +56,7 @@ pub fn wait_after(last: u32) -> u32 {
     }
 }
 
-/// Counts ticks, from any number on; wraps.
+/// Returns the number of the current tick. It starts at an arbitrary number, and wraps.
 pub fn ticks() -> u32 {
     TICKS.load(Ordering::Relaxed)
 }

@@ -1,19 +1,27 @@
-//! The end: panics and faults are reported in plain text on the debugger's standard error, then the run fails.
+//! Crash reports: panics and faults are reported in plain text on the debugger's standard error,
+//! and then the run fails.
 //!
-//! Plain text there, and not a defmt log, because a crash may come in the middle of a log line, and because it must be
-//! readable without any tool. Without a debugger the board keeps why it crashed and restarts,
-//! and the next run tells. A program that hangs is reported when the watchdog first calls; if it goes on after all,
-//! nothing else comes of it, if not, the watchdog resets the board.
+//! The report is plain text, not a defmt log, because a crash may happen in the middle of a log
+//! line, and because the report must be readable without any tool. Without a debugger the board
+//! records the cause and restarts, and the next run reports it.
 //!
-//! # A debugger that has gone
+//! A program that hangs is reported at the first interrupt of the watchdog. If the program
+//! continues after all, nothing else happens. If not, the watchdog resets the board.
 //!
-//! A debugger that is there answers a call at once; one that is not is recognised by the call's fault, or on a chip by the
-//! processor's debug mode being off (C_DEBUGEN). A probe that was unplugged without switching that off looks as if it were
-//! there, and the processor halts in the call for good: only a probe or a loss of power takes it out of debug mode, the program
-//! cannot. So the watchdog, which stands still while a debugger halts the processor, no longer does so from the first word of
-//! a report on, and resets the board. Whoever wants to look at a crashed board at leisure sets a breakpoint where the report
-//! begins, at `crash`. A log line that goes by such a call waits for a gone probe, too, with the watchdog standing still: the
-//! LM3S6965's does until it loses power; the STM32F405's log is in memory and waits for no one.
+//! # A debugger that is gone
+//!
+//! A debugger that is present answers a call at once. An absent one is recognised by the fault of
+//! the call, or on a chip by the processor's debug mode, which is off (C_DEBUGEN).
+//!
+//! A probe that was unplugged without switching debug mode off seems to be present, and the
+//! processor halts in the call for good. Only a probe or a loss of power ends debug mode; the
+//! program cannot. So from the first word of a report on, the watchdog no longer stops while a
+//! debugger halts the processor, and resets the board. To examine a crashed board at leisure, set a
+//! breakpoint at `crash`, where the report begins.
+//!
+//! A log line that uses such a call also waits for an absent probe, and then the watchdog is
+//! stopped. The log of the LM3S6965 waits until it loses power. The log of the STM32F405 is in
+//! memory and never waits.
 
 use core::arch::naked_asm;
 use core::cell::UnsafeCell;
@@ -32,31 +40,34 @@ use crate::config::WATCHDOG_SECONDS;
 use crate::fault::{Fault, Stacked};
 use crate::protocol::Cause;
 
-/// A call to the debugger, `bkpt 0xAB`, and its length in bytes.
+/// A call to the debugger, `bkpt 0xAB`, and its length, bytes.
 const DEBUGGER_CALL: (u16, u32) = (0xBEAB, 2);
 const STACK_SIZE: usize = 2048;
 
-/// Set once a call to the debugger was not answered.
+/// True if no debugger is assumed to be present: a call was not answered, or the board is a chip.
 static ALONE: AtomicBool = AtomicBool::new(false);
-/// Set once a crash is being reported: a crash of the report itself is not.
+/// True after a crash report has begun. A crash within the report is not reported.
 static CRASHED: AtomicBool = AtomicBool::new(false);
-/// The stack on which faults are reported: the other one may be the reason.
+/// The stack for the reports of faults. The other stack may be the cause of the fault.
 static STACK: Stack = Stack(UnsafeCell::new([0; STACK_SIZE]));
 
 #[repr(align(8))]
 struct Stack(#[expect(dead_code, reason = "only its place is used")] UnsafeCell<[u8; STACK_SIZE]>);
 
-// SAFETY: only `HardFault` puts the stack pointer there, and a fault within it is no second one but the processor's lockup.
-// What can interrupt it, the watchdog's call that cannot be masked, stacks below it and returns.
+// SAFETY: only `HardFault` sets the stack pointer to it. A fault within `HardFault` is not taken
+// again: the processor locks up. The watchdog's interrupt that cannot be masked may interrupt it;
+// it stacks below and returns.
 unsafe impl Sync for Stack {}
 
 #[panic_handler]
 fn panic(info: &PanicInfo) -> ! {
-    // Where this handler was called, and where the function that did so was: found on the stack, as the registers hold something
-    // else by now. The second is where the panic is, unless a helper was between.
+    // The call of this handler, and the call of the function that called it. They are found on the
+    // stack, because the registers have other values by now. The second call is the place of the
+    // panic, unless a helper function is in between.
     let mut calls = calls(msp::read());
     let [pc, lr] = [(); 2].map(|()| calls.next().unwrap_or_default());
-    // Of a fault before, if it is not zero.
+
+    // The status of an earlier fault, if it is not zero.
     let [cfsr, ..] = fault_status(false);
     crash(
         (Cause::Panic, pc, lr, cfsr),
@@ -64,13 +75,15 @@ fn panic(info: &PanicInfo) -> ! {
     )
 }
 
-/// Every fault ends here, since none has a handler of its own, on a stack of its own. Passes on where the processor put
-/// the registers, and what tells how many they are; cortex-m-rt's own trampoline is of no use because it cannot return.
+/// The handler of every fault, since none has a handler of its own. It runs on a stack of its own.
+///
+/// It passes on the address of the stacked registers, and the value that shows their number. The
+/// trampoline of cortex-m-rt is not used because it cannot return.
 ///
 /// # Safety
 ///
 /// Only the processor may call it, through the vector table.
-// SAFETY: the name is the vector table's for just this.
+// SAFETY: the vector table uses this name for this handler.
 #[unsafe(naked)]
 #[unsafe(no_mangle)]
 unsafe extern "C" fn HardFault() {
@@ -92,13 +105,15 @@ unsafe extern "C" fn HardFault() {
     )
 }
 
-/// `exception` is what the link register holds on the way into a handler.
+/// Handles a fault; `exception` is the value of the link register on entry to the handler.
 extern "C" fn hard_fault(frame: *mut ExceptionFrame, exception: u32) {
     let [cfsr, hfsr, mmfar, bfar] = fault_status(false);
     let sp = (frame as u32).wrapping_add(Stacked::size(exception));
-    // SAFETY: the processor has put the frame there, and nothing else knows of it.
+    // SAFETY: the processor has put the frame there, and no other code refers to it.
     let mut frame = Fault::has_stacked(cfsr).then(|| unsafe { &mut *frame });
-    // A breakpoint is the one fault that leaves CFSR clear, where there is one. (It also sets HFSR.DEBUGEVT, but not in QEMU.)
+
+    // A breakpoint is the only fault that leaves CFSR clear, on processors that have a CFSR. (It
+    // also sets HFSR.DEBUGEVT, but not in QEMU.)
     if cfsr == 0
         && let Some(frame) = &mut frame
         && step_over_debugger_call(frame)
@@ -106,6 +121,7 @@ extern "C" fn hard_fault(frame: *mut ExceptionFrame, exception: u32) {
         fault_status(true);
         return;
     }
+
     let stacked = frame.map(|frame| Stacked {
         pc: frame.pc(),
         lr: frame.lr(),
@@ -129,13 +145,14 @@ extern "C" fn hard_fault(frame: *mut ExceptionFrame, exception: u32) {
     )
 }
 
-/// A call to the debugger with no debugger there fails as if it had answered -1, so that an image with logs runs
-/// without one, too. Whether this was such a call.
+/// Completes a call to an absent debugger as if it had answered -1, so that an image with logs also
+/// runs without a debugger. Returns true if the fault was such a call.
 fn step_over_debugger_call(frame: &mut ExceptionFrame) -> bool {
     let is_call = instruction(frame.pc()) == Some(DEBUGGER_CALL.0);
     if is_call {
         ALONE.store(true, Ordering::Relaxed);
-        // SAFETY: a debugger's answer changes just these: the result and the place to go on.
+        // SAFETY: the answer of a debugger changes just these two: the result and the program
+        // counter.
         unsafe {
             frame.set_r0(u32::MAX);
             frame.set_pc(frame.pc().wrapping_add(DEBUGGER_CALL.1));
@@ -144,14 +161,16 @@ fn step_over_debugger_call(frame: &mut ExceptionFrame) -> bool {
     is_call
 }
 
-/// The program has finished no frame for too long; `interrupted` is where it is.
+/// Handles a hang: no frame was finished for too long. `interrupted` is the place of the program.
 ///
-/// Not so if it is a report that takes so long, which the call that cannot be masked interrupts all the same.
+/// It does nothing during a report, which may take this long. The interrupt that cannot be masked
+/// interrupts it all the same.
 pub(super) fn hang(interrupted: &ExceptionFrame) {
     if CRASHED.load(Ordering::Relaxed) {
         return;
     }
     let (pc, lr) = (interrupted.pc(), interrupted.lr());
+
     retained::end(Cause::Hang, pc, lr, 0);
     if watchdog::has_ticked() && !ALONE.load(Ordering::Relaxed) {
         watchdog::stall(false);
@@ -162,13 +181,16 @@ pub(super) fn hang(interrupted: &ExceptionFrame) {
     }
 }
 
-/// On a chip a debugger can be recognised, and a call to one that is not there is the better avoided: in a fault handler it
-/// would be the end.
+/// Assumes that no debugger is present until the processor's debug mode is seen on.
+///
+/// On a chip a debugger can be recognised. A call to an absent one is better avoided, because
+/// within a fault handler it would be fatal.
 #[cfg(any(feature = "pico", feature = "stm32f405"))]
 pub(in crate::board) fn expect_no_debugger() {
     ALONE.store(true, Ordering::Relaxed);
 }
 
+/// Records the cause of a crash, reports it if a debugger is present, and ends the program.
 fn crash((cause, pc, lr, cfsr): (Cause, u32, u32, u32), report: &dyn Display) -> ! {
     cortex_m::interrupt::disable();
     let is_first = !CRASHED.load(Ordering::Relaxed);
@@ -176,7 +198,8 @@ fn crash((cause, pc, lr, cfsr): (Cause, u32, u32, u32), report: &dyn Display) ->
     if is_first {
         retained::end(cause, pc, lr, cfsr);
     }
-    // The processor's debug registers are not for an M0+ to read.
+
+    // An M0+ cannot read the debug registers of the processor.
     if !ALONE.load(Ordering::Relaxed) || cfg!(not(armv6m)) && DCB::is_debugger_attached() {
         watchdog::stall(false);
         if is_first {
@@ -187,6 +210,7 @@ fn crash((cause, pc, lr, cfsr): (Cause, u32, u32, u32), report: &dyn Display) ->
     SCB::sys_reset()
 }
 
+/// Writes a report and the last frame.
 #[inline(never)]
 fn say(report: &dyn Display) {
     if let Ok(mut stderr) = hio::hstderr() {
@@ -197,13 +221,14 @@ fn say(report: &dyn Display) {
     }
 }
 
-/// Why a fault was taken: CFSR, HFSR, MMFAR and BFAR, zeros on a Cortex-M0+, which has none; if `clears`, HFSR forgets it.
+/// Returns the status of a fault: CFSR, HFSR, MMFAR and BFAR; zeros on a Cortex-M0+, which has none
+/// of them. If `clears`, HFSR is cleared.
 #[cfg(not(armv6m))]
 fn fault_status(clears: bool) -> [u32; 4] {
-    // SAFETY: it is always there, and nothing else uses these registers.
+    // SAFETY: the registers always exist, and no other code uses them.
     let control = unsafe { &*cortex_m::peripheral::SCB::PTR };
     if clears {
-        // SAFETY: writing the bits back only clears them.
+        // SAFETY: writing the bits back clears them and has no other effect.
         unsafe { control.hfsr.modify(|bits| bits) };
     }
     [

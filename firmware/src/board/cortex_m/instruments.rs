@@ -1,4 +1,4 @@
-//! What every Cortex-M can tell of itself: its kind, its program, the cycles that something takes; and what starts it.
+//! The measuring functions of every Cortex-M, its identity, and the start of its parts.
 
 use cortex_m::Peripherals;
 use cortex_m::peripheral::{DCB, DWT};
@@ -15,12 +15,13 @@ unsafe extern "C" {
     static __erodata: u8;
 }
 
-/// Starts what the processor has, at its clock of `hertz`: the stack's guard, the tick, the cycle counter. `chip` is what the chip says
-/// of itself.
+/// Starts the parts of the processor: the stack guard, the tick and the cycle counter. `hertz` is
+/// its frequency, and `chip` the identification of the chip.
 pub fn start(core: Peripherals, board: BoardName, hertz: u32, chip: [u32; 4]) -> Instruments {
     guard_stack(core.MPU);
     clock::start(core.SYST, hertz);
     start_counter(core.DCB, core.DWT);
+
     let processor = core.CPUID.base.read();
     let identity = Identity {
         board,
@@ -37,7 +38,7 @@ pub fn start(core: Peripherals, board: BoardName, hertz: u32, chip: [u32; 4]) ->
     }
 }
 
-/// From flash alone.
+/// Measures steps from flash; these boards have no copy of the code in RAM.
 #[cfg(not(any(feature = "pico", feature = "stm32f405")))]
 fn timed(motion: &mut crate::job::OnBoards, steps: u32, in_ram: bool) -> u32 {
     if in_ram {
@@ -47,10 +48,12 @@ fn timed(motion: &mut crate::job::OnBoards, steps: u32, in_ram: bool) -> u32 {
     }
 }
 
+/// Returns the program in flash.
 fn image() -> &'static [u8] {
     let start = &raw const __vector_table;
     let length = (&raw const __erodata as usize).wrapping_sub(start as usize);
-    // SAFETY: between these two the linker has put the program, which is in flash and never written.
+    // SAFETY: the linker has put the program between these two symbols. It is in flash and is never
+    // written.
     unsafe { core::slice::from_raw_parts(start, length) }
 }
 
@@ -60,7 +63,8 @@ fn start_counter(mut dcb: DCB, mut dwt: DWT) {
     dwt.enable_cycle_counter();
 }
 
-/// The cycles that something takes, with interrupts off. QEMU has no cycle counter: it reads 0 there.
+/// Returns the cycles of `work`, with interrupts off. QEMU has no cycle counter; there the result
+/// is 0.
 #[cfg(not(armv6m))]
 pub(in crate::board) fn cycles_of(work: impl FnOnce()) -> u32 {
     cortex_m::interrupt::free(|_| {
@@ -73,14 +77,17 @@ pub(in crate::board) fn cycles_of(work: impl FnOnce()) -> u32 {
 #[cfg(armv6m)]
 fn start_counter(_: DCB, _: DWT) {}
 
-/// A Cortex-M0+ has no other counter than the tick's, which is borrowed: the present tick begins anew afterwards. Up to 2^24
-/// cycles, 134 ms at 125 MHz.
+/// Returns the cycles of `work`, with interrupts off, up to 2^24 cycles, 134 ms at 125 MHz.
+///
+/// The only counter of a Cortex-M0+ is the tick's. The function uses it; the current tick begins
+/// again afterwards.
 #[cfg(armv6m)]
 pub(in crate::board) fn cycles_of(work: impl FnOnce()) -> u32 {
     use cortex_m::peripheral::SYST;
     const FULL: u32 = (1 << 24) - 1;
     cortex_m::interrupt::free(|_| {
-        // SAFETY: interrupts stay off until the clock's reload value is restored, so nothing reads the counter in between.
+        // SAFETY: interrupts stay off until the clock's reload value is restored, so that nothing
+        // reads the counter in between.
         let mut counter = unsafe { Peripherals::steal() }.SYST;
         let reload = SYST::get_reload();
         counter.set_reload(FULL);

@@ -1,4 +1,5 @@
-//! Every interrupt but the tick's comes here: received bytes, and the first call of a watchdog. And what an interrupt shares.
+//! The handler of every interrupt except the tick: received bytes, and the first interrupt of a
+//! watchdog. Also the type for data that an interrupt shares.
 
 use core::arch::naked_asm;
 use core::cell::RefCell;
@@ -10,7 +11,7 @@ use cortex_m_rt::ExceptionFrame;
 use super::{crash, watchdog};
 use crate::board::serial;
 
-/// What an interrupt shares with the main loop.
+/// Data that an interrupt shares with the main loop.
 pub(in crate::board) struct Shared<T>(Mutex<RefCell<T>>);
 
 impl<T> Shared<T> {
@@ -18,7 +19,7 @@ impl<T> Shared<T> {
         Self(Mutex::new(RefCell::new(value)))
     }
 
-    /// Does something with it, undisturbed; `None` within itself.
+    /// Calls `act` with the data, with interrupts off. Returns `None` if called from within `act`.
     pub fn with<R>(&self, act: impl FnOnce(&mut T) -> R) -> Option<R> {
         free(|token| {
             self.0
@@ -30,7 +31,8 @@ impl<T> Shared<T> {
     }
 }
 
-/// Passes on where the processor put the registers of what was interrupted, and the number of the interrupt.
+/// Passes on the address of the stacked registers of the interrupted code, and the number of the
+/// interrupt.
 ///
 /// # Safety
 ///
@@ -41,7 +43,7 @@ unsafe extern "C" fn DefaultHandler() {
     naked_asm!(
         "mrs r0, msp", // The program and the interrupts have this one stack.
         "mrs r1, ipsr",
-        "ldr r2, 0f", // An M0+ does not branch so far.
+        "ldr r2, 0f", // The branch of an M0+ is too short.
         "bx r2",
         ".p2align 2",
         "0: .word {interrupt}",
@@ -49,6 +51,7 @@ unsafe extern "C" fn DefaultHandler() {
     )
 }
 
+/// Handles the interrupt with this number.
 extern "C" fn interrupt(interrupted: &ExceptionFrame, number: u32) {
     if watchdog::is_call(number) {
         watchdog::silence();
@@ -58,11 +61,11 @@ extern "C" fn interrupt(interrupted: &ExceptionFrame, number: u32) {
     }
 }
 
-/// One of the chip's own interrupts, by its number in the data sheet.
+/// An interrupt of the chip, by its number in the data sheet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::board) struct Interrupt(pub u16);
 
-// SAFETY: boards name only numbers of their chip.
+// SAFETY: boards use only numbers of their chip.
 unsafe impl InterruptNumber for Interrupt {
     fn number(self) -> u16 {
         self.0

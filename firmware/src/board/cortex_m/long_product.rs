@@ -1,17 +1,20 @@
-//! The lower half of a product of 64 bits, which is what the compiler makes every long product of where the processor has
-//! none: in 30 cycles, half of what its own library's function takes, which gives way to this one.
+//! The lower half of a product of 64 bits, for processors that have no long product.
+//!
+//! The compiler uses this function for every long product on them. It takes 30 cycles, half the
+//! time of the compiler's own library function, which it replaces.
 //!
 //! Source: Run-time ABI for the Arm architecture, 4.2.
 
 use core::arch::naked_asm;
 
-// SAFETY: the name is that of a function of the compiler's library, and this does what the name says: the product of r1:r0 and
-// r3:r2, in r1:r0; it changes r2, r3, r12 and the flags, as it may.
+// SAFETY: a function of the compiler's library has this name, and this function does the same. It
+// returns the product of r1:r0 and r3:r2 in r1:r0. It changes r2, r3, r12 and the flags, as the ABI
+// allows.
 #[unsafe(naked)]
 #[unsafe(no_mangle)]
 extern "aapcs" fn __aeabi_lmul(a: u64, b: u64) -> u64 {
     naked_asm!(
-        "muls r1, r2", // what the upper halves bring
+        "muls r1, r2", // the products of the upper halves
         "muls r3, r0",
         "adds r1, r3",
         "mov r12, r1",

@@ -1,4 +1,4 @@
-//! What every Cortex-M has.
+//! The parts that every Cortex-M has.
 
 pub mod clock;
 
@@ -19,11 +19,13 @@ use cortex_m_semihosting::{nr, syscall1};
 
 pub(super) use instruments::start;
 
-/// The command line that a debugger, or QEMU, has for the program; `None` if it does not fit `buffer` or is not text.
+/// Returns the command line that a debugger, or QEMU, has for the program; `None` if it does not
+/// fit into `buffer` or is not text.
 pub fn command_line(buffer: &mut [u8]) -> Option<&str> {
     let mut block = [buffer.as_mut_ptr() as usize, buffer.len()];
-    // SAFETY: SYS_GET_CMDLINE takes the address and length of a buffer, writes a string of at most that length into it
-    // and the string's length into the second word; both outlive the call and nothing else refers to them.
+    // SAFETY: SYS_GET_CMDLINE takes the address and length of a buffer. It writes a string of at
+    // most that length into it, and the length of the string into the second word. Both outlive the
+    // call, and no other code refers to them.
     let status = unsafe { syscall1(nr::GET_CMDLINE, block.as_mut_ptr() as usize) };
     let length = block[1];
     if status == 0 {

@@ -1,4 +1,5 @@
-//! The memory that is kept across a reset, and who writes it: the main loop after each frame, a crash at the end.
+//! The retained record in memory that a reset does not clear. The main loop writes it after each
+//! frame, and a crash writes it at the end.
 
 use core::hint::black_box;
 use core::sync::atomic::{AtomicU8, Ordering};
@@ -7,19 +8,19 @@ use crate::app::Record;
 use crate::display::Controller;
 use crate::protocol::{Cause, MAX_WIRE, Restarted};
 
-/// Two copies: whenever the program ends, even in the middle of writing one, the other is whole. The message's check tells
-/// which.
-// SAFETY: start-up leaves this section alone, and what stands there is bytes.
+/// The two copies of the record. If a reset interrupts a write, the other copy is still intact; the
+/// CRC shows which.
+// SAFETY: start-up does not initialise this section, and its contents are bytes.
 #[unsafe(link_section = ".uninit.kept")]
 static KEPT: [[AtomicU8; MAX_WIRE]; 2] = [const { [const { AtomicU8::new(0) }; MAX_WIRE] }; 2];
 
-/// The bytes, of which the compiler must assume nothing: what is read here was written by a program that has ended, and
-/// what is written is for one yet to come.
+/// Returns the copies, hidden from the optimiser. The compiler must assume nothing about them,
+/// because the bytes were written by a program that has ended, or are for one that has not started.
 fn copies() -> &'static [[AtomicU8; MAX_WIRE]; 2] {
     black_box(&KEPT)
 }
 
-/// Keeps what is played and where it stands, in case this frame is the last.
+/// Writes the record, in case this frame is the last.
 #[inline(never)]
 pub fn keep(record: &Record) {
     let bytes = record.write();
@@ -30,6 +31,7 @@ pub fn keep(record: &Record) {
     }
 }
 
+/// Returns the first copy that is intact.
 #[inline(never)]
 fn kept() -> Option<Record> {
     copies()
@@ -37,7 +39,7 @@ fn kept() -> Option<Record> {
         .find_map(|copy| Record::read(&copy.each_ref().map(|byte| byte.load(Ordering::Relaxed))))
 }
 
-/// What was kept across the last reset, if that was no planned one.
+/// Returns the record that was kept across the last reset, if that was an unplanned one.
 pub fn recall(by_watchdog: bool) -> Option<Record> {
     kept()?.restart(by_watchdog)
 }
@@ -47,11 +49,12 @@ pub fn chosen_panel() -> Option<Controller> {
     kept()?.played.panel.chosen
 }
 
+/// Returns the end of the last record.
 pub fn last() -> Option<Restarted> {
     kept().map(|record| record.end)
 }
 
-/// Notes why the program ends, unless it has shown nothing yet.
+/// Records why the program ends, unless it has shown nothing yet.
 #[inline(never)]
 pub fn end(cause: Cause, pc: u32, lr: u32, cfsr: u32) {
     if let Some(Record { played, end }) = kept() {

@@ -1,6 +1,7 @@
-//! Stellaris LM3S6965 evaluation board: Cortex-M3 at 50 MHz, 128 x 64 OLED panel, five buttons, a serial port.
+//! Stellaris LM3S6965 evaluation board: a Cortex-M3 at 50 MHz, a 128 x 64 OLED panel, five buttons
+//! and a serial port.
 //!
-//! Source: LM3S6965 data sheet; the wiring is that of the board, which QEMU's `lm3s6965evb` follows.
+//! Source: LM3S6965 data sheet; the wiring of the board, as in QEMU's `lm3s6965evb`.
 //!
 //! | part | pins |
 //! |---|---|
@@ -31,21 +32,24 @@ use pins::{Output, Ssi};
 
 pub type Lm3s6965evb = Board<Ssd0323<'static, Ssi, Output>, Outward, Keys, TwoStage>;
 
-/// Sets the board up; `None` the second time.
+/// Sets the board up. Returns `None` the second time.
 pub fn take() -> Option<Lm3s6965evb> {
     let core = Peripherals::take()?;
     let hertz = system::start();
     let instruments = start(core, BoardName::Lm3s6965evb, hertz, system::chip());
-    // The memory card shares the panel's bus.
+    // Deselect the memory card, which shares the panel's bus.
     let Ok(()) = pins::D.use_for_output(1 << 0).set_high();
+
     pins::E.use_for_input(1 << 0 | 1 << 1 | 1 << 2 | 1 << 3);
     pins::F.use_for_input(1 << 1);
+
     let link = start_link(hertz);
     let memory = cortex_m::singleton!(: Canvas = Canvas::BLACK)?;
     let mut panel = Ssd0323::new(Ssi::start(hertz), pins::C.use_for_output(1 << 7), memory);
     if panel.init().is_err() {
         defmt::error!("the panel does not answer");
     }
+
     Some(Board {
         panel,
         link,
@@ -56,7 +60,7 @@ pub fn take() -> Option<Lm3s6965evb> {
     })
 }
 
-/// PE0 to PE3 and PF1, each low while pressed.
+/// The buttons at PE0 to PE3 and PF1, each low while pressed.
 #[derive(Debug)]
 pub struct Keys;
 
@@ -99,12 +103,14 @@ const INTERRUPT: Interrupt = Interrupt(5);
 fn start_link(hertz: u32) -> Outward {
     pins::A.use_for_device(1 << 0 | 1 << 1);
     CONTROL.write(0);
-    // The divisor hertz/(16 baud) in 64ths, rounded: 50 MHz / (16 x 460,800) = 6 + 50/64, 0.005 % off.
+    // The divisor hertz/(16 baud) in 64ths, rounded: 50 MHz / (16 x 460,800) = 6 + 50/64, which is
+    // off by 0.005 %.
     let divisor = (4 * hertz + BAUD / 2) / BAUD;
     DIVISOR.write(divisor / 64);
     DIVISOR_FRACTION.write(divisor % 64);
     LINE_CONTROL.write(EIGHT_BITS_QUEUED);
     CONTROL.write(ENABLE);
+
     receive_by(receive);
     INTERRUPT_MASK.write(RECEIVED);
     unmask(INTERRUPT);
@@ -117,6 +123,7 @@ fn start_link(hertz: u32) -> Outward {
     })
 }
 
+/// Takes the received bytes.
 fn receive(inbox: &mut Inbox) {
     INTERRUPT_CLEAR.write(RECEIVED);
     while FLAGS.read() & RECEIVER_EMPTY == 0 {

@@ -1,5 +1,5 @@
-//! General-purpose pins (PL061), and at some of them the synchronous serial interface 0 (PL022) as the panel's SPI bus, which is
-//! written only and drives its select pin by itself.
+//! The general-purpose pins (PL061), and the panel's SPI bus at some of them: the synchronous
+//! serial interface 0 (PL022). It is only written, and drives its select pin on its own.
 
 use core::convert::Infallible;
 
@@ -19,35 +19,37 @@ pub const E: Pins = port(0x4002_4000);
 pub const F: Pins = port(0x4002_5000);
 
 const fn port(base: usize) -> Pins {
-    // SAFETY: the ports above are those of the data sheet, chapter 8; pins cannot break memory safety.
+    // SAFETY: the ports above are in the data sheet, chapter 8; pins cannot break memory safety.
     Pins(unsafe { Device::at(base) })
 }
 
 impl Pins {
-    /// Reads and writes only the pins of `pins`: the address carries the mask.
+    /// Returns the register that accesses only the pins of `pins`: the address contains the mask.
     const fn data(self, pins: u8) -> Register {
         self.0.register((pins as usize) << 2)
     }
 
-    /// Hands `pins` over to the port's serial device.
+    /// Connects `pins` to the port's serial device.
     pub fn use_for_device(self, pins: u8) {
         self.0.register(0x420).modify(0, pins.into()); // alternate function
         self.0.register(0x51C).modify(0, pins.into()); // digital
     }
 
-    /// Makes `pins` inputs, held high unless something pulls them low.
+    /// Makes `pins` inputs with pull-ups.
     pub fn use_for_input(self, pins: u8) {
         self.0.register(0x400).modify(pins.into(), 0); // direction
         self.0.register(0x510).modify(0, pins.into()); // pull-up
         self.0.register(0x51C).modify(0, pins.into());
     }
 
+    /// Makes `pins` outputs.
     pub fn use_for_output(self, pins: u8) -> Output {
         self.0.register(0x400).modify(0, pins.into());
         self.0.register(0x51C).modify(0, pins.into());
         Output(self.data(pins))
     }
 
+    /// Returns true if all of `pins` are low.
     pub fn are_low(self, pins: u8) -> bool {
         self.data(pins).read() == 0
     }
@@ -67,14 +69,14 @@ impl OutputPin for Output {
     }
 
     fn set_high(&mut self) -> Result<(), Infallible> {
-        self.0.write(u32::MAX); // The address lets only this pin change.
+        self.0.write(u32::MAX); // The address contains the mask of the pin.
         Ok(())
     }
 }
 
-/// The panel takes a bit in no less than 250 ns: at most 4 MHz.
+/// The highest clock of the panel, Hz: a bit takes at least 250 ns.
 const FASTEST: u32 = 4_000_000;
-/// Bytes that fit into the transmit queue, and as many into the receive queue.
+/// The capacity of the transmit queue and of the receive queue, bytes.
 const QUEUE: usize = 8;
 
 // SAFETY: SSI0 of the data sheet, chapter 13; without DMA it cannot break memory safety.
@@ -87,7 +89,7 @@ const PRESCALE: Register = SSI0.register(0x010);
 
 const ENABLE: u32 = 1 << 1;
 const BUSY: u32 = 1 << 4;
-/// Eight bits, clock idles high and data are taken on its first, falling edge.
+/// Eight bits. The clock is high when idle, and data are taken on its first, falling edge.
 const MODE_2_BYTES: u32 = 1 << 6 | 7;
 
 #[derive(Debug)]
@@ -105,12 +107,14 @@ impl Ssi {
     }
 }
 
-/// Sends up to [`QUEUE`] bytes. What comes back is noise, but must be taken out: a full receive queue stops the bus.
+/// Sends up to [`QUEUE`] bytes. The received bytes are noise, but must be read, because a full
+/// receive queue stops the bus.
 #[inline(always)]
 fn send(bytes: &[u8]) -> Result<(), ErrorKind> {
     for &byte in bytes {
         DATA.write(byte.into());
     }
+
     if !STATUS.wait(BUSY, 0, BUS_TRIES) {
         return Err(ErrorKind::Other);
     }
@@ -127,7 +131,7 @@ impl spi::ErrorType for Ssi {
 impl SpiDevice for Ssi {
     fn transaction(&mut self, operations: &mut [Operation<'_, u8>]) -> Result<(), ErrorKind> {
         operations.iter().try_for_each(|operation| {
-            // No wire leads back from the panel.
+            // No line leads back from the panel.
             let Operation::Write(bytes) = operation else {
                 return Err(ErrorKind::Other);
             };

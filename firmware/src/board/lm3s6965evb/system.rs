@@ -1,17 +1,20 @@
-//! System control: the clock, the power of the peripherals, the watchdog.
+//! The system control: the clock, the power of the peripherals, and the watchdog.
 
 use crate::board::cortex_m::watchdog::{self, FIRST, TwoStage};
 use crate::board::register::{Device, Register};
 
+/// The crystal, Hz.
 const CRYSTAL: u32 = 8_000_000;
-/// The PLL's 400 MHz halved and divided by SYSDIV + 1 = 4, Hz.
+/// The processor's clock from the PLL, Hz: 400 MHz halved and divided by SYSDIV + 1 = 4.
 const FULL_SPEED: u32 = 50_000_000;
-/// What the vendor's own start (`SysCtlClockSet` of its driver library: 524,288 loops of 3 cycles) gives the crystal to
-/// swing in, cycles of the internal oscillator: 0.13 s at its 12 MHz, of which it may miss 30 %.
+/// The start-up time of the crystal, cycles of the internal oscillator. The vendor's own start-up
+/// code waits this long (`SysCtlClockSet` of its driver library: 524,288 loops of 3 cycles). It is
+/// 0.13 s at the oscillator's 12 MHz, whose tolerance is 30 %.
 const CRYSTAL_START: u32 = 3 * 524_288;
-/// What it gives a new source to take effect, cycles.
+/// The time that the vendor's code waits for a new source to take effect, cycles.
 const CHANGE_OVER: u32 = 3 * 16;
-/// The PLL locks within 0.5 ms; at 8 MHz and at least 4 cycles a try that is 1,000 tries.
+/// The number of tries to wait for the PLL. It locks within 0.5 ms, which is 1,000 tries at 8 MHz
+/// and at least 4 cycles a try.
 const LOCK_TRIES: u32 = 10_000;
 
 // SAFETY: system control of the data sheet, chapter 6; clocks and power cannot break memory safety.
@@ -45,19 +48,21 @@ const DIVIDER_FIELD: u32 = 0xF << 23;
 const DIVIDE_BY_4: u32 = 3 << 23;
 const PLL_LOCKED: u32 = 1 << 6;
 
-/// Starts the clock and powers the peripherals; the processor's clock in Hz. With a PLL that does not lock that is the
-/// crystal's: slow, but alive.
+/// Starts the clock and powers the peripherals. Returns the frequency of the processor, Hz. If the
+/// PLL does not lock, that is the crystal's frequency: slow, but running.
 pub fn start() -> u32 {
-    // An erratum of this revision: at the regulator's 2.5 V it may fail once the PLL runs. Every
-    // program of the vendor's for this board begins so (`REVISION_IS_A2`, `SysCtlLDOSet`).
+    // An erratum of this revision: at the regulator's 2.5 V the chip may fail once the PLL runs.
+    // The vendor's programs for this board begin with this setting (`REVISION_IS_A2`,
+    // `SysCtlLDOSet`).
     if DID0.read() & REVISION == REVISION_A2 {
         LDOPCTL.write(LDO_2_75_V);
     }
-    // As the data sheet says under Initialization and Configuration: without PLL and divider; then from the crystal;
-    // start the PLL, wait for it, change over.
+
+    // Follow the data sheet, Initialization and Configuration: switch PLL and divider off, switch
+    // to the crystal, start the PLL, wait for it, and switch over.
     RCC.modify(USE_DIVIDER, BYPASS);
     start_crystal();
-    MISC.write(PLL_LOCKED); // forgets a lock of before
+    MISC.write(PLL_LOCKED); // clears an earlier lock
     RCC.modify(OSCILLATOR_SOURCE | CRYSTAL_FIELD | PLL_OFF, CRYSTAL_8_MHZ);
     cortex_m::asm::delay(CHANGE_OVER);
     let hertz = if RIS.wait(PLL_LOCKED, PLL_LOCKED, LOCK_TRIES) {
@@ -67,6 +72,8 @@ pub fn start() -> u32 {
     } else {
         CRYSTAL
     };
+
+    // Power the peripherals.
     RCGC0.modify(0, WATCHDOG);
     RCGC1.modify(0, 1 << 4 | 1 << 0); // SSI0, UART0
     RCGC2.modify(0, 0b111101); // ports A, C, D, E, F
@@ -75,8 +82,9 @@ pub fn start() -> u32 {
     hertz
 }
 
-/// Switches the crystal's oscillator on, and waits until it can be relied on: this chip has no flag that says so, and a
-/// processor that changes over to it too early stands still. It is off after every reset (in QEMU it is on).
+/// Switches the crystal's oscillator on, and waits until it is reliable. This chip has no flag for
+/// that, and a processor that switches to it too early stops. It is off after every reset (in QEMU
+/// it is on).
 fn start_crystal() {
     if RCC.read() & MAIN_OSCILLATOR_OFF != 0 {
         RCC.modify(MAIN_OSCILLATOR_OFF, 0);
@@ -84,12 +92,13 @@ fn start_crystal() {
     }
 }
 
-/// What the chip says that it is: its two identification registers. It has no unique number.
+/// Returns the two identification registers of the chip. It has no unique number.
 pub fn chip() -> [u32; 4] {
     [DID0.read(), DID1.read(), 0, 0]
 }
 
-/// Whether the watchdog caused the last reset. To be asked once: the register adds up the causes. QEMU's never says so.
+/// Returns true if the watchdog caused the last reset. Call it only once, because the register
+/// accumulates the causes. In QEMU it always returns false.
 pub fn reset_by_watchdog() -> bool {
     let causes = RESC.read();
     RESC.write(0);
@@ -99,12 +108,12 @@ pub fn reset_by_watchdog() -> bool {
 // SAFETY: the watchdog of the data sheet, chapter 11; without DMA it cannot break memory safety.
 const WATCHDOG_TIMER: Device = unsafe { Device::at(0x4000_0000) };
 const TEST: Register = WATCHDOG_TIMER.register(0x418);
-/// It stops while a debugger halts the processor.
+/// The watchdog stops while a debugger halts the processor.
 const STALL: u32 = 1 << 8;
 const CALL: u16 = FIRST + 18;
 
 pub fn start_watchdog(hertz: u32) -> TwoStage {
-    // The next feeding locks the registers again.
+    // The registers stay unlocked until the next feeding.
     watchdog::stall_by(|stalls| {
         watchdog::unlock(WATCHDOG_TIMER);
         TEST.write(if stalls { STALL } else { 0 });

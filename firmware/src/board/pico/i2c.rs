@@ -1,4 +1,4 @@
-//! The I2C bus of the panel: bytes are sent by the bus's interrupt, 16 at a time.
+//! The I2C bus of the panel. The bus's interrupt sends the bytes, 16 at a time.
 //!
 //! Source: RP2040 data sheet, 4.3.
 
@@ -16,49 +16,52 @@ use crate::board::cortex_m::interrupt::unmask;
 use crate::board::panel_bus::{self, Bus, PanelPort, TRIES};
 use crate::display::{Outbox, SILENCE, Sent, free_bus};
 
-/// The frequency that the support library sets the bus up for, Hz: fast mode, whose hold times it
-/// takes. The clock itself is set by [`LOW_COUNT`] and [`HIGH_COUNT`].
+/// The frequency that is passed to the support library, Hz. It is that of fast mode, whose hold
+/// times the library sets. The clock itself is set by [`LOW_COUNT`] and [`HIGH_COUNT`].
 const SPEED: u32 = 400_000;
-/// The processor's clock, which the bus counts, cycles per us.
+/// The processor's clock, cycles per us. The bus counts these cycles.
 const MEGAHERTZ: u32 = 125;
 /// The registers of the bus's clock, in cycles, and the longest spike that is suppressed.
 ///
-/// The support library's values leave out what the block adds to them, and give 330 to 376 kHz.
+/// The support library's values ignore the cycles that the block adds to them, and give 330 to 376
+/// kHz.
 const LOW_COUNT: u16 = 175;
 const HIGH_COUNT: u16 = 108;
 const SPIKE: u8 = 11;
-/// Cycles for which the clock is low, and those from its rise to its fall.
+/// The cycles from the fall to the rise of the clock, and from its rise to its fall.
 ///
 /// Source: RP2040 data sheet, 4.3.14 (the block adds 1 and SPKLEN + 7).
 const LOW: u32 = LOW_COUNT as u32 + 1;
 const HIGH: u32 = HIGH_COUNT as u32 + SPIKE as u32 + 7;
 
-/// Returns the frequency of the bus, Hz, with a line that rises in so many ns.
+/// Returns the frequency of the bus, Hz, for a line that rises in `rise` ns.
 const fn hertz(rise: u32) -> u32 {
     let cycles_of_1000 = 1000 * (LOW + HIGH) + MEGAHERTZ * rise;
     (1_000_000_000 / cycles_of_1000) * MEGAHERTZ
 }
-/// NXP UM10204, table 10: at least 1.3 us low and 0.6 us high; the SSD1306 wants 2.5 us in all.
+/// The clock is low for at least 1.3 us and high for at least 0.6 us (NXP UM10204, table 10). The
+/// SSD1306 requires 2.5 us in all.
 const _: () = assert!(1000 * LOW / MEGAHERTZ >= 1300);
 const _: () = assert!(1000 * HIGH / MEGAHERTZ >= 600);
-/// With the 0.2 us of 4.7 kOhm and 50 pF.
+/// A line with 4.7 kOhm and 50 pF rises in 0.2 us.
 const _: () = assert!(hertz(200) >= 380_000 && hertz(200) <= 400_000);
-/// With the 0.1 us of 2.2 kOhm.
+/// A line with 2.2 kOhm rises in 0.1 us.
 const _: () = assert!(hertz(100) <= 400_000);
 
-/// Bytes left when the next are fetched: 90 us before the last is sent.
+/// The number of bytes left in the queue when the next are fetched: 90 us before the last is sent.
 const FEW: u8 = 4;
-/// Half a clock of a slow 100 kHz, cycles of 125 MHz.
+/// Half a clock period of a slow 100 kHz, cycles of 125 MHz.
 const HALF_CLOCK: u32 = 625;
 
+/// The interrupts of the bus.
 const NOTHING: u32 = 0;
 const FEW_LEFT: u32 = 1 << 4;
 const ABORTED: u32 = 1 << 6;
 const STOPPED: u32 = 1 << 9;
 
-/// Why it aborted: an address or a byte was not acknowledged.
+/// The reason of an abort: an address or a byte was not acknowledged.
 const REFUSED: u32 = 1 << 3 | 1 << 0;
-/// Another master had the bus.
+/// The reason of an abort: another master had the bus.
 const LOST: u32 = 1 << 12;
 
 /// The GPIO of the bus's lines.
@@ -73,7 +76,9 @@ pub(super) type Pins = (
     Pin<Gpio5, FunctionI2C, PullUp>,
 );
 
-/// Starts it from this clock; `None` the second time. The support library sets it up and lets go of it.
+/// Starts the bus; `clock` is the processor's clock. Returns `None` the second time.
+///
+/// The support library sets the bus up, and does not use it afterwards.
 pub(super) fn start(
     port: I2C0,
     pins: Pins,
@@ -82,7 +87,7 @@ pub(super) fn start(
 ) -> Option<Bus<I2c0>> {
     I2C::i2c0(port, pins.0, pins.1, SPEED.Hz(), resets, clock);
     let block = registers();
-    // SAFETY: the fields take these numbers. The block takes them only while it is disabled; its
+    // SAFETY: the fields take these numbers. The block takes them only while it is disabled. Its
     // next transfer enables it.
     unsafe {
         block.ic_tx_tl().write(|w| w.tx_tl().bits(FEW));
@@ -95,6 +100,7 @@ pub(super) fn start(
             .write(|w| w.ic_fs_scl_hcnt().bits(HIGH_COUNT));
         block.ic_fs_spklen().write(|w| w.ic_fs_spklen().bits(SPIKE));
     }
+
     let bus = Bus::new(I2c0(()), clock.to_Hz())?;
     unmask(Interrupt::I2C0_IRQ);
     Some(bus)
@@ -103,7 +109,7 @@ pub(super) fn start(
 impl PanelPort for I2c0 {
     fn begin(&mut self, address: u8) {
         let port = registers();
-        // The last stop may still be under way.
+        // The last stop may still be in progress.
         let _ = (0..TRIES).any(|_| port.ic_status().read().mst_activity().is_idle());
         port.ic_enable().write(|w| w.enable().disabled());
         // SAFETY: an address of seven bits.
@@ -116,12 +122,14 @@ impl PanelPort for I2c0 {
     fn reset(&mut self) {
         listen(registers(), NOTHING);
         registers().ic_enable().write(|w| w.enable().disabled());
+
         free_bus(|clock, data| {
             drive(CLOCK, clock);
             drive(DATA, data);
             delay(HALF_CLOCK);
             pin(DATA).gpio_status().read().infrompad().bit_is_set()
         });
+
         for line in [DATA, CLOCK] {
             pin(line)
                 .gpio_ctrl()
@@ -136,13 +144,17 @@ fn I2C0_IRQ() {
 }
 
 fn registers() -> &'static RegisterBlock {
-    // SAFETY: the support library has let go of them; while there is something in the outbox the bus is the interrupt's.
+    // SAFETY: the support library uses them no longer. While the outbox is not empty, only the
+    // interrupt uses the bus.
     unsafe { &*I2C0::ptr() }
 }
 
-/// Does what the bus waits for: more bytes, or at the end nothing more. After the last byte of a message it makes a stop.
+/// Makes the next part of the transfer: supplies more bytes, or ends it. The last byte of each
+/// message is followed by a stop. Returns the outcome at the end.
 fn advance(port: &RegisterBlock, outbox: &mut Outbox) -> Option<Sent> {
     let status = port.ic_raw_intr_stat().read();
+
+    // The transfer was aborted.
     if status.tx_abrt().is_active() {
         let reason = port.ic_tx_abrt_source().read().bits();
         let _ = port.ic_clr_tx_abrt().read();
@@ -153,11 +165,13 @@ fn advance(port: &RegisterBlock, outbox: &mut Outbox) -> Option<Sent> {
             _ => ErrorKind::Other,
         }));
     }
+
+    // All bytes are in the queue of the bus: wait for the last stop.
     if outbox.is_empty() && outbox.requested == outbox.asked() {
         if !status.stop_det().is_active() {
             return None;
         }
-        // It may be that of a message before.
+        // The stop may belong to an earlier message.
         let _ = port.ic_clr_stop_det().read();
         let is_sent = port.ic_status().read().tfe().is_empty();
         let is_read = usize::from(port.ic_rxflr().read().rxflr().bits()) >= outbox.asked();
@@ -171,6 +185,7 @@ fn advance(port: &RegisterBlock, outbox: &mut Outbox) -> Option<Sent> {
         return Some(Ok(()));
     }
 
+    // Fill the queue of the bus.
     while port.ic_status().read().tfnf().is_not_full() {
         if let Some(byte) = outbox.next() {
             // SAFETY: any byte may be sent.
@@ -185,25 +200,28 @@ fn advance(port: &RegisterBlock, outbox: &mut Outbox) -> Option<Sent> {
             break;
         }
     }
+
     if outbox.is_empty() && outbox.requested == outbox.asked() {
-        // Only the last stop is still to come.
+        // Only the last stop is outstanding.
         let _ = port.ic_clr_stop_det().read();
         listen(port, STOPPED | ABORTED);
     }
     None
 }
 
+/// Enables these interrupts and no others.
 fn listen(port: &RegisterBlock, to: u32) {
-    // SAFETY: a bit for each interrupt.
+    // SAFETY: the register has a bit for each interrupt.
     port.ic_intr_mask().write(|w| unsafe { w.bits(to) });
 }
 
+/// Returns the registers of a pin.
 fn pin(number: usize) -> &'static GPIO {
-    // SAFETY: nothing else uses the registers of these pins.
+    // SAFETY: no other code uses the registers of these pins.
     unsafe { &*IO_BANK0::ptr() }.gpio(number)
 }
 
-/// Lets a line go, or pulls it low, whatever the bus does with it.
+/// Releases a line, or pulls it low, independent of the state of the bus.
 fn drive(number: usize, high: bool) {
     pin(number).gpio_ctrl().modify(|_, w| {
         if high {

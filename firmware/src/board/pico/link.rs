@@ -1,6 +1,9 @@
-//! The serial link: the same bytes go out over USB and through UART0, and commands are taken from either. Two hosts that speak at
-//! the same moment spoil each other's messages. The UART's interrupt sends what is in its queue, so no frame waits; a motion asked
-//! for, whose samples may come faster than the UART sends them, waits for room in it.
+//! The serial link. The same bytes are sent over USB and through UART0, and commands are taken from
+//! either.
+//!
+//! Two hosts that send at the same time corrupt each other's messages. The UART's interrupt sends
+//! the bytes in its queue, so that no frame waits. The samples of a job may come faster than the
+//! UART sends them; they wait for room in the queue.
 
 use heapless::Deque;
 use rp2040_hal::fugit::{HertzU32, RateExtU32};
@@ -19,13 +22,14 @@ pub(super) type SerialPins = (
     Pin<Gpio1, FunctionUart, PullUp>,
 );
 
-/// How often room for a message is waited for, which takes 2.6 ms at most: these tries take at least 8.
+/// The number of tries to wait for room for a message. It takes 2.6 ms at most, and these tries
+/// take at least 8 ms.
 const TRIES: u32 = 4 * BUS_TRIES;
 
-/// Bytes that the UART has not taken yet.
+/// The bytes that the UART has not taken yet.
 static QUEUE: Shared<Deque<u8, UART_QUEUE>> = Shared::new(Deque::new());
 
-/// Starts the UART; `None` if no divisor of the clock makes its speed.
+/// Starts the UART. Returns `None` if no divisor of the clock gives its speed.
 pub(super) fn start(
     device: UART0,
     pins: SerialPins,
@@ -41,6 +45,7 @@ pub(super) fn start(
     Some(Outward(send))
 }
 
+/// Sends a message over USB and the UART. Returns true if the UART's queue had room for it.
 fn send(bytes: &[u8]) -> bool {
     usb::send(bytes);
     let has_room = (0..TRIES).any(|_| QUEUE.with(|queue| usb::put(queue, bytes)) == Some(true));
@@ -51,11 +56,12 @@ fn send(bytes: &[u8]) -> bool {
 }
 
 fn uart() -> &'static rp2040_hal::pac::uart0::RegisterBlock {
-    // SAFETY: the support library has set them up and let go of them.
+    // SAFETY: the support library has set the registers up and uses them no longer.
     unsafe { &*UART0::ptr() }
 }
 
-/// Gives the UART as many bytes as it takes; while there are more it interrupts again when it has sent half of them.
+/// Passes bytes to the UART while it takes them. If bytes are left, it interrupts again when it has
+/// sent half of them.
 #[interrupt]
 fn UART0_IRQ() {
     QUEUE.with(|queue| {
@@ -69,24 +75,27 @@ fn UART0_IRQ() {
             .uartimsc()
             .modify(|_, w| w.txim().bit(!queue.is_empty()));
     });
-    // USB, which takes long to look at, interrupts by itself unless it waits for room.
+
+    // Polling USB takes long. It has an interrupt of its own, unless that is masked while USB waits
+    // for room.
     let waits = !NVIC::is_enabled(Interrupt::USBCTRL_IRQ);
     if waits || uart().uartfr().read().rxfe().bit_is_clear() {
         serial::receive();
     }
 }
 
-/// To look at USB and to read what has come ends the interrupts of both.
+/// Takes the received bytes of USB and of the UART, which ends the interrupts of both.
 ///
-/// A USB packet for which there is no room stays where it is, and the host waits. As long as it does, its interrupt would come again
-/// and again; meanwhile the UART's does, which is asked for with each frame. So it is with a packet
-/// that USB cannot be rid of.
+/// If the queue has no room for a USB packet, the packet stays in the device, and the host waits.
+/// Until then its interrupt would repeat without end, so it is masked. The UART's interrupt, which
+/// comes with each frame, polls USB instead. The same is done if USB cannot dispose of a packet.
 fn receive(inbox: &mut Inbox) {
     if usb::poll(inbox) {
         enable_interrupts();
     } else {
         NVIC::mask(Interrupt::USBCTRL_IRQ);
     }
+
     while uart().uartfr().read().rxfe().bit_is_clear() {
         let word = uart().uartdr().read();
         inbox.push(word.data().bits());

@@ -1,10 +1,10 @@
-//! Raspberry Pi Pico: an RP2040, Cortex-M0+ at 125 MHz, of which one core is used; a one-colour OLED panel on I2C0, up to five buttons,
-//! and the serial link over USB and UART0 at once.
+//! Raspberry Pi Pico: an RP2040 with a Cortex-M0+ at 125 MHz, a one-colour OLED panel on I2C0, up
+//! to five buttons, and the serial link over USB and UART0 at once. One of the two cores is used.
 //!
-//! Source: RP2040 data sheet, for the watchdog 2.8 (boot sequence), 2.13 (what it resets), 2.14 (subsystem resets), 4.7; Raspberry
-//! Pi Pico data sheet, for what is on which pin.
+//! Source: RP2040 data sheet, for the watchdog 2.8 (boot sequence), 2.13 (its resets), 2.14
+//! (subsystem resets), 4.7; Raspberry Pi Pico data sheet, for the pins.
 //!
-//! | what | GPIO |
+//! | part | GPIO |
 //! |---|---|
 //! | panel | I2C0: 4 data, 5 clock; address 0x3C or 0x3D |
 //! | buttons | 10 up, 11 down, 12 left, 13 right, 14 select; each pulls low |
@@ -33,8 +33,9 @@ use crate::protocol::BoardName;
 
 use i2c::I2c0;
 
-/// What the chip's boot ROM runs first: it makes the flash readable as memory, if that is a W25Q080 or takes its commands.
-// SAFETY: the linker puts this section where the ROM looks for it, and nothing else into it.
+/// The code that the chip's boot ROM runs first. It makes the flash readable as memory, if that is
+/// a W25Q080 or a chip with the same commands.
+// SAFETY: the linker puts this section where the ROM expects it, and nothing else into it.
 #[unsafe(link_section = ".boot2")]
 #[used]
 static BOOT: [u8; 256] = rp2040_boot2::BOOT_LOADER_W25Q080;
@@ -44,7 +45,7 @@ const CRYSTAL: u32 = 12_000_000;
 
 pub type Pico = Board<OledI2c<'static, Bus<I2c0>>, Outward, PinKeys, Watchdog>;
 
-/// Sets the board up; `None` the second time, or if its clock does not start.
+/// Sets the board up. Returns `None` the second time, or if its clock does not start.
 pub fn take() -> Option<Pico> {
     let core = cortex_m::Peripherals::take()?;
     let mut chip = pac::Peripherals::take()?;
@@ -66,6 +67,7 @@ pub fn take() -> Option<Pico> {
         &mut unit,
     )
     .ok()?;
+
     let chip_number = [chip.SYSINFO.chip_id().read().bits(), 0, 0, 0];
     let instruments = start(
         core,
@@ -73,6 +75,8 @@ pub fn take() -> Option<Pico> {
         clocks.system_clock.freq().to_Hz(),
         chip_number,
     );
+
+    // The serial link, at UART0 and at the USB socket.
     let pins = Pins::new(
         chip.IO_BANK0,
         chip.PADS_BANK0,
@@ -93,6 +97,8 @@ pub fn take() -> Option<Pico> {
         &mut chip.RESETS,
     )?;
     link::enable_interrupts();
+
+    // The panel.
     let wires = (pins.gpio4.reconfigure(), pins.gpio5.reconfigure());
     let bus = i2c::start(
         chip.I2C0,
@@ -101,6 +107,7 @@ pub fn take() -> Option<Pico> {
         &mut chip.RESETS,
     )?;
     let memory = cortex_m::singleton!(: Bitmap = Bitmap::BLACK)?;
+
     Some(Board {
         panel: OledI2c::new(bus, memory, BUILT_FOR),
         link,
@@ -117,7 +124,7 @@ pub fn take() -> Option<Pico> {
     })
 }
 
-/// The five buttons; those that are not there are never pressed, and select alone does for all.
+/// The five buttons. Absent ones are never pressed, and select alone is sufficient.
 pub struct PinKeys([Pin<DynPinId, FunctionSioInput, PullUp>; 5]);
 
 impl Buttons for PinKeys {
@@ -133,27 +140,29 @@ impl Buttons for PinKeys {
     }
 }
 
-/// What the SDK's `watchdog_enable` writes into a scratch register, which a reset leaves alone, but whoever uses the watchdog to
-/// restart the chip on purpose overwrites.
+/// The number that the SDK's `watchdog_enable` writes into a scratch register. A reset does not
+/// change it, but programs that use the watchdog for a planned restart overwrite it.
 const STARTED: u32 = 0x6ab7_3121;
 
-/// Whether the watchdog caused the last reset. To be asked before anything is taken out of its reset: the watchdog puts all there is
-/// into reset, a debugger does not.
+/// Returns true if the watchdog caused the last reset. Call it before any subsystem is taken out of
+/// reset: the watchdog resets all subsystems, a debugger does not.
 ///
-/// The watchdog's own word for it, REASON, is not enough. The boot ROM resets the chip by the same watchdog after each download, and a
-/// debugger's reset, which is one of the processor alone (SYSRESETREQ), leaves what REASON said before.
+/// The watchdog's register REASON alone is not sufficient. The boot ROM resets the chip by the same
+/// watchdog after each download. A debugger's reset, which resets only the processor (SYSRESETREQ),
+/// leaves REASON unchanged.
 fn reset_by_watchdog(unit: &pac::WATCHDOG, resets: &pac::RESETS) -> bool {
     unit.reason().read().timer().bit_is_set()
         && unit.scratch4().read().bits() == STARTED
         && resets.reset().read().i2c0().bit_is_set()
 }
 
-/// Starts the watchdog, which has no interrupt; the clocks' set-up has had it before, for it makes the chip's microseconds as well.
+/// Starts the watchdog, which has no interrupt. The set-up of the clocks uses it before, because it
+/// also generates the chip's microseconds.
 fn start_watchdog(mut unit: Watchdog) -> Watchdog {
     unit.write_scratch(ScratchRegister::Scratch4, STARTED);
     unit.start((2 * WATCHDOG_SECONDS).secs());
     watchdog::stall_by(|stalls| {
-        // SAFETY: the support library uses other bits of this register, and not any more.
+        // SAFETY: the support library uses other bits of this register, and only before this.
         let unit = unsafe { &*pac::WATCHDOG::ptr() };
         unit.ctrl().modify(|_, w| {
             w.pause_dbg0()

@@ -1,5 +1,7 @@
-//! The serial port at the USB socket (CDC-ACM): the same stream, for a host that has opened it. It never waits for the host: a
-//! message that does not fit into the queue is dropped whole.
+//! The serial port at the USB socket (CDC-ACM). It sends the same bytes as the UART to a host that
+//! has opened it.
+//!
+//! It never waits for the host. A message that does not fit into the queue is dropped as a whole.
 
 use cortex_m::asm::delay;
 use cortex_m::singleton;
@@ -18,52 +20,58 @@ use crate::board::cortex_m::interrupt::Shared;
 use crate::board::serial::Inbox;
 use crate::config::USB_QUEUE;
 
-/// What anybody may use for a serial port (V-USB's shared ids). Without a serial number, as long as no program goes by them to find
-/// the board (rule 7 of V-USB's `USB-IDs-for-free.txt`): none of ours does.
+/// The USB ids, which are V-USB's shared ids for serial ports.
+///
+/// A serial number is not required, because no program of ours finds the board by its ids (rule 7
+/// of V-USB's `USB-IDs-for-free.txt`).
 const IDS: UsbVidPid = UsbVidPid(0x16c0, 0x27dd);
+/// The size of a packet of data, bytes.
 const PACKET: usize = 64;
-/// The control endpoint's packet. With the library's 8 bytes a descriptor takes many packets, each
-/// to be answered in time, and some hosts give up ("Set Address Failed", rp-rs/rp-hal#937).
+/// The packet size of the control endpoint, bytes. With the library's 8 bytes a descriptor takes
+/// many packets, each of which must be answered in time, and some hosts give up ("Set Address
+/// Failed", rp-rs/rp-hal#937).
 const CONTROL_PACKET: u8 = 64;
-/// The time for which the pull-up stays off at a start, processor cycles at 125 MHz: 12 ms.
+/// The time without the pull-up at a start, processor cycles at 125 MHz: 12 ms.
 ///
 /// A restart leaves the pull-up on (SYSRESETREQ resets the processors only; RP2040 data sheet,
-/// 2.12), so the host goes on talking to an address that nobody has any more. A reset of the
-/// controller disconnects, but for microseconds, and a hub may miss that: it reports changes when
-/// it is asked, every few milliseconds.
+/// 2.12). So the host would continue to use an address that the device no longer has. A reset of
+/// the controller disconnects for microseconds only. A hub may miss that, because it reports
+/// changes when it is polled, every few milliseconds.
 const ABSENCE: u32 = 1_500_000;
-/// The speed at which a host opens and closes the port to restart the chip in its boot loader.
+/// The speed that requests the boot loader: a host opens and closes the port with it.
 const BOOT_LOADER_BAUD: u32 = 1200;
-/// Interrupts in a row that leave something pending after which the interrupt is masked: each takes
-/// some 8 us, so the main loop loses half a millisecond. In a sound connection one or two follow
-/// each other at most, since a packet takes 50 us.
+/// The number of interrupts in a row with something still pending after which the interrupt is
+/// masked. Each takes some 8 us, so that the main loop loses half a millisecond. In an intact
+/// connection one or two follow each other at most, because a packet takes 50 us.
 const MOST_FUTILE: u8 = 64;
 
+/// The USB device, and the bytes to send.
 struct Usb {
     device: UsbDevice<'static, UsbBus>,
     port: CdcAcmClass<'static, UsbBus>,
     leaving: Deque<u8, USB_QUEUE>,
-    /// A program has the port open.
+    /// True while a program has the port open.
     is_open: bool,
-    /// Interrupts in a row that left something pending.
+    /// The number of interrupts in a row that left something pending.
     futile: u8,
 }
 
 static USB: Shared<Option<&'static mut Usb>> = Shared::new(None);
 
-/// Begins to show the board to a host; `None` the second time.
+/// Connects the board to a host. Returns `None` the second time.
 pub(super) fn start(
     registers: USBCTRL_REGS,
     memory: USBCTRL_DPRAM,
     clock: UsbClock,
     resets: &mut RESETS,
 ) -> Option<()> {
-    // The block's reset switches the pull-up off, and `UsbBus::new` leaves it so.
+    // The reset of the block switches the pull-up off, and `UsbBus::new` does not switch it on.
     resets.reset().modify(|_, w| w.usbctrl().set_bit());
     delay(ABSENCE);
     let bus = UsbBus::new(registers, memory, clock, true, resets);
     let bus = singleton!(: UsbBusAllocator<UsbBus> = UsbBusAllocator::new(bus))?;
     let port = CdcAcmClass::new(bus, PACKET as u16);
+
     let names = StringDescriptors::default()
         .manufacturer("double-pendulum")
         .product("Double pendulum");
@@ -74,6 +82,7 @@ pub(super) fn start(
         .max_packet_size_0(CONTROL_PACKET)
         .ok()?
         .build();
+
     let usb = singleton!(: Usb = Usb {
         device,
         port,
@@ -84,13 +93,13 @@ pub(super) fn start(
     USB.with(|place| *place = Some(usb))
 }
 
-/// Does something with the device, undisturbed by its interrupt; `None` before the start.
+/// Calls `act` with the device, with interrupts off. Returns `None` before the start.
 fn with<T>(act: impl FnOnce(&mut Usb) -> T) -> Option<T> {
     USB.with(|usb| usb.as_deref_mut().map(act)).flatten()
 }
 
-/// Sends a message, if somebody listens and there is room for all of it.
-#[inline(never)] // the libraries may panic, and the main loop may not (test `no_panic`)
+/// Sends a message if a program has the port open and the queue has room for the whole message.
+#[inline(never)] // The libraries may panic; the main loop must not (test `no_panic`).
 pub(super) fn send(message: &[u8]) {
     with(|usb| {
         let is_heard = usb.device.state() == UsbDeviceState::Configured && usb.port.dtr();
@@ -102,8 +111,10 @@ pub(super) fn send(message: &[u8]) {
     });
 }
 
-/// Does what the device's interrupt asks for; takes a packet only if there is room for it. Returns
-/// true if the interrupt may stay on: there was room, and it does not come again and again in vain.
+/// Handles the device's interrupt. Takes a packet only if the queue has room for it.
+///
+/// Returns true if the interrupt may stay enabled: the queue had room, and the interrupt does not
+/// repeat without effect.
 pub(super) fn poll(inbox: &mut Inbox) -> bool {
     let has_room = room(&inbox.received) >= PACKET;
     let is_served = with(|usb| {
@@ -117,6 +128,7 @@ pub(super) fn poll(inbox: &mut Inbox) -> bool {
                 .for_each(|byte| inbox.push(byte));
         }
         usb.pass_on();
+
         usb.futile = if is_pending() {
             usb.futile.saturating_add(1)
         } else {
@@ -127,29 +139,31 @@ pub(super) fn poll(inbox: &mut Inbox) -> bool {
     has_room && is_served != Some(false)
 }
 
-/// Returns true if the device asks for an interrupt, except for a reset of the bus, which lasts.
+/// Returns true if the device has an interrupt pending, except for a reset of the bus, which lasts.
 ///
-/// The libraries leave an unexpected packet to the control endpoint where it is until the next
-/// request of the host: a data packet of a request that is longer than their buffer of 128 bytes,
-/// or the data of one that the host has broken off.
+/// The libraries leave an unexpected packet to the control endpoint in place until the next request
+/// of the host. Such a packet belongs to a request that is longer than their buffer of 128 bytes,
+/// or to one that the host has broken off.
 fn is_pending() -> bool {
-    // SAFETY: the register is only read; nothing else reads it for its side effects.
+    // SAFETY: the register is only read; no other code reads it for its side effects.
     let interrupts = unsafe { &*USBCTRL_REGS::ptr() }.ints().read();
     interrupts.bits() != 0 && interrupts.bus_reset().bit_is_clear()
 }
 
 impl Usb {
-    /// Restarts the chip in its boot loader if the port was closed at the speed that asks for it.
+    /// Restarts the chip in its boot loader if the port was closed at the speed that requests it.
     fn obey_speed(&mut self) {
         let was_open = core::mem::replace(&mut self.is_open, self.port.dtr());
         let is_asked = self.port.line_coding().data_rate() == BOOT_LOADER_BAUD;
         if was_open && !self.is_open && is_asked {
-            // No pin shows its activity; it offers the drive and the interface of picotool.
+            // No pin shows the activity of the boot loader. It offers the drive and the interface
+            // of picotool.
             reset_to_usb_boot(0, 0);
         }
     }
 
-    /// Gives the device its next packet, if it has sent the last. No packet is a full one: after that the host would wait for more.
+    /// Passes the next packet to the device, if the last one is sent. No packet is full, because
+    /// after a full packet the host would wait for more.
     fn pass_on(&mut self) {
         let mut packet = [0; PACKET - 1];
         let length = packet
@@ -170,11 +184,12 @@ impl Usb {
     }
 }
 
+/// Returns the number of bytes that a queue has room for.
 fn room<const N: usize>(queue: &Deque<u8, N>) -> usize {
     queue.capacity().saturating_sub(queue.len())
 }
 
-/// Puts a message into a queue if there is room for all of it; whether there was.
+/// Puts a message into a queue if it has room for the whole message. Returns true if it had.
 pub(super) fn put<const N: usize>(queue: &mut Deque<u8, N>, message: &[u8]) -> bool {
     room(queue) >= message.len() && message.iter().all(|byte| queue.push_back(*byte).is_ok())
 }

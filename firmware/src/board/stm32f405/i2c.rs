@@ -1,6 +1,7 @@
-//! The I2C bus of the panel. The support library sets it up; bytes are sent here, by the bus's interrupts.
+//! The I2C bus of the panel. The support library sets it up, and its interrupts send the bytes.
 //!
-//! Source: ST RM0090, 27.3.3 (master transmitter and receiver), 27.3.4 (errors); ES0182, the chip's errata.
+//! Source: ST RM0090, 27.3.3 (master transmitter and receiver), 27.3.4 (errors); ES0182, the chip's
+//! errata.
 
 use cortex_m::asm::delay;
 use embedded_hal::i2c::ErrorKind;
@@ -18,9 +19,10 @@ use crate::board::cortex_m::interrupt::unmask;
 use crate::board::panel_bus::{self, Bus, PanelPort, TRIES};
 use crate::display::{Outbox, SILENCE, Sent, free_bus};
 
-/// Half a clock of a slow 100 kHz, cycles of 168 MHz.
+/// Half a clock period of a slow 100 kHz, cycles of 168 MHz.
 const HALF_CLOCK: u32 = 840;
 
+/// The bits of the status register.
 const START_SENT: u16 = 1 << 0;
 const ADDRESS_SENT: u16 = 1 << 1;
 const ALL_SENT: u16 = 1 << 2;
@@ -29,13 +31,15 @@ const READY_FOR_BYTE: u16 = 1 << 7;
 
 pub struct I2c1((Scl, Sda));
 
-/// `None` the second time.
+/// Starts the bus. Returns `None` the second time.
 pub(super) fn start(port: I2C1, clock: PB6, data: PB7, rcc: &mut Rcc) -> Option<Bus<I2c1>> {
-    // The library leaves the pull-ups alone (RM0090, 8.4.4). At 40 kOhm they are too weak for the
-    // bus, but without a panel its lines would float, which looks like another master's doing.
+    // The library does not set the pull-ups (RM0090, 8.4.4). At 40 kOhm they are too weak for the
+    // bus. But without them and without a panel, the lines would float, which looks like the action
+    // of another master.
     let clock = clock.internal_resistor(Pull::Up);
     let data = data.internal_resistor(Pull::Up);
     let (_, pins) = I2c::new(port, (clock, data), 400.kHz(), rcc).release();
+
     let bus = Bus::new(I2c1(pins), HERTZ)?;
     [Interrupt::I2C1_EV, Interrupt::I2C1_ER]
         .into_iter()
@@ -46,7 +50,7 @@ pub(super) fn start(port: I2C1, clock: PB6, data: PB7, rcc: &mut Rcc) -> Option<
 impl PanelPort for I2c1 {
     fn begin(&mut self, _: u8) {
         let port = registers();
-        // The control register is not to be written before.
+        // The control register must not be written before the stop is sent.
         let _ = (0..TRIES).any(|_| port.cr1().read().stop().bit_is_clear());
         port.cr1().modify(|_, w| w.pos().clear_bit());
         port.cr2()
@@ -69,6 +73,8 @@ impl PanelPort for I2c1 {
                 })
             });
         }
+
+        // Reset the device, and restore its settings.
         let (frequency, clock, rise) = (
             port.cr2().read().bits(),
             port.ccr().read().bits(),
@@ -76,7 +82,7 @@ impl PanelPort for I2c1 {
         );
         port.cr1().write(|w| w.swrst().set_bit());
         port.cr1().write(|w| w.swrst().clear_bit());
-        // SAFETY: they are what these registers held before.
+        // SAFETY: these registers had the same values before.
         unsafe {
             port.cr2().write(|w| w.bits(frequency));
             port.ccr().write(|w| w.bits(clock));
@@ -97,14 +103,16 @@ fn I2C1_ER() {
 }
 
 fn registers() -> &'static RegisterBlock {
-    // SAFETY: while there is something in the outbox the bus is the interrupts'.
+    // SAFETY: while the outbox is not empty, only the interrupts use the bus.
     unsafe { &*I2C1::ptr() }
 }
 
-/// Does what the bus waits for. Between two messages there is no stop but a start.
+/// Makes the next part of the transfer. Two messages are separated by a start, without a stop.
+/// Returns the outcome at the end.
 fn advance(port: &RegisterBlock, outbox: &mut Outbox) -> Option<Sent> {
     let status = port.sr1().read().bits();
-    // The messages are sent: only the answer is left.
+
+    // True if all messages are sent, and only the answer is outstanding.
     let reads = outbox.is_empty() && outbox.asked() > 0;
     let is_ready = if status & START_SENT != 0 {
         port.dr()
@@ -114,7 +122,7 @@ fn advance(port: &RegisterBlock, outbox: &mut Outbox) -> Option<Sent> {
         if reads {
             accept(port, outbox.asked());
         } else {
-            let _ = port.sr2().read(); // Only this ends the address phase.
+            let _ = port.sr2().read(); // This read ends the address phase.
         }
         !reads
     } else if reads && is_read(status, outbox.asked()) {
@@ -129,13 +137,17 @@ fn advance(port: &RegisterBlock, outbox: &mut Outbox) -> Option<Sent> {
     } else {
         outbox.is_within_message() && status & READY_FOR_BYTE != 0
     };
+
+    // Send the next byte.
     if is_ready && let Some(byte) = outbox.next() {
         port.dr().write(|w| w.dr().set(byte.value));
-        // After the last byte of a message only its end interrupts.
+        // After the last byte of a message, only its end interrupts.
         port.cr2()
             .modify(|_, w| w.itbufen().bit(!byte.ends_message));
         return None;
     }
+
+    // Wait until the message is sent. Then make a stop, or start the next message.
     if is_ready || status & ALL_SENT == 0 || outbox.is_within_message() {
         return None;
     }
@@ -144,7 +156,7 @@ fn advance(port: &RegisterBlock, outbox: &mut Outbox) -> Option<Sent> {
         return Some(Ok(()));
     }
     port.cr1().modify(|_, w| w.start().set_bit());
-    // Until it is sent the interrupt would come again and again.
+    // Wait for the start, because until it is sent the interrupt would repeat.
     if (0..TRIES).any(|_| port.sr1().read().bits() & START_SENT != 0) {
         return None;
     }
@@ -152,12 +164,12 @@ fn advance(port: &RegisterBlock, outbox: &mut Outbox) -> Option<Sent> {
     Some(Err(ErrorKind::Other))
 }
 
-/// Ends the address phase of one byte or two. The last byte is not acknowledged, and a stop follows
-/// it.
+/// Ends the address phase of an answer of one byte or two. The last byte is not acknowledged, and a
+/// stop follows it.
 ///
-/// Of two bytes both are held in the block before any is read: POS moves the refusal to the second,
-/// and must be set before the phase ends; the stop is set when the bus stands still behind the
-/// second.
+/// Two bytes are both held in the block before the first is read. POS moves the refusal to the
+/// second byte, and must be set before the address phase ends. The stop is set when the bus waits
+/// after the second byte.
 ///
 /// Source: RM0090, 27.3.3 (master receiver).
 fn accept(port: &RegisterBlock, bytes: usize) {
@@ -172,8 +184,8 @@ fn accept(port: &RegisterBlock, bytes: usize) {
     }
 }
 
-/// Returns true if the answer has come: of two bytes the second waits behind the first. The flag for
-/// that alone is also set behind the last byte sent.
+/// Returns true if the answer is complete. With two bytes, the second waits behind the first. The
+/// flag for that alone is not sufficient, because it is also set after the last byte sent.
 fn is_read(status: u16, bytes: usize) -> bool {
     let flags = if bytes > 1 {
         BYTE_READ | ALL_SENT
@@ -183,11 +195,14 @@ fn is_read(status: u16, bytes: usize) -> bool {
     status & flags == flags
 }
 
-/// A bus error is none: a master may detect one where there is none, so it is cleared and the transfer goes on (ES0182,
-/// "Spurious bus error detection in master mode"). A bus that has really been disturbed hangs, and is freed for that.
+/// Handles an error of the bus. Returns the outcome, or `None` if the transfer continues.
+///
+/// A bus error is ignored: a master may detect one by mistake, so it is cleared and the transfer
+/// continues (ES0182, "Spurious bus error detection in master mode"). A bus that has really been
+/// disturbed hangs, and is freed for that reason.
 fn fail(port: &RegisterBlock) -> Option<Sent> {
     let status = port.sr1().read();
-    // To write 1 leaves a flag as it is: one that has come up meanwhile.
+    // A written 1 leaves a flag unchanged, such as one that has been set meanwhile.
     port.sr1().write(|w| {
         w.af()
             .bit(!status.af().bit())
@@ -196,6 +211,7 @@ fn fail(port: &RegisterBlock) -> Option<Sent> {
             .berr()
             .bit(!status.berr().bit())
     });
+
     let error = match (status.af().bit(), status.arlo().bit()) {
         (true, _) => SILENCE,
         (_, true) => ErrorKind::ArbitrationLoss,
@@ -205,11 +221,13 @@ fn fail(port: &RegisterBlock) -> Option<Sent> {
     Some(Err(error))
 }
 
+/// Ends the transfer with a stop.
 fn stop(port: &RegisterBlock) {
     silence(port);
     port.cr1().modify(|_, w| w.stop().set_bit());
 }
 
+/// Disables the interrupts of the bus.
 fn silence(port: &RegisterBlock) {
     port.cr2().modify(|_, w| {
         w.itevten()

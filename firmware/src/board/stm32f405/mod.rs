@@ -1,11 +1,14 @@
-//! STM32F405 (or F407): Cortex-M4F at 168 MHz, a one-colour OLED panel on I2C1, one button, serial port USART3.
+//! STM32F405 (or F407): a Cortex-M4F at 168 MHz, a one-colour OLED panel on I2C1, one button, and a
+//! serial port at USART3.
 //!
-//! The same image runs on the chip and in QEMU's `netduinoplus2`, where there are the processor, the memory and the
-//! serial ports, but neither clock control nor pins nor I2C: their registers read 0 and forget what is written.
+//! The same image runs on the chip and in QEMU's `netduinoplus2`. That machine has the processor,
+//! the memory and the serial ports, but neither clock control nor pins nor I2C. Their registers
+//! read 0 and ignore writes.
 //!
-//! Source: ST RM0090, reference manual of the STM32F405 and F407; pins as on the Adafruit Feather STM32F405 Express.
+//! Source: ST RM0090, reference manual of the STM32F405 and F407; pins as on the Adafruit Feather
+//! STM32F405 Express.
 //!
-//! | what | pins |
+//! | part | pins |
 //! |---|---|
 //! | panel | I2C1: PB6 clock, PB7 data; address 0x3C or 0x3D |
 //! | button | PC7, pulls low |
@@ -35,15 +38,16 @@ use crate::protocol::BoardName;
 
 use i2c::I2c1;
 
-/// The processor's clock, Hz: the fastest of this chip, and the fixed one of the emulated machine.
+/// The processor's clock, Hz. It is the fastest of this chip, and the fixed one of the emulated
+/// machine.
 const HERTZ: u32 = 168_000_000;
 
-/// The chip's unique number (RM0090, 39.1), in its system memory.
+/// The address of the chip's unique number (RM0090, 39.1), in its system memory.
 const UNIQUE_NUMBER: *const [u32; 3] = core::ptr::without_provenance(0x1fff_7a10);
 
 pub type Stm32f405 = Board<OledI2c<'static, Bus<I2c1>>, Outward, OneKey, IndependentWatchdog>;
 
-/// Sets the board up; `None` the second time.
+/// Sets the board up. Returns `None` the second time.
 pub fn take() -> Option<Stm32f405> {
     let core = cortex_m::Peripherals::take()?;
     let chip = pac::Peripherals::take()?;
@@ -54,8 +58,10 @@ pub fn take() -> Option<Stm32f405> {
         log::into_memory();
         keep_log_readable();
     }
+
     let chip_number = if is_emulated { [0; 4] } else { chip_number() };
     let instruments = start(core, BoardName::Stm32f405, HERTZ, chip_number);
+
     let (b, c) = (chip.GPIOB.split(&mut rcc), chip.GPIOC.split(&mut rcc));
     let bus = i2c::start(chip.I2C1, b.pb6, b.pb7, &mut rcc)?;
     let memory = cortex_m::singleton!(: Bitmap = Bitmap::BLACK)?;
@@ -69,7 +75,8 @@ pub fn take() -> Option<Stm32f405> {
     })
 }
 
-/// The one button is the select button: a tap starts again, held it goes to the next scene.
+/// The only button, which is the select button. A tap starts the scene again; held, it selects the
+/// next scene.
 pub struct OneKey(PC7);
 
 impl Buttons for OneKey {
@@ -81,45 +88,49 @@ impl Buttons for OneKey {
     }
 }
 
-/// Keeps the memory's clock on while the processor sleeps, as it does between frames: else a probe
-/// reads zeros there, and finds no log. `probe-rs` sets these bits itself, OpenOCD and J-Link leave
-/// it to a script (RM0090, 38.16.3: DBGMCU_CR).
+/// Keeps the clock of the memory on while the processor sleeps, as it does between frames.
+/// Otherwise a probe reads zeros there, and finds no log.
+///
+/// `probe-rs` sets these bits itself; OpenOCD and J-Link leave it to a script (RM0090, 38.16.3:
+/// DBGMCU_CR).
 fn keep_log_readable() {
-    // SAFETY: nothing else uses this register, and its bits concern debugging alone.
+    // SAFETY: no other code uses this register, and its bits affect only debugging.
     let debug = unsafe { &*DBGMCU::ptr() };
     debug
         .cr()
         .modify(|_, w| w.dbg_sleep().set_bit().dbg_stop().set_bit());
 }
 
-/// What the chip says that it is, and its unique number.
+/// Returns the identification of the chip and its unique number.
 fn chip_number() -> [u32; 4] {
-    // SAFETY: both are only read, and nothing else uses them.
+    // SAFETY: both are only read, and no other code uses them.
     let (debug, unique) = unsafe { (&*DBGMCU::ptr(), &*UNIQUE_NUMBER) };
     let [a, b, c] = *unique;
     [debug.idcode().read().bits(), a, b, c]
 }
 
-/// Starts the clock, and finds out whether it does so in an emulator.
+/// Starts the clock. Returns true as well if the chip is emulated.
 ///
-/// The source is the chip's own oscillator, true to 1 % at room temperature, which is near enough for the eye and for
-/// the serial port. So the image fits boards with any crystal (8, 12 and 25 MHz are in use), and none can fail to start.
+/// The source is the chip's own oscillator. It is accurate to 1 % at room temperature, which is
+/// sufficient for the eye and for the serial port. So the image fits boards with any crystal (8, 12
+/// and 25 MHz are in use), and no crystal can fail to start.
 fn start_clock(rcc: RCC) -> (Rcc, bool) {
-    // A chip comes out of reset running from this oscillator.
+    // After reset a chip runs from this oscillator.
     if rcc.cr().read().hsirdy().bit_is_set() {
         (rcc.freeze(Config::hsi().sysclk(HERTZ.Hz())), false)
     } else {
-        // There is no PLL to wait for, either.
+        // The emulator has no PLL to wait for, either.
         (rcc.freeze(Config::hsi()), true)
     }
 }
 
-/// Starts the serial port. The support library sets it up and lets go of it.
+/// Starts the serial port. The support library sets it up, and does not use it afterwards.
 fn start_link(port: USART3, pins: (PB10, PB11), rcc: &mut Rcc) -> Option<Outward> {
-    // The adapter is optional. Without it the input would float beside the output that toggles, and
-    // receive its echo; the library leaves the pull-up alone (RM0090, 8.4.4).
+    // The adapter is optional. Without it the input would float next to the output, and receive an
+    // echo of it. The library does not set the pull-up (RM0090, 8.4.4).
     let pins = (pins.0, pins.1.internal_resistor(Pull::Up));
-    // There is a divisor for this baud rate at either clock, so this does not fail.
+
+    // Both clocks have a divisor for this baud rate, so that this does not fail.
     let mut port = port
         .serial::<u8>(pins, config::Config::default().baudrate(BAUD.bps()), rcc)
         .ok()?;
@@ -136,11 +147,13 @@ fn put(byte: u8) {
 }
 
 fn uart() -> &'static RegisterBlock {
-    // SAFETY: of these registers either direction uses other bits, and reading does not change the other's.
+    // SAFETY: the two directions use different bits of these registers, and reading does not change
+    // the bits of the other one.
     unsafe { &*USART3::ptr() }
 }
 
-/// To read a byte ends its interrupt. One that came before the last was read is lost, and interrupts until the data are read.
+/// Takes the received bytes; reading a byte ends its interrupt. A byte that came before the last
+/// one was read is lost; that interrupts until the data are read.
 fn receive(inbox: &mut Inbox) {
     loop {
         let status = uart().sr().read();
@@ -156,12 +169,12 @@ fn receive(inbox: &mut Inbox) {
     }
 }
 
-/// Starts the independent watchdog, which has no interrupt, and an oscillator of its own, good for a factor of 2 (17 to 47 kHz
-/// instead of 32). In the emulator there is none.
+/// Starts the independent watchdog, which has no interrupt. Its own oscillator is accurate to a
+/// factor of 2 (17 to 47 kHz instead of 32). The emulator has no such watchdog.
 fn start_watchdog(unit: IWDG) -> IndependentWatchdog {
     let mut unit = IndependentWatchdog::new(unit);
     watchdog::stall_by(|stalls| {
-        // SAFETY: of this register nothing else uses anything.
+        // SAFETY: no other code uses this register.
         let debug = unsafe { &*DBGMCU::ptr() };
         debug.apb1_fz().modify(|_, w| w.dbg_iwdg_stop().bit(stalls));
     });
@@ -169,7 +182,8 @@ fn start_watchdog(unit: IWDG) -> IndependentWatchdog {
     unit
 }
 
-/// Whether it caused the last reset. To be asked once.
+/// Returns true if the watchdog caused the last reset. Call it only once, because it clears the
+/// cause.
 fn reset_by_watchdog(rcc: &mut Rcc) -> bool {
     let has_reset = rcc.csr().read().wdgrstf().bit_is_set();
     rcc.csr().modify(|_, w| w.rmvf().set_bit());

@@ -1,12 +1,14 @@
-//! The equations of motion: recurrences for the power series of a solution, and discs in complex time that bound what it leaves out.
+//! The equations of motion: recurrences for the power series of a solution, and discs in complex
+//! time that bound its remainder.
 
 use std::array::from_fn;
 
 use super::Fixed;
 
-/// The equations by their constants, time in any unit T.
+/// The constants of the equations, with time in any unit T.
 ///
-/// With D = a1 - a2, S and C its sine and cosine, M = (m1 + m2)/2^e, P1 = p1 T/(M l1^2), P2 = p2 T/(m2 l2^2):
+/// With D = a1 - a2, S and C its sine and cosine, M = (m1 + m2)/2^e, P1 = p1 T/(M l1^2) and P2 = p2
+/// T/(m2 l2^2):
 ///
 /// - u = a1' = (P1 - c C P2)/(k + l S^2), v = a2' = P2 - n C u
 /// - P1' = -G1 sin a1 - c u v S, P2' = -G2 sin a2 + n u v S, where sin a2 = C sin a1 - S cos a1
@@ -21,8 +23,8 @@ pub struct Equations {
 }
 
 impl Equations {
-    /// The coefficients 0 to `order` of the power series of the six numbers (sin a1, cos a1, S, C, P1, P2) from `start`, their time in
-    /// T by `step`.
+    /// Returns the coefficients 0 to `order` of the power series of the six numbers (sin a1, cos
+    /// a1, S, C, P1, P2) from `start`. The time of the series is in units of `step` T.
     pub fn series(&self, start: &[Fixed; 6], order: usize, step: Fixed) -> [Vec<Fixed>; 6] {
         let &Self {
             upper,
@@ -33,6 +35,7 @@ impl Equations {
         } = self;
         let mut z: [_; 6] = from_fn(|i| Vec::from_iter([start[i]]));
         let [mut den, mut u, mut v, mut uv, mut turn] = [(); 5].map(|()| Vec::new());
+
         for k in 0..order {
             let [sin1, cos1, s, c, p1, p2] = &z;
             let square = lower * Fixed::product(s, s);
@@ -60,10 +63,11 @@ impl Equations {
                 z.push(slope.over(k as u32 + 1) * step);
             }
         }
+
         z
     }
 
-    /// The energy by M l1^2/T^2 of the six numbers `z`.
+    /// Returns the energy of the six numbers `z`, divided by M l1^2/T^2.
     pub fn energy(&self, &[sin1, cos1, s, c, p1, p2]: &[Fixed; 6]) -> Fixed {
         let &Self {
             upper,
@@ -74,28 +78,33 @@ impl Equations {
         } = self;
         let u = (p1 - coupling * c * p2) * (upper + lower * s * s).inverse();
         let v = p2 - rods * c * u;
-        let (square, cos2) = (coupling * rods.inverse(), cos1 * c + sin1 * s);
+        let square = coupling * rods.inverse();
+        let cos2 = cos1 * c + sin1 * s;
         let kinetic = ((upper + lower) * u * u + square * v * v).over(2) + coupling * u * v * c;
         kinetic - gravity1 * cos1 - square * gravity2 * cos2
     }
 }
 
-/// The share of the discs' radii within which solutions may start: a sixteenth.
+/// The part of the discs' radii within which solutions may start: a sixteenth.
 pub const STARTS: f64 = 0.0625;
-/// The least radius, and how many times an extent of the set it is: so that is at most 1/4 of where solutions may start.
+/// The smallest radius, and the smallest ratio of a radius to the extent of the set. The extent is
+/// then at most 1/4 of the region where solutions may start.
 const LEAST: [f64; 2] = [1.0 / 65_536.0, 64.0];
-/// Times tried, in steps, and how often radii are made those that such a time needs, with a little to spare.
+/// The times to try, in steps, and the number of attempts for each. An attempt sets the radii to
+/// those that the time needs, with a margin.
 const TIMES: [f64; 5] = [24.0, 16.0, 12.0, 9.0, 7.0];
 const TRIES: usize = 12;
-/// The shortest time of use, in steps: it lets a power series of 48 terms end at 2^-116.
+/// The shortest usable time, in steps. With it, a power series of 48 terms ends at 2^-116.
 const SHORTEST: f64 = 6.0;
 
-/// The longest time found, in steps, and the radii of discs about `middle` that no solution leaves in complex times up to that if it
-/// starts within [`STARTS`] of them; none if it is too short.
+/// Returns the longest time found, in steps, and the radii of discs about `middle`. No solution
+/// that starts within [`STARTS`] of the discs leaves them in complex times up to that time. Returns
+/// `None` if the time is too short.
 ///
-/// Theorem (Picard and Lindeloef for analytic equations; Hille, Ordinary Differential Equations in the Complex Domain, 2.3): if
-/// z0 + t f(B) is in the product of discs B for |t| <= T, one solution from z0 exists there, is analytic in t and z0, and stays in B. f
-/// has no pole in B, for else the radius of its inverse is infinite.
+/// Theorem (Picard and Lindeloef for analytic equations; Hille, Ordinary Differential Equations in
+/// the Complex Domain, 2.3): if z0 + t f(B) is in the product of discs B for |t| <= T, one solution
+/// from z0 exists there, is analytic in t and z0, and stays in B. f has no pole in B, because
+/// otherwise the radius of its inverse would be infinite.
 pub fn discs(
     equations: &Equations,
     middle: &[Fixed; 6],
@@ -110,14 +119,16 @@ pub fn discs(
             let slopes = equations
                 .series(&from_fn(|i| middle[i].wider(radii[i])), 1, step)
                 .map(|z| z[1].size());
-            // twice the share: what is rounded is far less
+
+            // Twice the share: the roundings are much smaller.
             let held = (0..6)
                 .map(|i| (1.0 - 2.0 * STARTS) * radii[i] / slopes[i])
                 .fold(time, f64::min);
             if held > best.0 {
                 best = (held, radii);
             }
-            // a slope was infinite
+
+            // A slope was infinite.
             if held == 0.0 {
                 break;
             }

@@ -1,24 +1,28 @@
-//! Balls of fixed point: 116 bits behind the point, 8 before it, and how far the true number may be from that. They are discs of the
-//! complex plane about a real number as well: every bound here holds for both.
+//! Balls in fixed point: a midpoint with 116 bits after the point and 8 before it, and the largest
+//! distance of the true number from it. They are also discs of the complex plane about a real
+//! number: every bound here holds for both.
 
-/// Bits behind the point.
+/// The number of bits after the point.
 const FRACTION: u32 = 116;
-/// Every midpoint is smaller than this, so that no sum of [`MOST_TERMS`] products overflows.
+/// The limit of midpoints. Smaller ones cannot overflow a sum of [`MOST_TERMS`] products.
 const LIMIT: i128 = 1 << 124;
-/// The most terms of a sum of products.
+/// The largest number of terms in a sum of products.
 pub const MOST_TERMS: usize = 48;
 /// 2^-116, the unit of the last place.
 pub const ULP: f64 = 1.0 / (1_u128 << FRACTION) as f64;
 
-/// No less than the sum of products of numbers >= 0 that `f64` computed as `value` in fewer than 2^20 operations.
+/// Returns a number that is no less than the sum of products of numbers >= 0 that `f64` computed as
+/// `value` in fewer than 2^20 operations.
 ///
-/// Each may have taken a factor of 1 - u from it, u = 2^-53: (1 - u)^(2^20 + 2) (1 + 2^-32) > 1 (N. Higham, Accuracy and Stability of
-/// Numerical Algorithms, 2002, lemma 3.1). What products lost below the normal numbers is less than 2^20 2^-1074.
+/// Each operation may have reduced it by a factor of 1 - u, u = 2^-53: (1 - u)^(2^20 + 2) (1 +
+/// 2^-32) > 1 (N. Higham, Accuracy and Stability of Numerical Algorithms, 2002, lemma 3.1). The
+/// products lost less than 2^20 2^-1074 below the normal numbers.
 pub fn up(value: f64) -> f64 {
     value * (1.0 + 1.0 / (1_u64 << 32) as f64) + f64::MIN_POSITIVE
 }
 
-/// All numbers within `radius` units of the last place of `middle` of them.
+/// A ball: all numbers within `radius` units of the last place of `middle`, which is in the same
+/// units.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fixed {
     middle: i128,
@@ -42,7 +46,8 @@ impl Fixed {
         radius: 1.0,
     };
 
-    /// Nothing is known of what leaves the range.
+    /// Makes a ball. If it leaves the range, its radius is infinite, which means that the number is
+    /// unknown.
     fn new(middle: i128, radius: f64) -> Self {
         let is_known = middle.abs() < LIMIT && radius < f64::INFINITY;
         if is_known {
@@ -58,7 +63,7 @@ impl Fixed {
         }
     }
 
-    /// A number of `f64`; all its bits down to 2^-116.
+    /// Makes a ball of an `f64` number, with all its bits down to 2^-116.
     pub fn of(number: f64) -> Self {
         let scaled = number / ULP;
         let middle = if scaled.abs() < LIMIT as f64 {
@@ -69,7 +74,7 @@ impl Fixed {
         Self::new(middle, if scaled.fract() == 0.0 { 0.0 } else { 1.0 })
     }
 
-    /// A fraction times 2^`exponent`, bit by bit.
+    /// Makes a ball of a fraction times 2^`exponent`, computed bit by bit.
     pub fn fraction(numerator: i64, denominator: u64, exponent: i32) -> Self {
         let (above, below) = (
             u128::from(numerator.unsigned_abs()),
@@ -91,7 +96,7 @@ impl Fixed {
         )
     }
 
-    /// The midpoint alone.
+    /// Returns the midpoint without a radius.
     pub fn middle(self) -> Self {
         Self {
             radius: 0.0,
@@ -99,32 +104,34 @@ impl Fixed {
         }
     }
 
-    /// The `f64` next to the midpoint.
+    /// Returns the `f64` next to the midpoint.
     pub fn about(self) -> f64 {
         self.middle as f64 * ULP
     }
 
-    /// How far the true number may be from the midpoint.
+    /// Returns the largest distance of the true number from the midpoint.
     pub fn radius(self) -> f64 {
         up(self.radius * ULP)
     }
 
-    /// No number in it is larger, its sign left out.
+    /// Returns an upper bound of the absolute value of the numbers in the ball.
     pub fn size(self) -> f64 {
         up(self.about().abs() + self.radius())
     }
 
-    /// With `radius` more.
+    /// Returns the ball with its radius increased by `radius`.
     pub fn wider(self, radius: f64) -> Self {
         Self::new(self.middle, self.radius + up(radius / ULP))
     }
 
-    /// Whether every number in it is above zero, or every one below; `None` if 0 may be in it. `f64` has the midpoint to 2^-53.
+    /// Returns true if every number in the ball is above zero, and false if every number is below
+    /// zero. Returns `None` if the ball may contain 0. The `f64` of the midpoint is accurate to
+    /// 2^-53.
     pub fn is_positive(self) -> Option<bool> {
         (up(self.radius) < (self.middle as f64).abs()).then_some(self.middle > 0)
     }
 
-    /// All digits that are known, the last one to two units; no more than `most` of them.
+    /// Returns all known digits, but no more than `most`. The last digit is accurate to two units.
     pub fn decimal(self, most: f64) -> String {
         let places = (-self.radius().log10())
             .min(most - self.about().abs().log10().floor() - 1.0)
@@ -141,7 +148,7 @@ impl Fixed {
         )
     }
 
-    /// By a whole number.
+    /// Divides by a whole number.
     pub fn over(self, whole: u32) -> Self {
         Self::new(
             self.middle / i128::from(whole),
@@ -149,9 +156,10 @@ impl Fixed {
         )
     }
 
-    /// 1 by it; nothing is known of that if it may be 0.
+    /// Returns the inverse, which is unknown if the ball may contain 0.
     ///
-    /// For any x about 1/b: |1/b - x| = |x| |1 - b x|/|b x|, and |b x| >= 1 - |1 - b x|. Newton's iteration makes x good.
+    /// For any x about 1/b: |1/b - x| = |x| |1 - b x|/|b x|, and |b x| >= 1 - |1 - b x|. Newton's
+    /// iteration makes x accurate.
     pub fn inverse(self) -> Self {
         let middle = self.middle();
         let mut inverse = Self::of(1.0 / middle.about()).middle();
@@ -166,13 +174,17 @@ impl Fixed {
         })
     }
 
-    /// Coefficient k of the product of two power series, of which `a` and `b` are the coefficients 0 to k.
+    /// Returns coefficient k of the product of two power series; `a` and `b` are their coefficients
+    /// 0 to k.
     ///
-    /// |a b - a0 b0| <= |a0| rb + ra (|b0| + rb). With a = a1 2^64 + a0 the sum of a1 b1 is exact: 48 terms up to 2^120. Those of a1 b0,
-    /// a0 b1 and a0 b0 2^-64 are up to 2^124; each loses less than 2^8 of them, and the last one 2^-64 more: in all less than
-    /// 48 (3 2^8 + 1) 2^64, far less than the place rounded to.
+    /// |a b - a0 b0| <= |a0| rb + ra (|b0| + rb). With a = a1 2^64 + a0 the sum of a1 b1 is exact:
+    /// 48 terms up to 2^120. The terms a1 b0, a0 b1 and a0 b0 2^-64 are up to 2^124. Each of them
+    /// loses less than 2^8, and the last one 2^-64 more. The total loss is less than 48 (3 2^8 + 1)
+    /// 2^64, which is much less than the place rounded to.
     pub fn product(a: &[Self], b: &[Self]) -> Self {
-        let (mut high, mut cross, mut radius) = (0_i128, 0_i128, 0.0);
+        let mut high = 0_i128;
+        let mut cross = 0_i128;
+        let mut radius = 0.0;
         for (a, b) in a.iter().zip(b.iter().rev()) {
             let [(a1, a0), (b1, b0)] = [a, b].map(|x| ((x.middle >> 64) as i64, x.middle as u64));
             high += i128::from(a1) * i128::from(b1);
@@ -180,7 +192,8 @@ impl Fixed {
             cross += ((i128::from(a1) * i128::from(b0)) >> 8)
                 + ((i128::from(b1) * i128::from(a0)) >> 8)
                 + low;
-            // their upper halves, and one more
+
+            // The upper halves, plus one.
             let [size_a, size_b] =
                 [a1, b1].map(|x| (x.unsigned_abs() + 1) as f64 * ((1_u128 << 64) as f64 * ULP));
             radius += size_a * b.radius + a.radius * (size_b + b.radius * ULP);

@@ -1,9 +1,11 @@
-//! The exact motion, enclosed: a set that it is proved to be in, step by step. It is a midpoint, and segments about it that the
-//! derivatives after the start turn and stretch (R. Lohner, "Enclosing the solutions of ordinary initial and boundary value problems",
-//! 1987; a sum of segments in place of his one parallelepiped: W. Kuehn, "Rigorously computed orbits of dynamical systems without the
-//! wrapping effect", 1998).
+//! The exact motion, enclosed step by step in a set that is proved to contain it.
 //!
-//! Nothing here is estimated. Every bound names its theorem where it stands; what is rounded is counted.
+//! The set is a midpoint and segments about it, which the derivatives with respect to the start
+//! turn and stretch (R. Lohner, "Enclosing the solutions of ordinary initial and boundary value
+//! problems", 1987). A sum of segments replaces his single parallelepiped (W. Kuehn, "Rigorously
+//! computed orbits of dynamical systems without the wrapping effect", 1998).
+//!
+//! No bound is an estimate. Each one is documented with its theorem, and includes all roundings.
 
 mod equations;
 mod fixed;
@@ -19,24 +21,27 @@ pub use fixed::up;
 use fixed::{MOST_TERMS, ULP};
 pub use start::{Start, fastest_rate, sin_cos};
 
-/// Steps whose errors are kept in a box, before they become segments.
+/// The number of steps whose errors are collected in a box, before the box is converted to
+/// segments.
 const STEPS: u32 = 64;
-/// The most segments, before a box takes the place of all but those of the start.
+/// The largest number of segments. Then a box replaces all segments except those of the start.
 const SEGMENTS: usize = 6 * 2048;
-/// The finest step: a frame by two to the power of this.
+/// The binary logarithm of the largest number of steps in a frame.
 const MOST_HALVINGS: i32 = 24;
 
-/// How fine the arithmetic is.
+/// The precision of the arithmetic.
 #[derive(Clone, Copy, Debug)]
 pub struct Fineness {
-    /// The most terms of the midpoint's power series, up to 48.
+    /// The largest number of terms of the midpoint's power series, up to 48.
     pub terms: usize,
     /// The highest power of the derivatives' power series.
     pub tangents: usize,
-    /// How far beside the midpoint a difference is taken in place of a derivative, by the radius of the disc: 2^-100 at least.
+    /// The distance from the midpoint at which a difference quotient replaces a derivative,
+    /// relative to the radius of the disc; at least 2^-100.
     pub beside: f64,
-    /// What each allowance is multiplied by, 1 but in a test that takes one away: for roundings of the midpoint, the rest of its series,
-    /// what the derivatives lack, roundings of the segments.
+    /// The factors of the allowances, all 1 except in tests that remove one. They are for the
+    /// roundings of the midpoint, the remainder of its series, the errors of the derivatives, and
+    /// the roundings of the segments.
     pub allowances: [f64; 4],
 }
 
@@ -51,17 +56,20 @@ impl Default for Fineness {
     }
 }
 
-/// The true (sin a1, cos a1, S, C, P1, P2) is at middle + the sum of y_k segment_k + d, where |y_k| <= 1 and |d_i| <= about_i.
+/// An enclosure of the true (sin a1, cos a1, S, C, P1, P2).
+///
+/// These are at middle + the sum of y_k segment_k + d, where |y_k| <= 1 and |d_i| <= about_i.
 #[derive(Clone, Debug)]
 pub struct Enclosure {
-    /// Of the equations.
+    /// The equations of motion.
     pub equations: Equations,
-    /// Units of time in a second, a power of two, and frames.
+    /// The number of units of time in a second, as the exponent of a power of two, and the number
+    /// of frames in a second.
     pub frame: (i32, u16),
     middle: [Fixed; 6],
-    /// Those of the start come first, ...
+    /// The segments. Those of the start are the first six.
     segments: Vec<[f64; 6]>,
-    /// ... which were so long.
+    /// The lengths of the six segments of the start.
     start: [f64; 6],
     about: [f64; 6],
     steps: u32,
@@ -69,16 +77,18 @@ pub struct Enclosure {
 }
 
 impl Enclosure {
-    /// From anywhere in `start`, with 2^`frame.0` units of time and `frame.1` frames in a second.
+    /// Makes an enclosure of all motions that begin in `start`, with 2^`frame.0` units of time and
+    /// `frame.1` frames in a second.
     pub fn new(
         equations: Equations,
         frame: (i32, u16),
         start: [Fixed; 6],
         fineness: Fineness,
     ) -> Self {
-        // none is without length
+        // No segment has the length zero.
         let about = start.map(|x| x.radius() + ULP);
-        let (middle, segments) = (start.map(Fixed::middle), Vec::new());
+        let middle = start.map(Fixed::middle);
+        let segments = Vec::new();
         let mut set = Self {
             equations,
             frame,
@@ -93,13 +103,14 @@ impl Enclosure {
         set
     }
 
-    /// The smallest box about the set: (sin a1, cos a1, S, C, P1, P2).
+    /// Returns the smallest box that contains the set: (sin a1, cos a1, S, C, P1, P2).
     pub fn hull(&self) -> [Fixed; 6] {
         let extent = self.extent(0);
         from_fn(|i| self.middle[i].wider(extent[i]))
     }
 
-    /// How far each number may be from its middle, the first segments left out.
+    /// Returns the largest distance of each number from its middle, without the first `left_out`
+    /// segments.
     fn extent(&self, left_out: usize) -> [f64; 6] {
         let add = |sum: [f64; 6], segment: &[f64; 6]| from_fn(|i| sum[i] + segment[i].abs());
         self.segments[left_out..]
@@ -108,7 +119,7 @@ impl Enclosure {
             .map(up)
     }
 
-    /// How many times larger a small error of the start has become, about.
+    /// Returns about the factor by which a small error of the start has grown.
     pub fn growth(&self) -> f64 {
         let of = |i: usize| {
             self.segments
@@ -120,18 +131,20 @@ impl Enclosure {
         (0..6).map(of).fold(0.0, f64::max)
     }
 
-    /// Where the rods point, (sin, cos) each.
+    /// Returns the directions of the rods, (sin, cos) each.
     pub fn directions(&self) -> [[Fixed; 2]; 2] {
         let [sin1, cos1, s, c, ..] = self.hull();
         [[sin1, cos1], [sin1 * c - cos1 * s, cos1 * c + sin1 * s]]
     }
 
-    /// Moves on by a frame; `None` if the set has grown too large to be followed, or its numbers too large for the arithmetic.
+    /// Advances by a frame. Returns `None` if the set has become too large to be followed, or its
+    /// numbers too large for the arithmetic.
     pub fn advance(&mut self) -> Option<()> {
         self.advance_unless(&AtomicUsize::new(0))
     }
 
-    /// As [`advance`](Self::advance); also `None`, in the middle of the frame, once `stopped` is not zero.
+    /// Advances like [`advance`](Self::advance), and returns `None` in the middle of the frame if
+    /// `stopped` is not zero.
     pub fn advance_unless(&mut self, stopped: &AtomicUsize) -> Option<()> {
         let mut left = vec![0];
         while let Some(halvings) = left.pop() {
@@ -143,14 +156,17 @@ impl Enclosure {
         Some(())
     }
 
-    /// By 2^-`halvings` frames.
+    /// Advances by 2^-`halvings` frames.
     ///
-    /// What starts at e from the midpoint m ends at F(m + e); F is the sum of a series up to any order, and a rest.
+    /// A motion that starts at m + e, where m is the midpoint, ends at F(m + e). F is the sum of a
+    /// series up to any order, and a remainder.
     ///
-    /// Theorem (Cauchy's estimate on the disc m + s e, |s| <= 1/t, `share` being t): |F(m + e) - F(m) - F'(m) e| <= B t^2/(1 - t) if F is
-    /// within B of m there, as every sum of the series is; and if F is at most b, |F(m + e) - F(m)| <= b t/(1 - t). The first for one
-    /// coordinate, e being `beside`, bounds what the quotient of a difference is off by from the derivative. In time: the coefficient of
-    /// t^k is at most the disc's radius by `time`^-k, and what a series has beyond an order `tail` of the radius.
+    /// Theorem (Cauchy's estimate on the disc m + s e, |s| <= 1/t, `share` being t): |F(m + e) -
+    /// F(m) - F'(m) e| <= B t^2/(1 - t) if F is within B of m there, as every sum of the series is;
+    /// and if F is at most b, |F(m + e) - F(m)| <= b t/(1 - t). The first inequality for one
+    /// coordinate, e being `beside`, bounds the error of the difference quotient that replaces the
+    /// derivative. In time, the coefficient of t^k is at most the disc's radius times `time`^-k,
+    /// and the remainder of a series beyond an order is at most `tail` times the radius.
     fn step(&mut self, halvings: i32) -> Option<()> {
         let (unit, rate) = self.frame;
         let (step, extent) = (
@@ -158,6 +174,7 @@ impl Enclosure {
             self.extent(0),
         );
         extent.iter().all(|&extent| extent < 1.0).then_some(())?;
+
         let (time, radii) = discs(&self.equations, &self.middle, &extent, step)?;
         let Fineness {
             terms,
@@ -166,6 +183,7 @@ impl Enclosure {
             allowances: [rounding, rest, bend, turn],
         } = self.fineness;
 
+        // The midpoint at the end, by a series of the order that is needed.
         let tail = |order: usize| up((0..order).fold(1.0 / (time - 1.0), |power, _| power / time));
         let ends = |order: usize| radii.iter().all(|radius| radius * tail(order) < ULP);
         let order = (1..terms - 1)
@@ -177,6 +195,8 @@ impl Enclosure {
             z.each_ref().map(|z| sum(z)),
             z.each_ref().map(|z| sum(&z[..=low])),
         );
+
+        // The derivatives `v` with respect to the start, by difference quotients.
         let off = radii.map(|radius| (beside * radius).log2().floor().exp2());
         let columns: [[Fixed; 6]; 6] = from_fn(|j| {
             let mut start = self.middle;
@@ -186,12 +206,16 @@ impl Enclosure {
         });
         let v: [[f64; 6]; 6] = from_fn(|i| from_fn(|j| columns[j][i].about() / off[j]));
 
+        // The allowances for everything that is left out.
         let share = (0..6)
             .map(|i| up(extent[i] / (STARTS * radii[i])))
             .fold(0.0, f64::max);
-        // the last term: six quotients, each off by no more than twice this
+
+        // The last term is for six quotients, each with an error of no more than twice this.
         let lacking = bend * share / (1.0 - share) * (share + tail(low) + 12.0 * beside / STARTS);
-        // Higham, (3.5): a sum of six products is rounded by at most 7 u, u = 2^-53, times the sum of their sizes; one u is of v
+
+        // Higham, (3.5): a sum of six products is rounded by at most 7 u, u = 2^-53, times the sum
+        // of their sizes. One u is for v.
         let rounded = |i: usize, j: usize| {
             columns[j][i].radius() / off[j] + 5.0 * f64::EPSILON * v[i][j].abs()
         };
@@ -205,17 +229,20 @@ impl Enclosure {
             .iter()
             .all(|radius| radius.is_finite())
             .then_some(())?;
+
         for segment in &mut self.segments {
             *segment = v.map(|row| row.iter().zip(*segment).map(|(x, y)| x * y).sum());
         }
-        (self.middle, self.about, self.steps) = (end.map(Fixed::middle), about, self.steps + 1);
+        self.middle = end.map(Fixed::middle);
+        self.about = about;
+        self.steps += 1;
         if self.steps.is_multiple_of(STEPS) {
             self.settle();
         }
         Some(())
     }
 
-    /// Makes the box to segments along the axes.
+    /// Converts the box to segments along the axes.
     fn settle(&mut self) {
         if self.segments.len() >= SEGMENTS {
             self.about = self.extent(6);
@@ -228,7 +255,7 @@ impl Enclosure {
     }
 }
 
-/// Of the series after one step.
+/// Returns the sum of a series after one step.
 fn sum(terms: &[Fixed]) -> Fixed {
     terms
         .iter()

@@ -1,4 +1,4 @@
-//! A pendulum and its start, enclosed.
+//! The set in which the motion of a pendulum starts.
 
 use std::array::from_fn;
 
@@ -8,7 +8,8 @@ use super::equations::Equations;
 use super::fixed::Fixed;
 use super::{Enclosure, Fineness};
 
-/// The fastest rate in a motion, 1/s: the fast normal frequency or the greatest angular velocity that its energy allows.
+/// Returns the fastest rate in a motion, 1/s: the fast normal frequency or the largest angular
+/// velocity that its energy allows.
 pub fn fastest_rate(parameters: &Parameters<f64>, motion: &Motion<f64>) -> f64 {
     Pendulum::new(parameters).map_or(1.0, |pendulum| {
         let Bounds { w1, w2, .. } = pendulum.bounds(&pendulum.to_state(motion));
@@ -20,19 +21,20 @@ pub fn fastest_rate(parameters: &Parameters<f64>, motion: &Motion<f64>) -> f64 {
     })
 }
 
-/// A pendulum and how it starts.
+/// A pendulum and the start of its motion.
 #[derive(Clone, Copy, Debug)]
 pub struct Start {
-    /// In SI units; rounded, if there are fractions.
+    /// The numbers in SI units, rounded to `f64`.
     pub about: (Parameters<f64>, Motion<f64>),
-    /// As it was given, if not in `f64`: numerators and denominators of a1, a2; w1, w2; m1, m2; l1, l2; g.
+    /// The exact numbers if they were not given in `f64`: numerators and denominators of a1, a2;
+    /// w1, w2; m1, m2; l1, l2; g.
     pub fractions: Option<[(i64, u64); 9]>,
-    /// Whether its angles and velocities are in degrees there.
+    /// True if the angles (first) and the velocities (second) of the fractions are in degrees.
     pub degrees: [bool; 2],
 }
 
 impl Start {
-    /// Every number as it is in `f64`.
+    /// Makes a start whose numbers are exactly these `f64`.
     pub fn of(parameters: &Parameters<f64>, motion: &Motion<f64>) -> Self {
         Self {
             about: (*parameters, *motion),
@@ -41,14 +43,16 @@ impl Start {
         }
     }
 
-    /// The set that the motion starts in, with `rate` frames to a second.
+    /// Returns the set that contains the start, for `rate` frames a second.
     ///
-    /// The unit of time is so short that nothing turns by more than 4 rad, and 2^e is near the root of (m1 + m2)/m1: so the equations'
-    /// numbers are neither large nor small, for masses and lengths within a factor of 1000 and 30 of each other.
+    /// The unit of time is so short that no rod turns by more than 4 rad in it, and 2^e is near the
+    /// root of (m1 + m2)/m1. The numbers of the equations are then neither large nor small, for
+    /// masses within a factor of 1000 and lengths within a factor of 30 of each other.
     pub fn enclose(&self, rate: u16) -> Enclosure {
         let (parameters @ Parameters { m1, m2, l1, l2, g }, motion @ Motion { a1, a2, w1, w2 }) =
             self.about;
-        // Where next to nothing moves any unit will do.
+
+        // If almost nothing moves, any unit is suitable.
         let unit = (fastest_rate(&parameters, &motion) / 4.0)
             .log2()
             .ceil()
@@ -56,6 +60,7 @@ impl Start {
         let e = (0.5 * (1.0 + m2 / m1).log2()).clamp(0.0, 7.0).round() as i32;
         let [by, by1, by2] = [m1.max(m2), l1, l2].map(|x| x.log2() as i32);
 
+        // The given numbers, exact if possible, with angles less than a whole circle.
         let about = [a1, a2, w1, w2, m1, m2, l1, l2, g];
         let fractions = self.fractions.map(|mut fractions| {
             if self.degrees[0] {
@@ -65,21 +70,29 @@ impl Start {
             }
             fractions
         });
-        // each by any power of two
+
+        // Each is multiplied by a power of two.
         let [a1, a2, w1, w2, m1, m2, l1, l2, g] = from_fn(|i| {
             move |exponent: i32| match fractions {
                 Some(fractions) => Fixed::fraction(fractions[i].0, fractions[i].1, exponent),
                 None => Fixed::of(about[i] * f64::from(exponent).exp2()),
             }
         });
+
+        // The constants of the equations.
         let total = (m1(-by) + m2(-by)).inverse();
-        let (upper, lower) = (m1(e - by) * total, m2(e - by) * total);
-        let (over_l1, over_l2) = (l1(-by1).inverse(), l2(-by2).inverse());
-        let (rods, coupling) = (l1(-by2) * over_l2, lower * l2(-by1) * over_l1);
+        let upper = m1(e - by) * total;
+        let lower = m2(e - by) * total;
+        let over_l1 = l1(-by1).inverse();
+        let over_l2 = l2(-by2).inverse();
+        let rods = l1(-by2) * over_l2;
+        let coupling = lower * l2(-by1) * over_l1;
         let gravity = [
             g(e - 2 * unit - by1) * over_l1,
             g(-2 * unit - by2) * over_l2,
         ];
+
+        // The start in the six numbers of the direction form.
         let radians = |x: Fixed, degrees: bool| if degrees { x.over(180) * Fixed::PI } else { x };
         let [a1, a2] = if self.degrees[0] {
             [a1(0), a2(0)].map(|a| radians(a, true))
@@ -87,7 +100,8 @@ impl Start {
             [without_turns(a1, about[0]), without_turns(a2, about[1])]
         };
         let [w1, w2] = [w1(-unit), w2(-unit)].map(|w| radians(w, self.degrees[1]));
-        let ([sin1, cos1], [s, c]) = (sin_cos(a1), sin_cos(a1 - a2));
+        let [sin1, cos1] = sin_cos(a1);
+        let [s, c] = sin_cos(a1 - a2);
         let start = [
             sin1,
             cos1,
@@ -111,7 +125,8 @@ impl Start {
     }
 }
 
-/// Returns an angle in degrees less whole circles, exactly: -180 to 180 of them.
+/// Returns an angle in degrees without whole circles, exactly. The result is between -180 and 180
+/// degrees.
 fn without_whole_circles((numerator, denominator): (i64, u64)) -> (i64, u64) {
     let circle = 360 * i128::from(denominator);
     let rest = i128::from(numerator).rem_euclid(circle);
@@ -120,17 +135,18 @@ fn without_whole_circles((numerator, denominator): (i64, u64)) -> (i64, u64) {
     } else {
         rest
     };
-    // It is nearer to zero than the numerator, or has its sign changed.
+
+    // The result is nearer to zero than the numerator, or has the opposite sign.
     (i64::try_from(nearest).unwrap_or(numerator), denominator)
 }
 
-/// The largest angle, rad, that is enclosed as it is.
+/// The largest angle, rad, that is enclosed without taking whole turns away.
 const LARGEST_ANGLE: f64 = 64.0;
 
-/// Returns an angle of about `about` rad less whole turns; `angle` gives it times 2^n.
+/// Returns an angle of about `about` rad without whole turns. `angle(n)` returns the angle times
+/// 2^n.
 ///
-/// A large angle is taken 2^n times smaller, so that it is in range. Its rounding then counts 2^n
-/// times as much.
+/// A large angle is divided by 2^n so that it is in range. Its rounding then counts 2^n times.
 fn without_turns(angle: impl Fn(i32) -> Fixed, about: f64) -> Fixed {
     if about.abs() <= LARGEST_ANGLE {
         return angle(0);
@@ -145,16 +161,18 @@ fn without_turns(angle: impl Fn(i32) -> Fixed, about: f64) -> Fixed {
     rest
 }
 
-/// The sine and the cosine.
+/// Returns the sine and the cosine.
 ///
-/// Theorem (Leibniz): what an alternating series with falling terms lacks is less than the last term added. Terms fall from the fifth on,
-/// |x| being below 4 when whole turns are taken away.
+/// Theorem (Leibniz): the remainder of an alternating series with decreasing terms is smaller than
+/// the last term added. The terms decrease from the fifth on, because |x| is below 4 without whole
+/// turns.
 pub fn sin_cos(angle: Fixed) -> [Fixed; 2] {
     let turn = Fixed::PI + Fixed::PI;
     let x = angle - turn * Fixed::of((angle.about() / turn.about()).round());
     let square = x * x;
     [(x, 1), (Fixed::ONE, 0)].map(|(first, power)| {
-        let (mut sum, mut term) = (first, first);
+        let mut sum = first;
+        let mut term = first;
         for power in (power..64_u32).step_by(2) {
             term = Fixed::ZERO - (term * square).over((power + 1) * (power + 2));
             sum = sum + term;

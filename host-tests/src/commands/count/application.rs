@@ -1,5 +1,5 @@
-//! What an application executes for a frame: all of it, what shows it, the calls of a function; and the planner's price lists,
-//! which are counted with it.
+//! The costs of a frame of an application: the whole frame, the part that shows it, and the calls
+//! of a function. The planner's price lists are counted here as well.
 
 use std::collections::BTreeSet;
 use std::path::PathBuf;
@@ -19,8 +19,8 @@ use crate::emulator::boards::Board;
 use crate::emulator::qemu::{Clock, Machine, Settings};
 use crate::emulator::toolchain::{Toolchain, workspace};
 
-/// The functions that show a frame, the module's path and the name: they draw it, and bring it to the panel and over the link. They
-/// are not inlined, and once in a program.
+/// The functions that show a frame, as path of the module and name. They draw the frame, and send
+/// it to the panel and over the link. They are not inlined, and each exists once in a program.
 const SHOWING: [(&str, &str); 7] = [
     ("firmware::graphics::brush::", "::lighten"),
     ("firmware::graphics::canvas::", "::fade"),
@@ -31,16 +31,16 @@ const SHOWING: [(&str, &str); 7] = [
     ("firmware::board::cortex_m::retained::", "keep"),
 ];
 
-/// What a frame executed.
+/// The cost of a frame.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct FrameProfile {
     pub whole: Cost,
-    /// In the functions that show it, with all that they call.
+    /// The cost of the functions that show the frame, with all functions that they call.
     pub showing: Cost,
 }
 
 impl FrameProfile {
-    /// Lets `board` run to its next frame and profiles all that it executes for it.
+    /// Runs `board` to its next frame and profiles everything that it executes.
     pub fn of_next(board: &mut Machine, image: &Image, core: Core) -> Result<Self> {
         let showing = SHOWING
             .into_iter()
@@ -53,9 +53,9 @@ impl FrameProfile {
     }
 }
 
-/// Where a function of an application begins; the error names one that it lacks.
+/// Returns the address of a function of an application. The error names a function that is missing.
 fn address(image: &Image, module: &str, name: &str) -> Result<u32> {
-    // One version of the compiler writes <path::Type>::name, the next path::Type::name.
+    // Some versions of the compiler write <path::Type>::name, others path::Type::name.
     let is_it =
         |path: &str| path.trim_start_matches('<').starts_with(module) && path.ends_with(name);
     let function = image
@@ -66,7 +66,8 @@ fn address(image: &Image, module: &str, name: &str) -> Result<u32> {
         .ok_or_else(|| image.lacks(&format!("{module}..{name}")))
 }
 
-/// Lets `board` run to its next frame: what that takes, and on the way the calls of the functions that begin at `entries`.
+/// Runs `board` to its next frame. Returns the cost of that, and the calls of the functions that
+/// begin at `entries`.
 fn next_frame<'a>(
     board: &mut Machine,
     image: &'a Image,
@@ -74,7 +75,8 @@ fn next_frame<'a>(
     entries: BTreeSet<u32>,
 ) -> Result<(Cost, Calls<'a>)> {
     board.next_frame_logged(|mut log| {
-        let (mut whole, mut stream) = (Cost::default(), Stream::of(image, core));
+        let mut whole = Cost::default();
+        let mut stream = Stream::of(image, core);
         let mut calls = Calls::of(image, core, entries);
         for_each_instruction(&mut log, &mut |registers| {
             whole += stream
@@ -86,10 +88,11 @@ fn next_frame<'a>(
     })
 }
 
-/// What stands before and after the lists in their file.
+/// The lines before and after the price lists in their file.
 const MARKS: [&str; 2] = ["// made by cargo count --write-prices\n", "// so far\n"];
 
-/// What a step costs by each method that a plan chooses from, on one board for each kind of core.
+/// Returns the price list of every method that a plan chooses from, on one board for each kind of
+/// core.
 pub fn prices(toolchain: &Toolchain) -> Result<Vec<(&'static Board, Costs)>> {
     let targets = Target::build_all(toolchain)?;
     targets
@@ -117,7 +120,8 @@ fn on(target: &Target, toolchain: &Toolchain) -> Result<Costs> {
     })
 }
 
-/// What only the application does: a step in 64 bits of the plans' order, and the preparation of a motion, the most expensive.
+/// Returns the costs that only the application has: a 64-bit fixed-point step of the plans' order,
+/// and the most expensive preparation of a motion.
 fn in_application(board: &'static Board, toolchain: &Toolchain) -> Result<(f32, f32)> {
     let elf = toolchain.build_for(board)?;
     let image = Image::read(&elf)?;
@@ -130,6 +134,7 @@ fn in_application(board: &'static Board, toolchain: &Toolchain) -> Result<(f32, 
         debugger: true,
         limit: LIMIT,
     };
+
     let mut machine = Machine::halted(&settings)?;
     let most = |machine: &mut Machine, entry: u32| {
         let (_, calls) = next_frame(machine, &image, board.core(), BTreeSet::from([entry]))?;
@@ -141,6 +146,7 @@ fn in_application(board: &'static Board, toolchain: &Toolchain) -> Result<(f32, 
                 .fold(0.0, f32::max),
         )
     };
+
     machine.run_to_frame()?;
     let step = most(
         &mut machine,
@@ -156,7 +162,7 @@ fn in_application(board: &'static Board, toolchain: &Toolchain) -> Result<(f32, 
     Ok((step, prepared))
 }
 
-/// Writes them into the firmware's source; the file.
+/// Writes the price lists into the firmware's source and returns the path of the file.
 pub fn write_prices(prices: &[(&Board, Costs)]) -> Result<PathBuf> {
     let path = workspace().join("firmware/src/prices.rs");
     let old = std::fs::read_to_string(&path)?;

@@ -1,4 +1,5 @@
-//! `cargo count`: what each method costs on the target, per step; or any function of any program, per call.
+//! `cargo count`: the cost of a step of each method on the target, or of a call of any function of
+//! any program.
 
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -17,9 +18,9 @@ use crate::emulator::boards::{BOARDS, Board};
 use crate::emulator::toolchain::{self, Toolchain};
 use cycles::{Cost, ERROR_BAR};
 
-/// As in the report's regular scene, with which the figures here agree.
+/// The gravity of the report's regular scene, m/s^2, so that the figures agree with it.
 const GRAVITY: f32 = 9.81;
-/// Every instruction executed is logged: many more would take hours.
+/// The limit of steps. Every executed instruction is logged, so a much larger number would take hours.
 const MOST_STEPS: i64 = 65_536;
 
 const EXAMPLES: &str = "Examples:
@@ -92,9 +93,11 @@ pub fn run(options: &CountOptions) -> anyhow::Result<()> {
         options.on.clone()
     };
     let toolchain = toolchain::set_up()?;
+
     for (place, board) in boards.into_iter().enumerate() {
         let target = Target::build(&toolchain, board)?;
-        // After the first build, which may fail.
+
+        // The heading is printed after the first build, which may fail.
         if place == 0 && !options.listing {
             say(options.setting())?;
             say(ERROR_BAR)?;
@@ -106,7 +109,8 @@ pub fn run(options: &CountOptions) -> anyhow::Result<()> {
                 .try_for_each(|request| list(&target, request, options.steps))?;
             continue;
         }
-        // Some at a time, so that the first rows come soon.
+
+        // The methods are counted in groups, so that the first rows appear soon.
         for requests in requests.chunks(rayon::current_num_threads()) {
             let rows = requests.par_iter().map(|request| {
                 let given = options.steps.map(|stride| Request { stride, ..*request });
@@ -121,12 +125,13 @@ pub fn run(options: &CountOptions) -> anyhow::Result<()> {
                 .try_for_each(say)?;
         }
     }
+
     Ok(())
 }
 
 impl CountOptions {
-    /// What is asked for of each method with this in its name, but of those that refuse such a pendulum, which the host
-    /// finds out before anything is built or printed; one at least.
+    /// Returns a request for each method whose name matches, except those that refuse this
+    /// pendulum; at least one. The host checks this before anything is built or printed.
     fn requests(&self) -> anyhow::Result<Vec<Request>> {
         let Self { m2, l2, angle, .. } = *self;
         let request = |method| Request {
@@ -151,6 +156,7 @@ impl CountOptions {
             .crc()
             .map(|_| request)
         };
+
         let is_name = Method::ALL
             .iter()
             .any(|method| method.name() == self.method);
@@ -162,6 +168,7 @@ impl CountOptions {
             }
         });
         let checked: Vec<_> = methods.map(|&method| check(request(method))).collect();
+
         if checked.is_empty() {
             let names = Method::ALL
                 .iter()
@@ -170,6 +177,7 @@ impl CountOptions {
                 .join(", ");
             bail!("no method '{}'; there are {names}", self.method)
         }
+
         if checked.iter().all(Result::is_err) {
             let requests = checked.into_iter().collect::<Result<_, _>>();
             return requests.map_err(|error| anyhow!("{}{error}", option_of(&error)));
@@ -177,7 +185,8 @@ impl CountOptions {
         Ok(checked.into_iter().flatten().collect())
     }
 
-    /// What is stepped: arithmetic in software takes other ways for other numbers, so its counts depend on all of it.
+    /// Returns the setting in words. The counts depend on all of it, because software arithmetic
+    /// takes different paths for different numbers.
     fn setting(&self) -> String {
         let Self {
             m2,
@@ -193,7 +202,8 @@ impl CountOptions {
     }
 }
 
-/// The option that sets what is refused, as an error begins; empty if none does.
+/// Returns the option that sets the refused parameter, as the beginning of an error; empty if no
+/// option does.
 fn option_of(error: &Error) -> &'static str {
     match error.parameter() {
         Parameter::M2 => "--m2: ",
@@ -252,7 +262,7 @@ fn row(method: Method, board: &Board, cost: &StepCost) -> String {
     ])
 }
 
-/// Every instruction with its share of a step: address, executions, cycles, stalls, kind.
+/// Prints every instruction with its share of a step: address, executions, cycles, stalls, kind.
 fn list(target: &Target, request: &Request, steps: Option<u32>) -> anyhow::Result<()> {
     let stride = steps.map_or_else(|| affordable_steps(target, request), Ok)?;
     let calls = counted(target, &Request { stride, ..*request })?;
@@ -262,6 +272,7 @@ fn list(target: &Target, request: &Request, steps: Option<u32>) -> anyhow::Resul
     ))?;
     say(ERROR_BAR)?;
     let mut function = None;
+
     for (
         address,
         (
@@ -289,10 +300,11 @@ fn list(target: &Target, request: &Request, steps: Option<u32>) -> anyhow::Resul
             instruction.row.name
         ))?;
     }
+
     Ok(())
 }
 
-/// What a function of any program costs, per call.
+/// Prints the cost of a call of a function of any program.
 fn count_calls(
     toolchain: &Toolchain,
     options: &CountOptions,
@@ -304,6 +316,7 @@ fn count_calls(
     let target = Target::of(toolchain, board, elf.to_owned()).map_err(refused)?;
     let limit = Duration::from_secs(options.seconds.into());
     let (function, calls, ended) = calls_of(&target, function, limit).map_err(refused)?;
+
     let number = calls.len();
     if let Ok(status) = &ended.status {
         ensure!(
@@ -312,7 +325,9 @@ fn count_calls(
             ended.output.trim()
         );
     }
+
     ended.output.lines().for_each(complain);
+
     match ended.status {
         Ok(status) => complain(format_args!("the program ended by itself, {status}")),
         Err(_) => complain(format_args!(
@@ -320,6 +335,7 @@ fn count_calls(
             limit.as_secs()
         )),
     }
+
     say(format_args!(
         "{} on {}, from its first instruction to its return: calls {number}",
         function.name, board.name
@@ -329,6 +345,7 @@ fn count_calls(
         "{:12} {:>12} {:>12} {:>12}",
         "per call", "mean", "least", "most"
     ))?;
+
     for (title, is_instructions) in [("instructions", true), ("cycles", false)] {
         let count = |cost: &Cost| {
             if is_instructions {
@@ -338,10 +355,12 @@ fn count_calls(
             }
         };
         let counts = || calls.iter().map(count);
-        let (least, most) = (counts().min().unwrap_or(0), counts().max().unwrap_or(0));
+        let least = counts().min().unwrap_or(0);
+        let most = counts().max().unwrap_or(0);
         let mean = counts().sum::<u64>() as f64 / number as f64;
         say(format_args!("{title:12} {mean:12.1} {least:12} {most:12}"))?;
     }
+
     Ok(())
 }
 

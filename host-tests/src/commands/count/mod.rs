@@ -1,5 +1,5 @@
-//! Counts what a method costs on the target: executed instructions (exact), Cortex-M cycles (an **estimate** from
-//! the published instruction timings), bytes of code and bytes of stack.
+//! Counts the costs of a method on the target: executed instructions (exact), Cortex-M cycles (an
+//! **estimate** from the published instruction timings), bytes of code and bytes of stack.
 
 mod application;
 mod command;
@@ -13,15 +13,17 @@ use anyhow::Result;
 use firmware::job::Request;
 use trace::counted;
 
-/// Name of the function, one per method, that is counted from its first instruction to its return.
+/// The name of the function, one per method, whose calls are counted from the first instruction to
+/// the return.
 const COUNTED: &str = "counted_steps";
 
-/// Steps over which an average is fair to what a method does only now and then: a second of steps of 2^-8 s, in which the
-/// direction form restores its lengths eight times.
+/// The number of steps whose average includes everything that a method does rarely. It is a second
+/// of steps of 2^-8 s, in which the direction form restores its lengths eight times.
 pub const FULL_CYCLE: u32 = 256;
-/// The rarest thing that a method does regularly, it does once in so many steps.
+/// The period, in steps, of the rarest thing that a method does regularly.
 const REGULAR: u64 = 32;
-/// Fewer would show little but the start, where momenta are zero and soft-float arithmetic takes short cuts.
+/// The smallest number of steps. Fewer would show mainly the start, where momenta are zero and
+/// soft-float arithmetic takes shortcuts.
 const LEAST_STEPS: u64 = 4;
 const AFFORDABLE_INSTRUCTIONS: u64 = 300_000;
 
@@ -30,17 +32,20 @@ pub struct StepCost {
     pub steps: u32,
     pub instructions: f64,
     pub cycles: f64,
-    /// Those of the cycles that wait for a floating-point result or for the unit that makes one.
+    /// The part of the cycles that waits for a floating-point result or for the floating-point
+    /// unit.
     pub stalls: f64,
-    /// Bytes of the distinct instructions executed; literal pools are not among them.
+    /// The size of the distinct executed instructions, without literal pools, in bytes.
     pub hot_bytes: u32,
-    /// Bytes of all functions entered, with their literal pools and the paths not taken.
+    /// The size of all entered functions, with their literal pools and the paths that were not
+    /// taken, in bytes.
     pub code_bytes: u32,
-    /// Bytes of stack from the call of the step loop on.
+    /// The stack used from the call of the step loop, in bytes.
     pub stack_bytes: u32,
 }
 
-/// The steps to count so that the counting takes a few seconds: [`FULL_CYCLE`] of a cheap method, fewer of a costly one.
+/// Returns the number of steps that can be counted in a few seconds: [`FULL_CYCLE`] for a cheap
+/// method, fewer for an expensive one.
 pub fn affordable_steps(target: &Target, request: &Request) -> Result<u32> {
     let one = counted(
         target,
@@ -60,7 +65,8 @@ pub fn affordable_steps(target: &Target, request: &Request) -> Result<u32> {
     } as u32)
 }
 
-/// The cost of one step of `request` on `target`, averaged over as many steps as can be afforded.
+/// Returns the cost of one step of `request` on `target`, averaged over the number of steps that
+/// can be counted in a few seconds.
 pub fn affordable_cost(target: &Target, request: &Request) -> Result<StepCost> {
     step_cost(
         target,
@@ -71,9 +77,11 @@ pub fn affordable_cost(target: &Target, request: &Request) -> Result<StepCost> {
     )
 }
 
-/// The cost of one step of `request` on `target`, averaged over the steps after the first; as many as to its first sample.
+/// Returns the cost of one step of `request` on `target`, averaged over the steps after the first,
+/// as many as to its first sample.
 ///
-/// A run of one step more minus a run of one step, so that calling and returning cancel.
+/// It is the difference between a run with one step more and a run of one step, so that the costs
+/// of the call and the return cancel.
 pub fn step_cost(target: &Target, request: &Request) -> Result<StepCost> {
     let steps = request.stride;
     let run = |stride| {
@@ -86,7 +94,8 @@ pub fn step_cost(target: &Target, request: &Request) -> Result<StepCost> {
             },
         )
     };
-    let (calling, whole) = (run(1)?.cost(), run(1 + steps)?);
+    let calling = run(1)?.cost();
+    let whole = run(1 + steps)?;
     let all = whole.cost();
     let per_step = |all: u64, calling: u64| all.saturating_sub(calling) as f64 / f64::from(steps);
     Ok(StepCost {

@@ -1,8 +1,10 @@
-//! A board with the program that measures, and the stream that it executes, out of QEMU's log.
+//! A board with the program that measures, and the stream of instructions that it executes, from
+//! QEMU's log.
 //!
-//! QEMU runs one instruction per translation block (`-singlestep`, since 8.1 `one-insn-per-tb`) and, before each,
-//! writes the processor's registers to its log (`-d cpu,nochain`): no plugin, nothing to compile, the same text since
-//! 2.x. The log comes through a pipe, a few hundred thousand instructions per second.
+//! QEMU runs one instruction per translation block (`-singlestep`, since 8.1 `one-insn-per-tb`) and
+//! writes the processor's registers to its log before each of them (`-d cpu,nochain`). This needs
+//! no plugin and no compilation, and the text has been the same since 2.x. The log is sent through
+//! a pipe, with a few hundred thousand instructions per second.
 
 use std::collections::BTreeSet;
 use std::io;
@@ -25,12 +27,12 @@ pub(super) const LIMIT: Duration = Duration::from_secs(1800);
 
 #[derive(Debug)]
 pub struct Ended {
-    /// What QEMU's exit says of it; an error if its time was up.
+    /// The exit status of QEMU, or an error if its time was up.
     pub status: io::Result<ExitStatus>,
     pub output: String,
 }
 
-/// An emulated board and the program that measures, or another.
+/// An emulated board with a program, by default the one that measures.
 #[derive(Debug)]
 pub struct Target {
     pub board: &'static Board,
@@ -44,7 +46,8 @@ impl Target {
         Self::of(toolchain, board, toolchain.build("measure", board.target)?)
     }
 
-    /// Another program. One that takes the same requests makes its steps in a function called `counted_steps`.
+    /// Returns a target with another program. A program that takes the same requests must make its
+    /// steps in a function called `counted_steps`.
     pub fn of(toolchain: &Toolchain, board: &'static Board, elf: PathBuf) -> Result<Self> {
         let image = Image::read(&elf)?;
         Ok(Self {
@@ -55,7 +58,8 @@ impl Target {
         })
     }
 
-    /// One board for each kind of core: the same machine with a Cortex-M3, a Cortex-M4F and a Cortex-M0+.
+    /// Returns one board for each kind of core: the same machine with a Cortex-M3, a Cortex-M4F and
+    /// a Cortex-M0+.
     pub fn build_all(toolchain: &Toolchain) -> Result<Vec<Self>> {
         BOARDS
             .iter()
@@ -64,8 +68,8 @@ impl Target {
             .collect()
     }
 
-    /// Runs `request` at full speed: its CRC, and the ticks of the board's clock under `-icount`, where an
-    /// instruction takes 1 ns.
+    /// Runs `request` at full speed. Returns its CRC and the ticks of the board's clock under
+    /// `-icount`, where an instruction takes 1 ns.
     pub fn run(&self, request: &Request) -> Result<(u32, u64)> {
         let output = self.output(request)?;
         let numbers = output.trim().split_once(' ');
@@ -75,7 +79,7 @@ impl Target {
         numbers.with_context(|| format!("{}: {}", request.method, output.trim()))
     }
 
-    /// Runs `request` at full speed: what it prints.
+    /// Runs `request` at full speed and returns its output.
     pub fn output(&self, request: &Request) -> Result<String> {
         Ok(process::run(
             self.emulator(&request.to_string())
@@ -85,8 +89,8 @@ impl Target {
         .stdout)
     }
 
-    /// Runs the program with `argument` on its semihosting command line and calls `each` before every instruction, in
-    /// order.
+    /// Runs the program with `argument` on its semihosting command line and calls `each` before
+    /// every instruction, in order.
     fn trace(
         &self,
         argument: &str,
@@ -101,6 +105,7 @@ impl Target {
             .stdin(Stdio::null())
             .stdout(Stdio::piped())
             .stderr(Stdio::piped());
+
         let mut child = process::spawn(&mut command, limit)?;
         let stdout = child
             .child
@@ -110,6 +115,7 @@ impl Target {
         if let Some(mut log) = child.child.stderr.take() {
             for_each_instruction(&mut log, each)?;
         }
+
         let status = child.wait();
         let output = stdout
             .and_then(|reader| reader.join().ok())
@@ -118,7 +124,7 @@ impl Target {
         Ok(Ended { status, output })
     }
 
-    /// QEMU with nothing attached but the semihosting console.
+    /// Returns the QEMU command with only the semihosting console attached.
     fn emulator(&self, argument: &str) -> Command {
         let mut command = Command::new(&self.qemu);
         command.args(["-machine", self.board.machine, "-cpu", self.board.cpu]);
@@ -136,7 +142,7 @@ impl Target {
         command
     }
 
-    /// The options for one instruction per translation block, which QEMU 8.1 renamed.
+    /// Returns the options for one instruction per translation block, which QEMU 8.1 renamed.
     fn single_step(&self) -> Result<&'static [&'static str]> {
         let help = process::run(Command::new(&self.qemu).arg("--help"), QUICK)?.stdout;
         let is_renamed = help.contains("one-insn-per-tb");
@@ -148,7 +154,7 @@ impl Target {
     }
 }
 
-/// Runs `request` on `target`, all calls of the counted function together.
+/// Runs `request` on `target` and returns all calls of the counted function.
 pub fn counted<'a>(target: &'a Target, request: &Request) -> Result<Calls<'a>> {
     let entries = target
         .image
@@ -168,27 +174,34 @@ pub fn counted<'a>(target: &'a Target, request: &Request) -> Result<Calls<'a>> {
     Ok(calls)
 }
 
-/// Counts the calls of `function` until the program on `target` ends or the time is up: the function, what each call that returned
-/// cost, one at least unless the program says that it failed, and how it ended.
+/// Counts the calls of `function` until the program on `target` ends or the time is up.
+///
+/// Returns the function, the cost of each call that returned, and the end of the program. Without
+/// any such call, this is an error unless the program failed.
 pub fn calls_of<'a>(
     target: &'a Target,
     function: &str,
     limit: Duration,
 ) -> Result<(&'a Function, Vec<Cost>, Ended)> {
-    let (image, core) = (&target.image, target.board.core());
+    let image = &target.image;
+    let core = target.board.core();
     let function = image.function(function)?;
-    let (vectors, board) = (target.board.flash(), target.board.name);
-    // It would never run.
+    let vectors = target.board.flash();
+    let board = target.board.name;
+
+    // Without vectors, the program would never run.
     ensure!(
         image.holds(vectors),
         "never called: the program has nothing at {vectors:#x}, where {board} reads its vectors; see --on"
     );
+
     let mut calls = Calls::of(image, core, BTreeSet::from([function.address]));
     let progress = Progress::start(&format!("counts the calls of {}", function.name));
-    let (mut instructions, mut unknown) = (0_u64, None);
+    let mut instructions = 0_u64;
+    let mut unknown = None;
     let ended = target.trace("", limit, &mut |registers| {
         instructions += 1;
-        if instructions % TELL == 0 {
+        if instructions.is_multiple_of(TELL) {
             progress.alive(Some(&format!(
                 "{} calls, {instructions} instructions",
                 calls.ended.len()
@@ -201,8 +214,10 @@ pub fn calls_of<'a>(
         unknown = unknown.or(missing.map(|instruction| (registers.pc(), instruction)));
         calls.see(registers)
     })?;
+
     let name = &function.name;
     let failed = ended.status.as_ref().is_ok_and(|status| !status.success());
+
     if calls.ended.is_empty() && !failed {
         ensure!(
             calls.running.is_none(),
@@ -211,13 +226,15 @@ pub fn calls_of<'a>(
         let Some((address, instruction)) = unknown else {
             bail!("{name} was never called")
         };
-        let (instruction, cpu) = (instruction.row.name, target.board.cpu);
+        let instruction = instruction.row.name;
+        let cpu = target.board.cpu;
         bail!(
             "{name} was never called: {instruction} at {address:#x} is no instruction of a {cpu}; see --on"
         );
     }
+
     Ok((function, calls.ended, ended))
 }
 
-/// Instructions between two words about them.
+/// The number of instructions between two reports of progress.
 const TELL: u64 = 1 << 18;

@@ -1,5 +1,8 @@
-//! Every frame of a board beside the host's own. Frames do not tell all that a scene starts from, so the host asks the board;
-//! the frames wait for its answer, and the same scene code, started as the board says, is moved and drawn here.
+//! The comparison of every frame of a board with the host's own frame.
+//!
+//! Frames do not contain everything that a scene starts from, so the host asks the board. The
+//! frames wait for the answer. Then the host starts the same scene code with the board's settings,
+//! and moves and draws it here.
 
 use std::collections::VecDeque;
 use std::fmt;
@@ -15,22 +18,26 @@ use indicatif::HumanCount;
 use crate::emulator::host::Show;
 use crate::emulator::qemu::Screenshot;
 
-/// After this many frames without an answer the host asks again.
+/// The number of frames without an answer after which the host repeats the question.
 const PATIENCE: u32 = TICK_RATE;
-/// The host catches up with a board that has long been playing by this many ticks at a time, so that the terminal goes on.
+/// The largest number of ticks in one call by which the host catches up with a board that has
+/// played for a long time, so that the terminal remains responsive.
 const MOST_TICKS: u32 = 2000;
 
 #[derive(Debug, Default)]
 pub struct Comparison {
-    /// What the board plays, from its start, and played here; `None` until the board has said it.
+    /// The board's scene from its start, and the same scene on the host; `None` until the board has
+    /// reported it.
     playing: Option<(Status, Show)>,
-    /// Frames since the start that are not yet compared, oldest first.
+    /// The frames since the start that are not yet compared, oldest first.
     waiting: VecDeque<Frame>,
-    /// How many of them came before the board said what it plays. It may have started something else in between.
+    /// The number of waiting frames that arrived before the board reported its scene. The board may
+    /// have started another scene in between.
     unsure: usize,
-    /// A number of the first of them that differs, unless the board says that it has started something else.
+    /// The difference in the first waiting frame, unless the board reports that it has started
+    /// another scene.
     doubt: Option<String>,
-    /// Frames for which it has not been known what the board plays, or been in doubt.
+    /// The number of frames for which the board's scene has been unknown or in doubt.
     unknown: u32,
     last: Option<Frame>,
     compared: u64,
@@ -39,14 +46,17 @@ pub struct Comparison {
 }
 
 impl Comparison {
-    /// Takes a frame that has just arrived; whether to ask the board what it plays.
+    /// Takes a frame that has just arrived. Returns true if the board must be asked for its scene.
     pub fn frame(&mut self, frame: &Frame) -> bool {
         let starts =
             |last: &Frame| frame.scene != last.scene || frame.report.step < last.report.step;
         if self.last.as_ref().is_none_or(starts) {
             self.skipped += self.waiting.len() as u64;
             self.waiting.clear();
-            (self.playing, self.doubt, self.unsure, self.unknown) = (None, None, 0, 0);
+            self.playing = None;
+            self.doubt = None;
+            self.unsure = 0;
+            self.unknown = 0;
         }
         self.last = Some(*frame);
         self.waiting.push_back(*frame);
@@ -56,7 +66,7 @@ impl Comparison {
     }
 
     pub fn status(&mut self, status: &Status) {
-        // What is played by its start alone: how its time goes is another matter.
+        // Only the start of the scene is compared. Its pause and speed do not matter.
         let start = Status {
             state: PlayState::Playing,
             steps: 0,
@@ -76,7 +86,8 @@ impl Comparison {
         }
     }
 
-    /// Compares the next frame that waits; `None` if there is none, or the host is not there yet.
+    /// Compares the next waiting frame. Returns `None` if no frame waits, or if the host has not
+    /// reached it yet.
     pub fn follow(&mut self) -> Option<Frame> {
         let (_, show) = self.playing.as_mut().filter(|_| self.doubt.is_none())?;
         let frame = self
@@ -99,7 +110,7 @@ impl Comparison {
         Some(frame)
     }
 
-    /// The panel, redrawn here as the compared `frame` shows it.
+    /// Returns the panel's picture of the compared `frame`, redrawn here.
     pub fn panel(&self, frame: &Frame) -> Screenshot {
         let mut canvas = self
             .playing
@@ -115,7 +126,7 @@ impl Comparison {
         self.waiting.is_empty()
     }
 
-    /// The first number that board and host do not have alike, by its bits.
+    /// Returns the first number whose bits differ between board and host.
     pub fn difference(&self) -> Option<&str> {
         self.first.as_deref()
     }
@@ -138,7 +149,7 @@ impl fmt::Display for Comparison {
     }
 }
 
-/// What the board plays from such a start; the field of it that cannot be.
+/// Returns the scene that the board plays from such a start, or the field that is not possible.
 fn played(start: &Status) -> Result<Show, Field> {
     let processor = PROCESSORS
         .get(usize::from(start.processor))
@@ -149,7 +160,7 @@ fn played(start: &Status) -> Result<Show, Field> {
     Ok(show)
 }
 
-/// Goes on towards the step of `frame`; whether it is there.
+/// Advances the host's scene towards the step of `frame`. Returns true if it has arrived.
 fn is_reached(show: &mut Show, frame: &Frame) -> bool {
     for _ in 0..MOST_TICKS {
         if show.report().step >= frame.report.step || show.player.is_still() {
@@ -160,7 +171,7 @@ fn is_reached(show: &mut Show, frame: &Frame) -> bool {
     false
 }
 
-/// The first number of the board's frame that is not the host's.
+/// Returns the first number of the board's frame that differs from the host's.
 fn difference(board: &Frame, here: &Frame) -> Option<String> {
     let numbers = |frame: &Frame| {
         let report = &frame.report;
@@ -184,7 +195,8 @@ fn difference(board: &Frame, here: &Frame) -> Option<String> {
     };
     let mut pairs = numbers(board).into_iter().zip(numbers(here));
     let ((number, board_bits), (_, here_bits)) = pairs.find(|(board, here)| board != here)?;
-    let (sequence, step) = (board.sequence, board.report.step);
+    let sequence = board.sequence;
+    let step = board.report.step;
     Some(format!(
         "frame {sequence}, step {step}: {number} is {board_bits:#x}, the host's {here_bits:#x}"
     ))

@@ -9,7 +9,7 @@ use ratatui::widgets::{Block, Paragraph, Wrap};
 use super::options::{KEYS, scene_key};
 use super::readings::Help;
 
-/// The numbers on the screen and on the panel.
+/// The numbers in the terminal and on the panel, with their meanings.
 const NUMBERS: [(&str, &str); 10] = [
     (
         "½px>19.8 s on the panel",

@@ -1,4 +1,4 @@
-//! In the terminal: the panel as it is now, the keys sent as commands.
+//! The live view in the terminal: the current panel, with the keys sent as commands.
 
 use std::io::stdout;
 use std::time::{Duration, Instant};
@@ -16,14 +16,16 @@ use super::session::{Session, faster, slower};
 use super::view::draw;
 use crate::emulator::process;
 
-/// From one look at the link to the next: a tick, for a board that is emulated frame by frame goes no faster than a real one.
+/// The interval between two reads of the link: a tick, because a board that is emulated frame by
+/// frame is no faster than a real one.
 const LOOK: Duration = Duration::from_nanos(1_000_000_000 / TICK_RATE as u64);
 
-/// Shows the board for so long, or until the user has seen enough.
+/// Shows the board for this number of seconds, or until the user quits.
 pub fn watch(session: &mut Session, seconds: f64) -> anyhow::Result<()> {
     process::on_interrupt(|| {
         ratatui::restore();
-        // It is too late to tell if this fails.
+
+        // A failure cannot be reported any more.
         let _ = execute!(stdout(), cursor::Show);
     });
     let terminal = ratatui::try_init()?;
@@ -35,10 +37,12 @@ pub fn watch(session: &mut Session, seconds: f64) -> anyhow::Result<()> {
 fn show(session: &mut Session, seconds: f64, mut terminal: DefaultTerminal) -> anyhow::Result<()> {
     let colours = !Colored::ansi_color_disabled();
     let mut is_due = false;
+
     while session.seconds() < seconds {
         let heard = Instant::now();
         session.hear()?;
-        // 30 screenshots a second.
+
+        // The screen is drawn 30 times a second.
         is_due = !is_due;
         if is_due {
             session.look()?;
@@ -66,10 +70,11 @@ fn show(session: &mut Session, seconds: f64, mut terminal: DefaultTerminal) -> a
             }
         }
     }
+
     Ok(())
 }
 
-/// What a key does.
+/// The effect of a key.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Action {
     Nothing,
@@ -81,8 +86,8 @@ enum Action {
     Faster,
 }
 
-/// Returns what a key does while this page of the help is shown. Any key but `?` closes the help,
-/// and does nothing else.
+/// Returns the effect of a key while this page of the help is shown. If a page is shown, any key
+/// except `?` only closes it.
 fn action(key: KeyEvent, help: Help) -> Action {
     let KeyEvent {
         code,
@@ -99,6 +104,7 @@ fn action(key: KeyEvent, help: Help) -> Action {
         _ if help != Help::Hidden => return Action::Help(Help::Hidden),
         _ => {}
     }
+
     let command = match code {
         KeyCode::Char('q') => return Action::Quit,
         KeyCode::Char('-' | '_') => return Action::Slower,

@@ -1,5 +1,5 @@
-//! `cargo demo`: the double pendulum on a board's panel, live in the terminal or recorded without one; the board is emulated,
-//! or at a serial port.
+//! `cargo demo`: the double pendulum on a board's panel, live in the terminal or recorded without a
+//! terminal. The board is emulated, or connected to a serial port.
 
 pub(crate) mod comparison;
 mod help;
@@ -33,10 +33,11 @@ use crate::emulator::qemu::{Clock, Machine, Settings};
 use crate::emulator::toolchain;
 use crate::link::Port;
 
-/// How long a run without a terminal takes if nothing else is asked for.
+/// The duration of a run without a terminal, if the user gives none.
 const DEFAULT_SECONDS: f64 = 10.0;
 const NO_TERMINAL: &str = "no terminal: running headless; --record FILE.gif or --screenshot FILE.png saves what the panel shows";
-/// The most time that an emulated board may take: so much, and so much for each second of its time.
+/// The time limit of an emulated board: a constant part, and a part for each second of the board's
+/// time.
 const LIMIT: [f64; 2] = [60.0, 20.0];
 
 pub fn run(options: &DemoOptions) -> anyhow::Result<bool> {
@@ -51,6 +52,7 @@ pub fn run(options: &DemoOptions) -> anyhow::Result<bool> {
         Some(name) => Source::Port(port(name)?),
         None => emulated(options.board, seconds, is_live)?,
     };
+
     let recording = options
         .record
         .as_deref()
@@ -59,6 +61,7 @@ pub fn run(options: &DemoOptions) -> anyhow::Result<bool> {
     if !is_live && !options.headless {
         complain(NO_TERMINAL);
     }
+
     let mut session = Session::new(options, source, recording);
     if is_live {
         live::watch(&mut session, seconds)?
@@ -100,22 +103,26 @@ fn emulated(board: &'static Board, seconds: f64, is_live: bool) -> anyhow::Resul
 }
 
 const LOOK: Duration = Duration::from_millis(4);
-/// A port from which no frame of the scene that was asked for comes for so long is given up.
+/// The time after which a port without a frame of the requested scene is given up.
 const PATIENCE: Duration = Duration::from_secs(10);
 
-/// How long an answer to the last question of the comparison is waited for, s of the board's time.
+/// The time to wait for an answer to the last question of the comparison, in seconds of the board's
+/// time.
 const ANSWER: f64 = 3.0;
 
-/// Without a terminal: an emulated board frame by frame, repeatable bit for bit, or the board at a port.
+/// Runs without a terminal: an emulated board frame by frame, bit-identical in every run, or the
+/// board at a port.
 fn headless(session: &mut Session, seconds: f64) -> anyhow::Result<()> {
     let name = session.name().to_owned();
     let progress = Progress::start(&format!("running {name} for {seconds} s of its time"));
-    let (mut reached, mut since) = (0.0, Instant::now());
+    let mut reached = 0.0;
+    let mut since = Instant::now();
     let is_over = |session: &Session| {
         let is_settled =
             session.readings.comparison.is_settled() || session.seconds() > seconds + ANSWER;
         session.seconds() >= seconds && is_settled
     };
+
     while !is_over(session) {
         session.hear()?;
         if session.is_recording_due() {
@@ -128,7 +135,8 @@ fn headless(session: &mut Session, seconds: f64) -> anyhow::Result<()> {
                 .drain(..)
                 .for_each(|line| complain(line.text));
             if session.seconds() > reached {
-                (reached, since) = (session.seconds(), Instant::now());
+                reached = session.seconds();
+                since = Instant::now();
             }
             ensure!(
                 since.elapsed() < PATIENCE,
@@ -139,11 +147,12 @@ fn headless(session: &mut Session, seconds: f64) -> anyhow::Result<()> {
         }
         progress.alive(None);
     }
+
     session.look()
 }
 
-/// Completes the files and prints the summary. Returns true if all was well. A board that goes by a
-/// real clock may drop frames, and a cable may flip bits: both are printed, and neither is a fault.
+/// Completes the files and prints the summary. Returns true if all was well. A board with a real
+/// clock may drop frames, and a cable may corrupt bits. Both are printed, and neither is a fault.
 fn finish(options: &DemoOptions, mut session: Session) -> anyhow::Result<bool> {
     let is_silent = session.readings.frame.is_none();
     ensure!(!is_silent, "{}: no frame came", session.name());
@@ -169,7 +178,8 @@ fn finish(options: &DemoOptions, mut session: Session) -> anyhow::Result<bool> {
         "board                 {name}\n{}{saved}",
         readings.report()
     ));
-    // A fault is one even if no one reads the summary.
+
+    // A fault is reported even if the reader of the summary has stopped.
     if faults.is_empty() {
         said?;
     }

@@ -1,4 +1,4 @@
-//! A motion of the user's own: the options that replace the start of a scene.
+//! The options for the user's own motion, which replaces the start of a scene.
 
 use std::fmt::Display;
 
@@ -68,9 +68,9 @@ impl OwnMotion {
             .collect()
     }
 
-    /// Returns the settings to play `scene` with; `None` if no option is given.
+    /// Returns the settings to play `scene` with, or `None` if no option is given.
     ///
-    /// Refuses an option that the scene has no use for, and a motion that it cannot show on
+    /// Returns an error if the scene does not use an option, or if it cannot show the motion on
     /// `processor`.
     pub fn settings(
         &self,
@@ -105,7 +105,7 @@ impl OwnMotion {
         Ok(Some(settings))
     }
 
-    /// Returns the settings with the given values in place of their own.
+    /// Returns the settings, with the given values replaced.
     fn applied_to(&self, mut settings: Settings) -> Settings {
         let single = |pair: &Pair| pair.values().map(|value| value as f32);
         let parameters = &mut settings.parameters;
@@ -127,6 +127,7 @@ impl OwnMotion {
                 }
             });
         }
+
         if let Some(velocities) = &self.velocities {
             settings.velocities = velocities.values().map(|velocity| {
                 if self.degrees {
@@ -136,6 +137,7 @@ impl OwnMotion {
                 }
             });
         }
+
         settings
     }
 
@@ -157,8 +159,8 @@ impl OwnMotion {
     }
 }
 
-/// Returns why a scene cannot start, with the option to blame: the one that sets the refused
-/// parameter if it is given, else all that are given.
+/// Returns the reason why a scene cannot start, with the responsible option. It is the option of
+/// the refused parameter if that is given, or else all given options.
 fn refusal(given: &[(&'static str, String)], scene: SceneName, error: &Error) -> Refused {
     let option = option_of(error, "");
     let is_to_blame = |(name, _): &&(&str, String)| *name == option;

@@ -1,5 +1,5 @@
-//! The latest numbers in a column beside the panel, with the energy error's past as bars below
-//! them; both angles over the last seconds as a chart.
+//! The latest numbers in a column next to the panel, with the past energy errors as bars below
+//! them, and a chart of both angles over the last seconds.
 
 use double_pendulum::State;
 use firmware::config::TICK_RATE;
@@ -13,12 +13,13 @@ use ratatui::widgets::{Axis, Block, Chart, Dataset, GraphType, Paragraph, Sparkl
 
 use super::readings::{Readings, energy_error};
 
-/// Columns that they need, and beyond which a value would be far from its name.
+/// The smallest width of the numbers, and the largest, beyond which a value would be too distant
+/// from its name, in columns.
 pub const NARROWEST: u16 = 15;
 const WIDEST: u16 = 24;
-/// Rows that they need in the narrowest column.
+/// The number of rows that the numbers need in the narrowest column.
 pub const ROWS: u16 = 13;
-/// The smallest scale of the bars: errors below it are little more than the rounding of the energy.
+/// The smallest scale of the bars. Smaller errors are hardly more than the rounding of the energy.
 const LEAST_SCALE: f32 = 1e-14;
 
 pub fn draw(frame: &mut Frame, area: Rect, readings: &Readings) {
@@ -44,7 +45,8 @@ fn rows(readings: &Readings) -> [(&'static str, String); 9] {
         readings.frame.is_some_and(|now| now.scene.has_angles()),
     );
     let now = readings.frame.unwrap_or_default();
-    // Those at the start, one if both rods have the same.
+
+    // The angles at the start; a single one if both rods have the same.
     let degrees = readings
         .start
         .unwrap_or([now.start_angle.to_degrees(); 2])
@@ -79,7 +81,7 @@ fn rows(readings: &Readings) -> [(&'static str, String); 9] {
     rows.map(|(name, is_known, value)| (name, if is_known { value } else { "-".to_owned() }))
 }
 
-/// A row as one line, or as two where it would not fit into one.
+/// Returns a row as one line, or as two lines if one is too narrow.
 fn lines((name, value): (&'static str, String), width: usize) -> Vec<Line<'static>> {
     let left = width.saturating_sub(name.chars().count());
     if value.chars().count() < left {
@@ -94,7 +96,8 @@ fn lines((name, value): (&'static str, String), width: usize) -> Vec<Line<'stati
     ]
 }
 
-/// The size of the energy error, the largest of each half second, as bars up to a power of ten, which is told.
+/// Draws the size of the energy error, the largest of each half second, as bars. The full height is
+/// a power of ten, which is printed.
 fn energy_errors(frame: &mut Frame, area: Rect, past: &[Report]) {
     const HEIGHT: f32 = 1000.0;
     const STEPS: u64 = TICK_RATE as u64 / 2;
@@ -107,6 +110,7 @@ fn energy_errors(frame: &mut Frame, area: Rect, past: &[Report]) {
         .chunk_by(|one, next| one.step / STEPS == next.step / STEPS)
         .map(largest)
         .collect();
+
     let shown = &errors[errors.len().saturating_sub(area.width.into())..];
     let exponent = shown
         .iter()
@@ -135,17 +139,19 @@ fn energy_errors(frame: &mut Frame, area: Rect, past: &[Report]) {
     );
 }
 
-/// How much simulated time the chart shows, s.
+/// The simulated time that the chart shows, s.
 const SPAN: f64 = 5.0;
-/// The angles that the chart may reach, degrees: the least that holds every angle shown is taken.
+/// The possible limits of the chart, degrees. The smallest one that contains every shown angle is
+/// used.
 const REACHES: [f64; 5] = [10.0, 30.0, 60.0, 90.0, HALF_TURN];
 const HALF_TURN: f64 = 180.0;
-/// The colours and the marks of angle 1 and angle 2: a thin line and a thick one, which colour-blind eyes and terminals
-/// tell apart, too.
+/// The colours and marks of angle 1 and angle 2. A thin and a thick line can also be distinguished
+/// without colours.
 const COLOURS: [Color; 2] = [Color::Cyan, Color::Yellow];
 const MARKERS: [Marker; 2] = [Marker::Braille, Marker::Dot];
 
-/// An angle, degrees, in (-180, 180] as it is shown: what rounds to straight up at a tenth of a degree is 180, never -180.
+/// Returns an angle, degrees, in (-180, 180] as it is displayed. An angle that rounds to straight
+/// up at a tenth of a degree is 180, never -180.
 fn within_half_a_turn(degrees: f64) -> f64 {
     const ROUNDING: f64 = 0.05;
     degrees - 2.0 * HALF_TURN * ((degrees - HALF_TURN - ROUNDING) / (2.0 * HALF_TURN)).ceil()
@@ -161,6 +167,7 @@ pub fn draw_angles(frame: &mut Frame, area: Rect, past: &[Report]) {
                 .map(move |strand| (rod, strand))
         })
         .collect();
+
     let largest = strands
         .iter()
         .flat_map(|(_, strand)| strand)
@@ -173,6 +180,7 @@ pub fn draw_angles(frame: &mut Frame, area: Rect, past: &[Report]) {
         let line = Dataset::default().data(strand).graph_type(GraphType::Line);
         line.marker(MARKERS[*rod]).style(COLOURS[*rod])
     });
+
     let faint = Style::new().dim();
     let title = Line::from(vec![
         "angles, degrees: ".into(),
@@ -193,11 +201,13 @@ pub fn draw_angles(frame: &mut Frame, area: Rect, past: &[Report]) {
     frame.render_widget(chart, area);
 }
 
-/// An angle over time within half a turn either way, cut where it passes straight up.
+/// Returns the curve of an angle within half a turn, cut where the rod passes straight up.
 fn strands(past: &[Report], rod: usize) -> Vec<Vec<(f64, f64)>> {
     let point = |Report { time, state, .. }: &Report| {
         let angle = within_half_a_turn(f64::from([state.a1, state.a2][rod]).to_degrees());
-        // A hair above straight up is drawn on the chart's edge, not left out.
+
+        // An angle slightly above straight up is drawn on the chart's edge instead of being left
+        // out.
         (*time, angle.clamp(-HALF_TURN, HALF_TURN))
     };
     let points: Vec<_> = past.iter().map(point).collect();
@@ -224,7 +234,9 @@ mod tests {
         };
         let past: Vec<_> = (0..=20).map(report).collect();
         let cut = strands(&past, 0);
-        // From 0 to 180 degrees, then on from just beyond, straight up and all around.
+
+        // The pieces are from 0 to 180 degrees, then from just beyond straight up all around, and
+        // so on.
         assert_eq!(cut.iter().map(Vec::len).collect::<Vec<_>>(), [6, 10, 5]);
         assert!(
             cut.iter()

@@ -63,7 +63,7 @@ pub struct DemoOptions {
     pub screenshot: Option<PathBuf>,
 }
 
-/// The keys, what each scene shows, and examples.
+/// Returns the keys, the content of each scene, and examples.
 fn after_help() -> String {
     let keys = KEYS
         .iter()
@@ -84,7 +84,7 @@ fn after_help() -> String {
     )
 }
 
-/// Every key, and what it does.
+/// Every key with its effect.
 pub const KEYS: [(&str, &str); 10] = [
     ("up, down", "mass ratio m2/m1: next larger, next smaller"),
     ("left, right", "start angle of both rods by 1 degree"),
@@ -160,8 +160,10 @@ impl DemoOptions {
         let Some(speed) = &self.speed else {
             return Ok(None);
         };
-        // The board counts in hundredths.
-        let (least, most) = (0.01, f64::from(GREATEST_SPEED));
+
+        // The board stores the speed in hundredths.
+        let least = 0.01;
+        let most = f64::from(GREATEST_SPEED);
         if (least..=most).contains(&speed.value()) {
             Ok(Some(speed.value()))
         } else {
@@ -171,9 +173,9 @@ impl DemoOptions {
         }
     }
 
-    /// Returns the settings to start `scene` with; `None` leaves them to the scene.
+    /// Returns the settings to start `scene` with, or `None` if the scene's own settings apply.
     ///
-    /// Refuses a motion or a method that the scene cannot show.
+    /// Returns an error if the scene cannot show the motion or use the method.
     pub fn start(&self, scene: SceneName) -> Result<Option<Settings>, Refused> {
         let own = self.motion.settings(scene, self.processor())?;
         let settings = own.unwrap_or_else(|| scene.first_settings());
@@ -187,8 +189,8 @@ impl DemoOptions {
         Ok(own)
     }
 
-    /// Returns the class of the board's processor. A board at a port says only later what it is,
-    /// and may refuse then: it is taken for one of the fastest.
+    /// Returns the class of the board's processor. A board at a port reports its class only later
+    /// and may refuse then, so it is assumed to be one of the fastest.
     fn processor(&self) -> Processor {
         if self.port.is_some() {
             STM32F405
@@ -198,7 +200,7 @@ impl DemoOptions {
     }
 }
 
-/// Returns why a scene with these settings does not use a method.
+/// Returns an error with the reason if a scene with these settings does not use a method.
 pub fn usable(
     method: Method,
     scene: SceneName,
@@ -228,7 +230,7 @@ pub fn usable(
     }
 }
 
-/// A file whose name says what is written into it.
+/// Returns the path of a file if its name ends in this format.
 fn ends_in(kind: &str, file: &str) -> Result<PathBuf, String> {
     let path = PathBuf::from(file);
     let is_it = path
@@ -243,7 +245,7 @@ fn ends_in(kind: &str, file: &str) -> Result<PathBuf, String> {
     }
 }
 
-/// The longest that a run may be, s of the board's time.
+/// The longest run, in seconds of the board's time.
 pub const MOST_SECONDS: f64 = 86_400.0;
 
 fn seconds(text: &str) -> Result<f64, String> {

@@ -1,7 +1,7 @@
-//! What the panel shows, in the terminal and as files: an animation (GIF) or one screenshot (PNG).
+//! The panel's picture, in the terminal and in files: an animation (GIF) or one screenshot (PNG).
 //!
-//! In the terminal, where it fits, a pixel is half a character, in its grey; else eight pixels or more are a character, whose dots
-//! are those that are lit, in the colour of the brightest.
+//! If the terminal is large enough, a pixel is half a character in its grey. Otherwise a character
+//! shows eight pixels or more as dots, in the colour of the brightest.
 
 use std::fs::{self, File};
 use std::io::{self, BufWriter, ErrorKind};
@@ -18,7 +18,7 @@ use ratatui::widgets::canvas::{Canvas, Points};
 
 use crate::emulator::qemu::{HEIGHT, Screenshot, WIDTH};
 
-/// The grey from which a dot is set: all but the end of a fading trail.
+/// The smallest grey that is shown as a dot. Only the end of a fading trail is darker.
 const SET: u8 = 3;
 
 pub fn draw(frame: &mut Frame, area: Rect, screenshot: &Screenshot) {
@@ -32,7 +32,7 @@ pub fn draw(frame: &mut Frame, area: Rect, screenshot: &Screenshot) {
         .x_bounds([0.0, WIDTH as f64 - 1.0])
         .y_bounds([1.0 - HEIGHT as f64, 0.0]);
     let canvas = canvas.paint(|context| {
-        // The brightest last: it gives a character its colour.
+        // The brightest pixels are drawn last, because they determine the colour of a character.
         for grey in if in_greys { 0 } else { SET }..=BRIGHTEST_GREY {
             let lit = screenshot
                 .greys
@@ -52,11 +52,13 @@ pub fn draw(frame: &mut Frame, area: Rect, screenshot: &Screenshot) {
 }
 
 const BRIGHTEST_GREY: u8 = 15;
-/// Its red, green and blue, and black's: the panel's glass is not quite dark.
+/// The red, green and blue of the brightest grey and of black, because the panel's glass is not
+/// quite dark.
 const BRIGHTEST: [u32; 3] = [255, 200, 64];
 const DARKEST: [u32; 3] = [10, 8, 4];
-/// The greys among the 256 colours that terminals have in common: black, a few too dark to have a hue, then amber. Chosen by
-/// hand, for by distance the dark ones would come out olive and red.
+/// The greys in the 256 common colours of terminals: black, a few that are too dark to have a hue,
+/// then amber. They are chosen by hand, because the nearest colours of the dark greys would be
+/// olive and red.
 const TERMINAL: [u8; 16] = [
     16, 233, 234, 235, 237, 239, 94, 94, 130, 136, 136, 172, 178, 214, 214, 221,
 ];
@@ -65,7 +67,7 @@ fn in_terminal(grey: u8) -> Color {
     Color::Indexed(TERMINAL[usize::from(grey.min(BRIGHTEST_GREY))])
 }
 
-/// The colours of all greys in a row, red, green, blue, as image files want them.
+/// Returns the colours of all greys, red, green, blue, in the format of image files.
 fn palette() -> Vec<u8> {
     let most = u32::from(BRIGHTEST_GREY);
     let mix = |grey: u32| {
@@ -80,25 +82,25 @@ fn palette() -> Vec<u8> {
         .collect()
 }
 
-/// Every pixel of the panel becomes a square of this many by as many.
+/// The width and height of the square that shows a pixel of the panel.
 const SCALE: usize = 3;
 const SIZE: [u16; 2] = [(WIDTH * SCALE) as u16, (HEIGHT * SCALE) as u16];
-/// The board's ticks from one screenshot to the next: 60/2 = 30 frames per second.
+/// The number of board ticks between two screenshots: 60/2 = 30 frames per second.
 const TICKS_PER_FRAME: i64 = TICK_RATE as i64 / 30;
-/// In a picture after the first: as it was. Few pixels change, which leaves long runs of this. The palette's first colour after
-/// the greys.
+/// The colour of an unchanged pixel in a picture after the first. Few pixels change, so this makes
+/// long runs. It is the palette's first colour after the greys.
 const UNCHANGED: u8 = 16;
-/// GIF counts time in hundredths of a second.
+/// The unit of time in GIF: hundredths of a second.
 const GIF_RATE: i64 = 100;
 
-/// An animation as it is made.
+/// An animation that is being written.
 pub struct Recording {
     path: PathBuf,
     encoder: Encoder<BufWriter<File>>,
-    /// How many pictures it has.
+    /// The number of its pictures.
     pictures: usize,
     shown: Vec<u8>,
-    /// The tick from which the next screenshot is wanted: until then the last is shown.
+    /// The tick from which the next screenshot is needed. The last one is shown until then.
     due: Option<i64>,
 }
 
@@ -123,7 +125,8 @@ impl Recording {
         self.due.is_none_or(|due| tick >= due)
     }
 
-    /// Takes what the panel shows from `tick` on, if that does not come too soon; what came too late is shown so much longer.
+    /// Adds the panel's picture from `tick` on, unless it comes too soon. The previous picture is
+    /// shown longer if this one is late.
     pub fn add(&mut self, screenshot: &Screenshot, tick: i64) -> anyhow::Result<()> {
         if !self.is_due(tick) {
             return Ok(());
@@ -131,7 +134,8 @@ impl Recording {
         let hundredths = |tick: i64| tick * GIF_RATE / i64::from(TICK_RATE);
         let next = tick + TICKS_PER_FRAME;
         let length = hundredths(next) - hundredths(self.due.replace(next).unwrap_or(tick));
-        let (delay, [width, height]) = (u16::try_from(length).unwrap_or(u16::MAX), SIZE);
+        let delay = u16::try_from(length).unwrap_or(u16::MAX);
+        let [width, height] = SIZE;
         let now = magnified(screenshot);
         let change = |(index, grey): (usize, &u8)| {
             if self.shown.get(index) == Some(grey) {
@@ -162,7 +166,7 @@ impl Recording {
             .map_err(|error| unwritten(&self.path, &cause(error)))
     }
 
-    /// Writes what is left. Returns the file and the number of its pictures.
+    /// Writes the rest of the file. Returns the file and the number of its pictures.
     pub fn finish(self) -> anyhow::Result<(PathBuf, usize)> {
         let Self {
             path,
@@ -188,9 +192,9 @@ fn cause(error: EncodingError) -> io::Error {
     }
 }
 
-/// Removes the part of an animation that could be written, and returns why the rest could not.
+/// Removes the incomplete animation, and returns the error with the reason.
 fn unwritten(path: &Path, error: &io::Error) -> anyhow::Error {
-    // A device is no file to remove.
+    // A device is not removed.
     if path.is_file() {
         let _ = fs::remove_file(path);
     }
@@ -204,12 +208,14 @@ fn magnified(screenshot: &Screenshot) -> Vec<u8> {
     (0..WIDTH * SCALE * HEIGHT * SCALE).map(at).collect()
 }
 
-/// Reads an animation back, for tests: the greys of each of its pictures, and the hundredths of a second it stays.
+/// Reads an animation for tests. Returns the greys of each picture and its duration in hundredths
+/// of a second.
 pub fn played(path: &Path) -> anyhow::Result<Vec<(Vec<u8>, u16)>> {
     let mut options = DecodeOptions::new();
     options.set_color_output(ColorOutput::Indexed);
     let mut decoder = options.read_info(File::open(path)?)?;
-    let (mut played, mut shown) = (Vec::new(), Vec::new());
+    let mut played = Vec::new();
+    let mut shown = Vec::new();
     while let Some(frame) = decoder.read_next_frame()? {
         shown.resize(frame.buffer.len(), 0);
         let dots = shown.iter_mut().zip(frame.buffer.iter());
@@ -225,7 +231,8 @@ pub fn played(path: &Path) -> anyhow::Result<Vec<(Vec<u8>, u16)>> {
 }
 
 pub fn png(screenshot: &Screenshot) -> anyhow::Result<Vec<u8>> {
-    let ([width, height], mut file) = (SIZE.map(u32::from), Vec::new());
+    let [width, height] = SIZE.map(u32::from);
+    let mut file = Vec::new();
     let mut encoder = png::Encoder::new(&mut file, width, height);
     encoder.set_color(png::ColorType::Indexed);
     encoder.set_palette(palette());
@@ -244,7 +251,8 @@ mod tests {
 
     use super::*;
 
-    /// The characters of a panel with three pixels, in which anything is, and their colours.
+    /// Returns the characters, with their colours, that contain lit pixels of a panel with three
+    /// lit pixels.
     fn drawn(width: u16) -> Vec<(String, Color, Color)> {
         let mut canvas = Canvas::default();
         [(0, 0, 15), (3, 2, 15), (127, 63, 6)]
@@ -281,7 +289,8 @@ mod tests {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("half.gif");
         let mut recording = Recording::create(&path).expect("a file");
-        // What is written from now on goes to a disk that is full.
+
+        // The next data is written to a full disk.
         let full = Recording::create(Path::new("/dev/full")).expect("a device");
         recording.encoder = full.encoder;
         let failed = (0..2000).find_map(|number| {

@@ -1,4 +1,5 @@
-//! What a board has sent: the latest numbers, a little of their past for the terminal, and whether all was well.
+//! The data that a board has sent: the latest numbers, some past ones for the terminal, and the
+//! faults.
 
 use std::time::{Duration, Instant};
 
@@ -15,12 +16,12 @@ use super::options::usable;
 use crate::emulator::qemu::LogLine;
 use crate::link::{self, Counts};
 
-/// Frames whose past is kept, 12 s of them: no more is shown.
+/// The number of past frames that are kept, for 12 s; no more are shown.
 const KEPT: usize = 12 * TICK_RATE as usize;
-/// The time over which frames per second are counted.
+/// The time over which frames are counted for their rate.
 const RATE_SPAN: Duration = Duration::from_secs(1);
 
-/// What is shown of the help.
+/// The page of the help that is shown.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Help {
     #[default]
@@ -30,7 +31,7 @@ pub enum Help {
 }
 
 impl Help {
-    /// The page that the key `?` leads to.
+    /// Returns the page after the key `?`.
     pub fn next(self) -> Self {
         match self {
             Self::Hidden => Self::Keys,
@@ -40,7 +41,7 @@ impl Help {
     }
 }
 
-/// A line of the host's own in the log.
+/// Returns a line of the host's own for the log.
 pub fn warning(text: String) -> LogLine {
     LogLine {
         level: Some("warn".to_owned()),
@@ -52,30 +53,31 @@ pub fn warning(text: String) -> LogLine {
 #[derive(Debug, Default)]
 pub struct Readings {
     pub frame: Option<Frame>,
-    /// The angles that the motion started from, degrees; `None` until the board has told.
+    /// The angles at the start of the motion, degrees; `None` until the board has reported them.
     pub start: Option<[f32; 2]>,
     pub counts: Counts,
     /// The state of the panel when the board was last asked.
     pub panel: Option<PanelReport>,
-    /// What was told since the motion began, oldest first; empty where none is shown.
+    /// The reports since the start of the motion, oldest first. It is empty in scenes without
+    /// angles.
     pub past: Vec<Report>,
     pub lines: Vec<LogLine>,
     pub comparison: Comparison,
-    /// The page of the help that is shown in their place.
+    /// The page of the help that is shown instead of the readings.
     pub help: Help,
-    /// Simulated time per real time, as the board has reported it or as it was set since.
+    /// The simulated time per real time, as last reported by the board or set by the user.
     pub speed: Option<f32>,
-    /// The latest scene of which it was said that it does not use the requested method.
+    /// The last scene for which a warning was shown that it does not use the requested method.
     unusable: Option<(SceneName, Method)>,
     pub(super) arrivals: Vec<Instant>,
     frames: u64,
     greatest_energy_error: f32,
-    /// Of all scenes and restarts together, s.
+    /// The simulated time of all scenes and restarts together, s.
     simulated: f64,
 }
 
 impl Readings {
-    /// Takes a frame that has just arrived; whether to ask the board what it plays.
+    /// Takes a frame that has just arrived. Returns true if the board must be asked for its scene.
     pub fn frame(&mut self, frame: Frame) -> bool {
         let last = self.frame.replace(frame);
         let report = frame.report;
@@ -98,14 +100,15 @@ impl Readings {
         self.comparison.frame(&frame)
     }
 
-    /// Takes what the board says that it plays: frames tell of rod 1 only.
+    /// Takes the board's report of its scene. It is needed because frames contain the start angle
+    /// of rod 1 only.
     pub fn status(&mut self, status: &Status) {
         self.start = Some(status.settings.degrees);
         self.note_method(status);
         self.comparison.status(status);
     }
 
-    /// Takes the state of the panel. It is told in the log when it becomes another.
+    /// Takes the state of the panel. A change is written to the log.
     pub fn panel(&mut self, report: &PanelReport) {
         let before = self.panel.replace(*report);
         let is_news = before.is_none_or(|before| {
@@ -125,7 +128,7 @@ impl Readings {
         }
     }
 
-    /// Says once in a scene that it does not use the requested method.
+    /// Warns once in a scene that it does not use the requested method.
     fn note_method(&mut self, status: &Status) {
         let Some(method) = status.method else {
             self.unusable = None;
@@ -154,7 +157,7 @@ impl Readings {
             .count()
     }
 
-    /// What is not well of an emulated board; empty if all is.
+    /// Returns the faults of an emulated board; empty if all is well.
     pub fn faults(&self) -> Vec<String> {
         let Counts { damaged, lost, .. } = self.counts;
         let dropped = self.frame.map_or(0, |last| last.dropped);
@@ -212,7 +215,7 @@ impl Readings {
     }
 }
 
-/// Returns how a frame is computed, and how long such frames are accurate, in one line.
+/// Returns the method of a frame, and how long such frames are accurate, in one line.
 pub fn stepping(frame: &Frame) -> String {
     if frame.state == PlayState::Stopped {
         return "this motion is too fast for this chip: change the masses or the angle, or choose \
@@ -248,7 +251,7 @@ fn computed(frame: &Frame) -> String {
     }
 }
 
-/// Returns an energy error, or that it is less than `f64` can show.
+/// Returns an energy error as text, or that it is smaller than `f64` can show.
 pub fn energy_error(error: f32, write: impl Fn(f32) -> String) -> String {
     if error.abs() < LEAST_ENERGY_ERROR {
         format!("< {LEAST_ENERGY_ERROR:.0e}")
@@ -286,7 +289,7 @@ mod tests {
             SceneName::Flips,
         ];
         for scene in scenes {
-            // Restarts say nothing new.
+            // A restart causes no new warning.
             readings.status(&status(scene, Some(method)));
             readings.status(&status(scene, Some(method)));
         }

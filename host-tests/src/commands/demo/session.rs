@@ -1,4 +1,5 @@
-//! A board being watched, with a terminal or without: its messages are taken, its scene chosen, its panel recorded.
+//! A session with a board, with or without a terminal: it receives messages, chooses the scene and
+//! records the panel.
 
 use anyhow::bail;
 use firmware::config::TICK_RATE;
@@ -13,18 +14,19 @@ use crate::emulator::pico::PicoMachine;
 use crate::emulator::qemu::{LogLine, Machine, Screenshot};
 use crate::link::{Counts, Port, refusal};
 
-/// Where the stream comes from.
+/// The source of the messages.
 pub enum Source {
-    /// Emulated by QEMU, its clock the host's.
+    /// A board in QEMU with the host's clock.
     Live(Machine),
-    /// Emulated by QEMU, run from frame to frame.
+    /// A board in QEMU that is run from frame to frame.
     Lockstep(Machine),
     Pico(Box<PicoMachine>),
     Port(Port),
 }
 
 impl Source {
-    /// The messages since the last call; of one that goes frame by frame those up to the next.
+    /// Returns the messages since the last call. If the board is run frame by frame, runs to the
+    /// next frame first.
     fn messages(&mut self) -> anyhow::Result<Vec<ToHost>> {
         match self {
             Self::Live(machine) => machine.messages(),
@@ -43,7 +45,8 @@ impl Source {
         Ok(())
     }
 
-    /// The lines of the log since the last call, of a port what has become of it; and what the link has been through.
+    /// Returns the lines of the log since the last call, or the notices of a port, and the counts
+    /// of the link.
     pub fn told(&mut self) -> (Vec<LogLine>, Counts) {
         match self {
             Self::Live(machine) | Self::Lockstep(machine) => (machine.lines(), machine.counts()),
@@ -60,22 +63,22 @@ impl Source {
     }
 }
 
-/// The number of a command that comes from a key.
+/// The request number of a command that comes from a key.
 const KEY: u16 = 0;
-/// The number of the commands by which the board is set up. A refusal of one of them ends the
-/// session.
+/// The request number of the commands that set the board up. If one of them is refused, the session
+/// ends.
 const SETUP: u16 = 1;
 
-/// The speeds that the keys step through, simulated time per real time: from the least to the
-/// greatest there is.
+/// The speeds that the keys select, simulated time per real time, from the smallest to the largest
+/// possible one.
 const SPEEDS: [f32; 9] = [0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 4.0];
 
-/// Returns the next greater speed; `None` at the greatest.
+/// Returns the next larger speed, or `None` at the largest.
 pub fn faster(now: f32) -> Option<f32> {
     SPEEDS.into_iter().find(|speed| *speed > now)
 }
 
-/// Returns the next smaller speed; `None` at the least.
+/// Returns the next smaller speed, or `None` at the smallest.
 pub fn slower(now: f32) -> Option<f32> {
     SPEEDS.into_iter().rev().find(|speed| *speed < now)
 }
@@ -86,20 +89,21 @@ pub struct Session<'a> {
     pub readings: Readings,
     pub screenshot: Screenshot,
     recording: Option<Recording>,
-    /// The latest tick, and that of the first frame of the scene that was asked for.
+    /// The latest tick, and the tick of the first frame of the requested scene.
     now: Option<i64>,
     begun: Option<i64>,
-    /// What the ticks of the board's clock lack since it was last restarted.
+    /// The number of ticks before the last restart of the board's clock.
     before: i64,
-    /// The start that the user has given, until the board reports that it shows it.
+    /// The start that the user has given, until the board reports it.
     awaited: Option<Settings>,
-    /// The number of the latest question for the board's status.
+    /// The request number of the latest question for the board's status.
     question: u16,
 }
 
 impl<'a> Session<'a> {
     pub fn new(options: &'a DemoOptions, source: Source, recording: Option<Recording>) -> Self {
-        let (readings, screenshot) = (Readings::default(), Screenshot::from_pages(&[]));
+        let readings = Readings::default();
+        let screenshot = Screenshot::from_pages(&[]);
         Self {
             options,
             source,
@@ -122,7 +126,8 @@ impl<'a> Session<'a> {
         }
     }
 
-    /// Takes what the board has sent. The host asks what it plays as often as the comparison wants to know.
+    /// Receives the board's messages. Asks the board for its scene whenever the comparison needs
+    /// it.
     pub fn hear(&mut self) -> anyhow::Result<()> {
         for message in self.source.messages()? {
             match message {
@@ -159,7 +164,8 @@ impl<'a> Session<'a> {
         if is_scene && self.awaited.is_none() {
             self.begun.get_or_insert(now);
         }
-        // A real board is asked once a second for its panel.
+
+        // A real board is asked for its panel once a second.
         let is_time = self.source.is_port() && frame.sequence.is_multiple_of(TICK_RATE);
         if self.readings.frame(*frame) || is_time {
             self.ask()
@@ -172,20 +178,22 @@ impl<'a> Session<'a> {
         self.source.send(self.question, Command::Ask)
     }
 
-    /// Takes the answer to a question. Only the latest one knows the speed that was set last.
+    /// Takes the answer to a question. Only the answer to the latest question contains the speed
+    /// that was set last.
     fn status(&mut self, question: u16, status: &Status) {
         self.awaited.take_if(|start| *start == status.settings);
         if question == self.question {
             self.readings.speed = Some(status.speed);
         }
         self.readings.status(status);
-        // An emulated panel is visible itself.
+
+        // An emulated panel can be seen directly.
         if self.source.is_port() {
             self.readings.panel(&status.panel);
         }
     }
 
-    /// Returns why the board cannot be set up as the options say.
+    /// Returns the error of a board that refuses the user's options.
     fn refused(&self, field: Field) -> Refused {
         let option = match field {
             Field::Method => "--method",
@@ -198,7 +206,8 @@ impl<'a> Session<'a> {
             Field::Panel => "--panel",
             _ => "--scene",
         };
-        let (name, field) = (self.name(), refusal(field));
+        let name = self.name();
+        let field = refusal(field);
         Refused::because(format_args!(
             "{name}: the board refuses this {field}; change {option}"
         ))
@@ -209,8 +218,8 @@ impl<'a> Session<'a> {
         self.source.send(KEY, command)
     }
 
-    /// Sets another speed, which `next` returns for the present one, once the board has reported
-    /// that.
+    /// Sets the speed that `next` returns for the current one. Does nothing until the board has
+    /// reported the current speed.
     pub fn change_speed(&mut self, next: fn(f32) -> Option<f32>) -> anyhow::Result<()> {
         let Some(speed) = self.readings.speed.and_then(next) else {
             return Ok(());
@@ -224,7 +233,7 @@ impl<'a> Session<'a> {
         self.ask()
     }
 
-    /// Sets the board up as the options say.
+    /// Sends the user's options to the board.
     fn begin(&mut self, first: &Frame) -> anyhow::Result<()> {
         let scene = self.options.scene.unwrap_or(first.scene);
         self.awaited = self.options.start(scene)?;
@@ -244,7 +253,7 @@ impl<'a> Session<'a> {
         Ok(())
     }
 
-    /// Whether the host can see a panel; else it draws one.
+    /// Returns true if the host can read an emulated panel. Otherwise it redraws the panel itself.
     pub fn has_panel(&self) -> bool {
         self.options.board.has_panel && !self.source.is_port()
     }
@@ -261,7 +270,7 @@ impl<'a> Session<'a> {
         Ok(())
     }
 
-    /// Whether the animation wants a screenshot of the latest tick.
+    /// Returns true if the animation needs a screenshot of the latest tick.
     pub fn is_recording_due(&self) -> bool {
         self.begun
             .and(self.now)
@@ -277,17 +286,17 @@ impl<'a> Session<'a> {
         recording.map_or(Ok(()), |recording| recording.add(&self.screenshot, tick))
     }
 
-    /// Returns the animation, which is complete.
+    /// Returns the complete animation.
     pub fn take_recording(&mut self) -> Option<Recording> {
         self.recording.take()
     }
 
-    /// The tick of the board's clock that a frame belongs to, those before its restarts included.
+    /// Returns the tick of a frame by the board's clock, including those before its restarts.
     fn tick(&self, frame: &Frame) -> i64 {
         self.before + i64::from(frame.sequence) + i64::from(frame.dropped)
     }
 
-    /// Seconds since the first frame of the scene that was asked for, that one included.
+    /// Returns the seconds since the first frame of the requested scene, including that frame.
     pub fn seconds(&self) -> f64 {
         self.begun.zip(self.now).map_or(0.0, |(begun, now)| {
             (now - begun + 1) as f64 / f64::from(TICK_RATE)
@@ -316,7 +325,8 @@ mod tests {
         let mut down = steps(GREATEST_SPEED as f32, slower);
         down.reverse();
         assert_eq!(down, SPEEDS);
-        // From a speed of the user's own.
+
+        // The user may have set a speed between these.
         assert_eq!([faster(0.25), slower(0.25)], [Some(0.5), Some(0.2)]);
     }
 }

@@ -1,5 +1,5 @@
-//! The terminal's layout: the panel and numbers beside it; how it is computed and compared, both angles and the log below; and
-//! the keys.
+//! The layout of the terminal: the panel with the numbers next to it; below them the method and the
+//! comparison, both angles and the log; and the keys.
 
 use std::borrow::Cow;
 
@@ -16,19 +16,22 @@ use super::readings::{Help, Readings, stepping};
 use super::{help, numbers, panel};
 use crate::emulator::qemu::{LogLine, Screenshot, WIDTH};
 
-/// The panel's widths, columns: a pixel each; in Braille two of them; no narrower than makes sense.
+/// The widths of the panel, in columns: with a column for each pixel, in Braille with two pixels in
+/// a column, and the narrowest useful one.
 const PIXELS: u16 = WIDTH as u16;
 const BRAILLE: u16 = PIXELS / 2;
 const NARROWEST: u16 = 32;
-/// Columns between the panel and the numbers.
+/// The number of columns between the panel and the numbers.
 const GAP: u16 = 1;
-/// Rows that are kept for all but the panel and the numbers: the title, and in a narrow terminal four of words and two of keys.
+/// The number of rows for everything except the panel and the numbers: the title, and in a narrow
+/// terminal four rows of words and two of keys.
 const WORDS: u16 = 7;
-/// Rows from which there is room for both angles, their frame included, and their share of the width, percent.
+/// The smallest number of rows for the chart of both angles, including its frame, and its share of
+/// the width, percent.
 const ANGLES: u16 = 7;
 const ANGLES_WIDTH: u16 = 60;
-/// The keys, at the bottom in at most so many rows: all but the least used where there is no room
-/// for more.
+/// The keys, in at most `KEYS_ROWS` rows at the bottom. If there is not enough room, the
+/// `LEAST_USED` ones are left out.
 const KEYS: [&str; 9] = [
     "↑↓ masses",
     "←→ angle",
@@ -42,7 +45,7 @@ const KEYS: [&str; 9] = [
 ];
 const KEYS_ROWS: usize = 2;
 const LEAST_USED: [usize; 2] = [4, 6];
-/// A space that no row ends at.
+/// A space at which no row ends.
 const JOINT: &str = "\u{a0}";
 
 pub fn draw(
@@ -66,12 +69,15 @@ pub fn draw(
         return help::draw(frame, readings.help);
     }
     let now = readings.frame.as_ref();
+
     let words = now.map_or("no frame yet".to_owned(), |now| {
         format!("{} · {}", stepping(now), readings.comparison)
     });
     let words = rows(&words, area.width, "");
     let keys = keys(area.width);
     let top = (width / 4).max(numbers::ROWS);
+
+    // The layout of the areas.
     let parts = [
         Length(1),
         Length(top),
@@ -84,6 +90,7 @@ pub fn draw(
         .spacing(GAP)
         .areas(top);
 
+    // The title, the panel, the numbers and the words.
     let scene = now.map(|now| now.scene.name());
     let state = now.map(|now| now.state);
     let still = state.filter(|state| *state != PlayState::Playing);
@@ -112,6 +119,8 @@ pub fn draw(
     );
     numbers::draw(frame, side, readings);
     frame.render_widget(Paragraph::new(words.join("\n")), words_at);
+
+    // The angles and the log.
     let (mut log, block) = (lower, Block::bordered().title("log"));
     if lower.height >= ANGLES {
         let [angles, framed] = Layout::horizontal([Percentage(ANGLES_WIDTH), Fill(1)]).areas(lower);
@@ -124,6 +133,7 @@ pub fn draw(
         log = block.inner(framed);
         frame.render_widget(block, framed);
     }
+
     let latest = &readings.lines[readings.lines.len().saturating_sub(log.height.into())..];
     let lines: Vec<_> = latest
         .iter()
@@ -135,6 +145,7 @@ pub fn draw(
         Paragraph::new(keys.join("\n").replace(JOINT, " ")).dim(),
         keys_at,
     );
+
     if !colours {
         frame
             .buffer_mut()
@@ -158,8 +169,9 @@ fn keys(width: u16) -> Vec<String> {
     rows_of(few.map(|place| KEYS[place]).collect())
 }
 
-/// The width of a panel of which each pixel is half a character, which takes colours, or a Braille pattern's dot; where there is no
-/// room for that the widest that keeps its shape; `None` if there is none.
+/// Returns the width of the panel. A pixel is half a character if there are colours, or else a dot
+/// of a Braille pattern. If there is not enough room, it is the largest width that keeps the
+/// panel's shape. Returns `None` if the terminal is too small.
 fn panel_width(area: Rect, colours: bool) -> Option<u16> {
     let columns = area.width.checked_sub(GAP + numbers::NARROWEST)?;
     let rows = area.height.checked_sub(WORDS)?;
@@ -173,7 +185,7 @@ fn panel_width(area: Rect, colours: bool) -> Option<u16> {
     (width >= NARROWEST && rows >= numbers::ROWS).then_some(width)
 }
 
-/// A text in as many rows of `width` as it takes.
+/// Returns a text as rows of `width`.
 fn rows(text: &str, width: u16, indent: &str) -> Vec<String> {
     let options = Options::new(width.into())
         .subsequent_indent(indent)
@@ -184,7 +196,8 @@ fn rows(text: &str, width: u16, indent: &str) -> Vec<String> {
         .collect()
 }
 
-/// A line of the log in as many rows as it takes, all but the first indented; where it was written is left out.
+/// Returns a line of the log as rows, all but the first indented. The place in the source is left
+/// out.
 fn logged(line: &LogLine, width: u16) -> Vec<Line<'static>> {
     let (level, colour) = match line.level.as_deref() {
         None => ("", Color::Red),
@@ -213,7 +226,7 @@ mod tests {
     use super::*;
     use crate::oracle::snapshot;
 
-    /// Half a second of a scene, its numbers as long as they get.
+    /// Returns the readings after half a second of a scene, with the longest possible numbers.
     fn readings(scene: SceneName) -> Readings {
         let mut readings = Readings::default();
         let text = "plan: direction form, 4 steps to a frame, and as many words as make it longer than a pane is wide";
@@ -222,6 +235,7 @@ mod tests {
             text: text.to_owned(),
             place: String::new(),
         });
+
         for tick in 0..30_u32 {
             let time = 86_399.0 + f64::from(tick) / 60.0;
             readings.frame(Reading {
@@ -248,14 +262,15 @@ mod tests {
                 ..Reading::default()
             });
         }
-        // How many came in the last second depends on the machine.
+
+        // The number of frames in the last second depends on the machine, so it is cleared.
         readings.arrivals.clear();
         readings.counts.damaged = 12_345;
         readings.start = Some([-179.9, 179.9]);
         readings
     }
 
-    /// What the terminal shows, row by row: a panel with a frame, a line and words.
+    /// Returns the rows of the terminal, for a panel with a frame, a line and words.
     fn rows(readings: &Readings, colours: bool, (width, height): (u16, u16)) -> String {
         let mut canvas = Canvas::default();
         (0..128).for_each(|x| {

@@ -1,4 +1,4 @@
-//! Figure 7: bob 2's path by the right equations and by the ones that the book prints.
+//! Figure 7: the path of bob 2 by the right equations and by the ones that the book prints.
 
 use anyhow::Result;
 use double_pendulum::{Error, Parameters, Pendulum, State, rk4};
@@ -12,19 +12,19 @@ use crate::oracle::textbook::misprinted_equal_rods;
 const MASS_RATIO: f64 = 2.75;
 const START: f64 = 171.0;
 const ROD: f64 = 1.0;
-/// How long the motion is followed, s: as long as the frame is right (test `figures`).
+/// The duration of the motion, s. The figure is accurate for this time (test `figures`).
 pub const DURATION: u32 = 10;
-/// Integration steps per second, and how many make a point of the path.
+/// The integration steps per second, and the number of steps between two points of the path.
 const STEPS: u32 = 8192;
 const STEPS_PER_POINT: u32 = 32;
 
-/// The axes are this long either way, m.
+/// The length of the axes in each direction, m.
 const REACH: f64 = 2.1;
 
 pub struct Path {
-    /// Its points, m right of the pivot and above it.
+    /// The points, in m right of the pivot and above it.
     pub points: Vec<(f64, f64)>,
-    /// The least and the greatest energy, J.
+    /// The smallest and the largest energy, J.
     pub energies: [f64; 2],
 }
 
@@ -36,7 +36,8 @@ pub fn start() -> State<f64> {
     State::at_rest(START.to_radians(), START.to_radians())
 }
 
-/// By the right equations and by the printed ones, with `refinement` times the figure's steps: 1 for the figure itself.
+/// Returns the paths by the right equations and by the printed ones, with `refinement` times the
+/// figure's steps; 1 is the figure itself.
 pub fn paths(refinement: u32) -> Result<[Path; 2], Error> {
     let pendulum = pendulum()?;
     let right = path(&pendulum, refinement, |z| pendulum.derivatives(z));
@@ -49,13 +50,15 @@ pub fn paths(refinement: u32) -> Result<[Path; 2], Error> {
 fn path(pendulum: &Pendulum<f64>, refinement: u32, rhs: impl Fn(&[f64; 4]) -> [f64; 4]) -> Path {
     let mut state = start();
     let dt = 1.0 / f64::from(STEPS * refinement);
-    let (mut points, [mut least, mut greatest]) = (Vec::new(), [f64::INFINITY, f64::NEG_INFINITY]);
+    let mut points = Vec::new();
+    let [mut least, mut greatest] = [f64::INFINITY, f64::NEG_INFINITY];
     for step in 0..=DURATION * STEPS * refinement {
         if step.is_multiple_of(STEPS_PER_POINT * refinement) {
             let [_, bob2] = pendulum.positions(state.angles());
             points.push((bob2.x, bob2.y));
             let energy = pendulum.energy(&state);
-            (least, greatest) = (least.min(energy), greatest.max(energy));
+            least = least.min(energy);
+            greatest = greatest.max(energy);
         }
         state = rk4::step(&rhs, &state.into(), dt).into();
     }
@@ -103,15 +106,17 @@ pub fn figure() -> Result<String> {
 const SHADES: usize = 10;
 const PALEST: f64 = 0.35;
 
-/// Draws a path the darker the later, with its start, its end, and a mark for every second.
+/// Draws a path that becomes darker with time, with its start, its end, and a mark for every
+/// second.
 fn draw(points: &[(f64, f64)], chart: &mut Axes, colour: RGBColor) -> Result<()> {
     let length = points.len().div_ceil(SHADES);
     for shade in 0..SHADES {
-        // Each piece begins where the one before ends.
+        // Each piece begins at the end of the previous one.
         let piece = points.iter().copied().skip(shade * length).take(length + 1);
         let strength = PALEST + (1.0 - PALEST) * shade as f64 / (SHADES - 1) as f64;
         chart.draw_series(LineSeries::new(piece, line(pale(colour, strength), 9)))?;
     }
+
     let per_second = (STEPS / STEPS_PER_POINT) as usize;
     for (second, &(x, y)) in points
         .iter()
@@ -127,9 +132,11 @@ fn draw(points: &[(f64, f64)], chart: &mut Axes, colour: RGBColor) -> Result<()>
             text(10),
         )])?;
     }
+
     let [start, .., end] = *points else {
         return Ok(());
     };
+
     for (place, style) in [
         (start, WHITE.filled()),
         (start, line(TEXT, 12)),

@@ -1,6 +1,7 @@
-//! `cargo figures`: the book's figures 2 to 5 and 7 from the kernel, and animations of what the panel shows in every scene.
+//! `cargo figures`: the book's figures 2 to 5 and 7 computed by the kernel, and animations of the
+//! panel in every scene.
 //!
-//! Nothing in these files depends on the machine, so two runs write the same files.
+//! The files do not depend on the machine, so two runs write the same files.
 
 pub mod chaos;
 mod sheet;
@@ -36,7 +37,7 @@ pub fn folder() -> PathBuf {
     workspace().join("host-tests/pictures")
 }
 
-/// Every figure: its file's name in that folder and what is in it.
+/// Returns every figure: the name of its file in that folder, and its content.
 pub fn figures() -> Result<Vec<(String, String)>> {
     let [light, equal, heavy] = small::MASS_RATIOS;
     let figures = [
@@ -72,9 +73,10 @@ pub fn animation(scene: SceneName, folder: &Path) -> PathBuf {
     folder.join(format!("panel/{}.gif", scene.name()))
 }
 
-/// Records the animation of a scene into `folder`, as `cargo demo --headless` does, and says by which command.
+/// Records the animation of a scene into `folder`, as `cargo demo --headless` does, and prints the
+/// command.
 fn record(scene: SceneName, folder: &Path) -> Result<()> {
-    // Until all that it has to show has been seen.
+    // Each scene is recorded until it has shown everything.
     let seconds = match scene {
         SceneName::Figure7 => "20",
         SceneName::SmallLight | SceneName::SmallEqual | SceneName::SmallHeavy => "4",

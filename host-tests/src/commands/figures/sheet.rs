@@ -1,4 +1,4 @@
-//! A figure on paper: an SVG file, the same bytes every time.
+//! A figure on paper: an SVG file with the same bytes in every run.
 
 use anyhow::Result;
 use plotters::coord::Shift;
@@ -6,15 +6,16 @@ use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
-/// Plotters draws on whole dots. A unit of length of a figure, as wide as a pixel of a common screen, is this many.
+/// The number of plotters' dots in a unit of length. Plotters draws on whole dots; a unit is as
+/// wide as a pixel of a common screen.
 const DOTS: u32 = 8;
-/// The typeface: its reader's choice.
+/// The typeface, which the reader's program chooses.
 const TYPEFACE: &str = "sans-serif";
 
-/// Black is hard on white.
+/// The colour of text, softer than black on white.
 pub const TEXT: RGBColor = RGBColor(34, 34, 34);
 pub const GRID: RGBColor = RGBColor(225, 225, 225);
-/// Two colours that anybody can tell apart.
+/// Two colours that can be distinguished without colour vision.
 pub const BLUE: RGBColor = RGBColor(0, 95, 175);
 pub const ORANGE: RGBColor = RGBColor(205, 85, 15);
 
@@ -29,7 +30,7 @@ pub fn line(colour: RGBColor, width: u32) -> ShapeStyle {
     colour.stroke_width(units(width).div_ceil(10))
 }
 
-/// A colour of less strength, of 1, as it looks on white.
+/// Returns a colour with a strength of less than 1, as it looks on white.
 pub fn pale(RGBColor(red, green, blue): RGBColor, strength: f64) -> RGBColor {
     let [red, green, blue] =
         [red, green, blue].map(|channel| (255.0 - strength * (255.0 - f64::from(channel))) as u8);
@@ -40,7 +41,7 @@ pub fn text(height: u32) -> TextStyle<'static> {
     (TYPEFACE, units(height)).into_font().color(&TEXT)
 }
 
-/// Writes a line in `style` above the rest, which it gives.
+/// Writes a line in `style` at the top of the area and returns the rest of the area.
 pub fn headed<'a>(area: &Area<'a>, line: &str, style: TextStyle<'_>) -> Result<Area<'a>> {
     let (head, rest) = area.split_vertically(units(23));
     let (width, height) = head.dim_in_pixel();
@@ -49,7 +50,8 @@ pub fn headed<'a>(area: &Area<'a>, line: &str, style: TextStyle<'_>) -> Result<A
     Ok(rest)
 }
 
-/// Axes with the quantity on each, its unit (empty: the chart below names it) and its range, and at most so many numbers along each.
+/// Draws axes. Each has a quantity with its unit (empty if the chart below names it), a range, and
+/// a largest number of labels.
 pub fn axes<'a>(
     area: &Area<'a>,
     (across, [left, right]): (&str, [f64; 2]),
@@ -82,12 +84,14 @@ pub fn axes<'a>(
 }
 
 fn plain(number: &f64) -> String {
-    // The ticks are multiples of a round number, give or take a rounding; -0 would be shown as such.
+    // The ticks are multiples of a round number, except for rounding. The sum with 0 turns -0 into
+    // 0.
     let rounded = (number * 1e6).round() / 1e6 + 0.0;
     rounded.to_string().replace('-', "−")
 }
 
-/// A figure so many units wide and high, drawn on white below its title and other lines, as an SVG file.
+/// Returns a figure as an SVG file. It has this width and height in units, and is drawn on white
+/// below its title and other lines.
 pub fn svg<const N: usize>(
     [width, height]: [u32; 2],
     lines: [&str; N],
@@ -108,7 +112,8 @@ pub fn svg<const N: usize>(
     )?;
     area.present()?;
     drop(area);
-    // It is shown in its own size; its coordinates stay dots.
+
+    // The SVG is shown in its own size, and its coordinates remain dots.
     let in_dots = format!(
         "<svg width=\"{}\" height=\"{}\"",
         units(width),

@@ -1,4 +1,5 @@
-//! Figures 2 to 5, small oscillations: both frequencies over the mass ratio, and both angles over time, within their envelopes.
+//! Figures 2 to 5, small oscillations: both frequencies over the mass ratio, and both angles over
+//! time within their envelopes.
 
 use std::f64::consts::{FRAC_PI_6, TAU};
 
@@ -11,16 +12,16 @@ use super::sheet::{BLUE, ORANGE, TEXT, axes, line, svg, text, units};
 
 /// The book's rods, m.
 const ROD: f64 = 0.25;
-/// How long the motion is shown, s, and how finely.
+/// The duration of the motion, s, and the number of intervals in it.
 const DURATION: f64 = 5.0;
 const POINTS: u32 = 1500;
 
 #[derive(Clone, Copy, Debug)]
 pub struct CurvePoint {
     pub time: f64,
-    /// Both angles, degrees.
+    /// The angles of the rods, degrees.
     pub angles: [f64; 2],
-    /// How far each could swing now while the modes go in and out of step, degrees.
+    /// The largest swing of each angle at this time while the modes beat, degrees.
     pub envelopes: [f64; 2],
 }
 
@@ -28,9 +29,10 @@ pub fn modes(mass_ratio: f64) -> Result<Modes<f64>, Error> {
     Modes::new(&Parameters::equal_rods(mass_ratio, ROD, PAGE_GRAVITY))
 }
 
-/// The motion from a1 = 0, a2 = 30 degrees, let go from rest.
+/// Returns the motion from a1 = 0, a2 = 30 degrees, let go from rest.
 ///
-/// The amplitudes of C1 cos w1 t + C2 cos w2 t in either angle: sqrt(C1^2 + C2^2 + 2 C1 C2 cos (w1 - w2) t), rad.
+/// The amplitude of C1 cos w1 t + C2 cos w2 t in each angle is sqrt(C1^2 + C2^2 + 2 C1 C2 cos (w1 -
+/// w2) t), rad.
 pub fn points(modes: Modes<f64>) -> Vec<CurvePoint> {
     let motion = SmallOscillations::new(modes, &Motion::at_rest(0.0, FRAC_PI_6));
     let [fast, slow] = [motion.fast.cosine, motion.slow.cosine];
@@ -91,19 +93,20 @@ pub fn figure(number: u32, mass_ratio: f64) -> Result<String> {
     })
 }
 
-/// The mass ratios of figures 3 to 5, which are marked in figure 2, whose mass ratios are 0 to the last; at 0 itself there are no modes.
+/// The mass ratios of figures 3 to 5. They are marked in figure 2, whose mass ratios range from 0
+/// to the last one. At 0 itself there are no modes.
 pub const MASS_RATIOS: [f64; 3] = [0.2, 1.0, 5.0];
 const RATIOS: u32 = 500;
 
-/// A mass ratio and both frequencies there, fast and slow, of equal rods in sqrt(g/l).
+/// Returns a mass ratio and its frequencies, fast and slow, of equal rods in sqrt(g/l).
 fn at_ratio(mass_ratio: f64) -> Result<[f64; 3], Error> {
     let modes = Modes::new(&Parameters::equal_rods(mass_ratio, 1.0, 1.0))?;
     Ok([mass_ratio, modes.fast.frequency, modes.slow.frequency])
 }
 
-/// Figure 2: both frequencies over the mass ratio.
+/// Returns figure 2: both frequencies over the mass ratio.
 pub fn frequencies() -> Result<String> {
-    // Denser towards 0, where the curves are steep.
+    // The points are denser towards 0, where the curves are steep.
     let [.., greatest] = MASS_RATIOS;
     let ratios = (1..=RATIOS).map(|i| greatest * (f64::from(i) / f64::from(RATIOS)).powi(2));
     let points = ratios.map(at_ratio).collect::<Result<Vec<_>, _>>()?;

@@ -1,4 +1,5 @@
-//! The plane of starts, cut into pixels, and the map computed: in threads, lanes and two steps.
+//! The plane of starts, divided into pixels, and the computation of the map in threads, vector
+//! lanes and two step sizes.
 
 use double_pendulum::flips::{Flip, step_size};
 use double_pendulum::{Error, Parameters};
@@ -9,34 +10,36 @@ use vectors::{Search, flips};
 /// A rectangle of starts, a1 across and a2 upwards.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Map {
-    /// The pendulum; its gravity is its l1, so that times are in sqrt(l1/g).
+    /// The pendulum. Its gravity equals its l1, so that times are in sqrt(l1/g).
     pub parameters: Parameters<f32>,
     /// The step, sqrt(l1/g).
     pub dt: f64,
-    /// How long is waited, sqrt(l1/g).
+    /// The time limit, sqrt(l1/g).
     pub limit: f32,
     /// Pixels across and down.
     pub size: [usize; 2],
     /// The start in the middle, rad.
     pub centre: [f64; 2],
-    /// From the middle to each side, rad.
+    /// The distance from the middle to each side, rad.
     pub half: f64,
-    /// With the step, and with half of it.
+    /// The searches with the step and with half of it.
     pub searches: [Search; 2],
 }
 
-/// A start's flip with the step, which is shown, and with half of it, which it is held against.
+/// A start's flip with the step, which is shown, and with half of it, which is used for comparison.
 pub type FlipPair = [Flip<f32>; 2];
 
-/// Starts that a thread follows by itself; the more, the fewer lanes are idle at its end. Fewer
-/// where each takes long, so that a portion ends every few seconds and progress is reported.
+/// The number of starts that a thread computes together. With a larger number, fewer lanes are idle
+/// at its end. It is smaller if each start takes long, so that a portion ends every few seconds and
+/// progress is reported.
 const PORTION: usize = 8192;
 const LEAST_PORTION: usize = 64;
-/// The steps of a portion.
+/// The number of steps in a portion.
 const PORTION_STEPS: f64 = 1e9;
 
 impl Map {
-    /// All starts, with the step that suits the pendulum, for a time `limit`, sqrt(l1/g), of the pendulum's l1 being its g.
+    /// Returns the map of all starts, with the step that suits the pendulum, up to the time
+    /// `limit`, sqrt(l1/g). The gravity of the pendulum must equal its l1.
     pub fn new(parameters: Parameters<f32>, limit: f32, size: [usize; 2]) -> Result<Self, Error> {
         let dt = step_size(&parameters)?;
         let search = |dt: f64| Search::new(&parameters, dt, (f64::from(limit) / dt).ceil() as u32);
@@ -52,12 +55,13 @@ impl Map {
         })
     }
 
-    /// Returns the most steps that a start takes, with the step and with half of it.
+    /// Returns the largest number of steps of a start, with the step and with half of it together.
     pub fn steps(&self) -> f64 {
         3.0 * f64::from(self.limit) / self.dt
     }
 
-    /// Rows to compute: the lower half of a rectangle about hanging is the upper one's mirror image, both ways.
+    /// Returns the number of rows to compute. The lower half of a rectangle about the hanging
+    /// position is the upper half mirrored in both directions.
     pub fn rows(&self) -> usize {
         let [_, height] = self.size;
         if self.centre == [0.0; 2] {
@@ -67,13 +71,13 @@ impl Map {
         }
     }
 
-    /// The pixels of so many rows, row by row from the top left corner.
+    /// Returns the pixels of `rows` rows, row by row from the top left corner.
     fn pixels(&self, rows: usize) -> impl Iterator<Item = [usize; 2]> + use<> {
         let [width, _] = self.size;
         (0..rows).flat_map(move |row| (0..width).map(move |column| [column, row]))
     }
 
-    /// The start at the middle of a pixel.
+    /// Returns the start at the middle of a pixel.
     pub fn start(&self, [column, row]: [usize; 2]) -> [f32; 2] {
         let Self {
             size: [width, height],
@@ -81,7 +85,9 @@ impl Map {
             half,
             ..
         } = *self;
-        // Twice the pixels from the middle: whole, so that what lies opposite is its mirror image, bit for bit.
+
+        // The distance from the middle is in half pixels, a whole number, so that opposite pixels
+        // are bit-identical mirror images.
         let angle = |pixel: usize, pixels: usize| {
             (2 * pixel as i64 + 1 - pixels as i64) as f64 * half / pixels as f64
         };
@@ -91,16 +97,18 @@ impl Map {
         ]
     }
 
-    /// Those to compute.
+    /// Returns the starts to compute.
     pub fn starts(&self) -> Vec<[f32; 2]> {
         self.pixels(self.rows())
             .map(|pixel| self.start(pixel))
             .collect()
     }
 
-    /// What becomes of each; `tick` is told how many more are done.
+    /// Returns the flips of all starts to compute. `tick` receives the number of starts that were
+    /// completed since its last call.
     pub fn points(&self, tick: impl Fn(usize) + Sync) -> Result<Vec<FlipPair>, Error> {
-        let (starts, [search, finer]) = (self.starts(), &self.searches);
+        let starts = self.starts();
+        let [search, finer] = &self.searches;
         let portion = ((PORTION_STEPS / self.steps()) as usize).clamp(LEAST_PORTION, PORTION);
         let portions = starts.par_chunks(portion).map(|portion| {
             let [flips, checks] = [flips(search, portion)?, flips(finer, portion)?];
@@ -114,9 +122,10 @@ impl Map {
         Ok(portions.collect::<Result<Vec<_>, Error>>()?.concat())
     }
 
-    /// All pixels with what has become of their starts.
+    /// Returns all pixels with the flips of their starts.
     pub fn shown(&self, points: &[FlipPair]) -> impl Iterator<Item = ([usize; 2], FlipPair)> {
-        let (rows, [width, height]) = (self.rows(), self.size);
+        let rows = self.rows();
+        let [width, height] = self.size;
         self.pixels(height).map(move |[column, row]| {
             let [x, y] = if row < rows {
                 [column, row]
@@ -127,8 +136,9 @@ impl Map {
         })
     }
 
-    /// Whether two flips are farther apart than a grey level of the panel; none at all counts as at the limit. With half the step,
-    /// it is in doubt.
+    /// Returns true if two flips differ by more than a grey level of the panel. A flip after the
+    /// limit counts as at the limit, and a start that cannot flip differs from all others. If the
+    /// flips of the two steps differ, the start is in doubt.
     pub fn differ(&self, [one, other]: FlipPair) -> bool {
         if [one, other].contains(&Flip::Never) {
             return one != other;
@@ -137,7 +147,8 @@ impl Map {
         (level(one) - level(other)).abs() > 1.0
     }
 
-    /// How far a flip is on the logarithmic scale from sqrt(l1/g) to the limit, 0 to 1; none without one.
+    /// Returns the position of a flip on the logarithmic scale from sqrt(l1/g) to the limit, 0 to
+    /// 1, or `None` if the flip has no time.
     pub fn share(&self, flip: Flip<f32>) -> Option<f32> {
         match flip {
             Flip::After(time) => Some((time.ln() / self.limit.ln()).clamp(0.0, 1.0)),

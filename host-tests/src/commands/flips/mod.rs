@@ -1,4 +1,5 @@
-//! `cargo flips`: when a rod first turns over, for every start from rest, as a picture or as numbers.
+//! `cargo flips`: the time when a rod first turns over, for every start from rest, as a picture or
+//! as numbers.
 
 pub mod map;
 mod output;
@@ -82,11 +83,11 @@ pub struct FlipsOptions {
     out: PathBuf,
 }
 
-/// The steps to a start from which their number is announced: a small map then takes a minute or
-/// more.
+/// The number of steps of a start from which a note is printed. Even a small map then takes a
+/// minute or more.
 const ANNOUNCED_STEPS: f64 = 1e6;
 
-/// Computes the map and writes the file; reports how much of it is uncertain.
+/// Computes the map and writes the file. Reports how much of it is uncertain.
 pub fn run(options: &FlipsOptions) -> Result<()> {
     let map = options
         .map()
@@ -100,6 +101,7 @@ pub fn run(options: &FlipsOptions) -> Result<()> {
             "note: up to {steps:.1e} steps for each of {computed} starts; a smaller --limit takes less time"
         ));
     }
+
     let doing = if computed < all {
         format!("starts ({} more are mirror images)", all - computed)
     } else {
@@ -109,6 +111,7 @@ pub fn run(options: &FlipsOptions) -> Result<()> {
     let points = map.points(|done| bar.advance(done as u64))?;
     drop(bar);
     file.write_whole(&output::file(&options.out, &map, &points, options.doubt)?)?;
+
     let out = options.out.display();
     let doubtful = map
         .shown(&points)
@@ -120,16 +123,17 @@ pub fn run(options: &FlipsOptions) -> Result<()> {
     ))?)
 }
 
-/// The least and the most pixels across or down.
+/// The smallest and the largest number of pixels across or down.
 const SIZES: std::ops::RangeInclusive<usize> = 2..=32_768;
 
-/// Pixels across and down.
+/// Parses the numbers of pixels across and down.
 fn size(text: &str) -> Result<[usize; 2], String> {
     let number = |text: &str| {
         let number = text
             .parse()
             .map_err(|_| format!("'{text}': not a whole number"))?;
-        let (least, most) = (SIZES.start(), SIZES.end());
+        let least = SIZES.start();
+        let most = SIZES.end();
         if SIZES.contains(&number) {
             Ok(number)
         } else {
@@ -149,15 +153,16 @@ fn picture_or_table(file: &str) -> Result<PathBuf, &'static str> {
     }
 }
 
-/// The least time waited for, sqrt(l1/g): colours go by its logarithm. The most steps to a start.
+/// The smallest time limit, sqrt(l1/g), because colours show its logarithm; and the largest number
+/// of steps of a start.
 const LEAST_LIMIT: f64 = 2.0;
 const MOST_STEPS: f64 = 1e9;
 
-/// A step of an `f32` angle of a turn, rad, of which a pixel must have several.
+/// The smallest pixel, rad: several times the spacing of `f32` angles of a turn.
 const FINEST: f64 = 8.0 * 2.4e-7;
 
 impl FlipsOptions {
-    /// An error names the option and its value.
+    /// Returns the map of the options. An error names the option and its value.
     fn map(&self) -> Result<Map> {
         let Self {
             limit, zoom, size, ..
@@ -177,7 +182,8 @@ impl FlipsOptions {
             "--centre {}: must be within -pi and pi",
             self.centre
         );
-        // Time in sqrt(l1/g), whatever g is.
+
+        // Times are in sqrt(l1/g) for any g.
         let parameters = Parameters {
             m1,
             m2,
@@ -203,7 +209,8 @@ impl FlipsOptions {
             ..map
         };
         let longest = limit.value() * MOST_STEPS / map.steps();
-        // Two digits, rounded down.
+
+        // The limit has two digits, rounded down.
         let unit = 10_f64.powf(longest.log10().floor() - 1.0);
         ensure!(
             limit.value() <= longest,

@@ -1,4 +1,4 @@
-//! What is written: a picture, with what its colours say in the panel's letters, or a table.
+//! The output of the map: a picture with a legend in the panel's letters, or a table.
 
 use std::fmt::Write;
 use std::path::Path;
@@ -9,18 +9,21 @@ use firmware::graphics::glyph;
 
 use super::map::{FlipPair, Map};
 
-/// The bytes of a file of this name; with `doubt`, points of a picture whose time is uncertain get a colour of their own.
+/// Returns the content of a file with this name. With `doubt`, points of a picture whose time is
+/// uncertain have their own colour.
 pub fn file(name: &Path, map: &Map, points: &[FlipPair], doubt: bool) -> Result<Vec<u8>> {
     let pixels = map.shown(points);
     if name.extension().is_some_and(|end| end == "csv") {
         return table(map, pixels);
     }
+
     // The map above its legend.
     let colours: Vec<_> = pixels
         .map(|(_, point)| colour(map, point, doubt))
         .chain(legend(map, doubt))
         .collect();
-    let ([width, _], mut file) = (map.size, Vec::new());
+    let [width, _] = map.size;
+    let mut file = Vec::new();
     let mut encoder = png::Encoder::new(&mut file, width as u32, (colours.len() / width) as u32);
     encoder.set_color(png::ColorType::Rgb);
     encoder.set_compression(png::Compression::High);
@@ -32,12 +35,14 @@ pub fn file(name: &Path, map: &Map, points: &[FlipPair], doubt: bool) -> Result<
 
 type Colour = [u8; 3];
 
-/// There is not the energy for it; not within the limit; the two steps do not agree.
+/// The colours of starts that cannot flip by their energy, that do not flip within the limit, and
+/// for which the two steps disagree.
 const NEVER: Colour = [0, 0, 0];
 const LATER: Colour = [110, 110, 118];
 const DOUBT: Colour = [255, 0, 90];
 
-/// The colour of a share of the scale: viridis, in which equal steps look equal; bright is early.
+/// Returns the colour of a share of the scale: viridis, in which equal steps look equal. Bright
+/// colours are early.
 fn scale(share: f32) -> Colour {
     colorous::VIRIDIS
         .eval_continuous(f64::from(1.0 - share))
@@ -52,8 +57,8 @@ fn colour(map: &Map, point: FlipPair, doubt: bool) -> Colour {
     }
 }
 
-/// A row for each pixel, from the top left corner. A time is empty if no rod can turn over, `inf`
-/// if none does within the limit.
+/// Returns a row for each pixel, from the top left corner. A time is empty if no rod can turn over,
+/// and `inf` if no rod does within the limit.
 fn table(map: &Map, pixels: impl Iterator<Item = ([usize; 2], FlipPair)>) -> Result<Vec<u8>> {
     let mut text =
         String::from("a1 [rad],a2 [rad],time [sqrt(l1/g)],time_by_half_the_step [sqrt(l1/g)]\n");
@@ -63,16 +68,17 @@ fn table(map: &Map, pixels: impl Iterator<Item = ([usize; 2], FlipPair)>) -> Res
         Flip::Later => f32::INFINITY.to_string(),
     };
     for (place, point) in pixels {
-        let ([a1, a2], [time, check]) = (map.start(place), point.map(word));
+        let [a1, a2] = map.start(place);
+        let [time, check] = point.map(word);
         writeln!(text, "{a1},{a2},{time},{check}")?;
     }
     Ok(text.into_bytes())
 }
 
-/// Units across that there are at least, and down; a unit is a whole number of pixels.
+/// The smallest width of the legend and its height, in units; a unit is a whole number of pixels.
 const WIDTH: usize = 400;
 const HEIGHT: usize = 42;
-/// Where the scale begins and how long it is; where the rest does.
+/// The left end of the scale, its length, and the left end of the rest, in units.
 const LEFT: usize = 8;
 const LENGTH: usize = 160;
 const BESIDE: usize = LEFT + LENGTH + 20;
@@ -80,14 +86,14 @@ const BESIDE: usize = LEFT + LENGTH + 20;
 const WHITE: Colour = [255; 3];
 const TEXT: Colour = [34; 3];
 
-/// Rows of pixels, each as wide as the map.
+/// A picture as wide as the map.
 struct Legend {
     width: usize,
     unit: usize,
     pixels: Vec<Colour>,
 }
 
-/// The legend of `map`: red, green and blue of each pixel.
+/// Returns the legend of `map`: red, green and blue of each pixel.
 fn legend(map: &Map, doubt: bool) -> Vec<Colour> {
     let [width, _] = map.size;
     let unit = (width / WIDTH).max(1);
@@ -96,16 +102,19 @@ fn legend(map: &Map, doubt: bool) -> Vec<Colour> {
         unit,
         pixels: vec![WHITE; width * HEIGHT * unit],
     };
+
     for x in 0..LENGTH {
         legend.fill(
             [LEFT + x, 4, 1, 10],
             scale((x as f32 + 0.5) / LENGTH as f32),
         );
     }
+
     let tens = std::iter::successors(Some(1.0), |time| Some(10.0 * time));
     let tens = tens
         .take_while(|time| *time < 0.7 * map.limit)
         .chain([map.limit]);
+
     for time in tens {
         let (x, words) = (
             LEFT + (LENGTH as f32 * time.ln() / map.limit.ln()) as usize,
@@ -118,6 +127,7 @@ fn legend(map: &Map, doubt: bool) -> Vec<Colour> {
             / 2;
         legend.text([x.saturating_sub(half), 17], &words);
     }
+
     let mut x = BESIDE;
     for (colour, name) in [
         (NEVER, "cannot"),
@@ -131,6 +141,7 @@ fn legend(map: &Map, doubt: bool) -> Vec<Colour> {
         x = legend.text([x + 14, 5], name) + 12;
     }
     legend.text([BESIDE, 17], "first turn-over of a rod, √(l₁/g)");
+
     let half = map.half.to_degrees();
     let [a1, a2] = map
         .centre
@@ -148,7 +159,7 @@ fn legend(map: &Map, doubt: bool) -> Vec<Colour> {
     legend.pixels
 }
 
-/// To four digits after the point, at most.
+/// Rounds a number to four digits after the point.
 fn short(number: f64) -> f64 {
     (number * 1e4).round() / 1e4 + 0.0
 }

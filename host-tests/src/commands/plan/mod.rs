@@ -39,7 +39,8 @@ pub fn run(PlanOptions { scene }: &PlanOptions) -> anyhow::Result<()> {
         .try_for_each(say)?)
 }
 
-/// The plan with its reasons, a line each; or that no method meets the tolerance.
+/// Returns the plan with its reasons, one line each, or the lines that no method meets the
+/// tolerance.
 fn words(scene: &Problem, plan: &Result<Plan, Limit>, chip: &Chip) -> Vec<String> {
     let frame = chip.processor.frame;
     let mut lines = match plan {
@@ -78,7 +79,7 @@ fn words(scene: &Problem, plan: &Result<Plan, Limit>, chip: &Chip) -> Vec<String
     lines
 }
 
-/// A scene that shows the linear motion, with its horizon, a line each.
+/// Returns the lines of a scene that shows the linear motion, with its horizon.
 fn linear_words(plan: &Plan) -> [String; 3] {
     [
         format!("method   {}", plan.method),
@@ -156,7 +157,9 @@ fn forbidden(limit: Limit, frame: f32) -> String {
 fn energy(scene: &Problem) -> Option<String> {
     let pendulum = Pendulum::new(&scene.pendulum).ok()?;
     let state = pendulum.to_state(&scene.start);
-    // An admissible step is a quarter of the time in which the fastest motion that the energy allows turns a radian.
+
+    // An admissible step is a quarter of the time in which the fastest motion of this energy turns
+    // by a radian.
     let radian = 4.0 * pendulum.admissible_step(&state).ok()?;
     if !radian.is_finite() {
         return Some(String::from("without energy nothing moves"));

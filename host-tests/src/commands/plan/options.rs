@@ -1,4 +1,4 @@
-//! What is planned, as the command line has it.
+//! The scene to plan, as the command line describes it.
 
 use anyhow::{Context, bail, ensure};
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
@@ -63,11 +63,13 @@ pub struct SceneOptions {
     pub target: Chip,
 }
 
-/// The highest display, pixels: half of one is then eight times what the rods' directions are rounded to.
+/// The largest height of the display, pixels. Half a pixel is then eight times the rounding of the
+/// rods' directions.
 const HIGHEST: f64 = 1e6;
 
 impl SceneOptions {
-    /// The scene with its plan, or with what forbids any; an error is one line that names the option and the value.
+    /// Returns the scene with its plan, or with the limit that forbids any plan. An error is one
+    /// line that names the option and the value.
     ///
     /// The plan of a [linear](SceneName::is_linear) scene is the horizon of the linear motion.
     pub fn plan(&self) -> anyhow::Result<(Problem, Result<Plan, Limit>)> {
@@ -94,7 +96,7 @@ impl SceneOptions {
         self.scene.is_some_and(SceneName::is_linear)
     }
 
-    /// What a board of this class plans when it starts the scene.
+    /// Returns the problem that a board of this class plans when it starts the scene.
     fn of_scene(&self, name: SceneName) -> anyhow::Result<Problem> {
         let settings = name.first_settings();
         let show = Show::on(self.target.processor, name, &settings)?;
@@ -125,14 +127,14 @@ impl SceneOptions {
     }
 }
 
-/// A chip, by what a plan must know of it.
+/// A chip, with the data that a plan needs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Chip {
     pub name: &'static str,
     pub title: &'static str,
     /// Hz.
     pub clock: f32,
-    /// What its steps cost, and what may be spent.
+    /// The costs of its steps and its budgets.
     pub processor: Processor,
 }
 
@@ -151,8 +153,9 @@ fn chip() -> impl TypedValueParser<Value = Chip> {
     })
 }
 
-/// Every chip, the default first: the LM3S6965, without a floating-point unit; the STM32F405, with one for `f32`; the slowest board's,
-/// with one; the Raspberry Pi Pico's, whose products have 32 bits only.
+/// Every chip; the first is the default. They are the LM3S6965 without a floating-point unit, the
+/// STM32F405 with a floating-point unit for `f32`, the slowest board's chip with such a unit, and
+/// that of the Raspberry Pi Pico, whose products have 32 bits only.
 pub const CHIPS: [Chip; 4] = [
     Chip {
         name: "m3",

@@ -1,4 +1,4 @@
-//! The frames a method draws, held against the exact motion.
+//! The comparison of the frames that a method draws with the exact motion.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -19,7 +19,7 @@ pub struct Verdict {
     is_right: Option<bool>,
 }
 
-/// Returns every frame until one that is proved wrong, as long as the motion can be enclosed and
+/// Returns every frame up to one that is proved wrong, while the motion can be enclosed and
 /// `stopped` is zero.
 pub fn frames<'a>(
     scene: &Problem,
@@ -31,7 +31,8 @@ pub fn frames<'a>(
     let (scene, mut set, mut last) = (*scene, start.enclose(scene.rate), None);
     Ok((0..scene.frames()).map_while(move |_| {
         (last != Some(false)).then(|| set.advance_unless(stopped))??;
-        let (exact, drawn) = (set.directions(), motion.advance(1));
+        let exact = set.directions();
+        let drawn = motion.advance(1);
         let shown = || {
             motion
                 .directions()
@@ -51,10 +52,11 @@ pub fn frames<'a>(
     }))
 }
 
-/// Returns true if both bobs, and bob 2 as seen from bob 1, are within the scene's tolerance of each
-/// other in these directions: what a plan promises ([`Problem::tolerance`]).
+/// Returns true if the positions by these two sets of directions are within the scene's tolerance
+/// of each other ([`Problem::tolerance`]). This applies to both bobs, and to bob 2 as seen from bob
+/// 1.
 ///
-/// `None` if that depends on where in the boxes the directions are.
+/// Returns `None` if the result depends on the positions of the directions in their boxes.
 fn are_near(scene: &Problem, one: &[[Fixed; 2]; 2], other: &[[Fixed; 2]; 2]) -> Option<bool> {
     let apart = are_apart(scene, one, other, scene.tolerance);
     if apart.contains(&Some(true)) {
@@ -64,8 +66,9 @@ fn are_near(scene: &Problem, one: &[[Fixed; 2]; 2], other: &[[Fixed; 2]; 2]) -> 
     }
 }
 
-/// Returns for bob 1, bob 2, and bob 2 as seen from bob 1 whether they are more than `distance`, m,
-/// apart in these directions; `None` if that depends on where in the boxes the directions are.
+/// Returns for bob 1, bob 2, and bob 2 as seen from bob 1 true if they are more than `distance`, m,
+/// apart in these directions. Returns `None` for one that depends on the positions of the
+/// directions in their boxes.
 fn are_apart(
     scene: &Problem,
     one: &[[Fixed; 2]; 2],
@@ -73,16 +76,19 @@ fn are_apart(
     distance: f64,
 ) -> [Option<bool>; 3] {
     let Parameters { l1, l2, .. } = scene.pendulum;
+
     // All lengths are divided by that of the longer rod, and rounded.
     let [l1, l2, distance] =
         [l1, l2, distance].map(|x| Fixed::of(x / l1.max(l2)).wider(f64::EPSILON));
     let off = |rod: usize, l: Fixed| [0, 1].map(|axis| (one[rod][axis] - other[rod][axis]) * l);
-    let ([x1, y1], [x2, y2]) = (off(0, l1), off(1, l2));
+    let [x1, y1] = off(0, l1);
+    let [x2, y2] = off(1, l2);
     [[x1, y1], [x1 + x2, y1 + y2], [x2, y2]]
         .map(|[x, y]| (x * x + y * y - distance * distance).is_positive())
 }
 
-/// The number of frames proved right from the start on, and of those left open.
+/// Returns the number of frames that are proved right from the start, and the number of undecided
+/// frames.
 pub fn counts(frames: &[Verdict]) -> (u32, usize) {
     let right = frames
         .iter()
@@ -134,9 +140,11 @@ fn printed_radius(x: Fixed) -> f64 {
     up(x.radius() + rounding + about.abs() * f64::EPSILON)
 }
 
-/// Returns the time of the first frame in which two motions whose starts look the same on the panel (the
-/// mass ratio to three digits, angles to a degree) are more than the longer rod apart: from then on the panel's
-/// numbers do not determine the position of a bob. Only the first `frames` frames are searched, until `stopped`.
+/// Returns the time after which the panel's numbers do not determine the position of a bob.
+///
+/// It is the time of the first frame in which two motions are more than the longer rod apart,
+/// although their starts look the same on the panel (the mass ratio to three digits, angles to a
+/// degree). Only the first `frames` frames are searched, until `stopped`.
 fn told_apart(scene: &Problem, frames: u32, stopped: &AtomicUsize) -> Option<f64> {
     let Parameters { m1, m2, l1, l2, .. } = scene.pendulum;
     let digit = m1 * 10_f64.powf((m2 / m1).log10().floor() - 2.0);
@@ -157,6 +165,7 @@ fn told_apart(scene: &Problem, frames: u32, stopped: &AtomicUsize) -> Option<f64
         )
         .enclose(scene.rate)
     });
+
     let mut verdicts = (1..=frames).map_while(|frame| {
         one.advance_unless(stopped)?;
         other.advance_unless(stopped)?;
@@ -168,7 +177,7 @@ fn told_apart(scene: &Problem, frames: u32, stopped: &AtomicUsize) -> Option<f64
         .map(|(frame, _)| scene.time(frame))
 }
 
-/// Returns the reason why no frame follows, and the option to change.
+/// Returns the reason why the motion is not enclosed further, and the option to change.
 fn not_enclosed(scene: &Problem, frames: &[Verdict]) -> String {
     let Parameters { m1, m2, l1, l2, .. } = scene.pendulum;
     let ratio = |a: f64, b: f64| (a / b).max(b / a);
@@ -183,7 +192,7 @@ fn not_enclosed(scene: &Problem, frames: &[Verdict]) -> String {
     }
 }
 
-/// The width of a box beyond which it is not followed because it is wide.
+/// The width of a box beyond which the width is the reason that the enclosure ends.
 const WIDE: f64 = 1e-12;
 
 /// The ratios of lengths and of masses up to which the numbers of the equations are in range
@@ -191,7 +200,7 @@ const WIDE: f64 = 1e-12;
 const LENGTHS: f64 = 30.0;
 const MASSES: f64 = 1000.0;
 
-/// What is proved, a line each.
+/// Returns the results of the proof, one line each.
 pub fn words(
     scene: &Problem,
     plan: &Result<Plan, Limit>,
@@ -199,7 +208,8 @@ pub fn words(
     frames: &[Verdict],
     stopped: &AtomicUsize,
 ) -> String {
-    let ((right, open), end) = (counts(frames), scene.time(frames.len() as u32));
+    let (right, open) = counts(frames);
+    let end = scene.time(frames.len() as u32);
     let is_complete = frames.len() as u32 == scene.frames();
     let first = match frames.last().map(|frame| frame.is_right) {
         Some(Some(false)) => format!("wrong at {end:.3} s: more than {HALF_PIXEL} pixels off"),
@@ -215,6 +225,7 @@ pub fn words(
             frames.len()
         ),
     };
+
     let predicted = match plan {
         Ok(plan) => format!(
             "right until {:.3} s by {}, steps to a frame: {}",
@@ -225,6 +236,7 @@ pub fn words(
     let unknown = told_apart(scene, frames.len() as u32, stopped).map_or(String::new(), |time| {
         format!("\nunknown    the numbers on the panel are too coarse to tell where a bob is after {time:.3} s")
     });
+
     let known = frames.last().map_or_else(
         || String::from("the start only"),
         |frame| {
@@ -248,7 +260,8 @@ mod tests {
     use super::*;
     use crate::commands::simulate::Number;
 
-    /// Two rods of 1 m let go at 2 rad, a frame of 1 s, half a metre as tolerance.
+    /// Returns a scene with two rods of 1 m, let go at 2 rad, with a frame of 1 s and a tolerance
+    /// of half a metre.
     fn scene() -> Problem {
         Problem {
             pendulum: Parameters::equal_rods(1.0, 1.0, 9.81),
@@ -259,14 +272,15 @@ mod tests {
         }
     }
 
-    /// The directions of rods at these angles, rad.
+    /// Returns the directions of rods at these angles, rad.
     fn rods(angles: [f64; 2]) -> [[Fixed; 2]; 2] {
         angles.map(|a| [a.sin(), a.cos()].map(Fixed::of))
     }
 
     #[test]
     fn bob_2_is_judged_as_seen_from_bob_1_as_well() {
-        // Rod 1 has moved by 0.4 m, rod 2 back by 0.6 m: only from bob 1 is bob 2 too far off.
+        // Rod 1 has moved by 0.4 m, rod 2 back by 0.6 m. Only as seen from bob 1 is bob 2 too far
+        // away.
         let [one, other] = [[0.0, 0.0], [0.4, -0.6]].map(rods);
         let near = |tolerance| {
             let scene = Problem {
@@ -283,7 +297,8 @@ mod tests {
         assert_eq!(are_near(&scene(), &one, &wide), None);
     }
 
-    /// The printed box contains the ends of the ball, whether its middle is read as decimal or `f64`.
+    /// The printed box contains the ends of the ball, both if its middle is read as a decimal and
+    /// as an `f64`.
     #[test]
     fn the_printed_box_contains_the_exact_motion() {
         for (above, below) in [
@@ -326,7 +341,8 @@ mod tests {
         assert!(count(&running) > 0);
         assert_eq!(count(&stopped), 0);
 
-        // The motions of the panel's digits part after some seconds, and no frame beyond is searched.
+        // The motions with the same digits on the panel separate after some seconds, and later
+        // frames are not searched.
         let parted = |frames, stopped| told_apart(&scene, frames, stopped);
         let time = parted(scene.frames(), &running).expect("they part");
         assert_eq!(parted(time as u32, &running), Some(time));

@@ -1,4 +1,4 @@
-//! `cargo prove`: how long the frames of a chip are right, as a theorem.
+//! `cargo prove`: a proof of how long the frames of a chip are accurate.
 
 mod horizon;
 mod tables;
@@ -62,6 +62,7 @@ pub fn run(options: &ProveOptions) -> anyhow::Result<ExitCode> {
         }
         return Ok(ExitCode::SUCCESS);
     }
+
     if options.known_answers {
         say(known_answers::HEADING)?;
         for scene in known_answers::table()?.chunk_by(|one, next| one.scene == next.scene) {
@@ -69,6 +70,7 @@ pub fn run(options: &ProveOptions) -> anyhow::Result<ExitCode> {
         }
         return Ok(ExitCode::SUCCESS);
     }
+
     let (scene, plan) = options.scene.plan().map_err(Refused::because)?;
     let given = || {
         let start = &options.scene.start;
@@ -84,6 +86,7 @@ pub fn run(options: &ProveOptions) -> anyhow::Result<ExitCode> {
         .scene
         .map(|_| Start::of(&scene.pendulum, &scene.start));
     let start = of_board.map_or_else(given, Ok).map_err(Refused::because)?;
+
     let asked = options.method.map(|method| Stepping {
         method,
         steps: options.steps,
@@ -94,11 +97,14 @@ pub fn run(options: &ProveOptions) -> anyhow::Result<ExitCode> {
         say(format_args!("no method is fast enough for a {chip}"))?;
         return Ok(ExitCode::SUCCESS);
     };
+
     let stopped = interrupted()?;
     if options.csv {
         say("t,sin_a1,cos_a1,sin_a2,cos_a2,radius,verdict")?;
     }
-    let (bar, mut proved) = (Progress::of("proving", scene.frames().into()), Vec::new());
+    let bar = Progress::of("proving", scene.frames().into());
+    let mut proved = Vec::new();
+
     for frame in frames(&scene, &start, stepping, &stopped).map_err(Refused::because)? {
         bar.advance(1);
         proved.push(frame);
@@ -106,12 +112,15 @@ pub fn run(options: &ProveOptions) -> anyhow::Result<ExitCode> {
             say(frame.row(scene.time(proved.len() as u32)))?;
         }
     }
+
     drop(bar);
+
     if !options.csv {
         if asked.is_none() && options.scene.is_linear() {
             say("scene      shows the linear motion on purpose, not the exact one")?;
         }
         say(words(&scene, &plan, stepping, &proved, &stopped))?;
     }
+
     Ok(interrupted_by(stopped.load(Ordering::Relaxed)))
 }

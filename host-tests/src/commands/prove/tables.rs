@@ -1,4 +1,4 @@
-//! Tables whose every line is proved: horizons, and known answers.
+//! Tables whose every line is proved: horizons and known answers.
 
 use std::sync::atomic::AtomicUsize;
 
@@ -12,7 +12,7 @@ use crate::commands::plan::SceneOptions;
 use crate::commands::simulate::Number;
 use crate::oracle::known_answers::KnownAnswer;
 
-/// The scenes that move, if only in the end.
+/// Returns the scenes that move, at least at the end.
 pub fn moving() -> impl Iterator<Item = &'static SceneName> {
     SceneName::ALL
         .iter()
@@ -24,9 +24,10 @@ pub const HEADING: &str = "\
 | scene | M3: plan | proved | M4F: plan | proved | M0+: plan | proved | open |
 | --- | --- | --- | --- | --- | --- | --- | --- |";
 
-/// Its line of one scene: predicted and proved.
+/// Returns the table's line of one scene, with its predicted and proved horizons.
 pub fn horizons(name: SceneName) -> Result<String> {
-    let (mut cells, mut unproved) = (vec![name.name().to_owned()], 0);
+    let mut cells = vec![name.name().to_owned()];
+    let mut unproved = 0;
     for chip in ["m3", "m4f", "pico"] {
         let words = ["plan", "--scene", name.name(), "--target", chip];
         let (scene, plan) = SceneOptions::try_parse_from(words)?.plan()?;
@@ -45,13 +46,14 @@ pub fn horizons(name: SceneName) -> Result<String> {
     Ok(format!("| {} | {unproved} |", cells.join(" | ")))
 }
 
-/// Frames per second: the known answers' times are whole seconds.
+/// The frames per second. The times of the known answers are whole seconds.
 const RATE: u16 = 64;
-/// The most digits written of them.
+/// The largest number of digits that are written.
 const DIGITS: f64 = 33.0;
 
-/// The known answers of one scene, a line each, made anew from what is given. Each number is off by at most two units of its last digit,
-/// but for how many times larger a small error has become, which is about.
+/// Returns the known answers of one scene, one line each, computed from the given numbers. Each
+/// number has an error of at most two units of its last digit, except the growth of a small error,
+/// which is approximate.
 pub fn known_answers(scene: &[KnownAnswer]) -> Result<Vec<String>> {
     let exact = |text: &str| text.parse::<Number>().ok()?.exact();
     let fractions = scene[0]
@@ -64,6 +66,7 @@ pub fn known_answers(scene: &[KnownAnswer]) -> Result<Vec<String>> {
     let fractions = fractions
         .and_then(|all| all.try_into().ok())
         .context("more digits than can be enclosed")?;
+
     let about = (scene[0].parameters, scene[0].start.motion());
     let mut set = Start {
         about,
@@ -71,6 +74,7 @@ pub fn known_answers(scene: &[KnownAnswer]) -> Result<Vec<String>> {
         degrees: [true, false],
     }
     .enclose(RATE);
+
     let mut frame = 0;
     let line = |row: &KnownAnswer| {
         while f64::from(frame) < row.time * f64::from(RATE) {

@@ -1,5 +1,5 @@
-//! Errors against the reference through the motions that the report measures on, computed on the host: the bits are those of
-//! the target (see `identity`).
+//! The errors of methods in the report's motions, compared with the reference. They are computed on
+//! the host, whose bits are those of the target (test `identity`).
 
 use double_pendulum::{Method, Motion, Parameters, Pendulum, State};
 use firmware::config::{GRAVITY, REACH};
@@ -8,20 +8,21 @@ use firmware::job::Request;
 use crate::oracle::trials::apart;
 use reference::taylor;
 
-/// Equal rods and bobs from rest. Every number is one that an `f32` holds, so that all arithmetics are given the same pendulum.
+/// A motion of equal rods and bobs from rest. Every number can be represented in `f32`, so that all
+/// arithmetics compute the same pendulum.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scene {
     pub name: &'static str,
-    /// Both angles at the start, rad.
+    /// The angle of both rods at the start, rad.
     pub angle: f64,
-    /// How long it is followed, whole seconds: short where neighbouring motions part quickly.
+    /// The duration, whole seconds. It is short if neighbouring motions separate quickly.
     pub duration: u32,
 }
 
-/// The most states that are compared with the reference in each second.
+/// The largest number of states that are compared with the reference in each second.
 pub const SAMPLES: u32 = 4;
 
-/// A regular and a chaotic one.
+/// A regular and a chaotic motion.
 pub const SCENES: [Scene; 2] = [
     Scene {
         name: "regular",
@@ -43,19 +44,20 @@ pub const LONG: Scene = Scene {
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Error {
-    /// Of an angle, rad, whole turns apart.
+    /// The error of an angle, rad, without whole turns.
     pub angle: f64,
-    /// Of a bob's place on the panel, pixels.
+    /// The error of a bob's position on the panel, pixels.
     pub pixels: f64,
 }
 
-/// Of a motion that has left the finite numbers.
+/// The error of a motion that has diverged.
 const LOST: Error = Error {
     angle: f64::INFINITY,
     pixels: f64::INFINITY,
 };
 
-/// The exact motion, a1 and a2, after each of `steps` equal steps through a scene.
+/// Returns the angles a1 and a2 of the exact motion after each of `steps` equal steps through a
+/// scene.
 pub fn exact(scene: &Scene, steps: u32) -> Vec<[f64; 2]> {
     let Request {
         parameters,
@@ -69,7 +71,8 @@ pub fn exact(scene: &Scene, steps: u32) -> Vec<[f64; 2]> {
         .collect()
 }
 
-/// How many states of a motion with `rate` steps a second are compared in each: as many as fall on whole steps.
+/// Returns the number of states that are compared in each second of a motion with `rate` steps a
+/// second: the largest that fall on whole steps.
 fn samples(rate: u32) -> u32 {
     [SAMPLES, SAMPLES / 2]
         .into_iter()
@@ -77,7 +80,7 @@ fn samples(rate: u32) -> u32 {
         .unwrap_or(1)
 }
 
-/// The request for `method` through `scene` with `rate` steps a second.
+/// Returns the request for `method` through `scene` with `rate` steps a second.
 pub fn request(method: Method, scene: &Scene, rate: u32) -> Request {
     Request {
         method,
@@ -90,19 +93,20 @@ pub fn request(method: Method, scene: &Scene, rate: u32) -> Request {
     }
 }
 
-/// Steps a second that are fair to count and to show: many for a low order, few for a high one.
+/// Returns a typical number of steps a second, for counts and displays: many for a low order, few
+/// for a high one.
 pub fn usual_rate(method: Method) -> u32 {
     if method.order() > 4 { 16 } else { 256 }
 }
 
-/// A few steps a second, for high orders and for low ones.
+/// Small numbers of steps a second, for high and low orders.
 const HIGH: [u32; 21] = [
     4, 5, 6, 7, 8, 9, 10, 11, 12, 14, 16, 18, 20, 24, 28, 32, 40, 48, 64, 80, 96,
 ];
 const LOW: [u32; 3] = [16, 32, 64];
 
-/// Steps a second that `method` is tried with through a scene: a few, and all powers of two beyond; through the long one as many as
-/// are usual.
+/// Returns the numbers of steps a second with which `method` is tried through a scene: some small
+/// ones and all larger powers of two. The long scene is tried with the typical number only.
 pub fn rates(method: Method, scene: &Scene, finest: u32) -> impl Iterator<Item = u32> {
     let few: &[u32] = if method.order() > 4 { &HIGH } else { &LOW };
     let all = few
@@ -112,7 +116,8 @@ pub fn rates(method: Method, scene: &Scene, finest: u32) -> impl Iterator<Item =
     all.filter(move |&rate| scene != &LONG || rate == usual_rate(method))
 }
 
-/// The error of `method` in `steps` equal steps through the scene, compared after each; a second need not be a whole number of them.
+/// Returns the error of `method` in `steps` equal steps through the scene, compared after each
+/// step. A second need not be a whole number of steps.
 pub fn error_after(method: Method, scene: &Scene, steps: u32) -> Option<Error> {
     let dt = f64::from(scene.duration) / f64::from(steps);
     let request = Request {
@@ -124,7 +129,8 @@ pub fn error_after(method: Method, scene: &Scene, steps: u32) -> Option<Error> {
     error(&request, &exact(scene, steps))
 }
 
-/// The error of a request; `None` if its method does not apply to the scene or the step. A motion that was lost has an infinite one.
+/// Returns the error of a request, or `None` if its method does not support the scene or the step.
+/// A motion that has diverged has an infinite error.
 pub fn error(request: &Request, exact: &[[f64; 2]]) -> Option<Error> {
     let mut angles = Vec::new();
     let run = request.readings::<double_pendulum::Error>(|reading| {
@@ -138,7 +144,8 @@ pub fn error(request: &Request, exact: &[[f64; 2]]) -> Option<Error> {
     }
 }
 
-/// The largest error of the angles a1, a2, at as many moments of the scene as there are; `exact` has them and more.
+/// Returns the largest errors of the angles a1, a2 at all moments of `angles`. `exact` has the
+/// angles of these moments and possibly of moments between them.
 pub fn worst(parameters: &Parameters<f64>, angles: &[[f64; 2]], exact: &[[f64; 2]]) -> Error {
     let Ok(pendulum) = Pendulum::new(parameters) else {
         return LOST;
@@ -149,6 +156,7 @@ pub fn worst(parameters: &Parameters<f64>, angles: &[[f64; 2]], exact: &[[f64; 2
         pixels: 0.0,
     };
     let apart_by = (exact.len() / angles.len().max(1)).max(1);
+
     for (&angles, &exact) in angles
         .iter()
         .zip(exact.iter().skip(apart_by - 1).step_by(apart_by))
@@ -165,5 +173,6 @@ pub fn worst(parameters: &Parameters<f64>, angles: &[[f64; 2]], exact: &[[f64; 2
             f64::INFINITY
         });
     }
+
     worst
 }

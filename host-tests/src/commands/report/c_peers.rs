@@ -1,7 +1,8 @@
-//! The page's equations in C on the target, compiled by GCC at -O3: what one would write there without this kernel.
+//! The page's equations in C on the target, compiled by GCC at -O3, as an alternative to this
+//! kernel.
 //!
-//! GCC and newlib are used if they are installed; CMSIS-DSP's sources are fetched from PyPI by pip, once, by version and
-//! hash. What cannot be had is left out, and the report says why.
+//! GCC and newlib are used if they are installed. pip loads the sources of CMSIS-DSP from PyPI
+//! once, by version and hash. A missing part is left out, and the report contains the reason.
 
 use std::path::PathBuf;
 use std::process::Command;
@@ -17,28 +18,30 @@ use crate::emulator::boards::Board;
 use crate::emulator::process;
 use crate::emulator::toolchain::{Toolchain, workspace};
 
-/// What each program takes its sine and cosine from: its name in tables, and the functions.
+/// The programs: the name in tables, and the functions for sine and cosine.
 pub const PROGRAMS: [(&str, [&str; 2]); 2] = [
     ("C with newlib", ["sinf", "cosf"]),
     ("C with CMSIS-DSP", ["arm_sin_f32", "arm_cos_f32"]),
 ];
-/// For compiling, and for fetching 2 MB and what pip wants for it.
+/// The time limit to compile, or to load 2 MB and pip's own files.
 const LIMIT: Duration = Duration::from_secs(180);
 
-/// What the programs compute, in Rust.
+/// The method in Rust with the same equations.
 const TEXTBOOK: Method = Method::TextbookF32;
 
-/// Cost and errors of every program on every board, through scenes with their exact motions. Also says what had to be left out,
-/// and why.
+/// Returns the costs and errors of every program on every board, through scenes with their exact
+/// motions. Also returns what was left out, with the reasons.
 pub fn points(
     toolchain: &Toolchain,
     targets: &[Target],
     scenes: &[(&'static Scene, Vec<[f64; 2]>)],
 ) -> Result<(Vec<Point>, Vec<String>)> {
-    let (mut points, mut absent) = (Vec::new(), Vec::new());
+    let mut points = Vec::new();
+    let mut absent = Vec::new();
     let each = PROGRAMS
         .into_iter()
         .flat_map(|program| targets.iter().map(move |target| (program, target.board)));
+
     for ((name, sine), board) in each {
         let target = match elf(sine, board) {
             Ok(elf) => Target::of(toolchain, board, elf)?,
@@ -65,10 +68,11 @@ pub fn points(
             }
         }
     }
+
     Ok((points, absent))
 }
 
-/// Compiles a program for `board`; the ELF file, or the first line of the complaint.
+/// Compiles a program for `board`. Returns the ELF file, or the first line of the error message.
 fn elf(sine: [&str; 2], board: &Board) -> Result<PathBuf> {
     let elf = format!("{}-{}.elf", sine[0], board.cpu);
     let mut build = Command::new(workspace().join("host-tests/peers-c/build.sh"));
@@ -90,7 +94,7 @@ fn elf(sine: [&str; 2], board: &Board) -> Result<PathBuf> {
     Ok(workspace().join("target/peers-c").join(elf))
 }
 
-/// The error of the states that a program prints.
+/// Returns the error of the states that a program prints.
 fn error(target: &Target, scene: &Scene, rate: u32, exact: &[[f64; 2]]) -> Result<Error> {
     let request = request(TEXTBOOK, scene, rate);
     let printed = target.output(&request)?;

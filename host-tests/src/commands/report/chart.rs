@@ -1,4 +1,4 @@
-//! Cost against error as a picture: a few named lines, all others grey.
+//! A chart of cost against error: a few lines have names and colours, and all others are grey.
 
 use std::cmp::Reverse;
 use std::ops::Range;
@@ -14,19 +14,22 @@ use super::join::Point;
 use crate::emulator::boards::Board;
 
 const SIZE: (u32, u32) = (860, 460);
-/// Points outside are not drawn. Errors fall to the right.
+/// The range of errors. Points outside are not drawn, and errors decrease to the right.
 const ERRORS: Range<f64> = 1e-15..0.1;
-/// A finer step is worth its cycles if it makes the error at least so much smaller.
+/// The largest ratio of a finer step's error to the smallest error so far, above which the finer
+/// step is not worth its cycles.
 const WORTH: f64 = 0.9;
-/// An error of both angles that is half a pixel of the panel, and what people ask of digits, rad.
+/// The marked errors, rad: half a pixel of the panel, for an error of both angles, and typical
+/// accuracies.
 const MARKS: [(f64, &str); 3] = [
     (0.5 / REACH as f64, "half a pixel: 60 fps on the panel"),
     (1e-9, "1e-9"),
     (1e-12, "1e-12"),
 ];
-/// Lines with a name: the programs in C, which are what people do today, and methods that are the best of something.
+/// The number of lines with a name: the programs in C, which are the usual solution today, and the
+/// methods that are the best in some respect.
 const NAMED: usize = 7;
-/// Colours that anybody can tell apart.
+/// Colours that can be distinguished without colour vision.
 const COLOURS: [RGBColor; NAMED] = [
     RGBColor(0, 95, 175),
     RGBColor(205, 85, 15),
@@ -39,11 +42,14 @@ const COLOURS: [RGBColor; NAMED] = [
 const TEXT: RGBColor = RGBColor(34, 34, 34);
 const GREY: RGBColor = RGBColor(200, 200, 200);
 const FONT: &str = "sans-serif";
-/// Pixels of a name: each character, and from one line to the next.
+/// The width of a character of a name, and the height of a line, in pixels.
 const LETTER: (i32, i32) = (7, 15);
 
-/// Each contestant with its points from the coarsest step on, those that a finer step makes better. The programs in C come first, then
-/// those with the most points that nothing else is as good as in both; before its name, their number.
+/// Returns the lines: a count, a name and the points from the coarsest step on that improve the
+/// error.
+///
+/// The count is the number of points that no other point dominates. The programs in C are first,
+/// then the methods with the largest counts.
 fn lines<'a>(
     points: &'a [Point],
     scene: &Scene,
@@ -78,7 +84,7 @@ fn lines<'a>(
     lines
 }
 
-/// Estimated cycles per simulated second against the error, as SVG.
+/// Returns a chart of the estimated cycles per simulated second against the error, as SVG.
 pub fn speed_against_error(points: &[Point], scene: &Scene, board: &Board) -> Result<String> {
     let lines = lines(points, scene, board);
     let best = lines.iter().take_while(|(best, ..)| *best > 0).count();
@@ -154,7 +160,9 @@ pub fn speed_against_error(points: &[Point], scene: &Scene, board: &Board) -> Re
             let Some(end) = points.last() else { continue };
             let (x, mut y) = chart.backend_coord(&place(end));
             let width = LETTER.0 * name.len() as i32;
-            // Right of the line's end, or left of it where the frame is near; and where no other name is.
+
+            // The name is right of the line's end, or left of it if the frame is near, and is moved
+            // up if it overlaps another name.
             let left = if x + 10 + width < SIZE.0 as i32 {
                 x + 10
             } else {
@@ -176,6 +184,7 @@ pub fn speed_against_error(points: &[Point], scene: &Scene, board: &Board) -> Re
         }
         area.present()?;
     }
+
     Ok(svg)
 }
 

@@ -1,4 +1,4 @@
-//! Cost and error of every method and of the programs in C: one table.
+//! The table of cost and error of every method and of the programs in C.
 
 use anyhow::Result;
 use double_pendulum::{Integrator, Method};
@@ -12,10 +12,10 @@ use crate::console::progress::Progress;
 use crate::emulator::boards::Board;
 use crate::emulator::toolchain::Toolchain;
 
-/// The finest step is 2^-this s.
+/// The finest step is 2^-`FINEST` s.
 const FINEST: u32 = 13;
 
-/// One method through one scene on one board with one size of its steps.
+/// The result of a method in a scene, on a board, with a step size.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Point {
     /// A method of the kernel, or a program in C.
@@ -28,19 +28,22 @@ pub struct Point {
 }
 
 impl Point {
-    /// Estimated cycles per simulated second.
+    /// Returns the estimated cycles per simulated second.
     pub fn cycles(&self) -> f64 {
         f64::from(self.rate) * self.step.cycles
     }
 
-    /// Whether another point of the scene and board has neither more cycles nor a larger error, and less of one.
+    /// Returns true if another point of the scene and board has neither more cycles nor a larger
+    /// error, and is better in at least one of them.
     pub fn is_dominated(&self, points: &[Self]) -> bool {
-        let (error, cycles) = (self.error.angle, self.cycles());
+        let error = self.error.angle;
+        let cycles = self.cycles();
         let mut others = points
             .iter()
             .filter(|other| other.board == self.board && other.scene == self.scene);
         others.any(|other| {
-            let (other_error, other_cycles) = (other.error.angle, other.cycles());
+            let other_error = other.error.angle;
+            let other_cycles = other.cycles();
             other_cycles <= cycles
                 && other_error <= error
                 && (other_cycles < cycles || other_error < error)
@@ -48,8 +51,9 @@ impl Point {
     }
 }
 
-/// Every method but the closed forms, whose errors are those of their equations, and every program in C through the scenes on all
-/// targets; the long scene with as many steps as are usual. Also says what had to be left out, a line each.
+/// Returns the points of every method and of every program in C, through the scenes on all targets.
+/// The closed forms are left out, because their errors are those of their equations. The long scene
+/// has the typical number of steps. Also returns what was left out, one line each.
 pub fn join(toolchain: &Toolchain, targets: &[Target]) -> Result<(Vec<Point>, Vec<String>)> {
     let scenes = [&SCENES[0], &SCENES[1], &LONG]
         .map(|scene| (scene, accuracy::exact(scene, SAMPLES * scene.duration)));
@@ -60,7 +64,7 @@ pub fn join(toolchain: &Toolchain, targets: &[Target]) -> Result<(Vec<Point>, Ve
     let methods: Vec<_> = methods.collect();
     let bar = Progress::of("comparing and counting", methods.len() as u64);
     let points = methods.par_iter().map(|&method| {
-        // The pendulum is the same in all scenes, and so is the code that steps it.
+        // All scenes have the same pendulum and so the same code and cost of a step.
         let cost =
             |target| affordable_cost(target, &request(method, &SCENES[0], usual_rate(method)));
         let costs = targets
@@ -139,7 +143,7 @@ pub(super) mod tests {
     use super::*;
     use crate::emulator::boards::BOARDS;
 
-    /// A method's point in the regular scene on the first board.
+    /// Returns a method's point in the regular scene on the first board.
     pub fn point(name: &'static str, cycles: f64, angle: f64) -> Point {
         let step = StepCost {
             cycles: cycles / 64.0,

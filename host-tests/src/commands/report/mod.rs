@@ -1,8 +1,12 @@
-//! `cargo write-report`: every method's cost on the target against its error, as CSV and charts; and what the READMEs show of it:
-//! what to take on each core, what a step costs and how far it is off, and a chart a core.
+//! `cargo write-report`: the cost of every method on the target against its error, as CSV and
+//! charts.
 //!
-//! Costs are counted on the emulated targets, errors are computed on the host, which is allowed because the bits are the
-//! same (test `identity`). Nothing is timed, so two runs write the same files.
+//! The READMEs show an extract: the recommended method for each core, the cost of a step and its
+//! error, and a chart for each core.
+//!
+//! Costs are counted on the emulated targets. Errors are computed on the host, which is valid
+//! because the bits are the same (test `identity`). No times are measured, so two runs write the
+//! same files.
 
 pub mod accuracy;
 mod c_peers;
@@ -56,6 +60,7 @@ pub fn run(options: &ReportOptions) -> Result<()> {
         join::table(&points).csv(),
     )?;
     let is_shown = options.readme && absent.is_empty();
+
     for (scene, target) in SCENES
         .iter()
         .flat_map(|scene| targets.iter().map(move |target| (scene, target)))
@@ -67,9 +72,11 @@ pub fn run(options: &ReportOptions) -> Result<()> {
             write(&workspace().join(CHARTS).join(&name), &svg)?;
         }
     }
+
     let advice = advice(&points);
     absent.iter().chain(&advice).try_for_each(say)?;
     let pages = pages(&advice, &points)?;
+
     if options.readme {
         ensure!(
             absent.is_empty(),
@@ -81,19 +88,21 @@ pub fn run(options: &ReportOptions) -> Result<()> {
     } else if pages.iter().any(|(_, [page, made])| page != made) {
         say("the READMEs show other figures; cargo write-report --readme puts these there")?;
     }
+
     Ok(say(format_args!("wrote {}", folder.display()))?)
 }
 
-/// Where they show the charts from, in the workspace.
+/// The folder of the charts that the READMEs show, in the workspace.
 const CHARTS: &str = "host-tests/pictures/report";
-/// What stands before and after a README's block.
+/// The lines before and after the generated block of a README.
 const MARKS: [&str; 2] = [
     "<!-- made by cargo write-report --readme -->\n",
     "<!-- so far -->\n",
 ];
-/// The READMEs, and how many of the rows they show.
+/// The READMEs, with the number of rows that each shows.
 const READMES: [(&str, usize); 2] = [("README.md", 5), ("host-tests/README.md", 8)];
-/// The rows: what exists, what the page prints, and what to take; those of the first page first.
+/// The rows: the existing alternatives, the page's own equations, and the recommended methods. The
+/// rows of the first README are first.
 const ROWS: [&str; 8] = [
     PROGRAMS[1].0,
     Method::TextbookF32.name(),
@@ -105,7 +114,8 @@ const ROWS: [&str; 8] = [
     Method::Extrapolation16Fixed64.name(),
 ];
 
-/// What one may want to compute a motion for, in words before the cycles.
+/// A purpose of computing a motion: a phrase before the cycles, and the condition of a point that
+/// fulfils it.
 type Purpose = (&'static str, fn(&Point) -> bool);
 const PURPOSES: [Purpose; 3] = [
     ("draws at 60 fps", |point| {
@@ -115,7 +125,8 @@ const PURPOSES: [Purpose; 3] = [
     ("keeps 1e-12 rad", |point| point.error.angle <= 1e-12),
 ];
 
-/// The READMEs, each as it is and with its block: the advice as a list, and as many rows of the table as it shows.
+/// Returns the READMEs, each with its current text and with the text that contains the new block:
+/// the advice as a list, and its rows of the table.
 fn pages(advice: &[String], points: &[Point]) -> Result<Vec<(PathBuf, [String; 2])>> {
     let items: String = advice
         .iter()
@@ -140,7 +151,8 @@ fn pages(advice: &[String], points: &[Point]) -> Result<Vec<(PathBuf, [String; 2
     READMES.into_iter().map(page).collect()
 }
 
-/// What to take on each core through a regular and a chaotic motion, a sentence each, in Markdown.
+/// Returns the recommended methods for each core in a regular and a chaotic motion, one sentence
+/// each, in Markdown.
 fn advice(points: &[Point]) -> Vec<String> {
     let boards = BOARDS
         .iter()
@@ -173,7 +185,7 @@ fn advice(points: &[Point]) -> Vec<String> {
         .collect()
 }
 
-/// To three digits, in thousands.
+/// Returns a number of cycles in thousands or millions, with two or three digits.
 fn thousands(cycles: f64) -> String {
     match cycles / 1e3 {
         kilo @ ..10.0 => format!("{kilo:.1}k"),
@@ -182,7 +194,7 @@ fn thousands(cycles: f64) -> String {
     }
 }
 
-/// Cycles of a step and errors through the regular scene and the long one.
+/// Returns the table of the cycles of a step, and of the errors in the regular and the long scene.
 fn table(points: &[Point], names: &[&str]) -> Table {
     let row = |&name: &&str| {
         let long = points

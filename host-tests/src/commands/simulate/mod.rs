@@ -1,4 +1,5 @@
-//! `cargo simulate`: any motion as a table, computed here or, the same request, by the firmware on an emulated board.
+//! `cargo simulate`: any motion as a table, computed here, or by the firmware on an emulated board
+//! from the same request.
 
 mod number;
 mod options;
@@ -46,7 +47,8 @@ pub fn run(options: &SimulateOptions) -> anyhow::Result<()> {
     let mut file = OutFile::create("--out", path)?;
     let (rows, done) =
         write_rows(&plan, options, &mut file).map_err(|error| file.failed(&error))?;
-    // The rows before an error are right, and stay.
+
+    // The rows before an error are correct, so they are kept.
     if rows > 0 {
         file.finish()?;
         say(format_args!("wrote {}", path.display()))?;
@@ -58,7 +60,8 @@ fn after(rows: u64) -> String {
     format!("after {rows} rows")
 }
 
-/// Writes the rows; returns their number and how the motion ended, or that they cannot be written.
+/// Writes the rows. Returns their number and how the motion ended, or an error if the rows cannot
+/// be written.
 fn write_rows(
     plan: &Plan,
     options: &SimulateOptions,
@@ -90,13 +93,13 @@ fn write_rows(
     }
 }
 
-/// To start QEMU and to send the rows.
+/// The time limit to start QEMU and to send the rows.
 const OVERHEAD: Duration = Duration::from_secs(120);
-/// A step takes at most 200,000 instructions (f64 in steps of order 8, `cargo count`); a busy host executes 10 million a
-/// second.
+/// The time limit of a step. A step takes at most 200,000 instructions (f64 in steps of order 8,
+/// `cargo count`), and a busy host executes 10 million a second.
 const PER_STEP: Duration = Duration::from_millis(20);
 
-/// Sends the request to the firmware on `board` and gives each reading that comes back to `row`.
+/// Sends the request to the firmware on `board` and passes each reading to `row`.
 fn on_board(
     request: &Request,
     board: &'static Board,
@@ -106,6 +109,7 @@ fn on_board(
     let elf = toolchain.build_for(board)?;
     let limit = OVERHEAD
         .saturating_add(PER_STEP.saturating_mul(request.stride.saturating_mul(request.samples)));
+
     let settings = Settings {
         qemu: &toolchain.qemu,
         board,
@@ -115,10 +119,12 @@ fn on_board(
         limit,
     };
     let mut machine = Machine::start(&settings)?;
-    // Its first frame says that it listens.
+
+    // The first frame shows that the board receives commands.
     machine.next_frame().context(board.name)?;
     machine.send(1, Command::Simulate(*request))?;
     let mut expected = 0;
+
     while expected <= request.samples {
         match machine.next_answer().context(board.name)? {
             (_, Answer::Refused(field)) => bail!(
@@ -138,10 +144,11 @@ fn on_board(
             _ => {}
         }
     }
+
     Ok(())
 }
 
-/// Every column there is, and its unit; x to the right and y upwards from the pivot.
+/// The columns and their units. x points to the right and y upwards from the pivot.
 const NAMES: [&str; 12] = [
     "t", "a1", "a2", "p1", "p2", "w1", "w2", "energy", "x1", "y1", "x2", "y2",
 ];
@@ -176,6 +183,7 @@ fn row(plan: &Plan, options: &SimulateOptions, number: u64, reading: &Reading) -
     let pendulum = Pendulum::<f64>::new(&plan.request.parameters);
     let bobs = pendulum.map(|pendulum| pendulum.positions([a1, a2]).map(|bob| [bob.x, bob.y]));
     let [[x1, y1], [x2, y2]] = bobs.unwrap_or([[f64::NAN; 2]; 2]);
+
     let numbers = [
         plan.every.times(number),
         a1,
@@ -190,7 +198,8 @@ fn row(plan: &Plan, options: &SimulateOptions, number: u64, reading: &Reading) -
         x2,
         y2,
     ];
-    // whether numbers have the digits of an f32
+
+    // Numbers of a method in `f32` are printed with the digits of an `f32`.
     let is_single = plan.request.method.numbers() == Numbers::F32;
     let numbers = options.columns.iter().map(|&column| match numbers[column] {
         number if is_single && column != 0 => shortest(number as f32),
@@ -207,9 +216,11 @@ fn row(plan: &Plan, options: &SimulateOptions, number: u64, reading: &Reading) -
     numbers.chain(bits).collect::<Vec<_>>().join(",")
 }
 
-/// The fewest digits that read back as the same number; in exponent form where that is shorter.
+/// Returns the fewest digits that are parsed to the same number, in exponent form if that is
+/// shorter.
 fn shortest(number: impl Display + LowerExp) -> String {
-    let (plain, exponent) = (number.to_string(), format!("{number:e}"));
+    let plain = number.to_string();
+    let exponent = format!("{number:e}");
     if exponent.len() < plain.len() {
         exponent
     } else {
@@ -217,13 +228,15 @@ fn shortest(number: impl Display + LowerExp) -> String {
     }
 }
 
-/// A line for each method: name, equations, numbers, integrator, order, and where it runs.
+/// Returns a line for each method: name, equations, numbers, integrator, order, and where it runs.
 fn list() -> String {
     const HEAD: &str =
         "method                   equations   numbers         integrator     order  runs on";
     let line = |method: &Method| {
-        let (name, order) = (method.name(), method.order());
-        let (equations, numbers) = (method.equations().to_string(), method.numbers().to_string());
+        let name = method.name();
+        let order = method.order();
+        let equations = method.equations().to_string();
+        let numbers = method.numbers().to_string();
         let integrator = method.integrator().to_string();
         let boards = if ON_BOARDS.contains(method) {
             ", boards"

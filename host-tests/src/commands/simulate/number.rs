@@ -1,21 +1,22 @@
-//! Numbers as users write them: decimals (`0.25`, `1e-3`) and fractions (`1/256`), kept exact.
+//! Numbers as users write them: decimals (`0.25`, `1e-3`) and fractions (`1/256`), stored exactly.
 
 use std::fmt;
 use std::str::FromStr;
 
-/// A finite number as written.
+/// A finite number with its text.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Number {
     text: String,
     value: f64,
-    /// `None` where numerator or denominator has more than 18 digits: of that, the value alone is known.
+    /// The exact value. It is `None` if the numerator or denominator has more than 18 digits; only
+    /// `value` is known then.
     fraction: Option<Fraction>,
 }
 
 /// A numerator over a denominator greater than zero, in lowest terms.
 pub type Fraction = (i64, u64);
 
-/// Why a text is no [`Number`].
+/// The reasons why a text is not a [`Number`].
 const NOT_A_NUMBER: &str = "not a number (write a decimal or a fraction such as 1/256)";
 const NOT_FINITE: &str = "must be a finite number";
 const ZERO_DENOMINATOR: &str = "the denominator is zero";
@@ -29,12 +30,12 @@ impl Number {
         }
     }
 
-    /// The `f64` nearest to it.
+    /// Returns the nearest `f64`.
     pub fn value(&self) -> f64 {
         self.value
     }
 
-    /// Itself, if a numerator of 63 bits and a denominator of 64 are enough.
+    /// Returns the exact value if its numerator fits in 63 bits and its denominator in 64 bits.
     pub fn exact(&self) -> Option<Fraction> {
         self.fraction
     }
@@ -43,13 +44,13 @@ impl Number {
         self.value > 0.0
     }
 
-    /// How many times `step` goes into it, if that is a whole number.
+    /// Returns how many times `step` divides the number, if that is a whole number.
     pub fn whole_multiple_of(&self, step: &Number) -> Option<u64> {
         let (count, parts) = quotient(self.fraction?, step.fraction?)?;
         count.try_into().ok().filter(|_| parts == 1)
     }
 
-    /// One of so many equal parts of it.
+    /// Returns the number divided by `parts`.
     pub fn divided_by(&self, parts: u32) -> Number {
         let fraction = self
             .fraction
@@ -67,7 +68,7 @@ impl Number {
         }
     }
 
-    /// The `f64` nearest to `count` times it.
+    /// Returns the `f64` nearest to `count` times the number.
     pub fn times(&self, count: u64) -> f64 {
         let count = count as f64;
         self.fraction.map_or(self.value * count, |(above, below)| {
@@ -87,7 +88,8 @@ impl FromStr for Number {
 
     fn from_str(text: &str) -> Result<Self, &'static str> {
         let (above, below) = text.split_once('/').unwrap_or((text, "1"));
-        let ((numerator, above), (denominator, below)) = (decimal(above)?, decimal(below)?);
+        let (numerator, above) = decimal(above)?;
+        let (denominator, below) = decimal(below)?;
         if denominator == 0.0 {
             return Err(ZERO_DENOMINATOR);
         }
@@ -110,7 +112,8 @@ impl FromStr for Number {
     }
 }
 
-/// `[+-]digits[.digits][e[+-]digits]`: the nearest `f64`, and exactly.
+/// Parses `[+-]digits[.digits][e[+-]digits]`. Returns the nearest `f64`, and the exact value if it
+/// fits.
 fn decimal(text: &str) -> Result<(f64, Option<Fraction>), &'static str> {
     let value: f64 = text.parse().map_err(|_| NOT_A_NUMBER)?;
     if !value.is_finite() {
@@ -134,10 +137,12 @@ fn decimal(text: &str) -> Result<(f64, Option<Fraction>), &'static str> {
     Ok((value, exact()))
 }
 
-/// `None` if it does not fit, or if the divisor is zero.
+/// Returns the quotient of two fractions, or `None` if it does not fit or the divisor is zero.
 fn quotient((a, b): Fraction, (c, d): Fraction) -> Option<Fraction> {
-    let (above, below) = (i128::from(a) * i128::from(d), i128::from(c) * i128::from(b));
-    let (mut common, mut rest) = (above.abs(), below.abs());
+    let above = i128::from(a) * i128::from(d);
+    let below = i128::from(c) * i128::from(b);
+    let mut common = above.abs();
+    let mut rest = below.abs();
     while rest != 0 {
         (common, rest) = (rest, common % rest);
     }
@@ -148,7 +153,7 @@ fn quotient((a, b): Fraction, (c, d): Fraction) -> Option<Fraction> {
     ))
 }
 
-/// The `f64` nearest to a fraction, if neither of its numbers has more than 53 bits.
+/// Returns the `f64` nearest to a fraction, if neither of its numbers has more than 53 bits.
 fn nearest((above, below): Fraction) -> f64 {
     above as f64 / below as f64
 }
@@ -158,7 +163,7 @@ fn nearest((above, below): Fraction) -> f64 {
 pub struct Pair(pub Number, pub Number);
 
 impl Pair {
-    /// Their nearest `f64`.
+    /// Returns the nearest `f64` numbers.
     pub fn values(&self) -> [f64; 2] {
         [self.0.value(), self.1.value()]
     }
@@ -232,6 +237,7 @@ mod tests {
                 "{time} of {step}"
             );
         }
+
         for (one, parts, part, times) in [
             ("0.1", 3, "1/30", 0.3),
             ("3", 3, "1", 9.0),
@@ -244,6 +250,7 @@ mod tests {
                 "{one}"
             );
         }
+
         Ok(())
     }
 }

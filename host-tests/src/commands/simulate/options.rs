@@ -13,7 +13,7 @@ use super::number::{Number, Pair};
 use crate::console::cli::choice;
 use crate::emulator::boards::{BOARDS, Board};
 
-/// Where the motion is computed: by the firmware on an emulated board, or by this program.
+/// The place where the motion is computed: the firmware on an emulated board, or this program.
 pub type Place = Option<&'static Board>;
 
 const HOST: &str = "host";
@@ -188,12 +188,14 @@ impl StartOptions {
             .map(|(option, pair)| (option, [&pair.0, &pair.1], pair.to_string()))
             .into_iter()
             .chain(gravity);
-        // Velocities and gravity are extreme when they are large only.
+
+        // Velocities and gravity are extreme only if they are large.
         let distance = |option: &str, number: &Number| match number.value().abs() {
             0.0 => 0.0,
             value if option == "--masses" || option == "--lengths" => value.ln().abs(),
             value => value.ln(),
         };
+
         let worst = all.max_by(|one, other| {
             let [one, other] = [one, other].map(|(option, numbers, _)| {
                 numbers
@@ -225,7 +227,8 @@ impl StartOptions {
         found.or(gravity).unwrap_or_default()
     }
 
-    /// All of it to the last digit given; `None` if a number has too many.
+    /// Returns the pendulum and its start with all given digits, or `None` if a number has too
+    /// many.
     pub fn exact(&self) -> Option<Exact> {
         let [gravity, first] =
             [GRAVITY.to_string(), FIRST_ANGLE.to_string()].map(|text| text.parse::<Number>().ok());
@@ -244,6 +247,7 @@ impl StartOptions {
             &l.1,
             self.gravity.as_ref().or(gravity.as_ref())?,
         ];
+
         let fractions = numbers
             .into_iter()
             .map(Number::exact)
@@ -258,7 +262,8 @@ impl StartOptions {
     }
 }
 
-/// The option that sets what is refused, if it is of this pendulum or how it is shown.
+/// Returns the option that sets the refused parameter of the pendulum or its display, or else
+/// `otherwise`.
 pub fn option_of(error: &Error, otherwise: &'static str) -> &'static str {
     match error.parameter() {
         _ if matches!(error, Error::Diverged { .. }) => otherwise,

@@ -1,4 +1,4 @@
-//! From options to a request that the kernel accepts, and the times of its rows.
+//! The conversion of the options to a request that the kernel accepts, with the times of its rows.
 
 use anyhow::{Context, anyhow, bail, ensure};
 use double_pendulum::{Error, Integrator, Method, Motion, Parameter};
@@ -8,24 +8,24 @@ use super::options::name;
 use super::tolerance::methods;
 use super::{Number, SimulateOptions, option_of};
 
-/// A checked request and the time from row to row.
+/// A checked request and the time between rows.
 #[derive(Debug)]
 pub struct Plan {
     pub request: Request,
-    /// Row n is at n times this.
+    /// The time between rows: row n is at n times this.
     pub every: Number,
-    /// What the user should know before the rows.
+    /// A note for the user, printed before the rows.
     pub note: Option<String>,
 }
 
-/// The longest step that is chosen where none is given, s, and the most steps.
+/// The longest step, s, that is chosen by default, and the largest number of steps.
 const USUAL_STEP: f64 = 1.0 / 1024.0;
 const MOST_CHOSEN: f64 = (1 << 22) as f64;
-/// Rows where neither a step nor a time between rows is given.
+/// The number of rows if neither a step nor a time between rows is given.
 const ROWS: u32 = 100;
 
-/// The times of a motion: the step, the time from row to row and in steps, and the rows after the
-/// first.
+/// The times of a motion: the step, the time between rows in seconds and in steps, and the number
+/// of rows after the first.
 struct Timing {
     step: Number,
     every: Number,
@@ -33,7 +33,8 @@ struct Timing {
     samples: u32,
 }
 
-/// Checks everything there is to check before the first row; an error is one line that names the option and the value.
+/// Checks all options before the first row. An error is one line that names the option and the
+/// value.
 pub fn plan(options: &SimulateOptions) -> anyhow::Result<Plan> {
     let until = &options.until;
     ensure!(
@@ -75,7 +76,7 @@ pub fn plan(options: &SimulateOptions) -> anyhow::Result<Plan> {
     })
 }
 
-/// Returns the times where a step is given.
+/// Returns the times if a step is given.
 fn given(options: &SimulateOptions, step: &Number) -> anyhow::Result<Timing> {
     let until = &options.until;
     let every = options.every.as_ref().unwrap_or(step);
@@ -99,8 +100,8 @@ fn given(options: &SimulateOptions, step: &Number) -> anyhow::Result<Timing> {
     })
 }
 
-/// Chooses the longest step that goes into the time between rows a whole number of times, is at
-/// most [`USUAL_STEP`], and resolves every motion of this energy, unless that takes too many steps.
+/// Chooses the longest step that divides the time between rows, is at most [`USUAL_STEP`], and
+/// resolves every motion of this energy, unless that takes too many steps.
 fn chosen(options: &SimulateOptions, method: Method) -> anyhow::Result<Timing> {
     let until = &options.until;
     let every = match &options.every {
@@ -121,6 +122,7 @@ fn chosen(options: &SimulateOptions, method: Method) -> anyhow::Result<Timing> {
         };
         (request(options, method, &step, parts, samples), step)
     };
+
     if method.integrator() == Integrator::ClosedForm {
         return Ok(Timing {
             step: every.clone(),
@@ -130,7 +132,7 @@ fn chosen(options: &SimulateOptions, method: Method) -> anyhow::Result<Timing> {
         });
     }
 
-    // What the method takes at all, and what is safe.
+    // The longest step that the method accepts, and the longest safe step.
     let usual = Request {
         dt: USUAL_STEP.min(every.value()),
         samples: 0,
@@ -170,7 +172,7 @@ fn chosen(options: &SimulateOptions, method: Method) -> anyhow::Result<Timing> {
     })
 }
 
-/// Refuses numbers that overflow at once, before anything is printed.
+/// Returns an error if numbers overflow in the first step, before anything is printed.
 fn check_first_step(options: &SimulateOptions, request: &Request) -> anyhow::Result<()> {
     const SHORTER: f64 = 1e-6;
     let first = |dt: f64| {
@@ -195,7 +197,7 @@ fn check_first_step(options: &SimulateOptions, request: &Request) -> anyhow::Res
     }
 }
 
-/// Writes the largest short number that is not above `limit`, s.
+/// Returns the largest short number that is not above `limit`, s, as text.
 pub(super) fn at_most(limit: f64) -> String {
     const LONG: f64 = 0.1;
     const SHORT: f64 = 1e-6;
@@ -210,7 +212,7 @@ pub(super) fn at_most(limit: f64) -> String {
     format!("{digits}e{power} s")
 }
 
-/// How many times one option's time goes into another's.
+/// Returns how many times one option's time divides another's.
 pub(super) fn count(
     (option, time): (&str, &Number),
     (unit_option, unit): (&str, &Number),
@@ -233,7 +235,7 @@ pub(super) fn count(
     })
 }
 
-/// The motion that the options describe, by `method` in steps of `step`.
+/// Returns a request for the motion that the options describe, by `method` in steps of `step`.
 pub(super) fn request(
     options: &SimulateOptions,
     method: Method,
@@ -243,7 +245,9 @@ pub(super) fn request(
 ) -> Request {
     let (parameters, Motion { a1, a2, w1, w2 }) =
         (options.start.parameters(), options.start.motion());
-    let (angles, velocities, dt) = ([a1, a2], [w1, w2], step.value());
+    let angles = [a1, a2];
+    let velocities = [w1, w2];
+    let dt = step.value();
     Request {
         method,
         parameters,
@@ -255,7 +259,8 @@ pub(super) fn request(
     }
 }
 
-/// Refuses what the kernel refuses, and names its option; and angles that leave the turns more digits than the direction.
+/// Returns an error for everything that the kernel refuses, with the option's name, and for angles
+/// whose whole turns need more digits than the direction has left.
 pub(super) fn accepted(options: &SimulateOptions, request: &Request) -> anyhow::Result<()> {
     let digits = if request.method.is_single() {
         f32::MANTISSA_DIGITS
@@ -263,12 +268,14 @@ pub(super) fn accepted(options: &SimulateOptions, request: &Request) -> anyhow::
         f64::MANTISSA_DIGITS
     };
     let limit = f64::powi(2.0, digits as i32 / 2);
+
     if let Some(angle) = request.angles.into_iter().find(|angle| angle.abs() > limit) {
         let numbers = request.method.numbers();
         bail!(
             "--angles: {angle:?} rad: must not exceed {limit}, beyond which {numbers} has too few digits for a direction"
         );
     }
+
     Request {
         samples: 0,
         ..*request
@@ -304,7 +311,7 @@ pub(super) fn accepted(options: &SimulateOptions, request: &Request) -> anyhow::
     })
 }
 
-/// The method asked for, or the first of the table, if the place asked for computes it.
+/// Returns the requested method, or the first of the table, if the requested place can compute it.
 pub(super) fn method(options: &SimulateOptions) -> anyhow::Result<Method> {
     let method = options.method.unwrap_or(Method::ALL[0]);
     let is_there = methods(options.place).contains(&method);

@@ -1,7 +1,7 @@
-//! The cheapest method and step that keep an error: found by trying, proven by the reference.
+//! The search for the cheapest method and step that meet a tolerance, verified by the reference.
 //!
-//! What may be taken is tried in the order of its price; the first that stays so near to the double-double reference in every
-//! row is the cheapest.
+//! The allowed methods and steps are tried in the order of their prices. The first one whose every
+//! row is within the tolerance of the double-double reference is the cheapest.
 
 use anyhow::{Context, bail, ensure};
 use double_pendulum::plan::Stepping;
@@ -15,15 +15,15 @@ use super::{Number, Place, Plan, SimulateOptions};
 use crate::commands::table::at_most;
 use crate::console::progress::Progress;
 
-/// The longest run that is tried, steps.
+/// The longest run that is tried, in steps.
 const MOST_STEPS: u32 = 1 << 19;
-/// The most rows: each costs the reference a step.
+/// The largest number of rows. Each row costs the reference a step.
 const MOST_ROWS: u32 = 10_000;
-/// Rows where no time between them is given.
+/// The number of rows if no time between rows is given.
 const ROWS: u32 = 100;
 
-/// The cheapest of all that the options leave open, and how far any angle of any row is from the exact one at most, rad; an error
-/// is one line that names the option and the value.
+/// Returns the cheapest method and step that the options allow, and the largest error of an angle
+/// in any row, rad. An error is one line that names the option and the value.
 pub fn choose(options: &SimulateOptions, tolerance: &Number) -> anyhow::Result<(Plan, f64)> {
     let SimulateOptions { until, every, .. } = options;
     ensure!(
@@ -44,12 +44,14 @@ pub fn choose(options: &SimulateOptions, tolerance: &Number) -> anyhow::Result<(
         samples < MOST_ROWS,
         "--every {every}: more than {MOST_ROWS} rows with --tolerance"
     );
-    // The motion in this many steps from row to row, and the step.
+
+    // Returns the request for the motion in this number of steps between rows, and the step.
     let in_parts = |method, parts| {
         let step = every.divided_by(parts);
         (request(options, method, &step, parts, samples), step)
     };
-    // What the kernel refuses, it refuses in the finest steps.
+
+    // If the kernel refuses the motion in the finest steps, it refuses it in all steps.
     let asked = method(options)?;
     accepted(
         options,
@@ -62,20 +64,25 @@ pub fn choose(options: &SimulateOptions, tolerance: &Number) -> anyhow::Result<(
         .inspect(|_| bar.advance(1));
     let exact = taylor::states(&options.start.parameters(), &options.start.motion(), times);
     drop(bar);
+
+    // All methods and steps, sorted by price.
     let (unit, methods) = candidates(options);
     let trials = methods.into_iter().flat_map(|(method, price)| {
         divisions(method, samples).map(move |parts| (f64::from(parts) * price, method, parts))
     });
     let mut trials: Vec<_> = trials.collect();
     trials.sort_by(|(one, ..), (other, ..)| one.total_cmp(other));
+
     let bar = Progress::of("trials", trials.len() as u64);
     let mut reached = 0;
+
     for (price, method, parts) in trials {
         bar.advance(1);
         let (request, step) = in_parts(method, parts);
         let (rows, error) = agreement(&request, &exact, tolerance.value());
         if rows == exact.len() {
-            let (price, worst) = (price / every.value(), at_most(error));
+            let price = price / every.value();
+            let worst = at_most(error);
             let note = format!(
                 "using {method}, step {step} s ({price:.0} {unit} per second of motion); \
                  largest error {worst} rad (measured, for the nearest f64 numbers)"
@@ -91,11 +98,13 @@ pub fn choose(options: &SimulateOptions, tolerance: &Number) -> anyhow::Result<(
         }
         reached = reached.max(rows);
     }
+
     let until = every.times((reached as u64).saturating_sub(1));
     bail!("--tolerance {tolerance}: no allowed method stays within it beyond {until} s")
 }
 
-/// The numbers of steps from row to row that are tried: 1, 2, 3, 4, 6, 8, 12 and so on; the closed form needs none.
+/// Returns the numbers of steps between rows that are tried: 1, 2, 3, 4, 6, 8, 12 and so on. The
+/// closed form needs only 1.
 fn divisions(method: Method, samples: u32) -> impl Iterator<Item = u32> {
     let most = if method.integrator() == Integrator::ClosedForm {
         1
@@ -109,26 +118,31 @@ fn divisions(method: Method, samples: u32) -> impl Iterator<Item = u32> {
     all.take_while(move |parts| *parts <= most)
 }
 
-/// Returns how long a motion stays within `limit`, rad, of the exact one: the number of rows before the first that
-/// is too far off, and the largest error of an angle in them.
+/// Returns how long a motion stays within `limit`, rad, of the exact one: the number of rows before
+/// the first row that exceeds the limit, and the largest error of an angle in these rows.
 ///
 /// The error includes half a unit of the last place, by which the exact angle was rounded.
 fn agreement(request: &Request, exact: &[State<f64>], limit: f64) -> (usize, f64) {
-    let (mut rows, mut largest) = (0, 0.0_f64);
-    // Anything that ends the motion ends the agreement.
+    let mut rows = 0;
+    let mut largest = 0.0_f64;
+
+    // An error of the motion also ends the comparison.
     let _ = request.readings::<anyhow::Error>(|reading| {
-        let ([a1, a2, ..], exact) = (reading.state, exact.get(rows).context("no more rows")?);
+        let [a1, a2, ..] = reading.state;
+        let exact = exact.get(rows).context("no more rows")?;
         let error = |a: f64, exact: f64| (a - exact).abs() + 0.5 * f64::EPSILON * exact.abs();
         let apart = error(a1, exact.a1).max(error(a2, exact.a2));
         ensure!(apart <= limit, "too far off");
-        (rows, largest) = (rows + 1, largest.max(apart));
+        rows += 1;
+        largest = largest.max(apart);
         Ok(())
     });
     (rows, largest)
 }
 
-/// What the options leave open, what a step of it costs, and in what: by the place's prices or, where it has none for any of it,
-/// by the evaluations of the equations.
+/// Returns the unit of the prices, and the methods that the options allow with their prices. The
+/// prices are those of the place. If the place has no price for any of the methods, a price is the
+/// number of evaluations of the equations.
 fn candidates(options: &SimulateOptions) -> (&'static str, Vec<(Method, f64)>) {
     const EVALUATIONS: &str = "evaluations of the equations";
     let left = methods(options.place).iter().copied();
@@ -162,8 +176,9 @@ pub(super) fn methods(place: Place) -> &'static [Method] {
     }
 }
 
-/// A processor of the host computes in `f64` as fast as in anything else: the evaluations count. `None` of what is no frontier:
-/// something else is as good and costs less.
+/// Returns the price of a method on the host: the number of evaluations, because the host computes
+/// in `f64` as fast as in other numbers. Returns `None` for methods that are never the best because
+/// another one is as accurate and costs less.
 fn on_host(method: Method) -> Option<f64> {
     use Equations::{Directions, Linear};
     use Numbers::{CompensatedF64, F64};
@@ -174,7 +189,8 @@ fn on_host(method: Method) -> Option<f64> {
     is_fast.then(|| evaluations(method))
 }
 
-/// By the board's own prices; a step of another order than theirs costs as its evaluations do.
+/// Returns the price of a method on a board, from the board's price list. The price of a 64-bit
+/// fixed-point step of another order is proportional to its evaluations.
 fn on_board(method: Method, Processor { costs, .. }: &Processor) -> Option<f64> {
     const PRICED: Method = Method::Extrapolation10Fixed64;
     if method.numbers() == Numbers::Fixed64 {
@@ -183,8 +199,8 @@ fn on_board(method: Method, Processor { costs, .. }: &Processor) -> Option<f64> 
     Some(f64::from(costs.of_frame(Stepping { method, steps: 1 }))).filter(|cost| cost.is_finite())
 }
 
-/// Of the equations, in a step; extrapolation of order 2 K takes K^2 + 1
-/// ([`Extrapolation`](double_pendulum::extrapolation::Extrapolation)).
+/// Returns the number of evaluations of the equations in a step. Extrapolation of order 2 K takes
+/// K^2 + 1 ([`Extrapolation`](double_pendulum::extrapolation::Extrapolation)).
 fn evaluations(method: Method) -> f64 {
     match method.integrator() {
         Integrator::ClosedForm => 0.0,

@@ -5,10 +5,10 @@ use firmware::protocol::Restarted;
 use super::Section;
 use crate::link::{Port, describe_restart};
 
-/// A check by hand, which the firmware's README describes.
+/// A manual check that the firmware's README describes.
 pub struct Check {
     pub name: &'static str,
-    /// The boards that have what is checked; all if none is named.
+    /// The boards to which the check applies; all boards if the list is empty.
     boards: &'static [&'static str],
 }
 
@@ -42,8 +42,8 @@ pub const CHECKS: &[Check] = &[
 /// A cell that the owner fills in.
 pub const BLANK: &str = "(fill in)";
 
-/// Returns the check list of the board `name`: the restarts that the port has learnt of, and a row
-/// for each check by hand.
+/// Returns the check list of the board `name`: the observed restarts, and a row for each manual
+/// check.
 pub fn section(port: &Port, name: &str) -> Section {
     let note = "Restarts by the board's own report. The rest is the owner's to fill in, by the check list in \
                 `firmware/README.md`; what does not apply stays.";
@@ -76,7 +76,8 @@ mod tests {
     #[test]
     fn the_readme_describes_every_check() {
         let page = std::fs::read_to_string(workspace().join("firmware/README.md")).expect("a page");
-        // Wherever its lines end.
+
+        // Line breaks do not matter.
         let page = page.split_whitespace().collect::<Vec<_>>().join(" ");
         for check in CHECKS {
             assert!(page.contains(check.name), "{} is not described", check.name);

@@ -1,5 +1,6 @@
-//! What the board computes beside the host's own: the motions of every method, and every scene for a second; and the time that it
-//! takes, of the methods beside the estimate of `cargo count`.
+//! The comparison of a board's results with those of the host: the motions of every method, and
+//! every scene for a second. The times of the scenes are measured, and the cycles of the methods
+//! are compared with the estimate of `cargo count`.
 
 use anyhow::ensure;
 use double_pendulum::{Method, Parameters};
@@ -16,11 +17,12 @@ use crate::console::progress::Progress;
 use crate::emulator::boards::{BOARDS, Board};
 use crate::emulator::toolchain;
 
-/// From rest: a name, the mass of bob 2, kg (bob 1 has 1 kg, the rods are 1 m long), and both angles, rad. The first is the
-/// one that costs are measured in.
+/// The motions from rest: a name, the mass of bob 2, kg (bob 1 has 1 kg, the rods are 1 m long),
+/// and both angles, rad. Costs are measured in the first one.
 const MOTIONS: [(&str, f64, f64); 2] = [("regular", 1.0, 0.5), ("chaotic", 2.75, 2.98)];
 
-/// A motion as a request of the board: 2 s in steps of 1/256 s. A chaotic one has by then made thousands of one wrong bit.
+/// Returns a motion as a request for the board: 2 s in steps of 1/256 s. In that time, a chaotic
+/// motion turns one wrong bit into thousands.
 fn request(method: Method, (_, m2, angle): (&str, f64, f64)) -> Request {
     let parameters = Parameters {
         m1: 1.0,
@@ -29,7 +31,8 @@ fn request(method: Method, (_, m2, angle): (&str, f64, f64)) -> Request {
         l2: 1.0,
         g: GRAVITY,
     };
-    let (angles, velocities) = ([angle; 2], [0.0; 2]);
+    let angles = [angle; 2];
+    let velocities = [0.0; 2];
     Request {
         method,
         parameters,
@@ -41,7 +44,7 @@ fn request(method: Method, (_, m2, angle): (&str, f64, f64)) -> Request {
     }
 }
 
-/// Every method of the boards, in both motions.
+/// Compares every method of the boards in both motions.
 pub fn methods(talk: &mut Talk) -> anyhow::Result<Section> {
     let note = "Motions from rest in steps of 1/256 s, computed by the board on request.";
     let mut section = Section::new("Bits", note, &["method", "motion", "steps", "bits"]);
@@ -68,7 +71,7 @@ pub fn methods(talk: &mut Talk) -> anyhow::Result<Section> {
     Ok(section)
 }
 
-/// The first number of the board's that is not the host's.
+/// Returns the first number of the board that differs from that of the host.
 fn difference(talk: &mut Talk, request: &Request, number: u16) -> anyhow::Result<Option<String>> {
     const NAMES: [&str; 7] = ["a1", "a2", "p1", "p2", "w1", "w2", "energy"];
     let bits = |&Reading {
@@ -77,11 +80,13 @@ fn difference(talk: &mut Talk, request: &Request, number: u16) -> anyhow::Result
                     energy,
                 }: &Reading| { [a1, a2, p1, p2, w1, w2, energy].map(f64::to_bits) };
     talk.port.send(number, Command::Simulate(*request));
-    let (mut difference, mut index) = (None, 0);
+    let mut difference = None;
+    let mut index = 0;
     request.readings::<anyhow::Error>(|reading| {
         let (given, sample) = sample(talk, number)?;
         ensure!(given == index, "sample {index} was lost on the way");
-        let (board, host) = (bits(&sample), bits(reading));
+        let board = bits(&sample);
+        let host = bits(reading);
         let differs = NAMES
             .iter()
             .zip(board.iter().zip(&host))
@@ -98,7 +103,7 @@ fn difference(talk: &mut Talk, request: &Request, number: u16) -> anyhow::Result
     Ok(difference)
 }
 
-/// The next of the samples that were asked for by this number.
+/// Returns the next sample of the request with this number.
 fn sample(talk: &mut Talk, number: u16) -> anyhow::Result<(u32, Reading)> {
     talk.answer(number, |answer| {
         if let Answer::Sample { index, reading } = answer {
@@ -111,7 +116,8 @@ fn sample(talk: &mut Talk, number: u16) -> anyhow::Result<(u32, Reading)> {
 
 const REQUEST: u16 = u16::MAX;
 
-/// The cycles of a step of every method, on average over the first second from rest: from flash and from RAM.
+/// Returns the average cycles of a step of every method over the first second from rest: from flash
+/// and from RAM.
 pub fn measured(talk: &mut Talk) -> anyhow::Result<Vec<[Option<f64>; 2]>> {
     ON_BOARDS
         .iter()
@@ -119,7 +125,8 @@ pub fn measured(talk: &mut Talk) -> anyhow::Result<Vec<[Option<f64>; 2]>> {
         .collect()
 }
 
-/// The same beside the estimate, as `cargo count` counts them. Instructions are counted in QEMU, on a board with the same processor.
+/// Returns the measured cycles with the estimate of `cargo count`. Instructions are counted in
+/// QEMU, on a board with the same processor.
 pub fn cycles(measured: &[[Option<f64>; 2]], board: Option<&Board>) -> anyhow::Result<Section> {
     let note = "Measured by the processor's cycle counter, interrupts off, over 256 steps of the regular motion, by the code in \
                 flash and, where there is one, by its copy in RAM (constants are read from flash by both); estimated for memory \
@@ -135,6 +142,7 @@ pub fn cycles(measured: &[[Option<f64>; 2]], board: Option<&Board>) -> anyhow::R
     let target = board
         .map(|board| Target::build(&toolchain::ready()?, board))
         .transpose()?;
+
     let bar = Progress::of("estimating cycles, methods", measured.len() as u64);
     for (&method, &[flash, ram]) in ON_BOARDS.iter().zip(measured).inspect(|_| bar.advance(1)) {
         let target = target.as_ref().filter(|_| flash.is_some());
@@ -154,10 +162,11 @@ pub fn cycles(measured: &[[Option<f64>; 2]], board: Option<&Board>) -> anyhow::R
             None,
         );
     }
+
     Ok(section)
 }
 
-/// The cycles of a step; `None` where the board counts none, or has no copy in RAM.
+/// Returns the cycles of a step, or `None` if the board has no cycle counter or no copy in RAM.
 fn step(talk: &mut Talk, method: Method, in_ram: bool) -> anyhow::Result<Option<f64>> {
     talk.port.send(
         REQUEST,
@@ -167,7 +176,9 @@ fn step(talk: &mut Talk, method: Method, in_ram: bool) -> anyhow::Result<Option<
         }),
     );
     sample(talk, REQUEST)?;
-    let (mut steps, mut cycles) = (0, 0.0);
+    let mut steps = 0;
+    let mut cycles = 0.0;
+
     while steps < FULL_CYCLE {
         let (made, taken) = talk.ask(
             Command::Measure {
@@ -188,11 +199,12 @@ fn step(talk: &mut Talk, method: Method, in_ram: bool) -> anyhow::Result<Option<
         steps += made;
         cycles += f64::from(taken);
     }
+
     Ok(Some(cycles / f64::from(steps)))
 }
 
 const FRAMES: u32 = TICK_RATE;
-/// By so many it must have said what it plays.
+/// The number of frames within which the board must have reported its scene.
 const PATIENCE: usize = 10 * FRAMES as usize;
 
 /// Plays every scene on the board, whose processor has a clock of `hertz`.
@@ -218,7 +230,10 @@ pub fn scenes(talk: &mut Talk, hertz: u32) -> anyhow::Result<Section> {
 
 fn play(talk: &mut Talk, name: SceneName, hertz: u32, section: &mut Section) -> anyhow::Result<()> {
     talk.port.send(0, Command::Choose(name));
-    let (mut comparison, mut frames, mut compared) = (Comparison::default(), Vec::new(), 0);
+    let mut comparison = Comparison::default();
+    let mut frames = Vec::new();
+    let mut compared = 0;
+
     while compared < FRAMES && comparison.difference().is_none() {
         let frame = match talk.next(Some)? {
             ToHost::Frame(frame) if frame.scene == name => frame,
@@ -242,6 +257,7 @@ fn play(talk: &mut Talk, name: SceneName, hertz: u32, section: &mut Section) -> 
             compared += 1;
         }
     }
+
     let difference = comparison
         .difference()
         .map(|difference| difference.to_string());
@@ -251,8 +267,9 @@ fn play(talk: &mut Talk, name: SceneName, hertz: u32, section: &mut Section) -> 
     let milliseconds =
         |cycles: Option<u32>| 1e3 * f64::from(cycles.unwrap_or(0)) / f64::from(hertz.max(1));
     let computing = milliseconds(frames.iter().map(|frame| frame.scene_cycles).max());
-    // A frame reports the whole time of the frame before, which for the first belongs to another
-    // scene.
+
+    // A frame reports the whole time of the previous frame, which for the first frame belongs to
+    // another scene.
     let whole = milliseconds(frames[1..].iter().map(|frame| frame.busy_cycles).max());
 
     // The ticks from the frame before the first to the last one.
@@ -272,7 +289,8 @@ fn play(talk: &mut Talk, name: SceneName, hertz: u32, section: &mut Section) -> 
         .or(too_long)
         .map(|fault| format!("{}: {fault}", name.name()));
     let [computing, whole] = [computing, whole].map(|time| format!("{time:.2}"));
-    let (compared, dropped) = (compared.to_string(), dropped.to_string());
+    let compared = compared.to_string();
+    let dropped = dropped.to_string();
     section.add(
         vec![
             name.name().into(),

@@ -1,4 +1,5 @@
-//! `cargo verify-board`: what the tests prove in emulation, proven on a board in the hand, with a report to be sent in.
+//! `cargo verify-board`: a verification of real hardware against the results of the emulators and
+//! the host, with a report to send in.
 
 mod check_list;
 mod compare;
@@ -44,7 +45,8 @@ pub struct VerifyOptions {
     pub report: PathBuf,
 }
 
-/// A part of the report: its title, what the columns mean and where the numbers come from, and what is not well, a line each.
+/// A section of the report: its title with a note on the columns and the source of the numbers, its
+/// table, and its faults, one line each.
 #[derive(Debug, Default)]
 struct Section {
     head: [&'static str; 2],
@@ -70,7 +72,7 @@ impl Section {
     }
 }
 
-/// The cell of bits that differ or not.
+/// Returns the cell for bits that may differ.
 fn verdict(difference: Option<String>) -> String {
     difference.unwrap_or_else(|| "the host's".to_owned())
 }
@@ -86,6 +88,7 @@ pub fn run(options: &VerifyOptions) -> anyhow::Result<bool> {
     })?;
     let name = identity.board.name();
     let board = every_board().find(|board| board.name == name);
+
     let progress = Progress::start(&format!("verifying {name} at {}", talk.port.name));
     let (methods, scenes) = (
         compare::methods(&mut talk)?,
@@ -100,13 +103,15 @@ pub fn run(options: &VerifyOptions) -> anyhow::Result<bool> {
     })?;
     let measured = compare::measured(&mut talk)?;
     drop(progress);
+
     let asked = if options.no_questions {
         Section::default()
     } else {
         talk::ask_person(&mut talk, name)?
     };
     let checks = check_list::section(&talk.port, name);
-    // The board, which goes on sending, has told all before anything is built.
+
+    // All questions to the board come before the builds, because the board continues to send.
     let (cycles, program) = (
         compare::cycles(&measured, board)?,
         program(board, &identity)?,
@@ -126,6 +131,7 @@ pub fn run(options: &VerifyOptions) -> anyhow::Result<bool> {
         sections.each_ref().map(|section| section.table.rows.len());
     let headline =
         format!("{name}: {motions} motions of {methods} methods, {scenes} scenes: {verdict}");
+
     let chip = identity.chip.map(|word| format!("{word:08x}")).join(" ");
     let mut text = format!("# {name}\n\n{headline}.\n\n");
     text += &format!(
@@ -147,6 +153,7 @@ pub fn run(options: &VerifyOptions) -> anyhow::Result<bool> {
             text += &format!("\n## {title}\n\n{note}\n\n{}", table.markdown());
         },
     );
+
     let path = options.report.with_extension("md");
     fs::write(&path, text).with_context(|| path.display().to_string())?;
     faults
@@ -160,8 +167,8 @@ pub fn run(options: &VerifyOptions) -> anyhow::Result<bool> {
     Ok(faults.is_empty())
 }
 
-/// The program in the board's flash, and whether it is the one that is built here for `board`, from which commit, by which compiler,
-/// in a line.
+/// Returns a line about the program in the board's flash: whether it is the one that is built here
+/// for `board`, from which commit and by which compiler.
 fn program(board: Option<&Board>, identity: &Identity) -> anyhow::Result<String> {
     let said = |program: &str, arguments: &[&str]| {
         let output = process::run(
@@ -175,7 +182,8 @@ fn program(board: Option<&Board>, identity: &Identity) -> anyhow::Result<String>
             |output| output.stdout.trim().to_owned(),
         )
     };
-    // With a plus where files have been changed since.
+
+    // A plus marks files that have changed since the commit.
     let changed = if said("git", &["status", "--porcelain"]).is_empty() {
         ""
     } else {
@@ -198,7 +206,8 @@ fn program(board: Option<&Board>, identity: &Identity) -> anyhow::Result<String>
     ))
 }
 
-/// Whether what is built here for `board` is, from its vectors to its constants, what the board says of itself.
+/// Returns true if the program that is built here for `board` is the one that the board reports,
+/// from its vectors to its constants.
 fn is_built(board: &Board, identity: &Identity) -> anyhow::Result<bool> {
     let elf = fs::read(toolchain::ready()?.build_for(board)?)?;
     let file = object::File::parse(&*elf)?;
@@ -209,7 +218,8 @@ fn is_built(board: &Board, identity: &Identity) -> anyhow::Result<bool> {
             .context("a program without its names")?;
         anyhow::Ok(symbol.address() as usize)
     };
-    let (start, end) = (address("__vector_table")?, address("__erodata")?);
+    let start = address("__vector_table")?;
+    let end = address("__erodata")?;
     let is_at = |unused: u8| {
         let (first, flash) = flash_image_over(&elf, unused)?;
         let image = flash

@@ -1,4 +1,5 @@
-//! Question and answer: with the board over its port, and with the person at it, who alone can see its panel and press its buttons.
+//! Questions to the board over its port, and to the person at the board, who alone can see its
+//! panel and press its buttons.
 
 use std::io::stdin;
 use std::sync::mpsc;
@@ -14,7 +15,8 @@ use super::Section;
 use crate::console::cli::complain;
 use crate::link::{Port, refusal};
 
-/// A board answers a command within a tick; the slowest motion asked for has a sample every second.
+/// The time limit of an answer. A board answers a command within a tick, and the slowest requested
+/// motion has a sample every second.
 const PATIENCE: Duration = Duration::from_secs(20);
 const LOOK: Duration = Duration::from_millis(1);
 
@@ -33,9 +35,10 @@ impl Talk {
         Ok(talk)
     }
 
-    /// The next message of one kind; others on the way to it are passed over, but not a refusal.
+    /// Returns the next message of one kind and drops the others. A refusal is an error.
     pub fn next<M>(&mut self, kind: impl Fn(ToHost) -> Option<M>) -> anyhow::Result<M> {
-        let (since, mut told) = (Instant::now(), None);
+        let since = Instant::now();
+        let mut told = None;
         let mut silence = format!(
             "{}: no message for {} s",
             self.port.name,
@@ -65,7 +68,7 @@ impl Talk {
         self.next(ToHost::frame)
     }
 
-    /// The next answer of one kind to the command of this number.
+    /// Returns the next answer of one kind to the request of this number.
     pub fn answer<A>(
         &mut self,
         request: u16,
@@ -89,10 +92,10 @@ impl Talk {
     }
 }
 
-/// Frames that may still be on their way when the person answers.
+/// The number of frames that may still be in transmission when the person answers.
 const UNDER_WAY: u32 = 12;
 
-/// Asks the person about what the board `name` has.
+/// Asks the person about the panel and the buttons of the board `name`.
 pub fn ask_person(talk: &mut Talk, name: &str) -> anyhow::Result<Section> {
     let (has_panel, keys): (_, &[Key]) = match name {
         "lm3s6965evb" | "pico" => (true, Key::ALL),
@@ -112,6 +115,7 @@ pub fn ask_person(talk: &mut Talk, name: &str) -> anyhow::Result<Section> {
         let fault = (is_so == Some(false)).then(|| format!("not so: {what}"));
         section.add(vec![what, answer.to_owned()], fault);
     };
+
     if has_panel {
         let what = "the panel shows a swinging pendulum, upright and sharp";
         let (answer, _) = entered(talk, &format!("{what}? [y/n, anything else: cannot say]"))?;
@@ -122,6 +126,7 @@ pub fn ask_person(talk: &mut Talk, name: &str) -> anyhow::Result<Section> {
         };
         note(what.to_owned(), is_so);
     }
+
     for key in keys.iter().map(|key| key.name()) {
         let question = format!("tap the button '{key}', then press enter [n: there is none]");
         let (answer, restarted) = entered(talk, &question)?;
@@ -131,10 +136,12 @@ pub fn ask_person(talk: &mut Talk, name: &str) -> anyhow::Result<Section> {
             is_tapped.then_some(restarted),
         );
     }
+
     Ok(section)
 }
 
-/// The line that the person enters, empty where input has ended, and whether the motion started again meanwhile.
+/// Returns the line that the person enters, empty if the input has ended, and true if the motion
+/// started again meanwhile.
 fn entered(talk: &mut Talk, question: &str) -> anyhow::Result<(String, bool)> {
     complain(question);
     let (line, lines) = mpsc::channel();
@@ -143,7 +150,9 @@ fn entered(talk: &mut Talk, question: &str) -> anyhow::Result<(String, bool)> {
         let read = stdin().read_line(&mut text);
         line.send(if read.is_ok() { text } else { String::new() })
     });
-    let (mut answer, mut restarted, mut left) = (None, false, UNDER_WAY);
+    let mut answer = None;
+    let mut restarted = false;
+    let mut left = UNDER_WAY;
     let mut last = talk.next_frame()?.report.step;
     while left > 0 {
         let step = talk.next_frame()?.report.step;

@@ -1,12 +1,13 @@
-//! A board under a debugger, frame by frame: the machine stands still at a moment when its panel shows exactly the frame just
-//! received, or at any place in its program.
+//! A board under a debugger. The machine can be stopped after each frame, when its panel shows
+//! exactly the frame just received, or at any place in its program.
 //!
-//! It is stopped from outside, through QEMU's debugger port, when the firmware has done its work and goes to sleep: a frame is then
-//! on the panel and sent, and the next not begun. The firmware need not know, and its clock is the counted one, so nothing it
-//! computes depends on how long it stood still.
+//! The machine is stopped through QEMU's debugger port when the firmware has done its work and goes
+//! to sleep. A frame is then on the panel and sent, and the next one has not started. The firmware is
+//! not involved. Its clock counts instructions, so no result depends on how long the machine was
+//! stopped.
 //!
-//! Of GDB's remote protocol the few packets that this takes. Source: GDB manual, appendix E (Remote Serial Protocol):
-//! `$text#checksum`, each acknowledged with `+`.
+//! This module implements the few packets of GDB's remote protocol that it needs. Source: GDB
+//! manual, appendix E (Remote Serial Protocol): `$text#checksum`, each acknowledged with `+`.
 
 use std::fs::File;
 use std::io::Write;
@@ -22,16 +23,17 @@ use nix::unistd::mkfifo;
 use super::machine::{Clock, Machine, Settings};
 use crate::emulator::up_to_frame;
 
-/// The instruction `wfi`, sleep until an interrupt, and its size, which any breakpoint is said to take, bytes.
+/// The instruction `wfi`, which sleeps until an interrupt, and its size in bytes. The size is also
+/// sent with every breakpoint.
 const WFI: u16 = 0xBF30;
 const SIZE: u32 = 2;
-/// A board that sleeps this often without sending a frame sends none.
+/// The number of sleeps without a frame after which the board counts as silent.
 const PATIENCE: u32 = 1000;
 const PIECE: u32 = 512;
-/// Asks what registers there are; until then QEMU gives access to none.
+/// The request for the description of the registers. QEMU gives no access to registers before it.
 pub(super) const DESCRIBE: &str = "qXfer:features:read:target.xml:0,10";
 
-/// A register of the processor, by GDB's number of it.
+/// A register of the processor, with its number in GDB's protocol.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Register {
     Sp = 13,
@@ -39,18 +41,19 @@ pub enum Register {
     Pc = 15,
 }
 
-/// Places in the program that a machine is stopped at.
+/// The places in the program at which a machine can be stopped.
 #[derive(Debug, Default)]
 pub(super) struct Places {
-    /// Every `wfi`.
+    /// The address of every `wfi`.
     sleeps: Vec<u32>,
     breakpoints: Vec<u32>,
-    /// The breakpoint at which it stands.
+    /// The breakpoint at which the machine is stopped.
     here: Option<u32>,
 }
 
 impl Machine {
-    /// Starts a board with its clock counted, even if `settings` say otherwise; it stands still at its first instruction.
+    /// Starts a board that is stopped at its first instruction. Its clock counts instructions, even
+    /// if `settings` have another clock.
     pub fn halted(settings: &Settings) -> anyhow::Result<Self> {
         let mut machine = Self::boot(&Settings {
             clock: Clock::Counted,
@@ -64,7 +67,7 @@ impl Machine {
         Ok(machine)
     }
 
-    /// Runs to the next frame: all messages up to it.
+    /// Runs to the next frame and returns all messages up to it.
     pub fn run_to_frame(&mut self) -> anyhow::Result<Vec<ToHost>> {
         let sleeps = self.places.sleeps.clone();
         up_to_frame(PATIENCE, || {
@@ -73,8 +76,8 @@ impl Machine {
         })
     }
 
-    /// Runs to the next frame while `read` reads what QEMU logs: the processor's registers before every instruction, hundreds of
-    /// bytes each time.
+    /// Runs to the next frame while `read` reads QEMU's log. The log contains the processor's
+    /// registers before every instruction, hundreds of bytes each time.
     pub fn next_frame_logged<T: Send>(
         &mut self,
         read: impl FnOnce(File) -> anyhow::Result<T> + Send,
@@ -82,10 +85,14 @@ impl Machine {
         let folder = tempfile::tempdir_in(self.folder.path())?;
         let path = folder.path().join("log");
         mkfifo(&path, Mode::S_IRUSR | Mode::S_IWUSR)?;
-        // Opened both ways first, so that neither open waits for QEMU. The log ends once QEMU and `writer` have closed it.
+
+        // The pipe is opened for both directions first, so that neither of the two opens waits for
+        // QEMU. The log ends when QEMU and `writer` have closed it.
         let both = File::options().read(true).write(true).open(&path)?;
-        let (pipe, writer) = (File::open(&path)?, File::options().write(true).open(&path)?);
+        let pipe = File::open(&path)?;
+        let writer = File::options().write(true).open(&path)?;
         drop(both);
+
         thread::scope(|scope| {
             let reader = scope.spawn(|| read(pipe));
             let frame = self
@@ -106,19 +113,20 @@ impl Machine {
         self.single_step(single_step)
     }
 
-    /// Runs until the instruction at this address is about to be executed, the next time if it stands there.
+    /// Runs until the instruction at this address is about to be executed. If the machine is
+    /// stopped there, runs until the next time.
     pub fn run_to(&mut self, address: u32) -> anyhow::Result<()> {
         self.run_until(&[address])
     }
 
-    /// Lets it run freely, twenty times as fast as from frame to frame: QEMU forgets all that it has translated when it is stopped at
-    /// a place.
+    /// Lets the machine run freely. This is twenty times as fast as from frame to frame, because
+    /// QEMU discards its translated code whenever it is stopped at a breakpoint.
     pub fn run(&mut self) -> anyhow::Result<&mut Self> {
         self.leave(&[])?;
         self.say("c").map(|()| self)
     }
 
-    /// Stops it wherever it is.
+    /// Stops the machine at any place.
     pub fn stop(&mut self) -> anyhow::Result<()> {
         self.debugger.sender.write_all(b"\x03")?;
         let reply = self.hear()?;
@@ -129,7 +137,7 @@ impl Machine {
         }
     }
 
-    /// Makes the processor go on elsewhere: the values of some registers.
+    /// Sets some registers, which may include the program counter, before the machine continues.
     pub fn divert(&mut self, registers: &[(Register, u32)]) -> anyhow::Result<()> {
         self.places.here = None;
         registers
@@ -148,7 +156,7 @@ impl Machine {
         Ok(())
     }
 
-    /// Lets it run until one of these instructions is about to be executed.
+    /// Lets the machine run until one of these instructions is about to be executed.
     fn run_until(&mut self, places: &[u32]) -> anyhow::Result<()> {
         self.leave(places)?;
         self.expect("c", "T05")?;
@@ -158,10 +166,11 @@ impl Machine {
         Ok(())
     }
 
-    /// Prepares it to run on, with breakpoints at `places`.
+    /// Prepares the machine to continue, with breakpoints at `places`.
     ///
-    /// The `wfi` it stands at is passed over: the architecture lets it wake at any time, and while the machine stood
-    /// still QEMU has put its clock forward to the next event, which is just what sleeping does.
+    /// If the machine is stopped at a `wfi`, the `wfi` is skipped. The architecture allows it to
+    /// wake at any time. While the machine was stopped, QEMU has advanced its clock to the next
+    /// event, which is exactly the effect of sleeping.
     fn leave(&mut self, places: &[u32]) -> anyhow::Result<()> {
         let set = std::mem::replace(&mut self.places.breakpoints, places.to_vec());
         for (change, these, others) in [('z', &set[..], places), ('Z', places, &set[..])] {
@@ -171,7 +180,8 @@ impl Machine {
         }
         match self.places.here.take() {
             Some(here) if self.places.sleeps.contains(&here) => self.set(Register::Pc, here + SIZE),
-            // Not where it was stopped otherwise: it may be asleep, and then makes no step.
+            // A machine that was stopped in another way makes no single step: it may be asleep and
+            // would not finish it.
             Some(here) if places.contains(&here) => self.expect("s", "T05"),
             _ => Ok(()),
         }
@@ -184,7 +194,7 @@ impl Machine {
         )
     }
 
-    /// Sends a packet whose answer must begin with `answer`.
+    /// Sends a packet and checks that the reply begins with `answer`.
     fn expect(&mut self, packet: &str, answer: &str) -> anyhow::Result<()> {
         let reply = self.ask(packet)?;
         if reply.starts_with(answer) {

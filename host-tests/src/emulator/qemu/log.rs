@@ -1,4 +1,5 @@
-//! What the firmware and QEMU say: defmt's lines decoded with level, file and line, and plain text as it is.
+//! The output of the firmware and of QEMU: decoded lines of defmt with level, file and line, and
+//! plain text.
 
 use std::fmt;
 use std::path::Path;
@@ -8,7 +9,8 @@ use defmt_decoder::{DecodeError, Frame, Locations, StreamDecoder, Table};
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct LogLine {
-    /// defmt's level in lower case; `None` for plain text, in which QEMU speaks and the firmware reports a crash.
+    /// The defmt level in lower case. It is `None` for plain text, which comes from QEMU or from a
+    /// crash report of the firmware.
     pub level: Option<String>,
     pub text: String,
     /// The file name and line number of the statement, ` [file:line]`, where they are known.
@@ -24,7 +26,8 @@ impl LogLine {
         }
     }
 
-    /// Whether something went wrong: a defmt error, or a crash report or complaint in plain text.
+    /// Returns true if the line reports a problem: a defmt error, or plain text, which is a crash
+    /// report or a complaint of QEMU.
     pub fn is_bad(&self) -> bool {
         self.level.as_deref().is_none_or(|level| level == "error")
     }
@@ -40,17 +43,19 @@ impl fmt::Display for LogLine {
     }
 }
 
-/// Makes lines of defmt's stream.
+/// A decoder of defmt's stream into lines.
 pub struct LogDecoder {
-    /// None, once the stream is damaged for good, or if the program has no log.
+    /// The stream decoder. It is `None` if the program has no log, or once the stream is damaged
+    /// beyond recovery.
     stream: Option<Box<dyn StreamDecoder>>,
     can_recover: bool,
-    /// Where each stands in the source.
+    /// The location of each log statement in the source.
     locations: Locations,
 }
 
 impl LogDecoder {
-    /// Of the firmware in the file `elf`, whose format strings stay in memory for good.
+    /// Makes a decoder for the firmware in the file `elf`. Its format strings stay in memory for
+    /// the rest of the program.
     pub fn new(elf: &Path) -> anyhow::Result<Self> {
         let program = std::fs::read(elf).with_context(|| elf.display().to_string())?;
         let Some(table) = Table::parse(&program)?.map(Box::new) else {
@@ -70,7 +75,7 @@ impl LogDecoder {
         })
     }
 
-    /// Takes the next bytes; the lines that they complete.
+    /// Takes the next bytes and returns the lines that they complete.
     pub fn take(&mut self, bytes: &[u8]) -> Vec<LogLine> {
         let mut lines = Vec::new();
         let Some(stream) = &mut self.stream else {

@@ -1,4 +1,4 @@
-//! An emulated board: how it starts, what comes from it, and how it ends.
+//! An emulated board: its start, its output, and its end.
 
 use std::collections::VecDeque;
 use std::io::Write;
@@ -20,10 +20,12 @@ use crate::link::{Counts, Inbox};
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Clock {
-    /// The host's clock: as fast as the real board, as long as the host keeps up.
+    /// The host's clock. The board is as fast as a real one if the host can keep up.
     Real,
-    /// The count of executed instructions, each of which takes [as long as any](Board::instruction), and no waiting while the
-    /// board sleeps: repeatable bit for bit on any host however busy, and several times as fast as the real board.
+    /// The count of executed instructions. Every instruction takes the [same
+    /// time](Board::instruction), and no time passes on the host while the board sleeps. The
+    /// results are bit-identical on any host under any load, and the board is several times as fast
+    /// as a real one.
     Counted,
 }
 
@@ -33,24 +35,28 @@ pub struct Settings<'a> {
     pub board: &'a Board,
     pub elf: &'a Path,
     pub clock: Clock,
-    /// Whether there is a debugger that answers the firmware's calls and so takes its log.
+    /// True if a debugger is attached. It answers the firmware's semihosting calls and so receives
+    /// its log.
     pub debugger: bool,
-    /// It is ended at the latest after this long, by the host's clock.
+    /// QEMU is ended after this time at the latest, by the host's clock.
     pub limit: Duration,
 }
 
-/// What QEMU says at every start of this machine and no one needs to read.
+/// Messages that QEMU prints at every start of this machine and that do not matter.
 const CHATTER: [&str; 2] = ["Timer with period zero, disabling", "has no peer"];
 
-/// An emulated board. Whoever waits for anything of it also reads all that comes, for QEMU stands still while no one does. Dropping it
-/// ends QEMU.
+/// An emulated board.
+///
+/// Every method that waits also reads all output of the board, because QEMU stops while its output
+/// is not read. Dropping the machine ends QEMU.
 pub struct Machine {
-    /// If not, what the board sends fills the pipe, and then its port.
+    /// True if the link is read. If not, the board's output fills the pipe and then its serial
+    /// port.
     pub listens: bool,
     pub(super) monitor: Channel,
     pub(super) debugger: Channel,
     serial: Channel,
-    /// The firmware's log; and what QEMU says, and the firmware of a crash, in plain text.
+    /// The firmware's log, and the plain text of QEMU and of the firmware's crash reports.
     log: [Stream; 2],
     decoder: LogDecoder,
     inbox: Inbox,
@@ -58,19 +64,19 @@ pub struct Machine {
     lines: Vec<LogLine>,
     pub(super) places: Places,
     process: Running,
-    /// Taken away once QEMU is gone.
+    /// The folder is removed after QEMU has ended.
     pub(super) folder: Scratch,
 }
 
 impl Machine {
-    /// Starts a board. Its first instruction is executed after the host is attached to it.
+    /// Starts a board. The host is attached before the first instruction is executed.
     pub fn start(settings: &Settings) -> anyhow::Result<Self> {
         let mut machine = Self::boot(settings)?;
         machine.run()?;
         Ok(machine)
     }
 
-    /// Starts a board that stands still at its first instruction.
+    /// Starts a board that is stopped at its first instruction.
     pub(super) fn boot(settings: &Settings) -> anyhow::Result<Self> {
         let elf = settings
             .elf
@@ -88,6 +94,8 @@ impl Machine {
             ])
             .arg("-kernel")
             .arg(elf);
+
+        // The pipes to QEMU.
         let mut channel = |name: &str| {
             command.args(["-chardev", &format!("pipe,id={name},path={name}")]);
             Channel::make(&folder.path().join(name))
@@ -106,6 +114,8 @@ impl Machine {
             "chardev:debugger",
             "-S",
         ]);
+
+        // The serial port of the link, the log and the clock.
         command
             .args(["-serial", "null"].repeat(settings.board.serial_port))
             .args(["-serial", "chardev:serial"]);
@@ -117,9 +127,10 @@ impl Machine {
                 "shift={},sleep=off",
                 settings.board.instruction_shift()
             )),
-            // A host that holds QEMU up for seconds is no reason for the board to start again.
+            // A host that delays QEMU for seconds must not make the board's watchdog restart it.
             Clock::Real => command.args(["-action", "watchdog=none"]),
         };
+
         command
             .stdin(Stdio::null())
             .stdout(Stdio::piped())
@@ -147,9 +158,10 @@ impl Machine {
         Ok(machine)
     }
 
-    /// Takes all that has come; the error tells how QEMU has ended, and the last it said.
+    /// Reads everything that has arrived. Returns an error with QEMU's exit status and last lines
+    /// if QEMU has ended.
     fn take_in(&mut self) -> anyhow::Result<()> {
-        // What was said before the end is all there then.
+        // If QEMU has ended, all its output is available now, so this is checked before reading.
         let ended = self.process.ended(&self.log)?;
         let Self {
             monitor,
@@ -163,6 +175,7 @@ impl Machine {
         } else {
             None
         };
+
         for stream in [&mut monitor.stream, &mut debugger.stream]
             .into_iter()
             .chain(log)
@@ -170,6 +183,8 @@ impl Machine {
         {
             stream.take_in();
         }
+
+        // Decode the messages of the link and the lines of the log.
         let received = self.serial.stream.bytes.drain(..);
         self.messages
             .extend(received.filter_map(|byte| self.inbox.take(byte)));
@@ -181,6 +196,7 @@ impl Machine {
                 self.lines.push(LogLine::plain(&line));
             }
         }
+
         let Some(status) = ended else { return Ok(()) };
         let last = &self.lines[self.lines.len().saturating_sub(4)..];
         Err(last
@@ -190,7 +206,8 @@ impl Machine {
             }))
     }
 
-    /// Waits until `found` finds something in what has come; the error tells how QEMU has ended.
+    /// Waits until `found` returns a value from the output so far. Returns an error if QEMU ends
+    /// before.
     pub(super) fn wait_until<T>(
         &mut self,
         mut found: impl FnMut(&mut Self) -> Option<T>,
@@ -211,7 +228,7 @@ impl Machine {
         self.wait_until(|machine| machine.messages.pop_front())
     }
 
-    /// The next message of one kind; others on the way to it are passed over.
+    /// Returns the next message of one kind and drops the messages before it.
     pub fn wait_for<M>(&mut self, kind: impl Fn(ToHost) -> Option<M>) -> anyhow::Result<M> {
         self.wait_until(|machine| {
             std::iter::from_fn(|| machine.messages.pop_front()).find_map(&kind)
@@ -226,7 +243,7 @@ impl Machine {
         self.wait_for(ToHost::answer)
     }
 
-    /// The messages that have come; the error tells how QEMU has ended.
+    /// Returns the messages that have arrived. Returns an error if QEMU has ended.
     pub fn messages(&mut self) -> anyhow::Result<Vec<ToHost>> {
         self.take_in()?;
         Ok(self.messages.drain(..).collect())
@@ -236,7 +253,7 @@ impl Machine {
         self.send_bytes(encode_command(request, command, &mut [0; MAX_WIRE]))
     }
 
-    /// Waits while the board takes none and the pipe is full, until QEMU ends at the latest.
+    /// Sends all bytes. Blocks until everything is written or QEMU exits.
     pub fn send_bytes(&mut self, mut bytes: &[u8]) -> anyhow::Result<()> {
         self.wait_until(|machine| {
             bytes = &bytes[machine.serial.sender.write(bytes).unwrap_or(0)..];
@@ -244,14 +261,14 @@ impl Machine {
         })
     }
 
-    /// What the link has been through.
+    /// Returns the counts of messages, damage and restarts on the link.
     pub fn counts(&self) -> Counts {
         self.inbox.counts
     }
 
-    /// The lines of the log that have come.
+    /// Returns the lines of the log that have arrived.
     pub fn lines(&mut self) -> Vec<LogLine> {
-        // Of one that has ended, too.
+        // The lines of a machine that has ended are returned, too.
         let _ = self.take_in();
         std::mem::take(&mut self.lines)
     }
@@ -267,9 +284,9 @@ impl Machine {
         self.process.child.id()
     }
 
-    /// Waits until QEMU ends by itself: how. Gives `each` line that is said until then.
+    /// Waits until QEMU ends, passes every log line to `each`, and returns the exit status.
     pub fn wait(&mut self, mut each: impl FnMut(LogLine)) -> anyhow::Result<ExitStatus> {
-        // Nothing is found, so it ends by an error.
+        // The closure never returns a value, so the wait ends with the error that QEMU has ended.
         let _: anyhow::Result<()> = self.wait_until(|machine| {
             machine.lines.drain(..).for_each(&mut each);
             machine.messages.clear();

@@ -1,6 +1,7 @@
-//! The emulated board as an instrument: a machine started with a firmware, its serial link, log, buttons and panel.
+//! An emulated board as a test instrument: a machine that runs a firmware, with its serial link,
+//! log, buttons and panel.
 //!
-//! Every wait ends: at the latest when the machine's time limit ends QEMU.
+//! Every wait ends, because the machine's time limit ends QEMU.
 
 mod debugger;
 mod log;

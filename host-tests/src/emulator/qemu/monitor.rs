@@ -1,7 +1,8 @@
-//! QEMU's control channel (QMP), a line of JSON each way: the screenshot, the buttons, its own console.
+//! QEMU's control channel (QMP), with a line of JSON in each direction: the screenshot, the
+//! buttons, and QEMU's own console.
 //!
-//! Source: QEMU, docs/interop/qmp-spec.rst: a greeting, `qmp_capabilities`, then commands, each answered by `return` or `error`;
-//! events come at any time.
+//! Source: QEMU, docs/interop/qmp-spec.rst. The protocol has a greeting, `qmp_capabilities`, and
+//! then commands, each answered by `return` or `error`. Events can arrive at any time.
 
 use std::io::Write;
 use std::ops::Range;
@@ -12,17 +13,17 @@ use serde_json::{Value, json};
 
 use super::{Machine, Screenshot};
 
-/// One instruction per translation block: QEMU's name for it since 8.1, and before.
+/// QEMU's names for one instruction per translation block: since version 8.1, and before.
 const SINGLE_STEP: [&str; 2] = ["one-insn-per-tb", "singlestep"];
 
 impl Machine {
-    /// What the panel shows now. While the board runs this may be a mixture of two frames.
+    /// Returns the panel's picture. While the board runs, it may be a mixture of two frames.
     pub fn screenshot(&mut self) -> anyhow::Result<Screenshot> {
         self.execute("screendump", json!({ "filename": "panel.ppm" }))?;
         Screenshot::from_ppm(&std::fs::read(self.folder.path().join("panel.ppm"))?)
     }
 
-    /// What is in memory.
+    /// Returns the contents of memory.
     pub fn read(&mut self, addresses: Range<u32>) -> anyhow::Result<Vec<u8>> {
         let range =
             json!({ "val": addresses.start, "size": addresses.len(), "filename": "memory" });
@@ -30,7 +31,7 @@ impl Machine {
         Ok(std::fs::read(self.folder.path().join("memory"))?)
     }
 
-    /// Presses a button, or lets go of it. Lost while the machine stands still.
+    /// Presses or releases a button. The event has no effect while the machine is stopped.
     pub fn set_key(&mut self, key: Key, down: bool) -> anyhow::Result<()> {
         // QEMU knows the board's select as the left control key.
         let code = if key == Key::Select {
@@ -43,8 +44,9 @@ impl Machine {
             .map(drop)
     }
 
-    /// Presses and lets go of every button once, too early for the firmware to take it for a command: only then does
-    /// this board's emulated hardware tell a released button from a pressed one.
+    /// Presses and releases every button once, too early for the firmware to see a command. This
+    /// board's emulated hardware distinguishes a released button from a pressed one only after
+    /// that.
     pub fn wake_keys(&mut self) -> anyhow::Result<()> {
         Key::ALL.iter().try_for_each(|&key| {
             [true, false]
@@ -53,13 +55,13 @@ impl Machine {
         })
     }
 
-    /// Switches QEMU's running of one instruction after the other `on` or `off`.
+    /// Switches QEMU's mode of one instruction per translation block `on` or `off`.
     pub(super) fn single_step(&mut self, switch: &str) -> anyhow::Result<()> {
         let [name, name_before] = SINGLE_STEP.map(|name| format!("{name} {switch}"));
         self.console(&name).or_else(|_| self.console(&name_before))
     }
 
-    /// Gives QEMU's own console a line that it has nothing to say to.
+    /// Sends a line to QEMU's own console. Any reply is an error.
     pub(super) fn console(&mut self, line: &str) -> anyhow::Result<()> {
         let said = self.execute("human-monitor-command", json!({ "command-line": line }))?;
         let reason = said.as_str().unwrap_or_default().trim();

@@ -1,17 +1,17 @@
-//! The panel's screenshot, out of QEMU's screen dump.
+//! The panel's screenshot, read from QEMU's screen dump.
 
 use anyhow::{Context, ensure};
 use firmware::graphics::Canvas;
 pub use firmware::graphics::{HEIGHT, WIDTH};
 
-/// QEMU shows each of the panel's pixels as a square of this many by as many.
+/// The width and height, in pixels of the dump, of the square that shows one pixel of the panel.
 const MAGNIFIED: usize = 4;
-/// How the dump begins: colour, the magnified size, 255 levels.
+/// The beginning of the dump: colour, the magnified size, 255 levels.
 const HEADER: &[u8] = b"P6\n512 256\n255\n";
-/// QEMU shows grey g of 0 to 15 as g times 17 of 255.
+/// The factor of greys: QEMU shows grey g of 0 to 15 as 17 g of 255.
 const GREY_UNIT: u8 = 17;
 
-/// What the panel shows: 4-bit greys, row by row from the top left.
+/// The picture on the panel: 4-bit greys, row by row from the top left.
 #[derive(Clone, PartialEq, Eq)]
 pub struct Screenshot {
     pub greys: Vec<u8>,
@@ -31,7 +31,7 @@ impl std::fmt::Debug for Screenshot {
 }
 
 impl Screenshot {
-    /// Of the grey of each pixel, `x` from the left and `y` from the top.
+    /// Makes a screenshot from the grey of each pixel, `x` from the left and `y` from the top.
     fn drawn(grey: impl Fn(usize, usize) -> u8) -> Self {
         Self {
             greys: (0..WIDTH * HEIGHT)
@@ -53,8 +53,8 @@ impl Screenshot {
         Ok(Self::drawn(|x, y| pixels[index(x, y)] / GREY_UNIT))
     }
 
-    /// Out of the memory of a one-colour panel, pages of eight rows from the top, a byte for every column of each; black where
-    /// there is none.
+    /// Makes a screenshot from the memory of a one-colour panel. The memory contains pages of eight
+    /// rows from the top, with a byte for every column. Pixels beyond the memory are black.
     pub fn from_pages(memory: &[u8]) -> Self {
         let is_lit = |x: usize, y: usize| {
             memory
@@ -65,7 +65,7 @@ impl Screenshot {
     }
 }
 
-/// What the panel shows of a screenshot drawn here.
+/// The picture that the panel would show of a canvas.
 impl From<&Canvas> for Screenshot {
     fn from(canvas: &Canvas) -> Self {
         Self::drawn(|x, y| canvas.get(x as i32, y as i32).unwrap_or_default())

@@ -1,4 +1,4 @@
-//! Bringing what is missing.
+//! Installation of missing tools.
 
 use std::fs::{self, File};
 use std::io::{self, IsTerminal, Write};
@@ -13,12 +13,13 @@ use crate::console::cli::{Refused, complain};
 use crate::console::progress::Progress;
 use crate::emulator::process::{Output, run, run_watched};
 
-/// For a program that only says what it is, or what there is.
+/// The time limit of a program that only prints information.
 pub const QUICK: Duration = Duration::from_secs(20);
-/// For fetching and unpacking at most 400 MB, and for a turn at dpkg.
+/// The time limit to fetch and unpack at most 400 MB, and to wait for dpkg.
 pub(super) const INSTALL: Duration = Duration::from_secs(1200);
 
-/// Waits for our turn at a set-up; it ends when this is dropped or the process ends, however it ends.
+/// Waits until no other process runs a set-up, and locks set-ups. The lock ends when it is dropped
+/// or when the process ends in any way.
 pub(super) fn turn() -> Result<Flock<File>, Refused> {
     let refuse = |error: io::Error| {
         Refused::because(format_args!("cannot lock {}: {error}", target().display()))
@@ -29,10 +30,12 @@ pub(super) fn turn() -> Result<Flock<File>, Refused> {
     Flock::lock(folder, FlockArg::LockExclusive).map_err(|(_, error)| refuse(error.into()))
 }
 
-/// A way to install something: what to say when it worked, and the function that does it. It must be found afterwards, too.
+/// A way to install something: the report of success, and the function that installs it. The tool
+/// must be found afterwards, too.
 pub(super) type Way<'a> = (String, &'a dyn Fn() -> Result<(), String>);
 
-/// What `find` finds, else, if it `installs`, what the first of the `ways` brings that does; or why each fails.
+/// Returns the result of `find`. If `find` fails and `installs` is true, tries the `ways` in order
+/// until `find` succeeds. Returns the reasons of all failures if none succeeds.
 pub(super) fn bring<T>(
     installs: bool,
     find: impl Fn() -> Result<T, String>,
@@ -55,22 +58,24 @@ pub(super) fn bring<T>(
     Err(failures.join("; "))
 }
 
-/// Who has agreed that packages are installed on the system.
+/// The user's consent to install packages on the system.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Consent {
-    /// The user is asked on the terminal; where there is none, nothing is installed.
+    /// The user is asked on the terminal. Without a terminal, nothing is installed.
     Ask,
     /// The user has passed `--yes`.
     Given,
 }
 
 impl Consent {
-    /// Asks if need be; an error says why `packages` are not installed.
+    /// Asks the user if necessary. Returns an error with the reason if `packages` must not be
+    /// installed.
     fn obtain(self, packages: &str) -> Result<(), String> {
         if self == Consent::Given {
             return Ok(());
         }
-        let (input, output) = (io::stdin(), io::stderr());
+        let input = io::stdin();
+        let output = io::stderr();
         if !(input.is_terminal() && output.is_terminal()) {
             return Err(format!(
                 "{packages} would be installed on the system, which needs --yes"
@@ -92,8 +97,8 @@ impl Consent {
     }
 }
 
-/// Installs packages of Debian's on the system, by its newest lists: old ones may name packages
-/// that are gone.
+/// Installs Debian packages on the system. The lists of packages are updated first, because old
+/// ones may contain packages that no longer exist.
 pub(super) fn install_packages(packages: &[&str], consent: Consent) -> Result<(), String> {
     if find("apt-get").is_none() {
         return Err(
@@ -113,7 +118,9 @@ pub(super) fn install_packages(packages: &[&str], consent: Consent) -> Result<()
     install
         .args(["--no-install-recommends", "--no-remove", "--reinstall"])
         .args(packages);
-    // One bad source of many does not stop the install; where it fails too, the lists are the cause.
+
+    // One bad source among several does not prevent the installation. If the installation fails
+    // too, the failed update of the lists is the cause.
     attempt(
         &mut install,
         INSTALL,
@@ -122,7 +129,8 @@ pub(super) fn install_packages(packages: &[&str], consent: Consent) -> Result<()
     .map_err(|failure| updated.err().unwrap_or(failure))
 }
 
-/// `apt-get` that asks nothing, waits its turn and does not wait for a dead network.
+/// Returns an `apt-get` command that asks nothing, waits for the lock of dpkg, and does not wait
+/// for a dead network.
 fn apt_get(action: &str) -> Command {
     let mut command = Command::new("apt-get");
     command.args([action, "--yes", "--quiet"]);
@@ -140,23 +148,23 @@ fn apt_get(action: &str) -> Command {
     command
 }
 
-/// Runs a command to its end; if it fails, the line in which it says why.
+/// Runs a command to its end and shows progress. If it fails, returns the line with the reason.
 pub(super) fn attempt(command: &mut Command, limit: Duration, doing: &str) -> Result<(), String> {
     said(command, |command| run_shown(command, limit, doing)).map(drop)
 }
 
-/// Runs a command to its end, within the limit, and shows meanwhile what is being done.
+/// Runs a command to its end within the time limit and shows progress meanwhile.
 pub(super) fn run_shown(command: &mut Command, limit: Duration, doing: &str) -> io::Result<Output> {
     let progress = Progress::start(doing);
     run_watched(command, limit, |line| progress.alive(line))
 }
 
-/// What a quick command says, or why it fails.
+/// Returns the output of a quick command, or the reason of its failure.
 pub(super) fn says(command: &mut Command) -> Result<String, String> {
     said(command, |command| run(command, QUICK))
 }
 
-/// What a command has said, or why it failed: the line in which it says so.
+/// Returns the output of a command, or the line with the reason of its failure.
 fn said(
     command: &mut Command,
     run: impl FnOnce(&mut Command) -> io::Result<Output>,

@@ -1,4 +1,4 @@
-//! Building the firmware, the same by either way.
+//! Builds of the firmware. Both sources of the core library use the same flags.
 
 use std::env;
 use std::ffi::OsString;
@@ -13,19 +13,20 @@ use super::bring::run_shown;
 use super::{TARGETS, Toolchain, remap, target, workspace};
 use crate::emulator::boards::{Board, PICO, every_board};
 
-/// What this process has built, each binary with its target: to ask cargo again takes half a second.
+/// The binaries that this process has built, each with its target. The list saves time: another
+/// call of cargo takes half a second.
 static BUILT: Mutex<Vec<(String, String)>> = Mutex::new(Vec::new());
 
-/// What is run on every target.
+/// The binaries that run on every target.
 const AHEAD: [&str; 3] = ["lm3s6965evb", "measure", "inject-panic"];
 
-/// For a build from nothing on a slow, busy machine, downloads included.
+/// The time limit of a build from scratch on a slow, busy machine, including downloads.
 const LIMIT: Duration = Duration::from_secs(1800);
 
-/// What `cargo run` and `cargo test` leave in the environment, and what a user may have set for host programs, begins so, and
-/// none of it may reach the firmware's build, ...
+/// The prefixes of environment variables that are removed for the firmware's build. `cargo run` and
+/// `cargo test` set such variables, and a user may have set them for host programs.
 const FOREIGN: [&str; 5] = ["CARGO", "RUST", "LD_LIBRARY_PATH", "DYLD_", "OUT_DIR"];
-/// ... but what says where cargo is at home and how it reaches the network.
+/// The prefixes of exceptions that are kept: the location of cargo's home and its network settings.
 const OURS: [&str; 5] = [
     "CARGO_HOME",
     "CARGO_HTTP_",
@@ -35,7 +36,7 @@ const OURS: [&str; 5] = [
 ];
 
 impl Toolchain {
-    /// Cargo as it builds for a chip, in the workspace's folder.
+    /// Returns a command that runs cargo for a microcontroller target in the workspace's folder.
     fn cargo(&self) -> Command {
         let cargo = self
             .from_source
@@ -49,7 +50,8 @@ impl Toolchain {
             .current_dir(workspace())
             .env("RUSTUP_AUTO_INSTALL", "0");
         if let Some(own) = &self.from_source {
-            // Debian's cargo is a stable one; building core is still called unstable.
+            // Debian's cargo is a stable release, and building the core library is still an
+            // unstable feature.
             command
                 .env("RUSTC", &own.rustc)
                 .env("RUSTC_BOOTSTRAP", "1")
@@ -59,7 +61,8 @@ impl Toolchain {
         command
     }
 
-    /// Where the firmware is built: apart from the host's programs, so that neither waits for the other.
+    /// Returns the folder in which the firmware is built. It is separate from that of the host's
+    /// programs, so that neither build waits for the other.
     fn folder() -> PathBuf {
         target().join("firmware")
     }
@@ -68,9 +71,10 @@ impl Toolchain {
         self.build(board.binary, board.target)
     }
 
-    /// Builds a binary of the firmware with all optimisation, once in a process; returns the ELF file.
+    /// Builds a binary of the firmware with all optimisations, once per process, and returns the
+    /// ELF file.
     ///
-    /// Builds at the same time take turns.
+    /// Concurrent builds take turns.
     pub fn build(&self, binary: &str, target: &str) -> anyhow::Result<PathBuf> {
         let elf = Self::folder().join(target).join("release").join(binary);
         let this = (binary.to_owned(), target.to_owned());
@@ -89,17 +93,18 @@ impl Toolchain {
         Ok(elf)
     }
 
-    /// Builds the image of the golden bits for a target; for a processor of this name that computes
-    /// `f64` itself, if there is one.
+    /// Builds the image of the golden bits for a target. If `double` names a processor, the image
+    /// is built for that processor, which computes `f64` in hardware.
     pub fn build_cores(&self, target: &str, double: Option<&str>) -> anyhow::Result<PathBuf> {
         let mut command = self.for_targets("build", &[target])?;
-        // Both kinds come out under one name.
+
+        // Both kinds of image have the same file name, so they need different folders.
         let folder = double.map_or_else(Self::folder, |cpu| Self::folder().join(cpu));
         command
             .args(["--bin", "cores", "--features", "cores"])
             .env("CARGO_TARGET_DIR", &folder);
         if let Some(cpu) = double {
-            // In place of the flags of the configuration, which are those of a Cortex-M4F.
+            // These flags replace those of the configuration, which are for a Cortex-M4F.
             command.args(["--features", "double-pendulum-kernel/double-fpu"]);
             command.env("RUSTFLAGS", format!("-Ctarget-cpu={cpu}"));
         }
@@ -115,7 +120,7 @@ impl Toolchain {
         Ok(folder.join(target).join(file))
     }
 
-    /// Builds what is run on every target, side by side, and every board's application.
+    /// Builds the binaries that run on every target, concurrently, and every board's application.
     pub fn build_ahead(&self) -> anyhow::Result<()> {
         let mut command = self.for_targets("build", &TARGETS)?;
         command.args(AHEAD.iter().flat_map(|binary| ["--bin", binary]));
@@ -123,8 +128,8 @@ impl Toolchain {
         every_board().try_for_each(|board| self.build_for(board).map(drop))
     }
 
-    /// Checks all of the firmware's binaries and its examples for chips for every target; a warning is an error, of
-    /// clippy too where the compiler has it.
+    /// Checks all of the firmware's binaries and its examples for microcontrollers, for every
+    /// target. A warning is an error, including clippy's warnings if the compiler has clippy.
     pub fn check(&self) -> anyhow::Result<()> {
         for target in TARGETS {
             let features = every_board()
@@ -148,7 +153,7 @@ impl Toolchain {
         Ok(())
     }
 
-    /// What cargo is to do with the optimised firmware for some targets.
+    /// Returns a cargo command (`what`) for the optimised firmware on some targets.
     fn for_targets(&self, what: &str, targets: &[&str]) -> anyhow::Result<Command> {
         let rustc = self
             .from_source
@@ -160,7 +165,8 @@ impl Toolchain {
             .args([what, "--release", "--package", "firmware"])
             .env("CARGO_TARGET_DIR", Self::folder());
         for target in targets {
-            // After the flags of the configuration. A TOML string has the escapes of a Rust one.
+            // These flags are added to those of the configuration. A TOML string has the same
+            // escapes as a Rust string.
             let flags = format!("target.{target}.rustflags={flags:?}");
             command.args(["--target", target, "--config", &flags]);
         }

@@ -1,9 +1,9 @@
-//! Flags that keep the builder's folders out of the firmware's images: the same commit has the same
-//! bytes wherever it is built.
+//! Compiler flags that remove the builder's folders from the firmware's images, so that the same
+//! commit has the same bytes wherever it is built.
 //!
-//! Panics name source files. Files of other crates are in the folder of cargo, and those of the
-//! core library may be in that of the compiler: both are usually in the builder's home. The names
-//! given instead do not depend on the machine.
+//! Panic messages contain the names of source files. The files of other crates are in cargo's
+//! folder, and the files of the core library may be in the compiler's folder. Both are usually in
+//! the builder's home. The flags replace them by names that do not depend on the machine.
 
 use std::path::{Path, PathBuf, absolute};
 use std::process::Command;
@@ -12,13 +12,16 @@ use std::{env, fs};
 use super::bring::says;
 use super::{target, workspace};
 
-/// The flags for builds by this compiler. Where several prefixes match, the compiler uses the last.
+/// Returns the flags for builds by this compiler. If several prefixes match, the compiler uses the
+/// last one.
 pub(super) fn flags(rustc: &Path) -> Result<Vec<String>, String> {
     let mut renamed = vec![
         (workspace().to_owned(), ".".to_owned()),
         (target(), "target".to_owned()),
     ];
-    // A mirror of the registry has a folder of another name, so the name goes, too.
+
+    // A mirror of the registry has a folder with another name, so the folder's name is replaced,
+    // too.
     let crates = cargo_home().map(|home| home.join("registry/src"));
     let registries = crates.and_then(|folder| fs::read_dir(folder).ok());
     let mut registries: Vec<PathBuf> = registries
@@ -35,7 +38,7 @@ pub(super) fn flags(rustc: &Path) -> Result<Vec<String>, String> {
     );
     renamed.push(core_library(rustc)?);
 
-    // The compiler calls a folder behind a link by either name.
+    // The compiler may name a folder behind a link by the link or by its target.
     let names = |(from, to): (PathBuf, String)| {
         let real = fs::canonicalize(&from).ok().filter(|real| *real != from);
         [Some(from), real]
@@ -50,14 +53,15 @@ pub(super) fn flags(rustc: &Path) -> Result<Vec<String>, String> {
         .collect())
 }
 
-/// Where cargo keeps the sources of other crates.
+/// Returns cargo's home folder, which contains the sources of other crates.
 fn cargo_home() -> Option<PathBuf> {
     let set = env::var_os("CARGO_HOME").filter(|folder| !folder.is_empty());
     set.and_then(|folder| absolute(folder).ok())
         .or_else(|| Some(Path::new(&env::var_os("HOME")?).join(".cargo")))
 }
 
-/// The sources of the core library, if they are installed, and the name that the ready-made one has for them.
+/// Returns the folder for the sources of the core library, and the name that the ready-made core
+/// library has for it.
 fn core_library(rustc: &Path) -> Result<(PathBuf, String), String> {
     let said = |arguments: &[&str]| {
         let mut command = Command::new(rustc);
@@ -67,7 +71,8 @@ fn core_library(rustc: &Path) -> Result<(PathBuf, String), String> {
     let sysroot = said(&["--print", "sysroot"])?;
     let version = said(&["--version", "--verbose"])?;
     let entry = |name: &str| version.lines().find_map(|line| line.strip_prefix(name));
-    // A distribution's own compiler knows no commit.
+
+    // A compiler of a distribution has no commit hash.
     let commit = entry("commit-hash: ").filter(|commit| *commit != "unknown");
     let name = commit.or(entry("release: ")).unwrap_or_default();
     Ok((

@@ -1,4 +1,4 @@
-//! The tools: where each is found, and the ways to bring it.
+//! The search for each tool, and the ways to provide it.
 
 use std::os::unix::fs::PermissionsExt;
 use std::path::{Path, PathBuf};
@@ -11,8 +11,8 @@ use super::bring::{Consent, INSTALL, Way, attempt, bring, install_packages, says
 use super::{missing, target, workspace};
 use crate::console::cli::Refused;
 
-/// The folders that may hold Debian's compiler with the sources of the core library: the system's
-/// programs, and what the set-up has unpacked for this project.
+/// Returns the folders that may contain Debian's compiler with the sources of the core library: the
+/// system's programs, and the folder that the set-up unpacks into.
 fn debian_folders() -> [PathBuf; 2] {
     [PathBuf::from("/usr/bin"), target().join(RUST_FOLDER)]
 }
@@ -20,7 +20,8 @@ fn debian_folders() -> [PathBuf; 2] {
 const RUST_FOLDER: &str = "rust";
 /// The Debian packages that build the ARM core library.
 pub(super) const CORE_PACKAGES: [&str; 3] = ["rustc-web", "cargo-web", "rust-web-src"];
-/// For `rustup target add`: 40 MB. Where it can only hang, this is what that costs, once.
+/// The time limit of `rustup target add`, which loads 40 MB. A machine on which it hangs waits for
+/// this time once.
 const RUSTUP: Duration = Duration::from_secs(60);
 const UNPACK: &str = "host-tests/src/emulator/toolchain/unpack.sh";
 
@@ -33,15 +34,16 @@ pub(super) struct FromSource {
     pub linker: PathBuf,
 }
 
-/// An emulator of QEMU's.
+/// An emulator of the QEMU project.
 pub(super) struct Emulator {
     pub program: &'static str,
     pub package: &'static str,
-    /// Where the set-up unpacks it for this project alone, in the target folder.
+    /// The folder in the target folder into which the set-up unpacks it for this project.
     folder: &'static str,
 }
 
-/// The oldest major version of QEMU that knows all options used here: `-action` came with 6.0.
+/// The oldest major version of QEMU that supports all options used here: `-action` was added in
+/// 6.0.
 const LEAST_QEMU: u32 = 6;
 
 pub(super) const QEMU: Emulator = Emulator {
@@ -60,8 +62,8 @@ pub(super) const QEMU_AARCH64: Emulator = Emulator {
     folder: "qemu-user-aarch64",
 };
 
-/// Finds or brings the core library for these targets: ready-made by rustup beside the compiler in
-/// use (`None`), else Debian's sources and their compiler.
+/// Finds or provides the core library for these targets. It is either the ready-made one of rustup
+/// for the compiler in use (`None`), or Debian's sources with their compiler.
 pub(super) fn core(installs: bool, targets: &[&str]) -> Result<Option<FromSource>, String> {
     let rustup = || {
         if find("rustup").is_none() {
@@ -91,7 +93,7 @@ pub(super) fn core(installs: bool, targets: &[&str]) -> Result<Option<FromSource
     bring(installs, || find_core(targets), &ways)
 }
 
-/// What to report when packages have been unpacked into `folder`.
+/// Returns the report that packages have been unpacked into `folder`.
 fn unpacked(folder: &Path, packages: &[&str]) -> String {
     format!("unpacked {} into {}", packages.join(", "), shown(folder))
 }
@@ -116,7 +118,7 @@ fn unpack(
     attempt(&mut command, limit, &doing)
 }
 
-/// A path of the project as people name it.
+/// Returns a path relative to the project, for messages.
 fn shown(path: &Path) -> String {
     let within = path.strip_prefix(workspace()).unwrap_or(path);
     within.display().to_string()
@@ -145,8 +147,8 @@ fn find_core(targets: &[&str]) -> Result<Option<FromSource>, String> {
     Err(why)
 }
 
-/// Finds Debian's compiler and its sources in a folder of programs; the error is `None` where there
-/// is nothing of it.
+/// Finds Debian's compiler and its sources in a folder of programs. The error is `None` if the
+/// folder contains none of them.
 fn from_source(folder: &Path) -> Result<FromSource, Option<String>> {
     let [rustc, cargo] = ["rustc", "cargo"].map(|program| folder.join(program));
     let (libraries, _) = libraries(&rustc).map_err(|_| None)?;
@@ -167,7 +169,7 @@ fn from_source(folder: &Path) -> Result<FromSource, Option<String>> {
     })
 }
 
-/// The folder of `rust-lld`, which Debian's packages do not have.
+/// Returns the folder of `rust-lld`, which Debian's packages do not have.
 fn linker() -> Result<PathBuf, String> {
     let (libraries, host) = libraries("rustc".as_ref())?;
     let folder = libraries.join(host).join("bin");
@@ -180,7 +182,7 @@ fn linker() -> Result<PathBuf, String> {
     ))
 }
 
-/// Where a compiler has its libraries, and its name of the host.
+/// Returns the folder of a compiler's libraries, and the compiler's name of the host.
 fn libraries(rustc: &Path) -> Result<(PathBuf, String), String> {
     let mut command = Command::new(rustc);
     command
@@ -196,7 +198,7 @@ fn libraries(rustc: &Path) -> Result<(PathBuf, String), String> {
     ))
 }
 
-/// A number in a version; part 0 is the first.
+/// Returns a number of a version; part 0 is the first.
 fn number(version: &str, part: usize) -> Option<u32> {
     version
         .split('.')
@@ -206,9 +208,10 @@ fn number(version: &str, part: usize) -> Option<u32> {
         .ok()
 }
 
-/// Finds an emulator, or unpacks Debian's package of it for this project alone.
+/// Finds an emulator, or unpacks Debian's package of it for this project.
 ///
-/// The project's own comes first: it is there because the system's would not do.
+/// The project's own emulator has priority: it was unpacked because the system's emulator was not
+/// usable.
 pub(super) fn qemu(installs: bool, emulator: &Emulator) -> Result<PathBuf, String> {
     let Emulator {
         program,
@@ -228,7 +231,7 @@ pub(super) fn qemu(installs: bool, emulator: &Emulator) -> Result<PathBuf, Strin
     bring(installs, look, &ways)
 }
 
-/// Refuses a QEMU that does not say its version, or is too old.
+/// Returns an error if a QEMU does not print its version or is too old.
 fn judged(path: &Path) -> Result<(), String> {
     let shown = path.display();
     let said = says(Command::new(path).arg("--version"))
@@ -248,8 +251,8 @@ fn judged(path: &Path) -> Result<(), String> {
     Ok(())
 }
 
-/// As [`judged`], once for a program in a process: one that hangs would cost its time at every
-/// look.
+/// Returns the result of [`judged`], which is called once per program and process. A program that
+/// hangs would otherwise cost its time limit in every search.
 fn judged_once(path: &Path) -> Result<(), String> {
     type Verdict = (PathBuf, Result<(), String>);
     static VERDICTS: Mutex<Vec<Verdict>> = Mutex::new(Vec::new());
@@ -262,7 +265,7 @@ fn judged_once(path: &Path) -> Result<(), String> {
     verdict
 }
 
-/// The program that would be run by this name.
+/// Returns the program that the shell would run for this name.
 pub fn find(program: &str) -> Option<PathBuf> {
     env::split_paths(&env::var_os("PATH")?).find_map(|folder| executable(folder.join(program)))
 }
@@ -275,13 +278,14 @@ fn executable(path: PathBuf) -> Option<PathBuf> {
 
 const NPM: Duration = Duration::from_secs(120);
 const LEAST_NODE: u32 = 18;
-/// Fails if the version of the Pico's emulator that is there is not the one to be had.
+/// A script that fails if the installed version of the Pico's emulator differs from the required
+/// one.
 const ASK: &str = "const [{ dependencies }, { version }] = ['.', './node_modules/rp2040js']
     .map((folder) => require(folder + '/package.json'));
     if (version !== dependencies.rp2040js) throw 'another version'";
 
-/// Finds Node.js of a version that runs the emulator of the Pico and WebAssembly modules, or installs it
-/// with the user's consent.
+/// Finds a version of Node.js that runs the emulator of the Pico and WebAssembly modules, or
+/// installs it with the user's consent.
 pub(super) fn node(consent: Option<Consent>) -> Result<PathBuf, Refused> {
     let installs = consent.is_some();
     let install = |packages: &[&str]| install_packages(packages, consent.unwrap_or(Consent::Ask));
@@ -315,7 +319,8 @@ pub(super) fn node(consent: Option<Consent>) -> Result<PathBuf, Refused> {
     })
 }
 
-/// Node.js with the emulator of the Raspberry Pi Pico, a package of npm's, kept to one version.
+/// Returns Node.js with the emulator of the Raspberry Pi Pico, an npm package with a fixed version.
+/// With a `consent`, provides what is missing.
 pub(super) fn rp2040js(consent: Option<Consent>) -> Result<PathBuf, Refused> {
     let node = node(consent)?;
     let installs = consent.is_some();

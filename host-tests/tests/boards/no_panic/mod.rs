@@ -1,8 +1,10 @@
-//! No panic on the device: every place in the release images that could panic is found and must be one of a short list.
+//! No panic on the device: every place in the release images that could panic is found and must be
+//! in a short list.
 //!
-//! Found from the panic handler backwards: what branches to it, what branches to that, through the helpers of the core
-//! library, to the places in other code where a panic begins. A place belongs to the innermost function there that is
-//! not of the core library, inlined ones included.
+//! The search goes backwards from the panic handler: it follows the branches to it and the branches
+//! to those, through the helpers of the core library, to the places in other code where a panic
+//! begins. A place belongs to the innermost function there that is not of the core library; inlined
+//! functions count.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -14,7 +16,8 @@ use object::{Object, ObjectSection};
 
 use crate::support::code::Code;
 
-/// The code that may contain a panic, by how its name begins, and why none ever begins there.
+/// The code that may contain a panic, by the beginning of its name, with the reason why the panic
+/// never happens.
 const PERMITTED: [(&str, &str); 17] = [
     (
         "lm3s6965evb::__cortex_m_rt_main",
@@ -65,10 +68,11 @@ const PERMITTED: [(&str, &str); 17] = [
     ),
 ];
 
-/// A place where a panic may begin: functions and lines, the innermost first; the function that holds the place last.
+/// A place where a panic may begin: functions and lines, the innermost first. The last is the
+/// function that contains the place.
 type Frames = Vec<(String, String)>;
 
-/// The innermost function that is not of the core library.
+/// Returns the innermost function that is not of the core library.
 fn owner(frames: &Frames) -> &str {
     let is_core = |name: &&str| {
         name.starts_with("core::") || name.contains(" core::") || name.starts_with("<core::")
@@ -81,13 +85,13 @@ fn owner(frames: &Frames) -> &str {
         .unwrap_or_default()
 }
 
-/// The helper functions by which the core library panics.
+/// Returns true for a helper function by which the core library panics.
 fn is_helper(name: &str) -> bool {
     name.starts_with("core::")
         && (name.contains("panic") || name.ends_with("_fail") || name.ends_with("_failed"))
 }
 
-/// The places outside of the core library's helpers where a panic begins, by address.
+/// Returns the places outside of the core library's helpers where a panic begins, by address.
 fn places(elf: &Path) -> BTreeMap<u32, Frames> {
     let code = Code::read(elf).unwrap_or_else(|error| panic!("{}: {error}", elf.display()));
     let lines = lines(elf).unwrap_or_else(|error| panic!("{}: {error}", elf.display()));
@@ -97,6 +101,7 @@ fn places(elf: &Path) -> BTreeMap<u32, Frames> {
     assert_eq!(panicking.len(), 1, "one panic handler in {}", elf.display());
     let mut places = BTreeMap::new();
     let mut seen = 0;
+
     while let Some(&function) = panicking.get(seen) {
         seen += 1;
         for address in code.names_of(function) {
@@ -114,10 +119,11 @@ fn places(elf: &Path) -> BTreeMap<u32, Frames> {
             }
         }
     }
+
     places
 }
 
-/// Which function and line each instruction is of.
+/// The function and line of each instruction.
 type Lines = Context<EndianSlice<'static, LittleEndian>>;
 
 fn lines(elf: &Path) -> anyhow::Result<Lines> {
@@ -152,7 +158,7 @@ fn frames(lines: &Lines, address: u32) -> Frames {
     frames
 }
 
-/// The images of all boards, and the one with every arithmetic.
+/// Returns the images of all boards, and the image with every arithmetic.
 fn images() -> BTreeSet<PathBuf> {
     let toolchain = crate::support::toolchain();
     let build = |(binary, target)| {
@@ -170,6 +176,7 @@ fn images() -> BTreeSet<PathBuf> {
 fn only_permitted_code_can_panic() {
     let mut used = BTreeSet::new();
     let mut refused = Vec::new();
+
     for elf in images() {
         for (address, frames) in places(&elf) {
             let owner = owner(&frames);
@@ -185,11 +192,13 @@ fn only_permitted_code_can_panic() {
             }
         }
     }
+
     assert!(
         refused.is_empty(),
         "these can panic:\n{}",
         refused.join("\n")
     );
+
     for (row, (name, _)) in PERMITTED.iter().enumerate() {
         assert!(
             used.contains(&row),
@@ -198,7 +207,7 @@ fn only_permitted_code_can_panic() {
     }
 }
 
-/// The search would find a panic: here is one.
+/// A check of the search: this image contains a panic.
 #[test]
 fn an_injected_panic_is_found() {
     let toolchain = crate::support::toolchain();

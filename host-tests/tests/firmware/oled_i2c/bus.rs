@@ -1,33 +1,33 @@
-//! The panel's bus with its time, and the controller at its end, stricter than the real one.
+//! The panel's bus with its timing, and a controller that is stricter than the real one.
 
 use embedded_hal::i2c::ErrorKind;
 use firmware::config::TICK_RATE;
 use firmware::display::{Outbox, PanelBus, SILENCE, Sent};
 use firmware::graphics::{Bitmap, HEIGHT, WIDTH};
 
-/// Bits that a byte takes with its acknowledgement; a start or stop takes 1.
+/// The number of bits that a byte takes with its acknowledgement; a start or stop takes 1.
 pub const BYTE: u32 = 9;
 
-/// Time of a byte on the bus, ns: at 400 kHz, as measured on boards with 4.7 kOhm (346 kHz), and
-/// with the 10 kOhm of many modules (266 kHz).
+/// The time of a byte on the bus, ns: at 400 kHz, as measured on boards with 4.7 kOhm (346 kHz),
+/// and with the 10 kOhm of many modules (266 kHz).
 pub const IDEAL: u32 = 22_500;
 pub const USUAL: u32 = 26_000;
 pub const WORST: u32 = 34_000;
 
-/// The bus as an interrupt drives it, and the panel at its end.
+/// The bus as an interrupt drives it, with the panel at its end.
 pub struct Line {
     pub panel: Controller,
     outbox: Outbox,
     message: Vec<u8>,
     byte_nanos: u32,
-    /// Bits there is time for.
+    /// The bits that fit into the remaining time.
     time: u32,
-    /// Bits that the messages under way, or the last ones, have taken.
+    /// The bits that the current or last messages have taken.
     pub taken: u32,
-    /// Another device holds the clock low.
+    /// True if another device holds the clock low.
     pub hangs: bool,
     pub freed: u32,
-    /// Transfers begun.
+    /// The number of transfers that were begun.
     pub sent: u32,
 }
 
@@ -50,12 +50,12 @@ impl Line {
         }
     }
 
-    /// Lets a tick pass.
+    /// Advances the time by a tick.
     pub fn run_tick(&mut self) {
         self.run(1_000_000_000 / TICK_RATE / (self.byte_nanos / BYTE));
     }
 
-    /// Lets the time of `bits` bits pass on the bus.
+    /// Advances the time by `bits` bits on the bus.
     pub fn run(&mut self, bits: u32) {
         self.time = if self.hangs {
             0
@@ -68,6 +68,7 @@ impl Line {
             message,
             ..
         } = self;
+
         while outbox.sent.is_none() {
             let asked = outbox.asked();
             let needed = match (outbox.is_within_message(), outbox.is_empty(), asked) {
@@ -98,6 +99,7 @@ impl Line {
             }
             outbox.took = (u64::from(self.taken * self.byte_nanos / BYTE) / 1000) as u32;
         }
+
         self.time = 0;
     }
 
@@ -129,12 +131,12 @@ impl PanelBus for Line {
 /// The status byte of a module.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Says {
-    /// These bits, and bit 6 while the display is off.
+    /// The byte has these bits, and bit 6 while the display is off.
     Off(u8),
-    /// The first until it is read for the first time after power has come, then the second; and bit
-    /// 6 while the display is off.
+    /// The byte is the first one until it is read for the first time after power-on, then the
+    /// second one. Bit 6 is set while the display is off.
     FirstThen(u8, u8),
-    /// Always this byte, whether the display is on or off.
+    /// The byte is always this one, whether the display is on or off.
     Always(u8),
     /// A read is not acknowledged.
     Nothing,
@@ -144,9 +146,9 @@ pub enum Says {
 #[derive(Clone, Copy, Debug)]
 pub struct Kind {
     pub says: Says,
-    /// The memory can be read.
+    /// True if the memory can be read.
     pub returns_memory: bool,
-    /// Columns of its memory, and the first that is seen.
+    /// The number of columns of the memory, and the first visible one.
     pub columns: usize,
     pub left: usize,
     /// The commands that the others do not have, and the number of their arguments.
@@ -157,7 +159,8 @@ pub struct Kind {
     pub for_lit: &'static [u8],
 }
 
-/// It reports whether its display is on, so there is no reason to repeat a setting.
+/// A controller that reports whether its display is on, so a driver has no reason to repeat a
+/// setting.
 pub const SSD1306: Kind = Kind {
     says: Says::Off(0x06),
     returns_memory: false,
@@ -186,7 +189,7 @@ pub const SH1107: Kind = Kind {
     needed: &[&[0x20], &[0xDC, 0], &[0xA8, 0x7F]],
     for_lit: &[],
 };
-/// An SSD1306 whose status says nothing of its display.
+/// An SSD1306 whose status does not depend on its display.
 pub const BLIND: Kind = Kind {
     for_lit: &[
         0x40, 0x81, 0xA1, 0xA4, 0xA6, 0xA8, 0xC8, 0xD3, 0xD9, 0xDA, 0xDB,
@@ -204,8 +207,8 @@ impl Kind {
     }
 }
 
-/// The number of arguments of a command of all, from the data sheets' command tables; they follow
-/// it in the same message.
+/// Returns the number of arguments of a common command, from the data sheets' command tables. They
+/// follow it in the same message.
 fn arguments(command: u8) -> Option<usize> {
     match command {
         0x00..=0x1F | 0x40 | 0xA1 | 0xA4 | 0xA6 | 0xAE | 0xAF | 0xB0..=0xB7 | 0xC8 => Some(0),
@@ -214,7 +217,7 @@ fn arguments(command: u8) -> Option<usize> {
     }
 }
 
-/// A controller on a bus: panics on anything that its data sheet does not allow.
+/// A controller on a bus that panics on anything that its data sheet does not allow.
 pub struct Controller {
     pub kind: Kind,
     pub address: u8,
@@ -222,16 +225,16 @@ pub struct Controller {
     column: usize,
     page: usize,
     memory: Vec<u8>,
-    /// Bytes of the memory that are not known, as all are after power has come.
+    /// The bytes of the memory whose contents are unknown; all are after power-on.
     unknown: Vec<bool>,
     given: Vec<Vec<u8>>,
     on: bool,
-    /// How often the display was switched on.
+    /// The number of times that the display was switched on.
     pub lit: u32,
     was_read: bool,
     /// The status that was read last.
     pub last_read: Option<u8>,
-    /// The next read is of the memory, not of the status.
+    /// True if the next read is of the memory instead of the status.
     reads_memory: bool,
 }
 
@@ -259,7 +262,7 @@ impl Controller {
         Self { plugged_in, ..self }
     }
 
-    /// Takes power away for a moment.
+    /// Interrupts the power for a moment.
     pub fn lose_power(&mut self) {
         *self = Self::new(self.kind, self.address);
     }
@@ -277,7 +280,7 @@ impl Controller {
         self.last_read
     }
 
-    /// Returns bytes that are read; `None` if it does not acknowledge.
+    /// Returns the bytes that are read, or `None` if the read is not acknowledged.
     pub fn read(&mut self, count: usize) -> Option<Vec<u8>> {
         let status = (count > 0 && self.kind.says != Says::Nothing)
             .then(|| self.status())
@@ -303,7 +306,7 @@ impl Controller {
         self.given.iter().any(|given| given == needed)
     }
 
-    /// Obeys commands; none that is left out may have an argument in the next message.
+    /// Executes commands. The arguments of a command must be in the same message.
     fn commands(&mut self, mut bytes: &[u8]) {
         while let [command, rest @ ..] = bytes {
             let own = || {
@@ -343,8 +346,8 @@ impl Controller {
         }
     }
 
-    /// Data goes to the right within the page. Where it goes is not known before an SSD1306 is told
-    /// how to count.
+    /// Stores data to the right within the page. An SSD1306 must have received its addressing mode
+    /// before.
     fn data(&mut self, byte: u8) {
         assert!(self.column < self.kind.columns, "beyond the last column");
         let at = self.page * self.kind.columns + self.column;
@@ -356,7 +359,8 @@ impl Controller {
         self.column += 1;
     }
 
-    /// Takes a message: control bytes, of which those with bit 7 are for one byte each.
+    /// Takes a message of control bytes and data. A control byte with bit 7 applies to one byte
+    /// only.
     pub fn take(&mut self, message: &[u8]) {
         let mut rest = message;
         while let [control, after @ ..] = rest {
@@ -377,7 +381,7 @@ impl Controller {
         }
     }
 
-    /// Returns true if each page of the picture is of one of these frames, and the display is on.
+    /// Returns true if each page of the picture is from one of these frames, and the display is on.
     pub fn shows_any_of(&self, frames: &[&Bitmap]) -> bool {
         self.on && self.late_pages(frames).is_empty()
     }
@@ -386,7 +390,7 @@ impl Controller {
         self.shows_any_of(&[frame])
     }
 
-    /// Returns the pages in which there is a byte that is in none of these frames.
+    /// Returns the pages with a byte that is in none of these frames.
     pub fn late_pages(&self, frames: &[&Bitmap]) -> Vec<usize> {
         let Kind { columns, left, .. } = self.kind;
         let visible = |page: usize| page * columns + left..page * columns + left + WIDTH;

@@ -1,5 +1,5 @@
-//! The one-colour panel: its frame, and its driver against controllers that are stricter than the
-//! real ones.
+//! The one-colour panel: its frame, and its driver with controllers that are stricter than the real
+//! ones.
 
 mod bus;
 
@@ -22,16 +22,16 @@ use bus::{
     BLIND, BYTE, Controller, IDEAL, Kind, Line, SH1106, SH1107, SILENT, SSD1306, Says, USUAL, WORST,
 };
 
-/// More bits than any frame needs, with the settings that wake the panel.
+/// More bits than any frame needs, including the settings that wake the panel.
 const LONG: u32 = 4 * 400_000 / TICK_RATE;
-/// Frames until a panel at the first address shows one, at most.
+/// The largest number of frames until a panel at the first address shows one.
 const FIRST: u32 = 6;
-/// Frames in which a panel must be back: 2 s.
+/// The number of frames in which a panel must be back: 2 s.
 const BACK: u32 = 2 * TICK_RATE;
 
 type Panel = OledI2c<'static, Line>;
 
-/// Returns the driver of such a panel.
+/// Returns a driver of this panel.
 fn panel(controller: Controller) -> Panel {
     on(Line::to(controller), None)
 }
@@ -40,14 +40,14 @@ fn on(line: Line, chosen: Option<Name>) -> Panel {
     OledI2c::new(line, Box::leak(Box::new(Bitmap::BLACK)), chosen)
 }
 
-/// Sends a frame, and lets the bus have the time of so many bits.
+/// Sends a frame, and advances the time of the bus by `bits` bits.
 fn flush(panel: &mut Panel, frame: &Canvas, bits: u32) -> Result<(), OledError> {
     let told = panel.flush(frame);
     panel.bus.run(bits);
     told
 }
 
-/// Sends a frame, and lets a tick pass.
+/// Sends a frame, and advances the time by a tick.
 fn tick(panel: &mut Panel, frame: &Canvas) -> Result<(), OledError> {
     let told = panel.flush(frame);
     panel.bus.run_tick();
@@ -62,7 +62,7 @@ fn shown(name: SceneName) -> Show {
     Show::on(STM32F405, name, &name.first_settings()).expect("a scene of the catalogue")
 }
 
-/// The application's first scene after some ticks.
+/// Returns the frame of the application's first scene after some ticks.
 fn scene(ticks: u32) -> Canvas {
     let mut show = shown(SceneName::Page);
     (0..ticks).for_each(|_| show.tick());
@@ -114,7 +114,7 @@ fn every_pixel_is_in_its_place() {
     }
 }
 
-/// A frame of these pixels.
+/// Returns a frame with these pixels.
 fn pixels(mut is_lit: impl FnMut() -> bool) -> Canvas {
     let mut canvas = Canvas::default();
     places()
@@ -126,7 +126,8 @@ fn pixels(mut is_lit: impl FnMut() -> bool) -> Canvas {
 #[test]
 fn the_panel_shows_each_picture_at_either_address() {
     let mut rng = Rng::with_seed(1);
-    // Whole frames of noise, and a few pixels here and there.
+
+    // Whole frames of noise, and frames with a few pixels.
     let noise = [2, 2, 1000, 300, 100, 30, 10, 3].map(|rarity| pixels(|| rng.u32(..rarity) == 0));
     let frames: Vec<_> = [0, 1, 2, 30, 31, 400]
         .map(scene)
@@ -139,8 +140,8 @@ fn the_panel_shows_each_picture_at_either_address() {
     {
         let mut panel = panel(Controller::new(kind, address));
         for (number, frame) in frames.iter().enumerate() {
-            // A panel is looked for, identified and woken with the first frame. A whole frame of
-            // noise is sent in parts.
+            // A panel is found, identified and woken with the first frame. A whole frame of noise
+            // is sent in parts.
             for _ in 0..if number == 0 { FIRST + 1 } else { 4 } {
                 assert_eq!(flush(&mut panel, frame, LONG), Ok(()));
             }
@@ -152,7 +153,7 @@ fn the_panel_shows_each_picture_at_either_address() {
     }
 }
 
-/// The modules that were found in the field, and how each is identified.
+/// The modules that were found in the field, and the way in which each is identified.
 ///
 /// Source of the status bytes: Meshtastic's `probeOLED` and its threads 1363, 8850 and 11265;
 /// MeshCom 458; ss_oled 61.
@@ -189,7 +190,8 @@ fn every_module_in_the_field_shows_the_picture() {
         let kind = kind.says(says);
         let mut panel = panel(Controller::new(kind, 0x3C).plugged(false));
         let mut found = Vec::new();
-        // The panel is plugged in after the first try.
+
+        // The panel is plugged in after the first attempt.
         for number in 0..4 * TICK_RATE {
             panel.bus.panel.plugged_in = number > FIRST;
             let frame = scene(number / 10);
@@ -218,7 +220,8 @@ fn status_byte_decides_only_where_reading_memory_is_broken_off() {
     ] {
         let says = Says::Off(status);
         let mut panel = panel(Controller::new(kind.says(says), 0x3C));
-        // Switched off and asked; then its answers cease.
+
+        // The panel is switched off and asked; then it no longer answers.
         (0..2).for_each(|_| assert_eq!(flush(&mut panel, &scene(1), LONG), Ok(())));
         panel.bus.panel.kind.says = Says::Nothing;
         let found = (0..2).find_map(|_| {
@@ -235,7 +238,7 @@ fn status_byte_decides_only_where_reading_memory_is_broken_off() {
     }
 }
 
-/// A module that cannot be identified is repaired by a command.
+/// A module that cannot be identified is made usable by a command.
 #[test]
 fn chosen_controller_has_precedence_and_is_applied_at_once() {
     // An SH1106 that answers no read.
@@ -277,14 +280,14 @@ fn chosen_controller_has_precedence_and_is_applied_at_once() {
         );
     }
 
-    // The build's choice is the first.
+    // The choice of the build applies first.
     let mut panel = on(Line::to(Controller::new(kind, 0x3C)), Some(Name::Sh1106));
     run(&mut panel);
     assert!(shows(&panel, &frame));
 }
 
-/// Bits of columns of a page: an address, a control byte and the place; an address, a control byte
-/// and the columns.
+/// Returns the bits of columns of a page: an address, a control byte and the place; an address, a
+/// control byte and the columns.
 const fn bits(columns: u32) -> u32 {
     (1 + 5 * BYTE) + (1 + (2 + columns) * BYTE)
 }
@@ -304,7 +307,8 @@ fn only_changes_are_sent_and_a_part_that_is_sent_again() {
             panel.bus.taken
         })
         .collect::<Vec<_>>();
-    // The second run of a page does not name it.
+
+    // The second run of a page does not contain the page's address.
     let changes = [0, bits(1), 2 * bits(1) - BYTE];
     assert_eq!(
         taken[9..],
@@ -313,8 +317,8 @@ fn only_changes_are_sent_and_a_part_that_is_sent_again() {
     );
 }
 
-/// The status byte tells that the display is off: settings are not repeated, and a panel that lost
-/// its power is set up again.
+/// The status byte reports that the display is off. Settings are not repeated, and a panel that
+/// lost its power is set up again.
 #[test]
 fn panel_that_lost_its_power_is_set_up_again() {
     for kind in [SSD1306, SH1106, SH1107] {
@@ -332,7 +336,8 @@ fn panel_that_lost_its_power_is_set_up_again() {
             });
             assert!(back.is_some(), "{kind:?}");
         }
-        // One wrong answer is none.
+
+        // A single wrong answer has no effect.
         for _ in 0..FIRST {
             assert_eq!(tick(&mut panel, &frame), Ok(()));
         }
@@ -349,13 +354,13 @@ fn panel_that_lost_its_power_is_set_up_again() {
     }
 }
 
-/// Ticks for which the panel is away: between two of them, for so short a time that nobody misses
-/// an answer, in one, for longer.
+/// The numbers of ticks for which the panel is away: between two ticks, so shortly that no answer
+/// is missed; in one tick; and longer.
 const AWAY: [u32; 5] = [0, 0, 1, 50, 100];
-/// Moments in each run, which lasts 40 s.
+/// The number of moments in each run, which lasts 40 s.
 const MOMENTS: usize = 15;
 
-/// A byte on the panel is of one of this many last frames: the first picture takes two ticks.
+/// The number of last frames that may be visible: the first picture takes two ticks.
 const RECENT: usize = 3;
 
 #[test]
@@ -363,6 +368,7 @@ fn panel_plugged_in_again_shows_every_scene_within_two_seconds() {
     let runs = [SSD1306, SH1106]
         .into_iter()
         .flat_map(|kind| [false, true].map(|is_paused| (kind, is_paused)));
+
     for ((kind, is_paused), &name) in
         runs.flat_map(|run| SceneName::ALL.iter().map(move |name| (run, name)))
     {
@@ -371,6 +377,7 @@ fn panel_plugged_in_again_shows_every_scene_within_two_seconds() {
         let mut recent = VecDeque::new();
         let mut longest = 0;
         let run = format!("{:12} paused {is_paused}, {kind:?}", name.name());
+
         // Returns true if the panel shows the last frames when the next one comes.
         let mut step = |panel: &mut Panel| {
             if !is_paused {
@@ -410,18 +417,19 @@ fn panel_plugged_in_again_shows_every_scene_within_two_seconds() {
     }
 }
 
-/// Frames of each run: 40 s.
+/// The number of frames in each run: 40 s.
 const FRAMES: u32 = 2400;
 
-/// Ticks for which a page may lag behind its frame, at any speed.
+/// The number of ticks by which a page may lag behind its frame, at any speed.
 const LATE: u32 = 1;
 
-/// Every frame of every scene is sent, at least in part, however slow the bus is. What is left over
-/// follows with the next frame.
+/// Every frame of every scene is sent, at least in part, however slow the bus is. The rest follows
+/// with the next frame.
 #[test]
 fn no_frame_of_any_scene_is_skipped_at_any_speed() {
-    // Frames of ten that are sent whole, at least.
+    // The smallest number of frames out of ten that are sent completely.
     const SPEEDS: [(u32, u32); 3] = [(IDEAL, 9), (USUAL, 0), (WORST, 0)];
+
     for &name in SceneName::ALL {
         let mut scene = shown(name);
         let mut panels = SPEEDS.map(|speed| {
@@ -473,20 +481,23 @@ fn no_frame_of_any_scene_is_skipped_at_any_speed() {
     }
 }
 
-/// A frame that takes longer to compute comes later in its tick, and the next one is then early.
+/// A frame that takes longer to compute comes later in its tick, so the next one follows soon.
 #[test]
 fn no_frame_is_skipped_when_frames_are_not_equally_far_apart() {
     const SLICES: u32 = 64;
-    // The longest piece of planning between two tries: 4 ms.
+
+    // The longest piece of planning between two attempts: 4 ms.
     const PIECE: u32 = 16;
     let mut rng = Rng::with_seed(3);
+
     for byte_nanos in [IDEAL, USUAL, WORST] {
         let mut scene = shown(SceneName::SmallHeavy);
         let mut panel = on(Line::at(byte_nanos, Controller::new(SSD1306, 0x3C)), None);
         let slice = 1_000_000_000 / TICK_RATE / (byte_nanos / BYTE) / SLICES;
         for number in 0..10 * TICK_RATE {
             scene.tick();
-            // A third of the tick at most, as with planning.
+
+            // The delay is at most a third of the tick, as with planning.
             let late = rng.u32(..SLICES / 3);
             panel.bus.run(late * slice);
             let frame = scene.frame();
@@ -496,7 +507,8 @@ fn no_frame_is_skipped_when_frames_are_not_equally_far_apart() {
                 let piece = rng.u32(1..=PIECE);
                 panel.bus.run(piece.min(SLICES - done) * slice);
                 done += piece;
-                // The last piece lasts into the next tick.
+
+                // The last piece extends into the next tick.
                 if done < SLICES {
                     panel.catch_up(&frame);
                 }
@@ -516,7 +528,8 @@ fn a_bus_that_is_held_up_is_reported_once_a_second() {
         let mut told = Ok(());
         for number in 0..2 * TICK_RATE {
             told = panel.flush(&scene(number));
-            // Every other tick another device holds the clock.
+
+            // In every other tick another device holds the clock.
             if !is_slow || number % 2 == 1 {
                 panel.bus.run_tick();
             }
@@ -544,7 +557,8 @@ fn an_absent_panel_is_looked_for_once_a_second_and_may_come_and_go() {
             ..PanelReport::default()
         }
     );
-    // No answer at the first address, nor at the second.
+
+    // There is no answer at the first address, nor at the second.
     assert_eq!(
         [1; 3].map(|ticks| flush(&mut panel, ticks)),
         [Ok(()), Ok(()), absent]
@@ -590,7 +604,8 @@ fn a_bus_that_hangs_holds_up_nothing_and_is_freed() {
         "{told:?}"
     );
     assert_eq!(panel.bus.freed, 1);
-    // While it hangs it is freed once a second.
+
+    // While it hangs, it is freed once a second.
     for _ in 0..2 * TICK_RATE {
         let _ = flush(&mut panel, 20);
     }
