@@ -103,6 +103,17 @@ impl Small {
     }
 }
 
+/// Returns the height, pixels, of the picture for which the scene is planned: the picture of both
+/// rods in which a bob is half a pixel off if the curve of its angle is.
+///
+/// The curve is off by half a pixel if the angle is off by 1/(2 `scale`). The bob of a rod of
+/// length l is then off by the chord 2 l sin(1/(4 `scale`)). A picture of this height shows 2 l in
+/// half its height, for equal rods.
+fn planned_height(scale: f32) -> f32 {
+    let half_angle = (0.25 / scale).min(core::f32::consts::FRAC_PI_2);
+    1.0 / libm::sinf(half_angle)
+}
+
 impl Scene for Small {
     const FADING: Fading = Fading::NEVER;
 
@@ -140,7 +151,7 @@ impl Scene for Small {
             ticks_per_column: ticks_per_column.max(1),
             ends: None,
         };
-        Ok((scene, (scale > 0.0).then_some(4.0 * scale)))
+        Ok((scene, (scale > 0.0).then(|| planned_height(scale))))
     }
 
     fn tick(&mut self, ticks: u64, ink: &mut FadeLayer) {
