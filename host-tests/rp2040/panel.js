@@ -14,11 +14,35 @@ const DISPLAY_OFF = 1 << 6;
 const ARGUMENTS = { 0x20: 1, 0x81: 1, 0x8d: 1, 0xa8: 1, 0xad: 1, 0xd3: 1, 0xd5: 1, 0xd9: 1, 0xda: 1, 0xdb: 1 };
 /** Time of a byte with its acknowledgement, ns: measured on boards with 4.7 kOhm. A ninth of it is a start or a stop. */
 const BYTE = 26000;
-const [INTERRUPT_MASK, FEW_LEFT] = [0x30, 1 << 4];
+/** Registers of the bus, and the interrupt that says that few bytes are left to send. */
+const [TARGET, INTERRUPT_MASK, ENABLE] = [0x04, 0x30, 0x6c];
+const FEW_LEFT = 1 << 4;
+/** The state of the bus after its reset (RP2040 data sheet, 4.3.17). */
+const AFTER_RESET = {
+  state: 0,
+  busy: false,
+  stop: false,
+  pendingRestart: false,
+  enable: 0,
+  control: 0x65,
+  targetAddress: 0x55,
+  fsClockHighPeriod: 0x06,
+  fsClockLowPeriod: 0x0d,
+  spikelen: 0x07,
+  rxThreshold: 0,
+  txThreshold: 0,
+  intRaw: 0,
+  intEnable: 0x8ff,
+};
+/** The device that holds others in reset, and its bit of this bus. */
+const [RESETS, HELD] = [0x4000c, 1 << 3];
 
 export class Panel {
   constructor() {
     this.byte = BYTE;
+    /** Whether a device holds the clock low, and what waits for it. */
+    this.isHeld = false;
+    this.stalled = undefined;
     this.plug('ssd1306', 6);
   }
 
@@ -32,11 +56,18 @@ export class Panel {
     this.reads = 0;
   }
 
-  connect({ i2c, clock }) {
+  connect({ i2c, clock, peripherals }) {
     const bus = i2c[0];
     this.addInterrupts(bus);
+    this.addReset(bus, peripherals[RESETS]);
     const after = (nanos, act) => {
+      const { age } = bus;
       const alarm = clock.createAlarm(() => {
+        if (bus.age !== age) return; // a reset has ended the transfer
+        if (this.isHeld) {
+          this.stalled = () => (act(), bus.level());
+          return;
+        }
         act();
         bus.level();
       });
@@ -49,7 +80,19 @@ export class Panel {
     bus.onStop = () => after(this.byte / 9, () => bus.completeStop());
   }
 
-  /** What the emulated bus lacks: its interrupts can be let through, and the first of them says that few bytes are left to send. */
+  /** A device holds the bus's clock low, or lets it go; the transfer waits meanwhile. */
+  hold(isHeld) {
+    this.isHeld = isHeld;
+    if (isHeld) return;
+    this.stalled?.();
+    this.stalled = undefined;
+  }
+
+  /**
+   * What the emulated bus lacks: its interrupts can be enabled, and the first of them says that few
+   * bytes are left to send. The bus cannot be disabled, nor take an address, during a transfer that
+   * does not end (RP2040 data sheet, 4.3.10.3).
+   */
   addInterrupts(bus) {
     const write = bus.writeUint32.bind(bus);
     bus.level = () => {
@@ -58,9 +101,26 @@ export class Panel {
       bus.checkInterrupts();
     };
     bus.writeUint32 = (offset, value) => {
+      const isIgnored = this.stalled && (offset === TARGET || (offset === ENABLE && !(value & 1)));
       if (offset === INTERRUPT_MASK) bus.intEnable = value;
-      else write(offset, value);
+      else if (!isIgnored) write(offset, value);
       bus.level();
+    };
+  }
+
+  /** What the emulated bus lacks: its reset. */
+  addReset(bus, resets) {
+    bus.age = 0;
+    const write = resets.writeUint32.bind(resets);
+    resets.writeUint32 = (offset, value) => {
+      write(offset, value);
+      if (offset !== 0 || !(value & HELD)) return;
+      Object.assign(bus, AFTER_RESET);
+      bus.age += 1;
+      bus.txFIFO.reset();
+      bus.rxFIFO.reset();
+      this.stalled = undefined;
+      bus.checkInterrupts();
     };
   }
 

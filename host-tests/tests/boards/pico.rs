@@ -374,6 +374,34 @@ fn every_frame_reaches_a_panel_on_a_slow_bus() -> anyhow::Result<()> {
     Ok(())
 }
 
+/// The clock's counts for 400 kHz, low and high (RP2040 data sheet, 4.3.14).
+const CLOCK_COUNTS: [u8; 2] = [175, 108];
+
+/// A panel whose power fails holds the clock low. A transfer does not end then, and the controller
+/// of the bus cannot be disabled. Only its reset helps.
+#[test]
+fn a_panel_that_holds_the_clock_low_shows_the_picture_when_it_lets_go() -> anyhow::Result<()> {
+    let mut board = switched_on()?;
+    board.run(PICTURE)?;
+    board.tell("hold 1")?;
+    board.run(Duration::from_secs(1))?;
+    assert!(matches!(
+        panel_report(&mut board)?.state,
+        PanelState::Absent(_)
+    ));
+
+    board.tell("hold 0")?;
+    board.run(Duration::from_secs(2))?;
+    let frame = stand_still(&mut board)?;
+    let mut show = show(&PICO, SceneName::Page);
+    (0..frame.report.step).for_each(|_| show.tick());
+    let mut canvas = show.frame();
+    firmware::graphics::text::pause_mark(&mut canvas);
+    assert!(board.tell("panel")? == Bitmap::from(&canvas).pages.as_flattened());
+    assert_eq!(board.tell("clock")?, CLOCK_COUNTS);
+    Ok(())
+}
+
 #[test]
 fn chosen_controller_outlasts_a_restart() -> anyhow::Result<()> {
     let chosen = Some(Controller::Sh1106);

@@ -4,8 +4,7 @@
 
 use cortex_m::asm::delay;
 use embedded_hal::i2c::ErrorKind;
-use rp2040_hal::I2C;
-use rp2040_hal::fugit::{HertzU32, RateExtU32};
+use rp2040_hal::fugit::HertzU32;
 use rp2040_hal::gpio::bank0::{Gpio4, Gpio5};
 use rp2040_hal::gpio::{FunctionI2C, Pin, PullUp};
 use rp2040_hal::pac::i2c0::RegisterBlock;
@@ -16,18 +15,18 @@ use crate::board::cortex_m::interrupt::unmask;
 use crate::board::panel_bus::{self, Bus, PanelPort, TRIES};
 use crate::display::{Outbox, SILENCE, Sent, free_bus};
 
-/// The frequency that is passed to the support library, Hz. It is that of fast mode, whose hold
-/// times the library sets. The clock itself is set by [`LOW_COUNT`] and [`HIGH_COUNT`].
-const SPEED: u32 = 400_000;
 /// The processor's clock, cycles per us. The bus counts these cycles.
 const MEGAHERTZ: u32 = 125;
 /// The registers of the bus's clock, in cycles, and the longest spike that is suppressed.
 ///
-/// The support library's values ignore the cycles that the block adds to them, and give 330 to 376
-/// kHz.
+/// The values of `rp2040-hal` ignore the cycles that the block adds to them, and give 330 to 376
+/// kHz. The setup is therefore written here.
 const LOW_COUNT: u16 = 175;
 const HIGH_COUNT: u16 = 108;
 const SPIKE: u8 = 11;
+/// The cycles from the fall of the clock to a change of the data: 0.3 us, for devices that see the
+/// clock fall late (NXP UM10204, table 10, note 3).
+const HOLD: u16 = (MEGAHERTZ * 3 / 10 + 1) as u16;
 /// The cycles from the fall to the rise of the clock, and from its rise to its fall.
 ///
 /// Source: RP2040 data sheet, 4.3.14 (the block adds 1 and SPKLEN + 7).
@@ -76,34 +75,50 @@ pub(super) type Pins = (
     Pin<Gpio5, FunctionI2C, PullUp>,
 );
 
-/// Starts the bus; `clock` is the processor's clock. Returns `None` the second time.
-///
-/// The support library sets the bus up, and does not use it afterwards.
-pub(super) fn start(
-    port: I2C0,
-    pins: Pins,
-    clock: HertzU32,
-    resets: &mut RESETS,
-) -> Option<Bus<I2c0>> {
-    I2C::i2c0(port, pins.0, pins.1, SPEED.Hz(), resets, clock);
-    let block = registers();
-    // SAFETY: the fields take these numbers. The block takes them only while it is disabled. Its
-    // next transfer enables it.
-    unsafe {
-        block.ic_tx_tl().write(|w| w.tx_tl().bits(FEW));
-        block.ic_enable().write(|w| w.enable().disabled());
-        block
-            .ic_fs_scl_lcnt()
-            .write(|w| w.ic_fs_scl_lcnt().bits(LOW_COUNT));
-        block
-            .ic_fs_scl_hcnt()
-            .write(|w| w.ic_fs_scl_hcnt().bits(HIGH_COUNT));
-        block.ic_fs_spklen().write(|w| w.ic_fs_spklen().bits(SPIKE));
-    }
-
-    let bus = Bus::new(I2c0(()), clock.to_Hz())?;
+/// Starts the bus. `clock` is the processor's clock. Returns `None` the second time.
+pub(super) fn start(_port: I2C0, _pins: Pins, clock: HertzU32) -> Option<Bus<I2c0>> {
+    let bus = Bus::new(I2c0(()), clock.to_Hz())?; // it resets the block, and sets it up
     unmask(Interrupt::I2C0_IRQ);
     Some(bus)
+}
+
+/// Holds the block in reset, or releases it.
+fn hold_in_reset(is_held: bool) {
+    // SAFETY: the board's start borrows these registers, and has ended or waits for this function.
+    // No interrupt writes them.
+    let resets = unsafe { &*RESETS::ptr() };
+    resets.reset().modify(|_, w| w.i2c0().bit(is_held));
+    if !is_held {
+        // The block is ready after a few cycles.
+        let _ = (0..TRIES).any(|_| resets.reset_done().read().i2c0().bit_is_set());
+    }
+}
+
+/// Sets the block up after its reset: master, 400 kHz, seven bits of address. It stays disabled
+/// until the next transfer.
+fn set_up(port: &RegisterBlock) {
+    listen(port, NOTHING);
+    port.ic_con().modify(|_, w| {
+        w.speed().fast();
+        w.master_mode().enabled();
+        w.ic_slave_disable().slave_disabled();
+        w.ic_restart_en().enabled();
+        w.tx_empty_ctrl().enabled();
+        w.rx_fifo_full_hld_ctrl().enabled()
+    });
+
+    // SAFETY: the fields take these numbers. The block takes them only while it is disabled.
+    unsafe {
+        port.ic_tx_tl().write(|w| w.tx_tl().bits(FEW));
+        port.ic_rx_tl().write(|w| w.rx_tl().bits(0));
+        port.ic_fs_scl_lcnt()
+            .write(|w| w.ic_fs_scl_lcnt().bits(LOW_COUNT));
+        port.ic_fs_scl_hcnt()
+            .write(|w| w.ic_fs_scl_hcnt().bits(HIGH_COUNT));
+        port.ic_fs_spklen().write(|w| w.ic_fs_spklen().bits(SPIKE));
+        port.ic_sda_hold()
+            .modify(|_, w| w.ic_sda_tx_hold().bits(HOLD));
+    }
 }
 
 impl PanelPort for I2c0 {
@@ -120,9 +135,9 @@ impl PanelPort for I2c0 {
     }
 
     fn reset(&mut self) {
-        listen(registers(), NOTHING);
-        registers().ic_enable().write(|w| w.enable().disabled());
-
+        // While a device holds the clock low, a transfer does not end, and the block cannot be
+        // disabled. Its reset ends every transfer.
+        hold_in_reset(true);
         free_bus(|clock, data| {
             drive(CLOCK, clock);
             drive(DATA, data);
@@ -130,6 +145,11 @@ impl PanelPort for I2c0 {
             pin(DATA).gpio_status().read().infrompad().bit_is_set()
         });
 
+        // After its reset the block allows most interrupts.
+        cortex_m::interrupt::free(|_| {
+            hold_in_reset(false);
+            set_up(registers());
+        });
         for line in [DATA, CLOCK] {
             pin(line)
                 .gpio_ctrl()
@@ -144,8 +164,8 @@ fn I2C0_IRQ() {
 }
 
 fn registers() -> &'static RegisterBlock {
-    // SAFETY: the support library uses them no longer. While the outbox is not empty, only the
-    // interrupt uses the bus.
+    // SAFETY: no other code uses them. While the outbox is not empty, only the interrupt uses the
+    // bus.
     unsafe { &*I2C0::ptr() }
 }
 

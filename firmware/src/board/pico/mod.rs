@@ -100,12 +100,7 @@ pub fn take() -> Option<Pico> {
 
     // The panel.
     let wires = (pins.gpio4.reconfigure(), pins.gpio5.reconfigure());
-    let bus = i2c::start(
-        chip.I2C0,
-        wires,
-        clocks.system_clock.freq(),
-        &mut chip.RESETS,
-    )?;
+    let bus = i2c::start(chip.I2C0, wires, clocks.system_clock.freq())?;
     let memory = cortex_m::singleton!(: Bitmap = Bitmap::BLACK)?;
 
     Some(Board {
