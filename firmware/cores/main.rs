@@ -87,7 +87,7 @@ mod machine {
     }
 }
 
-/// A WebAssembly module, whose host prints (`host-tests/wasm/run.js`).
+/// A WebAssembly module, whose host prints (`host-tests/emulator/wasm.js`).
 #[cfg(target_arch = "wasm32")]
 mod machine {
     use core::arch::wasm32::unreachable;

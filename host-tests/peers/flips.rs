@@ -9,8 +9,8 @@ use std::time::Instant;
 use anyhow::{Context, Result, ensure};
 use double_pendulum::flips::Flip;
 use double_pendulum::{Error, Parameters};
+use emulator::toolchain::workspace;
 use host_tests::commands::flips::map::Map;
-use host_tests::emulator::toolchain::workspace;
 use rayon::prelude::*;
 use vectors::Search;
 
@@ -64,7 +64,7 @@ fn main() -> Result<()> {
     };
     let program = workspace().join("target/peers-c-flips");
     let mut cc = Command::new("cc");
-    cc.current_dir(workspace().join("host-tests/peers-c"));
+    cc.current_dir(workspace().join("host-tests/peers/c"));
     cc.args([
         "-O3",
         "-DSIN=sinf",

@@ -1,15 +1,20 @@
 //! The host software: the commands, and the standards of comparison for the tests.
 //!
-//! The modules here are called rooms. A room imports only from the rooms below it in this table.
+//! The folders of this package and the top modules of its crates are called rooms. A room imports
+//! only from the rooms below it in this table.
 //!
 //! | room | content |
 //! |---|---|
-//! | `main.rs` | the program: runs the command that is named |
+//! | `tests` | the tests, grouped by the thing they test |
+//! | `tools/main.rs` | the program: runs the command that is named |
 //! | [`commands`] | the commands: demo, simulate, plan, prove, flips, count, report, figures, ... |
-//! | [`emulator`] | the emulated boards: QEMU, toolchain and set-up, processes, budgets |
-//! | [`link`] | the serial link: bytes to messages, and a real port |
 //! | [`oracle`] | known answers, hard cases, tolerances |
+//! | [`emulator`] | the emulated boards: QEMU, toolchain and set-up, processes, budgets |
+//! | [`emulator::link`] | the serial link: bytes to messages, and a real port |
 //! | [`console`] | the shared console interface: options, errors, progress |
+//! | [`cycles`] | the cost of a program on a Cortex-M, from QEMU's log |
+//! | [`reference`] | the exact motion |
+//! | [`vectors`] | many motions at once, in the host's vectors |
 
 #![forbid(unsafe_code)]
 #![deny(clippy::print_stdout, clippy::print_stderr)]
@@ -19,7 +24,4 @@
 )]
 
 pub mod commands;
-pub mod console;
-pub mod emulator;
-pub mod link;
 pub mod oracle;

@@ -3,11 +3,11 @@
 
 use std::process::ExitCode;
 
+use console::cli::{main as run, verdict};
 use host_tests::commands::{
     count, demo, emulated, figures, flash, flips, plan, prove, release, report, simulate,
     verify_board,
 };
-use host_tests::console::cli::{main as run, verdict};
 
 fn main() -> ExitCode {
     match std::env::args().nth(1).as_deref() {

@@ -1,7 +1,7 @@
 """Makes the polynomials and the parts of pi/2 in kernel/src/numbers/sine.rs.
 
     python3 -m pip install mpmath numpy
-    python3 host-tests/generate/sine_polynomials.py
+    python3 host-tests/tools/sine_polynomials.py
 
 Each polynomial is the minimax fit (Remez exchange) on abs r <= pi/4, a hair beyond. Coefficients are rounded to the
 target type one after the other, lowest order first, and what remains is fitted again after each rounding, so that

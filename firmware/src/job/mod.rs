@@ -38,7 +38,7 @@ const MAX_BYTES: usize = 1 + 10 * 8 + 2 * 5;
 
 /// A motion to compute. The application of a board may lack the method.
 ///
-/// The text form of a request is also read by the C programs (`host-tests/peers-c/measure.c`).
+/// The text form of a request is also read by the C programs (`host-tests/peers/c/measure.c`).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(target_os = "none", derive(defmt::Format))]
 pub struct Request {

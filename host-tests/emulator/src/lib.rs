@@ -1,9 +1,18 @@
-//! Environments that run the firmware without a board: emulators and the host.
+//! The boards and the link to them: emulated boards, the host in the place of a board, the serial
+//! link, and the tools that build and run the firmware.
+
+#![forbid(unsafe_code)]
+#![deny(clippy::print_stdout, clippy::print_stderr)]
+#![allow(
+    missing_docs,
+    reason = "nobody builds on this package: what name and type say is not said again"
+)]
 
 pub mod boards;
 pub mod budgets;
 pub mod flash;
 pub mod host;
+pub mod link;
 pub mod pico;
 pub mod process;
 pub mod qemu;

@@ -2,7 +2,7 @@
 //! panel and buttons.
 //!
 //! The emulator is controlled by lines of text, with bytes as hexadecimal digits; see
-//! `host-tests/rp2040/main.js`.
+//! `host-tests/emulator/rp2040/main.js`.
 
 use std::io::{BufRead, BufReader, Write};
 use std::path::Path;
@@ -13,13 +13,13 @@ use anyhow::{Context, ensure};
 use firmware::app::Key;
 use firmware::protocol::{self, Frame, MAX_WIRE, ToHost, encode_command};
 
-use crate::emulator::flash::{flash_image, uf2};
-use crate::emulator::process::{self, Running};
-use crate::emulator::qemu::{LogDecoder, LogLine, Screenshot};
-use crate::emulator::scratch::Scratch;
-use crate::emulator::toolchain::workspace;
-use crate::emulator::up_to_frame;
+use crate::flash::{flash_image, uf2};
 use crate::link::{Counts, Inbox};
+use crate::process::{self, Running};
+use crate::qemu::{LogDecoder, LogLine, Screenshot};
+use crate::scratch::Scratch;
+use crate::toolchain::workspace;
+use crate::up_to_frame;
 
 const SLICE: Duration = Duration::from_millis(1);
 /// The number of slices without a frame after which the board counts as silent.
@@ -66,7 +66,7 @@ impl PicoMachine {
 
         let mut command = Command::new(node);
         command
-            .arg(workspace().join("host-tests/rp2040/main.js"))
+            .arg(workspace().join("host-tests/emulator/rp2040/main.js"))
             .arg(&file);
         command.stdin(Stdio::piped()).stdout(Stdio::piped());
         let mut process = process::spawn(&mut command, limit)?;

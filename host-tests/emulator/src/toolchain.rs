@@ -22,7 +22,7 @@ pub use bring::{Consent, QUICK};
 pub use tools::find;
 use tools::{CORE_PACKAGES, Emulator, FromSource, QEMU, QEMU_AARCH64, QEMU_RISCV};
 
-use crate::console::cli::{REFUSED, Refused, complain};
+use console::cli::{REFUSED, Refused, complain};
 
 /// The compiler's targets, one for each kind of core.
 pub const TARGETS: [&str; 3] = [

@@ -5,8 +5,8 @@
 set -eu
 cpu=$1 sine=$2 cosine=$3 elf=$4
 shift 4
-cd "$(dirname "$0")/../.."
-here=host-tests/peers-c
+cd "$(dirname "$0")/../../.."
+here=host-tests/peers/c
 made=target/peers-c
 name=cmsisdsp-1.10.3
 

@@ -3,11 +3,11 @@
 use std::path::Path;
 
 use double_pendulum::Method;
+use emulator::boards::Board;
+use emulator::budgets::{self, MEMORY, Memory};
 use firmware::config::TICK_RATE;
 use firmware::job::{ON_BOARDS, Request};
 use firmware::protocol::{Command, Field, MAX_WIRE, ToHost, encode_command, frame};
-use host_tests::emulator::boards::Board;
-use host_tests::emulator::budgets::{self, MEMORY, Memory};
 use object::elf::{SHF_ALLOC, SHF_WRITE};
 use object::{Object, ObjectSection, SectionFlags, SectionKind};
 

@@ -9,7 +9,7 @@ use std::io::{Write, stderr};
 use std::process::Command;
 
 use crate::support::LIMIT;
-use host_tests::emulator::{process, toolchain};
+use emulator::{process, toolchain};
 use rayon::prelude::*;
 
 /// The emulator that runs the program of a core.
@@ -39,7 +39,7 @@ fn emulated(Core(_, target, emulator, double): &Core) -> anyhow::Result<Command>
         }
         Linux => {}
         Node => {
-            command.arg(toolchain::workspace().join("host-tests/wasm/run.js"));
+            command.arg(toolchain::workspace().join("host-tests/emulator/wasm.js"));
         }
     }
     let image = toolchain

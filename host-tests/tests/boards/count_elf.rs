@@ -5,8 +5,8 @@ use std::process::Command;
 
 use crate::support::{LIMIT, toolchain};
 use cycles::{ERROR_BAR, Image};
-use host_tests::emulator::boards::BOARDS;
-use host_tests::emulator::process::{self, Output};
+use emulator::boards::BOARDS;
+use emulator::process::{self, Output};
 
 /// Builds a program at an address that calls a function and a label three times each and then
 /// executes `last`.

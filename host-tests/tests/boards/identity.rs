@@ -8,9 +8,9 @@ use crate::support::targets;
 use anyhow::Result;
 use cycles::{Core, Instruction};
 use double_pendulum::Method;
+use emulator::toolchain;
 use firmware::job::Request;
 use host_tests::commands::report::accuracy::{SCENES, Scene, request};
-use host_tests::emulator::toolchain;
 use rayon::prelude::*;
 
 /// The number of compared steps. It is smaller on the Cortex-M0+, which has no long products.

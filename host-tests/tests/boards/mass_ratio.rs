@@ -1,12 +1,12 @@
 //! The largest mass ratio that the keys reach, on the emulated board that is slowest with it. Up is
 //! pressed until nothing changes any more.
 
+use emulator::boards::LM3S6965EVB;
+use emulator::host::Show;
+use emulator::qemu::Machine;
 use firmware::config::{MASS_RATIOS, TICK_RATE};
 use firmware::protocol::{Answer, Command, PlayState};
 use firmware::scenes::SceneName;
-use host_tests::emulator::boards::LM3S6965EVB;
-use host_tests::emulator::host::Show;
-use host_tests::emulator::qemu::Machine;
 
 use crate::support::on;
 

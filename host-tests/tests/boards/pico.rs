@@ -7,6 +7,11 @@ use crate::support::code::Code;
 use crate::support::{LIMIT, application, show};
 use cycles::Core;
 use double_pendulum::Method;
+use emulator::boards::{BOARDS, PICO};
+use emulator::flash::flash_image;
+use emulator::link::{BAUD_OF_BOOT_LOADER, Restarts};
+use emulator::pico::PicoMachine;
+use emulator::toolchain;
 use firmware::app::Key;
 use firmware::config::{
     BAUD, HOLD_TICKS, MOST_MEASURED_STEPS, RECEIVE_QUEUE, TICK_RATE, WATCHDOG_SECONDS,
@@ -19,11 +24,6 @@ use firmware::protocol::{
 };
 use firmware::scenes::SceneName;
 use host_tests::commands::count::{FULL_CYCLE, Target, affordable_steps, step_cost};
-use host_tests::emulator::boards::{BOARDS, PICO};
-use host_tests::emulator::flash::flash_image;
-use host_tests::emulator::pico::PicoMachine;
-use host_tests::emulator::toolchain;
-use host_tests::link::{BAUD_OF_BOOT_LOADER, Restarts};
 
 /// A time in which the panel receives a whole picture.
 const PICTURE: Duration = Duration::from_millis(50);

@@ -1,12 +1,12 @@
 //! The board's buttons, pressed through QEMU, change the mass ratio and the start angle and restart the motion.
 
 use crate::support::on;
+use emulator::boards::{BOARDS, Board};
+use emulator::qemu::Machine;
 use firmware::app::Key;
 use firmware::config::{ANGLE_STEP, MASS_RATIOS};
 use firmware::protocol::Frame;
 use firmware::scenes::SceneName;
-use host_tests::emulator::boards::{BOARDS, Board};
-use host_tests::emulator::qemu::Machine;
 
 /// The number of frames in which the firmware notices that a button is released, even if the host
 /// is slow.

@@ -4,12 +4,12 @@
 use crate::support::{on, show};
 use double_pendulum::Method;
 use double_pendulum::plan::Plan;
+use emulator::boards::{BOARDS, Board};
+use emulator::qemu::Machine;
 use firmware::app::PlannerEvent;
 use firmware::config::TICK_RATE;
 use firmware::protocol::{Answer, Command};
 use firmware::scenes::SceneName;
-use host_tests::emulator::boards::{BOARDS, Board};
-use host_tests::emulator::qemu::Machine;
 use rayon::prelude::*;
 
 /// A scene that soon changes its method, one in which nothing moves, a motion that ends early, and

@@ -8,11 +8,11 @@ use std::time::Duration;
 
 use crate::support::{address, application, on, settings, toolchain};
 use cycles::Image;
+use emulator::boards::{BOARDS, Board, STM32F405};
+use emulator::qemu::{Machine, Register, Settings};
 use firmware::app::MOST_RESTARTS;
 use firmware::protocol::{Cause, Command, Field, Frame, Restarted, ToHost};
 use firmware::scenes::SceneName;
-use host_tests::emulator::boards::{BOARDS, Board, STM32F405};
-use host_tests::emulator::qemu::{Machine, Register, Settings};
 
 /// An address at the low end of the stack, which is never used.
 const UNUSED: u32 = 0x2000_8000;

@@ -2,11 +2,11 @@
 //! button.
 
 use crate::support::{address, application, on};
+use emulator::boards::STM32F405;
+use emulator::qemu::Machine;
 use firmware::config::MOST_MEASURED_STEPS;
 use firmware::job::{ON_BOARDS, Request};
 use firmware::protocol::{Answer, Command};
-use host_tests::emulator::boards::STM32F405;
-use host_tests::emulator::qemu::Machine;
 
 #[test]
 fn it_starts_from_anywhere_goes_on_without_a_panel_and_steps_in_flash_and_in_memory()

@@ -7,9 +7,9 @@ use std::time::{Duration, Instant};
 
 use crate::support::bench::BOARD;
 use crate::support::{LIMIT, on, show};
+use emulator::boards::{BOARDS, STM32F405};
+use emulator::qemu::{Clock, Machine, Settings};
 use firmware::scenes::SceneName;
-use host_tests::emulator::boards::{BOARDS, STM32F405};
-use host_tests::emulator::qemu::{Clock, Machine, Settings};
 use nix::sys::signal::{Signal, kill};
 use nix::unistd::Pid;
 use rayon::prelude::*;

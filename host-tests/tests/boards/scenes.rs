@@ -13,17 +13,17 @@ use std::time::Duration;
 use crate::budgets::{Next, beyond, exercise, wire};
 use crate::support::{LIMIT, PAINT, application, depth, on, show, stack};
 use cycles::{Core, Cost, Image};
+use emulator::boards::{BOARDS, Board, PICO};
+use emulator::budgets;
+use emulator::host::Show;
+use emulator::link::Counts;
+use emulator::pico::PicoMachine;
+use emulator::qemu::{Machine, Screenshot, Settings};
+use emulator::toolchain;
 use firmware::config::TICK_RATE;
 use firmware::protocol::{Command, Frame, ToHost};
 use firmware::scenes::SceneName;
 use host_tests::commands::count::FrameProfile;
-use host_tests::emulator::boards::{BOARDS, Board, PICO};
-use host_tests::emulator::budgets;
-use host_tests::emulator::host::Show;
-use host_tests::emulator::pico::PicoMachine;
-use host_tests::emulator::qemu::{Machine, Screenshot, Settings};
-use host_tests::emulator::toolchain;
-use host_tests::link::Counts;
 use rayon::prelude::*;
 
 /// The number of frames between two comparisons of the panel.

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use crate::support::{address, application};
 use cycles::Image;
-use host_tests::emulator::boards::every_board;
+use emulator::boards::every_board;
 
 /// The part of memory that statics and guard share, and the size of its subregions, as in
 /// `board/cortex_m/stack.rs`.

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 
 use crate::support::application;
 use crate::support::code::Code;
-use host_tests::emulator::boards::{PICO, STM32F405};
+use emulator::boards::{PICO, STM32F405};
 use object::{Object, ObjectSection};
 
 /// The functions that are measured and that take most of the scenes' time, each by a part and the

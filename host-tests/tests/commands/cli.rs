@@ -1,5 +1,5 @@
-//! The output of the commands. The files `snapshots/*.txt` contain command lines with their outputs
-//! and exit codes; `BLESS=1` writes them again.
+//! The output of the commands. The files `golden/commands/*.txt` contain command lines with their
+//! outputs and exit codes; `BLESS=1` writes them again.
 //!
 //! A command and its arguments follow `$`. Then come the lines on stdout after `> ` and those on
 //! stderr after `! `, and the exit code. Another test closes the output early (`| head`).
@@ -8,12 +8,12 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 use std::{fs, io};
 
+use emulator::host::Show;
+use emulator::process::{Output, run};
+use emulator::toolchain::workspace;
 use firmware::app::PlannerEvent;
 use firmware::config::{CORTEX_M3, STM32F405};
 use firmware::scenes::SceneName;
-use host_tests::emulator::host::Show;
-use host_tests::emulator::process::{Output, run};
-use host_tests::emulator::toolchain::workspace;
 use host_tests::oracle::snapshot::BLESS;
 use rayon::prelude::*;
 
@@ -55,7 +55,7 @@ fn played(line: &str, folder: &Path) -> String {
 #[test]
 fn commands_say_what_they_said() {
     let empty = tempfile::tempdir().expect("a folder");
-    let folder = workspace().join("host-tests/tests/commands/snapshots");
+    let folder = workspace().join("host-tests/golden/commands");
     let files = fs::read_dir(folder)
         .expect("the snapshots")
         .map(|file| file.expect("a file").path());
@@ -204,7 +204,7 @@ fn wait_for_handler(process: u32) {
 #[cfg(target_os = "linux")]
 #[test]
 fn an_interrupted_proof_prints_what_it_has_proved() {
-    use host_tests::emulator::process::spawn;
+    use emulator::process::spawn;
     use nix::sys::signal::{Signal, kill};
     use nix::unistd::Pid;
     use std::io::Read;

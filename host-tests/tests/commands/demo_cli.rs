@@ -8,12 +8,12 @@ use std::path::{Path, PathBuf};
 use super::cli::{output, program};
 use crate::support::toolchain;
 use double_pendulum::Parameters;
+use emulator::host::Show;
+use emulator::qemu::Screenshot;
 use firmware::config::STM32F405;
 use firmware::motion::Settings;
 use firmware::scenes::SceneName;
 use host_tests::commands::demo::played;
-use host_tests::emulator::host::Show;
-use host_tests::emulator::qemu::Screenshot;
 use tempfile::TempDir;
 
 /// The recorded seconds and the number of pictures: 30 frames per second, 3 x 3 dots for each of

@@ -5,12 +5,12 @@ use std::f64::consts::PI;
 use std::fs;
 
 use double_pendulum::{Motion, State};
+use emulator::host::Show;
+use emulator::qemu::Screenshot;
 use firmware::scenes::SceneName;
 use host_tests::commands::demo::played;
 use host_tests::commands::figures::small::{CurvePoint, MASS_RATIOS, modes, points};
 use host_tests::commands::figures::{animation, chaos, figures, folder};
-use host_tests::emulator::host::Show;
-use host_tests::emulator::qemu::Screenshot;
 use host_tests::oracle::tolerances;
 use reference::taylor::Reference;
 

@@ -10,12 +10,12 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::time::{Duration, SystemTime};
 
+use emulator::boards::{PICO, STM32F405};
+use emulator::flash::flash_image;
+use emulator::link::Inbox;
+use emulator::process::{self, Output};
+use emulator::toolchain;
 use firmware::protocol::ToHost;
-use host_tests::emulator::boards::{PICO, STM32F405};
-use host_tests::emulator::flash::flash_image;
-use host_tests::emulator::process::{self, Output};
-use host_tests::emulator::toolchain;
-use host_tests::link::Inbox;
 use nix::sys::signal::{Signal, kill};
 use nix::unistd::Pid;
 

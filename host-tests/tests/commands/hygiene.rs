@@ -7,7 +7,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use host_tests::emulator::toolchain::workspace;
+use emulator::toolchain::workspace;
 use serde_json::Value;
 
 use super::cli::output;

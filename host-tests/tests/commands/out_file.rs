@@ -5,7 +5,7 @@ use std::os::unix::fs::symlink;
 use std::path::Path;
 use std::process::Command;
 
-use host_tests::emulator::process::Output;
+use emulator::process::Output;
 
 use super::cli::{output, program};
 

@@ -6,9 +6,7 @@ use std::io::{BufRead, BufReader, ErrorKind, Read};
 use std::process::{ChildStdout, Command, Stdio};
 use std::time::Duration;
 
-use host_tests::emulator::process::{
-    Running, on_interrupt, remove_on_interrupt, run, run_watched, spawn,
-};
+use emulator::process::{Running, on_interrupt, remove_on_interrupt, run, run_watched, spawn};
 use nix::sys::signal::{Signal, kill};
 use nix::unistd::Pid;
 

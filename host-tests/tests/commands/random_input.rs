@@ -5,6 +5,7 @@
 use clap::Parser;
 use double_pendulum::plan::{Budget, Limit, Problem, Search, Stepping};
 use double_pendulum::{Error, Method, Modes, Motion, Parameters, Pendulum, Real, State};
+use emulator::link::Inbox;
 use firmware::app::{App, NoButtons};
 use firmware::config::CORTEX_M4F;
 use firmware::display::NoDisplay;
@@ -17,7 +18,6 @@ use firmware::protocol::{
 };
 use firmware::scenes::SceneName;
 use host_tests::commands::simulate::{Number, SimulateOptions, plan};
-use host_tests::link::Inbox;
 use host_tests::oracle::trials;
 use proptest::array::{uniform2, uniform4, uniform5};
 use proptest::collection::vec;

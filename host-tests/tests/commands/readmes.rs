@@ -7,7 +7,7 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-use host_tests::emulator::toolchain::workspace;
+use emulator::toolchain::workspace;
 
 use super::cli::{output, program};
 use super::hygiene::read;

@@ -10,11 +10,11 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::Duration;
 
-use host_tests::emulator::boards::{PICO, every_board};
-use host_tests::emulator::flash::flash_image;
-use host_tests::emulator::pico::PicoMachine;
-use host_tests::emulator::process::Output;
-use host_tests::emulator::toolchain::{self, target, workspace};
+use emulator::boards::{PICO, every_board};
+use emulator::flash::flash_image;
+use emulator::pico::PicoMachine;
+use emulator::process::Output;
+use emulator::toolchain::{self, target, workspace};
 
 use super::cli::{output, program};
 use crate::support::bench::{Bench, at_port_for, wire};

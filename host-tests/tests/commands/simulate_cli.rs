@@ -4,9 +4,9 @@
 
 use clap::Parser;
 use double_pendulum::{Integrator, Method, Motion};
+use emulator::boards::BOARDS;
 use firmware::job::Request;
 use host_tests::commands::simulate::{Plan, SimulateOptions, choose, plan};
-use host_tests::emulator::boards::BOARDS;
 use reference::taylor;
 
 use super::cli::{output, program};

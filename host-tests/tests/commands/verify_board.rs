@@ -10,13 +10,13 @@ use std::time::{Duration, Instant};
 use super::cli::program;
 use crate::support::LIMIT;
 use crate::support::bench::{BOARD, Bench, at_port, wire};
+use emulator::boards::BOARDS;
+use emulator::process;
 use firmware::app::Key;
 use firmware::display::{BusFault, PanelState};
 use firmware::job::ON_BOARDS;
 use firmware::protocol::{Answer, ToHost};
 use firmware::scenes::SceneName;
-use host_tests::emulator::boards::BOARDS;
-use host_tests::emulator::process;
 
 /// The cells of a method without a cycle count.
 const UNCOUNTED: &str = "| no cycle counter | no cycle counter | - |";

@@ -6,9 +6,9 @@ use embedded_graphics::image::GetPixel;
 use embedded_graphics::pixelcolor::raw::{LittleEndian, RawU16};
 use embedded_graphics::pixelcolor::{Gray4, Rgb565};
 use embedded_graphics::primitives::PointsIter;
+use emulator::host::Show;
 use firmware::display::{AnyPanel, Display};
 use firmware::scenes::SceneName;
-use host_tests::emulator::host::Show;
 
 /// The position of the frame on the panel.
 const CORNER: Point = Point::new(11, 9);

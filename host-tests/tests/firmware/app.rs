@@ -4,6 +4,8 @@
 use double_pendulum::plan::Stepping;
 use double_pendulum::{Method, Parameters, Pendulum, State};
 use embedded_io::{ErrorKind, ErrorType, Write};
+use emulator::host::Show;
+use emulator::link::Inbox;
 use firmware::app::{Buttons, Event, MOST_RESTARTS, NoButtons, Pressed, Record};
 use firmware::config::{GRAVITY, MOST_TICKS_PER_FRAME, ROD, TICK_RATE};
 use firmware::display::{Display, NoDisplay};
@@ -11,8 +13,6 @@ use firmware::graphics::{Canvas, Place, RodDirections, View};
 use firmware::motion::Settings;
 use firmware::protocol::{Answer, Cause, Command, LinkError, Restarted, Status, ToHost};
 use firmware::scenes::{Report, SceneName};
-use host_tests::emulator::host::Show;
-use host_tests::link::Inbox;
 use host_tests::oracle::tolerances::ENERGY_SHOWN;
 
 use crate::bench::{Plain, app, frames, messages, of, starting_with, wire};

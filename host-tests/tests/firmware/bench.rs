@@ -2,6 +2,8 @@
 //! of a frame.
 
 use embedded_io::Write;
+use emulator::host::sheets;
+use emulator::link::Inbox;
 use firmware::app::{App, Buttons, NoButtons};
 use firmware::config::PROCESSOR;
 use firmware::display::{Display, NoDisplay};
@@ -9,8 +11,6 @@ use firmware::graphics::{HEIGHT, WIDTH};
 use firmware::motion::Settings;
 use firmware::protocol::{Answer, Command, Frame, MAX_WIRE, ToHost, encode_command};
 use firmware::scenes::SceneName;
-use host_tests::emulator::host::sheets;
-use host_tests::link::Inbox;
 
 pub type Plain = App<'static, NoDisplay, Vec<u8>, NoButtons>;
 

@@ -4,6 +4,7 @@ use std::f64::consts::PI;
 
 use double_pendulum::plan::Stepping;
 use double_pendulum::{Method, Parameters};
+use emulator::link::refusal;
 use fastrand::Rng;
 use firmware::app::{Event, Instruments, PlannerEvent};
 use firmware::config::{
@@ -17,7 +18,6 @@ use firmware::protocol::{
     encode, frame,
 };
 use firmware::scenes::SceneName;
-use host_tests::link::refusal;
 
 use crate::bench::{Plain, answers, app, frames, wire};
 

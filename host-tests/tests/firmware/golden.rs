@@ -2,12 +2,12 @@
 //! `golden/frames.csv`: each picture's greys and each report's bits.
 
 use double_pendulum::golden::{FNV_OFFSET, fnv_1a};
+use emulator::host::Show;
 use firmware::config::{
     CORTEX_M0PLUS, CORTEX_M3, CORTEX_M4F, PROCESSORS, Processor, STM32F405, TICK_RATE,
 };
 use firmware::protocol::{MAX_WIRE, ToHost, encode};
 use firmware::scenes::SceneName;
-use host_tests::emulator::host::Show;
 use host_tests::oracle::snapshot;
 use rayon::prelude::*;
 

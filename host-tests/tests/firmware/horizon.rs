@@ -2,13 +2,13 @@
 //! the panel predicts, and hardly longer, before and after a change of the method.
 
 use double_pendulum::{Parameters, Pendulum};
+use emulator::host::Show;
 use firmware::config::{
     CORTEX_M3, CORTEX_M4F, HALF_PIXEL, MASS_RATIOS, Processor, REACH, TICK_RATE,
 };
 use firmware::graphics::Place;
 use firmware::motion::Settings;
 use firmware::scenes::SceneName;
-use host_tests::emulator::host::Show;
 use host_tests::oracle::tolerances::PLAN_SHARE;
 use rayon::prelude::*;
 use reference::taylor::Reference;

@@ -265,8 +265,8 @@ fn numbers_mean_the_same_as_long_as_the_version_does() -> Result<(), String> {
         + &variants(read::<Controller>)
         + &variants(read::<By>)
         + &variants(read::<BusFault>);
-    snapshot::check(
-        &format!("wire-{VERSION}"),
+    snapshot::check_lines(
+        &format!("firmware/src/protocol/wire-{VERSION}.txt"),
         &(messages + &plans + &values + &variants(read::<Limit>) + &panels),
     )
 }

@@ -2,11 +2,11 @@
 //! 7.
 
 use double_pendulum::{Parameters, Pendulum, State, rk4};
+use emulator::host::Show;
 use firmware::config::{HALF_PIXEL, MASS_RATIOS, TICK_RATE};
 use firmware::graphics::{Anchor, Canvas, LINE, Place, View, text};
 use firmware::motion::{Misprinted, Settings};
 use firmware::scenes::SceneName;
-use host_tests::emulator::host::Show;
 use host_tests::oracle::{textbook, tolerances};
 
 const MU: f64 = 2.75;

@@ -2,6 +2,8 @@
 //! scenes share.
 
 use double_pendulum::State;
+use emulator::host::Show;
+use emulator::qemu::Screenshot;
 use firmware::app::PlannerEvent;
 use firmware::config::{
     CORTEX_M0PLUS, CORTEX_M3, CORTEX_M4F, PIVOT, PROCESSOR, Processor, REACH, STM32F405, TICK_RATE,
@@ -11,8 +13,6 @@ use firmware::graphics::{Anchor, Canvas, FadeLayer, HEIGHT, LOWEST, WIDTH, plot,
 use firmware::motion::{Resources, Settings};
 use firmware::protocol::Command;
 use firmware::scenes::{AnyScene, Flips, Scene, SceneName};
-use host_tests::emulator::host::Show;
-use host_tests::emulator::qemu::Screenshot;
 use host_tests::oracle::snapshot;
 use host_tests::oracle::tolerances::SHOWN_HEIGHT;
 

@@ -3,12 +3,12 @@
 //! panel.
 
 use double_pendulum::{Modes, Parameters, Pendulum, SmallOscillations};
+use emulator::host::Show;
 use firmware::config::{HALF_PIXEL, MASS_RATIOS, PROCESSORS, Processor, REACH, TICK_RATE};
 use firmware::graphics::Place;
 use firmware::motion::{Horizon, Settings};
 use firmware::protocol::PlayState;
 use firmware::scenes::SceneName;
-use host_tests::emulator::host::Show;
 use rayon::prelude::*;
 use reference::taylor::Reference;
 

@@ -1,12 +1,12 @@
 //! The record that is kept across a reset is trusted only if it is intact, and is played again
 //! unchanged.
 
+use emulator::host::Show;
 use fastrand::Rng;
 use firmware::app::{Journal, MOST_RESTARTS, Player, Record, SOUND_FRAMES};
 use firmware::motion::Settings;
 use firmware::protocol::{Cause, Command, Field, MAX_WIRE, Restarted, Status};
 use firmware::scenes::SceneName;
-use host_tests::emulator::host::Show;
 
 fn player() -> Player<'static> {
     Show::new(SceneName::Page, &Settings::default())

@@ -2,7 +2,7 @@
 # The set-up on a fresh Debian: it brings everything, or says in a line what keeps it from that. And the kernel with the
 # oldest Rust that it promises, which that Debian has.
 #
-#   sudo host-tests/fresh-debian/try.sh [TRIAL ...]    all trials, or those named; exit code 1 if one fails
+#   sudo host-tests/tests/fresh-debian/try.sh [TRIAL ...]    all trials, or those named; exit code 1 if one fails
 #
 # Needs root, debootstrap, e2fsprogs, a Debian with network, rustup's stable toolchain, 6 GB and a
 # quarter of an hour. Changes nothing but a folder of its own: the Debian is made there once, and
@@ -11,7 +11,7 @@
 set -euo pipefail
 
 here=$(cd "$(dirname "$0")" && pwd)
-repository=$(cd "$here/../.." && pwd)
+repository=$(cd "$here/../../.." && pwd)
 folder=${TMPDIR:-/tmp}/double-pendulum-fresh-debian
 base=$folder/base
 toolchain=stable-x86_64-unknown-linux-gnu

@@ -4,9 +4,9 @@
 use std::f64::consts::{FRAC_PI_6, PI, TAU};
 
 use double_pendulum::{Modes, SmallOscillations};
+use emulator::host::Show;
 use firmware::config::TICK_RATE;
 use firmware::scenes::SceneName;
-use host_tests::emulator::host::Show;
 use host_tests::oracle::tolerances::{CLOSED, CLOSED_FORM, NOT_CLOSED};
 use reference::taylor::Reference;
 

@@ -2,6 +2,7 @@
 //! result is NaN.
 
 use double_pendulum::{Error, Integrator, Method, Parameter, Parameters, State};
+use emulator::host::sheets;
 use firmware::app::{App, NoButtons};
 use firmware::config::PROCESSOR;
 use firmware::display::NoDisplay;
@@ -9,7 +10,6 @@ use firmware::job::{Job, OnBoards, Reading, Request};
 use firmware::motion::Settings;
 use firmware::protocol::{Command, Field, PlayState};
 use firmware::scenes::SceneName;
-use host_tests::emulator::host::sheets;
 use host_tests::oracle::trials;
 
 /// A step below the stability limit of 0.49 s, but far too long for a motion of 300 rad/s.

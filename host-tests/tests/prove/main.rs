@@ -63,7 +63,7 @@ fn the_known_answers_are_those_that_the_command_makes() {
         .into_iter()
         .filter(|row| row.scene == "S11")
         .collect();
-    let kept = include_str!("../../data/known_answers.csv")
+    let kept = include_str!("../../reference/known_answers.csv")
         .lines()
         .filter(|line| line.starts_with("S11,"));
     assert_eq!(

@@ -10,11 +10,11 @@ use std::process::Command;
 use std::thread::{scope, sleep};
 use std::time::Duration;
 
+use emulator::boards::{Board, MPS2_AN386};
+use emulator::pico::PicoMachine;
+use emulator::process::{Output, run};
+use emulator::qemu::{Clock, Machine, Settings};
 use firmware::protocol::{MAX_WIRE, ToHost, encode};
-use host_tests::emulator::boards::{Board, MPS2_AN386};
-use host_tests::emulator::pico::PicoMachine;
-use host_tests::emulator::process::{Output, run};
-use host_tests::emulator::qemu::{Clock, Machine, Settings};
 use nix::fcntl::OFlag;
 use nix::pty::{PtyMaster, grantpt, posix_openpt, ptsname_r, unlockpt};
 

@@ -8,12 +8,12 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
+use emulator::boards::Board;
+use emulator::host::Show;
+use emulator::qemu::{Clock, Settings};
+use emulator::toolchain::{self, Toolchain};
 use firmware::scenes::SceneName;
 use host_tests::commands::count::Target;
-use host_tests::emulator::boards::Board;
-use host_tests::emulator::host::Show;
-use host_tests::emulator::qemu::{Clock, Settings};
-use host_tests::emulator::toolchain::{self, Toolchain};
 use object::{Object, ObjectSymbol};
 
 /// The time limit against hanging: many times the duration of any run, on a slow and busy machine

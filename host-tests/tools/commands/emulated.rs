@@ -11,11 +11,11 @@ use std::{env, fs};
 use anyhow::bail;
 use clap::Parser;
 
-use crate::console::cli::{Refused, choice, complain, say};
-use crate::emulator::boards::{BOARDS, Board};
-use crate::emulator::process;
-use crate::emulator::qemu::{Clock, Machine, Settings};
-use crate::emulator::toolchain::{self, Consent};
+use console::cli::{Refused, choice, complain, say};
+use emulator::boards::{BOARDS, Board};
+use emulator::process;
+use emulator::qemu::{Clock, Machine, Settings};
+use emulator::toolchain::{self, Consent};
 
 /// Finds or fetches all that builds and runs the firmware: the ARM core library, QEMU, and rp2040js
 /// for the Pico.
@@ -24,7 +24,7 @@ use crate::emulator::toolchain::{self, Consent};
     name = "cargo setup",
     after_help = "Example: cargo setup --yes
 
-Everything goes into target, host-tests/rp2040 and rustup's own folder, but for Node.js and npm: where they are missing, they
+Everything goes into target, host-tests/emulator/rp2040 and rustup's own folder, but for Node.js and npm: where they are missing, they
 are installed with apt-get after a question, or by --yes without one; elsewhere nothing is installed."
 )]
 pub struct SetupOptions {

@@ -12,11 +12,11 @@ use std::time::{Duration, Instant};
 use anyhow::{Context, bail};
 use clap::Parser;
 
-use crate::console::cli::{Refused, complain, say};
-use crate::emulator::boards::{PICO, STM32F405};
-use crate::emulator::flash::{flash_image, uf2};
-use crate::emulator::toolchain::{self, Toolchain, target};
-use crate::link::{running_board, touch};
+use console::cli::{Refused, complain, say};
+use emulator::boards::{PICO, STM32F405};
+use emulator::flash::{flash_image, uf2};
+use emulator::link::{running_board, touch};
+use emulator::toolchain::{self, Toolchain, target};
 
 /// The name of the firmware's file, and that of the label on a board's drive.
 pub const FILE: &str = "pico.uf2";

@@ -10,10 +10,10 @@ use anyhow::{Context, bail, ensure};
 use clap::Parser;
 
 use crate::commands::flash;
-use crate::console::cli::{Refused, say};
-use crate::emulator::boards::every_board;
-use crate::emulator::process;
-use crate::emulator::toolchain::{self, QUICK, target, workspace};
+use console::cli::{Refused, say};
+use emulator::boards::every_board;
+use emulator::process;
+use emulator::toolchain::{self, QUICK, target, workspace};
 
 /// The name of the folder, in the target folder.
 const FOLDER: &str = "release-files";

@@ -1,4 +1,4 @@
-//! The hard cases, `data/hard_cases.csv`: motions on which careless arithmetic fails, and the
+//! The hard cases, `reference/hard_cases.csv`: motions on which careless arithmetic fails, and the
 //! allowed errors of the direction form.
 
 use double_pendulum::{Parameters, State};
@@ -45,7 +45,9 @@ pub struct HardCase {
 
 /// Returns every line, in the file's order.
 pub fn hard_cases() -> Vec<HardCase> {
-    let lines = include_str!("../../data/hard_cases.csv").lines().skip(1);
+    let lines = include_str!("../../reference/hard_cases.csv")
+        .lines()
+        .skip(1);
     lines
         .map(|line| {
             HardCase::read(line).unwrap_or_else(|| panic!("hard_cases.csv: cannot read `{line}`"))

@@ -1,4 +1,4 @@
-//! The table of known answers, `data/known_answers.csv`: the directions of the rods in exact
+//! The table of known answers, `reference/known_answers.csv`: the directions of the rods in exact
 //! motions, with every digit proved.
 //!
 //! `cargo prove --known-answers` reproduces it digit for digit.
@@ -43,7 +43,9 @@ const GIVEN: usize = 11;
 /// # Errors
 /// Names the first line that cannot be read.
 pub fn table() -> anyhow::Result<Vec<KnownAnswer>> {
-    let lines = include_str!("../../data/known_answers.csv").lines().skip(1);
+    let lines = include_str!("../../reference/known_answers.csv")
+        .lines()
+        .skip(1);
     lines
         .map(|line| {
             KnownAnswer::read(line)

@@ -4,7 +4,7 @@
 use std::env;
 use std::fs;
 
-use crate::emulator::toolchain::workspace;
+use emulator::toolchain::workspace;
 
 /// The character of each of the panel's 16 greys, from black to white.
 pub const GREYS: &[u8; 16] = b" .,:;-~=+*oaOX#@";
@@ -28,7 +28,7 @@ pub fn text(greys: &[u8], width: usize) -> String {
 /// command that accepts them.
 pub fn check(name: &str, picture: &str) -> Result<(), String> {
     let path = workspace()
-        .join("host-tests/pictures/scenes")
+        .join("host-tests/golden/scenes")
         .join(format!("{name}.txt"));
     if env::var_os(BLESS).is_some() {
         return fs::write(&path, picture).map_err(|error| format!("{}: {error}", path.display()));

@@ -1,7 +1,7 @@
 //! Sines and cosines from few additions and multiplications, because each is a call in software.
 //!
 //! The argument is reduced by the nearest multiple of pi/2 (Cody-Waite reduction), then minimax
-//! polynomials are used. `host-tests/generate/sine_polynomials.py` computes the constants.
+//! polynomials are used. `host-tests/tools/sine_polynomials.py` computes the constants.
 
 use core::ops::Neg;
 

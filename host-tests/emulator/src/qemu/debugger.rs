@@ -21,7 +21,7 @@ use nix::sys::stat::Mode;
 use nix::unistd::mkfifo;
 
 use super::machine::{Clock, Machine, Settings};
-use crate::emulator::up_to_frame;
+use crate::up_to_frame;
 
 /// The instruction `wfi`, which sleeps until an interrupt, and its size in bytes. The size is also
 /// sent with every breakpoint.

@@ -12,11 +12,11 @@ use serde_json::json;
 
 use super::debugger::{DESCRIBE, Places};
 use super::{LogDecoder, LogLine};
-use crate::emulator::boards::Board;
-use crate::emulator::process::{self, Running};
-use crate::emulator::scratch::Scratch;
-use crate::emulator::stream::{self, Channel, Stream};
+use crate::boards::Board;
 use crate::link::{Counts, Inbox};
+use crate::process::{self, Running};
+use crate::scratch::Scratch;
+use crate::stream::{self, Channel, Stream};
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Clock {

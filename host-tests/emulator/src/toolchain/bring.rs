@@ -9,9 +9,9 @@ use nix::fcntl::{Flock, FlockArg};
 
 use super::target;
 use super::tools::find;
-use crate::console::cli::{Refused, complain};
-use crate::console::progress::Progress;
-use crate::emulator::process::{Output, run, run_watched};
+use crate::process::{Output, run, run_watched};
+use console::cli::{Refused, complain};
+use console::progress::Progress;
 
 /// The time limit of a program that only prints information.
 pub const QUICK: Duration = Duration::from_secs(20);

@@ -11,7 +11,7 @@ use anyhow::{anyhow, ensure};
 
 use super::bring::run_shown;
 use super::{TARGETS, Toolchain, remap, target, workspace};
-use crate::emulator::boards::{Board, PICO, every_board};
+use crate::boards::{Board, PICO, every_board};
 
 /// The binaries that this process has built, each with its target. The list saves time: another
 /// call of cargo takes half a second.

@@ -9,7 +9,7 @@ use std::{env, fs};
 
 use super::bring::{Consent, INSTALL, Way, attempt, bring, install_packages, says};
 use super::{missing, target, workspace};
-use crate::console::cli::Refused;
+use console::cli::Refused;
 
 /// Returns the folders that may contain Debian's compiler with the sources of the core library: the
 /// system's programs, and the folder that the set-up unpacks into.
@@ -23,7 +23,7 @@ pub(super) const CORE_PACKAGES: [&str; 3] = ["rustc-web", "cargo-web", "rust-web
 /// The time limit of `rustup target add`, which loads 40 MB. A machine on which it hangs waits for
 /// this time once.
 const RUSTUP: Duration = Duration::from_secs(60);
-const UNPACK: &str = "host-tests/src/emulator/toolchain/unpack.sh";
+const UNPACK: &str = "host-tests/emulator/src/toolchain/unpack.sh";
 
 /// Debian's compiler, which builds the ARM core library from its sources.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -325,7 +325,7 @@ pub(super) fn rp2040js(consent: Option<Consent>) -> Result<PathBuf, Refused> {
     let node = node(consent)?;
     let installs = consent.is_some();
     let install = |packages: &[&str]| install_packages(packages, consent.unwrap_or(Consent::Ask));
-    let folder = workspace().join("host-tests/rp2040");
+    let folder = workspace().join("host-tests/emulator/rp2040");
     let fetched = || {
         let asked = says(
             Command::new(&node)
@@ -347,7 +347,7 @@ pub(super) fn rp2040js(consent: Option<Consent>) -> Result<PathBuf, Refused> {
     };
     let (what, by_hand) = (
         "the emulator of the Raspberry Pi Pico",
-        "run npm ci --prefix host-tests/rp2040",
+        "run npm ci --prefix host-tests/emulator/rp2040",
     );
     bring(
         installs,

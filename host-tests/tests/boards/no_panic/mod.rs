@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 
 use addr2line::Context;
 use addr2line::gimli::{self, Dwarf, EndianSlice, LittleEndian, SectionId};
-use host_tests::emulator::boards::{BOARDS, every_board};
+use emulator::boards::{BOARDS, every_board};
 use object::{Object, ObjectSection};
 
 use crate::support::code::Code;

@@ -6,6 +6,8 @@ mod bus;
 use std::collections::VecDeque;
 
 use embedded_hal::i2c::ErrorKind;
+use emulator::host::Show;
+use emulator::qemu::Screenshot;
 use fastrand::Rng;
 use firmware::config::{STM32F405, TICK_RATE};
 use firmware::display::{
@@ -14,8 +16,6 @@ use firmware::display::{
 };
 use firmware::graphics::{Bitmap, Canvas, HEIGHT, WIDTH};
 use firmware::scenes::SceneName;
-use host_tests::emulator::host::Show;
-use host_tests::emulator::qemu::Screenshot;
 
 use crate::bench::places;
 use bus::{

@@ -15,9 +15,9 @@ use rayon::prelude::*;
 use super::trace::LIMIT;
 use super::{Target, affordable_cost};
 use crate::commands::table::between;
-use crate::emulator::boards::Board;
-use crate::emulator::qemu::{Clock, Machine, Settings};
-use crate::emulator::toolchain::{Toolchain, workspace};
+use emulator::boards::Board;
+use emulator::qemu::{Clock, Machine, Settings};
+use emulator::toolchain::{Toolchain, workspace};
 
 /// The functions that show a frame, as path of the module and name. They draw the frame, and send
 /// it to the panel and over the link. They are not inlined, and each exists once in a program.

@@ -13,10 +13,10 @@ use rayon::prelude::*;
 use super::application::{prices, write_prices};
 use super::trace::{calls_of, counted};
 use super::{StepCost, Target, affordable_cost, affordable_steps, step_cost};
-use crate::console::cli::{self, Refused, complain, say};
-use crate::emulator::boards::{BOARDS, Board};
-use crate::emulator::toolchain::{self, Toolchain};
+use console::cli::{self, Refused, complain, say};
 use cycles::{Cost, ERROR_BAR};
+use emulator::boards::{BOARDS, Board};
+use emulator::toolchain::{self, Toolchain};
 
 /// The gravity of the report's regular scene, m/s^2, so that the figures agree with it.
 const GRAVITY: f32 = 9.81;

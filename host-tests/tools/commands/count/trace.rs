@@ -18,10 +18,10 @@ use cycles::{Calls, Cost, Function, Image, Registers, for_each_instruction};
 use firmware::job::Request;
 
 use super::COUNTED;
-use crate::console::progress::Progress;
-use crate::emulator::boards::{BOARDS, Board};
-use crate::emulator::process;
-use crate::emulator::toolchain::{QUICK, Toolchain};
+use console::progress::Progress;
+use emulator::boards::{BOARDS, Board};
+use emulator::process;
+use emulator::toolchain::{QUICK, Toolchain};
 
 pub(super) const LIMIT: Duration = Duration::from_secs(1800);
 

@@ -15,8 +15,8 @@ use firmware::protocol::{Field, Frame, PlayState, Status};
 use firmware::scenes::SceneName;
 use indicatif::HumanCount;
 
-use crate::emulator::host::Show;
-use crate::emulator::qemu::Screenshot;
+use emulator::host::Show;
+use emulator::qemu::Screenshot;
 
 /// The number of frames without an answer after which the host repeats the question.
 const PATIENCE: u32 = TICK_RATE;

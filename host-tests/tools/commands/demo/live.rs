@@ -14,7 +14,7 @@ use super::options::scene_of_key;
 use super::readings::Help;
 use super::session::{Session, faster, slower};
 use super::view::draw;
-use crate::emulator::process;
+use emulator::process;
 
 /// The interval between two reads of the link: a tick, because a board that is emulated frame by
 /// frame is no faster than a real one.

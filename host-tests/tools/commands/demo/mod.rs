@@ -25,13 +25,13 @@ use panel::{Recording, png};
 use session::{Session, Source};
 
 use crate::commands::out_file::OutFile;
-use crate::console::cli::{Refused, complain, say};
-use crate::console::progress::Progress;
-use crate::emulator::boards::{Board, PICO};
-use crate::emulator::pico::PicoMachine;
-use crate::emulator::qemu::{Clock, Machine, Settings};
-use crate::emulator::toolchain;
-use crate::link::Port;
+use console::cli::{Refused, complain, say};
+use console::progress::Progress;
+use emulator::boards::{Board, PICO};
+use emulator::link::Port;
+use emulator::pico::PicoMachine;
+use emulator::qemu::{Clock, Machine, Settings};
+use emulator::toolchain;
 
 /// The duration of a run without a terminal, if the user gives none.
 const DEFAULT_SECONDS: f64 = 10.0;

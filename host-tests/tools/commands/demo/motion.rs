@@ -9,7 +9,7 @@ use firmware::motion::{Resources, Settings};
 use firmware::scenes::{AnyScene, SceneName};
 
 use crate::commands::simulate::{Number, Pair, option_of};
-use crate::console::cli::Refused;
+use console::cli::Refused;
 
 /// The pendulum and its start. A value that is not given is that of the scene.
 #[derive(Args, Clone, Debug)]

@@ -13,8 +13,8 @@ use firmware::scenes::{AnyScene, SceneName};
 use super::motion::OwnMotion;
 use crate::commands::out_file::check_writable;
 use crate::commands::simulate::Number;
-use crate::console::cli::{Refused, choice};
-use crate::emulator::boards::{BOARDS, Board, every_board};
+use console::cli::{Refused, choice};
+use emulator::boards::{BOARDS, Board, every_board};
 
 /// Shows the double pendulum on a board's panel, live in the terminal, and compares each frame with
 /// the host's own. For a real board the picture is rebuilt from the data it sends.

@@ -16,7 +16,7 @@ use ratatui::style::Color;
 use ratatui::symbols::Marker;
 use ratatui::widgets::canvas::{Canvas, Points};
 
-use crate::emulator::qemu::{HEIGHT, Screenshot, WIDTH};
+use emulator::qemu::{HEIGHT, Screenshot, WIDTH};
 
 /// The smallest grey that is shown as a dot. Only the end of a fading trail is darker.
 const SET: u8 = 3;

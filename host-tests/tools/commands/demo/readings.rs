@@ -13,8 +13,8 @@ use firmware::scenes::{LEAST_ENERGY_ERROR, Report, SceneName};
 
 use super::comparison::Comparison;
 use super::options::usable;
-use crate::emulator::qemu::LogLine;
-use crate::link::{self, Counts};
+use emulator::link::{self, Counts};
+use emulator::qemu::LogLine;
 
 /// The number of past frames that are kept, for 12 s; no more are shown.
 const KEPT: usize = 12 * TICK_RATE as usize;

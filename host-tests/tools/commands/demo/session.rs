@@ -9,10 +9,10 @@ use firmware::protocol::{Answer, Command, Field, Frame, Status, ToHost};
 use super::DemoOptions;
 use super::panel::Recording;
 use super::readings::{Readings, warning};
-use crate::console::cli::Refused;
-use crate::emulator::pico::PicoMachine;
-use crate::emulator::qemu::{LogLine, Machine, Screenshot};
-use crate::link::{Counts, Port, refusal};
+use console::cli::Refused;
+use emulator::link::{Counts, Port, refusal};
+use emulator::pico::PicoMachine;
+use emulator::qemu::{LogLine, Machine, Screenshot};
 
 /// The source of the messages.
 pub enum Source {

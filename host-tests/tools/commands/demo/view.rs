@@ -14,7 +14,7 @@ use textwrap::{Options, WordSplitter, wrap};
 
 use super::readings::{Help, Readings, stepping};
 use super::{help, numbers, panel};
-use crate::emulator::qemu::{LogLine, Screenshot, WIDTH};
+use emulator::qemu::{LogLine, Screenshot, WIDTH};
 
 /// The widths of the panel, in columns: with a column for each pixel, in Braille with two pixels in
 /// a column, and the narrowest useful one.

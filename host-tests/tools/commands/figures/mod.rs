@@ -15,8 +15,8 @@ use firmware::scenes::SceneName;
 
 use crate::commands::demo::{self, DemoOptions};
 use crate::commands::out_file::write;
-use crate::console::cli::{complain, say, unwritable};
-use crate::emulator::toolchain::workspace;
+use console::cli::{complain, say, unwritable};
+use emulator::toolchain::workspace;
 
 /// Draws the book's figures 2 to 5 and 7 from the kernel, as SVG.
 #[derive(Debug, Parser)]

@@ -13,8 +13,8 @@ use double_pendulum::Parameters;
 
 use crate::commands::out_file::OutFile;
 use crate::commands::simulate::{Number, Pair, option_of};
-use crate::console::cli::{Refused, complain, say};
-use crate::console::progress::Progress;
+use console::cli::{Refused, complain, say};
+use console::progress::Progress;
 use map::Map;
 
 /// Draws when a rod first turns over, for every start from rest: a1 across, a2 upwards, colour the time.

@@ -9,7 +9,7 @@ use double_pendulum::plan::{Limit, Plan, Problem};
 use double_pendulum::{Method, Pendulum};
 use firmware::config::HALF_PIXEL;
 
-use crate::console::cli::{Refused, complain, say};
+use console::cli::{Refused, complain, say};
 
 const EXAMPLES: &str = "Examples:
   cargo plan --angles 90,90 --degrees --height 64 --duration 10

@@ -10,9 +10,9 @@ use firmware::motion::half_pixel;
 use firmware::scenes::SceneName;
 
 use crate::commands::simulate::{Number, StartOptions, option_of};
-use crate::console::cli::choice;
-use crate::emulator::boards::every_board;
-use crate::emulator::host::Show;
+use console::cli::choice;
+use emulator::boards::every_board;
+use emulator::host::Show;
 
 /// The method of the scenes that show the linear motion.
 const LINEAR: Stepping = Stepping {

@@ -13,10 +13,10 @@ use double_pendulum::Method;
 use double_pendulum::plan::{Plan, Stepping};
 
 use crate::commands::plan::SceneOptions;
-use crate::console::cli::{Refused, choice, complain, say};
-use crate::console::progress::Progress;
-use crate::emulator::process::{interrupted, interrupted_by};
 use crate::oracle::known_answers;
+use console::cli::{Refused, choice, complain, say};
+use console::progress::Progress;
+use emulator::process::{interrupted, interrupted_by};
 use horizon::{frames, words};
 use reference::enclosure::Start;
 
@@ -49,7 +49,7 @@ pub struct ProveOptions {
     /// Prints the horizons of all scenes on all chips, predicted and proved, as a table
     #[arg(long, conflicts_with_all = ["scene", "method", "csv"])]
     table: bool,
-    /// Prints the table of known answers in host-tests/data anew, every digit of it proved
+    /// Prints the table of known answers in host-tests/reference anew, every digit of it proved
     #[arg(long, conflicts_with_all = ["scene", "method", "csv", "table"])]
     known_answers: bool,
 }

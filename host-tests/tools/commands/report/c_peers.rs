@@ -14,9 +14,9 @@ use double_pendulum::Method;
 use super::accuracy::{Error, SCENES, Scene, rates, request, usual_rate, worst};
 use super::join::Point;
 use crate::commands::count::{Target, affordable_cost};
-use crate::emulator::boards::Board;
-use crate::emulator::process;
-use crate::emulator::toolchain::{Toolchain, workspace};
+use emulator::boards::Board;
+use emulator::process;
+use emulator::toolchain::{Toolchain, workspace};
 
 /// The programs: the name in tables, and the functions for sine and cosine.
 pub const PROGRAMS: [(&str, [&str; 2]); 2] = [
@@ -75,7 +75,7 @@ pub fn points(
 /// Compiles a program for `board`. Returns the ELF file, or the first line of the error message.
 fn elf(sine: [&str; 2], board: &Board) -> Result<PathBuf> {
     let elf = format!("{}-{}.elf", sine[0], board.cpu);
-    let mut build = Command::new(workspace().join("host-tests/peers-c/build.sh"));
+    let mut build = Command::new(workspace().join("host-tests/peers/c/build.sh"));
     build.arg(board.cpu).args(sine).arg(&elf);
     if board.target.ends_with("eabihf") {
         build.args(["-mfloat-abi=hard", "-mfpu=fpv4-sp-d16"]);

@@ -11,7 +11,7 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 use super::accuracy::Scene;
 use super::c_peers::PROGRAMS;
 use super::join::Point;
-use crate::emulator::boards::Board;
+use emulator::boards::Board;
 
 const SIZE: (u32, u32) = (860, 460);
 /// The range of errors. Points outside are not drawn, and errors decrease to the right.
@@ -193,7 +193,7 @@ mod tests {
     use super::super::accuracy::SCENES;
     use super::super::join::tests::point;
     use super::*;
-    use crate::emulator::boards::BOARDS;
+    use emulator::boards::BOARDS;
 
     #[test]
     fn seven_lines_at_most_have_names_and_the_programs_in_c_do() -> Result<()> {

@@ -8,9 +8,9 @@ use super::accuracy::{self, Error, LONG, SAMPLES, SCENES, Scene, rates, request,
 use super::c_peers;
 use crate::commands::count::{StepCost, Target, affordable_cost};
 use crate::commands::table::{Table, small};
-use crate::console::progress::Progress;
-use crate::emulator::boards::Board;
-use crate::emulator::toolchain::Toolchain;
+use console::progress::Progress;
+use emulator::boards::Board;
+use emulator::toolchain::Toolchain;
 
 /// The finest step is 2^-`FINEST` s.
 const FINEST: u32 = 13;
@@ -141,7 +141,7 @@ pub fn table(points: &[Point]) -> Table {
 #[cfg(test)]
 pub(super) mod tests {
     use super::*;
-    use crate::emulator::boards::BOARDS;
+    use emulator::boards::BOARDS;
 
     /// Returns a method's point in the regular scene on the first board.
     pub fn point(name: &'static str, cycles: f64, angle: f64) -> Point {

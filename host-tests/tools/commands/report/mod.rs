@@ -24,11 +24,11 @@ use firmware::config::HALF_PIXEL;
 use crate::commands::count::Target;
 use crate::commands::out_file::write;
 use crate::commands::table::{Table, between, small};
-use crate::console::cli::{say, unwritable};
-use crate::emulator::boards::{BOARDS, Board};
-use crate::emulator::toolchain::{self, workspace};
 use accuracy::{LONG, SCENES, Scene};
 use c_peers::PROGRAMS;
+use console::cli::{say, unwritable};
+use emulator::boards::{BOARDS, Board};
+use emulator::toolchain::{self, workspace};
 use join::Point;
 
 /// Measures every method's cost on the target and its error, and writes them as CSV and as charts.

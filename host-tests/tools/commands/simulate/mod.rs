@@ -21,12 +21,12 @@ use firmware::job::{ON_BOARDS, Reading, Request};
 use firmware::protocol::{Answer, Command};
 
 use crate::commands::out_file::OutFile;
-use crate::console::cli::{Refused, complain, say};
-use crate::console::progress::Progress;
-use crate::emulator::boards::Board;
-use crate::emulator::qemu::{Clock, Machine, Settings};
-use crate::emulator::toolchain;
-use crate::link::refusal;
+use console::cli::{Refused, complain, say};
+use console::progress::Progress;
+use emulator::boards::Board;
+use emulator::link::refusal;
+use emulator::qemu::{Clock, Machine, Settings};
+use emulator::toolchain;
 
 pub fn run(options: &SimulateOptions) -> anyhow::Result<()> {
     if options.list {

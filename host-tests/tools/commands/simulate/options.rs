@@ -10,8 +10,8 @@ use reference::enclosure::Start as Exact;
 
 use super::NAMES;
 use super::number::{Number, Pair};
-use crate::console::cli::choice;
-use crate::emulator::boards::{BOARDS, Board};
+use console::cli::choice;
+use emulator::boards::{BOARDS, Board};
 
 /// The place where the motion is computed: the firmware on an emulated board, or this program.
 pub type Place = Option<&'static Board>;

@@ -13,7 +13,7 @@ use reference::taylor;
 use super::request::{accepted, count, method, request};
 use super::{Number, Place, Plan, SimulateOptions};
 use crate::commands::table::at_most;
-use crate::console::progress::Progress;
+use console::progress::Progress;
 
 /// The longest run that is tried, in steps.
 const MOST_STEPS: u32 = 1 << 19;

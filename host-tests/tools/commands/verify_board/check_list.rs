@@ -3,7 +3,7 @@
 use firmware::protocol::Restarted;
 
 use super::Section;
-use crate::link::{Port, describe_restart};
+use emulator::link::{Port, describe_restart};
 
 /// A manual check that the firmware's README describes.
 pub struct Check {
@@ -71,7 +71,7 @@ fn restarts(count: u32, last: Option<&Restarted>) -> [(&'static str, String); 2]
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::emulator::toolchain::workspace;
+    use emulator::toolchain::workspace;
 
     #[test]
     fn the_readme_describes_every_check() {

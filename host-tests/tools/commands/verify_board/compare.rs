@@ -13,9 +13,9 @@ use super::talk::Talk;
 use super::{Section, verdict};
 use crate::commands::count::{FULL_CYCLE, Target, affordable_cost};
 use crate::commands::demo::comparison::Comparison;
-use crate::console::progress::Progress;
-use crate::emulator::boards::{BOARDS, Board};
-use crate::emulator::toolchain;
+use console::progress::Progress;
+use emulator::boards::{BOARDS, Board};
+use emulator::toolchain;
 
 /// The motions from rest: a name, the mass of bob 2, kg (bob 1 has 1 kg, the rods are 1 m long),
 /// and both angles, rad. Costs are measured in the first one.

@@ -17,13 +17,13 @@ use object::{Object, ObjectSymbol};
 
 use crate::commands::demo;
 use crate::commands::table::Table;
-use crate::console::cli::{complain, say};
-use crate::console::progress::Progress;
-use crate::emulator::boards::{Board, every_board};
-use crate::emulator::flash::{ERASED, flash_image_over};
-use crate::emulator::process;
-use crate::emulator::toolchain::{self, QUICK, workspace};
-use crate::link;
+use console::cli::{complain, say};
+use console::progress::Progress;
+use emulator::boards::{Board, every_board};
+use emulator::flash::{ERASED, flash_image_over};
+use emulator::link;
+use emulator::process;
+use emulator::toolchain::{self, QUICK, workspace};
 use talk::Talk;
 
 /// Verifies a board at a serial port: the bits of every method and scene beside the host's, the cycles of every method, the

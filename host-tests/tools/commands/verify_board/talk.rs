@@ -12,8 +12,8 @@ use firmware::protocol::{Answer, Command, Frame, ToHost};
 use firmware::scenes::SceneName;
 
 use super::Section;
-use crate::console::cli::complain;
-use crate::link::{Port, refusal};
+use console::cli::complain;
+use emulator::link::{Port, refusal};
 
 /// The time limit of an answer. A board answers a command within a tick, and the slowest requested
 /// motion has a sample every second.
