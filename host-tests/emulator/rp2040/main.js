@@ -26,8 +26,11 @@ const commands = {
   plug: (kind, status) => board.panel.plug(kind, Number(status)),
   /** A device holds the clock of the panel's bus low: 1; or lets it go: 0. */
   hold: (is) => board.panel.hold(is === '1'),
-  /** The counts of the low and the high clock of the panel's bus, cycles. */
-  clock: () => say('clock', [board.chip.i2c[0].fsClockLowPeriod, board.chip.i2c[0].fsClockHighPeriod]),
+  /** The panel's bus: the counts of its low and high clock, cycles, and the number of its resets. */
+  i2c: () => {
+    const { fsClockLowPeriod, fsClockHighPeriod, age } = board.chip.i2c[0];
+    say('i2c', [fsClockLowPeriod, fsClockHighPeriod, age]);
+  },
   /** The time of a byte on the panel's bus, ns. */
   bus: (nanos) => (board.panel.byte = Number(nanos)),
   /** A button between this pin and ground: 1 is pressed. */
