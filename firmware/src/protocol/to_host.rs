@@ -82,6 +82,28 @@ impl ToHost {
     }
 }
 
+/// A drawn frame, in numbers. The host draws the same picture from them.
+///
+/// Its bytes, in order. A varint has 7 bits of an integer in each byte, the lowest first; bit 7 is
+/// set in all bytes but the last. Floating-point numbers are IEEE 754, little-endian.
+///
+/// | bytes | field |
+/// |---|---|
+/// | 1 | 0, the number of [`ToHost::Frame`] |
+/// | varint, 1 to 5 each | `sequence`, `dropped`, `lost` |
+/// | 1 | `scene`, the number in the table of [`scenes`](crate::scenes) |
+/// | 1 | `state` |
+/// | 4, 4 | `mass_ratio`, `start_angle` |
+/// | varint, 1 to 10 | `report.step` |
+/// | 8 | `report.time` |
+/// | 4, 4, 4, 4 | `report.state`: a1, a2, p1, p2 |
+/// | 4 | `report.energy_error` |
+/// | 1, or 1 and 4 | `report.horizon`: its number, and the time of the last two kinds |
+/// | 1, or 1 and 1 and varint | `report.stepping`: 0; or 1, the method's number and the step count |
+/// | varint, 1 to 5 each | `scene_cycles`, `busy_cycles` |
+///
+/// The numbers of all kinds are in `wire-12.txt` beside this file (test `link`). To add a field, add
+/// it here and to `Player::frame`, and raise [`VERSION`](super::VERSION).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Frame {
     /// The number of frames drawn since reset. A gap means that a frame was lost on the way, unless

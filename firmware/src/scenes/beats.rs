@@ -9,7 +9,7 @@ use crate::graphics::{
     Anchor, Canvas, Disc, FadeLayer, LINE, LOWEST, Spot, Stroke, label, plot, text,
 };
 use crate::motion::{Resources, Settings, Simulation};
-use crate::scenes::{Report, Scene, draw_clock};
+use crate::scenes::{Report, Scene, Shows, draw_clock};
 
 /// The middles of the two figures, and the largest swing of a mode in them, pixels.
 const MIDDLES: [(f32, f32); 2] = [(23.5, 32.5), (104.5, 32.5)];
@@ -80,6 +80,7 @@ impl Beats {
 }
 
 impl Scene for Beats {
+    const SHOWS: Shows = Shows::Motion;
     fn new(settings: &Settings, resources: &Resources) -> Result<(Self, Option<f32>), Error> {
         let simulation = Simulation::new(settings, resources)?;
 

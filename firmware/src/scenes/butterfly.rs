@@ -11,7 +11,7 @@ use crate::graphics::{
     WIDTH, label, plot, text,
 };
 use crate::motion::{Resources, Settings, Simulation};
-use crate::scenes::{Report, Scene, draw_clock};
+use crate::scenes::{Report, Scene, Shows, draw_clock};
 
 /// The initial difference of angle 1 between the second pendulum and the first, rad.
 const APART: f64 = 1e-6;
@@ -82,6 +82,7 @@ impl Butterfly {
 }
 
 impl Scene for Butterfly {
+    const SHOWS: Shows = Shows::Motion;
     #[inline(never)] // Inlined, the preparations of all scenes would be on the stack together.
     fn new(settings: &Settings, resources: &Resources) -> Result<(Self, Option<f32>), Error> {
         // A frame pays for both motions.

@@ -2,20 +2,20 @@
 //! the board, coarse first.
 
 use double_pendulum::flips::{Falling, Flip, Flips as Search, step_size};
-// The numbers with and without a floating-point unit. A board links only the numbers of its own
-// processor.
+// The methods for processors with and without a floating-point unit. A board links only the method
+// of its own processor, for both.
 #[cfg(target_abi = "eabihf")]
-use double_pendulum::{DirectionF32Plain as Float, DirectionF32Plain as Fixed};
+use double_pendulum::{DirectionF32Plain as WithFpu, DirectionF32Plain as WithoutFpu};
 #[cfg(not(target_os = "none"))]
-use double_pendulum::{DirectionF32Plain as Float, Fixed32 as Fixed};
+use double_pendulum::{DirectionF32Plain as WithFpu, Fixed32 as WithoutFpu};
 use double_pendulum::{Error, Form};
 #[cfg(all(target_os = "none", not(target_abi = "eabihf")))]
-use double_pendulum::{Fixed32 as Float, Fixed32 as Fixed};
+use double_pendulum::{Fixed32 as WithFpu, Fixed32 as WithoutFpu};
 
 use crate::config::FlipsPace;
 use crate::graphics::{Anchor, Canvas, FadeLayer, Fading, HEIGHT, WIDTH, label, text};
 use crate::motion::{Resources, Settings};
-use crate::scenes::{Report, Scene, time};
+use crate::scenes::{Report, Scene, Shows, time};
 
 /// The time that is searched for a flip, in units of sqrt(l1/g).
 const LIMIT: f32 = 100.0;
@@ -34,8 +34,8 @@ const ROWS: usize = HEIGHT / 2;
 /// The search in the processor's numbers, and the motion that it follows.
 #[derive(Clone, Debug)]
 enum Searching {
-    Float(Search<Float>, Option<Falling<Float>>),
-    Fixed(Search<Fixed>, Option<Falling<Fixed>>),
+    WithFpu(Search<WithFpu>, Option<Falling<WithFpu>>),
+    WithoutFpu(Search<WithoutFpu>, Option<Falling<WithoutFpu>>),
 }
 
 /// The map of flips, with a1 across and a2 upwards. The brightness is the time of the first flip.
@@ -125,9 +125,9 @@ impl Flips {
         let dt = step_size(parameters)?;
         let steps = (LIMIT * unit / dt as f32) as u32;
         let searching = if in_float {
-            Searching::Float(Search::new(parameters, dt, steps)?, None)
+            Searching::WithFpu(Search::new(parameters, dt, steps)?, None)
         } else {
-            Searching::Fixed(Search::new(parameters, dt, steps)?, None)
+            Searching::WithoutFpu(Search::new(parameters, dt, steps)?, None)
         };
         Ok(Self {
             searching,
@@ -192,6 +192,7 @@ fn grey(flip: Flip<f32>, unit: f32) -> u8 {
 }
 
 impl Scene for Flips {
+    const SHOWS: Shows = Shows::Figure;
     const FADING: Fading = Fading::NEVER;
 
     fn new(settings: &Settings, resources: &Resources) -> Result<(Self, Option<f32>), Error> {
@@ -215,8 +216,8 @@ impl Scene for Flips {
             let start = self.block.start();
             let pace = self.pace;
             let (cost, flip) = match &mut self.searching {
-                Searching::Float(search, falling) => work(search, falling, start, left, pace),
-                Searching::Fixed(search, falling) => work(search, falling, start, left, pace),
+                Searching::WithFpu(search, falling) => work(search, falling, start, left, pace),
+                Searching::WithoutFpu(search, falling) => work(search, falling, start, left, pace),
             };
             left = left.saturating_sub(cost);
             if let Some(flip) = flip {

@@ -7,7 +7,7 @@ use crate::graphics::{
     Anchor, Canvas, Disc, FadeLayer, Fading, Height, LINE, LOWEST, Spot, WIDTH, label, plot, text,
 };
 use crate::motion::{Resources, Settings};
-use crate::scenes::{Report, Scene};
+use crate::scenes::{Report, Scene, Shows};
 
 /// The smallest range of mass ratios across the plot, as in the figure. A heavier bob 2 widens it.
 const LEAST_RANGE: f32 = 5.0;
@@ -48,6 +48,7 @@ fn frequencies(mass_ratio: f32) -> Result<[f32; 2], Error> {
 }
 
 impl Scene for Frequencies {
+    const SHOWS: Shows = Shows::Figure;
     const FADING: Fading = Fading::NEVER;
 
     fn new(settings: &Settings, _: &Resources) -> Result<(Self, Option<f32>), Error> {

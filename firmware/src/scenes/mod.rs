@@ -17,17 +17,29 @@ use crate::config::{GREATEST_ANGLE, TICK_RATE};
 use crate::graphics::{Anchor, Canvas, FadeLayer, Fading, label, text};
 use crate::motion::{Horizon, Resources, Settings, Simulation};
 
+/// The subject of a scene.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Shows {
+    /// The exact motion from two angles, as near as a method computes it.
+    Motion,
+    /// The linear motion from two angles. It leaves the exact motion, on purpose.
+    LinearMotion,
+    /// A figure without starting angles.
+    Figure,
+}
+
 /// A figure that moves. It starts from settings, advances tick by tick, and is drawn when there is
 /// time.
 pub trait Scene: Sized {
+    const SHOWS: Shows;
     /// The fading of the ink.
     const FADING: Fading = Fading::TRACE;
 
     /// Creates the scene at its start. Returns also the height of the display for the plan, pixels.
     ///
     /// On a display of this height, two rods as long as in the scene extend from the middle to the
-    /// edge. If the scene shows angles as curves, a rod is as long as a radian. The height is
-    /// `None` if there is nothing to plan.
+    /// edge. If the scene shows angles as curves, it is the height of such a picture of the same
+    /// accuracy. The height is `None` if there is nothing to plan.
     ///
     /// Returns the kernel's error if the settings describe no pendulum, or a pendulum that the
     /// scene cannot show.
@@ -119,16 +131,26 @@ fn draw_clock(canvas: &mut Canvas, report: &Report, time_at: Anchor, trust_at: A
     text::write(canvas, &horizon.label(), trust_at);
 }
 
+/// Defines the scenes. Each row gives the number on the wire, the name of the scene, its type and its
+/// initial settings.
 macro_rules! catalogue {
-    ($($row:ident = $name:literal, $scene:ty, $first:expr;)*) => {
+    ($($number:literal $row:ident = $name:literal, $scene:ty, $first:expr;)*) => {
         choice! {
             SceneName { $($row = $name;)* }
         }
+
+        // A scene goes over the wire as the place of its row.
+        $(const _: () = assert!(SceneName::$row as u32 == $number);)*
 
         impl SceneName {
             /// Returns the initial settings of the scene.
             pub fn first_settings(self) -> Settings {
                 match self { $(Self::$row => $first,)* }
+            }
+
+            /// Returns the subject of the scene.
+            pub const fn shows(self) -> Shows {
+                match self { $(Self::$row => <$scene>::SHOWS,)* }
             }
         }
 
@@ -189,19 +211,19 @@ macro_rules! catalogue {
 }
 
 catalogue! {
-    Page = "page", pendulums::Page, Settings::default();
-    SmallLight = "small-0.2", small::Small, small::example(0.2);
-    SmallEqual = "small-1", small::Small, small::example(1.0);
-    SmallHeavy = "small-5", small::Small, small::example(5.0);
-    Frequencies = "frequencies", frequencies::Frequencies, Settings::default();
-    Beats3To2 = "beats-3-2", beats::Beats, beats::closing(25.0 / 144.0);
-    Beats2To1 = "beats-2-1", beats::Beats, beats::closing(9.0 / 16.0);
-    Beats5To2 = "beats-5-2", beats::Beats, beats::closing(441.0 / 400.0);
-    Beats3To1 = "beats-3-1", beats::Beats, beats::closing(16.0 / 9.0);
-    Figure7 = "figure-7", pendulums::Figure7, pendulums::figure_7();
-    Butterfly = "butterfly", butterfly::Butterfly, Settings::default();
-    Upright = "upright", pendulums::Upright, Settings::equal_rods(1.0, GREATEST_ANGLE);
-    Flips = "flips", flips::Flips, Settings::default();
+    0  Page = "page", pendulums::Page, Settings::default();
+    1  SmallLight = "small-0.2", small::Small, small::example(0.2);
+    2  SmallEqual = "small-1", small::Small, small::example(1.0);
+    3  SmallHeavy = "small-5", small::Small, small::example(5.0);
+    4  Frequencies = "frequencies", frequencies::Frequencies, Settings::default();
+    5  Beats3To2 = "beats-3-2", beats::Beats, beats::closing(25.0 / 144.0);
+    6  Beats2To1 = "beats-2-1", beats::Beats, beats::closing(9.0 / 16.0);
+    7  Beats5To2 = "beats-5-2", beats::Beats, beats::closing(441.0 / 400.0);
+    8  Beats3To1 = "beats-3-1", beats::Beats, beats::closing(16.0 / 9.0);
+    9  Figure7 = "figure-7", pendulums::Figure7, pendulums::figure_7();
+    10 Butterfly = "butterfly", butterfly::Butterfly, Settings::default();
+    11 Upright = "upright", pendulums::Upright, Settings::equal_rods(1.0, GREATEST_ANGLE);
+    12 Flips = "flips", flips::Flips, Settings::default();
 }
 
 impl AnyScene {
@@ -226,12 +248,12 @@ impl AnyScene {
 impl SceneName {
     /// Returns true if the scene shows a motion, which starts from two angles.
     pub fn has_angles(self) -> bool {
-        !matches!(self, Self::Frequencies | Self::Flips)
+        self.shows() != Shows::Figure
     }
 
     /// Returns true if the scene shows the linear motion, on purpose, and not the exact one.
     pub fn is_linear(self) -> bool {
-        matches!(self, Self::SmallLight | Self::SmallEqual | Self::SmallHeavy)
+        self.shows() == Shows::LinearMotion
     }
 
     /// Returns the next scene of the catalogue; after the last the first.

@@ -17,7 +17,7 @@ use crate::graphics::{
     TRACE_HALF_WIDTH, View, label, text,
 };
 use crate::motion::{Horizon, Misprinted, Resources, Settings, Simulation};
-use crate::scenes::{Report, Scene, draw_clock, time};
+use crate::scenes::{Report, Scene, Shows, draw_clock, time};
 
 /// A pendulum and the trail of bob 2. The settings and the time are in the corners, which the
 /// motion never reaches.
@@ -29,6 +29,7 @@ pub struct Page {
 }
 
 impl Scene for Page {
+    const SHOWS: Shows = Shows::Motion;
     const FADING: Fading = Fading {
         rows: TRAIL_FADING,
         last: 0,
@@ -164,6 +165,7 @@ pub struct Figure7 {
 }
 
 impl Scene for Figure7 {
+    const SHOWS: Shows = Shows::Motion;
     #[inline(never)] // Inlined, the preparations of all scenes would be on the stack together.
     fn new(settings: &Settings, resources: &Resources) -> Result<(Self, Option<f32>), Error> {
         let &Parameters { l1, l2, .. } = &settings.parameters;
@@ -280,6 +282,7 @@ fn directions(state: &State<f32>) -> RodDirections {
 }
 
 impl Scene for Upright {
+    const SHOWS: Shows = Shows::Motion;
     #[inline(never)] // Inlined, the preparations of all scenes would be on the stack together.
     fn new(settings: &Settings, resources: &Resources) -> Result<(Self, Option<f32>), Error> {
         let (pendulum, plain) = settings.start()?;

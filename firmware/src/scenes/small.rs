@@ -9,7 +9,7 @@ use crate::graphics::{
     Anchor, Canvas, FadeLayer, Fading, Height, LINE, LOWEST, SUBPIXELS, WIDTH, label, plot, text,
 };
 use crate::motion::{Resources, Settings};
-use crate::scenes::{Report, Scene, draw_clock, time};
+use crate::scenes::{Report, Scene, Shows, draw_clock, time};
 
 /// The rows of angle 0 for angle 1 and angle 2, pixels from the top, and the largest swing about
 /// them.
@@ -115,6 +115,7 @@ fn planned_height(scale: f32) -> f32 {
 }
 
 impl Scene for Small {
+    const SHOWS: Shows = Shows::LinearMotion;
     const FADING: Fading = Fading::NEVER;
 
     fn new(settings: &Settings, _: &Resources) -> Result<(Self, Option<f32>), Error> {

@@ -278,3 +278,39 @@ fn length(message: ToHost) -> usize {
     assert_eq!(messages(wire), [message]);
     wire.len()
 }
+
+/// The table of bytes in the documentation of [`Frame`].
+#[test]
+fn a_frame_has_the_documented_bytes() {
+    let frame = Frame {
+        sequence: 300,
+        scene: SceneName::Flips,
+        mass_ratio: 2.5,
+        report: Report {
+            step: 1,
+            time: 1.0 / 60.0,
+            horizon: Horizon::Until(7.0),
+            stepping: Some(Stepping {
+                method: Method::Rk4Fixed32,
+                steps: 128,
+            }),
+            ..Report::default()
+        },
+        busy_cycles: 5,
+        ..Frame::default()
+    };
+    let mut wire = [0; MAX_WIRE];
+    let bytes = decoded(encode(&ToHost::Frame(frame), &mut wire));
+
+    let mut expected = vec![0, 0xAC, 0x02, 0, 0, 12, 0];
+    expected.extend(2.5_f32.to_le_bytes());
+    expected.extend(0.0_f32.to_le_bytes());
+    expected.push(1);
+    expected.extend((1.0_f64 / 60.0).to_le_bytes());
+    expected.extend([0; 20]);
+    expected.push(3);
+    expected.extend(7.0_f32.to_le_bytes());
+    expected.extend([1, 4, 0x80, 0x01]);
+    expected.extend([0, 5]);
+    assert_eq!(bytes, Some(Ok(expected)));
+}

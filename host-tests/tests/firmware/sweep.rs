@@ -22,9 +22,9 @@ const ENERGY: f32 = 1e-2;
 /// The number of settings between two lines of progress. The long tests run for an hour.
 const CHUNK: usize = 500;
 
-/// A scene of every 500 may be inaccurate a little before its predicted horizon. Planning compares
+/// A scene of every 2,000 may be inaccurate a little before its predicted horizon. Planning compares
 /// computed motions with each other, and roundings may be alike by chance (test `plan_study`).
-const SCENES_TO_A_VIOLATION: usize = 500;
+const SCENES_TO_A_VIOLATION: usize = 2_000;
 
 /// A scene, with a setting that keys reach from its start.
 #[derive(Clone, Copy, Debug)]
