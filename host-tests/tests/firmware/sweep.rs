@@ -15,9 +15,12 @@ use reference::taylor::Reference;
 /// The time for which each scene is followed, ticks.
 const TICKS: u32 = 20 * TICK_RATE;
 
-/// The largest relative energy error of a frame. A motion in steps that do not resolve it gains or
-/// loses several percent within seconds.
-const ENERGY: f32 = 1e-2;
+/// The largest relative energy error of a frame until the predicted horizon, and of any frame.
+///
+/// The steps of a plan resolve the motion until its horizon. Later they lose up to 7 % within 20 s,
+/// in the largest mass ratios on the slowest Cortex-M4F. A motion in steps that never resolve it
+/// loses tens of percent within seconds.
+const ENERGY: [f32; 2] = [1e-2, 0.1];
 
 /// The number of settings between two lines of progress. The long tests run for an hour.
 const CHUNK: usize = 500;
@@ -59,7 +62,8 @@ struct Shown {
     claimed: f64,
     /// The number of frames that claimed nothing, because planning had not verified them yet.
     undecided: u32,
-    energy_error: f32,
+    /// The relative energy error of each frame.
+    energy_errors: Vec<f32>,
     states: Vec<PlayState>,
 }
 
@@ -72,7 +76,7 @@ impl Shown {
             height: show.player.plan().map(|planned| planned.height.into()),
             claimed: 0.0,
             undecided: 0,
-            energy_error: 0.0,
+            energy_errors: Vec::new(),
             states: vec![show.player.state()],
         };
 
@@ -82,7 +86,7 @@ impl Shown {
             shown.states.push(show.player.state());
             shown.angles.push(report.state.angles().map(f64::from));
             shown.claimed = shown.claimed.max(report.horizon.verified().into());
-            shown.energy_error = shown.energy_error.max(report.energy_error.abs());
+            shown.energy_errors.push(report.energy_error.abs());
             match report.horizon {
                 Horizon::Undecided => shown.undecided += 1,
                 Horizon::AtLeast(until) => assert!(
@@ -99,6 +103,15 @@ impl Shown {
 
     fn is_too_fast(&self) -> bool {
         self.states.contains(&PlayState::Stopped)
+    }
+
+    /// Returns true if the energy has changed too much until the horizon, or until the end.
+    fn has_lost_energy(&self) -> bool {
+        let frames = [self.claimed_frames(), self.energy_errors.len()];
+        frames.into_iter().zip(ENERGY).any(|(frames, most)| {
+            let errors = &self.energy_errors[..frames];
+            errors.iter().any(|error| *error > most)
+        })
     }
 
     /// Returns the number of frames that claimed to be accurate.
@@ -215,7 +228,7 @@ fn faults(case: &Case) -> Vec<(Case, u8, Fault)> {
             }
             continue;
         }
-        if case.name != SceneName::Upright && shown.energy_error > ENERGY {
+        if case.name != SceneName::Upright && shown.has_lost_energy() {
             found(Fault::Energy);
         }
         let is_wrong = |(exact, angles): (&[f64; 2], &[f64; 2])| {
