@@ -5,8 +5,7 @@ use std::process::ExitCode;
 
 use console::cli::{main as run, verdict};
 use host_tests::commands::{
-    count, demo, emulated, figures, flash, flips, plan, prove, release, report, simulate,
-    verify_board,
+    count, emulated, figures, flash, flips, plan, prove, release, report, simulate, verify_board,
 };
 
 fn main() -> ExitCode {

@@ -13,6 +13,7 @@ pub mod budgets;
 pub mod flash;
 pub mod host;
 pub mod link;
+pub mod out_file;
 pub mod pico;
 pub mod process;
 pub mod qemu;

@@ -7,13 +7,13 @@ use std::path::{Path, PathBuf};
 
 use super::cli::{output, program};
 use crate::support::toolchain;
+use demo::played;
 use double_pendulum::Parameters;
 use emulator::host::Show;
 use emulator::qemu::Screenshot;
 use firmware::config::STM32F405;
 use firmware::motion::Settings;
 use firmware::scenes::SceneName;
-use host_tests::commands::demo::played;
 use tempfile::TempDir;
 
 /// The recorded seconds and the number of pictures: 30 frames per second, 3 x 3 dots for each of

@@ -4,11 +4,11 @@
 use std::f64::consts::PI;
 use std::fs;
 
+use demo::played;
 use double_pendulum::{Motion, State};
 use emulator::host::Show;
 use emulator::qemu::Screenshot;
 use firmware::scenes::SceneName;
-use host_tests::commands::demo::played;
 use host_tests::commands::figures::small::{CurvePoint, MASS_RATIOS, modes, points};
 use host_tests::commands::figures::{animation, chaos, figures, folder};
 use host_tests::oracle::tolerances;

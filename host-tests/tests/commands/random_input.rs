@@ -3,6 +3,7 @@
 //! host-tests --test commands random_input::` runs more cases.
 
 use clap::Parser;
+use console::number::Number;
 use double_pendulum::plan::{Budget, Limit, Problem, Search, Stepping};
 use double_pendulum::{Error, Method, Modes, Motion, Parameters, Pendulum, Real, State};
 use emulator::link::Inbox;
@@ -17,7 +18,7 @@ use firmware::protocol::{
     frame,
 };
 use firmware::scenes::SceneName;
-use host_tests::commands::simulate::{Number, SimulateOptions, plan};
+use host_tests::commands::simulate::{SimulateOptions, plan};
 use host_tests::oracle::trials;
 use proptest::array::{uniform2, uniform4, uniform5};
 use proptest::collection::vec;

@@ -28,7 +28,7 @@ const ROOMS: [(&str, &[&str]); 4] = [
     ),
     (
         "host-tests/tools",
-        &["commands", "oracle", "vectors", "console"],
+        &["commands", "oracle", "demo", "vectors", "console"],
     ),
     (
         "host-tests/emulator/src",
@@ -40,6 +40,7 @@ const ROOMS: [(&str, &[&str]); 4] = [
             "host",
             "flash",
             "boards",
+            "out_file",
             "scratch",
             "process",
             "stream",

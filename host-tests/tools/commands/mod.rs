@@ -1,12 +1,10 @@
 //! The commands, one room each.
 
 pub mod count;
-pub mod demo;
 pub mod emulated;
 pub mod figures;
 pub mod flash;
 pub mod flips;
-pub mod out_file;
 pub mod plan;
 pub mod prove;
 pub mod release;

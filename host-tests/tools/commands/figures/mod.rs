@@ -13,9 +13,9 @@ use anyhow::{Result, ensure};
 use clap::Parser;
 use firmware::scenes::SceneName;
 
-use crate::commands::demo::{self, DemoOptions};
-use crate::commands::out_file::write;
 use console::cli::{complain, say, unwritable};
+use demo::DemoOptions;
+use emulator::out_file::write;
 use emulator::toolchain::workspace;
 
 /// Draws the book's figures 2 to 5 and 7 from the kernel, as SVG.

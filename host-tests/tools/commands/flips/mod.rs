@@ -11,10 +11,11 @@ use anyhow::{Result, anyhow, ensure};
 use clap::Parser;
 use double_pendulum::Parameters;
 
-use crate::commands::out_file::OutFile;
-use crate::commands::simulate::{Number, Pair, option_of};
+use console::cli::option_of;
 use console::cli::{Refused, complain, say};
+use console::number::{Number, Pair};
 use console::progress::Progress;
+use emulator::out_file::OutFile;
 use map::Map;
 
 /// Draws when a rod first turns over, for every start from rest: a1 across, a2 upwards, colour the time.

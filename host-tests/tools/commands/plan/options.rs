@@ -9,8 +9,10 @@ use firmware::config::{CORTEX_M0PLUS, CORTEX_M3, CORTEX_M4F, Processor, STM32F40
 use firmware::motion::half_pixel;
 use firmware::scenes::SceneName;
 
-use crate::commands::simulate::{Number, StartOptions, option_of};
+use crate::commands::simulate::StartOptions;
 use console::cli::choice;
+use console::cli::option_of;
+use console::number::Number;
 use emulator::boards::every_board;
 use emulator::host::Show;
 

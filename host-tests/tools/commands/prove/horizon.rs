@@ -258,7 +258,7 @@ known      {known}{unknown}",
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::commands::simulate::Number;
+    use console::number::Number;
 
     /// Returns a scene with two rods of 1 m, let go at 2 rad, with a frame of 1 s and a tolerance
     /// of half a metre.

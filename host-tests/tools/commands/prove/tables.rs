@@ -9,8 +9,8 @@ use reference::enclosure::Start;
 
 use super::horizon::{counts, frames};
 use crate::commands::plan::SceneOptions;
-use crate::commands::simulate::Number;
 use crate::oracle::known_answers::KnownAnswer;
+use console::number::Number;
 
 /// Returns the scenes that move, at least at the end.
 pub fn moving() -> impl Iterator<Item = &'static SceneName> {

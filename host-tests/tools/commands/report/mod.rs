@@ -22,12 +22,12 @@ use double_pendulum::Method;
 use firmware::config::HALF_PIXEL;
 
 use crate::commands::count::Target;
-use crate::commands::out_file::write;
 use crate::commands::table::{Table, between, small};
 use accuracy::{LONG, SCENES, Scene};
 use c_peers::PROGRAMS;
 use console::cli::{say, unwritable};
 use emulator::boards::{BOARDS, Board};
+use emulator::out_file::write;
 use emulator::toolchain::{self, workspace};
 use join::Point;
 

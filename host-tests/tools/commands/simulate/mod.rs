@@ -1,13 +1,11 @@
 //! `cargo simulate`: any motion as a table, computed here, or by the firmware on an emulated board
 //! from the same request.
 
-mod number;
 mod options;
 mod request;
 mod tolerance;
 
-pub use number::{Number, Pair};
-pub use options::{Place, SimulateOptions, StartOptions, option_of};
+pub use options::{Place, SimulateOptions, StartOptions};
 pub use request::{Plan, plan};
 pub use tolerance::choose;
 
@@ -20,11 +18,11 @@ use double_pendulum::{Method, Numbers, Pendulum};
 use firmware::job::{ON_BOARDS, Reading, Request};
 use firmware::protocol::{Answer, Command};
 
-use crate::commands::out_file::OutFile;
 use console::cli::{Refused, complain, say};
 use console::progress::Progress;
 use emulator::boards::Board;
 use emulator::link::refusal;
+use emulator::out_file::OutFile;
 use emulator::qemu::{Clock, Machine, Settings};
 use emulator::toolchain;
 

@@ -4,13 +4,13 @@ use std::f64::consts::TAU;
 use std::path::PathBuf;
 
 use clap::{ArgAction, Args, Parser};
-use double_pendulum::{Error, Method, Motion, Parameter, Parameters};
+use double_pendulum::{Method, Motion, Parameters};
 use firmware::config::{FIRST_ANGLE, GRAVITY};
 use reference::enclosure::Start as Exact;
 
 use super::NAMES;
-use super::number::{Number, Pair};
 use console::cli::choice;
+use console::number::{Number, Pair};
 use emulator::boards::{BOARDS, Board};
 
 /// The place where the motion is computed: the firmware on an emulated board, or this program.
@@ -259,22 +259,5 @@ impl StartOptions {
             fractions: Some(fractions),
             degrees,
         })
-    }
-}
-
-/// Returns the option that sets the refused parameter of the pendulum or its display, or else
-/// `otherwise`.
-pub fn option_of(error: &Error, otherwise: &'static str) -> &'static str {
-    match error.parameter() {
-        _ if matches!(error, Error::Diverged { .. }) => otherwise,
-        Parameter::M1 | Parameter::M2 => "--masses",
-        Parameter::L1 | Parameter::L2 => "--lengths",
-        Parameter::G => "--gravity",
-        Parameter::A1 | Parameter::A2 => "--angles",
-        Parameter::W1 | Parameter::W2 | Parameter::P1 | Parameter::P2 => "--velocities",
-        Parameter::Tolerance => "--height",
-        Parameter::Duration => "--duration",
-        Parameter::Rate => "--rate",
-        _ => otherwise,
     }
 }

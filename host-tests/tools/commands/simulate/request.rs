@@ -4,9 +4,11 @@ use anyhow::{Context, anyhow, bail, ensure};
 use double_pendulum::{Error, Integrator, Method, Motion, Parameter};
 use firmware::job::Request;
 
+use super::SimulateOptions;
 use super::options::name;
 use super::tolerance::methods;
-use super::{Number, SimulateOptions, option_of};
+use console::cli::option_of;
+use console::number::Number;
 
 /// A checked request and the time between rows.
 #[derive(Debug)]

@@ -11,8 +11,9 @@ use firmware::job::{ON_BOARDS, Request};
 use reference::taylor;
 
 use super::request::{accepted, count, method, request};
-use super::{Number, Place, Plan, SimulateOptions};
+use super::{Place, Plan, SimulateOptions};
 use crate::commands::table::at_most;
+use console::number::Number;
 use console::progress::Progress;
 
 /// The longest run that is tried, in steps.

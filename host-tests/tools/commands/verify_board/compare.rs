@@ -12,8 +12,8 @@ use firmware::scenes::SceneName;
 use super::talk::Talk;
 use super::{Section, verdict};
 use crate::commands::count::{FULL_CYCLE, Target, affordable_cost};
-use crate::commands::demo::comparison::Comparison;
 use console::progress::Progress;
+use demo::comparison::Comparison;
 use emulator::boards::{BOARDS, Board};
 use emulator::toolchain;
 

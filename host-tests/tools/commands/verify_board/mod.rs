@@ -15,7 +15,6 @@ use firmware::job::CRC;
 use firmware::protocol::{self, Answer, Identity};
 use object::{Object, ObjectSymbol};
 
-use crate::commands::demo;
 use crate::commands::table::Table;
 use console::cli::{complain, say};
 use console::progress::Progress;

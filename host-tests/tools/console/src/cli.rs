@@ -8,6 +8,7 @@ use std::process::{ExitCode, Termination};
 
 use clap::Parser;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
+use double_pendulum::{Error, Parameter};
 
 /// The exit code of a request that cannot be served: wrong options, missing tools.
 pub const REFUSED: u8 = 2;
@@ -158,4 +159,21 @@ fn one_line(report: &str) -> String {
         .replace("invalid digit found in string", "not a whole number")
         .replace("invalid float literal", "not a number");
     line + &tip
+}
+
+/// Returns the option that sets the refused parameter of the pendulum or its display, or else
+/// `otherwise`.
+pub fn option_of(error: &Error, otherwise: &'static str) -> &'static str {
+    match error.parameter() {
+        _ if matches!(error, Error::Diverged { .. }) => otherwise,
+        Parameter::M1 | Parameter::M2 => "--masses",
+        Parameter::L1 | Parameter::L2 => "--lengths",
+        Parameter::G => "--gravity",
+        Parameter::A1 | Parameter::A2 => "--angles",
+        Parameter::W1 | Parameter::W2 | Parameter::P1 | Parameter::P2 => "--velocities",
+        Parameter::Tolerance => "--height",
+        Parameter::Duration => "--duration",
+        Parameter::Rate => "--rate",
+        _ => otherwise,
+    }
 }

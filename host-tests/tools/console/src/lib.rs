@@ -1,4 +1,4 @@
-//! The console interface of all commands: options, errors, progress.
+//! The console interface of all commands: options, numbers, errors, progress.
 
 #![forbid(unsafe_code)]
 #![deny(clippy::print_stdout, clippy::print_stderr)]
@@ -8,4 +8,5 @@
 )]
 
 pub mod cli;
+pub mod number;
 pub mod progress;

@@ -11,10 +11,10 @@ use firmware::motion::{Resources, Settings};
 use firmware::scenes::{AnyScene, SceneName};
 
 use super::motion::OwnMotion;
-use crate::commands::out_file::check_writable;
-use crate::commands::simulate::Number;
 use console::cli::{Refused, choice};
+use console::number::Number;
 use emulator::boards::{BOARDS, Board, every_board};
+use emulator::out_file::check_writable;
 
 /// Shows the double pendulum on a board's panel, live in the terminal, and compares each frame with
 /// the host's own. For a real board the picture is rebuilt from the data it sends.

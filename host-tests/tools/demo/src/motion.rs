@@ -8,8 +8,8 @@ use firmware::config::{GREATEST_ANGLE, Processor};
 use firmware::motion::{Resources, Settings};
 use firmware::scenes::{AnyScene, SceneName};
 
-use crate::commands::simulate::{Number, Pair, option_of};
-use console::cli::Refused;
+use console::cli::{Refused, option_of};
+use console::number::{Number, Pair};
 
 /// The pendulum and its start. A value that is not given is that of the scene.
 #[derive(Args, Clone, Debug)]

@@ -8,8 +8,8 @@ use std::path::{Path, PathBuf};
 use anyhow::anyhow;
 use tempfile::NamedTempFile;
 
+use crate::process::remove_on_interrupt;
 use console::cli::{Refused, unwritable};
-use emulator::process::remove_on_interrupt;
 
 /// A file that is being written.
 ///

@@ -1,7 +1,14 @@
 //! `cargo demo`: the double pendulum on a board's panel, live in the terminal or recorded without a
 //! terminal. The board is emulated, or connected to a serial port.
 
-pub(crate) mod comparison;
+#![forbid(unsafe_code)]
+#![deny(clippy::print_stdout, clippy::print_stderr)]
+#![allow(
+    missing_docs,
+    reason = "nobody builds on this package: what name and type say is not said again"
+)]
+
+pub mod comparison;
 mod help;
 mod live;
 mod motion;
@@ -10,6 +17,9 @@ mod options;
 mod panel;
 mod readings;
 mod session;
+#[cfg(test)]
+#[path = "../../oracle/snapshot.rs"]
+pub mod snapshot;
 mod view;
 
 pub use options::DemoOptions;
@@ -24,11 +34,11 @@ use options::MOST_SECONDS;
 use panel::{Recording, png};
 use session::{Session, Source};
 
-use crate::commands::out_file::OutFile;
 use console::cli::{Refused, complain, say};
 use console::progress::Progress;
 use emulator::boards::{Board, PICO};
 use emulator::link::Port;
+use emulator::out_file::OutFile;
 use emulator::pico::PicoMachine;
 use emulator::qemu::{Clock, Machine, Settings};
 use emulator::toolchain;
@@ -71,7 +81,7 @@ pub fn run(options: &DemoOptions) -> anyhow::Result<bool> {
     finish(options, session)
 }
 
-pub(crate) fn port(name: &str) -> Result<Port, Refused> {
+pub fn port(name: &str) -> Result<Port, Refused> {
     Port::open(name).map_err(|reason| Refused::because(format_args!("--port {reason}")))
 }
 

@@ -224,7 +224,7 @@ mod tests {
     use ratatui::backend::TestBackend;
 
     use super::*;
-    use crate::oracle::snapshot;
+    use crate::snapshot;
 
     /// Returns the readings after half a second of a scene, with the longest possible numbers.
     fn readings(scene: SceneName) -> Readings {
