@@ -7,7 +7,8 @@
 //! |---|---|
 //! | `tests` | the tests, grouped by the thing they test |
 //! | `tools/main.rs` | the program: runs the command that is named |
-//! | [`commands`] | the commands: demo, simulate, plan, prove, flips, count, report, figures, ... |
+//! | [`commands`] | the commands: simulate, plan, prove, flips, count, report, figures, ... |
+//! | [`demo`] | `cargo demo`: its own package, which is compiled without the other commands |
 //! | [`oracle`] | known answers, hard cases, tolerances |
 //! | [`emulator`] | the emulated boards: QEMU, toolchain and set-up, processes, budgets |
 //! | [`emulator::link`] | the serial link: bytes to messages, and a real port |

@@ -12,16 +12,18 @@ mod build;
 mod remap;
 mod tools;
 
+use std::panic::resume_unwind;
 use std::path::{Path, PathBuf, absolute};
 use std::process::exit;
 use std::sync::OnceLock;
-use std::{env, fmt};
+use std::{env, fmt, thread};
 
 use bring::turn;
 pub use bring::{Consent, QUICK};
 pub use tools::find;
 use tools::{CORE_PACKAGES, Emulator, FromSource, QEMU, QEMU_AARCH64, QEMU_RISCV};
 
+use crate::boards::Board;
 use console::cli::{REFUSED, Refused, complain};
 
 /// The compiler's targets, one for each kind of core.
@@ -59,17 +61,49 @@ pub fn ready() -> Result<Toolchain, Refused> {
 /// Returns the tools and provides the missing ones, with a report of each. Two set-ups at the same
 /// time take turns.
 pub fn set_up() -> Result<Toolchain, Refused> {
+    check_temporary_folder()?;
+    ready().or_else(|_| {
+        let _turn = turn()?;
+        both(true, &TARGETS, arm)
+    })
+}
+
+/// Returns the tools and the application of a board, and provides what is missing.
+///
+/// QEMU is fetched while the application is built, because the former waits for the network and
+/// the latter for the processor.
+pub fn set_up_and_build(board: &Board) -> anyhow::Result<(Toolchain, PathBuf)> {
+    check_temporary_folder()?;
+    if let Ok(toolchain) = ready() {
+        let elf = toolchain.build_for(board)?;
+        return Ok((toolchain, elf));
+    }
+
+    let _turn = turn()?;
+    let (core, elf, qemu) = thread::scope(|scope| {
+        let qemu = scope.spawn(|| arm(true));
+        let core = core(true, &TARGETS);
+        let elf = core.clone().map(|from_source| {
+            let compiler = Toolchain {
+                from_source,
+                qemu: PathBuf::new(),
+            };
+            compiler.build_for(board)
+        });
+        let qemu = qemu.join().unwrap_or_else(|panic| resume_unwind(panic));
+        (core, elf, qemu)
+    });
+    Ok((joined(core, qemu)?, elf??))
+}
+
+fn check_temporary_folder() -> Result<(), Refused> {
     let refused = |_| {
         Refused::because(format_args!(
             "TMPDIR={}: not a folder one can write to",
             env::temp_dir().display()
         ))
     };
-    tempfile::tempdir().map_err(refused)?;
-    ready().or_else(|_| {
-        let _turn = turn()?;
-        both(true, &TARGETS, arm)
-    })
+    tempfile::tempdir().map_err(refused).map(drop)
 }
 
 /// Returns the core library and the emulator for another target, and provides them if necessary.
@@ -93,14 +127,25 @@ fn both(
     targets: &[&str],
     emulator: fn(bool) -> Result<PathBuf, Refused>,
 ) -> Result<Toolchain, Refused> {
+    joined(core(installs, targets), emulator(installs))
+}
+
+/// Returns the compiler that builds the core library, or `None` if the library is ready-made.
+fn core(installs: bool, targets: &[&str]) -> Result<Option<FromSource>, Refused> {
     let packages = format!(
         "run rustup target add {}, or as root apt-get install {}",
         targets.join(" "),
         CORE_PACKAGES.join(" ")
     );
-    let core = tools::core(installs, targets)
-        .map_err(|why| missing(installs, "Rust's core library", &why, SETUP, &packages));
-    match (core, emulator(installs)) {
+    tools::core(installs, targets)
+        .map_err(|why| missing(installs, "Rust's core library", &why, SETUP, &packages))
+}
+
+fn joined(
+    core: Result<Option<FromSource>, Refused>,
+    emulator: Result<PathBuf, Refused>,
+) -> Result<Toolchain, Refused> {
+    match (core, emulator) {
         (Ok(from_source), Ok(qemu)) => Ok(Toolchain { from_source, qemu }),
         (Err(core), Err(qemu)) => Err(Refused::because(format_args!("{core}\n{qemu}"))),
         (Err(missing), _) | (_, Err(missing)) => Err(missing),

@@ -1,10 +1,11 @@
 //! The progress of a command: a spinner or a bar on a terminal, elsewhere a plain line from time to
 //! time.
 
+use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::{MultiProgress, ProgressBar, ProgressStyle};
 
 use super::cli::complain;
 
@@ -46,6 +47,9 @@ impl Progress {
     fn new(doing: &str, bar: ProgressBar, style: &str) -> Self {
         let style =
             ProgressStyle::with_template(style).unwrap_or_else(|_| ProgressStyle::default_bar());
+        // Concurrent pieces of work each have a line of their own.
+        static BARS: OnceLock<MultiProgress> = OnceLock::new();
+        let bar = BARS.get_or_init(MultiProgress::new).add(bar);
         Self {
             bar: bar.with_style(style).with_prefix(doing.to_owned()),
             reminders: AtomicU64::new(0),

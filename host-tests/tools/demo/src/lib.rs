@@ -86,17 +86,14 @@ pub fn port(name: &str) -> Result<Port, Refused> {
 }
 
 fn emulated(board: &'static Board, seconds: f64, is_live: bool) -> anyhow::Result<Source> {
-    let toolchain = toolchain::set_up()?;
+    let (toolchain, elf) = toolchain::set_up_and_build(board)?;
     let limit = Duration::from_secs_f64(LIMIT[0] + LIMIT[1] * seconds.min(MOST_SECONDS));
     if *board == PICO {
         let emulator = toolchain::set_up_pico()?;
         return Ok(Source::Pico(Box::new(PicoMachine::start(
-            &emulator,
-            &toolchain.build_for(board)?,
-            limit,
+            &emulator, &elf, limit,
         )?)));
     }
-    let elf = toolchain.build_for(board)?;
     let settings = Settings {
         qemu: &toolchain.qemu,
         board,
