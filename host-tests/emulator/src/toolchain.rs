@@ -20,6 +20,7 @@ use std::{env, fmt, thread};
 
 use bring::turn;
 pub use bring::{Consent, QUICK};
+pub use build::CORE_IMAGES;
 pub use tools::find;
 use tools::{CORE_PACKAGES, Emulator, FromSource, QEMU, QEMU_AARCH64, QEMU_RISCV};
 

@@ -51,6 +51,8 @@ fn emulated(Core(_, target, emulator, double): &Core) -> anyhow::Result<Command>
 
 fn computes_the_golden_bits(core: &Core, golden: &str) {
     let Core(name, target, _, double) = core;
+    let image = (*target, *double);
+    assert!(toolchain::CORE_IMAGES.contains(&image), "{image:?}");
     let is_ours = toolchain::TARGETS.contains(target) && double.is_none();
     let mut command = match emulated(core) {
         Err(missing) if is_ours => panic!("{}: {missing}", name),

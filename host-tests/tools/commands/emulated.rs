@@ -183,15 +183,14 @@ pub struct TestOptions {
 /// The time limits of all tests, including their compilation, on a slow, busy machine: without and
 /// with the long tests.
 const LIMITS: [Duration; 2] = [Duration::from_secs(3600), Duration::from_secs(12 * 3600)];
-/// The environment variable with the number of concurrent tests. If the user has not set it, it is
-/// twice the number of processors, because many tests wait for an emulator or a clock.
-const THREADS: &str = "RUST_TEST_THREADS";
+/// The environment variables with the numbers of concurrent tests, and of concurrent pieces of
+/// work within tests. If the user has not set one, it is twice the number of processors, because
+/// many tests wait for an emulator or a clock.
+const THREADS: [&str; 2] = ["RUST_TEST_THREADS", "RAYON_NUM_THREADS"];
 
 /// Runs the set-up, builds the firmware, then runs exactly `cargo test`, with its own output and
 /// exit code.
 pub fn verify(options: &TestOptions) -> anyhow::Result<ExitCode> {
-    let toolchain = toolchain::set_up()?;
-    toolchain::set_up_pico_with(consent(options.yes))?;
     let limit = LIMITS[usize::from(options.long)];
     let test = |arguments: &[&str]| {
         let mut command = Command::new("cargo");
@@ -200,8 +199,11 @@ pub fn verify(options: &TestOptions) -> anyhow::Result<ExitCode> {
             .args(arguments)
             .current_dir(toolchain::workspace())
             .stdin(Stdio::null());
-        if env::var_os(THREADS).is_none() {
-            command.env(THREADS, (2 * available_parallelism()?.get()).to_string());
+        let threads = 2 * available_parallelism()?.get();
+        for name in THREADS {
+            if env::var_os(name).is_none() {
+                command.env(name, threads.to_string());
+            }
         }
         process::spawn(&mut command, limit)
     };
@@ -211,10 +213,13 @@ pub fn verify(options: &TestOptions) -> anyhow::Result<ExitCode> {
         "note: all tests take some ten minutes"
     });
 
-    // Tests and firmware are compiled at the same time, because neither keeps all processors busy
-    // alone.
+    // The tests are compiled while the tools are fetched and the firmware is compiled, because none
+    // of the three keeps all processors busy alone.
     let mut compiling = test(&["--no-run", "--quiet"])?;
+    let toolchain = toolchain::set_up()?;
+    toolchain::set_up_pico_with(consent(options.yes))?;
     toolchain.build_ahead()?;
+    toolchain.build_cores_ahead()?;
     compiling.wait()?;
 
     let arguments: &[&str] = if options.long {

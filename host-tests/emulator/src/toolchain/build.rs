@@ -1,16 +1,16 @@
 //! Builds of the firmware. Both sources of the core library use the same flags.
 
-use std::env;
 use std::ffi::OsString;
 use std::path::PathBuf;
 use std::process::Command;
-use std::sync::Mutex;
+use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
+use std::{env, fs};
 
 use anyhow::{anyhow, ensure};
 
 use super::bring::run_shown;
-use super::{TARGETS, Toolchain, remap, target, workspace};
+use super::{TARGETS, Toolchain, remap, set_up_for, target, workspace};
 use crate::boards::{Board, PICO, every_board};
 
 /// The binaries that this process has built, each with its target. The list saves time: another
@@ -33,6 +33,23 @@ const OURS: [&str; 5] = [
     "CARGO_NET_",
     "CARGO_REGISTR",
     "RUSTUP_",
+];
+
+/// An image of the golden bits: its target and, if the image is for a processor that computes
+/// `f64` in hardware, the compiler's name of that processor.
+pub type CoreImage = (&'static str, Option<&'static str>);
+
+/// The images of the golden bits.
+pub const CORE_IMAGES: [CoreImage; 9] = [
+    ("thumbv6m-none-eabi", None),
+    ("thumbv7m-none-eabi", None),
+    ("thumbv7em-none-eabihf", None),
+    ("thumbv8m.main-none-eabihf", None),
+    ("riscv32imac-unknown-none-elf", None),
+    ("aarch64-unknown-none", None),
+    ("wasm32-unknown-unknown", None),
+    ("thumbv7em-none-eabihf", Some("cortex-m7")),
+    ("thumbv8m.main-none-eabihf", Some("cortex-m55")),
 ];
 
 impl Toolchain {
@@ -96,28 +113,52 @@ impl Toolchain {
     /// Builds the image of the golden bits for a target. If `double` names a processor, the image
     /// is built for that processor, which computes `f64` in hardware.
     pub fn build_cores(&self, target: &str, double: Option<&str>) -> anyhow::Result<PathBuf> {
-        let mut command = self.for_targets("build", &[target])?;
+        // Cargo gives both kinds of image the same name. Each is copied before the next build
+        // replaces it.
+        static TURN: Mutex<()> = Mutex::new(());
+        let _turn = TURN.lock().unwrap_or_else(PoisonError::into_inner);
+        self.build_core_images(&[target], double)?;
+        let folder = Self::folder().join(target).join("release");
+        let built = if target.starts_with("wasm") {
+            "cores.wasm"
+        } else {
+            "cores"
+        };
+        let image = folder.join(format!("{}-{built}", double.unwrap_or("any")));
+        fs::copy(folder.join(built), &image)?;
+        Ok(image)
+    }
 
-        // Both kinds of image have the same file name, so they need different folders.
-        let folder = double.map_or_else(Self::folder, |cpu| Self::folder().join(cpu));
-        command
-            .args(["--bin", "cores", "--features", "cores"])
-            .env("CARGO_TARGET_DIR", &folder);
+    /// Builds the image of the golden bits for several targets concurrently.
+    fn build_core_images(&self, targets: &[&str], double: Option<&str>) -> anyhow::Result<()> {
+        let mut command = self.for_targets("build", targets)?;
+        command.args(["--bin", "cores", "--features", "cores"]);
         if let Some(cpu) = double {
             // These flags replace those of the configuration, which are for a Cortex-M4F.
             command.args(["--features", "double-pendulum-kernel/double-fpu"]);
             command.env("RUSTFLAGS", format!("-Ctarget-cpu={cpu}"));
         }
-        self.finish(
-            command,
-            &format!("building cores for {}", double.unwrap_or(target)),
-        )?;
-        let file = if target.starts_with("wasm") {
-            "release/cores.wasm"
-        } else {
-            "release/cores"
+        let names = double.map_or_else(|| targets.join(", "), str::to_owned);
+        self.finish(command, &format!("building cores for {names}"))
+    }
+
+    /// Builds the images of the golden bits for all targets that this compiler has or can get.
+    pub fn build_cores_ahead(&self) -> anyhow::Result<()> {
+        let is_ready = |target: &str| {
+            set_up_for(target).is_ok_and(|other| other.from_source == self.from_source)
         };
-        Ok(folder.join(target).join(file))
+        let (double, any): (Vec<CoreImage>, Vec<CoreImage>) = CORE_IMAGES
+            .into_iter()
+            .filter(|(target, _)| is_ready(target))
+            .partition(|(_, double)| double.is_some());
+
+        let targets: Vec<_> = any.into_iter().map(|(target, _)| target).collect();
+        if !targets.is_empty() {
+            self.build_core_images(&targets, None)?;
+        }
+        double
+            .into_iter()
+            .try_for_each(|(target, double)| self.build_core_images(&[target], double))
     }
 
     /// Builds the binaries that run on every target, concurrently, and every board's application.

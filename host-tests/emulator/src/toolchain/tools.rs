@@ -37,6 +37,8 @@ pub(super) struct FromSource {
 /// An emulator of the QEMU project.
 pub(super) struct Emulator {
     pub program: &'static str,
+    /// All programs of the package that are used.
+    programs: &'static [&'static str],
     pub package: &'static str,
     /// The folder in the target folder into which the set-up unpacks it for this project.
     folder: &'static str,
@@ -48,18 +50,22 @@ const LEAST_QEMU: u32 = 6;
 
 pub(super) const QEMU: Emulator = Emulator {
     program: "qemu-system-arm",
+    programs: &["qemu-system-arm"],
     package: "qemu-system-arm",
     folder: "qemu",
 };
+const USER_PROGRAMS: [&str; 2] = ["qemu-riscv32", "qemu-aarch64"];
 pub(super) const QEMU_RISCV: Emulator = Emulator {
     program: "qemu-riscv32",
+    programs: &USER_PROGRAMS,
     package: "qemu-user",
     folder: "qemu-user",
 };
 pub(super) const QEMU_AARCH64: Emulator = Emulator {
     program: "qemu-aarch64",
+    programs: &USER_PROGRAMS,
     package: "qemu-user",
-    folder: "qemu-user-aarch64",
+    folder: "qemu-user",
 };
 
 /// Finds or provides the core library for these targets. It is either the ready-made one of rustup
@@ -215,6 +221,7 @@ fn number(version: &str, part: usize) -> Option<u32> {
 pub(super) fn qemu(installs: bool, emulator: &Emulator) -> Result<PathBuf, String> {
     let Emulator {
         program,
+        programs,
         package,
         folder,
     } = *emulator;
@@ -226,7 +233,7 @@ pub(super) fn qemu(installs: bool, emulator: &Emulator) -> Result<PathBuf, Strin
         let path = find(program).ok_or_else(|| format!("there is no {program} on PATH"))?;
         judged_once(&path).map(|()| path)
     };
-    let way = || unpack(&folder, &[program], &[package], INSTALL);
+    let way = || unpack(&folder, programs, &[package], INSTALL);
     let ways: [Way; 1] = [(unpacked(&folder, &[package]), &way)];
     bring(installs, look, &ways)
 }
