@@ -79,6 +79,7 @@
 
 /// Defines an enum of named choices. Each row gives a variant and its name for people. The first
 /// variant is the default.
+#[cfg(not(feature = "cores"))]
 macro_rules! choice {
     ($(#[$doc:meta])* $name:ident { $($(#[$row_doc:meta])* $row:ident = $text:literal;)* }) => {
         $(#[$doc])*
@@ -102,16 +103,24 @@ macro_rules! choice {
     };
 }
 
+// The image for other cores needs the jobs alone, and is compiled for many of them.
+#[cfg(not(feature = "cores"))]
 pub mod app;
 #[cfg(all(target_arch = "arm", target_os = "none", not(feature = "cores")))]
 #[allow(unsafe_code, reason = "here the hardware is reached")]
 pub mod board;
 pub mod config;
+#[cfg(not(feature = "cores"))]
 pub mod display;
+#[cfg(not(feature = "cores"))]
 pub mod fault;
+#[cfg(not(feature = "cores"))]
 pub mod graphics;
 pub mod job;
+#[cfg(not(feature = "cores"))]
 pub mod motion;
 pub mod prices;
+#[cfg(not(feature = "cores"))]
 pub mod protocol;
+#[cfg(not(feature = "cores"))]
 pub mod scenes;

@@ -136,7 +136,13 @@ impl Toolchain {
         if let Some(cpu) = double {
             // These flags replace those of the configuration, which are for a Cortex-M4F.
             command.args(["--features", "double-pendulum-kernel/double-fpu"]);
-            command.env("RUSTFLAGS", format!("-Ctarget-cpu={cpu}"));
+            command.env("RUSTFLAGS", format!("-Ctarget-cpu={cpu} -Cdebuginfo=0"));
+        }
+        for target in targets.iter().filter(|target| !TARGETS.contains(target)) {
+            // Nobody debugs these images. Those of the boards' targets share the crates of the
+            // boards' images.
+            let flags = format!("target.'{target}'.rustflags=['-Cdebuginfo=0']");
+            command.args(["--config", &flags]);
         }
         let names = double.map_or_else(|| targets.join(", "), str::to_owned);
         self.finish(command, &format!("building cores for {names}"))
@@ -207,8 +213,8 @@ impl Toolchain {
             .env("CARGO_TARGET_DIR", Self::folder());
         for target in targets {
             // These flags are added to those of the configuration. A TOML string has the same
-            // escapes as a Rust string.
-            let flags = format!("target.{target}.rustflags={flags:?}");
+            // escapes as a Rust string. The name of a target may contain a dot, so it is quoted.
+            let flags = format!("target.'{target}'.rustflags={flags:?}");
             command.args(["--target", target, "--config", &flags]);
         }
         Ok(command)
