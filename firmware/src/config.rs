@@ -2,8 +2,6 @@
 
 use double_pendulum::plan::{Budget, Costs, Problem};
 
-use crate::prices;
-
 // ---- Time ---------------------------------------------------------------------------------------
 
 /// The number of ticks per second. In a tick the pendulum moves by one frame's time.
@@ -55,7 +53,7 @@ pub const PLANNING_PIECE: f32 = 20_000.0;
 pub struct Processor {
     /// The index in [`PROCESSORS`].
     pub code: u8,
-    /// The price list, estimated by `cargo count`.
+    /// The price list.
     pub costs: Costs,
     /// The budget for computing a frame, cycles. The rest of the time is for drawing and sending
     /// it.
@@ -92,7 +90,7 @@ impl Processor {
 /// A Cortex-M3, which has no floating-point unit. At 50 MHz a tick has 833,000 cycles.
 pub const CORTEX_M3: Processor = Processor {
     code: 0,
-    costs: prices::CORTEX_M3,
+    costs: Costs::CORTEX_M3,
     frame: 200_000.0,
     look_ahead: 380_000.0,
     flips: FIXED,
@@ -104,7 +102,7 @@ pub const CORTEX_M3: Processor = Processor {
 /// time for the Pico's port.
 pub const CORTEX_M0PLUS: Processor = Processor {
     code: 3,
-    costs: prices::CORTEX_M0PLUS,
+    costs: Costs::CORTEX_M0PLUS,
     frame: 300_000.0,
     look_ahead: 640_000.0,
     flips: FlipsPace {
@@ -119,7 +117,7 @@ pub const CORTEX_M0PLUS: Processor = Processor {
 /// A plain step costs less than the two sincos of the closed form.
 pub const CORTEX_M4F: Processor = Processor {
     code: 1,
-    costs: prices::CORTEX_M4F,
+    costs: Costs::CORTEX_M4F,
     frame: 150_000.0,
     look_ahead: 190_000.0,
     flips: FLOAT,

@@ -15,7 +15,6 @@
 //! | [`graphics`] | canvas, brush, fade layer, plots, text and its font, frame buffers |
 //! | [`fault`] | the text of a crash report |
 //! | [`config`] | all tunable numbers |
-//! | [`prices`] | the cost of a step on each core, as counted |
 //!
 //! Commands come from the buttons and from the serial link. The player executes them. Every tick
 //! advances the scene; then the scene is drawn on the canvas, and the frame is sent to the panel
@@ -119,7 +118,6 @@ pub mod graphics;
 pub mod job;
 #[cfg(not(feature = "cores"))]
 pub mod motion;
-pub mod prices;
 #[cfg(not(feature = "cores"))]
 pub mod protocol;
 #[cfg(not(feature = "cores"))]

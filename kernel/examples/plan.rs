@@ -15,15 +15,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         duration: 30.0,
         rate: 60,
     };
-    // A Cortex-M4F at 168 MHz.
-    let costs = Costs {
-        closed_form: 1680.0,
-        direction_plain: 160.0,
-        direction: 205.0,
-        fixed32: 622.0,
-        fixed64: 13.9e3,
-        preparation: 154e3,
-    };
+    // A Cortex-M4F at 168 MHz: the budgets are cycles, as the costs are.
+    let costs = Costs::CORTEX_M4F;
     let budget = Budget {
         frame: 400e3,
         planning: 1e9,

@@ -23,7 +23,7 @@ const ROOMS: [(&str, &[&str]); 4] = [
         "firmware/src",
         &[
             "board", "app", "protocol", "scenes", "job", "motion", "display", "graphics", "fault",
-            "config", "prices",
+            "config",
         ],
     ),
     (

@@ -41,7 +41,8 @@
 //! that both budgets can pay for.
 //!
 //! Planning needs no heap. It is divided into pieces that a busy caller can afford ([`Search`]).
-//! The caller provides the cost of a step: [`Costs`] is a price list in any unit.
+//! The caller provides the cost of a step: [`Costs`] is a price list in any unit. The kernel has the
+//! lists of three processors, in cycles.
 //!
 //! # Example
 //!
@@ -50,14 +51,7 @@
 //! use double_pendulum::{Method, Motion, Parameters};
 //!
 //! // The costs are cycles of a processor without a floating-point unit.
-//! let costs = Costs {
-//!     closed_form: 8.2e3,
-//!     direction_plain: 13e3,
-//!     direction: 14.8e3,
-//!     fixed32: 668.0,
-//!     fixed64: 21.5e3,
-//!     preparation: 155e3,
-//! };
+//! let costs = Costs::CORTEX_M3;
 //! let budget = Budget { frame: 400e3, planning: 3e9 };
 //!
 //! // The display has 32 pixels per metre. The tolerance is half a pixel.
@@ -85,6 +79,7 @@
 mod candidate;
 mod cost;
 mod error;
+mod prices;
 mod problem;
 mod run;
 mod search;

@@ -162,22 +162,27 @@ fn in_application(board: &'static Board, toolchain: &Toolchain) -> Result<(f32, 
     Ok((step, prepared))
 }
 
-/// Writes the price lists into the firmware's source and returns the path of the file.
+/// Writes the price lists into the kernel's source and returns the path of the file.
 pub fn write_prices(prices: &[(&Board, Costs)]) -> Result<PathBuf> {
-    let path = workspace().join("firmware/src/prices.rs");
+    let path = workspace().join("kernel/src/plan/prices.rs");
     let old = std::fs::read_to_string(&path)?;
-    let lists: String = prices
+    let lists: Vec<String> = prices
         .iter()
         .map(|(board, costs)| list(board, costs))
         .collect();
+    let lists = format!("impl Costs {{\n{}}}\n", lists.join("\n"));
     let new = between(&old, MARKS, &lists)
         .with_context(|| format!("{} has no place for them", path.display()))?;
     std::fs::write(&path, new)?;
     Ok(path)
 }
 
+/// Returns the constant with the price list of a board's core, as rustfmt formats it.
 fn list(board: &Board, costs: &Costs) -> String {
     let title = board.core().name();
     let name = title.to_uppercase().replace('-', "_").replace('+', "PLUS");
-    format!("/// A {title}.\npub const {name}: Costs = {costs:#.1?};\n")
+    let value = format!("{costs:#.1?}").replace('\n', "\n    ");
+    format!(
+        "    /// The counted price list of a {title}, in cycles.\n    pub const {name}: Costs = {value};\n"
+    )
 }
