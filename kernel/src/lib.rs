@@ -145,7 +145,7 @@ pub use error::{Error, Parameter};
 pub use methods::extrapolation::Extrapolation;
 pub use methods::{
     ClosedFormF32, ClosedFormF64, DirectionF32, DirectionF32Plain, ExtrapolationF64, Fixed32,
-    Fixed64, Form, HamiltonF32, HamiltonF64, Oscillation, Run, SmallOscillations, rk4,
+    Fixed64, Form, FormVisitor, HamiltonF32, HamiltonF64, Oscillation, Run, SmallOscillations, rk4,
 };
 pub use numbers::Real;
 pub use pendulum::{Direction, Motion, Parameters, Pendulum, State, Vector};
@@ -155,7 +155,9 @@ pub use table::{Equations, Integrator, Method, Numbers};
 /// Parts of the methods, for tools and tests. They may change at any time.
 #[doc(hidden)]
 pub mod parts {
-    pub use crate::methods::{Canonical, Derivatives, DirectionF64, Rk4Direction, Turns};
+    pub use crate::methods::{
+        Canonical, Derivatives, DirectionF64, DrawnMotion, Rk4Direction, Turns,
+    };
 }
 
 /// The examples of the README, as tests.

@@ -1,7 +1,8 @@
 //! The table of methods: one row of plain data per method.
 //!
 //! To add a method, add a variant to [`Method`], its row and its place in [`Method::ALL`]. The
-//! compiler then asks for the type that computes it.
+//! compiler then asks for the type that computes it. For a method that scenes are drawn by, add a
+//! variant to [`DrawnMethod`], too. The compiler then asks for a price and a motion.
 
 use core::fmt;
 
@@ -133,9 +134,24 @@ pub enum Method {
     Rk4F32Micromath,
     /// `textbook-f32`
     TextbookF32,
-    /// `rk4-f64-lagrange`, which the unit tests add.
+    /// `rk4-f32-lagrange`, which the unit tests add.
     #[cfg(test)]
-    Rk4F64Lagrange,
+    Rk4F32Lagrange,
+}
+
+/// A method that scenes are drawn by.
+///
+/// A price list and a motion in progress match on it without a default, so that the compiler asks
+/// for both.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum DrawnMethod {
+    Rk4F32Direction,
+    Rk4F32DirectionPlain,
+    Rk4Fixed32,
+    Extrapolation10Fixed64,
+    ClosedFormF32,
+    #[cfg(test)]
+    Rk4F32Lagrange,
 }
 
 /// The properties of a method.
@@ -146,6 +162,8 @@ struct Row {
     integrator: Integrator,
     /// The order of its steps; 0 for the closed form.
     order: u32,
+    /// `None` if no scene is drawn by it.
+    drawn: Option<DrawnMethod>,
 }
 
 impl Method {
@@ -167,7 +185,7 @@ impl Method {
         Method::Rk4F32Micromath,
         Method::TextbookF32,
         #[cfg(test)]
-        Method::Rk4F64Lagrange,
+        Method::Rk4F32Lagrange,
     ];
 
     /// The methods that scenes are drawn by, from which a [plan](crate::plan) chooses.
@@ -177,6 +195,8 @@ impl Method {
         Method::Rk4Fixed32,
         Method::Extrapolation10Fixed64,
         Method::ClosedFormF32,
+        #[cfg(test)]
+        Method::Rk4F32Lagrange,
     ];
 
     const fn row(self) -> Row {
@@ -187,6 +207,7 @@ impl Method {
                 numbers: Numbers::F64,
                 integrator: Integrator::Rk4,
                 order: 4,
+                drawn: None,
             },
             Method::Rk4F32 => Row {
                 name: "rk4-f32",
@@ -194,6 +215,7 @@ impl Method {
                 numbers: Numbers::F32,
                 integrator: Integrator::Rk4,
                 order: 4,
+                drawn: None,
             },
             Method::Rk4F32Direction => Row {
                 name: "rk4-f32-direction",
@@ -201,6 +223,7 @@ impl Method {
                 numbers: Numbers::CompensatedF32,
                 integrator: Integrator::Rk4,
                 order: 4,
+                drawn: Some(DrawnMethod::Rk4F32Direction),
             },
             Method::Rk4F32DirectionPlain => Row {
                 name: "rk4-f32-direction-plain",
@@ -208,6 +231,7 @@ impl Method {
                 numbers: Numbers::F32,
                 integrator: Integrator::Rk4,
                 order: 4,
+                drawn: Some(DrawnMethod::Rk4F32DirectionPlain),
             },
             Method::Rk4Fixed32 => Row {
                 name: "rk4-fixed32",
@@ -215,6 +239,7 @@ impl Method {
                 numbers: Numbers::Fixed32,
                 integrator: Integrator::Rk4,
                 order: 4,
+                drawn: Some(DrawnMethod::Rk4Fixed32),
             },
             Method::Extrapolation8Fixed64 => Row {
                 name: "extrapolation8-fixed64",
@@ -222,6 +247,7 @@ impl Method {
                 numbers: Numbers::Fixed64,
                 integrator: Integrator::Extrapolation,
                 order: 8,
+                drawn: None,
             },
             Method::Extrapolation10Fixed64 => Row {
                 name: "extrapolation10-fixed64",
@@ -229,6 +255,7 @@ impl Method {
                 numbers: Numbers::Fixed64,
                 integrator: Integrator::Extrapolation,
                 order: 10,
+                drawn: Some(DrawnMethod::Extrapolation10Fixed64),
             },
             Method::Extrapolation12Fixed64 => Row {
                 name: "extrapolation12-fixed64",
@@ -236,6 +263,7 @@ impl Method {
                 numbers: Numbers::Fixed64,
                 integrator: Integrator::Extrapolation,
                 order: 12,
+                drawn: None,
             },
             Method::Extrapolation16Fixed64 => Row {
                 name: "extrapolation16-fixed64",
@@ -243,6 +271,7 @@ impl Method {
                 numbers: Numbers::Fixed64,
                 integrator: Integrator::Extrapolation,
                 order: 16,
+                drawn: None,
             },
             Method::Extrapolation12F64 => Row {
                 name: "extrapolation12-f64",
@@ -250,6 +279,7 @@ impl Method {
                 numbers: Numbers::CompensatedF64,
                 integrator: Integrator::Extrapolation,
                 order: 12,
+                drawn: None,
             },
             Method::Extrapolation16F64 => Row {
                 name: "extrapolation16-f64",
@@ -257,6 +287,7 @@ impl Method {
                 numbers: Numbers::CompensatedF64,
                 integrator: Integrator::Extrapolation,
                 order: 16,
+                drawn: None,
             },
             Method::ClosedFormF64 => Row {
                 name: "closed-form-f64",
@@ -264,6 +295,7 @@ impl Method {
                 numbers: Numbers::F64,
                 integrator: Integrator::ClosedForm,
                 order: 0,
+                drawn: None,
             },
             Method::ClosedFormF32 => Row {
                 name: "closed-form-f32",
@@ -271,6 +303,7 @@ impl Method {
                 numbers: Numbers::F32,
                 integrator: Integrator::ClosedForm,
                 order: 0,
+                drawn: Some(DrawnMethod::ClosedFormF32),
             },
             Method::Rk4F32Micromath => Row {
                 name: "rk4-f32-micromath",
@@ -278,6 +311,7 @@ impl Method {
                 numbers: Numbers::F32,
                 integrator: Integrator::Rk4,
                 order: 4,
+                drawn: None,
             },
             Method::TextbookF32 => Row {
                 name: "textbook-f32",
@@ -285,14 +319,16 @@ impl Method {
                 numbers: Numbers::F32,
                 integrator: Integrator::Rk4,
                 order: 4,
+                drawn: None,
             },
             #[cfg(test)]
-            Method::Rk4F64Lagrange => Row {
-                name: "rk4-f64-lagrange",
+            Method::Rk4F32Lagrange => Row {
+                name: "rk4-f32-lagrange",
                 equations: Equations::Hamilton,
-                numbers: Numbers::F64,
+                numbers: Numbers::F32,
                 integrator: Integrator::Rk4,
                 order: 4,
+                drawn: Some(DrawnMethod::Rk4F32Lagrange),
             },
         }
     }
@@ -336,6 +372,11 @@ impl Method {
         self.row().order
     }
 
+    /// Returns the method as one that scenes are drawn by; `None` if no scene is.
+    pub(crate) const fn drawn(self) -> Option<DrawnMethod> {
+        self.row().drawn
+    }
+
     /// Returns true if the numbers are those of an `f32`.
     #[must_use]
     pub const fn is_single(self) -> bool {
@@ -355,14 +396,29 @@ impl fmt::Display for Method {
     }
 }
 
-// The order of `Method::ALL` is that of the variants.
+// The order of `Method::ALL` is that of the variants, and the order of `Method::DRAWN` is that of the
+// variants of `DrawnMethod`. Each row of a drawn method has the variant of its own.
 const _: () = {
     let mut i = 0;
+    let mut drawn = 0;
     while i < Method::ALL.len() {
-        assert!(
-            Method::ALL[i] as usize == i,
-            "a method is missing in Method::ALL"
-        );
+        let method = Method::ALL[i];
+        assert!(method as usize == i, "a method is missing in Method::ALL");
+        if let Some(variant) = method.drawn() {
+            assert!(
+                drawn < Method::DRAWN.len() && Method::DRAWN[drawn] as usize == i,
+                "a drawn method is missing in Method::DRAWN"
+            );
+            assert!(
+                variant as usize == drawn,
+                "a row has the DrawnMethod of another method"
+            );
+            drawn += 1;
+        }
         i += 1;
     }
+    assert!(
+        drawn == Method::DRAWN.len(),
+        "Method::DRAWN has a method whose row is not drawn"
+    );
 };

@@ -5,7 +5,7 @@ use core::fmt::{self, Write};
 use double_pendulum::Method;
 use double_pendulum::golden::{HEADER, Line, MOTIONS};
 
-use super::table::golden_bits;
+use super::table::{GoldenBits, visit};
 
 /// Writes the contents of the kernel's file `golden/bits.csv`, computed on this machine: a heading,
 /// and a line for each method and motion.
@@ -15,7 +15,7 @@ pub fn write_golden(output: &mut impl Write) -> fmt::Result {
     writeln!(output, "{HEADER}")?;
     for &method in Method::ALL {
         for motion in &MOTIONS {
-            match golden_bits(method, motion) {
+            match visit(method, GoldenBits(motion)) {
                 Ok(bits) => writeln!(output, "{}", Line(method, motion, bits))?,
                 Err(error) => writeln!(output, "{method},{},{error}", motion.name)?,
             }

@@ -28,7 +28,7 @@ use crate::config::GRAVITY;
 pub use answer::Job;
 pub use golden::write_golden;
 pub use run::Run;
-pub use table::{AnyRun, ON_BOARDS, OnBoards};
+pub use table::{ON_BOARDS, OnBoards, visit};
 
 /// The reflected CRC-32 of zip and Ethernet.
 pub const CRC: Crc<u32, Table<1>> = Crc::<u32, Table<1>>::new(&CRC_32_ISO_HDLC);

@@ -1,5 +1,6 @@
 //! The interface of a row of the table: a motion that can be started, advanced and read.
 
+use double_pendulum::parts::DrawnMotion;
 use double_pendulum::{Error, Form, Integrator, Motion, Parameters, Pendulum, Real, State};
 
 use super::Request;
@@ -24,17 +25,29 @@ pub trait Run: Copy {
     fn bits(&self, feed: impl FnMut(u64));
 }
 
-/// Returns the motion of a request at its start. Returns the kernel's error if it refuses the
-/// request.
+/// Returns the motion of a request at its start, by the method that the type `F` computes. Returns
+/// the kernel's error if it refuses the request.
 #[inline(never)]
 pub(super) fn start<F: Form>(request: &Request) -> Result<F, Error> {
+    let (parameters, state) = rounded(request)?;
+    Form::new(&parameters, &state, request.dt)
+}
+
+/// Returns the same by a method that scenes are drawn by.
+#[inline(never)]
+pub(super) fn start_drawn(request: &Request) -> Result<DrawnMotion, Error> {
+    let (parameters, state) = rounded(request)?;
+    DrawnMotion::new(request.method, &parameters, &state, request.dt)
+}
+
+/// Returns the pendulum's parameters and its initial state, rounded to the numbers of the method.
+fn rounded(request: &Request) -> Result<(Parameters<f64>, State<f64>), Error> {
     let checked = if request.method.is_single() {
         checked::<f32>
     } else {
         checked::<f64>
     };
-    let (parameters, state) = checked(request)?;
-    Form::new(&parameters, &state, request.dt)
+    checked(request)
 }
 
 /// Every method of the kernel that is a [`Form`].

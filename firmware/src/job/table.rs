@@ -1,168 +1,195 @@
-//! The table of the methods, and of the type that runs each method.
-//!
-//! The application of every board links the methods of the first block, to compute them on request.
-//! The methods of the second block are computed on the host, and counted on the chips by the
-//! `measure` program. They take no flash of an application.
+//! The methods of a job: the type of each, and those that boards have.
 
 use double_pendulum::golden::{Bits, Golden};
-use double_pendulum::parts::Canonical;
+use double_pendulum::parts::{Canonical, DrawnMotion};
 use double_pendulum::{
-    ClosedFormF32, ClosedFormF64, Direction, DirectionF32, DirectionF32Plain, Error,
-    ExtrapolationF64, Fixed32, Fixed64, HamiltonF32, HamiltonF64, Method, Pendulum, Real, State,
+    ClosedFormF64, Error, Fixed64, Form, FormVisitor, HamiltonF32, HamiltonF64, Method, State,
 };
 
 use super::comparison::{Micromath, Textbook};
-use super::run::start;
+use super::run::{start, start_drawn};
 use super::{Reading, Request, Run, answer, crc};
 
-macro_rules! table {
-    (
-        on_boards { $($method:ident: $form:ty;)* }
-        elsewhere { $($other:ident: $other_form:ty;)* }
-    ) => {
-        /// The methods that every board's application links, the default first.
-        pub const ON_BOARDS: &[Method] = &[$(Method::$method),*];
-
-        /// A motion in progress, by one of the methods that every board links.
-        #[derive(Clone, Copy, Debug)]
-        pub enum OnBoards {
-            $(#[doc = concat!("[`Method::", stringify!($method), "`]")] $method($form),)*
-        }
-
-        impl OnBoards {
-            /// Returns the motion of a request at its start, or the kernel's error. Returns `None`
-            /// if boards do not have the method.
-            #[inline(never)] // Inlined, the compiler would move this large value word by word.
-            pub fn start(request: &Request) -> Option<Result<Self, Error>> {
-                Some(match request.method {
-                    $(Method::$method => start::<$form>(request).map(Self::$method),)*
-                    _ => return None,
-                })
-            }
-        }
-
-        impl Run for OnBoards {
-            // Not inlined, because a board may have this function twice, in flash and in RAM.
-            #[inline(never)]
-            fn advance(&mut self, steps: u32) {
-                match self { $(Self::$method(run) => Run::advance(run, steps),)* }
-            }
-
-            fn state(&self) -> State<f64> {
-                match self { $(Self::$method(run) => Run::state(run),)* }
-            }
-
-            fn sides(&self) -> Option<[[i32; 2]; 2]> {
-                match self { $(Self::$method(run) => Run::sides(run),)* }
-            }
-
-            fn bits(&self, feed: impl FnMut(u64)) {
-                match self { $(Self::$method(run) => Run::bits(run, feed),)* }
-            }
-        }
-
-        /// A [`Run`](double_pendulum::Run) whose method is chosen at run time.
-        #[derive(Clone, Copy, Debug, PartialEq)]
-        pub enum AnyRun {
-            $($method(double_pendulum::Run<$form>),)*
-            $($other(double_pendulum::Run<$other_form>),)*
-        }
-
-        /// Evaluates `$body`, where `$run` is the run of the method in `$any`.
-        macro_rules! any {
-            ($any:expr, $run:ident => $body:expr) => {
-                match $any {
-                    $(AnyRun::$method($run) => $body,)*
-                    $(AnyRun::$other($run) => $body,)*
-                }
-            };
-        }
-
-        impl AnyRun {
-            pub fn new(
-                method: Method,
-                pendulum: &Pendulum<f64>,
-                start: &State<f64>,
-                dt: f64,
-            ) -> Result<Self, Error> {
-                Ok(match method {
-                    $(Method::$method => Self::$method(pendulum.run(start, dt)?),)*
-                    $(Method::$other => Self::$other(pendulum.run(start, dt)?),)*
-                })
-            }
-
-            pub fn advance(&mut self, steps: u32) -> Result<(), Error> {
-                any!(self, run => run.advance(steps))
-            }
-
-            pub fn state(&self) -> State<f64> {
-                any!(self, run => run.state())
-            }
-
-            pub fn directions(&self) -> [Direction<f64>; 2] {
-                any!(self, run => run.directions().map(|direction| direction.map(Real::to_f64)))
-            }
-
-            pub fn angles(&self) -> [f64; 2] {
-                any!(self, run => run.angles().map(Real::to_f64))
-            }
-
-            pub fn energy(&self) -> f64 {
-                any!(self, run => run.energy().to_f64())
-            }
-        }
-
-        /// Returns the bits of a motion of the kernel's golden file by a method.
-        pub(super) fn golden_bits(method: Method, motion: &Golden) -> Result<Bits, Error> {
-            match method {
-                $(Method::$method => motion.bits::<$form>(),)*
-                $(Method::$other => motion.bits::<$other_form>(),)*
-            }
-        }
-
-        impl Request {
-            /// Calls `each` with every reading, the initial one first, until it returns an error.
-            pub fn readings<E: From<Error>>(
-                &self,
-                each: impl FnMut(&Reading) -> Result<(), E>,
-            ) -> Result<(), E> {
-                match self.method {
-                    $(Method::$method => answer::readings(start::<$form>(self)?, self, each),)*
-                    $(Method::$other => answer::readings(start::<$other_form>(self)?, self, each),)*
-                }
-            }
-
-            /// Returns the CRC-32 of all numbers that the method carries, at every sample except
-            /// the initial one, and of the last state. If those of two runs are equal, the runs are
-            /// bit-identical.
-            pub fn crc(&self) -> Result<u32, Error> {
-                Ok(match self.method {
-                    $(Method::$method => crc(start::<$form>(self)?, self),)*
-                    $(Method::$other => crc(start::<$other_form>(self)?, self),)*
-                })
-            }
-        }
-    };
+/// Calls `visitor` with the type that computes `method`: a type of the kernel, or one that the
+/// kernel is compared with.
+///
+/// This links every method. Hosts and the program `measure` use it; the application of a board does
+/// not.
+pub fn visit<V, T, E>(method: Method, visitor: V) -> Result<T, E>
+where
+    V: FormVisitor<Output = Result<T, E>>,
+    E: From<Error>,
+{
+    match method {
+        Method::Rk4F32Micromath => visitor.visit::<Canonical<f32, Micromath>>(),
+        Method::TextbookF32 => visitor.visit::<Canonical<f32, Textbook>>(),
+        method => method
+            .visit(visitor)
+            .unwrap_or_else(|| Err(Error::NotDrawn { method }.into())),
+    }
 }
 
-table! {
-    on_boards {
-        Rk4F64: HamiltonF64;
-        Rk4F32: HamiltonF32;
-        Rk4F32Direction: DirectionF32;
-        Rk4F32DirectionPlain: DirectionF32Plain;
-        Rk4Fixed32: Fixed32;
-        Extrapolation8Fixed64: Fixed64<8>;
-        Extrapolation10Fixed64: Fixed64<10>;
-        Extrapolation12Fixed64: Fixed64<12>;
-        Extrapolation16Fixed64: Fixed64<16>;
-        ClosedFormF64: ClosedFormF64;
-        ClosedFormF32: ClosedFormF32;
+/// The methods that every board's application links, the default first.
+pub const ON_BOARDS: &[Method] = &[
+    Method::Rk4F64,
+    Method::Rk4F32,
+    Method::Rk4F32Direction,
+    Method::Rk4F32DirectionPlain,
+    Method::Rk4Fixed32,
+    Method::Extrapolation8Fixed64,
+    Method::Extrapolation10Fixed64,
+    Method::Extrapolation12Fixed64,
+    Method::Extrapolation16Fixed64,
+    Method::ClosedFormF64,
+    Method::ClosedFormF32,
+];
+
+/// A motion in progress, by a method of [`ON_BOARDS`].
+#[derive(Clone, Copy, Debug)]
+pub enum OnBoards {
+    /// The methods that scenes are drawn by.
+    Drawn(DrawnMotion),
+    /// [`Method::Rk4F64`].
+    Rk4F64(HamiltonF64),
+    /// [`Method::Rk4F32`].
+    Rk4F32(HamiltonF32),
+    /// [`Method::Extrapolation8Fixed64`].
+    Extrapolation8Fixed64(Fixed64<8>),
+    /// [`Method::Extrapolation12Fixed64`].
+    Extrapolation12Fixed64(Fixed64<12>),
+    /// [`Method::Extrapolation16Fixed64`].
+    Extrapolation16Fixed64(Fixed64<16>),
+    /// [`Method::ClosedFormF64`].
+    ClosedFormF64(ClosedFormF64),
+}
+
+impl OnBoards {
+    /// Returns the motion of a request at its start, or the kernel's error. Returns `None` if boards
+    /// do not have the method.
+    #[inline(never)] // Inlined, the compiler would move this large value word by word.
+    pub fn start(request: &Request) -> Option<Result<Self, Error>> {
+        Some(match request.method {
+            Method::Rk4F32Direction
+            | Method::Rk4F32DirectionPlain
+            | Method::Rk4Fixed32
+            | Method::Extrapolation10Fixed64
+            | Method::ClosedFormF32 => start_drawn(request).map(Self::Drawn),
+            Method::Rk4F64 => start(request).map(Self::Rk4F64),
+            Method::Rk4F32 => start(request).map(Self::Rk4F32),
+            Method::Extrapolation8Fixed64 => start(request).map(Self::Extrapolation8Fixed64),
+            Method::Extrapolation12Fixed64 => start(request).map(Self::Extrapolation12Fixed64),
+            Method::Extrapolation16Fixed64 => start(request).map(Self::Extrapolation16Fixed64),
+            Method::ClosedFormF64 => start(request).map(Self::ClosedFormF64),
+            // Without these an application is smaller. `f64` in software is slow.
+            Method::Extrapolation12F64
+            | Method::Extrapolation16F64
+            | Method::Rk4F32Micromath
+            | Method::TextbookF32 => return None,
+        })
     }
-    elsewhere {
-        Extrapolation12F64: ExtrapolationF64<12>;
-        Extrapolation16F64: ExtrapolationF64<16>;
-        Rk4F32Micromath: Canonical<f32, Micromath>;
-        TextbookF32: Canonical<f32, Textbook>;
+}
+
+impl Run for OnBoards {
+    // Not inlined, because a board may have this function twice, in flash and in RAM.
+    #[inline(never)]
+    fn advance(&mut self, steps: u32) {
+        match self {
+            Self::Drawn(motion) => motion.advance(steps),
+            Self::Rk4F64(motion) => Form::advance(motion, steps),
+            Self::Rk4F32(motion) => Form::advance(motion, steps),
+            Self::Extrapolation8Fixed64(motion) => Form::advance(motion, steps),
+            Self::Extrapolation12Fixed64(motion) => Form::advance(motion, steps),
+            Self::Extrapolation16Fixed64(motion) => Form::advance(motion, steps),
+            Self::ClosedFormF64(motion) => Form::advance(motion, steps),
+        }
+    }
+
+    fn state(&self) -> State<f64> {
+        match self {
+            Self::Drawn(motion) => motion.state(),
+            Self::Rk4F64(motion) => Run::state(motion),
+            Self::Rk4F32(motion) => Run::state(motion),
+            Self::Extrapolation8Fixed64(motion) => Run::state(motion),
+            Self::Extrapolation12Fixed64(motion) => Run::state(motion),
+            Self::Extrapolation16Fixed64(motion) => Run::state(motion),
+            Self::ClosedFormF64(motion) => Run::state(motion),
+        }
+    }
+
+    fn sides(&self) -> Option<[[i32; 2]; 2]> {
+        match self {
+            Self::Drawn(motion) => (!motion.has_turns()).then(|| motion.sides()),
+            Self::Rk4F64(motion) => Run::sides(motion),
+            Self::Rk4F32(motion) => Run::sides(motion),
+            Self::Extrapolation8Fixed64(motion) => Run::sides(motion),
+            Self::Extrapolation12Fixed64(motion) => Run::sides(motion),
+            Self::Extrapolation16Fixed64(motion) => Run::sides(motion),
+            Self::ClosedFormF64(motion) => Run::sides(motion),
+        }
+    }
+
+    fn bits(&self, feed: impl FnMut(u64)) {
+        match self {
+            Self::Drawn(motion) => motion.bits(feed),
+            Self::Rk4F64(motion) => Run::bits(motion, feed),
+            Self::Rk4F32(motion) => Run::bits(motion, feed),
+            Self::Extrapolation8Fixed64(motion) => Run::bits(motion, feed),
+            Self::Extrapolation12Fixed64(motion) => Run::bits(motion, feed),
+            Self::Extrapolation16Fixed64(motion) => Run::bits(motion, feed),
+            Self::ClosedFormF64(motion) => Run::bits(motion, feed),
+        }
+    }
+}
+
+/// Computes the bits of a motion of the kernel's golden file.
+pub(super) struct GoldenBits<'a>(pub &'a Golden);
+
+impl FormVisitor for GoldenBits<'_> {
+    type Output = Result<Bits, Error>;
+
+    fn visit<F: Form>(self) -> Self::Output {
+        self.0.bits::<F>()
+    }
+}
+
+/// Passes every reading of a request to `each`.
+struct Readings<'a, Each> {
+    request: &'a Request,
+    each: Each,
+}
+
+impl<E: From<Error>, Each: FnMut(&Reading) -> Result<(), E>> FormVisitor for Readings<'_, Each> {
+    type Output = Result<(), E>;
+
+    fn visit<F: Form>(self) -> Self::Output {
+        answer::readings(start::<F>(self.request)?, self.request, self.each)
+    }
+}
+
+/// Computes the CRC-32 of the motion of a request.
+struct CrcOf<'a>(&'a Request);
+
+impl FormVisitor for CrcOf<'_> {
+    type Output = Result<u32, Error>;
+
+    fn visit<F: Form>(self) -> Self::Output {
+        Ok(crc(start::<F>(self.0)?, self.0))
+    }
+}
+
+impl Request {
+    /// Calls `each` with every reading, the initial one first, until it returns an error.
+    pub fn readings<E: From<Error>>(
+        &self,
+        each: impl FnMut(&Reading) -> Result<(), E>,
+    ) -> Result<(), E> {
+        let request = self;
+        visit(self.method, Readings { request, each })
+    }
+
+    /// Returns the CRC-32 of all numbers that the method carries, at every sample except the initial
+    /// one, and of the last state. If those of two runs are equal, the runs are bit-identical.
+    pub fn crc(&self) -> Result<u32, Error> {
+        visit(self.method, CrcOf(self))
     }
 }

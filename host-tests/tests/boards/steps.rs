@@ -10,8 +10,9 @@ use object::{Object, ObjectSection};
 
 /// The functions that are measured and that take most of the scenes' time, each by a part and the
 /// end of its name.
-const STEPS: [(&str, &str); 4] = [
+const STEPS: [(&str, &str); 5] = [
     ("OnBoards as firmware::job::run::Run>", "advance"),
+    ("methods::any::DrawnMotion", "advance"),
     ("double_pendulum::methods::Form>", "advance"),
     ("Fixed32 as double_pendulum::methods::Form>", "advance"),
     ("rows::Rows", "end_in"),

@@ -1,10 +1,13 @@
 //! Trials: motions that are computed by the methods of the table and compared with the reference.
 
 use std::f64::consts::TAU;
+use std::fmt::Debug;
 
 use double_pendulum::parts::DirectionF64;
-use double_pendulum::{Equations, Error, Method, Parameters, Pendulum, State};
-use firmware::job::AnyRun;
+use double_pendulum::{
+    Direction, Equations, Error, Form, FormVisitor, Method, Parameters, Pendulum, Real, Run, State,
+};
+use firmware::job::visit;
 use reference::{advance, taylor};
 
 /// Returns all methods whose errors depend on the step. The closed form has the error of its linear
@@ -16,14 +19,69 @@ pub fn exact_methods() -> impl Iterator<Item = Method> {
     Method::ALL.iter().copied().filter(is_exact)
 }
 
+/// A [`Run`] whose method is chosen at run time. Its numbers are widened to `f64`.
+pub trait AnyRun: Debug {
+    fn advance(&mut self, steps: u32) -> Result<(), Error>;
+    fn state(&self) -> State<f64>;
+    fn directions(&self) -> [Direction<f64>; 2];
+    fn angles(&self) -> [f64; 2];
+    fn energy(&self) -> f64;
+}
+
+impl<F: Form> AnyRun for Run<F> {
+    fn advance(&mut self, steps: u32) -> Result<(), Error> {
+        Run::advance(self, steps)
+    }
+
+    fn state(&self) -> State<f64> {
+        Run::state(self)
+    }
+
+    fn directions(&self) -> [Direction<f64>; 2] {
+        Run::directions(self).map(|direction| direction.map(Real::to_f64))
+    }
+
+    fn angles(&self) -> [f64; 2] {
+        Run::angles(self).map(Real::to_f64)
+    }
+
+    fn energy(&self) -> f64 {
+        Run::energy(self).to_f64()
+    }
+}
+
+/// Starts a motion of `pendulum`.
+struct Start<'a> {
+    pendulum: Pendulum<f64>,
+    state: &'a State<f64>,
+    dt: f64,
+}
+
+impl FormVisitor for Start<'_> {
+    type Output = Result<Box<dyn AnyRun>, Error>;
+
+    fn visit<F: Form>(self) -> Self::Output {
+        Ok(Box::new(self.pendulum.run::<F>(self.state, self.dt)?))
+    }
+}
+
 /// Returns the motion of a pendulum from its start by `method`, in steps of `dt` s.
 pub fn run(
     method: Method,
     parameters: &Parameters<f64>,
     start: &State<f64>,
     dt: f64,
-) -> Result<AnyRun, Error> {
-    AnyRun::new(method, &Pendulum::new(parameters)?, start, dt)
+) -> Result<Box<dyn AnyRun>, Error> {
+    let pendulum = Pendulum::new(parameters)?;
+    let state = start;
+    visit(
+        method,
+        Start {
+            pendulum,
+            state,
+            dt,
+        },
+    )
 }
 
 /// A motion to try, in SI units.

@@ -2,17 +2,21 @@
 //!
 //! [`Pendulum::run`](crate::Pendulum::run) takes the type of a method and returns a motion.
 
+pub(crate) mod any;
 mod closed_form;
 pub(crate) mod direction;
 pub mod extrapolation;
 mod extrapolation_f64;
 mod extrapolation_fixed64;
+#[cfg(test)]
+pub(crate) mod lagrange;
 pub mod rk4;
 mod rk4_direction;
 mod rk4_fixed32;
 pub(crate) mod run;
 mod scaling;
 
+pub use any::{DrawnMotion, FormVisitor};
 pub use closed_form::{ClosedForm, Oscillation, SmallOscillations};
 pub use extrapolation_f64::ExtrapolationF64;
 pub use extrapolation_fixed64::Fixed64;

@@ -3,12 +3,14 @@
 use super::{PlannedRun, Problem};
 use crate::error::{Error, Parameter};
 use crate::pendulum::Pendulum;
-use crate::table::Method;
+use crate::table::{DrawnMethod, Method};
 
-/// The price list of a processor: the cost of a step by each method, and of a frame by the closed
-/// form.
+/// The price list of a processor: the cost of a step by each method of [`Method::DRAWN`], and of a
+/// frame by the closed form.
 ///
-/// The unit is arbitrary, usually cycles; the [`Budget`] has the same unit.
+/// The unit is arbitrary, usually cycles; the [`Budget`] has the same unit. The lists of some
+/// processors are [`CORTEX_M3`](Self::CORTEX_M3), [`CORTEX_M4F`](Self::CORTEX_M4F) and
+/// [`CORTEX_M0PLUS`](Self::CORTEX_M0PLUS).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Costs {
     /// A frame by [`Method::ClosedFormF32`].
@@ -26,21 +28,39 @@ pub struct Costs {
 }
 
 impl Costs {
+    /// Returns the cost of a step by `method`, or of a frame by the closed form. Returns `None` for
+    /// a method that is not in [`Method::DRAWN`].
+    #[must_use]
+    pub const fn step(&self, method: Method) -> Option<f32> {
+        let Some(drawn) = method.drawn() else {
+            return None;
+        };
+        Some(match drawn {
+            DrawnMethod::ClosedFormF32 => self.closed_form,
+            DrawnMethod::Rk4F32DirectionPlain => self.direction_plain,
+            DrawnMethod::Rk4F32Direction => self.direction,
+            DrawnMethod::Rk4Fixed32 => self.fixed32,
+            DrawnMethod::Extrapolation10Fixed64 => self.fixed64,
+            #[cfg(test)]
+            DrawnMethod::Rk4F32Lagrange => crate::methods::lagrange::PRICE,
+        })
+    }
+
     /// Returns the cost of a frame by this method and step count. It is infinite for a method that
-    /// plans do not use.
+    /// scenes are not drawn by.
     #[inline(never)] // Not inlined, to save flash.
     #[doc(hidden)]
     #[must_use]
     pub fn of_frame(&self, Stepping { method, steps }: Stepping) -> f32 {
-        let step = match method {
-            Method::ClosedFormF32 => return self.closed_form,
-            Method::Rk4F32DirectionPlain => self.direction_plain,
-            Method::Rk4F32Direction => self.direction,
-            Method::Rk4Fixed32 => self.fixed32,
-            Method::Extrapolation10Fixed64 => self.fixed64,
-            _ => f32::INFINITY,
+        let steps = if method == Method::ClosedFormF32 {
+            1
+        } else {
+            steps
         };
-        step * steps as f32
+        match self.step(method) {
+            Some(step) => step * steps as f32,
+            None => f32::INFINITY,
+        }
     }
 }
 

@@ -28,26 +28,11 @@ impl Problem {
     /// can count. The pendulum is checked by the functions that use it.
     pub(super) fn check(&self, costs: &Costs, budget: &Budget) -> Result<(), Error> {
         self.start.check()?;
-        let Costs {
-            closed_form,
-            direction_plain,
-            direction,
-            fixed32,
-            fixed64,
-            preparation,
-        } = *costs;
-
+        let prices = Method::DRAWN
+            .iter()
+            .filter_map(|method| costs.step(*method));
         let of = |parameter| move |value: f32| (parameter, f64::from(value));
-        let costs = [
-            closed_form,
-            direction_plain,
-            direction,
-            fixed32,
-            fixed64,
-            preparation,
-        ]
-        .map(of(Parameter::Cost));
-
+        let costs = prices.chain([costs.preparation]).map(of(Parameter::Cost));
         let budgets = [budget.frame, budget.planning].map(of(Parameter::Budget));
 
         let shown = [
@@ -55,7 +40,8 @@ impl Problem {
             (Parameter::Duration, self.duration),
         ];
         let rate = [(Parameter::Rate, f64::from(self.rate))];
-        for &(parameter, value) in [&shown[..], &rate, &costs, &budgets].into_iter().flatten() {
+        let all = shown.into_iter().chain(rate).chain(costs).chain(budgets);
+        for (parameter, value) in all {
             if !value.is_finite() {
                 return Err(Error::NotFinite { parameter, value });
             }

@@ -22,9 +22,10 @@
 use super::candidate::{distance, greater};
 use super::cost::Stepping;
 use super::problem::Problem;
-use super::run::{Directions, SingleRun};
+use super::run::Directions;
 use super::trial::Run;
 use crate::error::Error;
+use crate::methods::any::DrawnMotion32;
 use crate::pendulum::{Parameters, State};
 
 /// The initial distance of a shadow, rad.
@@ -47,7 +48,7 @@ const ROUNDING: [f32; 3] = [2.4e-16, 3.2e-16, 6.4e-17];
 /// Four motions close to another one. Later only the farthest is kept.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Shadows {
-    runs: [Run<SingleRun>; 4],
+    runs: [Run<DrawnMotion32>; 4],
     /// The index of the shadow that is kept; `None` while all four are kept.
     kept: Option<usize>,
     /// True if the kept shadow must be drawn back.
@@ -98,7 +99,7 @@ impl Shadows {
     }
 
     /// Returns the shadows that are still needed.
-    pub fn runs(&mut self) -> impl Iterator<Item = &mut Run<SingleRun>> {
+    pub fn runs(&mut self) -> impl Iterator<Item = &mut Run<DrawnMotion32>> {
         let kept = self.kept;
         let runs = self.runs.iter_mut().enumerate();
         runs.filter(move |(place, _)| kept.is_none_or(|kept| kept == *place))
@@ -143,7 +144,7 @@ impl Shadows {
 
         // Create it on one side of the motion or, if the method refuses that, on the other.
         let Stepping { method, steps } = run.stepping;
-        let per_second = f64::from(problem.rate) * f64::from(steps);
+        let dt = 1.0 / (f64::from(problem.rate) * f64::from(steps));
         let prepared = |sign: f64| {
             let [a1, a2, p1, p2] = <[f64; 4]>::from(*motion);
             let [by1, by2, by3, by4] = by.map(|by| sign * by);
@@ -153,7 +154,7 @@ impl Shadows {
                 p1: p1 + by3,
                 p2: p2 + by4,
             };
-            SingleRun::new(method, &(problem.pendulum, state), per_second)
+            DrawnMotion32::new(method, &problem.pendulum, &state, dt)
         };
         run.motion = Some(prepared(1.0).or_else(|_| prepared(-1.0))?);
 

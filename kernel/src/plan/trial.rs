@@ -28,9 +28,10 @@
 use super::candidate::{Candidate, distance, greater};
 use super::cost::{Costs, Pair, Stepping};
 use super::problem::{NONE, PERTURBATIONS, Problem};
-use super::run::{Directions, DoubleRun, SingleRun};
+use super::run::Directions;
 use super::shadow::Shadows;
 use crate::error::Error;
+use crate::methods::any::{DrawnMotion32, DrawnMotion64};
 use crate::methods::{ClosedFormF32, Form, SmallOscillations};
 use crate::pendulum::{Pendulum, State};
 use crate::table::Method;
@@ -42,19 +43,19 @@ pub(super) trait Motion {
     fn directions(&self) -> Directions;
 }
 
-impl Motion for SingleRun {
+impl Motion for DrawnMotion32 {
     fn advance(&mut self, steps: u32) {
-        SingleRun::advance(self, steps);
+        DrawnMotion32::advance(self, steps);
     }
     fn check(&self) -> Result<(), Error> {
-        SingleRun::check(self)
+        DrawnMotion32::check(self)
     }
     fn directions(&self) -> Directions {
-        SingleRun::directions(self)
+        DrawnMotion32::directions(self)
     }
 }
 
-impl Motion for DoubleRun {
+impl Motion for DrawnMotion64 {
     fn advance(&mut self, steps: u32) {
         Form::advance(self, steps);
     }
@@ -169,9 +170,9 @@ pub(super) struct Trial {
     /// With a reference they are the first three candidates and plain `f32`; the fifth is unused.
     /// Without one they are a single candidate, two finer runs, plain `f32`, and the third finer
     /// run.
-    single: [Run<SingleRun>; 5],
+    single: [Run<DrawnMotion32>; 5],
     /// The coarse and the fine run of the reference.
-    double: [Run<DoubleRun>; 2],
+    double: [Run<DrawnMotion64>; 2],
     /// The reference: the coarse and the fine run. Without one, the error bounds are rough.
     pub reference: Option<Pair>,
     shadows: Shadows,
@@ -294,7 +295,7 @@ impl Trial {
     }
 
     /// Returns the runs in 32 bits that are still needed, with their indices.
-    fn single(&mut self) -> impl Iterator<Item = (usize, &mut Run<SingleRun>)> {
+    fn single(&mut self) -> impl Iterator<Item = (usize, &mut Run<DrawnMotion32>)> {
         let all = self.reference.is_none();
         let [own, second, third, plain, ..] = self.candidates.map(|one| !one.failed);
         let needed = [all || own, all || second, all || third, plain, all];
@@ -303,7 +304,7 @@ impl Trial {
     }
 
     /// Returns the runs of the reference, or no runs without a reference.
-    fn double(&mut self) -> &mut [Run<DoubleRun>] {
+    fn double(&mut self) -> &mut [Run<DrawnMotion64>] {
         if self.reference.is_some() {
             &mut self.double
         } else {
@@ -312,7 +313,7 @@ impl Trial {
     }
 
     /// Returns the shadows if a candidate in 64 bits needs them, or no runs.
-    fn shadows(&mut self) -> impl Iterator<Item = &mut Run<SingleRun>> {
+    fn shadows(&mut self) -> impl Iterator<Item = &mut Run<DrawnMotion32>> {
         let are_needed = self.has_candidate_in_64_bits();
         self.shadows.runs().filter(move |_| are_needed)
     }
@@ -325,7 +326,7 @@ impl Trial {
     pub fn prepare(&mut self, problem: &Problem) -> Result<bool, Error> {
         let has_reference = self.has_reference();
         let start = Pendulum::new(&problem.pendulum)?.to_state(&problem.start);
-        let per_second = |steps: u32| f64::from(problem.rate) * f64::from(steps);
+        let dt = |steps: u32| 1.0 / (f64::from(problem.rate) * f64::from(steps));
 
         // A run in 32 bits. Without a reference, the finer runs have perturbed inputs.
         if let Some((place, run)) = self.single().find(|(_, run)| run.motion.is_none()) {
@@ -338,8 +339,8 @@ impl Trial {
 
             let Stepping { method, steps } = run.stepping;
             let prepared = |by| {
-                let given = problem.perturbed(&start, by, method);
-                SingleRun::new(method, &given, per_second(steps))
+                let (parameters, start) = problem.perturbed(&start, by, method);
+                DrawnMotion32::new(method, &parameters, &start, dt(steps))
             };
             run.motion = Some(prepared(by).or_else(|_| prepared(by.map(|by| -by)))?);
             return Ok(true);
@@ -347,8 +348,8 @@ impl Trial {
 
         // A run of the reference.
         if let Some(run) = self.double().iter_mut().find(|run| run.motion.is_none()) {
-            let dt = 1.0 / per_second(run.stepping.steps);
-            run.motion = Some(DoubleRun::new(&problem.pendulum, &start, dt)?);
+            let motion = Form::new(&problem.pendulum, &start, dt(run.stepping.steps))?;
+            run.motion = Some(motion);
             return Ok(true);
         }
 

@@ -1,41 +1,75 @@
-//! An example of an added method: a row in the table (`rk4-f64-lagrange`, in these tests only) and
-//! its type.
+//! An example of an added method (`rk4-f32-lagrange`, in these tests only): its type is in
+//! `methods/lagrange.rs`, and scenes are drawn by it.
 
-use double_pendulum::parts::{Canonical, Derivatives};
-use double_pendulum::{Error, Method, Motion, Parameters, Pendulum, Real, State};
+use double_pendulum::parts::Canonical;
+use double_pendulum::plan::{Budget, Costs, Limit, PlannedRun, Problem, Search, Stepping};
+use double_pendulum::{Error, Method, Motion, Parameters};
 
 use super::forms;
+use crate::methods::lagrange::Lagrange;
 
-/// Lagrange's equations with the momenta as variables: a' = M^-1 p, p' = dL/da.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Lagrange<R>(Pendulum<R>);
-
-impl<R: Real> Derivatives<R> for Lagrange<R> {
-    fn prepare(parameters: &Parameters<R>) -> Result<Self, Error> {
-        Pendulum::new(parameters).map(Self)
-    }
-
-    fn derivatives(&self, z: &[R; 4]) -> [R; 4] {
-        let Motion { a1, a2, w1, w2 } = self.0.to_motion(&State::from(*z));
-        let [sin1, _] = sin_cos(a1);
-        let [sin2, _] = sin_cos(a2);
-        let [sin_d, _] = sin_cos(a1 - a2);
-        let [[torque1, _], [_, torque2]] = self.0.stiffness();
-        let [[_, coupling], _] = self.0.mass_matrix(R::ONE);
-        let force = coupling * w1 * w2 * sin_d;
-        [w1, w2, -torque1 * sin1 - force, -torque2 * sin2 + force]
-    }
-}
-
-fn sin_cos<R: Real>(angle: R) -> [R; 2] {
-    angle.own_sin_cos().into()
-}
+const ADDED: Method = Method::Rk4F32Lagrange;
 
 #[test]
-fn added_method_needs_only_a_row_and_a_type() {
-    let method = Method::from_name("rk4-f64-lagrange").expect("a row of the table");
-    assert!(Method::ALL.contains(&method) && method.order() == 4);
+fn added_method_obeys_hamiltons_equations() {
+    assert_eq!(Method::from_name("rk4-f32-lagrange"), Some(ADDED));
+    assert!(Method::ALL.contains(&ADDED) && ADDED.order() == 4);
     forms::is_that_of_hamiltons_equations::<Canonical<f64, Lagrange<f64>>>(forms::RK4);
+}
+
+/// A scene is drawn by the added method: it is as near to the same scene in 64 bits as half a pixel
+/// of a display 64 pixels high, and the search predicts that.
+#[test]
+fn added_method_draws_a_scene() -> Result<(), Error> {
+    let scene = Problem {
+        pendulum: Parameters::equal_rods(1.0, 1.0, 9.81),
+        start: Motion::at_rest(0.5, 0.5),
+        tolerance: 1.0 / 32.0,
+        duration: 4.0,
+        rate: 60,
+    };
+    let budget = Budget {
+        frame: 1e5,
+        planning: 1e9,
+    };
+
+    // The search evaluates it.
+    let stepping = Stepping {
+        method: ADDED,
+        steps: 4,
+    };
+    let mut search =
+        Search::of(stepping, &scene, &Costs::CORTEX_M3, &budget).expect("a drawn method");
+    let plan = loop {
+        if let Some(plan) = search.advance(f32::INFINITY).expect("a good scene") {
+            break plan;
+        }
+    };
+    assert_eq!(plan.stepping(), stepping);
+    assert_eq!((plan.limit, plan.horizon), (Limit::End, scene.duration));
+    assert_eq!(
+        Some(plan.cost),
+        Costs::CORTEX_M3.step(ADDED).map(|step| 4.0 * step)
+    );
+
+    // Its frames are accurate.
+    let mut shown = plan.run(&scene)?;
+    let mut exact = PlannedRun::new(
+        &scene,
+        Stepping {
+            method: Method::Extrapolation10Fixed64,
+            steps: 1,
+        },
+    )?;
+    for _ in 0..scene.frames() {
+        shown.advance(1)?;
+        exact.advance(1)?;
+        for (angle, other) in shown.angles().into_iter().zip(exact.angles()) {
+            assert!((angle - other).abs() < 1e-3, "{angle} {other}");
+        }
+    }
+    assert_eq!(shown.time(), scene.duration);
+    Ok(())
 }
 
 #[test]

@@ -1,0 +1,367 @@
+//! The choice of a method at run time.
+//!
+//! A [`Method`] is a name; the code that computes it is a type. This file is the only place of the
+//! crate that leads from the name to the type:
+//!
+//! - [`Method::visit`] calls generic code with the type of a method. It links every method.
+//! - [`DrawnMotion`] stores a motion by a method of [`Method::DRAWN`]. It links only these.
+
+use super::{
+    ClosedFormF32, ClosedFormF64, DirectionF32, DirectionF32Plain, ExtrapolationF64, Fixed32,
+    Fixed64, Form, HamiltonF32, HamiltonF64,
+};
+use crate::error::Error;
+use crate::pendulum::{Direction, Parameters, Pendulum, State};
+use crate::table::{DrawnMethod, Method};
+
+/// Generic code that [`Method::visit`] calls with the type of a method.
+pub trait FormVisitor {
+    /// The result of the call.
+    type Output;
+
+    /// Runs the code for the method that the type `F` computes.
+    fn visit<F: Form>(self) -> Self::Output;
+}
+
+impl Method {
+    /// Calls `visitor` with the type that computes this method.
+    ///
+    /// Returns `None` for `rk4-f32-micromath` and `textbook-f32`. They are listed for comparison,
+    /// and their types are not in this crate.
+    ///
+    /// This links every method. To link one method only, pass its type to
+    /// [`Pendulum::run`](crate::Pendulum::run).
+    ///
+    /// ```
+    /// use double_pendulum::{Form, FormVisitor, Method, Parameters, Pendulum, State};
+    ///
+    /// /// Computes the angle of rod 1 after a second.
+    /// struct AfterOneSecond;
+    ///
+    /// impl FormVisitor for AfterOneSecond {
+    ///     type Output = Result<f64, double_pendulum::Error>;
+    ///
+    ///     fn visit<F: Form>(self) -> Self::Output {
+    ///         let pendulum = Pendulum::<f64>::new(&Parameters::equal_rods(1.0, 1.0, 9.81))?;
+    ///         let mut run = pendulum.run::<F>(&State::at_rest(0.5, 0.5), 1.0 / 128.0)?;
+    ///         run.advance(128)?;
+    ///         Ok(run.state().a1)
+    ///     }
+    /// }
+    ///
+    /// let method = Method::from_name("rk4-fixed32").ok_or("no such method")?;
+    /// let angle = method.visit(AfterOneSecond).ok_or("not in this crate")??;
+    /// assert!(angle.abs() < 0.5);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn visit<V: FormVisitor>(self, visitor: V) -> Option<V::Output> {
+        Some(match self {
+            Method::Rk4F64 => visitor.visit::<HamiltonF64>(),
+            Method::Rk4F32 => visitor.visit::<HamiltonF32>(),
+            Method::Rk4F32Direction => visitor.visit::<DirectionF32>(),
+            Method::Rk4F32DirectionPlain => visitor.visit::<DirectionF32Plain>(),
+            Method::Rk4Fixed32 => visitor.visit::<Fixed32>(),
+            Method::Extrapolation8Fixed64 => visitor.visit::<Fixed64<8>>(),
+            Method::Extrapolation10Fixed64 => visitor.visit::<Fixed64<10>>(),
+            Method::Extrapolation12Fixed64 => visitor.visit::<Fixed64<12>>(),
+            Method::Extrapolation16Fixed64 => visitor.visit::<Fixed64<16>>(),
+            Method::Extrapolation12F64 => visitor.visit::<ExtrapolationF64<12>>(),
+            Method::Extrapolation16F64 => visitor.visit::<ExtrapolationF64<16>>(),
+            Method::ClosedFormF64 => visitor.visit::<ClosedFormF64>(),
+            Method::ClosedFormF32 => visitor.visit::<ClosedFormF32>(),
+            Method::Rk4F32Micromath | Method::TextbookF32 => return None,
+            #[cfg(test)]
+            Method::Rk4F32Lagrange => visitor.visit::<super::lagrange::LagrangeF32>(),
+        })
+    }
+}
+
+/// A motion by a method of [`Method::DRAWN`] in 32 bits.
+///
+/// It takes a third of the memory of a motion in 64 bits.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum DrawnMotion32 {
+    /// [`Method::ClosedFormF32`].
+    ClosedFormF32(ClosedFormF32),
+    /// [`Method::Rk4F32DirectionPlain`].
+    Rk4F32DirectionPlain(DirectionF32Plain),
+    /// [`Method::Rk4F32Direction`].
+    Rk4F32Direction(DirectionF32),
+    /// [`Method::Rk4Fixed32`].
+    Rk4Fixed32(Fixed32),
+    /// [`Method::Rk4F32Lagrange`], in the unit tests.
+    #[cfg(test)]
+    Rk4F32Lagrange(super::lagrange::LagrangeF32),
+}
+
+/// A motion by the method of [`Method::DRAWN`] in 64 bits.
+///
+/// Order 8 has a shorter horizon. Order 12 costs 1.4 times as much, and its horizon is no longer,
+/// because rounding errors end it.
+pub type DrawnMotion64 = Fixed64<10>;
+
+/// A motion by a method of [`Method::DRAWN`].
+///
+/// Its directions and momenta are `f32`.
+#[expect(
+    clippy::large_enum_variant,
+    reason = "without a heap there is nowhere else to keep it"
+)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum DrawnMotion {
+    /// The methods in 32 bits.
+    In32Bits(DrawnMotion32),
+    /// [`Method::Extrapolation10Fixed64`].
+    Extrapolation10Fixed64(DrawnMotion64),
+}
+
+impl DrawnMotion32 {
+    /// Creates the motion of a pendulum from its start, in steps of `dt` seconds.
+    ///
+    /// # Errors
+    ///
+    /// Refuses the inputs that [`Pendulum::run`](crate::Pendulum::run) refuses, for the closed form
+    /// a pendulum without normal modes, and methods that are not in [`Method::DRAWN`] or not in 32
+    /// bits.
+    #[inline(never)] // Inlined, the motions of all kinds would share a stack frame.
+    pub fn new(
+        method: Method,
+        parameters: &Parameters<f64>,
+        start: &State<f64>,
+        dt: f64,
+    ) -> Result<Self, Error> {
+        let Some(drawn) = method.drawn() else {
+            return Err(Error::NotDrawn { method });
+        };
+        Ok(match drawn {
+            DrawnMethod::ClosedFormF32 => Self::ClosedFormF32(Form::new(parameters, start, dt)?),
+            DrawnMethod::Rk4F32DirectionPlain => {
+                Self::Rk4F32DirectionPlain(Form::new(parameters, start, dt)?)
+            }
+            DrawnMethod::Rk4F32Direction => {
+                Self::Rk4F32Direction(Form::new(parameters, start, dt)?)
+            }
+            DrawnMethod::Rk4Fixed32 => Self::Rk4Fixed32(Form::new(parameters, start, dt)?),
+            DrawnMethod::Extrapolation10Fixed64 => return Err(Error::NotDrawn { method }),
+            #[cfg(test)]
+            DrawnMethod::Rk4F32Lagrange => Self::Rk4F32Lagrange(Form::new(parameters, start, dt)?),
+        })
+    }
+
+    /// Advances the motion by `steps` steps.
+    #[inline(never)] // Not inlined: each caller would contain every method.
+    pub fn advance(&mut self, steps: u32) {
+        match self {
+            Self::ClosedFormF32(motion) => motion.advance(steps),
+            Self::Rk4F32DirectionPlain(motion) => motion.advance(steps),
+            Self::Rk4F32Direction(motion) => motion.advance(steps),
+            Self::Rk4Fixed32(motion) => motion.advance(steps),
+            #[cfg(test)]
+            Self::Rk4F32Lagrange(motion) => motion.advance(steps),
+        }
+    }
+
+    /// Refuses a motion that has left the finite numbers.
+    pub fn check(&self) -> Result<(), Error> {
+        match self {
+            Self::ClosedFormF32(motion) => motion.check(),
+            Self::Rk4F32DirectionPlain(motion) => motion.check(),
+            Self::Rk4F32Direction(motion) => motion.check(),
+            Self::Rk4Fixed32(motion) => motion.check(),
+            #[cfg(test)]
+            Self::Rk4F32Lagrange(motion) => motion.check(),
+        }
+    }
+
+    /// Returns the sine and cosine of both rods as words whose highest bit is the sign.
+    fn sides(&self) -> [[i32; 2]; 2] {
+        match self {
+            Self::ClosedFormF32(motion) => motion.sides(),
+            Self::Rk4F32DirectionPlain(motion) => motion.sides(),
+            Self::Rk4F32Direction(motion) => motion.sides(),
+            Self::Rk4Fixed32(motion) => motion.sides(),
+            #[cfg(test)]
+            Self::Rk4F32Lagrange(motion) => motion.sides(),
+        }
+    }
+
+    /// Returns the directions of both rods, (sin, cos) each.
+    #[inline(never)]
+    pub fn directions(&self) -> [Direction<f32>; 2] {
+        match self {
+            Self::ClosedFormF32(motion) => motion.directions(),
+            Self::Rk4F32DirectionPlain(motion) => motion.directions(),
+            Self::Rk4F32Direction(motion) => motion.directions(),
+            Self::Rk4Fixed32(motion) => motion.directions(),
+            #[cfg(test)]
+            Self::Rk4F32Lagrange(motion) => motion.directions(),
+        }
+    }
+
+    /// Returns the momenta p1 and p2, kg m^2/s.
+    fn momenta(&self) -> [f32; 2] {
+        match self {
+            Self::ClosedFormF32(motion) => motion.momenta(),
+            Self::Rk4F32DirectionPlain(motion) => motion.momenta(),
+            Self::Rk4F32Direction(motion) => motion.momenta(),
+            Self::Rk4Fixed32(motion) => motion.momenta(),
+            #[cfg(test)]
+            Self::Rk4F32Lagrange(motion) => motion.momenta(),
+        }
+    }
+
+    /// Returns the canonical state in SI units. The angles may lack whole turns
+    /// ([`has_turns`](Self::has_turns)).
+    #[inline(never)]
+    pub fn state(&self) -> State<f64> {
+        match self {
+            Self::ClosedFormF32(motion) => motion.state(),
+            Self::Rk4F32DirectionPlain(motion) => motion.state(),
+            Self::Rk4F32Direction(motion) => motion.state(),
+            Self::Rk4Fixed32(motion) => motion.state(),
+            #[cfg(test)]
+            Self::Rk4F32Lagrange(motion) => motion.state(),
+        }
+    }
+
+    /// Returns the energy above rest, J.
+    fn energy_above_rest(&self, pendulum: &Pendulum<f64>) -> f64 {
+        match self {
+            Self::ClosedFormF32(motion) => motion.energy_above_rest(pendulum),
+            Self::Rk4F32DirectionPlain(motion) => motion.energy_above_rest(pendulum),
+            Self::Rk4F32Direction(motion) => motion.energy_above_rest(pendulum),
+            Self::Rk4Fixed32(motion) => motion.energy_above_rest(pendulum),
+            #[cfg(test)]
+            Self::Rk4F32Lagrange(motion) => motion.energy_above_rest(pendulum),
+        }
+    }
+
+    /// Returns true if the angles of the [`state`](Self::state) include whole turns.
+    fn has_turns(&self) -> bool {
+        match self {
+            Self::ClosedFormF32(_) => ClosedFormF32::HAS_TURNS,
+            Self::Rk4F32DirectionPlain(_) => DirectionF32Plain::HAS_TURNS,
+            Self::Rk4F32Direction(_) => DirectionF32::HAS_TURNS,
+            Self::Rk4Fixed32(_) => Fixed32::HAS_TURNS,
+            #[cfg(test)]
+            Self::Rk4F32Lagrange(_) => super::lagrange::LagrangeF32::HAS_TURNS,
+        }
+    }
+
+    /// Passes all words that the method carries from step to step to `feed`.
+    fn bits(&self, feed: impl FnMut(u64)) {
+        match self {
+            Self::ClosedFormF32(motion) => motion.bits(feed),
+            Self::Rk4F32DirectionPlain(motion) => motion.bits(feed),
+            Self::Rk4F32Direction(motion) => motion.bits(feed),
+            Self::Rk4Fixed32(motion) => motion.bits(feed),
+            #[cfg(test)]
+            Self::Rk4F32Lagrange(motion) => motion.bits(feed),
+        }
+    }
+}
+
+impl DrawnMotion {
+    /// Creates the motion of a pendulum from its start, in steps of `dt` seconds.
+    ///
+    /// # Errors
+    ///
+    /// Refuses the inputs that [`Pendulum::run`](crate::Pendulum::run) refuses, for the closed form
+    /// a pendulum without normal modes, and methods that are not in [`Method::DRAWN`].
+    #[inline(never)] // Inlined, the motions of all kinds would share a stack frame.
+    pub fn new(
+        method: Method,
+        parameters: &Parameters<f64>,
+        start: &State<f64>,
+        dt: f64,
+    ) -> Result<Self, Error> {
+        if method == Method::Extrapolation10Fixed64 {
+            Form::new(parameters, start, dt).map(Self::Extrapolation10Fixed64)
+        } else {
+            DrawnMotion32::new(method, parameters, start, dt).map(Self::In32Bits)
+        }
+    }
+
+    /// Advances the motion by `steps` steps.
+    #[inline(never)] // Not inlined: each caller would contain every method.
+    pub fn advance(&mut self, steps: u32) {
+        match self {
+            Self::In32Bits(motion) => motion.advance(steps),
+            Self::Extrapolation10Fixed64(motion) => motion.advance(steps),
+        }
+    }
+
+    /// Refuses a motion that has left the finite numbers.
+    pub fn check(&self) -> Result<(), Error> {
+        match self {
+            Self::In32Bits(motion) => motion.check(),
+            Self::Extrapolation10Fixed64(motion) => motion.check(),
+        }
+    }
+
+    /// Returns the sine and cosine of both rods as words whose highest bit is the sign.
+    #[must_use]
+    #[inline(never)]
+    pub fn sides(&self) -> [[i32; 2]; 2] {
+        match self {
+            Self::In32Bits(motion) => motion.sides(),
+            Self::Extrapolation10Fixed64(motion) => motion.sides(),
+        }
+    }
+
+    /// Returns the directions of both rods, (sin, cos) each.
+    #[must_use]
+    #[inline(never)]
+    pub fn directions(&self) -> [Direction<f32>; 2] {
+        match self {
+            Self::In32Bits(motion) => motion.directions(),
+            Self::Extrapolation10Fixed64(motion) => motion.directions(),
+        }
+    }
+
+    /// Returns the momenta p1 and p2, kg m^2/s.
+    #[must_use]
+    pub fn momenta(&self) -> [f32; 2] {
+        match self {
+            Self::In32Bits(motion) => motion.momenta(),
+            Self::Extrapolation10Fixed64(motion) => motion.momenta(),
+        }
+    }
+
+    /// Returns the canonical state in SI units. The angles may lack whole turns
+    /// ([`has_turns`](Self::has_turns)).
+    #[must_use]
+    #[inline(never)]
+    pub fn state(&self) -> State<f64> {
+        match self {
+            Self::In32Bits(motion) => motion.state(),
+            Self::Extrapolation10Fixed64(motion) => motion.state(),
+        }
+    }
+
+    /// Returns the energy above rest, J, as the method carries it: nothing is rounded to `f32`.
+    #[must_use]
+    pub fn energy_above_rest(&self, pendulum: &Pendulum<f64>) -> f64 {
+        match self {
+            Self::In32Bits(motion) => motion.energy_above_rest(pendulum),
+            Self::Extrapolation10Fixed64(motion) => motion.energy_above_rest(pendulum),
+        }
+    }
+
+    /// Returns true if the angles of the [`state`](Self::state) include whole turns.
+    #[must_use]
+    pub fn has_turns(&self) -> bool {
+        match self {
+            Self::In32Bits(motion) => motion.has_turns(),
+            Self::Extrapolation10Fixed64(_) => DrawnMotion64::HAS_TURNS,
+        }
+    }
+
+    /// Passes all words that the method carries from step to step to `feed`.
+    pub fn bits(&self, feed: impl FnMut(u64)) {
+        match self {
+            Self::In32Bits(motion) => motion.bits(feed),
+            Self::Extrapolation10Fixed64(motion) => motion.bits(feed),
+        }
+    }
+}
