@@ -1,10 +1,12 @@
 //! The price lists of the processors on which the methods have been counted.
 //!
-//! The numbers are estimated cycles. `cargo count` of the repository runs each method in QEMU,
-//! built with the flags of the repository's `.cargo/config.toml`, and adds the cycles of the
-//! executed instructions as the manual of the processor gives them, without wait states of the
-//! flash memory. A step is that of a motion from rest at 0.5 rad, on rods of 1 m with equal bobs.
-//! The preparation is the most expensive one of any method in the firmware's scenes.
+//! The numbers are estimated cycles. The repository's `cargo count` runs the methods in an emulator
+//! and adds the published timings of the executed instructions, for memory without wait states. The
+//! code is built with all optimisations and the flags of the repository's `.cargo/config.toml`.
+//!
+//! A step is the average over a motion from rest at 0.5 rad, with equal bobs on rods of 1 m; it
+//! holds for all masses and lengths. The step in 64 bits and the preparation are the most expensive
+//! ones in a frame of the repository's application.
 //!
 //! `cargo count --write-prices` writes this file, and the repository's test `count` verifies it to
 //! 3 %.

@@ -88,6 +88,8 @@ fn next_frame<'a>(
     })
 }
 
+/// The file of the price lists.
+const PRICES_FILE: &str = "kernel/src/plan/prices.rs";
 /// The lines before and after the price lists in their file.
 const MARKS: [&str; 2] = ["// made by cargo count --write-prices\n", "// so far\n"];
 
@@ -164,17 +166,26 @@ fn in_application(board: &'static Board, toolchain: &Toolchain) -> Result<(f32, 
 
 /// Writes the price lists into the kernel's source and returns the path of the file.
 pub fn write_prices(prices: &[(&Board, Costs)]) -> Result<PathBuf> {
-    let path = workspace().join("kernel/src/plan/prices.rs");
+    let path = workspace().join(PRICES_FILE);
     let old = std::fs::read_to_string(&path)?;
+    let new = with_lists(&old, prices)
+        .with_context(|| format!("{} has no place for them", path.display()))?;
+    std::fs::write(&path, new)?;
+    Ok(path)
+}
+
+/// Returns the text of the file, `old`, with these price lists, or `None` if it has no place for
+/// them.
+fn with_lists(old: &str, prices: &[(&Board, Costs)]) -> Option<String> {
     let lists: Vec<String> = prices
         .iter()
         .map(|(board, costs)| list(board, costs))
         .collect();
-    let lists = format!("impl Costs {{\n{}}}\n", lists.join("\n"));
-    let new = between(&old, MARKS, &lists)
-        .with_context(|| format!("{} has no place for them", path.display()))?;
-    std::fs::write(&path, new)?;
-    Ok(path)
+    between(
+        old,
+        MARKS,
+        &format!("impl Costs {{\n{}}}\n", lists.join("\n")),
+    )
 }
 
 /// Returns the constant with the price list of a board's core, as rustfmt formats it.
@@ -185,4 +196,22 @@ fn list(board: &Board, costs: &Costs) -> String {
     format!(
         "    /// The counted price list of a {title}, in cycles.\n    pub const {name}: Costs = {value};\n"
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::emulator::boards::BOARDS;
+
+    /// The file with its own prices written again is the same file, in the format of rustfmt.
+    #[test]
+    fn price_lists_are_written_as_they_are_in_the_file() -> Result<()> {
+        let boards = BOARDS.iter().filter(|board| board.has_panel);
+        let prices: Vec<_> = boards
+            .map(|board| (board, board.processor().costs))
+            .collect();
+        let file = std::fs::read_to_string(workspace().join(PRICES_FILE))?;
+        assert_eq!(with_lists(&file, &prices), Some(file));
+        Ok(())
+    }
 }
