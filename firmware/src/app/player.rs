@@ -30,17 +30,30 @@ pub struct Player<'a> {
     scene: AnyScene,
     /// The requested method; `None` leaves the choice to the plan. It outlasts the scene.
     method: Option<Method>,
-    /// True if the scene keeps the requested method; false if it follows the plan.
-    is_fixed: bool,
+    motion: MotionState,
     planner: Planner,
-    /// The planned motion until it takes over. Meanwhile nothing is planned.
-    next: Option<CatchingUp>,
     ink: &'a mut FadeLayer,
     pace: Pace,
     pub report: Report,
-    /// True if the motion cannot be computed: it is too fast for every method that a frame can pay
-    /// for, or it has left the finite numbers.
-    stopped: bool,
+}
+
+/// The state of the motion that is shown.
+#[expect(
+    clippy::large_enum_variant,
+    reason = "without a heap there is nowhere else to keep it"
+)]
+#[derive(Debug)]
+enum MotionState {
+    /// The motion keeps the requested method. The planner only verifies its horizon.
+    KeepsMethod,
+    /// The motion follows the plan: the next better result of the planner replaces its method.
+    FollowsPlan,
+    /// The planned motion catches up with the one that is shown, and then takes over. Meanwhile
+    /// nothing is planned.
+    Switching(CatchingUp),
+    /// The motion cannot be computed: it is too fast for every method that a frame can pay for, or it
+    /// has left the finite numbers.
+    Stopped,
 }
 
 impl<'a> Player<'a> {
@@ -54,13 +67,11 @@ impl<'a> Player<'a> {
             settings: Settings::default(),
             scene,
             method: None,
-            is_fixed: false,
+            motion: MotionState::FollowsPlan,
             planner: Planner::new(processor),
-            next: None,
             ink,
             pace: Pace::default(),
             report,
-            stopped: false,
         }
     }
 
@@ -92,14 +103,18 @@ impl<'a> Player<'a> {
 
         self.name = name;
         self.settings = settings;
-        self.stopped = self.scene.is_too_fast();
-        self.next = None;
-        self.is_fixed = method.is_some();
+        self.motion = if self.scene.is_too_fast() {
+            MotionState::Stopped
+        } else if method.is_some() {
+            MotionState::KeepsMethod
+        } else {
+            MotionState::FollowsPlan
+        };
 
         // Start the planner with the method that the scene has chosen.
         let initial = self.scene.report(0).stepping;
-        let keeps_initial = self.is_fixed || self.scene.planned().is_none();
-        let height = height.filter(|_| !self.stopped);
+        let keeps_initial = method.is_some() || self.scene.planned().is_none();
+        let height = height.filter(|_| !self.is_stopped());
         self.planner
             .start(&settings, height, initial, keeps_initial);
 
@@ -164,17 +179,17 @@ impl<'a> Player<'a> {
     /// Calls `tell` with each result of the planner, and with each method that takes over.
     #[inline(never)]
     pub fn tick(&mut self, mut tell: impl FnMut(PlannerEvent)) {
-        if self.stopped {
+        if self.is_stopped() {
             return;
         }
         for _ in 0..self.pace.tick() {
             self.scene.tick(self.planner.ticks + 1, self.ink);
 
             // Either the planned motion catches up, or the planner works.
-            if let Some(next) = &mut self.next {
+            if let MotionState::Switching(next) = &mut self.motion {
                 self.planner.skip_tick();
                 if self.scene.planned().is_none_or(|motion| next.tick(motion)) {
-                    self.next = None;
+                    self.motion = MotionState::FollowsPlan;
                     if let Some(stepping) = self
                         .scene
                         .planned()
@@ -198,7 +213,7 @@ impl<'a> Player<'a> {
     /// not followed either.
     #[inline(never)] // Inlined, the start of a motion would be on the stack of every frame.
     fn follow(&mut self, found: &PlanResult) {
-        let (Ok(plan), false) = (found, self.is_fixed) else {
+        let (MotionState::FollowsPlan, Ok(plan)) = (&self.motion, found) else {
             return;
         };
         let Some(simulation) = self.scene.planned() else {
@@ -209,15 +224,18 @@ impl<'a> Player<'a> {
         let planned = plan.stepping();
         let time = self.planner.ticks as f64 / f64::from(TICK_RATE);
         let is_longer = plan.horizon >= self.planner.horizon(current).max(time);
-        if planned != current && is_longer {
-            self.next = CatchingUp::new(&self.settings, planned, &self.planner.processor).ok();
+        if planned == current || !is_longer {
+            return;
+        }
+        if let Ok(next) = CatchingUp::new(&self.settings, planned, &self.planner.processor) {
+            self.motion = MotionState::Switching(next);
         }
     }
 
     /// Performs a piece of the next tick's planning in advance. Returns true if it did, so that
     /// more may be left.
     pub fn look_ahead(&mut self) -> bool {
-        !self.is_still() && self.next.is_none() && self.planner.work_ahead()
+        !self.is_still() && !self.is_switching() && self.planner.work_ahead()
     }
 
     /// Returns the last result of the planner and its problem; `None` if the scene shows no planned
@@ -234,7 +252,7 @@ impl<'a> Player<'a> {
     /// Returns the report of the scene, with the horizon that the planner has verified.
     fn now(&self) -> Report {
         let report = self.scene.report(self.planner.ticks);
-        if self.stopped {
+        if self.is_stopped() {
             return Report {
                 stepping: None,
                 horizon: Horizon::Until(0.0),
@@ -247,7 +265,7 @@ impl<'a> Player<'a> {
         };
 
         let verified = self.planner.horizon(stepping) as f32;
-        let horizon = if self.planner.is_settled() && self.next.is_none() {
+        let horizon = if self.planner.is_settled() && !self.is_switching() {
             Horizon::Until(verified)
         } else if verified >= report.time as f32 {
             Horizon::AtLeast(verified)
@@ -263,15 +281,16 @@ impl<'a> Player<'a> {
     /// To be called before each frame.
     #[inline(never)]
     pub fn check(&mut self) -> bool {
-        if self.stopped {
+        if self.is_stopped() {
             return false;
         }
         let report = self.now();
-        self.stopped = report.state.finite().is_err();
-        if !self.stopped {
-            self.report = report;
+        if report.state.finite().is_err() {
+            self.motion = MotionState::Stopped;
+            return true;
         }
-        self.stopped
+        self.report = report;
+        false
     }
 
     /// Draws the scene, and a mark if it is paused. If the scene is stopped, writes the reason
@@ -312,8 +331,16 @@ impl<'a> Player<'a> {
         self.state() != PlayState::Playing
     }
 
+    fn is_stopped(&self) -> bool {
+        matches!(self.motion, MotionState::Stopped)
+    }
+
+    fn is_switching(&self) -> bool {
+        matches!(self.motion, MotionState::Switching(_))
+    }
+
     pub fn state(&self) -> PlayState {
-        if self.stopped {
+        if self.is_stopped() {
             PlayState::Stopped
         } else if self.pace.paused {
             PlayState::Paused
