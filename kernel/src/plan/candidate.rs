@@ -18,10 +18,20 @@ pub(super) struct Candidate {
     pub accurate_frames: u32,
     /// The largest error in these frames, divided by the tolerance.
     pub error: f32,
-    /// True if a frame was inaccurate, or if the candidate is excluded.
-    pub failed: bool,
+    state: CandidateState,
     /// The steps per frame of the fine run of the reference; `u32::MAX` without a reference.
     pub judge_steps: u32,
+}
+
+/// The state of a candidate in its trial.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum CandidateState {
+    /// Every frame so far was accurate.
+    Accurate,
+    /// A frame was inaccurate. The frames before it still count.
+    Failed,
+    /// The candidate is not part of the trial, or no longer.
+    Excluded,
 }
 
 impl Candidate {
@@ -30,9 +40,19 @@ impl Candidate {
             stepping,
             accurate_frames: 0,
             error: 0.0,
-            failed: false,
+            state: CandidateState::Accurate,
             judge_steps: u32::MAX,
         }
+    }
+
+    /// Returns true if the candidate is part of the trial and every frame so far was accurate.
+    pub fn is_accurate(&self) -> bool {
+        self.state == CandidateState::Accurate
+    }
+
+    /// Excludes the candidate from the trial.
+    pub fn exclude(&mut self) {
+        self.state = CandidateState::Excluded;
     }
 
     /// Returns true if the horizon is enough longer than that of `other` to be worth a higher cost.
@@ -47,7 +67,7 @@ impl Candidate {
     /// first inaccurate frame nothing more is recorded.
     #[inline(never)] // Not inlined, to save flash.
     pub fn note(&mut self, error: f32, bound: f32) {
-        if self.failed {
+        if !self.is_accurate() {
             return;
         }
         if bound <= TOLERATED {
@@ -58,7 +78,7 @@ impl Candidate {
             };
             self.accurate_frames += 1;
         } else {
-            self.failed = true;
+            self.state = CandidateState::Failed;
         }
     }
 }

@@ -156,7 +156,6 @@ fn tried(stepping: Stepping) -> [Stepping; 3] {
 }
 
 /// The indices of candidates and runs.
-const THIRD: usize = 2;
 const PLAIN: usize = 3;
 const CLOSED: usize = 4;
 const COARSE: usize = 5;
@@ -224,13 +223,22 @@ impl Trial {
         }
 
         // Exclude the candidates that are not part of this trial.
-        candidates[0].failed = !is_in_32_bits;
-        for several in &mut candidates[1..=THIRD] {
-            several.failed = !is_in_32_bits || reference.is_none();
-        }
-        candidates[PLAIN].failed = stepping.method != Method::Rk4F32Direction;
-        for in_64_bits in &mut candidates[COARSE..] {
-            in_64_bits.failed = reference.is_none();
+        let has_reference = reference.is_some();
+        let has_several = is_in_32_bits && has_reference;
+        let has_plain = stepping.method == Method::Rk4F32Direction;
+        let are_tried = [
+            is_in_32_bits,
+            has_several,
+            has_several,
+            has_plain,
+            true,
+            has_reference,
+            has_reference,
+        ];
+        for (candidate, is_tried) in candidates.iter_mut().zip(are_tried) {
+            if !is_tried {
+                candidate.exclude();
+            }
         }
 
         let Problem {
@@ -276,9 +284,11 @@ impl Trial {
         own + second + third + costs.of_frame(coarse) + costs.of_frame(fine)
     }
 
-    /// Returns true if a candidate in 32 bits, or the closed form, has not failed.
+    /// Returns true if a candidate in 32 bits, or the closed form, is accurate so far.
     pub fn has_candidate_in_32_bits(&self) -> bool {
-        self.candidates[..=CLOSED].iter().any(|one| !one.failed)
+        self.candidates[..=CLOSED]
+            .iter()
+            .any(Candidate::is_accurate)
     }
 
     /// Returns the largest number of accurate frames of a candidate in 32 bits.
@@ -289,15 +299,16 @@ impl Trial {
         frames.max().unwrap_or(0)
     }
 
-    /// Returns true if a candidate in 64 bits has not failed.
+    /// Returns true if a candidate in 64 bits is accurate so far.
     pub fn has_candidate_in_64_bits(&self) -> bool {
-        self.candidates[COARSE..].iter().any(|one| !one.failed)
+        self.candidates[COARSE..].iter().any(Candidate::is_accurate)
     }
 
     /// Returns the runs in 32 bits that are still needed, with their indices.
     fn single(&mut self) -> impl Iterator<Item = (usize, &mut Run<DrawnMotion32>)> {
         let all = self.reference.is_none();
-        let [own, second, third, plain, ..] = self.candidates.map(|one| !one.failed);
+        let [own, second, third, plain, ..] =
+            self.candidates.each_ref().map(Candidate::is_accurate);
         let needed = [all || own, all || second, all || third, plain, all];
         let runs = self.single.iter_mut().enumerate().zip(needed);
         runs.filter(|(_, is_needed)| *is_needed).map(|(run, _)| run)
@@ -439,10 +450,10 @@ impl Trial {
         if self.has_candidate_in_64_bits() {
             let rounding = self.shadows.compare(self.rods, &fine);
             let of_coarse = BESIDE_REFERENCE * spread + of_fine;
-            self.by_rounding = if self.candidates[FINE].failed {
-                rounding > of_coarse
-            } else {
+            self.by_rounding = if self.candidates[FINE].is_accurate() {
                 rounding > of_fine
+            } else {
+                rounding > of_coarse
             };
 
             self.candidates[COARSE].note(spread, of_coarse + rounding);
@@ -454,7 +465,7 @@ impl Trial {
     /// them.
     pub fn exclude_64_bits(&mut self) {
         for in_64_bits in &mut self.candidates[COARSE..] {
-            in_64_bits.failed = true;
+            in_64_bits.exclude();
         }
     }
 
@@ -474,7 +485,7 @@ impl Trial {
         self.candidates
             .iter_mut()
             .filter(|candidate| !wanted(candidate))
-            .for_each(|candidate| candidate.failed = true);
+            .for_each(Candidate::exclude);
     }
 
     /// Returns the factor on the step count of the next trial, or `None` if finer steps do not help
@@ -491,10 +502,10 @@ impl Trial {
 
     /// Returns the cost of one frame of all runs that are still needed.
     pub fn frame_cost(&mut self, costs: &Costs) -> f32 {
-        let closed = if self.candidates[CLOSED].failed {
-            0.0
-        } else {
+        let closed = if self.candidates[CLOSED].is_accurate() {
             costs.of_frame(self.candidates[CLOSED].stepping)
+        } else {
+            0.0
         };
 
         let single = self.single().map(|(_, run)| costs.of_frame(run.stepping));
