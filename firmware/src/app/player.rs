@@ -48,10 +48,10 @@ enum MotionState {
     KeepsMethod,
     /// The motion follows the plan: the next better result of the planner replaces its method.
     FollowsPlan,
-    /// The planned motion catches up with the one that is shown, and then takes over. Meanwhile
-    /// nothing is planned.
+    /// The planned motion catches up with the current one, and then takes over. Meanwhile nothing is
+    /// planned.
     Switching(CatchingUp),
-    /// The motion cannot be computed: it is too fast for every method that a frame can pay for, or it
+    /// The motion cannot be computed. It is too fast for every method that a frame can pay for, or
     /// has left the finite numbers.
     Stopped,
 }

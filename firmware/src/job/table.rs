@@ -1,4 +1,4 @@
-//! The methods of a job: the type of each, and those that boards have.
+//! The methods of a job: the type of each method, and the methods that boards have.
 
 use double_pendulum::golden::{Bits, Golden};
 use double_pendulum::parts::{Canonical, DrawnMotion};
@@ -10,8 +10,8 @@ use super::comparison::{Micromath, Textbook};
 use super::run::{start, start_drawn};
 use super::{Reading, Request, Run, answer, crc};
 
-/// Calls `visitor` with the type that computes `method`: a type of the kernel, or one that the
-/// kernel is compared with.
+/// Calls `visitor` with the type that computes `method`: a type of the kernel or, for a comparison
+/// with the kernel, of this module.
 ///
 /// This links every method. Hosts and the program `measure` use it; the application of a board does
 /// not.
@@ -64,8 +64,8 @@ pub enum OnBoards {
 }
 
 impl OnBoards {
-    /// Returns the motion of a request at its start, or the kernel's error. Returns `None` if boards
-    /// do not have the method.
+    /// Returns the motion of a request at its start, or the kernel's error. Returns `None` if
+    /// boards do not have the method.
     #[inline(never)] // Inlined, the compiler would move this large value word by word.
     pub fn start(request: &Request) -> Option<Result<Self, Error>> {
         Some(match request.method {
@@ -187,8 +187,9 @@ impl Request {
         visit(self.method, Readings { request, each })
     }
 
-    /// Returns the CRC-32 of all numbers that the method carries, at every sample except the initial
-    /// one, and of the last state. If those of two runs are equal, the runs are bit-identical.
+    /// Returns the CRC-32 of all numbers that the method carries, at every sample except the
+    /// initial one, and of the last state. If those of two runs are equal, the runs are
+    /// bit-identical.
     pub fn crc(&self) -> Result<u32, Error> {
         visit(self.method, CrcOf(self))
     }

@@ -142,6 +142,7 @@ impl DrawnMotion32 {
                 Self::Rk4F32Direction(Form::new(parameters, start, dt)?)
             }
             DrawnMethod::Rk4Fixed32 => Self::Rk4Fixed32(Form::new(parameters, start, dt)?),
+            // In 64 bits: `DrawnMotion::new` creates its motion.
             DrawnMethod::Extrapolation10Fixed64 => return Err(Error::NotDrawn { method }),
             #[cfg(test)]
             DrawnMethod::Rk4F32Lagrange => Self::Rk4F32Lagrange(Form::new(parameters, start, dt)?),

@@ -193,9 +193,8 @@ fn list(board: &Board, costs: &Costs) -> String {
     let title = board.core().name();
     let name = title.to_uppercase().replace('-', "_").replace('+', "PLUS");
     let value = format!("{costs:#.1?}").replace('\n', "\n    ");
-    format!(
-        "    /// The counted price list of a {title}, in cycles.\n    pub const {name}: Costs = {value};\n"
-    )
+    let doc = format!("    /// The counted price list of a {title}, in cycles.\n");
+    doc + &format!("    pub const {name}: Costs = {value};\n")
 }
 
 #[cfg(test)]
