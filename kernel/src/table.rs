@@ -100,6 +100,9 @@ impl fmt::Display for Integrator {
 /// | `closed-form-f32` | Linear | F32 | ClosedForm | 0 | yes |
 /// | `rk4-f32-micromath` | Hamilton | F32 | Rk4 | 4 |  |
 /// | `textbook-f32` | Textbook | F32 | Rk4 | 4 |  |
+///
+/// Binary formats of `serde` store the position of the variant. A new method is therefore the last
+/// one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]

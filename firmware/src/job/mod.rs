@@ -19,7 +19,7 @@ mod table;
 use core::fmt;
 
 use crc::{CRC_32_ISO_HDLC, Crc, Table};
-use double_pendulum::{Integrator, Method, Motion, Parameters, Pendulum};
+use double_pendulum::{Form, Integrator, Method, Motion, Parameters, Pendulum};
 use heapless::Vec;
 use serde::{Deserialize, Serialize};
 
@@ -139,14 +139,14 @@ impl fmt::Display for Request {
 
 /// Returns the CRC-32 of all numbers that the method carries, at every sample except the initial
 /// one, and of the last state.
-fn crc(mut run: impl Run, request: &Request) -> u32 {
+fn crc<F: Form>(mut run: F, request: &Request) -> u32 {
     let mut digest = CRC.digest();
     for _ in 0..request.samples {
         counted_steps(&mut run, request.stride);
-        run.bits(|word| digest.update(&word.to_le_bytes()));
+        Form::bits(&run, |word| digest.update(&word.to_le_bytes()));
     }
 
-    <[f64; 4]>::from(run.state())
+    <[f64; 4]>::from(Form::state(&run))
         .iter()
         .for_each(|number| digest.update(&number.to_le_bytes()));
     digest.finalize()

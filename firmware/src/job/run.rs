@@ -1,12 +1,12 @@
-//! The interface of a row of the table: a motion that can be started, advanced and read.
+//! The interface of a motion that a job advances, and its start.
 
 use double_pendulum::parts::DrawnMotion;
 use double_pendulum::{Error, Form, Integrator, Motion, Parameters, Pendulum, Real, State};
 
 use super::Request;
 
-/// A motion in progress, with all numbers that its method carries. The type of every row implements
-/// this trait.
+/// A motion in progress. The types of all methods implement this trait, and so does
+/// [`OnBoards`](super::OnBoards).
 pub trait Run: Copy {
     /// Makes `steps` steps. `advance(a); advance(b)` is bit-identical to `advance(a + b)`.
     fn advance(&mut self, steps: u32);
@@ -20,9 +20,6 @@ pub trait Run: Copy {
     fn sides(&self) -> Option<[[i32; 2]; 2]> {
         None
     }
-
-    /// Calls `feed` with the bits of all numbers that are carried from step to step.
-    fn bits(&self, feed: impl FnMut(u64));
 }
 
 /// Returns the motion of a request at its start, by the method that the type `F` computes. Returns
@@ -63,10 +60,6 @@ impl<F: Form> Run for F {
 
     fn sides(&self) -> Option<[[i32; 2]; 2]> {
         (!F::HAS_TURNS).then(|| Form::sides(self))
-    }
-
-    fn bits(&self, feed: impl FnMut(u64)) {
-        Form::bits(self, feed);
     }
 }
 

@@ -127,18 +127,6 @@ impl Run for OnBoards {
             Self::ClosedFormF64(motion) => Run::sides(motion),
         }
     }
-
-    fn bits(&self, feed: impl FnMut(u64)) {
-        match self {
-            Self::Drawn(motion) => motion.bits(feed),
-            Self::Rk4F64(motion) => Run::bits(motion, feed),
-            Self::Rk4F32(motion) => Run::bits(motion, feed),
-            Self::Extrapolation8Fixed64(motion) => Run::bits(motion, feed),
-            Self::Extrapolation12Fixed64(motion) => Run::bits(motion, feed),
-            Self::Extrapolation16Fixed64(motion) => Run::bits(motion, feed),
-            Self::ClosedFormF64(motion) => Run::bits(motion, feed),
-        }
-    }
 }
 
 /// Computes the bits of a motion of the kernel's golden file.

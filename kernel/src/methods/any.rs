@@ -248,18 +248,6 @@ impl DrawnMotion32 {
             Self::Rk4F32Lagrange(_) => super::lagrange::LagrangeF32::HAS_TURNS,
         }
     }
-
-    /// Passes all words that the method carries from step to step to `feed`.
-    fn bits(&self, feed: impl FnMut(u64)) {
-        match self {
-            Self::ClosedFormF32(motion) => motion.bits(feed),
-            Self::Rk4F32DirectionPlain(motion) => motion.bits(feed),
-            Self::Rk4F32Direction(motion) => motion.bits(feed),
-            Self::Rk4Fixed32(motion) => motion.bits(feed),
-            #[cfg(test)]
-            Self::Rk4F32Lagrange(motion) => motion.bits(feed),
-        }
-    }
 }
 
 impl DrawnMotion {
@@ -355,14 +343,6 @@ impl DrawnMotion {
         match self {
             Self::In32Bits(motion) => motion.has_turns(),
             Self::Extrapolation10Fixed64(_) => DrawnMotion64::HAS_TURNS,
-        }
-    }
-
-    /// Passes all words that the method carries from step to step to `feed`.
-    pub fn bits(&self, feed: impl FnMut(u64)) {
-        match self {
-            Self::In32Bits(motion) => motion.bits(feed),
-            Self::Extrapolation10Fixed64(motion) => motion.bits(feed),
         }
     }
 }
