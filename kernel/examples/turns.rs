@@ -1,4 +1,5 @@
-//! Angles with all their turns, whatever the method: a pendulum let go nearly upright.
+//! Angles with all their turns, by a method that carries directions: a pendulum let go nearly
+//! upright.
 
 use double_pendulum::{Error, ExtrapolationF64, Parameters, Pendulum, State};
 
@@ -11,7 +12,9 @@ fn main() -> Result<(), Error> {
         g: 9.81,
     })?;
     let start = State::at_rest(3.0, 3.0);
-    let mut run = pendulum.run::<ExtrapolationF64<12>>(&start, 1.0 / 256.0)?;
+    let mut run = pendulum
+        .run::<ExtrapolationF64<12>>(&start, 1.0 / 256.0)?
+        .counting_turns();
     let mut most: f64 = 0.0;
     for _ in 0..10 {
         run.advance(256)?;

@@ -95,7 +95,7 @@ impl Golden {
     /// Computes the bits of this motion by the method `F`.
     pub fn bits<F: Form>(&self) -> Result<Bits, Error> {
         let pendulum = Pendulum::<f64>::new(&self.parameters)?;
-        let mut run = pendulum.run::<F>(&self.start, self.dt)?;
+        let mut run = pendulum.run::<F>(&self.start, self.dt)?.counting_turns();
 
         let mut checksum = FNV_OFFSET;
         for _ in 0..STEPS {

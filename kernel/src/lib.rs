@@ -18,7 +18,7 @@
 //! let mut run = pendulum.run::<DirectionF32>(&State::at_rest(0.5, 1.0), 1.0 / 240.0)?;
 //! run.advance(240)?; // All or nothing: a motion that leaves the finite numbers is an error.
 //! let [[_sin1, _cos1], [_sin2, _cos2]] = run.directions(); // Enough to draw both rods.
-//! let [a1, a2] = run.angles(); // With all their turns.
+//! let [a1, a2] = run.angles(); // Within half a turn; `Run::counting_turns` counts the others.
 //! assert!(a1.abs() < 1.0 && a2.abs() < 3.0 && run.time() == 1.0);
 //! assert!((f64::from(run.energy()) - pendulum.energy(&run.state())).abs() < 1e-4);
 //! # Ok::<(), double_pendulum::Error>(())

@@ -174,7 +174,9 @@ impl Trial {
     /// Returns the states at `moments` moments by RK4 in compensated `f64`, which is not in the
     /// table.
     pub fn states_in_f64(&self, dt: f64, moments: u32) -> Result<Vec<State<f64>>, Error> {
-        let mut run = Pendulum::new(&self.parameters)?.run::<DirectionF64>(&self.start, dt)?;
+        let mut run = Pendulum::new(&self.parameters)?
+            .run::<DirectionF64>(&self.start, dt)?
+            .counting_turns();
         let steps = self.steps(dt, moments);
         (0..moments)
             .map(|_| advance(&mut run, steps).map(|()| run.state()))

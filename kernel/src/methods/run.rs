@@ -1,4 +1,4 @@
-//! Motions in progress, with checks and with a count of whole turns.
+//! Motions in progress, with checks and, on request, with a count of whole turns.
 
 use super::{Fixed32, Form};
 use crate::bounds::stable_step;
@@ -8,14 +8,26 @@ use crate::pendulum::{Direction, Parameters, Pendulum, State};
 
 /// A motion in progress by the method `F`. [`Pendulum::run`] returns it.
 ///
-/// It takes a few hundred bytes and no heap. A step must not turn a rod by more than a quarter
-/// turn, otherwise whole turns are miscounted.
+/// It takes a few hundred bytes and no heap.
+///
+/// # Whole turns
+///
+/// The methods that carry directions do not know how often a rod has turned over. Their angles are
+/// within half a turn, in (-pi, pi], unless the turns are counted: [`counting_turns`] returns a
+/// `Run<F, true>`, which looks at the directions after every step. On a Cortex-M4F this takes 245
+/// cycles a step, more than the step itself. A drawing needs no turns.
+///
+/// [`HamiltonF32`](crate::HamiltonF32), [`HamiltonF64`](crate::HamiltonF64) and the closed form
+/// carry angles, which always include whole turns.
+///
+/// [`counting_turns`]: Run::counting_turns
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Run<F: Form> {
+pub struct Run<F: Form, const COUNTS_TURNS: bool = false> {
     pendulum: Pendulum<F::Real>,
     /// The energy H, J, above which the motion counts as diverged. Unused if `F` checks its energy.
     most_energy: F::Real,
     motion: F,
+    /// The turns of the start; of every step since then if they are counted.
     turns: [Turns; 2],
     dt: f64,
     steps: u64,
@@ -104,6 +116,45 @@ fn start_within<F: Form>(
 const ENERGY_GROWTH: f64 = 100.0;
 
 impl<F: Form> Run<F> {
+    /// Returns the same motion with a count of whole turns, for [`angles`](Self::angles) and
+    /// [`state`](Self::state).
+    ///
+    /// Call it before the first step, and the turns of the start are included. Later, the count
+    /// begins at angles in (-pi, pi]. A step must not turn a rod by more than a quarter turn,
+    /// otherwise whole turns are miscounted.
+    ///
+    /// ```
+    /// use double_pendulum::{DirectionF32, Parameters, Pendulum, State};
+    ///
+    /// let pendulum = Pendulum::new(&Parameters::equal_rods(1.0, 1.0, 9.81))?;
+    /// let start = State::at_rest(7.0, 0.5);
+    /// let run = pendulum.run::<DirectionF32>(&start, 1.0 / 240.0)?;
+    /// assert!((run.angles()[0] - (7.0 - core::f32::consts::TAU)).abs() < 1e-6);
+    /// assert!((run.counting_turns().angles()[0] - 7.0).abs() < 1e-6);
+    /// # Ok::<(), double_pendulum::Error>(())
+    /// ```
+    #[must_use]
+    pub fn counting_turns(self) -> Run<F, true> {
+        let turns = if self.steps == 0 {
+            self.turns
+        } else {
+            Turns::within_half_a_turn(self.motion.sides())
+        };
+        Run {
+            pendulum: self.pendulum,
+            most_energy: self.most_energy,
+            motion: self.motion,
+            turns,
+            dt: self.dt,
+            steps: self.steps,
+        }
+    }
+}
+
+impl<F: Form, const COUNTS_TURNS: bool> Run<F, COUNTS_TURNS> {
+    /// True if the turns are counted here, because the method does not carry them.
+    const OBSERVES: bool = COUNTS_TURNS && !F::HAS_TURNS;
+
     /// Advances the motion by `steps` steps.
     ///
     /// `advance(a); advance(b)` is bit-identical to `advance(a + b)`.
@@ -125,13 +176,13 @@ impl<F: Form> Run<F> {
             mut turns,
             ..
         } = *self;
-        if F::HAS_TURNS {
-            motion.advance(steps);
-        } else {
+        if Self::OBSERVES {
             for _ in 0..steps {
                 motion.advance(1);
                 Turns::observe(&mut turns, motion.sides());
             }
+        } else {
+            motion.advance(steps);
         }
 
         // Check the result before it is stored.
@@ -177,20 +228,28 @@ impl<F: Form> Run<F> {
         self.motion.directions()
     }
 
-    /// Returns both angles, rad, including whole turns, at the time of the
-    /// [`directions`](Self::directions). The cost is that of two arc tangents.
+    /// Returns both angles, rad, at the time of the [`directions`](Self::directions). The cost is
+    /// that of two arc tangents.
+    ///
+    /// They are within (-pi, pi], unless [whole turns](Self#whole-turns) are counted.
     #[must_use]
     pub fn angles(&self) -> [F::Real; 2] {
         if F::HAS_TURNS {
             return self.state().cast().angles();
         }
-        let [direction1, direction2] = self.directions();
-        let [turns1, turns2] = &self.turns;
-        [turns1.angle(direction1), turns2.angle(direction2)]
+        let directions = self.directions();
+        if Self::OBSERVES {
+            let [direction1, direction2] = directions;
+            let [turns1, turns2] = &self.turns;
+            [turns1.angle(direction1), turns2.angle(direction2)]
+        } else {
+            directions.map(|[s, c]| s.atan2(c))
+        }
     }
 
-    /// Returns the canonical state in SI units, with all digits that the method carries. The angles
-    /// include whole turns.
+    /// Returns the canonical state in SI units, with all digits that the method carries.
+    ///
+    /// The angles are within (-pi, pi], unless [whole turns](Self#whole-turns) are counted.
     ///
     /// The state is that at the number of steps times dt, even if the motion itself is ahead of
     /// that time ([`Form`]). The difference is taken back. This changes the energy by at most a
@@ -198,10 +257,10 @@ impl<F: Form> Run<F> {
     #[must_use]
     pub fn state(&self) -> State<f64> {
         let state = self.motion.state();
-        if F::HAS_TURNS {
-            state
-        } else {
+        if Self::OBSERVES {
             Turns::unwrap(&self.turns, state)
+        } else {
+            state
         }
     }
 
@@ -225,7 +284,7 @@ impl<F: Form> Run<F> {
     }
 }
 
-impl Run<Fixed32> {
+impl<const COUNTS_TURNS: bool> Run<Fixed32, COUNTS_TURNS> {
     /// Returns the directions of both rods, (sin, cos) each times 2^30, accurate to 2^-27.
     ///
     /// They are computed in integers only, as are the steps. A loop of both links no software
@@ -279,6 +338,11 @@ impl Turns {
         }
         Self::observe(&mut turns, now);
         Ok(turns)
+    }
+
+    /// Starts the count at the angles in (-pi, pi] whose directions have the signs `now`.
+    fn within_half_a_turn(now: [[i32; 2]; 2]) -> [Self; 2] {
+        now.map(|last| Self { whole: 0, last })
     }
 
     /// Observes the signs that the directions have now, and counts a turn for each that has turned

@@ -1,6 +1,8 @@
-//! Refusals of a run: a step beyond the limit of stability, and a motion that has diverged.
+//! Refusals of a run, and its turns: a step beyond the limit of stability, a motion that has
+//! diverged, and turns that are counted on request.
 
-use core::f64::consts::PI;
+use core::f64::consts::{PI, TAU};
+use std::vec;
 
 use double_pendulum::parts::DirectionF64;
 use double_pendulum::{
@@ -166,4 +168,60 @@ fn advance_refuses_an_energy_far_above_that_of_the_start() -> Result<(), Error> 
     energy_stays_within_its_bound::<DirectionF32Plain>()?;
     energy_stays_within_its_bound::<DirectionF64>()?;
     energy_stays_within_its_bound::<ExtrapolationF64<12>>()
+}
+
+/// Runs a motion that turns over, with and without counted turns.
+///
+/// Both motions have the same bits. The angles of both differ by whole turns. The counted angles
+/// follow the rods beyond a turn; the others are within half a turn, or equal to them if the method
+/// carries angles.
+fn counts_turns_on_request<F: Form>() -> Result<(), Error> {
+    let pendulum = Pendulum::new(&Parameters { m2: 2.75, ..EVEN })?;
+    let mut plain = pendulum.run::<F>(&State::at_rest(3.0, 3.0 + TAU), 1.0 / 256.0)?;
+    let mut counting = plain.counting_turns();
+    let mut farthest: f64 = 0.0;
+    for _ in 0..640 {
+        plain.advance(4)?;
+        counting.advance(4)?;
+        let mut words = [vec![], vec![]];
+        plain.bits(|word| words[0].push(word));
+        counting.bits(|word| words[1].push(word));
+        assert_eq!(words[0], words[1]);
+
+        // A count that begins now begins within half a turn.
+        assert_eq!(plain.counting_turns().angles(), plain.angles());
+
+        let [own, counted] = [plain.angles(), counting.angles()].map(|it| it.map(Real::to_f64));
+        let states = [plain.state(), counting.state()].map(|state| state.angles());
+        for (own, counted) in own
+            .into_iter()
+            .zip(counted)
+            .chain(states[0].into_iter().zip(states[1]))
+        {
+            let turns = (counted - own) / TAU;
+            assert!(
+                (turns - turns.round()).abs() < 1e-6,
+                "{own} and {counted} rad"
+            );
+            if F::HAS_TURNS {
+                assert_eq!(own, counted);
+            } else {
+                assert!(own.abs() <= PI + 1e-6, "{own} rad");
+            }
+            farthest = farthest.max(counted.abs());
+        }
+    }
+    assert!(farthest > 3.0 * PI, "no rod turned over: {farthest} rad");
+
+    Ok(())
+}
+
+#[test]
+fn turns_are_counted_on_request() -> Result<(), Error> {
+    counts_turns_on_request::<DirectionF32>()?;
+    counts_turns_on_request::<DirectionF32Plain>()?;
+    counts_turns_on_request::<Fixed32>()?;
+    counts_turns_on_request::<Fixed64<12>>()?;
+    counts_turns_on_request::<ExtrapolationF64<12>>()?;
+    counts_turns_on_request::<HamiltonF64>()
 }
