@@ -35,7 +35,7 @@
 //! | Legendre transformation | [`Pendulum::to_state`], [`Pendulum::to_motion`] | `lagrange` |
 //! | Hamilton's equations, H | [`Pendulum::derivatives`], [`Pendulum::energy`] | `hamilton` |
 //! | equal rods | [`Parameters::equal_rods`] | `hamilton` |
-//! | Runge-Kutta method | [`Pendulum::step`], [`rk4::step`] | `added_method`; host: `methods` |
+//! | Runge-Kutta method | [`Pendulum::step`], [`rk4::step`] | `integrators`; host: `methods` |
 //! | small oscillations | [`Modes`], [`SmallOscillations`] | `small_oscillations` |
 //! | coordinates | [`Pendulum::positions`], [`Pendulum::velocities`] | `lagrange` |
 //!
@@ -155,8 +155,9 @@ pub use table::{Equations, Integrator, Method, Numbers};
 /// Parts of the methods, for tools and tests. They may change at any time.
 #[doc(hidden)]
 pub mod parts {
+    pub use crate::methods::rk4::Rk4;
     pub use crate::methods::{
-        Canonical, Derivatives, DirectionF64, DrawnMotion, Rk4Direction, Turns,
+        Canonical, Derivatives, DirectionF64, DrawnMotion, Rk4Direction, RungeKutta, Turns,
     };
 }
 

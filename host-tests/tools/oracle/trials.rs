@@ -19,7 +19,7 @@ pub fn exact_methods() -> impl Iterator<Item = Method> {
     Method::ALL.iter().copied().filter(is_exact)
 }
 
-/// A [`Run`] whose method is chosen at run time. Its numbers are widened to `f64`.
+/// A [`Run`] that counts turns, whose method is chosen at run time. Its numbers are widened to `f64`.
 pub trait AnyRun: Debug {
     fn advance(&mut self, steps: u32) -> Result<(), Error>;
     fn state(&self) -> State<f64>;
@@ -28,7 +28,7 @@ pub trait AnyRun: Debug {
     fn energy(&self) -> f64;
 }
 
-impl<F: Form> AnyRun for Run<F> {
+impl<F: Form> AnyRun for Run<F, true> {
     fn advance(&mut self, steps: u32) -> Result<(), Error> {
         Run::advance(self, steps)
     }
@@ -61,7 +61,8 @@ impl FormVisitor for Start<'_> {
     type Output = Result<Box<dyn AnyRun>, Error>;
 
     fn visit<F: Form>(self) -> Self::Output {
-        Ok(Box::new(self.pendulum.run::<F>(self.state, self.dt)?))
+        let run = self.pendulum.run::<F>(self.state, self.dt)?;
+        Ok(Box::new(run.counting_turns()))
     }
 }
 

@@ -3,6 +3,7 @@
 //! [`Pendulum::run`](crate::Pendulum::run) takes the type of a method and returns a motion.
 
 pub(crate) mod any;
+mod canonical;
 mod closed_form;
 pub(crate) mod direction;
 pub mod extrapolation;
@@ -17,10 +18,10 @@ pub(crate) mod run;
 mod scaling;
 
 pub use any::{DrawnMotion, FormVisitor};
+pub use canonical::{Canonical, Derivatives, RungeKutta};
 pub use closed_form::{ClosedForm, Oscillation, SmallOscillations};
 pub use extrapolation_f64::ExtrapolationF64;
 pub use extrapolation_fixed64::Fixed64;
-pub use rk4::{Canonical, Derivatives};
 pub use rk4_direction::Rk4Direction;
 pub use rk4_fixed32::Fixed32;
 pub use run::{Run, Turns};

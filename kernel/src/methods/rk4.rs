@@ -1,13 +1,9 @@
-//! The classical Runge-Kutta method of order 4 (RK4), for any system of first-order equations and
-//! for Hamilton's equations in angles and momenta.
+//! The classical Runge-Kutta method of order 4 (RK4), for any system of first-order equations.
 
-use core::fmt::Debug;
-
-use super::Form;
-use crate::bounds::check_step;
-use crate::error::Error;
-use crate::numbers::{Real, Sealed};
-use crate::pendulum::{Direction, Parameters, Pendulum, State};
+use super::RungeKutta;
+use crate::bounds::RK4_STABLE;
+use crate::numbers::Real;
+use crate::pendulum::{Pendulum, State};
 
 /// Computes one step of RK4 for z' = f(z): returns the state a time `dt` after `z`.
 ///
@@ -52,103 +48,17 @@ impl<R: Real> Pendulum<R> {
     }
 }
 
-/// The equations of motion of a pendulum.
-#[doc(hidden)]
-pub trait Derivatives<R: Real>: Copy + Debug + PartialEq + 'static {
-    /// Prepares the equations. Refuses parameters out of their range.
-    fn prepare(parameters: &Parameters<R>) -> Result<Self, Error>;
-    /// Returns the time derivatives of (a1, a2, p1, p2).
-    fn derivatives(&self, z: &[R; 4]) -> [R; 4];
-}
-
-#[doc(hidden)]
-impl<R: Real> Derivatives<R> for Pendulum<R> {
-    fn prepare(parameters: &Parameters<R>) -> Result<Self, Error> {
-        Pendulum::new(parameters)
-    }
-    #[inline(always)]
-    fn derivatives(&self, z: &[R; 4]) -> [R; 4] {
-        Pendulum::derivatives(self, z)
-    }
-}
-
-/// A motion by RK4 on the equations `E`. It carries the state (a1, a2, p1, p2) only.
+/// The classical Runge-Kutta method, as the integrator of [`Canonical`](super::Canonical).
 #[doc(hidden)]
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Canonical<R, E = Pendulum<R>> {
-    equations: E,
-    dt: R,
-    state: State<R>,
-}
+pub struct Rk4;
 
-impl<R, E> Sealed for Canonical<R, E> {}
-
-#[doc(hidden)]
-impl<R: Real, E: Derivatives<R>> Form for Canonical<R, E> {
-    type Real = R;
-    const HAS_TURNS: bool = true;
-
-    fn new(parameters: &Parameters<f64>, start: &State<f64>, dt: f64) -> Result<Self, Error> {
-        check_step::<f64>(dt)?;
-        let equations = E::prepare(&parameters.cast())?;
-        Self {
-            equations,
-            dt: R::from_f64(dt),
-            state: State::default(),
-        }
-        .started(start)
-    }
-
-    fn started(&self, start: &State<f64>) -> Result<Self, Error> {
-        let state = start.cast();
-        state.check()?;
-        Ok(Self { state, ..*self })
-    }
+impl RungeKutta for Rk4 {
+    const ORDER: u32 = 4;
+    const STABLE: f64 = RK4_STABLE;
 
     #[inline(always)]
-    fn advance(&mut self, steps: u32) {
-        for _ in 0..steps {
-            self.state = step(
-                |z| self.equations.derivatives(z),
-                &self.state.into(),
-                self.dt,
-            )
-            .into();
-        }
-    }
-
-    fn check(&self) -> Result<(), Error> {
-        self.state.finite().map(drop)
-    }
-
-    fn sides(&self) -> [[i32; 2]; 2] {
-        self.directions::<R>()
-            .map(|direction| direction.map(R::side))
-    }
-
-    fn side_value(side: i32) -> R {
-        R::from_side(side)
-    }
-
-    fn directions<Q: Real>(&self) -> [Direction<Q>; 2] {
-        self.state.angles().map(|angle| {
-            let (sin, cos) = angle.own_sin_cos();
-            [sin.cast(), cos.cast()]
-        })
-    }
-
-    fn momenta<Q: Real>(&self) -> [Q; 2] {
-        [self.state.p1.cast(), self.state.p2.cast()]
-    }
-
-    fn state(&self) -> State<f64> {
-        self.state.cast()
-    }
-
-    fn bits(&self, feed: impl FnMut(u64)) {
-        <[R; 4]>::from(self.state)
-            .map(R::bits)
-            .into_iter()
-            .for_each(feed);
+    fn step<R: Real, const N: usize>(f: impl Fn(&[R; N]) -> [R; N], z: &[R; N], dt: R) -> [R; N] {
+        step(f, z, dt)
     }
 }

@@ -8,12 +8,14 @@ mod added_method;
 mod forms;
 mod golden;
 mod hamilton;
+mod integrators;
 mod lagrange;
 mod random;
 mod refusals;
 mod runs;
 mod small_oscillations;
 mod symmetries;
+mod three_eighths;
 mod tolerances;
 mod trigonometry;
 
