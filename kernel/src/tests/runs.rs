@@ -191,6 +191,17 @@ fn counts_turns_on_request<F: Form>() -> Result<(), Error> {
         // A count that begins now begins within half a turn.
         assert_eq!(plain.counting_turns().angles(), plain.angles());
 
+        // The momenta for the check of the energy are nearly those of the state.
+        let motion = plain.motion();
+        for (nearly, exact) in motion
+            .momenta_nearly()
+            .into_iter()
+            .zip(motion.momenta::<f64>())
+        {
+            let error = (nearly.to_f64() - exact).abs();
+            assert!(error <= 3e-7 * exact.abs(), "{nearly:?} for {exact}");
+        }
+
         let [own, counted] = [plain.angles(), counting.angles()].map(|it| it.map(Real::to_f64));
         let states = [plain.state(), counting.state()].map(|state| state.angles());
         for (own, counted) in own
