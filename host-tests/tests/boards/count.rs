@@ -1,6 +1,7 @@
 //! The counter compared with a second way of counting, with goals and with the price lists.
 
 use std::ops::RangeInclusive;
+use std::sync::OnceLock;
 
 use anyhow::Result;
 
@@ -8,7 +9,9 @@ use crate::support::{targets, toolchain};
 use double_pendulum::plan::Costs;
 use double_pendulum::{Method, Parameters};
 use firmware::job::Request;
-use host_tests::commands::count::{FULL_CYCLE, affordable_cost, prices, step_cost};
+use host_tests::commands::count::{
+    FULL_CYCLE, Minimal, MinimalPrices, affordable_cost, prices, step_cost, table, table_in_readme,
+};
 use host_tests::commands::report::accuracy::{self, SCENES};
 
 /// The instructions in a tick of the board's clock, 12.5 MHz after reset, under `-icount`, where an
@@ -182,6 +185,92 @@ fn the_price_lists_are_what_is_counted() -> Result<()> {
     assert!(
         wrong.is_empty(),
         "accept by cargo count --write-prices: {wrong:#?}"
+    );
+    Ok(())
+}
+
+/// Returns the prices in a crate outside of this workspace, on one board for each kind of core.
+fn minimal() -> &'static [MinimalPrices] {
+    static COUNTED: OnceLock<Vec<MinimalPrices>> = OnceLock::new();
+    COUNTED.get_or_init(|| {
+        MinimalPrices::count_all(&toolchain()).unwrap_or_else(|error| panic!("{error:#}"))
+    })
+}
+
+/// The allowed ratio of a step by `Run::advance` in a crate outside to one by the hidden function
+/// that the methods are compared by: the same loop, compiled in two programs.
+const PUBLIC: RangeInclusive<f64> = 0.97..=1.03;
+
+#[test]
+fn a_crate_outside_pays_what_the_hidden_function_costs() -> Result<()> {
+    let mut wrong = Vec::new();
+    for target in &targets() {
+        let outside = minimal()
+            .iter()
+            .find(|outside| outside.board == target.board)
+            .expect("one of each core");
+        for &Minimal {
+            program,
+            steps,
+            step,
+            ..
+        } in outside
+            .prices
+            .iter()
+            .filter(|price| !price.program.counts_turns)
+        {
+            let hidden = step_cost(target, &request(program.method, 0.5, steps))?.cycles;
+            println!(
+                "{program} on {}: {step:.1}, hidden {hidden:.1}",
+                target.board.name
+            );
+            if !PUBLIC.contains(&(step / hidden)) {
+                wrong.push(format!(
+                    "{program} on {}: {step:.1} instead of {hidden:.1}",
+                    target.board.name
+                ));
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "cycles a step: {wrong:#?}");
+    Ok(())
+}
+
+/// A row of a table of prices: its name, and the numbers in its cells.
+type Row<'a> = (&'a str, Vec<f32>);
+
+/// Returns the rows of a table. Its numbers have commas between thousands.
+fn rows(table: &str) -> Vec<Row<'_>> {
+    let rows = table.lines().skip(2).filter_map(|row| {
+        let (name, cells) = row.strip_prefix("| ")?.split_once(" |")?;
+        let words = cells.split([' ', '|']).map(|word| word.replace(',', ""));
+        Some((name, words.filter_map(|word| word.parse().ok()).collect()))
+    });
+    rows.collect()
+}
+
+/// Returns true if both rows have the same name and about the same numbers.
+fn is_near((name, row): &Row, (counted_name, counted): &Row) -> bool {
+    name == counted_name
+        && row.len() == counted.len()
+        && row
+            .iter()
+            .zip(counted)
+            .all(|(shown, counted)| PRICED.contains(&(shown / counted)))
+}
+
+#[test]
+fn the_kernels_readme_shows_what_a_crate_outside_pays() -> Result<()> {
+    let [shown, counted] = [table_in_readme()?, table(minimal())];
+    let [all_shown, all_counted] = [&shown, &counted].map(|table| rows(table));
+    let is_right = all_shown.len() == all_counted.len()
+        && all_shown
+            .iter()
+            .zip(&all_counted)
+            .all(|(shown, counted)| is_near(shown, counted));
+    assert!(
+        is_right && !all_shown.is_empty(),
+        "shown:\n{shown}counted:\n{counted}accept by cargo count --minimal --readme"
     );
     Ok(())
 }

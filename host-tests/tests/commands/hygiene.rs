@@ -66,6 +66,25 @@ fn every_dependency_has_its_reason() {
     assert_eq!(named.collect::<BTreeSet<_>>(), rows.collect());
 }
 
+/// Returns the crates of a lock file, each as its name and version.
+fn locked(file: &str) -> BTreeSet<String> {
+    let text = read(file);
+    let crates = text.split("[[package]]\n").skip(1);
+    crates
+        .map(|lines| lines.lines().take(2).collect::<Vec<_>>().join(", "))
+        .collect()
+}
+
+/// The crate outside of the workspace has a lock file of its own. It names the same versions, so
+/// that nothing else has to be fetched. To follow the workspace, change `kernel/minimal/Cargo.lock`
+/// by `cargo update --manifest-path kernel/minimal/Cargo.toml --package NAME --precise VERSION`.
+#[test]
+fn the_minimal_programs_have_the_versions_of_the_workspace() {
+    let others = &locked("kernel/minimal/Cargo.lock") - &locked("Cargo.lock");
+    let own: Vec<_> = others.iter().map(String::as_str).collect();
+    assert_eq!(own, ["name = \"minimal\", version = \"0.0.0\""]);
+}
+
 /// The largest number of lines of a kernel example, a page, and of names that it imports.
 const LINES: usize = 50;
 const NAMES: usize = 6;

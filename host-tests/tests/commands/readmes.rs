@@ -200,6 +200,51 @@ fn cargo(arguments: &[&str], folder: &Path) {
     }
 }
 
+/// Returns the lines of a text that set something: neither empty, nor a comment, nor the name of a
+/// table.
+fn settings(text: &str) -> impl Iterator<Item = &str> {
+    text.lines()
+        .map(|line| line.split(" #").next().unwrap_or_default().trim())
+        .filter(|line| !line.is_empty() && !line.starts_with(['#', '[']))
+}
+
+/// The settings with which the kernel's README gives its prices are those that the counted programs
+/// are compiled with, and those of this repository. There are no others.
+#[test]
+fn the_kernels_readme_shows_the_settings_of_its_prices() {
+    let readme = read("kernel/README.md");
+    let (_, page) = readme
+        .split_once("\n## What a step costs\n")
+        .expect("its section");
+    let profile = block(page, "toml");
+    let (_, rest) = page.split_once(profile).expect("it is there");
+    let flags = block(rest.trim_start_matches("```"), "toml");
+
+    let minimal = read("kernel/minimal/Cargo.toml");
+    let (_, minimal) = minimal
+        .split_once("[profile.release]\n")
+        .expect("a profile");
+    let counted: BTreeSet<_> = settings(minimal)
+        .filter(|line| !line.starts_with("debug")) // It changes no code.
+        .collect();
+    assert_eq!(settings(profile).collect::<BTreeSet<_>>(), counted);
+
+    let ours = read("Cargo.toml");
+    let (_, ours) = ours.split_once("[profile.release]\n").expect("a profile");
+    let ours = ours.split("\n[").next().unwrap_or_default();
+    assert!(counted.is_subset(&settings(ours).collect()), "{ours}");
+
+    // The linker's flags are not about speed.
+    let config = read("kernel/minimal/.cargo/config.toml");
+    let config = config
+        .split("[target.'cfg")
+        .next()
+        .expect("the M4F comes first");
+    let shown: Vec<_> = settings(flags).collect();
+    assert_eq!(shown, settings(config).collect::<Vec<_>>());
+    assert!(read(".cargo/config.toml").contains(shown[0]), "{shown:?}");
+}
+
 /// Returns the first block of `kind` in a page.
 fn block<'a>(page: &'a str, kind: &str) -> &'a str {
     let blocks = page

@@ -1,7 +1,7 @@
 //! Builds of the firmware. Both sources of the core library use the same flags.
 
 use std::ffi::OsString;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
@@ -9,7 +9,7 @@ use std::{env, fs};
 
 use anyhow::{anyhow, ensure};
 
-use super::bring::run_shown;
+use super::bring::{run_shown, says};
 use super::{TARGETS, Toolchain, remap, set_up_for, target, workspace};
 use crate::boards::{Board, PICO, every_board};
 
@@ -76,6 +76,13 @@ impl Toolchain {
             command.env("PATH", path_with(own.linker.clone()));
         }
         command
+    }
+
+    /// Returns the compiler of the firmware.
+    fn rustc(&self) -> &Path {
+        self.from_source
+            .as_ref()
+            .map_or("rustc".as_ref(), |own| own.rustc.as_path())
     }
 
     /// Returns the folder in which the firmware is built. It is separate from that of the host's
@@ -167,6 +174,46 @@ impl Toolchain {
             .try_for_each(|(target, double)| self.build_core_images(&[target], double))
     }
 
+    /// Builds the programs of `kernel/minimal` for a target, as a user of the kernel would, and
+    /// returns the folder of their ELF files.
+    ///
+    /// Cargo runs in an empty folder, so that the settings of this repository do not apply. The
+    /// crate's own settings are passed to it.
+    pub fn build_minimal(&self, target: &str) -> anyhow::Result<PathBuf> {
+        let nowhere = tempfile::tempdir()?;
+        let package = workspace().join("kernel/minimal");
+        let folder = Self::folder().join("minimal");
+        let rustc = self.rustc();
+        let flags = remap::flags(rustc).map_err(|error| anyhow!(error))?;
+
+        let mut command = self.cargo();
+        if self.from_source.is_none() {
+            // The compiler of the workspace, which rustup would not choose in another folder.
+            let mut sysroot = Command::new(rustc);
+            sysroot
+                .args(["--print", "sysroot"])
+                .current_dir(workspace());
+            let sysroot = says(&mut sysroot).map_err(|error| anyhow!(error))?;
+            let suffix = env::consts::EXE_SUFFIX;
+            let rustc = PathBuf::from(sysroot.trim()).join(format!("bin/rustc{suffix}"));
+            command.env("RUSTC", rustc);
+        }
+        command
+            .current_dir(&nowhere)
+            .args(["build", "--release", "--locked", "--target", target])
+            .arg("--manifest-path")
+            .arg(package.join("Cargo.toml"))
+            .arg("--config")
+            .arg(package.join(".cargo/config.toml"))
+            .args(["--config", &format!("target.{target}.rustflags={flags:?}")])
+            .env("CARGO_TARGET_DIR", &folder);
+        self.finish(
+            command,
+            &format!("building the minimal programs for {target}"),
+        )?;
+        Ok(folder.join(target).join("release"))
+    }
+
     /// Builds the binaries that run on every target, concurrently, and every board's application.
     pub fn build_ahead(&self) -> anyhow::Result<()> {
         let mut command = self.for_targets("build", &TARGETS)?;
@@ -202,11 +249,7 @@ impl Toolchain {
 
     /// Returns a cargo command (`what`) for the optimised firmware on some targets.
     fn for_targets(&self, what: &str, targets: &[&str]) -> anyhow::Result<Command> {
-        let rustc = self
-            .from_source
-            .as_ref()
-            .map_or("rustc".as_ref(), |own| own.rustc.as_path());
-        let flags = remap::flags(rustc).map_err(|error| anyhow!(error))?;
+        let flags = remap::flags(self.rustc()).map_err(|error| anyhow!(error))?;
         let mut command = self.cargo();
         command
             .args([what, "--release", "--package", "firmware"])

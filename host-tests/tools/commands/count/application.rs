@@ -200,7 +200,7 @@ fn list(board: &Board, costs: &Costs) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::emulator::boards::BOARDS;
+    use emulator::boards::BOARDS;
 
     /// The file with its own prices written again is the same file, in the format of rustfmt.
     #[test]

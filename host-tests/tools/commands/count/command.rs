@@ -11,8 +11,11 @@ use firmware::job::Request;
 use rayon::prelude::*;
 
 use super::application::{prices, write_prices};
-use super::trace::{calls_of, counted};
-use super::{StepCost, Target, affordable_cost, affordable_steps, step_cost};
+use super::minimal::write_table;
+use super::trace::{calls_of, counted, one_of_each_core};
+use super::{
+    Minimal, MinimalPrices, StepCost, Target, affordable_cost, affordable_steps, step_cost,
+};
 use console::cli::{self, Refused, complain, say};
 use cycles::{Cost, ERROR_BAR};
 use emulator::boards::{BOARDS, Board};
@@ -27,6 +30,7 @@ const EXAMPLES: &str = "Examples:
   cargo count                                             every method on a Cortex-M3
   cargo count fixed32 --on lm3s6965evb,lm3s6965evb-m4,lm3s6965evb-m0
   cargo count rk4-f32-direction --on lm3s6965evb-m4 --listing
+  cargo count --minimal                                   Run::advance in a crate outside, on three cores
   cargo count --elf firmware.elf --function step --seconds 5
 
 A function's figures are from its first instruction to its return: the call itself comes on top, about 2 cycles and 1 for
@@ -40,7 +44,7 @@ pub struct CountOptions {
     #[arg(default_value = "")]
     method: String,
     /// The boards, with commas between them [default: lm3s6965evb, a Cortex-M3; with --elf
-    /// lm3s6965evb-m4]
+    /// lm3s6965evb-m4; with --minimal one of each core]
     #[arg(long, visible_alias = "board", value_name = "NAME", value_delimiter = ',', value_parser = cli::choice(&BOARDS, |board| board.name))]
     on: Vec<&'static Board>,
     /// Count a function of this program instead, including interrupts; the program should exit by
@@ -72,6 +76,13 @@ pub struct CountOptions {
     /// List every instruction executed, with its cycles
     #[arg(long)]
     listing: bool,
+    /// Count the public function Run::advance in the programs of kernel/minimal, a crate outside
+    /// this workspace, instead: a step, a call on top of its steps, and the program's flash
+    #[arg(long, conflicts_with_all = ["method", "elf", "steps", "m2", "l2", "angle", "halvings", "listing", "write_prices"])]
+    minimal: bool,
+    /// Write these prices into the kernel's README, too
+    #[arg(long, requires = "minimal", conflicts_with = "on")]
+    readme: bool,
     /// Count what a plan's steps cost on each kind of core and write it into the firmware's price lists instead
     #[arg(long, conflicts_with_all = ["method", "on", "elf", "steps", "m2", "l2", "angle", "halvings", "listing"])]
     write_prices: bool,
@@ -85,6 +96,9 @@ pub fn run(options: &CountOptions) -> anyhow::Result<()> {
         let toolchain = toolchain::set_up()?;
         let file = write_prices(&prices(&toolchain)?)?;
         return Ok(say(format_args!("wrote {}", file.display()))?);
+    }
+    if options.minimal {
+        return count_minimal(&toolchain::set_up()?, options);
     }
     let requests = options.requests().map_err(Refused::because)?;
     let boards = if options.on.is_empty() {
@@ -302,6 +316,63 @@ fn list(target: &Target, request: &Request, steps: Option<u32>) -> anyhow::Resul
     }
 
     Ok(())
+}
+
+/// Prints the prices that a user of the kernel pays in a crate outside of this workspace.
+fn count_minimal(toolchain: &Toolchain, options: &CountOptions) -> anyhow::Result<()> {
+    let boards = if options.on.is_empty() {
+        one_of_each_core().collect()
+    } else {
+        options.on.clone()
+    };
+
+    let mut all = Vec::new();
+    for (place, board) in boards.into_iter().enumerate() {
+        let counted = MinimalPrices::count(toolchain, board)?;
+        if place == 0 {
+            say(
+                "Run::advance in the programs of kernel/minimal: a step of 2^-8 s from rest at 0.5 rad, rods of 1 m, bobs of \
+                 1 kg; a call is on top of its steps; flash is beyond that of a program without a motion",
+            )?;
+            say(ERROR_BAR)?;
+            let titles = ["steps", "cycles (estimate)", "a call", "flash bytes"];
+            say(minimal_line("type", "board", titles.map(str::to_owned)))?;
+        }
+        for price in &counted.prices {
+            let Minimal {
+                program,
+                steps,
+                step,
+                call,
+                flash,
+            } = price;
+            let numbers = [
+                steps.to_string(),
+                format!("{step:.1}"),
+                call.to_string(),
+                flash.to_string(),
+            ];
+            say(minimal_line(&program.to_string(), board.name, numbers))?;
+        }
+        let numbers = [
+            String::new(),
+            String::new(),
+            String::new(),
+            counted.start_up.to_string(),
+        ];
+        say(minimal_line("no motion", board.name, numbers))?;
+        all.push(counted);
+    }
+
+    if options.readme {
+        write_table(&all)?;
+        say("wrote kernel/README.md")?;
+    }
+    Ok(())
+}
+
+fn minimal_line(form: &str, board: &str, [steps, step, call, flash]: [String; 4]) -> String {
+    format!("{form:>30} {board:>16} {steps:>5} {step:>17} {call:>8} {flash:>11}")
 }
 
 /// Prints the cost of a call of a function of any program.

@@ -3,10 +3,12 @@
 
 mod application;
 mod command;
+mod minimal;
 mod trace;
 
 pub use application::{FrameProfile, prices};
 pub use command::{CountOptions, run};
+pub use minimal::{Minimal, MinimalPrices, Program, table, table_in_readme};
 pub use trace::Target;
 
 use anyhow::Result;

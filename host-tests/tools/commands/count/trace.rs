@@ -20,6 +20,7 @@ use firmware::job::Request;
 use super::COUNTED;
 use console::progress::Progress;
 use emulator::boards::{BOARDS, Board};
+use emulator::flash::flash_image;
 use emulator::process;
 use emulator::toolchain::{QUICK, Toolchain};
 
@@ -41,6 +42,11 @@ pub struct Target {
     pub image: Image,
 }
 
+/// Returns one board for each kind of core: a Cortex-M3, a Cortex-M4F and a Cortex-M0+.
+pub fn one_of_each_core() -> impl Iterator<Item = &'static Board> {
+    BOARDS.iter().filter(|board| board.has_panel)
+}
+
 impl Target {
     pub fn build(toolchain: &Toolchain, board: &'static Board) -> Result<Self> {
         Self::of(toolchain, board, toolchain.build("measure", board.target)?)
@@ -58,12 +64,15 @@ impl Target {
         })
     }
 
+    /// Returns the largest number of bytes that the program takes of the flash.
+    pub fn flash_bytes(&self) -> Result<usize> {
+        Ok(flash_image(&std::fs::read(&self.elf)?)?.1.len())
+    }
+
     /// Returns one board for each kind of core: the same machine with a Cortex-M3, a Cortex-M4F and
     /// a Cortex-M0+.
     pub fn build_all(toolchain: &Toolchain) -> Result<Vec<Self>> {
-        BOARDS
-            .iter()
-            .filter(|board| board.has_panel)
+        one_of_each_core()
             .map(|board| Self::build(toolchain, board))
             .collect()
     }
@@ -91,7 +100,7 @@ impl Target {
 
     /// Runs the program with `argument` on its semihosting command line and calls `each` before
     /// every instruction, in order.
-    fn trace(
+    pub(super) fn trace(
         &self,
         argument: &str,
         limit: Duration,

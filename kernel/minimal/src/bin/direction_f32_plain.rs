@@ -1,0 +1,10 @@
+//! A motion by `DirectionF32Plain`.
+#![no_std]
+#![no_main]
+
+use double_pendulum::DirectionF32Plain;
+
+#[cortex_m_rt::entry]
+fn main() -> ! {
+    minimal::swing(minimal::start::<DirectionF32Plain>(), 32, minimal::draw)
+}
