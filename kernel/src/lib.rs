@@ -44,7 +44,7 @@
 //! | bounds from the energy | [`Bounds`], [`Pendulum::cannot_turn_over`] | host: `bounds` |
 //! | step sizes | [`Pendulum::admissible_step`], [`Modes::step_limit`] | host: `limits` |
 //! | the time of the first flip | [`flips`] | host: `flips` |
-//! | all methods | [`Method`], [`Pendulum::run`] | host: `known_answers`, `hard_cases` |
+//! | all methods | [`Method::visit`], [`Pendulum::run`] | host: `known_answers`, `hard_cases` |
 //! | the cheapest accurate method | [`plan`](mod@plan) | host: `plan`, `plan_study` |
 //!
 //! Accuracy figures in this documentation are asserted by the tests of the repository.
