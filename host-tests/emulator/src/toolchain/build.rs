@@ -39,17 +39,17 @@ const OURS: [&str; 5] = [
 /// `f64` in hardware, the compiler's name of that processor.
 pub type CoreImage = (&'static str, Option<&'static str>);
 
-/// The images of the golden bits.
+/// The images of the golden bits, those that need no further tools first.
 pub const CORE_IMAGES: [CoreImage; 9] = [
     ("thumbv6m-none-eabi", None),
     ("thumbv7m-none-eabi", None),
     ("thumbv7em-none-eabihf", None),
+    ("thumbv7em-none-eabihf", Some("cortex-m7")),
     ("thumbv8m.main-none-eabihf", None),
+    ("thumbv8m.main-none-eabihf", Some("cortex-m55")),
+    ("wasm32-unknown-unknown", None),
     ("riscv32imac-unknown-none-elf", None),
     ("aarch64-unknown-none", None),
-    ("wasm32-unknown-unknown", None),
-    ("thumbv7em-none-eabihf", Some("cortex-m7")),
-    ("thumbv8m.main-none-eabihf", Some("cortex-m55")),
 ];
 
 impl Toolchain {
@@ -155,14 +155,15 @@ impl Toolchain {
         self.finish(command, &format!("building cores for {names}"))
     }
 
-    /// Builds the images of the golden bits for all targets that this compiler has or can get.
+    /// Builds the images of the golden bits up to the first target that is not available: without a
+    /// network, each further one would wait for it.
     pub fn build_cores_ahead(&self) -> anyhow::Result<()> {
         let is_ready = |target: &str| {
             set_up_for(target).is_ok_and(|other| other.from_source == self.from_source)
         };
         let (double, any): (Vec<CoreImage>, Vec<CoreImage>) = CORE_IMAGES
             .into_iter()
-            .filter(|(target, _)| is_ready(target))
+            .take_while(|(target, _)| is_ready(target))
             .partition(|(_, double)| double.is_some());
 
         let targets: Vec<_> = any.into_iter().map(|(target, _)| target).collect();
