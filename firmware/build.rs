@@ -1,24 +1,29 @@
-//! Links the firmware's binaries for a chip: the memory map, the vector table and defmt's string table.
+//! Links the firmware's binaries for a chip: the memory map, the vector table and defmt's string
+//! table.
 
 use std::env;
 
 fn main() {
     println!("cargo:rerun-if-changed=build.rs");
     println!("cargo:rerun-if-changed=../memory.x");
-    // The code asks by this name for what a Cortex-M0+ lacks.
+    // The code uses this name for features that a Cortex-M0+ lacks.
     println!("cargo:rustc-check-cfg=cfg(armv6m)");
     if env::var("TARGET").is_ok_and(|target| target.starts_with("thumbv6m")) {
         println!("cargo:rustc-cfg=armv6m");
     }
+
+    // Other targets need nothing else.
     let is = |name: &str, value: &str| env::var(name).as_deref() == Ok(value);
     if !is("CARGO_CFG_TARGET_OS", "none") || !is("CARGO_CFG_TARGET_ARCH", "arm") {
         return;
     }
-    // From the workspace's folder, in which the linker runs: a checkout that was moved keeps what it has built.
+    // The linker runs in the workspace's folder. A path relative to it stays valid when the
+    // checkout is moved.
     println!("cargo:rustc-link-search=.");
     println!("cargo:rustc-link-search=firmware/src/board");
     println!("cargo:rerun-if-changed=src/board");
-    // The emulated boards' flash starts at 0; this chip's starts elsewhere and has 1 MiB.
+
+    // The chip's flash begins elsewhere than the emulated boards' flash, which begins at 0.
     for argument in [
         "--defsym=flash_origin=0x08000000",
         "--defsym=flash_length=0x00100000",
@@ -26,23 +31,23 @@ fn main() {
     ] {
         println!("cargo:rustc-link-arg-bin=stm32f405={argument}");
     }
-    // The Pico's flash begins with the stage that its boot ROM runs first.
+    // The Pico's flash begins with the boot stage, which its boot ROM runs first.
     let pico = [
         "--defsym=flash_origin=0x10000100",
         "--defsym=flash_length=0x001fff00",
         "-Tpico/pico.x",
     ];
-    // With relocations, which tell the tests who refers to which function; they take no flash.
+    // The relocations show the tests which functions call or address another. They take no flash.
     let any = ["-Tlink.x", "-Tdefmt.x", "--nmagic", "--emit-relocs"];
     pico.iter()
         .for_each(|argument| println!("cargo:rustc-link-arg-bin=pico={argument}"));
-    // The example with a colour panel is for the Pico, too.
+    // The example with a colour panel is also for the Pico.
     if env::var_os("CARGO_FEATURE_COLOUR_PANEL").is_some() {
         pico.iter()
             .chain(&any)
             .for_each(|argument| println!("cargo:rustc-link-arg-examples={argument}"));
     }
-    // A Cortex-M33 or M55 starts on its secure side, which sees its memory here.
+    // A Cortex-M33 or M55 starts in its secure state, with its memory at these addresses.
     if is("TARGET", "thumbv8m.main-none-eabihf") {
         for place in [
             "flash_origin=0x10000000",
@@ -52,6 +57,7 @@ fn main() {
             println!("cargo:rustc-link-arg-bin=cores=--defsym={place}");
         }
     }
+
     any.iter()
         .for_each(|argument| println!("cargo:rustc-link-arg-bins={argument}"));
 }

@@ -46,7 +46,8 @@ mod machine {
     #[cfg(target_arch = "riscv32")]
     fn call(number: usize, [a, b, c]: [usize; 3]) -> isize {
         let result;
-        // SAFETY: `write` reads the bytes of a living `str`, `exit` takes a number, and both keep all registers but the first.
+        // SAFETY: `write` reads the bytes of a living `str`, `exit` takes a number, and both keep
+        // all registers but the first.
         unsafe {
             asm!("ecall", in("a7") number, inlateout("a0") a => result, in("a1") b, in("a2") c)
         };
@@ -74,7 +75,8 @@ mod machine {
         }
     }
 
-    // SAFETY: this name is the program's first address; Linux has put the stack pointer where it must be.
+    // SAFETY: this name is the program's first address; Linux has put the stack pointer where it
+    // must be.
     #[unsafe(no_mangle)]
     extern "C" fn _start() -> ! {
         end(super::write_golden(&mut Output).is_ok())

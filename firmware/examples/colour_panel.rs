@@ -1,7 +1,9 @@
-//! The page's pendulum on a Raspberry Pi Pico and a colour panel: an ST7789 of 240 x 240 pixels on SPI, driven by `mipidsi`.
+//! The page's pendulum on a Raspberry Pi Pico and a colour panel: an ST7789 of 240 x 240 pixels on
+//! SPI, driven by `mipidsi`.
 //!
 //! GPIO 18 clock, 19 data, 17 select, 20 data/command, 21 reset. Not tried on silicon.
-//! `cargo build --release --package firmware --example colour_panel --features colour-panel,pico --target thumbv6m-none-eabi`
+//! `cargo build --release --package firmware --example colour_panel --features colour-panel,pico
+//! --target thumbv6m-none-eabi`
 #![no_std]
 #![no_main]
 
@@ -38,21 +40,24 @@ fn main() -> ! {
         .expect("the chip, its clock and the panel start, and the panel does not fail") {}
 }
 
-/// For ever; `None` if it cannot.
+/// Plays for ever. Returns `None` if a part does not start or fails.
 fn play(buffers: &mut FrameBuffers, batch: &mut [u8]) -> Option<Infallible> {
-    let (core, mut chip) = (cortex_m::Peripherals::take()?, pac::Peripherals::take()?);
-    let (pll, usb, resets) = (chip.PLL_SYS, chip.PLL_USB, &mut chip.RESETS);
+    let core = cortex_m::Peripherals::take()?;
+    let mut chip = pac::Peripherals::take()?;
+    let resets = &mut chip.RESETS;
     let mut watchdog = Watchdog::new(chip.WATCHDOG);
     let clocks = init_clocks_and_plls(
         CRYSTAL,
         chip.XOSC,
         chip.CLOCKS,
-        pll,
-        usb,
+        chip.PLL_SYS,
+        chip.PLL_USB,
         resets,
         &mut watchdog,
     )
     .ok()?;
+
+    // The panel is at SPI0.
     let pins = Pins::new(
         chip.IO_BANK0,
         chip.PADS_BANK0,
@@ -70,8 +75,10 @@ fn play(buffers: &mut FrameBuffers, batch: &mut [u8]) -> Option<Infallible> {
         SPEED.Hz(),
         embedded_hal::spi::MODE_3,
     );
+
     let device = ExclusiveDevice::new_no_delay(bus, pins.gpio17.into_push_pull_output()).ok()?;
     let interface = SpiInterface::new(device, pins.gpio20.into_push_pull_output(), batch);
+    // The panel's own driver resets it and sets it up.
     let mut timer = Timer::new(chip.TIMER, resets, &clocks);
     let target = Builder::new(ST7789, interface)
         .reset_pin(pins.gpio21.into_push_pull_output())
@@ -87,6 +94,8 @@ fn play(buffers: &mut FrameBuffers, batch: &mut [u8]) -> Option<Infallible> {
     };
     let mut player = Player::new(PROCESSOR, &mut buffers.ink);
     player.play(SceneName::Page, Settings::default()).ok()?;
+
+    // Show a frame in every tick.
     clock::start(core.SYST, clocks.system_clock.freq().to_Hz());
     let mut now = clock::ticks();
     loop {

@@ -1,4 +1,5 @@
-//! The CRCs of [requests](firmware::job::Request) on this machine, line by line: for builds with other settings.
+//! The CRCs of [requests](firmware::job::Request) on this machine, line by line: for builds with
+//! other settings.
 
 use std::error::Error;
 use std::io::{self, BufRead};

@@ -1,6 +1,8 @@
-//! The kernel under the embassy executor: one task steps the pendulum 60 times a second, woken by the SysTick timer.
+//! The kernel under the embassy executor: one task steps the pendulum 60 times a second, woken by
+//! the SysTick timer.
 //!
-//! For any Cortex-M3 or M4; nothing here knows a board but for the clock it starts with.
+//! For any Cortex-M3 or M4. Only the clock frequency below depends on the chip.
+//!
 //! `cargo build --release --package firmware --example embassy --target thumbv7em-none-eabihf`
 #![no_std]
 #![no_main]
@@ -12,15 +14,15 @@ use embassy_executor::Spawner;
 use embassy_sync::blocking_mutex::raw::CriticalSectionRawMutex;
 use embassy_sync::signal::Signal;
 
-/// Processor clock after reset, Hz, of an STM32F405.
+/// The processor's clock of an STM32F405 after reset, Hz.
 const CLOCK: u32 = 16_000_000;
-/// Frames a second, and steps to a frame.
+/// The frames per second, and the steps per frame.
 const RATE: u32 = 60;
 const STEPS: u32 = 4;
 
 /// The timer's tick.
 static TICK: Signal<CriticalSectionRawMutex, ()> = Signal::new();
-/// Where the rods point, for the task that draws: the latest only.
+/// The latest directions of the rods, for the task that draws.
 static FRAME: Signal<CriticalSectionRawMutex, [[f32; 2]; 2]> = Signal::new();
 
 #[exception]
@@ -30,6 +32,7 @@ fn SysTick() {
 
 #[embassy_executor::main]
 async fn main(spawner: Spawner) {
+    // The timer's interrupt begins a frame.
     if let Some(cortex_m::Peripherals { mut SYST, .. }) = cortex_m::Peripherals::take() {
         SYST.set_clock_source(SystClkSource::Core);
         SYST.set_reload(CLOCK / RATE - 1);
@@ -37,13 +40,14 @@ async fn main(spawner: Spawner) {
         SYST.enable_counter();
         SYST.enable_interrupt();
     }
+
     spawner.must_spawn(pendulum()); // there is room for one, and this is the one
     loop {
         let [[_sin1, _cos1], [_sin2, _cos2]] = FRAME.wait().await; // draw it here
     }
 }
 
-/// Steps for ever; the kernel never panics, and what goes wrong comes back as an error.
+/// Steps the pendulum for ever. The kernel never panics; it returns its errors.
 #[embassy_executor::task]
 async fn pendulum() {
     let _error = swing().await; // report it here

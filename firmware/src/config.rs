@@ -28,8 +28,9 @@ pub const GREATEST_SPEED: u32 = 4;
 
 // ---- Accuracy -----------------------------------------------------------------------------------
 
-/// The tolerance of a frame, pixels. A frame is accurate if nothing in it is farther from its
-/// position in the exact motion from the same start. Panel, plan and log use the same tolerance.
+/// The tolerance of a frame, pixels. In an accurate frame every point is within this distance of
+/// its position in the exact motion from the same start. Panel, plan and log use the same
+/// tolerance.
 pub const HALF_PIXEL: f32 = 0.5;
 
 // ---- The plan -----------------------------------------------------------------------------------

@@ -5,7 +5,7 @@ use core::fmt;
 /// The registers that describe a HardFault.
 ///
 /// The last four are the Configurable Fault Status Register, the HardFault Status Register, the
-/// MemManage Address Register and the BusFault Address Register. A Cortex-M0+ has none of them;
+/// MemManage Address Register and the BusFault Address Register. On a Cortex-M0+, which lacks them,
 /// they are 0.
 ///
 /// Source: ARM DDI 0403 (ARMv7-M Architecture Reference Manual), B3.2.15 to B3.2.18; ARM DDI 0419
@@ -130,17 +130,21 @@ impl fmt::Display for Fault {
         } = self;
         writeln!(f, "HARDFAULT: {}", self.cause())?;
 
-        match (self.stacked, self.last_call) {
-            (Some(Stacked { pc, lr, xpsr }), _) => {
+        // The registers, or the evidence that remains on the stack.
+        match self.stacked {
+            Some(Stacked { pc, lr, xpsr }) => {
                 writeln!(f, "  pc {pc:#010x}  lr {lr:#010x}  xpsr {xpsr:#010x}")?
             }
-            (None, Some(call)) => writeln!(
-                f,
-                "  pc and lr are lost; the last call on the stack is at {call:#010x}"
-            )?,
-            (None, None) => writeln!(f, "  pc and lr are lost")?,
+            None => match self.last_call {
+                Some(call) => writeln!(
+                    f,
+                    "  pc and lr are lost; the last call on the stack is at {call:#010x}"
+                )?,
+                None => writeln!(f, "  pc and lr are lost")?,
+            },
         }
 
+        // The status registers, if the processor has them.
         write!(f, "  sp {sp:#010x}")?;
         if cfsr | hfsr == 0 {
             return Ok(());

@@ -1,7 +1,8 @@
-//! `cargo bench --bench flips`: steps of the map of flips, in vectors and one by one, beside plain C, in one run and in turns.
+//! `cargo bench --bench flips`: steps of the map of flips, in vectors and one by one, compared with
+//! plain C, in one run and in turns.
 //!
-//! The C program, the page's equations in `f32` with the system's `sinf`, is compiled here by `cc -O3`. Every way takes the same
-//! starts, step and limit; the fastest of its runs counts.
+//! The C program, the page's equations in `f32` with the system's `sinf`, is compiled here by `cc
+//! -O3`. Every way takes the same starts, step and limit; the fastest of its runs counts.
 
 use std::process::Command;
 use std::time::Instant;
@@ -14,17 +15,18 @@ use host_tests::commands::flips::map::Map;
 use rayon::prelude::*;
 use vectors::Search;
 
-/// Starts across the map, and how long is waited, sqrt(l1/g).
+/// The number of starts across the map, and the time limit, sqrt(l1/g).
 const SIDE: usize = 128;
 const LIMIT: f32 = 100.0;
-/// Runs of each way, in turns.
+/// The number of runs of each way, in turns.
 const ROUNDS: usize = 30;
-/// Starts that a thread takes at once.
+/// The number of starts that a thread takes at once.
 const PORTION: usize = 1024;
 
 type Found = Result<Vec<Flip<f32>>, Error>;
-/// A name, how the flips are found, and how many times the speed of C are asked on one thread: of vectors of 8 numbers, and of 4,
-/// 280 and 130 million steps a second where plain C made 11.
+/// A way to find flips: its name, the function, and its goal on one thread, as a multiple of the
+/// speed of C. The goals are 280 million steps a second in vectors of 8 numbers, and 130 million in
+/// vectors of 4, where plain C made 11 million.
 type Way = (&'static str, fn(&Search, &[[f32; 2]]) -> Found, Option<f64>);
 
 const WAYS: [Way; 4] = [
@@ -55,13 +57,18 @@ fn threads(search: &Search, starts: &[[f32; 2]]) -> Found {
 
 fn main() -> Result<()> {
     let map = Map::new(Parameters::equal_rods(1.0, 1.0, 1.0), LIMIT, [SIDE, SIDE])?;
-    let (starts, [search, _]) = (map.starts(), map.searches);
+    let starts = map.starts();
+    let [search, _] = map.searches;
+
+    // The number of steps that a flip took. A start that cannot flip takes none.
     let most = (f64::from(map.limit) / map.dt).ceil();
     let steps = |flip: &Flip<f32>| match *flip {
         Flip::Never => 0.0,
         Flip::After(time) => (f64::from(time) / map.dt).ceil(),
         Flip::Later => most,
     };
+
+    // The same search in C.
     let program = workspace().join("target/peers-c-flips");
     let mut cc = Command::new("cc");
     cc.current_dir(workspace().join("host-tests/peers/c"));
@@ -81,7 +88,10 @@ fn main() -> Result<()> {
     );
 
     // Million steps a second.
-    let (mut c, mut rates) = (0.0_f64, [0.0_f64; WAYS.len()]);
+    let mut c = 0.0_f64;
+    let mut rates = [0.0_f64; WAYS.len()];
+    // C and all ways run in turns, because the speed of a machine drifts. The fastest run of each
+    // is used.
     for _ in 0..ROUNDS {
         let output = Command::new(&program)
             .args([SIDE.to_string(), map.dt.to_string(), most.to_string()])
@@ -108,6 +118,8 @@ fn main() -> Result<()> {
             "not the same flips"
         );
     }
+
+    // The table of speeds, with the goals.
     let threads = rayon::current_num_threads();
     println!("map of {SIDE} x {SIDE} starts, limit {LIMIT} sqrt(l/g), {threads} threads");
     println!(
@@ -125,7 +137,7 @@ fn main() -> Result<()> {
     for ((name, _, goal), rate) in WAYS.iter().zip(rates) {
         let verdict = |goal| {
             format!(
-                "  {goal:.0} asked: {}",
+                "  {goal:.0} required: {}",
                 if rate >= goal * c { "met" } else { "MISSED" }
             )
         };

@@ -1,7 +1,8 @@
-//! `cargo bench --package peers`: this kernel beside an integration library, on this machine and in one run.
+//! `cargo bench --package peers`: this kernel compared with an integration library, on this machine
+//! and in one run.
 //!
-//! Times are taken in turns and given as ratios only, because a machine's speed drifts. The last lines set them against
-//! the project's goals.
+//! Times are measured in turns and printed as ratios only, because a machine's speed drifts. The
+//! last lines compare them with the project's goals.
 
 use std::hint::black_box;
 use std::iter::successors;
@@ -22,34 +23,37 @@ const PARAMETERS: Parameters<f64> = Parameters {
     l2: 1.0,
     g: 9.81,
 };
-/// Motions from rest: both angles, rad, and how long they are followed, s.
+/// The motions from rest: a name, both angles, rad, and the duration, s.
 const SCENES: [(&str, f64, u32); 2] = [("regular", 0.5, 10), ("chaotic", 2.0, 5)];
-/// A scene is followed in parts, so that errors can be taken within it.
+/// The number of parts of a scene. Errors are measured at the ends of the parts.
 const PARTS: u32 = 8;
-/// Runs of each, in turns; the fastest counts.
+/// The number of runs of each contestant, in turns; the fastest is used.
 const ROUNDS: usize = 200;
 
-/// The start of a motion and the time of a part of it.
+/// The start of a motion and the duration of a part of it.
 #[derive(Clone, Copy)]
 struct Scene {
     start: [f64; 4],
     part: f64,
 }
 
-/// One way to follow a scene: its name, the greatest effort worth trying, and the state after so many parts of the scene. The
-/// effort, the last argument, is the number of steps to a part, or for an integrator that chooses its steps a tolerance of
-/// 10^(-effort/8); below 1e-16 there is nothing.
+/// A way to integrate a scene: its name, the largest useful effort, and the function that returns
+/// the state after some parts of the scene.
+///
+/// The effort, the last argument, is the number of steps in a part. If an integrator chooses its
+/// steps, it is a tolerance of 10^(-effort/8), which is at least 1e-16.
 type Contestant = (&'static str, u32, fn(Scene, u32, u32) -> [f64; 4]);
 
-/// How the names of ours begin, and those that the goals are set for.
+/// The beginning of the names of this kernel's contestants, and the names of the two with goals.
 const OURS: &str = "double-pendulum";
 const DIRECTION: &str = "double-pendulum, direction form";
 const EXTRAPOLATED: &str = "double-pendulum, extrapolated to order 16";
 
-/// Classical RK4.
+/// The contestants with classical RK4.
 const CLASSICAL: &[Contestant] = &[
     (OURS, 8192, |scene, parts, steps| {
-        let (pendulum, dt) = (pendulum(), scene.part / f64::from(steps));
+        let pendulum = pendulum();
+        let dt = scene.part / f64::from(steps);
         (0..parts * steps)
             .fold(scene.start.into(), |state, _| pendulum.step(&state, dt))
             .into()
@@ -72,7 +76,7 @@ const CLASSICAL: &[Contestant] = &[
     ),
 ];
 
-/// For tight errors.
+/// The contestants for small errors.
 const TIGHT: &[Contestant] = &[
     (EXTRAPOLATED, 8192, form::<ExtrapolationF64<16>>),
     (
@@ -104,16 +108,18 @@ fn form<F: Form>(scene: Scene, parts: u32, steps: u32) -> [f64; 4] {
     motion.state().into()
 }
 
-/// This kernel's equations.
+/// Returns this kernel's equations.
 fn ours() -> impl Fn(&[f64; 4]) -> [f64; 4] {
     let pendulum = pendulum();
     move |z| pendulum.derivatives(z)
 }
 
-/// The equations as the book prints them, with the standard library's sine and cosine: what a user would write.
+/// Returns the rates by the equations as the book prints them, with the standard library's sine and
+/// cosine. A user would probably write them this way.
 fn book(&[a1, a2, p1, p2]: &[f64; 4]) -> [f64; 4] {
     let Parameters { m1, m2, l1, l2, g } = PARAMETERS;
-    let (sin, cos) = ((a1 - a2).sin(), (a1 - a2).cos());
+    let sin = (a1 - a2).sin();
+    let cos = (a1 - a2).cos();
     let den = m1 + m2 * sin * sin;
     let squares =
         p1 * p1 * m2 * l2 * l2 - 2.0 * p1 * p2 * m2 * l1 * l2 * cos + p2 * p2 * (m1 + m2) * l1 * l1;
@@ -127,7 +133,7 @@ fn book(&[a1, a2, p1, p2]: &[f64; 4]) -> [f64; 4] {
     ]
 }
 
-/// Equations for the library.
+/// The equations in the library's form.
 struct Problem<E>(E);
 
 impl<E: Fn(&[f64; 4]) -> [f64; 4]> System<f64, Vector4<f64>> for Problem<E> {
@@ -136,8 +142,9 @@ impl<E: Fn(&[f64; 4]) -> [f64; 4]> System<f64, Vector4<f64>> for Problem<E> {
     }
 }
 
-/// What an integrator has found that ends before its time, as some do at tolerances near the resolution of f64.
-const LOST: [f64; 4] = [f64::NAN; 4];
+/// The result of an integrator that ends before its time, as some do at tolerances near the
+/// resolution of f64.
+const ENDED_EARLY: [f64; 4] = [f64::NAN; 4];
 
 fn library_rk4(
     equations: impl Fn(&[f64; 4]) -> [f64; 4],
@@ -145,16 +152,14 @@ fn library_rk4(
     parts: u32,
     steps: u32,
 ) -> [f64; 4] {
-    let (start, end, dt) = (
-        Vector4::from(scene.start),
-        scene.part * f64::from(parts),
-        scene.part / f64::from(steps),
-    );
+    let start = Vector4::from(scene.start);
+    let end = scene.part * f64::from(parts);
+    let dt = scene.part / f64::from(steps);
     let mut stepper = Rk4::new(Problem(equations), 0.0, start, end, dt);
     stepper
         .integrate()
         .unwrap_or_else(|error| panic!("{error}"));
-    stepper.y_out().last().map_or(LOST, |&z| z.into())
+    stepper.y_out().last().map_or(ENDED_EARLY, |&z| z.into())
 }
 
 fn dop853(
@@ -163,7 +168,8 @@ fn dop853(
     parts: u32,
     effort: u32,
 ) -> [f64; 4] {
-    let (start, end) = (Vector4::from(scene.start), scene.part * f64::from(parts));
+    let start = Vector4::from(scene.start);
+    let end = scene.part * f64::from(parts);
     let tolerance = 10_f64.powf(-f64::from(effort) / 8.0);
     let mut stepper = Dop853::new(
         Problem(equations),
@@ -178,10 +184,10 @@ fn dop853(
     let ended = stepper.integrate().ok();
     ended
         .and_then(|_| stepper.y_out().last().copied())
-        .map_or(LOST, Into::into)
+        .map_or(ENDED_EARLY, Into::into)
 }
 
-/// A contestant, its effort, what it errs by, rad, and the fastest time.
+/// A contestant, its effort, its error, rad, and its fastest time.
 struct Entry {
     contestant: Contestant,
     effort: u32,
@@ -189,9 +195,11 @@ struct Entry {
     time: f64,
 }
 
-/// Every contestant at the least effort that errs by at most `asked`, rad (those that never do are left out), and the fastest of
-/// its runs in turns.
-fn race(contestants: &[Contestant], scene: Scene, asked: f64) -> Vec<Entry> {
+/// Returns the contestants, each with the smallest effort that has an error of at most `largest`,
+/// rad, and with the fastest of its runs in turns. A contestant that never reaches this error is
+/// left out.
+fn race(contestants: &[Contestant], scene: Scene, largest: f64) -> Vec<Entry> {
+    // The errors are measured in the second half of the scene.
     let parts = PARTS / 2 + 1..=PARTS;
     let times = parts.clone().map(|parts| scene.part * f64::from(parts));
     let exact = taylor::states(
@@ -199,6 +207,8 @@ fn race(contestants: &[Contestant], scene: Scene, asked: f64) -> Vec<Entry> {
         &Motion::at_rest(scene.start[0], scene.start[1]),
         times,
     );
+
+    // The efforts are tried in small steps, until the error is small enough.
     let entry = |&contestant: &Contestant| {
         let (_, most, follow) = contestant;
         let efforts = successors(Some(4), |last| Some(last + 1 + last / 128))
@@ -215,8 +225,9 @@ fn race(contestants: &[Contestant], scene: Scene, asked: f64) -> Vec<Entry> {
                 time: f64::INFINITY,
             }
         });
-        tries.find(|entry| entry.error <= asked)
+        tries.find(|entry| entry.error <= largest)
     };
+
     let mut entries: Vec<_> = contestants.iter().filter_map(entry).collect();
     for _ in 0..ROUNDS {
         for entry in &mut entries {
@@ -228,7 +239,8 @@ fn race(contestants: &[Contestant], scene: Scene, asked: f64) -> Vec<Entry> {
     entries
 }
 
-/// What is raced, to which error, rad, which of ours counts, and what share of the fastest peer's time it may take in each scene.
+/// The races: the contestants, the error to reach, rad, the contestant with a goal, and its largest
+/// share of the fastest peer's time in each scene.
 const RACES: [(&[Contestant], f64, &str, [f64; 2]); 3] = [
     (CLASSICAL, 1e-8, DIRECTION, [0.45; 2]),
     (TIGHT, 1e-9, EXTRAPOLATED, [1.0 / 1.5; 2]),
@@ -244,6 +256,8 @@ fn main() {
         };
         for (contestants, error, counted, most) in RACES {
             let entries = race(contestants, scene, error);
+
+            // The times are relative to the fastest peer's.
             let peers = entries
                 .iter()
                 .filter(|entry| !entry.contestant.0.starts_with(OURS));
@@ -252,6 +266,8 @@ fn main() {
                 "\n{name}: time to an error of {error:e} rad\n{:51} {:>7} {:>9} {:>6}",
                 "", "effort", "error", "time"
             );
+
+            // The contestant with a goal is compared with it at the end.
             let mut measured = f64::INFINITY;
             for Entry {
                 contestant: (entrant, ..),
@@ -274,9 +290,10 @@ fn main() {
             ));
         }
     }
+
     println!("\ngoals, of the fastest peer's time at equal error");
-    for (asked, measured, most) in goals {
+    for (race, measured, most) in goals {
         let verdict = if measured <= most { "met" } else { "MISSED" };
-        println!("{asked:63} {measured:6.2}, at most {most:.2} asked: {verdict}");
+        println!("{race:63} {measured:6.2}, at most {most:.2} required: {verdict}");
     }
 }

@@ -1,9 +1,9 @@
 //! The host software: the commands, and the standards of comparison for the tests.
 //!
-//! The folders of this package and the top modules of its crates are called rooms. A room imports
-//! only from the rooms below it in this table.
+//! A module imports only from the modules below it in this table. The folders of this package count
+//! as modules.
 //!
-//! | room | content |
+//! | module | content |
 //! |---|---|
 //! | `tests` | the tests, grouped by the thing they test |
 //! | `tools/main.rs` | the program: runs the command that is named |
@@ -21,7 +21,7 @@
 #![deny(clippy::print_stdout, clippy::print_stderr)]
 #![allow(
     missing_docs,
-    reason = "nobody builds on this package: what name and type say is not said again"
+    reason = "no other package uses this one, and most names and types explain themselves"
 )]
 
 pub mod commands;

@@ -1,4 +1,5 @@
-//! Own forces: friction in both joints, by the crate's equations, two terms more, and its general stepper.
+//! A pendulum with friction in both joints: the crate's equations with two more terms, and its
+//! general stepper.
 
 use double_pendulum::{Error, Parameters, Pendulum, State, rk4};
 
@@ -7,17 +8,20 @@ const FRICTION: f64 = 1.0;
 
 fn main() -> Result<(), Error> {
     let pendulum = Pendulum::new(&Parameters::equal_rods(1.0, 1.0, 9.81))?;
-    // Joint 1 turns at w1, joint 2, the elbow, at w2 - w1; each brakes by its own turning.
+    // Joint 1 turns at w1. Joint 2, the elbow, turns at w2 - w1. The friction of each is
+    // proportional to its own rate.
     let damped = |z: &[f64; 4]| {
         let [w1, w2, torque1, torque2] = pendulum.derivatives(z);
         let elbow = FRICTION * (w2 - w1);
         [w1, w2, torque1 - FRICTION * w1 + elbow, torque2 - elbow]
     };
+
     let mut state = State::at_rest(2.0, 2.0);
     for _ in 0..20 * 256 {
         state = State::from(rk4::step(damped, &state.into(), 1.0 / 256.0)).finite()?;
     }
+
     let left = pendulum.energy_above_rest(&state);
-    assert!(left < 2.0, "{left} J: of 41.7 J almost all is gone");
+    assert!(left < 2.0, "{left} J: of 41.7 J almost all is lost");
     Ok(())
 }

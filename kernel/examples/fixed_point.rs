@@ -1,4 +1,5 @@
-//! Fixed point, for a Cortex-M0+: integers in the loop, integers out of it, and no soft float.
+//! Fixed point, for a Cortex-M0+: the loop takes and returns only integers, and needs no soft
+//! float.
 
 use double_pendulum::{Error, Fixed32, Parameters, Pendulum, State};
 
@@ -8,8 +9,10 @@ const ROD: i32 = 15;
 fn main() -> Result<(), Error> {
     let pendulum = Pendulum::new(&Parameters::equal_rods(1.0, 1.0, 9.81))?;
     let mut run = pendulum.run::<Fixed32>(&State::at_rest(2.0, 2.0), 1.0 / 240.0)?;
+
     for _frame in 0..600 {
         run.advance(4)?;
+        // The directions are in units of 2^-30.
         let [elbow, rod2] = run
             .directions_q30()
             .map(|[sin, cos]| [sin, cos].map(pixels));
@@ -20,6 +23,7 @@ fn main() -> Result<(), Error> {
     Ok(())
 }
 
+/// Returns a part of a direction in pixels.
 fn pixels(part: i32) -> i32 {
     ((i64::from(part) * i64::from(ROD)) >> 30) as i32
 }

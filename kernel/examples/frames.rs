@@ -1,8 +1,8 @@
-//! A picture loop: one frame's worth of steps each time round.
+//! A loop of frames: each round advances the motion by one frame.
 
 use double_pendulum::{DirectionF32, Error, Parameters, Pendulum, State};
 
-/// Frames a second, and steps to a frame.
+/// The frames per second, and the steps per frame.
 const RATE: u32 = 60;
 const STEPS: u32 = 4;
 
@@ -10,8 +10,10 @@ fn main() -> Result<(), Error> {
     let pendulum = Pendulum::new(&Parameters::equal_rods(1.0, 1.0, 9.81))?;
     let mut run =
         pendulum.run::<DirectionF32>(&State::at_rest(2.0, 2.0), 1.0 / f64::from(RATE * STEPS))?;
+
+    // Ten seconds of frames.
     for _frame in 0..10 * RATE {
-        run.advance(STEPS)?; // refuses to leave the finite numbers, and stays as it was
+        run.advance(STEPS)?; // a motion that diverges is an error
         let [[sin1, cos1], [sin2, cos2]] = run.directions();
         let elbow = [sin1, -cos1];
         let _tip = [elbow[0] + sin2, elbow[1] - cos2]; // draw it here

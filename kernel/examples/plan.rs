@@ -1,4 +1,4 @@
-//! A plan that is then run: the cheapest method that keeps to half a pixel, and for how long.
+//! A plan and its motion: the cheapest method that is accurate to half a pixel, and its horizon.
 
 use std::error::Error;
 
@@ -21,11 +21,15 @@ fn main() -> Result<(), Box<dyn Error>> {
         frame: 400e3,
         planning: 1e9,
     };
+
+    // Search the plan.
     let plan = Plan::search(&scene, &costs, &budget)?;
     println!(
-        "{}, {} steps a frame: right for {:.1} s",
+        "{}, {} steps per frame: accurate for {:.1} s",
         plan.method, plan.steps, plan.horizon
     );
+
+    // Run it until its horizon.
     let mut run = plan.run(&scene)?;
     while run.time() < plan.horizon {
         run.advance(1)?;

@@ -16,8 +16,8 @@ pub struct Bounds<R> {
     pub w1: R,
     /// |w2| <= sqrt(2 K (m1 + m2)/(m1 m2))/l2, rad/s.
     pub w2: R,
-    /// |w1 - w2| <= sqrt(2 K (l1^2/m2 + (l1 + l2)^2/m1))/(l1 l2), the rate at which the elbow bends,
-    /// rad/s. The largest of the three rates.
+    /// |w1 - w2| <= sqrt(2 K (l1^2/m2 + (l1 + l2)^2/m1))/(l1 l2), rad/s. This is the rate of the
+    /// elbow's angle and the largest of the three rates.
     pub elbow: R,
     /// |p1| <= l1 sqrt(2 (m1 + m2) K), kg m^2/s.
     pub p1: R,
@@ -49,7 +49,7 @@ impl<R: Real> Bounds<R> {
 }
 
 impl<R: Real> Modes<R> {
-    /// Returns the longest step with which RK4 is stable on the fast mode, s: 2 sqrt(2)/w1.
+    /// Returns the longest stable step of RK4 on the fast mode, s: 2 sqrt(2)/w1.
     ///
     /// This is a limit, not advice: much shorter steps already give a wrong phase. Source:
     /// `[Hairer II]`, section IV.2.
@@ -81,12 +81,13 @@ impl<R: Real> Pendulum<R> {
         Bounds::new(self.parameters(), self.energy_above_rest(state))
     }
 
-    /// Returns the least energy above rest with which a rod can turn over, J:
+    /// Returns the least energy above rest that allows a rod to turn over, J:
     /// 2 g min((m1 + m2) l1, m2 l2).
     ///
     /// It is the height of the lower of the two saddles V(pi, 0) and V(0, pi) above min V.
     #[must_use]
     pub fn turnover_energy(&self) -> R {
+        // A torque of gravity is the weight on a rod times its length.
         let [torque1, torque2] = self.torque;
         R::TWO * if torque1 < torque2 { torque1 } else { torque2 }
     }
@@ -94,16 +95,16 @@ impl<R: Real> Pendulum<R> {
     /// Returns true if neither rod can ever turn over: if K is below
     /// [`turnover_energy`](Self::turnover_energy).
     ///
-    /// `false` means that a rod may turn over or not. The result is also `false` for energies within
-    /// 16 roundings of the limit.
+    /// `false` means that a rod may turn over or not. The result is also `false` for energies
+    /// within 16 roundings of the limit.
     #[must_use]
     pub fn cannot_turn_over(&self, state: &State<R>) -> bool {
         let margin = R::ONE + R::from_f64(ROUNDING_MARGIN) * R::EPSILON;
         self.energy_above_rest(state) * margin < self.turnover_energy()
     }
 
-    /// Refuses the steps that [`Modes::check_step`] refuses. Without gravity, where no modes exist, any
-    /// step forward is accepted.
+    /// Refuses the steps that [`Modes::check_step`] refuses. Without gravity, where no modes exist,
+    /// any step forward is accepted.
     pub fn check_step(&self, dt: f64) -> Result<(), Error> {
         if self.parameters().g == R::ZERO {
             check_forward::<R>(dt)
@@ -112,17 +113,18 @@ impl<R: Real> Pendulum<R> {
         }
     }
 
-    /// Returns the fastest rate, 1/s, at which a quantity can change in a motion of the energy of
-    /// `state`: W = sqrt(w1^2 + (1 + m2/m1) d^2), where w1 is the fast normal frequency (0 without
+    /// Returns the fastest rate of change, 1/s, of any quantity in a motion with the energy of
+    /// `state`: W = sqrt(w1^2 + (1 + m2/m1) d^2). Here w1 is the fast normal frequency (0 without
     /// gravity) and d is [`Bounds::elbow`].
     ///
     /// The forces between the rods contain 1/(m1 + m2 sin^2 D), which doubles within
-    /// sin D = sqrt(m1/m2). An elbow that bends at the rate d passes this peak in sqrt(m1/m2)/d.
+    /// sin D = sqrt(m1/m2). An elbow with the rate d passes this peak in sqrt(m1/m2)/d.
     ///
     /// Refuses parameters whose modes are out of range.
     #[doc(hidden)]
     pub fn fastest_rate(&self, state: &State<R>) -> Result<R, Error> {
         let &Parameters { m1, m2, g, .. } = self.parameters();
+        // The frequency that gravity causes, and the rate that the motion causes.
         let normal = if g == R::ZERO {
             R::ZERO
         } else {
@@ -132,16 +134,17 @@ impl<R: Real> Pendulum<R> {
         Ok((normal * normal + elbow * elbow).sqrt())
     }
 
-    /// Returns the longest step, s, with which RK4 resolves every motion of the energy of `state`:
-    /// 1/(4 W), where W is the [`fastest_rate`](Self::fastest_rate). Infinite if nothing can move.
+    /// Returns the longest step, s, that resolves every motion with the energy of `state` by RK4:
+    /// 1/(4 W), where W is the [`fastest_rate`](Self::fastest_rate). It is infinite if nothing can
+    /// move.
     ///
     /// The error of such a step is at most 3e-5 W dt rad in each angle (0.0072 (W dt)^5, for any
     /// masses and lengths), and at most the same share of W in each velocity; in the direction form
     /// 8e-5. Half the step has a 16 times smaller error.
     ///
     /// The step is the longest for the fastest motion of that energy. Much longer steps, up to
-    /// [`Modes::step_limit`], can be enough for regular motions, and for those with a light bob 2
-    /// that never has all of the energy.
+    /// [`Modes::step_limit`], can be sufficient for regular motions, and for a light bob 2 that
+    /// never has all the energy.
     ///
     /// ```
     /// use double_pendulum::{Parameters, Pendulum, State};
@@ -162,12 +165,12 @@ impl<R: Real> Pendulum<R> {
 /// The product W dt for the longest step that resolves a motion whose fastest rate is W.
 const RESOLVED: f64 = 0.25;
 
-/// The phase w1 dt, rad, up to which RK4 is stable on the fast mode: 2 sqrt(2).
+/// The largest stable phase w1 dt of RK4 on the fast mode, rad: 2 sqrt(2).
 pub(crate) const RK4_STABLE: f64 = 2.828_427_124_746_190_3;
 
-/// Returns the longest step, s, in which the fast mode advances by at most `phase` rad.
+/// Returns the longest step, s, whose phase of the fast mode is at most `phase` rad.
 ///
-/// It is infinite where a pendulum has no modes, without gravity or out of the range of `f64`.
+/// It is infinite if a pendulum has no modes: without gravity, or out of the range of `f64`.
 #[inline(never)] // Not inlined, to save flash.
 pub(crate) fn stable_step(parameters: &Parameters<f64>, phase: f64) -> f64 {
     Modes::new(parameters).map_or(f64::INFINITY, |modes| phase / modes.fast.frequency)
@@ -198,6 +201,6 @@ pub(crate) fn check_step<R: Real>(dt: f64) -> Result<(), Error> {
     }
 }
 
-/// The distance from the limit, in roundings of K, within which no certificate is given. It is more
+/// The number of roundings of K within which `cannot_turn_over` gives no certificate. It is more
 /// than the rounding error of K when no kinetic term cancels.
 const ROUNDING_MARGIN: f64 = 16.0;

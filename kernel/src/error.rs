@@ -45,7 +45,7 @@ pub enum Parameter {
     Method,
     /// Largest allowed distance of a bob from its exact position, m.
     Tolerance,
-    /// Time for which a motion is shown, s.
+    /// Duration of the motion that is shown, s.
     Duration,
     /// Frames per second.
     Rate,
@@ -93,21 +93,21 @@ pub enum Error {
     NotFinite {
         /// The refused parameter.
         parameter: Parameter,
-        /// Its value.
+        /// The refused value.
         value: f64,
     },
     /// The value is zero or negative.
     NotPositive {
         /// The refused parameter.
         parameter: Parameter,
-        /// Its value.
+        /// The refused value.
         value: f64,
     },
     /// The value exceeds a limit that the other parameters set.
     TooLarge {
         /// The refused parameter.
         parameter: Parameter,
-        /// Its value.
+        /// The refused value.
         value: f64,
         /// The largest possible value.
         limit: f64,
@@ -116,35 +116,36 @@ pub enum Error {
     TooSmall {
         /// The refused parameter.
         parameter: Parameter,
-        /// Its value.
+        /// The refused value.
         value: f64,
         /// The smallest possible value.
         limit: f64,
     },
-    /// Every input was valid, but a step was too long for the motion, which left the finite numbers.
+    /// Every input was valid, but a step was too long for the motion, which left the finite
+    /// numbers.
     Diverged {
         /// The first quantity that is not finite.
         parameter: Parameter,
-        /// Its value.
+        /// The value of that quantity.
         value: f64,
     },
     /// Each value alone is valid, but a product of them leaves the range of the arithmetic.
     OutOfRange {
         /// The parameter whose value is farthest from 1.
         parameter: Parameter,
-        /// Its value.
+        /// The refused value.
         value: f64,
     },
-    /// The misprinted equations of `[math24]` are those of equal rods, but these differ.
+    /// The misprinted equations of `[math24]` are for equal rods, but these rods differ.
     UnequalRods {
         /// Length of rod 1, m.
         l1: f64,
         /// Length of rod 2, m.
         l2: f64,
     },
-    /// The method is not one that a plan can choose: not one of [`Method::DRAWN`].
+    /// A plan cannot choose the method, because it is not in [`Method::DRAWN`].
     NotDrawn {
-        /// The method.
+        /// The refused method.
         method: Method,
     },
 }

@@ -100,6 +100,7 @@ impl Golden {
         let mut checksum = FNV_OFFSET;
         for _ in 0..STEPS {
             run.advance(1)?;
+            // The checksum includes every step.
             run.bits(|word| checksum = fnv_1a(checksum, &word.to_le_bytes()));
         }
 
@@ -125,11 +126,11 @@ impl fmt::Display for Line<'_> {
 }
 
 const FNV_PRIME: u64 = 0x0000_0100_0000_01b3;
-/// The FNV-1a hash of no bytes.
+/// The FNV-1a hash of an empty sequence of bytes.
 pub const FNV_OFFSET: u64 = 0xcbf2_9ce4_8422_2325;
 
-/// Returns the FNV-1a hash of the earlier bytes, whose hash is `hash`, and of `bytes` (G. Fowler,
-/// L. C. Noll, K.-P. Vo).
+/// Returns the FNV-1a hash of a sequence: `hash` is the hash of its earlier bytes, and `bytes` are
+/// the next ones (G. Fowler, L. C. Noll, K.-P. Vo).
 #[must_use]
 pub fn fnv_1a(hash: u64, bytes: &[u8]) -> u64 {
     bytes.iter().fold(hash, |hash, &byte| {

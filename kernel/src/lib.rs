@@ -1,11 +1,11 @@
 //! The planar double pendulum: its equations, and fast and exact ways to compute its motion.
 //!
-//! Bob 1 hangs on rod 1 from a fixed pivot, bob 2 on rod 2 from bob 1. The rods are rigid and have no
-//! mass; the pivots have no friction. Angles are measured from the downward vertical, positive
+//! Bob 1 hangs on rod 1 from a fixed pivot, bob 2 on rod 2 from bob 1. The rods are rigid and have
+//! no mass; the pivots have no friction. Angles are measured from the downward vertical, positive
 //! counter-clockwise. The y axis points up. All units are SI units.
 //!
-//! The equations are generic over `f32` and `f64` ([`Real`]). The methods compute in these or in fixed
-//! point. The crate needs no heap, does not panic, and gives the same bits on every machine.
+//! The equations are generic over `f32` and `f64` ([`Real`]). The methods compute in these or in
+//! fixed point. The crate needs no heap, does not panic, and gives the same bits on every machine.
 //!
 //! # Example
 //!
@@ -26,8 +26,8 @@
 //!
 //! # From the book to the code
 //!
-//! The book is `[math24]`, see below. The last column names the test that fails if the item is wrong:
-//! a module of this crate's tests or, after "host", of the repository's `--test kernel`.
+//! The book is `[math24]`, see below. The last column names the test that fails if the item is
+//! wrong: a module of this crate's tests or, after "host", of the repository's `--test kernel`.
 //!
 //! | in the book | here | test |
 //! |---|---|---|
@@ -58,7 +58,7 @@
 //! - **canonical momentum**: p1, p2, conjugate to the angles a1, a2; the numbers of a [`State`].
 //! - **motion**: angles and angular velocities ([`Motion`]), or the course of a pendulum in time.
 //! - **energy above rest**: the energy H above that of hanging at rest, K = H - min V.
-//! - **normal mode**: one of the two oscillations with a fixed ratio of the angles ([`Modes`]).
+//! - **normal mode**: an oscillation with a fixed ratio of the angles; there are two ([`Modes`]).
 //! - **flip**: a rod turns over, when its angle passes plus or minus pi.
 //! - **turn**: a whole revolution of a rod since the start.
 //! - **elbow**: the joint between the rods; its angle is D = a1 - a2.
@@ -73,9 +73,9 @@
 //! - **closed form**: the solution of the linear equations at any time, without steps.
 //! - **compensated**: the rounding error of each sum is carried into the next.
 //! - **fixed point**: numbers that are integers times a power of two.
-//! - **unit of time**: the time in which a method counts, chosen so that its numbers are in range.
+//! - **unit of time**: a method's own unit, chosen so that its numbers are in range.
 //! - **stage**: one evaluation of the equations within a step.
-//! - **order**: the power of the step size with which the error falls.
+//! - **order**: the power of the step size that the error is proportional to.
 //! - **admissible step**: the longest step that resolves every motion of an energy.
 //! - **diverged, lost**: a motion that has left the finite numbers or the range of its method.
 //! - **bit-identical**: all bits of all numbers are equal.
@@ -93,23 +93,24 @@
 //!
 //! # Versions
 //!
-//! Semantic versioning. [`Error`] and [`Parameter`] may get new variants, and the traits are sealed and
-//! may get new methods; both are minor versions, as is a higher least Rust version (1.85 now). Items
-//! that are hidden from the documentation may change at any time.
+//! Semantic versioning. [`Error`] and [`Parameter`] may get new variants, and the traits are sealed
+//! and may get new methods; both are minor versions, as is a higher least Rust version (1.85 now).
+//! Items that are hidden from the documentation may change at any time.
 //!
-//! A change of any bit of a step is a major version. The file `golden/bits.csv` of the package stores
-//! the bits of every method. A test compares them, and another test requires an entry in the change log
-//! for every new version of the file. Steps use only IEEE 754 arithmetic, and the
+//! A change of any bit of a step is a major version. The file `golden/bits.csv` of the package
+//! stores the bits of every method. A test compares them, and another test requires an entry in the
+//! change log for every new version of the file. Steps use only IEEE 754 arithmetic, and the
 //! correctly rounded `sqrt` and `rint`, for angles up to 12,867 rad in `f32` and 1,647,098 rad in
-//! `f64`. The sines of larger angles and the `atan2` in [`Run::state`] are those of the `libm` crate in
-//! your lock file (0.2.16 or later). To compare machines, build for both with the same `libm`.
+//! `f64`. The sines of larger angles, and the `atan2` in [`Run::state`], are computed by the `libm`
+//! crate in your lock file (0.2.16 or later). To compare machines, build for both with the same
+//! `libm`.
 //!
 //! # References
 //!
 //! - `[math24]` "Double Pendulum", math24.net, 23 August 2021: the book of this crate. Three of its
-//!   formulas are misprinted and corrected here: the second term of p2 ([`Pendulum::to_state`]), the
-//!   sign of the last term of the quadratic Lagrangian, and the second equation of equal rods, whose
-//!   denominator lacks the factor mu.
+//!   formulas are misprinted and corrected here: the second term of p2 ([`Pendulum::to_state`]),
+//!   the sign of the last term of the quadratic Lagrangian, and the second equation of equal rods,
+//!   whose denominator lacks the factor mu.
 //! - `[Landau]` L. D. Landau, E. M. Lifshitz, *Mechanics*, 3rd ed., Pergamon 1976.
 //! - `[Hairer I]` E. Hairer, S. P. Norsett, G. Wanner, *Solving Ordinary Differential Equations I*,
 //!   2nd ed., Springer 1993.

@@ -4,27 +4,29 @@ use crate::error::{Error, Parameter};
 use crate::numbers::Real;
 use crate::pendulum::{Parameters, Pendulum};
 
-/// One normal mode: both angles oscillate at one frequency, in a fixed ratio.
+/// A normal mode: both angles oscillate at one frequency, in a fixed ratio.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mode<R> {
     /// Angular frequency, rad/s.
     pub frequency: R,
-    /// The shape r = H2/H1 of the mode: the angle of rod 2 when that of rod 1 is 1.
+    /// The shape r = H2/H1 of the mode: the angle of rod 2 if the angle of rod 1 is 1.
     pub shape: R,
 }
 
-/// Both normal modes of M a'' + K a = 0 (`[math24]`, "Small oscillations"; `[Landau]` paragraph 23).
+/// The two normal modes of M a'' + K a = 0 (`[math24]`, "Small oscillations"; `[Landau]` paragraph
+/// 23).
 ///
-/// M is [`Pendulum::mass_matrix`] for parallel rods and K is [`Pendulum::stiffness`]. The frequencies solve
-/// det(K - w^2 M) = 0, that is (m1 + m2) g^2 - w^2 (m1 + m2)(l1 + l2) g + w^4 m1 l1 l2 = 0.
+/// M is [`Pendulum::mass_matrix`] for parallel rods and K is [`Pendulum::stiffness`]. The
+/// frequencies solve det(K - w^2 M) = 0, that is
+/// (m1 + m2) g^2 - w^2 (m1 + m2)(l1 + l2) g + w^4 m1 l1 l2 = 0.
 ///
-/// The same two numbers are the growth rates about the inverted position (pi, pi), where K changes
-/// its sign.
+/// The same two numbers are the growth rates about the inverted position (pi, pi), because K
+/// changes its sign there.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Modes<R> {
-    /// The mode of w1, in which the rods swing against each other. Its shape is negative.
+    /// The mode of w1. The rods swing against each other, and the shape is negative.
     pub fast: Mode<R>,
-    /// The mode of w2, in which the rods swing together. Its shape is positive.
+    /// The mode of w2. The rods swing together, and the shape is positive.
     pub slow: Mode<R>,
     /// w1 - w2, computed without cancellation, rad/s.
     exchange: R,
@@ -38,8 +40,8 @@ impl<R: Real> Modes<R> {
     /// - w1^2 = g M (s + c) / (2 m1 l1 l2) and w2^2 = 2 g / (s + c)
     /// - shape of w1: -M (c + d) / (2 m2 l2); shape of w2: 2 l1 / (c + d)
     ///
-    /// For d < 0 the sum is c + d = 4 m2 l1 l2 / (M (c - d)). The only subtraction is l1 - l2, so that
-    /// nothing cancels.
+    /// For d < 0 the sum is c + d = 4 m2 l1 l2 / (M (c - d)). The only subtraction is l1 - l2, so
+    /// that nothing cancels.
     ///
     /// Both frequencies are within 4 ulp, in `f32` and `f64`, for m2/m1 from 1e-7 to 1e7 and l1/l2
     /// from 1e-3 to 1e3. Refuses the parameters that [`Pendulum::new`] refuses, zero gravity, and
@@ -47,17 +49,21 @@ impl<R: Real> Modes<R> {
     pub fn new(parameters: &Parameters<R>) -> Result<Self, Error> {
         parameters.check()?;
         let &Parameters { m1, m2, l1, l2, g } = parameters;
+        // Without gravity nothing oscillates.
         if g == R::ZERO {
             return Err(Error::NotPositive {
                 parameter: Parameter::G,
                 value: 0.0,
             });
         }
+
+        // The root c.
         let total = m1 + m2;
         let sum = l1 + l2;
         let difference = l1 - l2;
         let root = ((m1 * difference * difference + m2 * sum * sum) / total).sqrt();
 
+        // The frequencies, and the shapes without the cancelling sum.
         let fast = (g * total * (sum + root) / (R::TWO * m1 * l1 * l2)).sqrt();
         let slow = (R::TWO * g / (sum + root)).sqrt();
         let reach = root + difference.abs();
@@ -103,8 +109,8 @@ impl<R: Real> Modes<R> {
         R::HALF * self.exchange
     }
 
-    /// Returns the exchange frequency w1 - w2, rad/s. The envelope, which has no sign, repeats at this
-    /// rate: the energy moves from rod to rod and back.
+    /// Returns the exchange frequency w1 - w2, rad/s. The envelope, which has no sign, repeats at
+    /// this rate: the energy moves from rod to rod and back.
     #[must_use]
     pub fn exchange(&self) -> R {
         self.exchange
@@ -126,8 +132,8 @@ impl<R: Real> Pendulum<R> {
     }
 }
 
-/// Returns the mass ratio m2/m1 at which small oscillations are exactly periodic with
-/// w1/w2 = `fast`/`slow`.
+/// Returns the mass ratio m2/m1 that makes small oscillations exactly periodic with w1/w2 =
+/// `fast`/`slow`.
 ///
 /// With p = `fast`, q = `slow` and the `lengths` [l1, l2] in m,
 ///
@@ -136,9 +142,10 @@ impl<R: Real> Pendulum<R> {
 /// which follows from (w1/w2 + w2/w1)^2 = (1 + mu)(l1 + l2)^2/(l1 l2). For equal rods it is
 /// mu = ((r^2 - 1)/(2r))^2 with r = p/q. The common period is 2 pi p/w1 = 2 pi q/w2.
 ///
-/// Refuses lengths that are not positive, a `slow` of 0, and a ratio p/q that is not above the square
-/// root of the longer over the shorter rod, which no masses can give.
+/// Refuses lengths that are not positive, and a `slow` of 0. Also refuses a ratio p/q that no
+/// masses can give: it must exceed the square root of the longer rod over the shorter rod.
 pub fn periodic_mass_ratio<R: Real>(fast: u16, slow: u16, lengths: [R; 2]) -> Result<R, Error> {
+    // Only the lengths can be wrong here.
     let [l1, l2] = lengths;
     Parameters {
         m1: R::ONE,
@@ -154,11 +161,15 @@ pub fn periodic_mass_ratio<R: Real>(fast: u16, slow: u16, lengths: [R; 2]) -> Re
             value: f64::INFINITY,
         });
     }
+
+    // The formula above.
     let p = R::from_f64(f64::from(fast));
     let q = R::from_f64(f64::from(slow));
     let numerator1 = p * p * l1 - q * q * l2;
     let numerator2 = p * p * l2 - q * q * l1;
     let denominator = p * q * (l1 + l2);
+
+    // At the limit bob 2 would have no mass.
     if numerator1 > R::ZERO && numerator2 > R::ZERO {
         Ok(numerator1 * numerator2 / (denominator * denominator))
     } else {

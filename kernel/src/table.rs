@@ -9,7 +9,8 @@ use core::fmt;
 /// The equations that a method integrates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Equations {
-    /// Hamilton's equations in angles and momenta: [`Pendulum::derivatives`](crate::Pendulum::derivatives).
+    /// Hamilton's equations in angles and momenta:
+    /// [`Pendulum::derivatives`](crate::Pendulum::derivatives).
     Hamilton,
     /// Hamilton's equations in directions of the rods and momenta, without sines.
     Directions,
@@ -170,7 +171,7 @@ struct Row {
 }
 
 impl Method {
-    /// All methods, in the order of the table.
+    /// The methods of the table, in its order.
     pub const ALL: &[Method] = &[
         Method::Rk4F64,
         Method::Rk4F32,
@@ -191,7 +192,7 @@ impl Method {
         Method::Rk4F32Lagrange,
     ];
 
-    /// The methods that scenes are drawn by, from which a [plan](crate::plan) chooses.
+    /// The methods that draw scenes. A [plan](crate::plan) chooses from them.
     pub const DRAWN: &[Method] = &[
         Method::Rk4F32Direction,
         Method::Rk4F32DirectionPlain,

@@ -1,4 +1,4 @@
-//! What goes in and out of a program can be kept with `serde` and logged with `defmt`.
+//! The inputs and results of a program can be stored with `serde` and logged with `defmt`.
 #![cfg(all(feature = "serde", feature = "defmt"))]
 
 use double_pendulum::plan::{Plan, PlanError};

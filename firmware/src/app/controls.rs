@@ -82,21 +82,26 @@ impl Controls {
         let select = self.select.tick(select);
         let with_select = self.select.is_held();
 
-        let mut asked = [None; 4];
+        let mut commands = [None; 4];
         let arrows = ARROWS
             .into_iter()
             .zip(&mut self.arrows)
             .zip([up, down, left, right]);
-        for (asked, (([alone, held], button), pressed)) in asked.iter_mut().zip(arrows) {
-            *asked = match button.tick(pressed) {
+
+        // An arrow repeats when it is used alone.
+        for (command, (([alone, held], button), pressed)) in commands.iter_mut().zip(arrows) {
+            *command = match button.tick(pressed) {
                 Some(Change::Pressed) if with_select => Some(held),
                 Some(Change::Pressed | Change::Repeated) if !with_select => Some(alone),
                 _ => None,
             };
         }
 
-        let alone = self.alone.tick(select, asked.iter().any(Option::is_some));
-        asked.into_iter().flatten().chain(alone)
+        // The select button has its own commands unless an arrow was used.
+        let alone = self
+            .alone
+            .tick(select, commands.iter().any(Option::is_some));
+        commands.into_iter().flatten().chain(alone)
     }
 }
 
@@ -128,6 +133,8 @@ impl OneButton {
     /// Takes the change of the button in this tick. Returns its command. A tap restarts the scene.
     fn tick(&mut self, change: Option<Change>, with_another: bool) -> Option<Command> {
         self.since = self.since.saturating_add(1);
+
+        // A press begins a hold. A short press is a tap.
         match change {
             Some(Change::Pressed) => {
                 if self.since > MOST_TICKS_BETWEEN_TAPS {
@@ -155,6 +162,8 @@ impl OneButton {
         }
 
         let held = self.held.as_mut()?;
+
+        // Count the time of the hold.
         *held = held.saturating_add(1);
         if *held < HOLD_TICKS {
             return None;
@@ -211,6 +220,8 @@ impl Button {
         } else {
             pressed != self.is_held()
         };
+
+        // Count the readings in a row that contradict the phase.
         self.contradictions = if contradicts {
             self.contradictions.saturating_add(1)
         } else {
@@ -235,6 +246,7 @@ impl Button {
             });
         }
 
+        // The level has not changed, but a held button repeats.
         let Phase::Held { repeats_in } = &mut self.phase else {
             return None;
         };

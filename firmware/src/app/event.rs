@@ -65,7 +65,7 @@ impl<Panel: Display, Link: ErrorType, F: FnMut(Event<Panel::Error, Link::Error>)
 pub(super) struct ThrottledCounter {
     pub(super) total: u32,
     /// The total at the last report, and the tick of that report.
-    said: u32,
+    reported: u32,
     tick: u32,
 }
 
@@ -74,7 +74,7 @@ impl ThrottledCounter {
     pub(super) fn starting(total: u32, tick: u32) -> Self {
         Self {
             total,
-            said: total,
+            reported: total,
             tick,
         }
     }
@@ -85,7 +85,7 @@ impl ThrottledCounter {
 
     /// Returns the growth since the last report, if it is not zero and a second has passed.
     pub(super) fn news(&mut self, tick: u32) -> Option<u32> {
-        let grown = self.total.wrapping_sub(self.said);
+        let grown = self.total.wrapping_sub(self.reported);
         let is_time = grown != 0 && tick.wrapping_sub(self.tick) >= TICK_RATE;
         is_time.then(|| {
             *self = Self::starting(self.total, tick);

@@ -336,6 +336,7 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
     /// Sends the canvas to the panel and a frame message to the host.
     #[inline(never)]
     fn show(&mut self, scene_cycles: u32, log: &mut impl Log<Panel, Link>) {
+        // The panel.
         let shown = self.panel.flush(self.canvas);
         self.panel_failing
             .note(shown, |error| log(Event::Panel(error)));
@@ -343,6 +344,7 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
             log(Event::PanelFound(found));
         }
 
+        // The message for the host.
         let frame = Frame {
             sequence: self.frames,
             dropped: self.dropped.total,

@@ -94,6 +94,7 @@ impl Journal {
     /// shown.
     pub fn note(&mut self, played: Status, step: u64) -> Record {
         self.frames = self.frames.saturating_add(1);
+        // After a minute without a restart, earlier restarts no longer count.
         if self.frames >= SOUND_FRAMES {
             self.restarts = 0;
         }

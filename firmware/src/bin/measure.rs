@@ -1,4 +1,5 @@
-//! Runs one [`Request`] from the semihosting command line and prints the CRC of its bits, and the ticks it took, as one line.
+//! Runs one [`Request`] from the semihosting command line and prints the CRC of its bits, and the
+//! ticks it took, as one line.
 #![no_std]
 #![no_main]
 

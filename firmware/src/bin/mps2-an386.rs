@@ -1,4 +1,5 @@
-//! The double pendulum on the MPS2 board with image AN386: no panel, no buttons, but the serial link.
+//! The double pendulum on the MPS2 board with image AN386: no panel, no buttons, but the serial
+//! link.
 #![no_std]
 #![no_main]
 

@@ -1,4 +1,5 @@
-//! The double pendulum on a board with an STM32F405 or F407, and in QEMU's `netduinoplus2`: the same image.
+//! The double pendulum on a board with an STM32F405 or F407, and in QEMU's `netduinoplus2`: the
+//! same image.
 #![no_std]
 #![no_main]
 

@@ -91,6 +91,7 @@ impl<Panel: Display<Error: Debug> + 'static, Link: Write, Keys: Buttons, Dog: Wa
             instruments.identity.board.name(),
             instruments.identity.hertz
         );
+
         let panel = panel_place.write(panel);
         let app = application(place, buffers, panel, link, keys, processor);
         app.instruments = instruments;
@@ -132,8 +133,7 @@ fn run<Panel: Display<Error: Debug>, Link: Write, Keys: Buttons>(
         while is_late {
             let before = app.frames;
             is_late = !app.run_to(now, log);
-            // A finished frame, drawn and sent, is recorded and feeds the watchdog. Nothing else
-            // feeds it.
+            // A finished frame, drawn and sent, is recorded. Only such a frame feeds the watchdog.
             if app.frames != before {
                 retained::keep(&journal.note(app.status(), app.player.report.step));
                 watchdog.feed();
@@ -164,9 +164,12 @@ fn resume<Panel: Display<Error: Debug>, Link: Write, Keys: Buttons>(
     app: &mut App<Panel, Link, Keys>,
     reset_by_watchdog: bool,
 ) -> Journal {
+    // The choice of the panel's controller outlasts resets.
     if let Some(controller) = retained::chosen_panel() {
         app.choose_panel(Some(controller));
     }
+
+    // Count the restart before its scene is played.
     let restart = retained::recall(reset_by_watchdog);
     if let Some(restart) = &restart {
         retained::keep(&Record {

@@ -45,6 +45,8 @@ pub type Mps2An386 = Board<NoDisplay, Outward, NoButtons, TwoStage>;
 /// Sets the board up. Returns `None` the second time.
 pub fn take() -> Option<Mps2An386> {
     let instruments = start(Peripherals::take()?, BoardName::Mps2An386, HERTZ, [0; 4]);
+
+    // The serial link.
     receive_by(receive);
     DIVISOR.write(HERTZ / BAUD);
     CONTROL.write(ENABLE);

@@ -70,6 +70,7 @@ impl<P: PanelPort> Bus<P> {
 
 impl<P: PanelPort> PanelBus for Bus<P> {
     fn outbox(&mut self) -> Option<(&mut Outbox, Sent)> {
+        // The interrupt has set the outcome if it is done with the outbox.
         let arrived = OUTGOING
             .with(|outgoing| outgoing.take_if(|Outgoing { outbox, .. }| outbox.sent.is_some()));
         if let Some(Outgoing {
@@ -78,9 +79,11 @@ impl<P: PanelPort> PanelBus for Bus<P> {
             ended,
         }) = arrived.flatten()
         {
+            // After an error other than silence, the bus may hang.
             if !matches!(outbox.sent, Some(Ok(()) | Err(ErrorKind::NoAcknowledge(_)))) {
                 self.port.reset();
             }
+
             outbox.took = ended
                 .wrapping_sub(began)
                 .checked_div(self.megahertz)
@@ -104,12 +107,14 @@ impl<P: PanelPort> PanelBus for Bus<P> {
                 ended: began,
             };
 
+            // The interrupt owns the outbox before the transfer begins.
             OUTGOING.with(|place| *place = Some(outgoing));
             self.port.begin(address);
         }
     }
 
     fn abort(&mut self) {
+        // The outcome is an error, and the outbox returns at once.
         self.port.reset();
         if let Some(Outgoing { outbox, .. }) = OUTGOING.with(Option::take).flatten() {
             outbox.sent = Some(Err(ErrorKind::Other));

@@ -8,7 +8,7 @@ use super::cortex_m::instruments::cycles_of;
 use crate::job::{OnBoards, Run};
 
 unsafe extern "C" {
-    /// The address that the linker has assumed for the code: one of the two copies.
+    /// The address of the steps in the linker's view, in flash or in RAM.
     static __steps_start: u8;
     static __steps_flash: u8;
     static __steps_ram: u8;
@@ -35,7 +35,7 @@ core::arch::global_asm!(
     ".pool",
 );
 
-/// Implements [`Instruments::timed`](crate::app::Instruments::timed).
+/// Measures steps by the copy of the code in RAM or in flash.
 pub fn timed(motion: &mut OnBoards, steps: u32, in_ram: bool) -> u32 {
     let advance = <OnBoards as Run>::advance as *const ();
     let place = if in_ram {
@@ -44,6 +44,7 @@ pub fn timed(motion: &mut OnBoards, steps: u32, in_ram: bool) -> u32 {
         &raw const __steps_flash
     };
 
+    // The linker knows only one copy. The other is at a fixed distance.
     let distance = (place as usize).wrapping_sub(&raw const __steps_start as usize);
     // SAFETY: at this distance from the function is a copy of it and of all functions that it
     // calls.

@@ -188,9 +188,12 @@ const MOST_CLOCKS: u32 = 9;
 ///
 /// Source: NXP UM10204, I2C-bus specification, 3.1.16 (bus clear).
 pub fn free_bus(mut drive: impl FnMut(bool, bool) -> bool) -> bool {
+    // A bus that is not held needs no help.
     if drive(true, true) {
         return true;
     }
+
+    // Clock the bus until the panel releases the data line.
     for _ in 0..MOST_CLOCKS {
         drive(false, true);
         if drive(true, true) {

@@ -65,11 +65,11 @@ impl Display for NoDisplay {
 choice! {
     /// The controller of a one-colour OLED panel on I2C.
     Controller {
-        /// Most panels of 0.96 inches have it; the SSD1309 takes the same commands.
+        /// The controller of most panels of 0.96 inches. The SSD1309 takes the same commands.
         Ssd1306 = "ssd1306";
-        /// Most panels of 1.3 inches have it.
+        /// The controller of most panels of 1.3 inches.
         Sh1106 = "sh1106";
-        /// Panels of 128 x 128 and 64 x 128 have it. It is driven as a panel of 128 x 128.
+        /// The controller of panels of 128 x 128 and 64 x 128. The driver assumes 128 x 128.
         Sh1107 = "sh1107";
     }
 }
@@ -79,7 +79,7 @@ choice! {
     By {
         /// The panel returned the bytes that were written into its memory, or did not return them.
         Memory = "by reading its memory back";
-        /// Reading the memory was broken off; only the status byte was left to judge by.
+        /// Reading the memory failed, and only the status byte was available.
         Status = "by its status byte";
         /// The panel acknowledges no read and is taken for the most common controller.
         Silence = "as it answers no read";
@@ -91,7 +91,7 @@ choice! {
 choice! {
     /// An error of the bus that makes a panel absent.
     BusFault {
-        /// No panel acknowledges its address.
+        /// The panel acknowledges neither address.
         NoAnswer = "no answer at 0x3C and 0x3D";
         /// Another device drove the data line.
         Disturbed = "the data line was driven by another device";
@@ -123,12 +123,12 @@ pub struct Found {
 /// The state of the search for a panel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum PanelState {
-    /// The board has no panel, or a panel that cannot be asked.
+    /// The board has no panel, or a panel that cannot be read.
     #[default]
     Unknown,
     /// The board looks for a panel, identifies it or sends the first picture.
     Starting,
-    /// No panel answers.
+    /// The last search has ended with this error.
     Absent(BusFault),
     /// The panel shows the frames.
     Shown(Found),

@@ -8,21 +8,21 @@
 //! - A frame that comes while the bus is still busy is sent when the bus is free, unless the next
 //!   frame comes first.
 //!
-//! # Which controller it is
+//! # How the controller is identified
 //!
-//! The SH1106 returns its memory over I2C, the SSD1306 does not: a byte is written outside the
-//! picture and read back, twice. The status byte is a hint only, because modules in the field
-//! return almost any value in it.
+//! The SH1106 returns its memory over I2C; the SSD1306 does not. So a byte outside the picture is
+//! written and read back, twice. The status byte is a hint only, because panels return almost any
+//! value in it.
 //!
-//! # A panel that lost its power
+//! # How a loss of power is detected
 //!
 //! A panel whose power fails for less than a tick is dark, yet acknowledges. The status byte is
-//! read once a second, and a panel that reports its display off is set up again. The first answers
-//! prove that the byte reports this. If it does not, settings that may be sent to a lit display are
-//! repeated, together with parts of the picture.
+//! read once a second, and a panel that reports its display as off is set up again. The first
+//! answers show if the status byte reports this. If it does not, the driver repeats the settings
+//! that a lit display accepts, and parts of the picture.
 //!
-//! Source: Solomon Systech, SSD1306 data sheet; Sino Wealth, SH1106 and SH1107 data sheets. The
-//! read-back is that of the FlashFloppy firmware (`oled_probe_model`).
+//! Source: Solomon Systech, SSD1306 data sheet; Sino Wealth, SH1106 and SH1107 data sheets; the
+//! FlashFloppy firmware (`oled_probe_model`), for reading the memory back.
 
 use embedded_hal::i2c::ErrorKind;
 
@@ -33,27 +33,28 @@ use crate::graphics::{Bitmap, Canvas, HEIGHT, PAGES, WIDTH};
 
 /// The two addresses that a panel can be set to.
 const ADDRESSES: [u8; 2] = [0x3C, 0x3D];
-/// First byte of a message: commands follow, with their arguments.
+/// The first byte of a message of commands and their arguments.
 const COMMAND: u8 = 0x00;
-/// First byte of a message: bytes for the memory follow.
+/// The first byte of a message of data for the memory.
 const DATA: u8 = 0x40;
-/// First byte of a message: one command follows, then the next control byte.
+/// The first byte of a message of one command, after which the next control byte follows.
 const ONE_COMMAND: u8 = 0x80;
-/// Control byte: one byte for the memory follows, or its memory is read.
+/// The control byte of one data byte, written or read.
 const ONE_DATA: u8 = 0xC0;
 
 const OFF: &[u8] = &[0xAE];
 const ON: &[u8] = &[0xAF];
-/// Chooses page 0 and column 0: outside the picture of an SH1106, and drawn over on the others.
+/// Selects page 0 and column 0. On an SH1106 this is outside the picture; on the others the next
+/// frame overwrites it.
 const CORNER: &[u8] = &[0xB0, 0x10, 0x00];
-/// The status bit that is set while the display is off: the only one that data sheets promise.
+/// The status bit that is set while the display is off. Data sheets define no other bit.
 const DISPLAY_OFF: u8 = 1 << 6;
 
 /// The differences between controllers.
 struct Profile {
-    /// Columns of the memory that are left of the panel's first.
+    /// The number of columns of the memory to the left of the panel's first column.
     left: u8,
-    /// Commands sent once, while the display is off.
+    /// The commands that are sent once, while the display is off.
     settings: &'static [u8],
     /// The settings that may be repeated while the display is on.
     repeated: &'static [u8],
@@ -88,7 +89,7 @@ const SSD1306: Profile = Profile {
         0x20, 0x02,                // data stays within the page
         0x2E,                      // no scrolling
     ],
-    // Without the clock, the charge pump and the addressing mode: none of them is for a lit panel.
+    // Not the clock, the charge pump or the addressing mode, which a lit panel must not receive.
     repeated: &[
         0xA8, (HEIGHT - 1) as u8, 0xD3, 0, 0x40, 0xDA, 0x12, 0xA1, 0xC8,
         0xD9, 0x21, 0x81, 0x5F, 0xDB, 0x40, 0xA4, 0xA6, 0xAF,
@@ -137,8 +138,8 @@ const SH1107: Profile = Profile {
     repeated: &[],
 };
 
-/// Frames between two tries of a panel that does not answer, and between two reads of the status
-/// byte: 1 s.
+/// The number of frames between two searches for an absent panel, and between two readings of the
+/// status byte: 1 s.
 const SECOND: u8 = TICK_RATE as u8;
 /// The number of frames after which a busy bus is considered to hang: 0.1 s, nearly three times the
 /// time of a whole picture on a slow bus.
@@ -146,38 +147,38 @@ const PATIENCE: u32 = 6;
 /// Values that turn a byte read from memory into the next byte to write: one for each round.
 const PATTERN: [u8; 2] = [0x5A, 0xC6];
 
-/// Columns of a part of the picture that is sent again.
+/// The number of columns in a part of the picture, for repetition.
 const PART: usize = 16;
-/// Parts of the picture: all are sent again within 1.1 s.
+/// The number of parts of the picture. All are repeated within 1.1 s.
 const PARTS: usize = PAGES * WIDTH / PART;
-/// Bytes that address a run of columns: an address, a control byte and 3 commands, of which the
-/// first names the page; an address and a control byte.
+/// The number of bytes that address a run of columns: an address, a control byte and three commands
+/// (the first selects the page), and an address and a control byte for the data.
 const HEAD: usize = 7;
-/// The same in a page that is named already.
+/// The same number for another run in a page that is already selected.
 const NEXT_HEAD: usize = HEAD - 1;
-/// Bytes that read the status byte.
+/// The number of bytes on the bus for a reading of the status byte.
 const CHECK: usize = 4;
-/// Unchanged columns that are sent rather than left out: to address the columns behind them takes
-/// as many bytes.
+/// The longest gap of unchanged columns that is sent too. To address the columns after it would
+/// take as many bytes.
 const GAP: usize = NEXT_HEAD;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum OledError {
-    /// No panel answers at either address; the error of the bus.
+    /// No panel answers at either address. Contains the error of the bus.
     Absent(ErrorKind),
-    /// The panel answered before, but not now, or lost its power.
+    /// The panel answered earlier but does not now, or it lost its power.
     Lost,
     /// The bus is too slow for every frame.
     Slow {
-        /// Frames of the last [`TICK_RATE`] that were sent to the panel.
+        /// The number of frames, of the last [`TICK_RATE`], that were sent to the panel.
         shown: u32,
     },
 }
 
 /// Driver for a panel that may be absent or plugged in later.
 ///
-/// An absent panel is looked for once a second; its frames are refused at once. The result of a
-/// frame is returned with a later one.
+/// The driver looks for an absent panel once a second, and returns an error for its frames at once.
+/// The result of a frame is returned with a later frame.
 #[derive(Debug)]
 pub struct OledI2c<'a, Bus> {
     pub bus: Bus,
@@ -186,20 +187,20 @@ pub struct OledI2c<'a, Bus> {
     address: u8,
     chosen: Option<Controller>,
     found: Option<Found>,
-    /// The picture in the panel's memory once all that was sent has arrived.
+    /// The picture in the panel's memory after everything sent has arrived.
     memory: &'a mut Bitmap,
-    /// The first page of the next frame: the first one that was left over.
+    /// The first page of the next frame: the first page that did not fit into this one.
     page: usize,
-    /// Bytes that the bus carries in a tick.
+    /// The number of bytes that the bus carries in a tick.
     room: Room,
-    told: Result<(), OledError>,
-    /// Frames in a row for which the bus has been busy.
+    result: Result<(), OledError>,
+    /// The number of frames in a row that found the bus busy.
     waiting: u32,
-    /// The last frame waits for the bus.
+    /// True while the last frame waits for the bus.
     is_owed: bool,
-    /// Frames until the status byte is read.
+    /// The number of frames until the status byte is read.
     check_in: u8,
-    /// The part that is sent again next.
+    /// The part that is repeated next.
     part: usize,
     counted: Count,
     /// The counts of the last whole second.
@@ -218,11 +219,11 @@ enum State {
     Absent {
         retry_in: u8,
     },
-    /// The display is being switched off at an address.
+    /// The display is being switched off at the current address.
     Looking,
     /// The status byte is being read.
     Asking,
-    /// Memory is being read; `expected` was written to it in the round before.
+    /// The memory is being read. The round before has written `expected` to it.
     Probing {
         status: u8,
         round: usize,
@@ -236,13 +237,13 @@ enum State {
 /// The detection of a loss of power of the panel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Watch {
-    /// The status byte reported the display off before it was switched on.
+    /// The status byte has correctly reported the display as off. It has not yet reported it as on.
     Unproven,
     /// The status byte reports whether the display is on.
     Status,
-    /// The status byte reported the display off once.
+    /// The status byte has reported the display as off once.
     Suspect,
-    /// The status byte says nothing: settings are repeated.
+    /// The status byte is useless, so the settings are repeated.
     Blind,
 }
 
@@ -251,32 +252,35 @@ enum Watch {
 enum Offer {
     /// The bus was busy until the next frame came.
     Skipped,
-    /// A part was left over.
+    /// A part did not fit.
     InPart,
     Whole,
 }
 
-/// The number of bytes that the bus carries in a tick, less a thirty-second: frames are not equally
-/// far apart.
+/// The number of bytes that the bus carries in a tick, minus 1/32 because the time between frames
+/// varies.
 #[derive(Clone, Copy, Debug)]
 struct Room(usize);
 
 impl Room {
     /// The time for a frame, us.
     const TIME: u32 = 1_000_000 / TICK_RATE * 31 / 32;
-    /// The room of a bus that is not measured yet: 34 us a byte, with 10 kOhm pull-ups.
+    /// The room of a bus that has not been measured yet. A byte takes 34 us with pull-ups of 10
+    /// kOhm.
     const FIRST: Self = Self((Self::TIME / 34) as usize);
     const LEAST: usize = 128;
     const MOST: usize = PAGES * (HEAD + WIDTH);
-    /// Shorter transfers say little of the bus.
+    /// The shortest transfer that is measured, bytes.
     const MEASURED: usize = 64;
 
-    /// Learns from a transfer: at once that the bus is slower, gradually that it is faster.
+    /// Learns from a transfer. The room shrinks at once and grows gradually.
     fn measure(&mut self, outbox: &Outbox) {
         let bytes = outbox.len();
         if outbox.took == 0 || bytes < Self::MEASURED {
             return;
         }
+
+        // The time that this transfer has taken, scaled to a tick.
         let room = bytes as u32 * Self::TIME / outbox.took;
         let room = (room as usize).clamp(Self::LEAST, Self::MOST);
         self.0 = room.min(self.0 + room.saturating_sub(self.0).div_ceil(8));
@@ -284,8 +288,8 @@ impl Room {
 }
 
 impl<'a, Bus: PanelBus> OledI2c<'a, Bus> {
-    /// Takes the bus, a place to remember the picture, and the controller if it is not to be
-    /// identified. The panel is looked for with the first frame.
+    /// Creates a driver with a place to remember the picture. The controller is identified unless
+    /// it is chosen. The search for the panel begins with the first frame.
     pub fn new(bus: Bus, memory: &'a mut Bitmap, chosen: Option<Controller>) -> Self {
         Self {
             bus,
@@ -296,7 +300,7 @@ impl<'a, Bus: PanelBus> OledI2c<'a, Bus> {
             memory,
             page: 0,
             room: Room::FIRST,
-            told: Ok(()),
+            result: Ok(()),
             waiting: 0,
             is_owed: false,
             check_in: SECOND,
@@ -306,7 +310,7 @@ impl<'a, Bus: PanelBus> OledI2c<'a, Bus> {
         }
     }
 
-    /// Sends the frame, or a part of it; `None` if the bus is busy.
+    /// Sends the frame, or a part of it. Returns `None` if the bus is busy.
     ///
     /// A frame that is late is sent in a shorter part, so that the next one is not late as well.
     fn offer(&mut self, canvas: &Canvas, is_late: bool) -> Option<Offer> {
@@ -316,7 +320,7 @@ impl<'a, Bus: PanelBus> OledI2c<'a, Bus> {
             self.room.measure(outbox);
         }
 
-        // The outcome of the last messages decides what comes next.
+        // Choose the next state by the outcome of the last messages.
         let answer = outbox.answered();
         let (state, news) = self
             .state
@@ -325,13 +329,14 @@ impl<'a, Bus: PanelBus> OledI2c<'a, Bus> {
             self.found = Some(found);
         }
         self.state = state;
-        if let Some(told) = news {
-            self.told = told;
+        if let Some(result) = news {
+            self.result = result;
             self.counted = Count::default();
             self.counts = Count::default();
             self.check_in = SECOND;
         }
 
+        // Put the messages of this state into the outbox.
         outbox.address_to(self.address);
         let mut offer = Offer::Whole;
         match state {
@@ -344,6 +349,7 @@ impl<'a, Bus: PanelBus> OledI2c<'a, Bus> {
             State::Probing {
                 round, expected, ..
             } => probe(outbox, round, expected),
+            // The settings, the whole picture, and the command that switches the display on.
             State::Waking(Found { controller, .. }) => {
                 let profile = profile(controller);
                 outbox.put(COMMAND, profile.settings);
@@ -354,6 +360,8 @@ impl<'a, Bus: PanelBus> OledI2c<'a, Bus> {
                 outbox.put(COMMAND, ON);
                 self.page = 0;
             }
+            // The changed columns, a part that is repeated, and perhaps a reading of the status
+            // byte.
             State::Awake(Found { controller, .. }, watch) => {
                 let profile = profile(controller);
                 let frame = Bitmap::from(canvas);
@@ -372,23 +380,27 @@ impl<'a, Bus: PanelBus> OledI2c<'a, Bus> {
                 }
             }
         }
+
+        // The interrupts of the bus do the rest.
         if !outbox.is_empty() {
             self.bus.send();
         }
         Some(offer)
     }
 
-    /// Counts a frame that was shown or skipped, and reports once a second whether all were sent.
+    /// Counts a frame that was shown or skipped. Once a second it reports if all were sent.
     fn count(&mut self, offer: Offer) {
         if !matches!(self.state, State::Awake(..)) {
             return;
         }
+
         self.counted.frames += 1;
         self.counted.shown += u32::from(offer != Offer::Skipped);
         self.counted.whole += u32::from(offer == Offer::Whole);
+
         if self.counted.frames >= TICK_RATE {
             let shown = self.counted.shown;
-            self.told = if shown < self.counted.frames {
+            self.result = if shown < self.counted.frames {
                 Err(OledError::Slow { shown })
             } else {
                 Ok(())
@@ -418,6 +430,8 @@ impl State {
             (Self::Waking(found), None)
         };
         let unanswered = matches!(sent, Err(ErrorKind::NoAcknowledge(_)));
+
+        // Each group of arms is a step of the search.
         match (self, sent, answer) {
             (Self::Absent { retry_in: 0 }, ..) => {
                 *address = first;
@@ -437,7 +451,8 @@ impl State {
             (Self::Asking, Ok(()), &[status, ..]) => match chosen {
                 Some(controller) => wake(controller, By::Choice, Some(status)),
                 None => {
-                    let (round, expected) = (0, 0);
+                    let round = 0;
+                    let expected = 0;
                     let probing = Self::Probing {
                         status,
                         round,
@@ -451,7 +466,7 @@ impl State {
                 None => wake(Controller::Ssd1306, By::Silence, None),
             },
 
-            // The first byte read is a dummy.
+            // The first byte read is a dummy byte.
             (
                 Self::Probing {
                     status,
@@ -503,8 +518,8 @@ impl State {
 }
 
 impl Watch {
-    /// Returns the next state after an answer, if there is one; `None` if the panel has lost its
-    /// power.
+    /// Returns the next state after an answer, or the same state without one. Returns `None` if the
+    /// panel has lost its power.
     fn after(self, answer: &[u8]) -> Option<Self> {
         let Some(status) = answer.first() else {
             return Some(self);
@@ -519,9 +534,9 @@ impl Watch {
     }
 }
 
-/// The controller of a panel whose memory can be read and that gives this status.
+/// Returns the controller of a panel that returns its memory and this status.
 fn with_memory(status: u8) -> Controller {
-    // The lower six bits are the SH1107's number; the SH1106 leaves them open.
+    // The lower six bits identify the SH1107; an SH1106 leaves them open.
     if status & 0x3F == 0x07 {
         Controller::Sh1107
     } else {
@@ -542,6 +557,7 @@ impl<Bus: PanelBus> Display for OledI2c<'_, Bus> {
     type Error = OledError;
 
     fn flush(&mut self, canvas: &Canvas) -> Result<(), OledError> {
+        // A frame that still waits will never be sent.
         if core::mem::take(&mut self.is_owed) {
             self.count(Offer::Skipped);
         }
@@ -555,7 +571,7 @@ impl<Bus: PanelBus> Display for OledI2c<'_, Bus> {
                 }
             }
         }
-        self.told
+        self.result
     }
 
     fn catch_up(&mut self, canvas: &Canvas) -> bool {
@@ -573,7 +589,7 @@ impl<Bus: PanelBus> Display for OledI2c<'_, Bus> {
     }
 
     fn report(&self) -> PanelReport {
-        let state = match (self.state, self.told) {
+        let state = match (self.state, self.result) {
             (State::Awake(found, _), _) => PanelState::Shown(found),
             (_, Err(OledError::Absent(error))) => PanelState::Absent(error.into()),
             (State::Absent { .. }, Err(_)) => PanelState::Absent(BusFault::NoAnswer),
@@ -589,13 +605,13 @@ impl<Bus: PanelBus> Display for OledI2c<'_, Bus> {
 
     fn choose(&mut self, chosen: Option<Controller>) -> bool {
         self.chosen = chosen;
-        // With the next frame it is looked for and set up again.
+        // The next frame begins the search and the set-up.
         self.state = State::Absent { retry_in: 0 };
         true
     }
 }
 
-/// Reads a byte of memory, and before that writes the one that is expected.
+/// Reads a byte of the memory. After the first round, it first writes the expected byte.
 fn probe(outbox: &mut Outbox, round: usize, expected: u8) {
     outbox.put(COMMAND, CORNER);
     if round > 0 {
@@ -621,9 +637,8 @@ fn checks(watch: Watch, check_in: &mut u8) -> bool {
     }
 }
 
-/// Appends the columns that differ between the panel's memory and the frame, page by page from
-/// `first` on, while there is room, and notes them in the memory. Returns the page that did not
-/// fit.
+/// Appends the columns that differ between the panel's memory and the frame, while there is room,
+/// and records them in the memory. Begins with page `first`. Returns the page that did not fit.
 fn draw(
     outbox: &mut Outbox,
     left: u8,
@@ -638,6 +653,7 @@ fn draw(
         let mut named = Some(page);
         let mut head = HEAD;
         let mut from = 0;
+        // One run of differing columns for each round.
         while let Some((start, end)) = next_run(old, new, from) {
             let space = room.saturating_sub(outbox.len() + head);
             if space == 0 {
@@ -656,8 +672,8 @@ fn draw(
     None
 }
 
-/// Returns the first and the end of the next columns that differ, from column `from` on; short gaps
-/// belong to them.
+/// Returns the start and the end of the next run of differing columns, from column `from` on. Short
+/// gaps are part of a run.
 fn next_run(old: &[u8; WIDTH], new: &[u8; WIDTH], from: usize) -> Option<(usize, usize)> {
     let mut differing = old
         .iter()
@@ -667,6 +683,7 @@ fn next_run(old: &[u8; WIDTH], new: &[u8; WIDTH], from: usize) -> Option<(usize,
         .filter(|(_, (old, new))| old != new)
         .map(|(column, _)| column);
     let start = differing.next()?;
+    // Extend the run over short gaps.
     let mut last = start;
     for column in differing {
         if column - last > GAP {
@@ -677,8 +694,8 @@ fn next_run(old: &[u8; WIDTH], new: &[u8; WIDTH], from: usize) -> Option<(usize,
     Some((start, last + 1))
 }
 
-/// Appends a part of the picture that is sent again, or settings, if there is room. Returns the
-/// number of the next part.
+/// Appends a part of the picture as a repetition, or the settings after the last part, if there is
+/// room. Returns the number of the next part.
 fn repeat(
     outbox: &mut Outbox,
     profile: &Profile,
@@ -691,7 +708,8 @@ fn repeat(
     if space < HEAD + PART {
         return part;
     }
-    let (page, column) = (part * PART / WIDTH, part * PART % WIDTH);
+    let page = part * PART / WIDTH;
+    let column = part * PART % WIDTH;
     if let Some(columns) = memory
         .pages
         .get(page)
@@ -700,13 +718,15 @@ fn repeat(
         put_columns(outbox, Some(page), profile.left + column as u8, columns);
         return part + 1;
     }
+
+    // All parts are repeated, so the settings are next.
     if watch == Watch::Blind && !profile.repeated.is_empty() {
         outbox.put(COMMAND, profile.repeated);
     }
     0
 }
 
-/// Appends columns for the page that was named last, or for the one named here.
+/// Appends columns for the given page, or for the page that is already selected.
 fn put_columns(outbox: &mut Outbox, page: Option<usize>, first: u8, columns: &[u8]) {
     let [low, high] = [first & 0x0F, 0x10 | first >> 4];
     match page {

@@ -32,6 +32,7 @@ const fn room(all_greys: bool) -> [[u32; 2]; 4] {
             2 + order * 6 / 16
         };
 
+        // The place of the summand is the nibble of this pixel's byte.
         room[y][x % 2] |= (15 - threshold) * (0x0001_0001 << (8 * (x / 2)));
         place += 1;
     }
@@ -81,6 +82,7 @@ impl From<&Canvas> for Bitmap {
                     }
                 }
 
+                // The pixels with even numbers come from the high nibbles.
                 let [even, odd] = lit.map(u32::to_le_bytes);
                 *columns = [
                     even[0], odd[0], even[1], odd[1], even[2], odd[2], even[3], odd[3],

@@ -53,6 +53,7 @@ impl Stroke {
         let columns = pixels([self.from.x, self.to.x], limit, WIDTH);
         let rows = pixels([self.from.y, self.to.y], limit, HEIGHT);
 
+        // Each row is visited only where the line is near.
         let mut band = line.band(rows.start);
         for y in rows {
             let near = band.next();
@@ -104,6 +105,7 @@ impl Disc {
 
         let grey = shade(brightness);
 
+        // The distance is a root only at the edges, where it matters.
         let columns = pixels([centre_x; 2], outer, WIDTH);
         for y in pixels([centre_y; 2], outer, HEIGHT) {
             let Some(row) = canvas.row_mut(y) else { return };
@@ -254,8 +256,8 @@ impl Line {
     /// `progress` and `across` are the distances of the middle of the pixel along the line from its
     /// start and across it, each times the length of the line.
     ///
-    /// Spots are no farther from the canvas than its size. So differences are below 3 x 128 x 64 =
-    /// 24,576 across and half that down, and sums of two products are below 24,576^2 x 1.25 =
+    /// A spot is at most one canvas size outside the canvas. So differences are below 3 x 128 x 64
+    /// = 24,576 across and half that down, and sums of two products are below 24,576^2 x 1.25 =
     /// 7.6e8. They fit into 31 bits.
     #[inline(always)]
     fn covered(&self, (x, y): (i32, i32), progress: i32, across: i32) -> i32 {

@@ -29,8 +29,9 @@ impl Horizon {
         }
     }
 
-    /// Returns the horizon as the panel shows it: `½px 8.4 s`, `½px>8.4 s` if planning may raise it,
-    /// `½px ?` while nothing is known, `½px ok` if frames are always accurate.
+    /// Returns the horizon as the panel shows it. `½px 8.4 s` is a final result, `½px>8.4 s` may
+    /// still grow, `½px ?` means that nothing is known, and `½px ok` that frames are always
+    /// accurate.
     ///
     /// It is rounded down, so that no frame is claimed that is not verified. Below a second it is
     /// rounded to hundredths, which are shorter than a frame.

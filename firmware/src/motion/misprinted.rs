@@ -58,9 +58,11 @@ impl Misprinted {
         }: &Parameters<f32>,
         start: &State<f32>,
     ) -> Self {
+        // Everything is divided by m1 l^2 or by the length of the rods.
         let inertia = m1 * l * l;
         let (sin1, cos1) = start.a1.own_sin_cos();
-        let (sin_d, cos_d) = (start.a1 - start.a2).own_sin_cos();
+        let elbow = start.a1 - start.a2;
+        let (sin_d, cos_d) = elbow.own_sin_cos();
         let z = [
             sin1,
             cos1,
@@ -89,6 +91,7 @@ impl Misprinted {
         let mut left = PARTS;
         let mut parts = PARTS / STEPS_PER_TICK;
         while left > 0 {
+            // Try a step, and halve it until it resolves the motion at both ends.
             let z = rk4::step(|z| self.rates(z), &self.z, parts as f32 * PART);
             if self.is_resolved(&self.z, parts) && self.is_resolved(&z, parts) {
                 self.z = z;
@@ -147,6 +150,7 @@ impl Misprinted {
 
     /// Returns true if a step of this many [`PART`]s resolves the motion near `z`.
     fn is_resolved(&self, z: &[f32; 6], parts: u32) -> bool {
+        // The rotations of the rods in the step, and the bend of the elbow.
         let [turn1, turn2] = self.turning(z).map(|rate| rate * (parts as f32 * PART));
         let bend = turn1 - turn2;
         let [sin1, cos1, sin_d, cos_d, ..] = *z;
@@ -168,6 +172,7 @@ impl Misprinted {
         let [sin1, cos1, sin_d, cos_d, ..] = *z;
         let [u, v] = self.turning(z);
         let w = u - v;
+        // F acts on both rods with opposite signs.
         let force = u * v * sin_d;
         let sin2 = sin1 * cos_d - cos1 * sin_d;
         let [torque1, torque2] = [(1.0 + mu) * gravity * sin1, mu * gravity * sin2];

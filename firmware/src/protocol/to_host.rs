@@ -99,10 +99,10 @@ impl ToHost {
 /// | 4, 4, 4, 4 | `report.state`: a1, a2, p1, p2 |
 /// | 4 | `report.energy_error` |
 /// | 1, or 1 and 4 | `report.horizon`: its number, and the time of the last two kinds |
-/// | 1, or 1 and 1 and varint | `report.stepping`: 0; or 1, the method's number and the step count |
+/// | 1, or 1 and 1 and varint | `report.stepping`: 0; or 1, the method's number, the step count |
 /// | varint, 1 to 5 each | `scene_cycles`, `busy_cycles` |
 ///
-/// The numbers of all kinds are in `wire-12.txt` beside this file (test `link`). To add a field, add
+/// The numbers of all kinds are in `wire-12.txt` in this folder (test `link`). To add a field, add
 /// it here and to `Player::frame`, and raise [`VERSION`](super::VERSION).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Frame {
@@ -218,7 +218,7 @@ pub struct Identity {
     pub hertz: u32,
     /// The CPUID register of the processor.
     pub processor: u32,
-    /// The identification of the chip and its unique number; zeros if it has none.
+    /// The identification of the chip and its unique number, or zeros.
     pub chip: [u32; 4],
     /// The CRC-32 of the program in flash, code and constants.
     pub image: u32,

@@ -74,6 +74,7 @@ impl Block {
             mut y,
         } = self;
         loop {
+            // Go to the right, then down, then to blocks of half the size.
             x += size;
             if x >= WIDTH {
                 x = 0;
@@ -84,6 +85,7 @@ impl Block {
                 x = 0;
                 y = 0;
             }
+            // A smaller block is new unless a larger block began at its pixel.
             if size == 0 || size == COARSEST || (x | y) & size != 0 {
                 return Self { size, x, y };
             }
@@ -94,7 +96,8 @@ impl Block {
     fn start(self) -> [f32; 2] {
         // The pixels are whole numbers, so that opposite starts are exact mirror images.
         let angle = |pixels: i32, all: usize| pixels as f32 * (core::f32::consts::PI / all as f32);
-        let (x, y) = (self.x as i32, self.y as i32);
+        let x = self.x as i32;
+        let y = self.y as i32;
         [
             angle(2 * x + 1 - WIDTH as i32, WIDTH),
             angle(HEIGHT as i32 - 1 - 2 * y, HEIGHT),
@@ -120,6 +123,7 @@ impl Flips {
     /// point.
     #[inline(never)] // Not inlined, to save flash.
     pub fn at_pace(settings: &Settings, pace: FlipsPace, in_float: bool) -> Result<Self, Error> {
+        // The search lasts for a fixed number of units of time.
         let parameters = &settings.parameters;
         let unit = libm::sqrtf(parameters.l1 / parameters.g);
         let dt = step_size(parameters)?;
@@ -160,6 +164,7 @@ fn work<F: Form<Real = f32>>(
     steps: u32,
     pace: FlipsPace,
 ) -> (u32, Option<Flip<f32>>) {
+    // A new start costs more than a step, even if it can never flip.
     let Some(motion) = falling else {
         // The search refuses no angle of the map.
         *falling = search.start(a1, a2).ok().flatten();
@@ -170,6 +175,7 @@ fn work<F: Form<Real = f32>>(
         };
     };
 
+    // Follow the motion for the rest of the budget.
     let before = motion.steps;
     let flip = search.advance(motion, steps);
     let made = motion.steps.wrapping_sub(before);
@@ -211,6 +217,7 @@ impl Scene for Flips {
             return;
         }
         self.elapsed = ticks;
+        // Spend the budget of the tick, block by block.
         let mut left = self.pace.steps;
         while left > 0 && !self.is_done() {
             let start = self.block.start();
@@ -229,6 +236,7 @@ impl Scene for Flips {
     }
 
     fn draw(&self, _: &Report, canvas: &mut Canvas) {
+        // The time of the computation.
         text::write_on(
             canvas,
             &label::time(time(self.elapsed)),

@@ -131,8 +131,8 @@ fn draw_clock(canvas: &mut Canvas, report: &Report, time_at: Anchor, trust_at: A
     text::write(canvas, &horizon.label(), trust_at);
 }
 
-/// Defines the scenes. Each row gives the number on the wire, the name of the scene, its type and its
-/// initial settings.
+/// Defines the scenes. Each row contains the number on the wire, the name of the scene, its type,
+/// and its initial settings.
 macro_rules! catalogue {
     ($($number:literal $row:ident = $name:literal, $scene:ty, $first:expr;)*) => {
         choice! {

@@ -53,6 +53,7 @@ impl Scene for Page {
     }
 
     fn tick(&mut self, _: u64, ink: &mut FadeLayer) {
+        // Bob 2 leaves its trail.
         self.simulation.tick();
         let half_width = (TRAIL_HALF_WIDTH * SUBPIXELS as f32) as u8;
         self.view.trace(
@@ -66,6 +67,7 @@ impl Scene for Page {
     fn draw(&self, report: &Report, canvas: &mut Canvas) {
         self.view.draw(canvas, u8::MAX);
 
+        // The settings.
         let [degrees1, degrees2] = self.settings.degrees;
         text::write(
             canvas,
@@ -73,6 +75,7 @@ impl Scene for Page {
             Anchor::Left(0),
         );
 
+        // Two equal angles need only one label.
         if degrees1 == degrees2 {
             text::write(
                 canvas,
@@ -127,6 +130,7 @@ impl Halves {
     /// Draws both pendulums, with a label for each. If `is_lost`, draws only the left one.
     fn draw(&self, [left, right]: [&str; 2], is_lost: bool, report: &Report, canvas: &mut Canvas) {
         let Self([left_view, right_view]) = self;
+        // A lost motion has no position.
         left_view.draw(canvas, u8::MAX);
         if !is_lost {
             right_view.draw(canvas, u8::MAX);
@@ -176,6 +180,7 @@ impl Scene for Figure7 {
             });
         }
 
+        // Both motions start from the same state, in its rounded numbers.
         let right = Simulation::new(settings, resources)?;
         let misprinted = Misprinted::new(&settings.parameters, &right.motion.rounded_state());
         let halves = Halves::new(
@@ -203,6 +208,7 @@ impl Scene for Figure7 {
     }
 
     fn draw(&self, report: &Report, canvas: &mut Canvas) {
+        // The energy of the exact motion, and the energy of the misprinted motion.
         let right = self.right.energy.of_error(report.energy_error);
         let right = label::label("true ", right, 1, " J");
         let is_lost = self.misprinted.is_lost();
@@ -234,8 +240,9 @@ impl Scene for Figure7 {
 /// not drawn. There is no plan, because the scene shows two given arithmetics.
 ///
 /// The `f32` nearest to pi is too large by 8.7e-8, so that the exact motion from there falls after
-/// about 3 s. Plain `f32` drops the first tiny increments completely, and stands for minutes: it
-/// looks perfect and is wrong. The compensation on the right keeps the dropped parts.
+/// about 3 s. Plain `f32` drops the first tiny increments completely, so that the pendulum does not
+/// move for minutes: it looks perfect and is wrong. The compensation on the right keeps the dropped
+/// parts.
 #[derive(Clone, Debug)]
 pub struct Upright {
     pendulum: Pendulum<f32>,
@@ -265,6 +272,7 @@ impl Upright {
     /// one.
     fn have_parted(&self) -> bool {
         let Halves([left, _]) = &self.halves;
+        // Both positions in the left half of the frame.
         let [plain, exact] =
             [self.plain_directions, self.exact.motion.directions()].map(|to| left.bobs(to));
         let is_near = |((x, y), (exact_x, exact_y)): ((f32, f32), (f32, f32))| {
@@ -306,6 +314,7 @@ impl Scene for Upright {
         let mut exact = Simulation::new(settings, &resources)?;
         exact.is_too_fast |= exact.motion.stepping().method != Method::Extrapolation10Fixed64;
 
+        // The two motions that are drawn.
         let compensated = pendulum.run(&plain, dt)?;
         let plain_directions = directions(&plain);
         let halves = Halves::new(settings, [plain_directions, compensated.directions()]);
@@ -323,13 +332,14 @@ impl Scene for Upright {
     }
 
     fn tick(&mut self, ticks: u64, ink: &mut FadeLayer) {
+        // The plain motion.
         let dt = 1.0 / (TICK_RATE * self.steps) as f32;
         for _ in 0..self.steps {
             self.plain = self.pendulum.step(&self.plain, dt);
         }
         self.plain_directions = directions(&self.plain);
 
-        // A motion that has diverged does not move.
+        // The compensated motion. If it has diverged, it does not move.
         let _stays = self.compensated.advance(self.steps);
 
         // Compare with the motion in 64 bits until the first difference.

@@ -18,7 +18,7 @@ const SWING: f32 = 10.5;
 /// The first column of the plots, right of their names and scales.
 const LEFT: i32 = 18;
 const RIGHT: i32 = WIDTH as i32 - 1;
-/// The approximate time in which the energy is exchanged between the rods and back, columns.
+/// The approximate period of the exchange of energy between the rods, columns.
 const COLUMNS_PER_EXCHANGE: f32 = 60.0;
 /// The smallest length of the scale bar for time, columns.
 const LEAST_BAR: f32 = 16.0;
@@ -66,9 +66,11 @@ impl Small {
     /// The amplitude of C1 cos(w1 t + f1) + C2 cos(w2 t + f2) is sqrt(C1^2 + C2^2 + 2 C1 C2 cos((w1
     /// - w2) t + f1 - f2)).
     fn envelopes(&self, t: f64) -> [f32; 2] {
+        // The turns are exact for hours, so they are reduced in 64 bits.
         let turns = self.exchange * t;
         let exchanged = (turns - libm::rint(turns)) as f32 * core::f32::consts::TAU;
-        let (_, cos) = (exchanged + self.phase).own_sin_cos();
+        let phase = exchanged + self.phase;
+        let (_, cos) = phase.own_sin_cos();
         self.amplitudes
             .map(|[c1, c2]| libm::sqrtf((c1 * c1 + c2 * c2 + 2.0 * c1 * c2 * cos).max(0.0)))
     }
@@ -76,6 +78,7 @@ impl Small {
     /// Scrolls the curves and their envelopes, and adds a column.
     fn extend(&mut self, time: f64, ink: &mut Canvas) {
         ink.scroll(LEFT);
+        // Heights are measured from the row of angle 0.
         let [row1, row2] = ROWS;
         let height = |(angle, row): (f32, f32)| plot::height(angle, row, self.scale);
 
@@ -165,6 +168,7 @@ impl Scene for Small {
     }
 
     fn draw(&self, report: &Report, canvas: &mut Canvas) {
+        // The axes, with their names and the largest angle.
         let greatest = if self.scale > 0.0 {
             (SWING / self.scale).to_degrees()
         } else {
@@ -194,6 +198,7 @@ impl Scene for Small {
             Anchor::At(end + 4, LOWEST),
         );
 
+        // The mass ratio, and the model.
         text::write(
             canvas,
             &label::mass_ratio(self.pendulum.parameters().mass_ratio()),

@@ -18,8 +18,8 @@ pub struct Image {
     loaded: Vec<(u32, Vec<u8>)>,
     code: Vec<(u32, Vec<u8>)>,
     functions: Vec<Function>,
-    /// The addresses at which code begins (`true`) and at which data between code begins (`false`),
-    /// from the mapping symbols `$t` and `$d`.
+    /// The beginnings of code (`true`) and of data between code (`false`), by address, from the
+    /// mapping symbols `$t` and `$d`.
     marks: BTreeMap<u32, bool>,
 }
 
@@ -86,7 +86,8 @@ impl Image {
         }
 
         functions.sort();
-        let (loaded, code) = (loaded.collect::<Result<_>>()?, code.collect::<Result<_>>()?);
+        let loaded = loaded.collect::<Result<_>>()?;
+        let code = code.collect::<Result<_>>()?;
         Ok(Self {
             path: path.to_owned(),
             loaded,
@@ -147,6 +148,7 @@ impl Image {
         let before = self
             .functions
             .partition_point(|function| function.address <= address);
+        // A label without a size contains no address.
         self.functions[..before]
             .iter()
             .rfind(|function| address - function.address < function.size)
@@ -163,6 +165,7 @@ impl Image {
                 .iter()
                 .map(|half| u16::from_le_bytes(*half));
             let mut halfwords = (*start..).step_by(2).zip(halfwords);
+            // Data between code has no instructions.
             while let Some((address, first)) = halfwords.next() {
                 if self
                     .marks
@@ -189,11 +192,16 @@ impl Image {
                 Some(u16::from_le_bytes(bytes.get(at..at + 2)?.try_into().ok()?))
             })
         };
+
+        // An instruction at the very end has no second halfword.
         let first = halfword(address).with_context(|| format!("no code at {address:#x}"))?;
         let second = halfword(address + 2).unwrap_or_default();
         Instruction::decode(first, second).with_context(|| {
             let function = self.function_at(address).map_or("?", |inside| &inside.name);
-            format!("no timing for the instruction {first:04x} {second:04x} at {address:#x} in {function}")
+            format!(
+                "no timing for the instruction {first:04x} {second:04x} \
+                at {address:#x} in {function}"
+            )
         })
     }
 }

@@ -90,7 +90,7 @@ impl Instruction {
         registers(self.row.address, self.word).any(written)
     }
 
-    /// Returns the floating-point register whose value is ready late, if there is one.
+    /// Returns the floating-point register with a late result, or `None`.
     pub fn late_result(&self) -> Option<u32> {
         matches!(self.row.class, Class::Arithmetic(_) | Class::Aside(_))
             .then(|| Float::D.register(self.word))
@@ -122,10 +122,14 @@ impl Instruction {
             };
             u32::BITS - size.leading_zeros()
         };
-        match (bits(self.word >> 16), bits(self.word)) {
-            (0, _) | (_, 0) => 2,
-            (dividend, divisor) if dividend < divisor => 3,
-            (dividend, divisor) => 5 + u64::from(dividend - divisor) / 4,
+        let dividend = bits(self.word >> 16);
+        let divisor = bits(self.word);
+        if dividend == 0 || divisor == 0 {
+            2
+        } else if dividend < divisor {
+            3
+        } else {
+            5 + u64::from(dividend - divisor) / 4
         }
     }
 
@@ -143,6 +147,7 @@ impl Instruction {
     fn stores(&self, s: u32) -> bool {
         let is_float_store = self.word & 0xfe10_0e00 == 0xec00_0a00;
         let double = self.word & 0x100 != 0;
+        // A double register covers two single ones.
         let d = Float::D.register(self.word);
         let first = if double {
             2 * (d >> 1 | (d & 1) << 4)

@@ -3,9 +3,8 @@
 //!
 //! The rules, each with its source:
 //!
-//! - A load after a load takes 1 cycle, unless its address is what the first one loads. Source: DDI
-//!   0337, "Load/store timings"; 200 loads in 201 cycles, in 400 if each address is the load
-//!   before.
+//! - A load after a load takes 1 cycle, unless the first one loads its address. Source: DDI 0337,
+//!   "Load/store timings"; 200 loads in 201 cycles, in 400 if each address is the load before.
 //! - A store with an immediate offset takes 1 cycle, and 1 more if a load follows. With an offset
 //!   in a register it takes 2. After a load it fills the load's second cycle (the manual's example
 //!   counts a cycle more). The same is assumed for vldr and vstr, because no count was found.
@@ -57,9 +56,11 @@ use crate::stream::Registers;
 use crate::timing::{DIRECT_REFILL, INDIRECT_REFILL, RESULT_USE_STALL, UNALIGNED_TARGET};
 
 /// The accuracy statement that is printed with every table of cycles.
-pub const ERROR_BAR: &str = "Cycles are estimated: 1.6 % off (root mean square) and at most 5.0 % for 76 published kernels, 3 to 5 % \
-     too low on an STM32L4R5, no data for the M0+; floating-point timing checked for VADD, VDIV and moves only; \
-     wait states cost extra (34 % at 2 on an STM32F1 for one AES).";
+pub const ERROR_BAR: &str = "\
+    Cycles are estimated: 1.6 % off (root mean square) and at most 5.0 % for 76 published kernels, \
+    3 to 5 % too low on an STM32L4R5, no data for the M0+; \
+    floating-point timing checked for VADD, VDIV and moves only; \
+    wait states cost extra (34 % at 2 on an STM32F1 for one AES).";
 
 /// The cost of executed code: an exact number of instructions and an estimated number of cycles.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -88,8 +89,7 @@ pub struct Pipeline {
     branched: bool,
     now: u64,
     unit_free: u64,
-    /// The register with the last floating-point result, and the cycle from which it can be
-    /// consumed.
+    /// The register with the last floating-point result, and the first cycle that can consume it.
     result: Option<(u32, u64)>,
 }
 
@@ -160,7 +160,7 @@ impl Pipeline {
         }
     }
 
-    /// Returns the cycle in which the floating-point unit and the operands of `instruction` are
+    /// Returns the first cycle with the floating-point unit and the operands of `instruction`
     /// ready.
     fn start_of_float(&self, instruction: &Instruction) -> u64 {
         let unit = if instruction.is_float() {
@@ -183,11 +183,13 @@ impl Pipeline {
         }
         let depends = instruction.is_addressed_by(previous);
         match (previous.row.class, instruction.row.class) {
+            // A load or store right after a load is pipelined with it.
             (Class::Load, Class::Load | Class::Store) if !depends => {
                 let blocked = self.core == Core::M3 && instruction.row.updates_base();
                 (0, u64::from(!blocked))
             }
             (Class::Load, _) => (0, 0),
+            // A load waits for a store that took a single cycle.
             (Class::Store, _) => {
                 let is_fast = previous.row.cycles(self.core) == 1;
                 (

@@ -102,7 +102,7 @@ impl Field {
 /// A row of the table: the instructions with `word & mask == value`, their cycles, and the core
 /// registers that affect the cycles of other instructions.
 ///
-/// `word` is the first halfword in the upper half and the second, if there is one, in the lower half.
+/// `word` has the first halfword in its upper half, and the second halfword or 0 in its lower half.
 #[derive(Clone, Copy, Debug)]
 pub struct Row {
     pub name: &'static str,

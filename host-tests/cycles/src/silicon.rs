@@ -107,59 +107,108 @@ type Row = (
 
 #[rustfmt::skip]
 const RULES: &[Row] = &[
-    ("loads in a row take a cycle each",           BOTH,   200, &[LDR_R1_AT_R0], 201, 0),
-    ("but not if each address is the load before", BOTH,   200, &[LDR_R0_AT_R0], 400, 0),
-    ("the manual's example of two loads",          BOTH,   1,   &[LDR_R0_AT_R1, LDR_R1_AT_R2], 3, 0),
-    ("of a load and a store",                      BOTH,   1,   &[LDR_R0_AT_R1_R2, STR_R1_AT_R3_R2], 3, 0),
-    ("of three loads",                             BOTH,   1,   &[LDR_R0_AT_R1_R5, LDR_R1_AT_R2, LDR_R2_AT_R3], 4, 0),
-    ("a store takes a cycle",                      BOTH,   200, &[STR_R1_AT_R2], 200, 0),
-    ("two if its offset is in a register",         BOTH,   200, &[STR_R1_AT_R3_R2], 400, 0),
-    ("a store after a load, an instruction each",  BOTH,   100, &[LDR_R1_AT_R0, STR_R1_AT_R2, ADDS_R4_R5_R6], 300, 0),
-    ("a load after a store waits a cycle",         BOTH,   100, &[STR_R1_AT_R2, LDR_R1_AT_R0, ADDS_R4_R5_R6], 500, 0),
-    ("several loads, too",                         BOTH,   1,   &[STR_R1_AT_R2, LDM_R0], 1 + 1 + 3, 0),
-    ("but not one instruction later",              BOTH,   1,   &[STR_R1_AT_R2, ADDS_R4_R5_R6, LDR_R1_AT_R0], 4, 0),
-    ("an address written just before costs one",   BOTH,   100, &[ADDS_R0_4, LDR_R1_AT_R0], 400, 0),
-    ("but not one instruction later",              BOTH,   100, &[ADDS_R0_4, ADDS_R4_R5_R6, LDR_R1_AT_R0], 400, 0),
-    ("that of the stack as well",                  BOTH,   1,   &[SUB_SP, STR_R0_AT_SP], 3, 0),
-    ("a comparison writes none",                   BOTH,   1,   &[CMP_R0, LDR_R1_AT_R0], 3, 0),
-    ("a new address in its register: stores",      &[M4F], 200, &[STR_R1_AFTER_R2], 399, 0),
-    ("loads",                                      &[M4F], 200, &[LDR_R1_AFTER_R2], 400, 0),
-    ("it is free for others on the M4F",           &[M4F], 100, &[LDR_R1_AFTER_R2, LDR_R3_AFTER_R4], 201, 0),
-    ("not on the M3",                              &[M3],  100, &[LDR_R1_AFTER_R2, LDR_R3_AFTER_R4], 400, 0),
-    ("unless what follows has none",               &[M3],  1,   &[LDR_R3_AFTER_R4, LDR_R1_AT_R2], 3, 0),
-    ("an it after a 16-bit instruction is free",   BOTH,   1,   &[CMP_R0, IT_EQ, MOV_R1_R2], 2, 0),
-    ("not after a 32-bit one",                     BOTH,   1,   &[CMP_W_R0, IT_EQ, MOV_R1_R2], 3, 0),
-    ("a nop is no it",                             BOTH,   2,   &[NOP], 2, 0),
-    ("long products are costly on the M3",         &[M3],  10,  &[UMULL], 50, 0),
-    ("with accumulation more so",                  &[M3],  10,  &[UMLAL], 70, 0),
-    ("on the M4F alone they are not",              &[M4F], 10,  &[UMULL, UMLAL], 20, 0),
-    ("on an M0+ nothing waits: loads",             &[M0Plus], 100, &[LDR_R1_AT_R0], 200, 0),
-    ("of their own address",                       &[M0Plus], 100, &[LDR_R0_AT_R0], 200, 0),
-    ("stores",                                     &[M0Plus], 100, &[STR_R1_AT_R2], 200, 0),
-    ("by two registers",                           &[M0Plus], 100, &[STR_R1_AT_R3_R2], 200, 0),
-    ("of what its manual lists",                   &[M0Plus], 1, &[SUB_SP, STR_R0_AT_SP, LDM_R0, MULS, MRS], 1 + 2 + 3 + 1 + 3, 0),
-    ("a quotient moved at once takes 16",          &[M4F], 1,   &[VDIV_S0_S1_S2, VMOV_R0_S0], 16, 14),
-    ("another register 15",                        &[M4F], 1,   &[VDIV_S0_S1_S2, VMOV_R0_S5], 15, 13),
-    ("the core goes on beside a quotient",         &[M4F], 1,   &[VDIV_S0_S1_S2, ADDS_R4_R5_R6], 2, 0),
-    ("and beside a root",                          &[M4F], 1,   &[VSQRT_S0_S1, ADDS_R4_R5_R6, VMOV_R0_S0], 16, 13),
-    ("a move to or from the unit takes a cycle",   &[M4F], 100, &[VMOV_R0_S5, VMOV_S0_R0, VMOV_D0_HALF_R0, VMOV_R0_D0_HALF], 400, 0),
-    ("a result consumed at once stalls a cycle",    &[M4F], 1,   &[VADD_S0_S1_S2, VADD_S3_S0_S2], 3, 1),
-    ("stored",                                      &[M4F], 1,   &[VADD_S0_S1_S2, VSTR_S0], 3, 1),
-    ("pushed",                                      &[M4F], 1,   &[VADD_S0_S1_S2, VPUSH_D0], 5, 1),
-    ("moved",                                       &[M4F], 1,   &[VADD_S0_S1_S2, VMOV_R0_S0], 3, 1),
-    ("multiplied",                                  &[M4F], 1,   &[VADD_S0_S1_S2, VFMA_S4_S0_S2], 5, 1),
-    ("moved as half a double",                      &[M4F], 1,   &[VADD_S1_S1_S2, VMOV_R0_D0_HALF], 3, 1),
-    ("each by the next",                            &[M4F], 200, &[VADD_S0_S0_S2], 399, 199),
-    ("not if another register is consumed",         &[M4F], 1,   &[VADD_S0_S1_S2, VADD_S3_S4_S2], 2, 0),
-    ("nor one instruction later",                   &[M4F], 1,   &[VADD_S0_S1_S2, VADD_S3_S4_S2, VADD_S3_S0_S2], 3, 0),
-    ("nor if another is stored",                    &[M4F], 1,   &[VADD_S0_S1_S2, VSTR_S4], 2, 0),
-    ("or moved",                                    &[M4F], 1,   &[VADD_S0_S1_S2, VMOV_R0_D0_HALF], 2, 0),
-    ("nor as an addend, which is read late",        &[M4F], 1,   &[VADD_S0_S1_S2, VFMA_S0_S4_S2], 4, 0),
-    ("nor if none is consumed",                     &[M4F], 200, &[VADD_S0_S1_S2], 200, 0),
+    ("loads in a row take a cycle each",
+        BOTH, 200, &[LDR_R1_AT_R0], 201, 0),
+    ("a load of its own address is not pipelined",
+        BOTH, 200, &[LDR_R0_AT_R0], 400, 0),
+    ("the manual's example of two loads",
+        BOTH, 1, &[LDR_R0_AT_R1, LDR_R1_AT_R2], 3, 0),
+    ("the manual's example of a load and a store",
+        BOTH, 1, &[LDR_R0_AT_R1_R2, STR_R1_AT_R3_R2], 3, 0),
+    ("the manual's example of three loads",
+        BOTH, 1, &[LDR_R0_AT_R1_R5, LDR_R1_AT_R2, LDR_R2_AT_R3], 4, 0),
+    ("a store takes a cycle",
+        BOTH, 200, &[STR_R1_AT_R2], 200, 0),
+    ("a store with an offset in a register takes two cycles",
+        BOTH, 200, &[STR_R1_AT_R3_R2], 400, 0),
+    ("a store after a load, an instruction each",
+        BOTH, 100, &[LDR_R1_AT_R0, STR_R1_AT_R2, ADDS_R4_R5_R6], 300, 0),
+    ("a load after a store waits a cycle",
+        BOTH, 100, &[STR_R1_AT_R2, LDR_R1_AT_R0, ADDS_R4_R5_R6], 500, 0),
+    ("several loads after a store wait a cycle",
+        BOTH, 1, &[STR_R1_AT_R2, LDM_R0], 1 + 1 + 3, 0),
+    ("a load one instruction after a store does not wait",
+        BOTH, 1, &[STR_R1_AT_R2, ADDS_R4_R5_R6, LDR_R1_AT_R0], 4, 0),
+    ("an address written just before costs one",
+        BOTH, 100, &[ADDS_R0_4, LDR_R1_AT_R0], 400, 0),
+    ("an address written one instruction before costs nothing",
+        BOTH, 100, &[ADDS_R0_4, ADDS_R4_R5_R6, LDR_R1_AT_R0], 400, 0),
+    ("an address in the stack pointer written just before costs one",
+        BOTH, 1, &[SUB_SP, STR_R0_AT_SP], 3, 0),
+    ("a comparison writes no address",
+        BOTH, 1, &[CMP_R0, LDR_R1_AT_R0], 3, 0),
+    ("stores that update their own address register wait for it",
+        &[M4F], 200, &[STR_R1_AFTER_R2], 399, 0),
+    ("loads that update their own address register wait for it",
+        &[M4F], 200, &[LDR_R1_AFTER_R2], 400, 0),
+    ("an updated address register does not delay other loads on the M4F",
+        &[M4F], 100, &[LDR_R1_AFTER_R2, LDR_R3_AFTER_R4], 201, 0),
+    ("an updated address register delays other loads on the M3",
+        &[M3], 100, &[LDR_R1_AFTER_R2, LDR_R3_AFTER_R4], 400, 0),
+    ("a load that updates no address is pipelined on the M3",
+        &[M3], 1, &[LDR_R3_AFTER_R4, LDR_R1_AT_R2], 3, 0),
+    ("an it after a 16-bit instruction is free",
+        BOTH, 1, &[CMP_R0, IT_EQ, MOV_R1_R2], 2, 0),
+    ("an it after a 32-bit instruction takes a cycle",
+        BOTH, 1, &[CMP_W_R0, IT_EQ, MOV_R1_R2], 3, 0),
+    ("a nop is no it",
+        BOTH, 2, &[NOP], 2, 0),
+    ("long products are costly on the M3",
+        &[M3], 10, &[UMULL], 50, 0),
+    ("long products with accumulation take seven cycles on the M3",
+        &[M3], 10, &[UMLAL], 70, 0),
+    ("long products take a cycle on the M4F",
+        &[M4F], 10, &[UMULL, UMLAL], 20, 0),
+    ("loads are not pipelined on the M0+",
+        &[M0Plus], 100, &[LDR_R1_AT_R0], 200, 0),
+    ("loads of their own address do not wait on the M0+",
+        &[M0Plus], 100, &[LDR_R0_AT_R0], 200, 0),
+    ("stores take two cycles on the M0+",
+        &[M0Plus], 100, &[STR_R1_AT_R2], 200, 0),
+    ("stores with an offset in a register take two cycles on the M0+",
+        &[M0Plus], 100, &[STR_R1_AT_R3_R2], 200, 0),
+    ("the M0+ takes the cycles of its manual",
+        &[M0Plus], 1, &[SUB_SP, STR_R0_AT_SP, LDM_R0, MULS, MRS], 1 + 2 + 3 + 1 + 3, 0),
+    ("a quotient moved at once takes 16",
+        &[M4F], 1, &[VDIV_S0_S1_S2, VMOV_R0_S0], 16, 14),
+    ("a quotient takes 15 if another register is moved",
+        &[M4F], 1, &[VDIV_S0_S1_S2, VMOV_R0_S5], 15, 13),
+    ("the core continues during a quotient",
+        &[M4F], 1, &[VDIV_S0_S1_S2, ADDS_R4_R5_R6], 2, 0),
+    ("the core continues during a root",
+        &[M4F], 1, &[VSQRT_S0_S1, ADDS_R4_R5_R6, VMOV_R0_S0], 16, 13),
+    ("a move to or from the unit takes a cycle",
+        &[M4F], 100, &[VMOV_R0_S5, VMOV_S0_R0, VMOV_D0_HALF_R0, VMOV_R0_D0_HALF], 400, 0),
+    ("a result consumed at once stalls a cycle",
+        &[M4F], 1, &[VADD_S0_S1_S2, VADD_S3_S0_S2], 3, 1),
+    ("a result stored at once stalls a cycle",
+        &[M4F], 1, &[VADD_S0_S1_S2, VSTR_S0], 3, 1),
+    ("a result pushed at once stalls a cycle",
+        &[M4F], 1, &[VADD_S0_S1_S2, VPUSH_D0], 5, 1),
+    ("a result moved at once stalls a cycle",
+        &[M4F], 1, &[VADD_S0_S1_S2, VMOV_R0_S0], 3, 1),
+    ("a result multiplied at once stalls a cycle",
+        &[M4F], 1, &[VADD_S0_S1_S2, VFMA_S4_S0_S2], 5, 1),
+    ("a result moved at once as half a double stalls a cycle",
+        &[M4F], 1, &[VADD_S1_S1_S2, VMOV_R0_D0_HALF], 3, 1),
+    ("each of many dependent sums stalls a cycle",
+        &[M4F], 200, &[VADD_S0_S0_S2], 399, 199),
+    ("an instruction that consumes another register does not stall",
+        &[M4F], 1, &[VADD_S0_S1_S2, VADD_S3_S4_S2], 2, 0),
+    ("a result consumed one instruction later does not stall",
+        &[M4F], 1, &[VADD_S0_S1_S2, VADD_S3_S4_S2, VADD_S3_S0_S2], 3, 0),
+    ("a store of another register does not stall",
+        &[M4F], 1, &[VADD_S0_S1_S2, VSTR_S4], 2, 0),
+    ("a move of another register does not stall",
+        &[M4F], 1, &[VADD_S0_S1_S2, VMOV_R0_D0_HALF], 2, 0),
+    ("an addend is read late and does not stall",
+        &[M4F], 1, &[VADD_S0_S1_S2, VFMA_S0_S4_S2], 4, 0),
+    ("a result that is not consumed does not stall",
+        &[M4F], 200, &[VADD_S0_S1_S2], 200, 0),
 ];
 
 #[test]
-fn straight_code_takes_what_the_rules_say() {
+fn straight_code_takes_the_cycles_of_the_rules() {
     for (rule, cores, times, code, cycles, stalls) in RULES {
         for &core in *cores {
             let cost = run(core, *times, code, [0; 3]);
@@ -171,17 +220,19 @@ fn straight_code_takes_what_the_rules_say() {
         }
     }
 
-    let beside = [
+    // The core executes 14 other instructions during a quotient, in the same time.
+    let during = [
         [VDIV_S0_S1_S2].as_slice(),
         &[ADDS_R4_R5_R6; 14],
         &[VMOV_R0_S0],
     ]
     .concat();
-    assert_eq!(run(M4F, 1, &beside, [0; 3]).cycles, 16);
+    assert_eq!(run(M4F, 1, &during, [0; 3]).cycles, 16);
 }
 
 #[test]
 fn a_taken_branch_refills_in_a_cycle_and_a_return_in_two() {
+    // Each branch alone, then in a loop.
     let branches = |core| [BNE, BL, BX_LR, POP_PC].map(|word| taken(core, word));
     assert_eq!(
         [M3, M4F, M0Plus].map(branches),
@@ -208,6 +259,7 @@ fn a_taken_branch_refills_in_a_cycle_and_a_return_in_two() {
 
 #[test]
 fn a_branch_to_a_32_bit_instruction_off_a_word_s_boundary_takes_a_cycle_more() {
+    // The cycles of a branch and of two instructions at its target.
     let turn = |core, target, address| {
         let mut registers = Registers::default();
         let mut pipeline = Pipeline::new(core);
@@ -229,7 +281,7 @@ fn a_branch_to_a_32_bit_instruction_off_a_word_s_boundary_takes_a_cycle_more() {
 }
 
 #[test]
-fn a_division_takes_as_long_as_its_quotient_is() {
+fn the_time_of_a_division_depends_on_the_length_of_its_quotient() {
     for (word, dividend, divisor, expected) in [
         (UDIV_R0_R1_R2, 0, 5, 2),
         (UDIV_R0_R1_R2, 5, 0, 2),
@@ -267,6 +319,6 @@ fn multiply_accumulate_is_recognised() {
 }
 
 #[test]
-fn what_no_m4f_has_is_refused() {
+fn an_instruction_that_no_m4f_has_is_refused() {
     assert!(Instruction::decode((VADD_D0 >> 16) as u16, VADD_D0 as u16).is_none());
 }

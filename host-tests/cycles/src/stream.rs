@@ -70,6 +70,7 @@ pub fn for_each_instruction(
     let mut log = BufReader::with_capacity(1 << 20, log);
     let mut first = Vec::new();
     let mut rest = [0; 12 * WORD];
+    // An instruction begins with a line of r0 to r3. Other lines are QEMU's own messages.
     while log.read_until(b'\n', &mut first).context("QEMU's log")? > 0 {
         if first.starts_with(b"R00=") && log.read_exact(&mut rest).is_ok() {
             each(Registers::read(&first, &rest))?;
@@ -114,7 +115,7 @@ impl<'a> Stream<'a> {
     }
 
     /// Takes the registers before the next instruction. Returns the address, the instruction and
-    /// the cost of the previous one, if there is one.
+    /// the cost of the previous instruction, or `None` at the first call.
     pub fn see(&mut self, next: Registers) -> Result<Option<(u32, Instruction, Cost)>> {
         let Some(before) = self.before.replace(next) else {
             return Ok(None);
@@ -144,6 +145,7 @@ impl<'a> Calls<'a> {
         }
     }
 
+    // A call begins at an entry, unless another call is running.
     pub fn see(&mut self, registers: Registers) -> Result<()> {
         if self.running.is_none() && self.entries.contains(&registers.pc()) {
             self.running = Some((

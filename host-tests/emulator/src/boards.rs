@@ -16,7 +16,7 @@ pub struct Board {
     pub feature: &'static str,
     /// The number of QEMU's serial port that is the link, counted from 0.
     pub serial_port: usize,
-    /// The frequency of the clock by which the board measures time, Hz.
+    /// The frequency of the clock that measures the board's time, Hz.
     pub hertz: u32,
     /// True if the board has the OLED panel and the five buttons.
     pub has_panel: bool,
@@ -151,7 +151,7 @@ pub const PICO: Board = Board {
     ..LM3S6965EVB
 };
 
-/// Returns every board that the firmware is built for: those that QEMU emulates, and the Pico.
+/// Returns every board that the firmware is built for: the boards of QEMU, and the Pico.
 pub fn every_board() -> impl Iterator<Item = &'static Board> + Clone {
     BOARDS.iter().chain([&PICO])
 }

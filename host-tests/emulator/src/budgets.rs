@@ -6,8 +6,9 @@
 /// MHz for the map of flips. The rest is for the panel's bus, the serial link, commands, and
 /// requested motions.
 pub const SCENE: f64 = 0.55;
-/// The cycles in which a Cortex-M3 draws and sends a frame of any scene, without computing its
-/// motion: a seventh of a frame at 50 MHz. The most expensive one, figure 7, takes 98,700.
+/// The largest cost of drawing and sending a frame of any scene on a Cortex-M3, cycles, without the
+/// computation of its motion. It is a seventh of a frame at 50 MHz. The most expensive scene,
+/// figure 7, takes 98,700.
 pub const SHOWING: u64 = 110_000;
 /// The part of a frame that must remain after the frame is on the panel and sent.
 ///

@@ -47,6 +47,7 @@ pub fn flash_image_over(elf: &[u8], unused: u8) -> Result<(u32, Vec<u8>)> {
         }
     }
 
+    // The image starts at the lowest address.
     let start = parts
         .iter()
         .map(|(address, _)| *address)
@@ -54,6 +55,7 @@ pub fn flash_image_over(elf: &[u8], unused: u8) -> Result<(u32, Vec<u8>)> {
         .context("nothing to load")?;
 
     let mut image = Vec::new();
+    // The gaps between the parts are filled.
     for (address, data) in parts {
         let from = (address - start) as usize;
         ensure!(
@@ -75,6 +77,7 @@ pub fn uf2(start: u32, image: &[u8]) -> Vec<u8> {
     let count = parts.len() as u32;
     let blocks = (0..).zip(parts).flat_map(|(number, part)| {
         let place = start + number * BROUGHT as u32;
+        // The head of a block, in the order of the format.
         let head = [
             MAGIC[0],
             MAGIC[1],
@@ -87,6 +90,7 @@ pub fn uf2(start: u32, image: &[u8]) -> Vec<u8> {
         ];
         let mut block: Vec<u8> = head.into_iter().flat_map(u32::to_le_bytes).collect();
         let end = block.len() + ROOM;
+        // The data, padding, and the mark at the end.
         block.extend(part);
         block.resize(end, 0);
         block.extend(MAGIC_END.to_le_bytes());

@@ -76,7 +76,7 @@ impl Show {
     }
 }
 
-/// Returns frame buffers that live for the rest of the program, like those of a board.
-pub fn sheets() -> &'static mut FrameBuffers {
+/// Returns frame buffers that live for the rest of the program, as on a board.
+pub fn frame_buffers() -> &'static mut FrameBuffers {
     Box::leak(Box::new(FrameBuffers::BLANK))
 }

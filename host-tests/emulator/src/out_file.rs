@@ -1,4 +1,4 @@
-//! Files that commands write: each appears under its name when it is complete.
+//! Files that commands write. Each appears under its name only when it is complete.
 
 use std::fs::{self, File, Permissions};
 use std::io::{self, Write};
@@ -13,8 +13,9 @@ use console::cli::{Refused, unwritable};
 
 /// A file that is being written.
 ///
-/// Two commands may write to one name at the same time: the name is that of the file that was
-/// completed last. A file that is dropped before [`OutFile::finish`] leaves what was there before.
+/// Two commands may write to one name at the same time. The file that is completed last then has
+/// the name. If this is dropped before [`OutFile::finish`], an existing file of this name remains
+/// unchanged.
 #[derive(Debug)]
 pub struct OutFile {
     option: &'static str,
@@ -24,14 +25,14 @@ pub struct OutFile {
 
 #[derive(Debug)]
 enum Content {
-    /// Beside the name, in a file of this process alone.
+    /// A temporary file of this process in the folder of the final one.
     Temporary(NamedTempFile),
-    /// The name is that of a device or a pipe.
+    /// A device or a pipe, which is written directly.
     Device(File),
 }
 
 impl OutFile {
-    /// Begins the file that `option` names; refuses one that cannot be written.
+    /// Begins the file that `option` names. Returns an error if it cannot be written.
     pub fn create(option: &'static str, path: &Path) -> Result<Self, Refused> {
         let content = Content::create(path).map_err(|error| unwritable(option, path, &error))?;
         Ok(Self {
@@ -61,7 +62,7 @@ impl OutFile {
         }
     }
 
-    /// Writes all of the file.
+    /// Writes the complete file.
     pub fn write_whole(mut self, bytes: &[u8]) -> anyhow::Result<()> {
         self.write_all(bytes).map_err(|error| self.failed(&error))?;
         self.finish()
@@ -75,7 +76,7 @@ impl OutFile {
 
 impl Content {
     fn create(path: &Path) -> io::Result<Self> {
-        const ANYONE: u32 = 0o666; // less what the umask takes away
+        const ANYONE: u32 = 0o666; // reduced by the umask
         let mut mode = ANYONE;
         if let Ok(metadata) = fs::metadata(path) {
             // A file that may not be changed is not replaced either.
@@ -85,6 +86,8 @@ impl Content {
             }
             mode = metadata.permissions().mode();
         }
+
+        // The temporary file is in the same folder, so that it can be renamed.
         let target = path.canonicalize().unwrap_or_else(|_| path.to_owned());
         let folder = match target.parent() {
             Some(folder) if !folder.as_os_str().is_empty() => folder,
@@ -123,13 +126,13 @@ impl Write for OutFile {
     }
 }
 
-/// Refuses a file that cannot be written, before the work for it begins. What is there stays as it
-/// is.
+/// Returns an error if a file cannot be written, before the work for it begins. An existing file
+/// remains unchanged.
 pub fn check_writable(option: &'static str, path: &Path) -> Result<(), Refused> {
     OutFile::create(option, path).map(drop)
 }
 
-/// Writes a file of the folder that `--out` names; makes the folder.
+/// Writes a file of the folder that `--out` names, and creates the folder.
 pub fn write(path: &Path, bytes: impl AsRef<[u8]>) -> anyhow::Result<()> {
     let made = path.parent().map_or(Ok(()), fs::create_dir_all);
     made.map_err(|error| unwritable("--out", path, &error))?;

@@ -60,6 +60,7 @@ impl PicoMachine {
         elf: &Path,
         limit: Duration,
     ) -> anyhow::Result<Self> {
+        // The emulator reads the program from a file, as the boot ROM does from the drive.
         let folder = Scratch::new()?;
         let file = folder.path().join("pico.uf2");
         std::fs::write(&file, blocks)?;
@@ -69,10 +70,13 @@ impl PicoMachine {
             .arg(workspace().join("host-tests/emulator/rp2040/main.js"))
             .arg(&file);
         command.stdin(Stdio::piped()).stdout(Stdio::piped());
+
         let mut process = process::spawn(&mut command, limit)?;
         let pipes = process.child.stdin.take().zip(process.child.stdout.take());
         let (input, output) = pipes.context("the emulator of the Pico has no pipes")?;
         let output = BufReader::new(output);
+
+        // Nothing has arrived yet.
         let log = LogDecoder::new(elf)?;
         let usb = Inbox::default();
         let uart = Inbox::default();
@@ -180,8 +184,9 @@ impl PicoMachine {
         writeln!(self.input, "{command}")
             .and_then(|()| self.input.flush())
             .context(GONE)?;
-        let mut asked = Vec::new();
+        let mut result = Vec::new();
 
+        // The emulator's lines until it is done: the bytes that the board has sent, and events.
         loop {
             let mut answer = String::new();
             ensure!(self.output.read_line(&mut answer).context(GONE)? > 0, GONE);
@@ -190,6 +195,8 @@ impl PicoMachine {
                 .trim_end()
                 .split_once(' ')
                 .unwrap_or((answer.trim_end(), ""));
+
+            // Bytes are pairs of hexadecimal digits.
             let byte = |pair: &[u8]| u8::from_str_radix(str::from_utf8(pair).ok()?, 16).ok();
             let bytes = digits
                 .as_bytes()
@@ -197,6 +204,7 @@ impl PicoMachine {
                 .map(byte)
                 .collect::<Option<Vec<_>>>()
                 .context(GONE)?;
+            // Each kind of line has its receiver.
             match word {
                 "usb" => self
                     .heard_by_usb
@@ -208,8 +216,8 @@ impl PicoMachine {
                 // Bytes that were cut off by the restart are no damage of the link.
                 "restarted" => (self.usb.decoder, self.uart.decoder) = Default::default(),
                 "bootloader" => self.is_in_boot_loader = true,
-                "done" => return Ok(asked),
-                _ => asked = bytes,
+                "done" => return Ok(result),
+                _ => result = bytes,
             }
         }
     }

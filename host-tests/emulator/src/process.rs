@@ -42,7 +42,8 @@ pub struct Running {
 /// Starts `command` in its own process group. The group is killed after `limit` at the latest, even
 /// if nothing waits for it.
 ///
-/// A child in the background must not read the terminal, so give it `Stdio::null()` or a pipe as its standard input.
+/// A child in the background must not read the terminal, so give it `Stdio::null()` or a pipe as
+/// its standard input.
 pub fn spawn(command: &mut Command, limit: Duration) -> io::Result<Running> {
     let program = command.get_program().to_string_lossy().into_owned();
     let failed = |error: io::Error| io::Error::other(format!("cannot run {program}: {error}"));
@@ -72,8 +73,11 @@ impl Running {
     /// Waits until the child ends, and kills the rest of its group. Returns an error of kind
     /// `TimedOut` if the child was killed at its time limit.
     pub fn wait(&mut self) -> io::Result<ExitStatus> {
+        // The child, then the warden, which kills the rest of the group.
         let status = self.child.wait()?;
         let _ = self.warden.wait();
+
+        // The warden kills with SIGKILL. Before the time limit somebody else did.
         let is_stopped = status.signal() == Some(SIGKILL) && self.started.elapsed() >= self.limit;
         let program = &self.program;
         let seconds = self.limit.as_secs_f32();
@@ -158,6 +162,7 @@ pub fn run_watched(
     loop {
         // A process that has left the group can hold the pipes open for longer.
         let ended = child.ended(&streams)?;
+        // The newest line of either output is shown.
         let new = streams
             .iter_mut()
             .map(Stream::take_in)
@@ -170,6 +175,7 @@ pub fn run_watched(
                 .and_then(|text| text.lines().last()),
         );
 
+        // The outputs were read after the end was noticed, so nothing is missing.
         if let Some(status) = ended {
             let [stdout, stderr] =
                 streams.map(|stream| String::from_utf8_lossy(&stream.bytes).into_owned());
@@ -193,8 +199,8 @@ pub fn interrupted_by(signal: usize) -> ExitCode {
     ExitCode::from(if signal == 0 { 0 } else { 128 + signal as u8 })
 }
 
-/// Returns a variable that receives the signal by which this process is interrupted; it is 0 until
-/// then. The process then continues instead of ending.
+/// Returns a variable for the signal that interrupts this process; it is 0 until then. The process
+/// then continues instead of ending.
 pub fn interrupted() -> io::Result<Arc<AtomicUsize>> {
     let signal = Arc::default();
     for each in INTERRUPTS {

@@ -30,9 +30,12 @@ impl Scratch {
     pub fn new() -> io::Result<Self> {
         let folder = tempfile::Builder::new().prefix(PREFIX).tempdir()?;
         remove_on_interrupt(folder.path());
+
         let opened = File::open(folder.path())?;
         let lock = Flock::lock(opened, FlockArg::LockExclusiveNonblock);
         let lock = lock.map_err(|(_, error)| error)?;
+
+        // Folders without an owner remain after a command was killed.
         for abandoned in abandoned(folder.path().parent()) {
             // Another process may remove the same folder at the same time.
             let _ = fs::remove_dir_all(abandoned);
@@ -48,13 +51,14 @@ impl Scratch {
     }
 }
 
-/// Returns the folders in the directory `beside` whose owners have ended.
-fn abandoned(beside: Option<&Path>) -> Vec<PathBuf> {
-    let entries = beside.and_then(|folder| fs::read_dir(folder).ok());
+/// Returns the folders in the directory `parent` whose owners have ended.
+fn abandoned(parent: Option<&Path>) -> Vec<PathBuf> {
+    let entries = parent.and_then(|folder| fs::read_dir(folder).ok());
     let is_ours = |path: &PathBuf| {
         let name = path.file_name().unwrap_or_default();
         name.as_encoded_bytes().starts_with(PREFIX.as_bytes())
     };
+
     let paths = entries.into_iter().flatten().flatten();
     paths
         .map(|entry| entry.path())
@@ -67,9 +71,11 @@ fn is_abandoned(path: &Path) -> io::Result<bool> {
     let folder = File::open(path)?;
     let metadata = folder.metadata()?;
     let age = SystemTime::now().duration_since(metadata.modified()?);
+    // The owner of a new folder may not have locked it yet.
     if !metadata.is_dir() || age.is_ok_and(|age| age < LOCKED_BY_THEN) {
         return Ok(false);
     }
+    // A folder that can be locked has no owner.
     Ok(Flock::lock(folder, FlockArg::LockExclusiveNonblock).is_ok())
 }
 
@@ -77,9 +83,9 @@ fn is_abandoned(path: &Path) -> io::Result<bool> {
 mod tests {
     use super::*;
 
-    /// Makes a folder in the directory `beside` that is as old as that of a killed command.
-    fn old(beside: &Path, name: &str) -> PathBuf {
-        let path = beside.join(name);
+    /// Makes an old folder in the directory `parent`, as a killed command leaves it.
+    fn old(parent: &Path, name: &str) -> PathBuf {
+        let path = parent.join(name);
         fs::create_dir(&path).expect("a folder");
         let long_ago = SystemTime::now() - 2 * LOCKED_BY_THEN;
         let opened = File::open(&path).expect("a folder");
@@ -89,16 +95,17 @@ mod tests {
 
     #[test]
     fn only_old_folders_without_an_owner_are_abandoned() {
-        let beside = tempfile::tempdir().expect("a folder");
-        let beside = beside.path();
-        let left = old(beside, "double-pendulum-run-left");
-        let owned = old(beside, "double-pendulum-run-owned");
-        old(beside, "another");
-        fs::create_dir(beside.join("double-pendulum-run-new")).expect("a folder");
+        let parent = tempfile::tempdir().expect("a folder");
+        let parent = parent.path();
+        let left = old(parent, "double-pendulum-run-left");
+        let owned = old(parent, "double-pendulum-run-owned");
+        old(parent, "another");
+        fs::create_dir(parent.join("double-pendulum-run-new")).expect("a folder");
+
         let opened = File::open(owned).expect("a folder");
         let lock = Flock::lock(opened, FlockArg::LockExclusiveNonblock).expect("a lock");
-        assert_eq!(abandoned(Some(beside)), [left]);
+        assert_eq!(abandoned(Some(parent)), [left]);
         drop(lock);
-        assert_eq!(abandoned(Some(beside)).len(), 2);
+        assert_eq!(abandoned(Some(parent)).len(), 2);
     }
 }

@@ -45,6 +45,7 @@ impl Stream {
 
     /// Returns the next complete line, or the last line if the stream has ended.
     pub fn line(&mut self) -> Option<String> {
+        // The end of a stream also ends its last line.
         let last = (!self.is_open && !self.bytes.is_empty()).then_some(self.bytes.len());
         let end = self
             .bytes
@@ -57,7 +58,7 @@ impl Stream {
     }
 }
 
-/// Waits until one of the streams has new bytes or has ended, for at most `TICK` milliseconds.
+/// Waits until a stream has new bytes or has ended, for at most `TICK` milliseconds.
 pub fn wait<'a>(streams: impl Iterator<Item = &'a Stream>) {
     let open = streams.filter(|stream| stream.is_open);
     let mut polled: Vec<_> = open

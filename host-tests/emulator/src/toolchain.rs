@@ -174,7 +174,7 @@ pub fn ready_for_pico() -> Result<PathBuf, Refused> {
     tools::rp2040js(None)
 }
 
-/// Returns Node.js with the emulator of the Pico and provides them if necessary. The user is asked
+/// Returns Node.js with the emulator of the Pico and provides them if necessary. Asks the user
 /// before anything is installed on the system.
 pub fn set_up_pico() -> Result<PathBuf, Refused> {
     set_up_pico_with(Consent::Ask)
@@ -210,7 +210,7 @@ impl fmt::Display for Toolchain {
     }
 }
 
-/// The files by which the workspace is recognised. No folder above or next to it has all of them.
+/// The files that identify the workspace. No folder above or next to it has all of them.
 const MARKS: [&str; 3] = [
     "kernel/Cargo.toml",
     "firmware/Cargo.toml",

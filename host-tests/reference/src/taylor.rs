@@ -17,8 +17,8 @@ const ORDER: usize = 36;
 
 /// The first power of time whose coefficient is computed in `f64`.
 ///
-/// A step is so long that each term is about a ninth of the one before it. Term 20 is about 1e-19
-/// of the value, so 16 digits of it are 35 digits of the value.
+/// In a step, each term is about a ninth of the one before it. Term 20 is about 1e-19 of the value,
+/// so 16 digits of it are 35 digits of the value.
 const FIRST_IN_F64: usize = 20;
 
 /// A double pendulum in exact motion, to about 30 digits.
@@ -75,6 +75,7 @@ impl Reference {
 
     /// Advances to time `t`, s. An earlier time changes nothing.
     pub fn advance_to(&mut self, t: f64) {
+        // The series are computed anew when they have ended.
         let t = TwoFloat::from(t);
         while self.time < t {
             if self.time >= self.end {
@@ -85,6 +86,7 @@ impl Reference {
 
             self.time = if self.end < t { self.end } else { t };
             let h = self.time - self.about;
+            // The small terms are added first, in `f64`.
             let sum = |series: &Vec<TwoFloat>| {
                 let (first, last) = series.split_at(FIRST_IN_F64);
                 let last = last.iter().rev().fold(0.0, |sum, c| sum * h.hi() + c.hi());
@@ -163,6 +165,7 @@ impl Reference {
             ));
             turn.push(w1[k] - w2[k]);
 
+            // The rates of the ten quantities.
             let slopes = [
                 w1[k],
                 w2[k],
@@ -200,6 +203,7 @@ fn product(a: &[TwoFloat], b: &[TwoFloat]) -> TwoFloat {
 /// Returns the sine and cosine, computed by their power series about the nearest multiple of pi/2.
 fn sin_cos(angle: TwoFloat) -> [TwoFloat; 2] {
     let quarter_turns = f64::from(angle / FRAC_PI_2).round();
+    // The first quarter turn that is left over is at most half a quarter.
     let x = angle - FRAC_PI_2 * quarter_turns;
     let alternating = |first: TwoFloat, mut power: f64| {
         let mut sum = first;
@@ -245,7 +249,7 @@ pub fn states(
 /// The smallest term of a series that is kept, relative to the rates of the motion.
 const RESOLUTION: f64 = 1e-33;
 
-/// Returns the step at which the last terms of each series fall below the resolution of its value
+/// Returns the step size that reduces the last terms of each series to the resolution of its value
 /// (A. Jorba, M. Zou, "A software package for the numerical integration of ODEs by means of
 /// high-order Taylor methods", 2005). Four terms are checked, because a motion with a symmetry in
 /// time has only every second or fourth.

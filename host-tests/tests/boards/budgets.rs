@@ -11,8 +11,8 @@ use firmware::protocol::{Command, Field, MAX_WIRE, ToHost, encode_command, frame
 use object::elf::{SHF_ALLOC, SHF_WRITE};
 use object::{Object, ObjectSection, SectionFlags, SectionKind};
 
-/// The number of frames after a command that may be expensive, and of frames in which a requested
-/// motion is computed.
+/// The number of frames after a command that may be expensive, and the number of frames to compute
+/// a requested motion.
 const FRAMES: usize = 24;
 const COMPUTING: usize = 2;
 
@@ -25,11 +25,13 @@ pub fn wire(command: Command) -> Vec<u8> {
 
 /// Sends every command, valid and invalid, requests of every kind, and garbage.
 pub fn exercise(next: Next) -> anyhow::Result<()> {
+    // Sends bytes, and waits for some frames.
     let mut play = |words: &[u8], frames: usize| {
         next(words)?;
         (1..frames).try_for_each(|_| next(&[]).map(drop))
     };
 
+    // Every field, with a usual value, with no number, and out of range.
     for field in Field::ALL {
         for value in [0.75, f64::NAN, -1e30] {
             play(
@@ -42,6 +44,7 @@ pub fn exercise(next: Next) -> anyhow::Result<()> {
         }
     }
 
+    // A message that cannot be read, then commands that pause and start again.
     let unreadable = frame(&[0x80, 1, 0xEE], &mut [0; MAX_WIRE]).to_vec();
     play(
         &[
@@ -65,6 +68,7 @@ pub fn exercise(next: Next) -> anyhow::Result<()> {
         1,
     )?;
 
+    // Motions by every method, with a good step, a step that is too long, and none.
     for &method in ON_BOARDS {
         for dt in [1.0 / 256.0, 0.5, 0.0] {
             let request = Request {
@@ -84,6 +88,7 @@ pub fn exercise(next: Next) -> anyhow::Result<()> {
         }
     }
 
+    // Every method of a scene, and the questions about plan and identity.
     for &method in Method::DRAWN {
         play(
             &[
@@ -97,6 +102,7 @@ pub fn exercise(next: Next) -> anyhow::Result<()> {
         )?;
     }
 
+    // Every button, and the changes of scene. At the end, the scene plans by itself.
     let taps = [
         Command::Heavier,
         Command::Lighter,
@@ -113,6 +119,8 @@ pub fn exercise(next: Next) -> anyhow::Result<()> {
     taps.into_iter()
         .chain(leaving)
         .try_for_each(|command| play(&wire(command), COMPUTING))?;
+
+    // Bytes that are no message.
     play(&[0x55; 300], FRAMES)?;
 
     // If frames were dropped, a line of the log reports it.
@@ -129,19 +137,23 @@ fn sections(elf: &Path) -> Memory {
         bss: 0,
         stack: 0,
     };
+    // Only sections that are loaded take flash or memory.
     for section in file.sections() {
         let SectionFlags::Elf { sh_flags } = section.flags() else {
             continue;
         };
-        let (is_loaded, is_written) = (
-            sh_flags & u64::from(SHF_ALLOC) != 0,
-            sh_flags & u64::from(SHF_WRITE) != 0,
-        );
-        let part = match (is_loaded, is_written, section.kind()) {
-            (false, ..) => continue,
-            (_, _, SectionKind::UninitializedData) => &mut memory.bss,
-            (_, true, _) => &mut memory.data,
-            _ => &mut memory.text,
+        let is_loaded = sh_flags & u64::from(SHF_ALLOC) != 0;
+        let is_written = sh_flags & u64::from(SHF_WRITE) != 0;
+        if !is_loaded {
+            continue;
+        }
+
+        let part = if section.kind() == SectionKind::UninitializedData {
+            &mut memory.bss
+        } else if is_written {
+            &mut memory.data
+        } else {
+            &mut memory.text
         };
         *part += section.size() as u32;
     }
@@ -159,6 +171,8 @@ pub fn beyond(board: &Board, elf: &Path, stack: u32, idle: f64) -> Vec<String> {
         "| `{name}` | {text} | {data} | {bss} | {stack} | {:.0} % |",
         100.0 * idle
     );
+
+    // The stack was painted before the run, and its used part is not painted any more.
     assert!(
         stack > 0,
         "{name}: nothing is painted any more, or nothing was"
@@ -167,6 +181,8 @@ pub fn beyond(board: &Board, elf: &Path, stack: u32, idle: f64) -> Vec<String> {
         .iter()
         .find(|(of, _)| *of == name)
         .expect("a row for each board");
+
+    // Each part that exceeds its budget, and the time.
     let parts = [
         ("text", text, budget.text),
         ("data", data, budget.data),

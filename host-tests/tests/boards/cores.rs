@@ -1,8 +1,8 @@
 //! The golden bits on common cores, with or without a board here: every method, four motions of 640
 //! steps.
 //!
-//! Each test loads the tools of its own core: the compiler's core library and the emulator. If they
-//! are not available, the test says so.
+//! Each test loads the tools of its own core: the compiler's core library and the emulator. Without
+//! them a core is skipped, and the test prints the reason.
 
 use std::fs;
 use std::io::{Write, stderr};
@@ -74,19 +74,26 @@ fn computes_the_golden_bits(core: &Core, golden: &str) {
     println!("{}: {} lines", name, golden.lines().count());
 }
 
+const OF_M0: Emulator = Machine("lm3s6965evb", "cortex-m0");
+const OF_M3: Emulator = Machine("lm3s6965evb", "cortex-m3");
+const OF_M4: Emulator = Machine("mps2-an386", "cortex-m4");
+const OF_M7: Emulator = Machine("mps2-an500", "cortex-m7");
+const OF_M33: Emulator = Machine("mps2-an505", "cortex-m33");
+const OF_M55: Emulator = Machine("mps3-an547", "cortex-m55");
+
 #[rustfmt::skip]
 const CORES: [Core; 11] = [
-    Core("Cortex-M0+",                  "thumbv6m-none-eabi",           Machine("lm3s6965evb", "cortex-m0"), None),
-    Core("Cortex-M3",                   "thumbv7m-none-eabi",           Machine("lm3s6965evb", "cortex-m3"), None),
-    Core("Cortex-M4F",                  "thumbv7em-none-eabihf",        Machine("mps2-an386", "cortex-m4"),  None),
-    Core("Cortex-M7, f64 in software",  "thumbv7em-none-eabihf",        Machine("mps2-an500", "cortex-m7"),  None),
-    Core("Cortex-M7 with double-fpu",   "thumbv7em-none-eabihf",        Machine("mps2-an500", "cortex-m7"),  Some("cortex-m7")),
-    Core("Cortex-M33",                  "thumbv8m.main-none-eabihf",    Machine("mps2-an505", "cortex-m33"), None),
-    Core("Cortex-M55, f64 in software", "thumbv8m.main-none-eabihf",    Machine("mps3-an547", "cortex-m55"), None),
-    Core("Cortex-M55 with double-fpu",  "thumbv8m.main-none-eabihf",    Machine("mps3-an547", "cortex-m55"), Some("cortex-m55")),
-    Core("RISC-V rv32imac",             "riscv32imac-unknown-none-elf", Linux,                               None),
-    Core("aarch64",                     "aarch64-unknown-none",         Linux,                               None),
-    Core("WebAssembly",                 "wasm32-unknown-unknown",       Node,                                None),
+    Core("Cortex-M0+",                  "thumbv6m-none-eabi",           OF_M0,  None),
+    Core("Cortex-M3",                   "thumbv7m-none-eabi",           OF_M3,  None),
+    Core("Cortex-M4F",                  "thumbv7em-none-eabihf",        OF_M4,  None),
+    Core("Cortex-M7, f64 in software",  "thumbv7em-none-eabihf",        OF_M7,  None),
+    Core("Cortex-M7 with double-fpu",   "thumbv7em-none-eabihf",        OF_M7,  Some("cortex-m7")),
+    Core("Cortex-M33",                  "thumbv8m.main-none-eabihf",    OF_M33, None),
+    Core("Cortex-M55, f64 in software", "thumbv8m.main-none-eabihf",    OF_M55, None),
+    Core("Cortex-M55 with double-fpu",  "thumbv8m.main-none-eabihf",    OF_M55, Some("cortex-m55")),
+    Core("RISC-V rv32imac",             "riscv32imac-unknown-none-elf", Linux,  None),
+    Core("aarch64",                     "aarch64-unknown-none",         Linux,  None),
+    Core("WebAssembly",                 "wasm32-unknown-unknown",       Node,   None),
 ];
 
 #[test]

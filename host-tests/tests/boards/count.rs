@@ -33,6 +33,7 @@ fn the_log_counts_as_many_instructions_as_the_clock() -> Result<()> {
     let steps = 400;
     for target in targets().iter().filter(|target| target.board.cpu == M4F) {
         let request = |steps| request(Method::Rk4F32, 2.0, steps);
+        // The counter and the clock measure the same steps.
         let logged = step_cost(target, &request(steps))?.instructions;
         let [one, all] = [
             target.run(&request(1))?.1,
@@ -83,6 +84,7 @@ const GOALS: [(Method, &str, [f64; 2], f64); 4] = [
 
 #[test]
 fn a_step_costs_no_more_than_its_goal() -> Result<()> {
+    // Every core has its own goals.
     for target in &targets() {
         for (method, _, [m2, l2], most) in
             GOALS.into_iter().filter(|goal| goal.1 == target.board.cpu)
@@ -105,7 +107,10 @@ fn a_step_costs_no_more_than_its_goal() -> Result<()> {
                 "{method}, {}, m2 = {m2}, l2 = {l2}: {cost:?}",
                 target.board.cpu
             );
-            assert!(cost.cycles <= most, "{method}: {cost:?}, {most} asked");
+            assert!(
+                cost.cycles <= most,
+                "{method}: {cost:?}, at most {most} allowed"
+            );
         }
     }
 
@@ -115,9 +120,10 @@ fn a_step_costs_no_more_than_its_goal() -> Result<()> {
 /// The largest number of cycles (estimated) of a second of a scene with an error, rad. The method
 /// and its number of steps through the scene are the cheapest that were found.
 const SECONDS: [(usize, f64, &str, Method, u32, f64); 4] = [
-    (0, 1e-9, M4F, Method::Extrapolation12Fixed64, 62, 120_000.0), // seven a second, the fewest whole ones: 131,000
+    // Seven a second, the fewest whole ones: 131,000.
+    (0, 1e-9, M4F, Method::Extrapolation12Fixed64, 62, 120_000.0),
     (0, 1e-12, M4F, Method::Extrapolation16Fixed64, 58, 210_000.0), // cheaper than order 12
-    (0, 1e-12, M3, Method::Extrapolation16Fixed64, 58, 300_000.0), // likewise
+    (0, 1e-12, M3, Method::Extrapolation16Fixed64, 58, 300_000.0),  // cheaper than order 12
     (
         1,
         3.5e-10,
@@ -137,32 +143,37 @@ fn a_simulated_second_costs_no_more_than_its_goal() -> Result<()> {
             .iter()
             .find(|target| target.board.cpu == cpu)
             .expect("a board");
+
+        // The error is measured first, so that the cost is of an accurate motion.
         let found = accuracy::error_after(method, scene, steps).expect("a motion");
         assert!(
             found.angle <= error,
-            "{method}, {steps} steps: {found:?}, {error:e} asked"
+            "{method}, {steps} steps: {found:?}, at most {error:e} allowed"
         );
+
+        // The cost of a step is the same in every scene.
         let request = accuracy::request(method, &SCENES[0], accuracy::usual_rate(method));
         let cycles = f64::from(steps) * affordable_cost(target, &request)?.cycles
             / f64::from(scene.duration);
         println!("{error:e} rad on {cpu}: {cycles:.0} cycles a second by {method}");
         assert!(
             cycles <= most,
-            "{error:e} rad on {cpu}: {cycles} by {method}, {most} asked"
+            "{error:e} rad on {cpu}: {cycles} by {method}, at most {most} allowed"
         );
     }
     Ok(())
 }
 
-/// The allowed ratio of counted costs to those of the price lists, which depend on the version of
-/// the compiler.
+/// The allowed ratio of counted costs to the costs of the price lists, which depend on the version
+/// of the compiler.
 const PRICED: RangeInclusive<f32> = 0.97..=1.03;
 
 #[test]
-fn the_price_lists_are_what_is_counted() -> Result<()> {
+fn price_lists_equal_the_counted_costs() -> Result<()> {
     let mut wrong = Vec::new();
     for (board, counted) in prices(&toolchain())? {
         println!("{}: {counted:?}", board.name);
+        // The lists in the order of their fields.
         let listed = board.processor().costs;
         let all = |costs: Costs| {
             let steps = Method::DRAWN.iter().map(move |method| costs.step(*method));

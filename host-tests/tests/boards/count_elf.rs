@@ -45,11 +45,11 @@ mod inner {
 #[panic_handler]
 fn panic(_: &core::panic::PanicInfo) -> ! { loop {} }
 "#;
-    let (source, elf) = (
-        folder.join("program.rs"),
-        folder.join(format!("{address}-{}.elf", last.len())),
-    );
+    let source = folder.join("program.rs");
+    let elf = folder.join(format!("{address}-{}.elf", last.len()));
     std::fs::write(&source, SOURCE.replace("LAST", last)).unwrap_or_else(|error| panic!("{error}"));
+
+    // The program has its own linker options, and no start-up code.
     let mut rustc = Command::new("rustc");
     rustc.args([
         "--edition",
@@ -68,6 +68,7 @@ fn panic(_: &core::panic::PanicInfo) -> ! { loop {} }
     ] {
         rustc.arg(format!("-Clink-arg={option}"));
     }
+
     rustc.arg("-o").arg(&elf).arg(&source);
     let output = process::run(&mut rustc, LIMIT).unwrap_or_else(|error| panic!("{error}"));
     assert!(output.status.success(), "{output:?}");
@@ -101,9 +102,11 @@ fn count(elf: &Path, function: &str, more: &[&str]) -> Output {
 }
 
 #[test]
-fn functions_and_labels_are_counted_and_the_end_is_told() -> anyhow::Result<()> {
+fn functions_and_labels_are_counted_and_the_end_is_reported() -> anyhow::Result<()> {
     let folder = tempfile::tempdir()?;
     let elf = program(folder.path(), "0x0", ENDS);
+
+    // A label of a program that ends without help.
     let output = count(&elf, "label", &[]);
     assert!(
         output
@@ -131,6 +134,7 @@ fn functions_and_labels_are_counted_and_the_end_is_told() -> anyhow::Result<()> 
         "a move, and a return with its refill"
     );
 
+    // A function by its name, and by its mangled name.
     let image = Image::read(&elf)?;
     let mangled = &image.function("program::inner::step")?.symbol;
     let by_name = count(&elf, "program::inner::step", &[]);
@@ -156,7 +160,7 @@ fn functions_and_labels_are_counted_and_the_end_is_told() -> anyhow::Result<()> 
 }
 
 #[test]
-fn what_cannot_be_counted_is_said_in_a_line() -> anyhow::Result<()> {
+fn a_function_that_cannot_be_counted_is_an_error_of_one_line() -> anyhow::Result<()> {
     // The program reports why it refuses an empty request and ends with failure.
     let measure = toolchain().build("measure", BOARDS[0].target)?;
     let host = Path::new(env!("CARGO_BIN_EXE_host-tests"));
@@ -165,6 +169,7 @@ fn what_cannot_be_counted_is_said_in_a_line() -> anyhow::Result<()> {
         [ENDS, FAILS, NEEDS_FLOATS].map(|last| program(folder.path(), "0x0", last));
     let elsewhere = program(folder.path(), "0x8000000", ENDS);
 
+    // A file, a function in it, the reason of the error, and the exit code.
     for (elf, function, reason, code) in [
         (
             Path::new("/nowhere/to/be/found.elf"),
@@ -213,6 +218,7 @@ fn what_cannot_be_counted_is_said_in_a_line() -> anyhow::Result<()> {
             2,
         ),
     ] {
+        // An error prints nothing on stdout, and its last line is the reason.
         let output = count(elf, function, &SECONDS);
         assert_eq!(
             (output.status.code(), output.stdout.as_str()),

@@ -35,6 +35,7 @@ fn every_state(method: Method, scene: &Scene, steps: u32) -> Request {
 #[ignore = "takes hours"]
 fn host_and_targets_agree_after_every_one_of_a_million_steps() -> Result<()> {
     let targets = targets();
+    // Every method in both motions, on every board.
     let motions = || {
         MOTIONS
             .iter()
@@ -47,6 +48,7 @@ fn host_and_targets_agree_after_every_one_of_a_million_steps() -> Result<()> {
     runs.into_par_iter()
         .try_for_each(|(target, (scene, method))| {
             let steps = STEPS[usize::from(target.board.core() == Core::M0Plus)];
+            // The CRC covers every state, so one different bit anywhere is noticed.
             let request = every_state(method, scene, steps);
             let host = request.crc()?;
             let (crc, _) = target.run(&request)?;
@@ -83,6 +85,7 @@ fn unoptimised_code_computes_the_same_bits() {
         ]);
     }
 
+    // The requests are sent as lines, and the answers are the CRCs in the same order.
     let mut child = cargo
         .stdin(Stdio::piped())
         .stdout(Stdio::piped())
@@ -96,8 +99,10 @@ fn unoptimised_code_computes_the_same_bits() {
     drop(input);
     let output = child.wait_with_output().expect("cargo ends");
     assert!(output.status.success());
+
     let text = String::from_utf8(output.stdout).expect("text");
     assert_eq!(text.lines().count(), requests.len());
+    // The host's own code is optimised.
     for (line, request) in text.lines().zip(&requests) {
         let optimised = request.crc().unwrap_or_else(|error| panic!("{error}"));
         assert_eq!(line, format!("{optimised:08x}"), "{}", request.method);
@@ -116,6 +121,7 @@ fn nothing_is_contracted() {
         .iter()
         .filter(|target| target.board.cpu == "cortex-m4")
     {
+        // The instructions of the whole program.
         let words = target.image.words().into_iter();
         let row = |(at, first, second): (u32, u16, Option<u16>)| {
             Some((
@@ -126,12 +132,15 @@ fn nothing_is_contracted() {
             ))
         };
         let rows: Vec<_> = words.filter_map(row).collect();
+        // The search sees the kernel's code.
         for name in SEPARATE {
             assert!(
                 rows.iter().filter(|(_, row)| *row == name).count() > 500,
                 "{name}"
             );
         }
+
+        // A contracted instruction would round once instead of twice.
         let found = rows.iter().find(|(_, row)| CONTRACTED.contains(row));
         let place = found.map(|(at, row)| (target.image.function_at(*at), row));
         assert_eq!(place, None, "in {}", target.board.name);

@@ -10,8 +10,8 @@ use firmware::scenes::SceneName;
 
 use crate::support::on;
 
-/// The time for which each scene is followed, ticks. With steps that do not resolve the motion, it
-/// diverged after 2.6 s, and `figure-7` after 1 s.
+/// The duration of each scene, ticks. With steps that do not resolve the motion, it diverged after
+/// 2.6 s, and `figure-7` after 1 s.
 const FOLLOWED: u64 = 4 * TICK_RATE as u64;
 
 /// The largest relative energy error of a frame. An error of 1 % becomes visible after some
@@ -25,6 +25,7 @@ fn up_held_down_shows_the_hosts_motion_at_mass_ratio_100() -> anyhow::Result<()>
     machine.next_frame()?;
 
     for name in [SceneName::Page, SceneName::Figure7] {
+        // The scene, with the button up pressed until the largest ratio is reached.
         let mut settings = name.first_settings();
         machine.send(1, Command::Choose(name))?;
         assert_eq!(machine.next_answer()?, (1, Answer::Done));
@@ -35,6 +36,7 @@ fn up_held_down_shows_the_hosts_motion_at_mass_ratio_100() -> anyhow::Result<()>
         }
         assert_eq!(settings.mass_ratio(), 100.0);
 
+        // Each frame equals the host's, is on time, and keeps its energy.
         let mut show = Show::on(board.processor(), name, &settings)?;
         loop {
             let frame = machine.next_frame()?;
@@ -56,6 +58,7 @@ fn up_held_down_shows_the_hosts_motion_at_mass_ratio_100() -> anyhow::Result<()>
         }
     }
 
+    // The log has no error.
     let bad: Vec<_> = machine
         .lines()
         .into_iter()

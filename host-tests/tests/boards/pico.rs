@@ -25,18 +25,18 @@ use firmware::protocol::{
 use firmware::scenes::SceneName;
 use host_tests::commands::count::{FULL_CYCLE, Target, affordable_steps, step_cost};
 
-/// A time in which the panel receives a whole picture.
+/// A time that is long enough for a whole picture on the panel.
 const PICTURE: Duration = Duration::from_millis(50);
 /// The processor cycles to find the changes on the panel and to hand over a frame: 1.6 ms. It takes
 /// 1.3 ms; waiting for the UART would take 0.9 ms more.
 const SHOWING: u32 = 200_000;
 const TICK: Duration = Duration::from_nanos(1_000_000_000 / TICK_RATE as u64);
 
-/// The longest time of a restart: that of the watchdog, and that in which the host finds the board
+/// The longest time of a restart: the watchdog's time, and the time of the host to find the board
 /// again.
 const RESTART: Duration = Duration::from_millis(2000 * WATCHDOG_SECONDS as u64 + 400);
 
-/// Returns a board to which the host has just opened its port.
+/// Returns a board with its port just opened by the host.
 fn board() -> anyhow::Result<PicoMachine> {
     let mut board = switched_on()?;
     board.next_frame()?;
@@ -95,6 +95,7 @@ fn usb_and_uart_carry_the_hosts_bits_and_every_command() -> anyhow::Result<()> {
         sent.push(frame);
     }
 
+    // The same frames arrive over the UART.
     board.run(TICK / 4)?;
     let through_uart: Vec<Frame> = board
         .heard_by_uart()
@@ -207,8 +208,7 @@ fn measured(board: &mut PicoMachine, in_ram: bool) -> anyhow::Result<u32> {
 /// of QEMU. Its flash and memory have no wait states, so both take the same time. If the copy in
 /// memory is damaged, only the steps that run there are affected.
 #[test]
-fn the_emulator_counts_the_cycles_that_are_estimated_in_flash_and_in_memory() -> anyhow::Result<()>
-{
+fn the_emulators_cycles_agree_with_the_estimate_in_flash_and_in_memory() -> anyhow::Result<()> {
     // Found: 0.5 % more, 2.6 % less, 0.1 % less.
     const APART: f64 = 0.04;
     const RETURN: [u8; 2] = 0x4770_u16.to_le_bytes();
@@ -222,6 +222,7 @@ fn the_emulator_counts_the_cycles_that_are_estimated_in_flash_and_in_memory() ->
     let target = Target::build(&toolchain::ready()?, emulated)?;
 
     for method in [single, fixed64, Method::Rk4Fixed32] {
+        // The cycles by the emulator.
         board.send(1, Command::Simulate(request(method, 0)))?;
         board.run(4 * TICK)?;
         let steps = FULL_CYCLE / MOST_MEASURED_STEPS;
@@ -229,6 +230,8 @@ fn the_emulator_counts_the_cycles_that_are_estimated_in_flash_and_in_memory() ->
             .map(|_| measured(&mut board, false))
             .sum::<Result<u32, _>>()?;
         let counted = f64::from(cycles) / f64::from(FULL_CYCLE);
+
+        // The cycles by the counter of this project.
         let request = request(method, 1);
         let request = Request {
             stride: affordable_steps(&target, &request)?,
@@ -241,6 +244,7 @@ fn the_emulator_counts_the_cycles_that_are_estimated_in_flash_and_in_memory() ->
         );
     }
 
+    // Both copies of the steps take the same time, until the copy in memory is damaged.
     let steps = Code::read(&application(&PICO)).expect("the program");
     let entry = steps
         .functions_named(|name| name.contains("OnBoards as firmware::job::run::Run>::advance"))
@@ -252,11 +256,12 @@ fn the_emulator_counts_the_cycles_that_are_estimated_in_flash_and_in_memory() ->
         flash > 1000 * MOST_MEASURED_STEPS && flash.abs_diff(ram) < flash / 10,
         "{flash} and {ram} cycles"
     );
+    // The step in memory begins with a return, so it does nothing.
     for (address, byte) in (entry..).zip(RETURN) {
         board.tell(&format!("fill {address} 1 {byte}"))?;
     }
     let spoilt = measured(&mut board, true)?;
-    assert!(spoilt < 1000, "{spoilt} cycles for nothing");
+    assert!(spoilt < 1000, "{spoilt} cycles without any step");
     assert!(measured(&mut board, false)?.abs_diff(flash) < flash / 10);
     Ok(())
 }
@@ -269,9 +274,9 @@ fn stand_still(board: &mut PicoMachine) -> anyhow::Result<Frame> {
 }
 
 #[test]
-fn the_panel_shows_the_hosts_picture_whichever_it_is_and_however_often_it_is_pulled()
--> anyhow::Result<()> {
+fn every_kind_of_panel_shows_the_hosts_picture_after_it_is_plugged_in() -> anyhow::Result<()> {
     let mut board = switched_on()?;
+    // A board without a panel reports that it is absent.
     board.tell("plug none")?;
     board.run(Duration::from_millis(300))?;
     assert!(board.tell("panel")?.is_empty(), "it is off");
@@ -293,12 +298,13 @@ fn the_panel_shows_the_hosts_picture_whichever_it_is_and_however_often_it_is_pul
     for (name, panel, found) in [
         (SceneName::Page, "ssd1306 6", ssd1306),
         (SceneName::Figure7, "none", ""),
-        // Its status byte is the one of the other controller.
+        // It has the status byte of the other controller.
         (SceneName::Butterfly, "sh1106 6", sh1106),
         // Its power fails for a moment.
         (SceneName::Flips, "sh1106 8", sh1106),
         (SceneName::Page, "ssd1306 0", ssd1306),
     ] {
+        // The scene changes, and the panel with it.
         board.send(1, Command::Choose(name))?;
         board.send(2, Command::Pause(false))?;
         board.tell(&format!("plug {panel}"))?;
@@ -310,7 +316,9 @@ fn the_panel_shows_the_hosts_picture_whichever_it_is_and_however_often_it_is_pul
             Duration::from_millis(2000)
         })?;
         let frame = stand_still(&mut board)?;
+
         let lines = board.lines();
+        // The log names the controller.
         let reported = lines
             .iter()
             .find(|line| line.text.starts_with("panel: s"))
@@ -321,8 +329,12 @@ fn the_panel_shows_the_hosts_picture_whichever_it_is_and_however_often_it_is_pul
             "{}: {reported:?}",
             name.name()
         );
+
+        // The link reports the same.
         let is_present = matches!(panel_report(&mut board)?.state, PanelState::Shown(_));
         assert_eq!(is_present, panel != "none", "{}", name.name());
+
+        // The panel shows the host's picture, with the mark of a pause.
         let mut show = show(&PICO, name);
         (0..frame.report.step).for_each(|_| show.tick());
         let mut canvas = show.frame();
@@ -440,7 +452,7 @@ fn chosen_controller_outlasts_a_restart() -> anyhow::Result<()> {
 }
 
 #[test]
-fn every_button_does_its_own() -> anyhow::Result<()> {
+fn every_button_has_its_effect() -> anyhow::Result<()> {
     let mut board = board()?;
     board.run(10 * TICK)?;
     let mut show = show(&PICO, SceneName::Page);
@@ -453,13 +465,15 @@ fn every_button_does_its_own() -> anyhow::Result<()> {
         (Key::Left, Command::TurnLeft),
     ];
 
+    // A button has the effect of its command on the host's scene.
     for (key, command) in [up, up, left, right, right, down] {
         board.set_key(key, true)?;
         board.run(6 * TICK)?;
         board.set_key(key, false)?;
         board.run(6 * TICK)?;
         show.player.execute(command).expect("within its range");
-        let (frame, here) = (board.next_frame()?, show.player.frame());
+        let frame = board.next_frame()?;
+        let here = show.player.frame();
         assert_eq!(
             (frame.mass_ratio, frame.start_angle),
             (here.mass_ratio, here.start_angle),
@@ -468,6 +482,7 @@ fn every_button_does_its_own() -> anyhow::Result<()> {
         );
     }
 
+    // A long press of select changes the scene.
     board.set_key(Key::Select, true)?;
     board.run(TICK * (u32::from(HOLD_TICKS) + 6))?;
     assert_eq!(board.next_frame()?.scene, SceneName::Page.next());
@@ -477,13 +492,17 @@ fn every_button_does_its_own() -> anyhow::Result<()> {
 #[test]
 fn the_watchdog_restarts_the_board_in_its_scene() -> anyhow::Result<()> {
     let mut board = board()?;
+    // A scene with settings of its own, in the middle of a tick.
     board.send(1, Command::Choose(SceneName::Butterfly))?;
     board.send(2, Command::Heavier)?;
     board.run(10 * TICK)?;
     let before = board.next_frame()?;
     board.run(TICK / 4)?;
     board.tell("hang")?;
+
     board.run(RESTART)?;
+
+    // The report names the cause and the last frame.
     let restarted = board
         .heard_by_uart()
         .into_iter()
@@ -494,7 +513,7 @@ fn the_watchdog_restarts_the_board_in_its_scene() -> anyhow::Result<()> {
         scene,
         step,
         ..
-    } = restarted.expect("it says so");
+    } = restarted.expect("a report of the restart");
     assert_eq!((cause, restarts), (Some(Cause::Hang), 1));
     assert_eq!((scene, step), (before.scene, before.report.step));
     let frame = board.next_frame()?;
@@ -509,7 +528,7 @@ fn the_watchdog_restarts_the_board_in_its_scene() -> anyhow::Result<()> {
     );
 
     // After a reset from outside the board starts from its defaults. It must not be mistaken for
-    // the watchdog's earlier reset, nor for the one by which the boot ROM starts the program.
+    // the watchdog's earlier reset, nor for the reset at the end of a download by the boot ROM.
     for after_download in [false, true, false] {
         board.tell(&format!("reset {}", u8::from(after_download)))?;
         let messages = board.run(8 * PICTURE)?;
@@ -538,15 +557,16 @@ fn last_restart(board: &mut PicoMachine) -> anyhow::Result<Option<Restarted>> {
 /// A fault resets only the processor, a hang the whole chip. Both end the connection, and the
 /// message about the restart is lost. A host that opens the port later still learns the reason.
 #[test]
-fn a_host_that_opens_the_port_late_learns_of_a_crash_and_of_a_hang() -> anyhow::Result<()> {
+fn a_host_that_opens_the_port_late_receives_the_cause_of_the_restart() -> anyhow::Result<()> {
     let mut board = board()?;
     let mut restarts = Restarts::default();
-    let mut told = |end| restarts.take(&ToHost::Answer(4, Answer::Restart(end)), false);
-    assert_eq!(told(last_restart(&mut board)?), None);
+    let mut taken = |end| restarts.take(&ToHost::Answer(4, Answer::Restart(end)), false);
+    assert_eq!(taken(last_restart(&mut board)?), None);
     board.send(1, Command::Choose(SceneName::Butterfly))?;
     board.run(10 * TICK)?;
 
     for (number, (end, cause)) in (1..).zip([("fault", Cause::Fault), ("hang", Cause::Hang)]) {
+        // The port is closed while the board crashes, and opened long after its restart.
         let before = board.next_frame()?;
         board.set_port(0)?;
         board.run(TICK)?;
@@ -556,6 +576,7 @@ fn a_host_that_opens_the_port_late_learns_of_a_crash_and_of_a_hang() -> anyhow::
         board.set_port(BAUD)?;
         let first = board.next_frame()?;
         assert!(first.sequence > TICK_RATE, "{end}: it is late");
+
         let restarted = last_restart(&mut board)?.expect("it has restarted");
         assert_eq!((restarted.cause, restarted.restarts), (Some(cause), number));
         assert_eq!(restarted.scene, SceneName::Butterfly);
@@ -564,7 +585,8 @@ fn a_host_that_opens_the_port_late_learns_of_a_crash_and_of_a_hang() -> anyhow::
         // The chip's watchdog has no interrupt, so the place of a hang is unknown.
         let is_place_known = restarted.pc > 0x1000_0000;
         assert_eq!(is_place_known, cause == Cause::Fault, "{restarted:?}");
-        let line = told(Some(restarted)).expect("it is new");
+
+        let line = taken(Some(restarted)).expect("it is new");
         let place = format!("after a {} in scene butterfly, step", cause.name());
         assert!(line.contains(&place), "{line}");
     }
@@ -581,6 +603,7 @@ fn every_restart_disconnects_the_board() -> anyhow::Result<()> {
         board.run(10 * TICK)?;
         let before = board.next_frame()?.sequence;
         board.tell(end)?;
+        // The sequence numbers begin again after the restart.
         let frames = board.run(RESTART)?.into_iter().filter_map(ToHost::frame);
         let sequences: Vec<_> = frames.map(|frame| frame.sequence).collect();
         assert!(
@@ -614,14 +637,13 @@ fn a_broken_off_control_transfer_does_not_stop_the_board() -> anyhow::Result<()>
 }
 
 #[test]
-fn the_descriptor_comes_in_one_packet() -> anyhow::Result<()> {
+fn the_control_endpoint_takes_packets_of_64_bytes() -> anyhow::Result<()> {
     assert_eq!(board()?.tell("descriptor")?[7], 64);
     Ok(())
 }
 
 #[test]
-fn a_port_closed_at_its_speed_brings_the_boot_loader_and_one_closed_at_another_does_not()
--> anyhow::Result<()> {
+fn closing_the_port_starts_the_boot_loader_at_1200_baud_only() -> anyhow::Result<()> {
     let mut board = board()?;
     for (baud, is_it) in [(BAUD, false), (BAUD_OF_BOOT_LOADER, true)] {
         board.set_port(baud)?;

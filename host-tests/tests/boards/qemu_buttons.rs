@@ -1,4 +1,5 @@
-//! The board's buttons, pressed through QEMU, change the mass ratio and the start angle and restart the motion.
+//! The board's buttons, pressed through QEMU, change the mass ratio and the start angle and restart
+//! the motion.
 
 use crate::support::on;
 use emulator::boards::{BOARDS, Board};
@@ -8,10 +9,10 @@ use firmware::config::{ANGLE_STEP, MASS_RATIOS};
 use firmware::protocol::Frame;
 use firmware::scenes::SceneName;
 
-/// The number of frames in which the firmware notices that a button is released, even if the host
-/// is slow.
+/// The number of frames that are enough for the firmware to notice a released button, even if the
+/// host is slow.
 const SETTLING: usize = 60;
-/// The number of frames in which a press must have an effect.
+/// The largest number of frames before a press has its effect.
 const PATIENCE: usize = 2000;
 
 #[test]
@@ -24,6 +25,7 @@ fn buttons_choose_and_restart() -> anyhow::Result<()> {
 
 fn choose_and_restart(board: &Board) -> anyhow::Result<()> {
     let mut machine = on(board, Machine::start)?;
+    // The emulated buttons work only after they were pressed once.
     settle(&mut machine)?;
     machine.wake_keys()?;
     let start = settle(&mut machine)?;
@@ -39,6 +41,7 @@ fn choose_and_restart(board: &Board) -> anyhow::Result<()> {
     };
     let degrees = |frame: &Frame| frame.start_angle.to_degrees().round();
 
+    // Up and down change the mass ratio, left and right the start angle.
     for (key, ratios, turn) in [
         (Key::Up, 1, 0.0),
         (Key::Down, -1, 0.0),
@@ -72,6 +75,7 @@ fn choose_and_restart(board: &Board) -> anyhow::Result<()> {
 /// Holds a button until a motion starts, and releases it. Returns the frames before and after the
 /// start.
 fn press(machine: &mut Machine, key: Key) -> anyhow::Result<(Frame, Frame)> {
+    // The first smaller step number shows that a motion has started.
     let mut before = settle(machine)?;
     machine.set_key(key, true)?;
     for _ in 0..PATIENCE {
@@ -93,6 +97,7 @@ fn press(machine: &mut Machine, key: Key) -> anyhow::Result<(Frame, Frame)> {
 fn settle(machine: &mut Machine) -> anyhow::Result<Frame> {
     let mut last = machine.next_frame()?;
     let mut quiet = 0;
+    // After a restart the wait begins again.
     while quiet < SETTLING {
         let frame = machine.next_frame()?;
         quiet = if frame.report.step < last.report.step {

@@ -12,15 +12,15 @@ use firmware::protocol::{Answer, Command};
 use firmware::scenes::SceneName;
 use rayon::prelude::*;
 
-/// A scene that soon changes its method, one in which nothing moves, a motion that ends early, and
-/// a model.
+/// A scene that soon changes its method, a scene without a motion, a motion that ends early, and a
+/// linear scene.
 const SCENES: [SceneName; 4] = [
     SceneName::Beats2To1,
     SceneName::Frequencies,
     SceneName::Page,
     SceneName::SmallLight,
 ];
-/// The number of ticks by which all plans are found.
+/// The number of ticks until all plans are found.
 const FOLLOWED: u64 = 18 * TICK_RATE as u64;
 
 #[test]
@@ -30,7 +30,7 @@ fn every_board_finds_the_hosts_plan_and_follows_it_from_the_same_tick() -> anyho
 
 #[test]
 #[ignore = "minutes: two scenes more"]
-fn every_board_plans_as_the_host_does_whatever_it_shows() -> anyhow::Result<()> {
+fn every_board_plans_further_scenes_as_the_host_does() -> anyhow::Result<()> {
     every_board_plans(&SCENES[2..])
 }
 
@@ -53,6 +53,7 @@ fn every_board_plans(scenes: &[SceneName]) -> anyhow::Result<()> {
 /// Follows a scene frame by frame as the host shows it, then checks the answer and the log.
 fn followed(machine: &mut Machine, board: &Board, name: SceneName) -> anyhow::Result<()> {
     let mut show = show(board, name);
+    // Each frame has the host's method and horizon.
     loop {
         let frame = machine.next_frame()?;
         assert_eq!(frame.dropped, 0, "{}: {frame:?}", board.name);
@@ -68,6 +69,7 @@ fn followed(machine: &mut Machine, board: &Board, name: SceneName) -> anyhow::Re
         }
     }
 
+    // The host's events: the plan, and the changes of method.
     let changes = show
         .news
         .iter()
@@ -89,6 +91,8 @@ fn followed(machine: &mut Machine, board: &Board, name: SceneName) -> anyhow::Re
         name.name(),
         changes
     );
+
+    // A scene without a motion has no plan.
     assert_eq!(
         name == SceneName::Frequencies,
         plan.is_none(),
@@ -100,6 +104,8 @@ fn followed(machine: &mut Machine, board: &Board, name: SceneName) -> anyhow::Re
     let Some(Ok(answered)) = answer.and_then(|answer| answer.found) else {
         panic!("{answer:?}")
     };
+
+    // The answer has the same plan.
     let known = |plan: &Plan| (plan.method, plan.steps, plan.error, plan.cost, plan.limit);
     assert_eq!(
         known(&answered),

@@ -100,13 +100,9 @@ fn place(frame: &Frame) -> String {
 }
 
 /// Checks that the output of a board contains all `parts`.
-fn assert_said(board: &Board, said: &str, parts: &[&str]) {
+fn assert_logged(board: &Board, log: &str, parts: &[&str]) {
     for part in parts {
-        assert!(
-            said.contains(part),
-            "{}: no {part:?} in\n{said}",
-            board.name
-        );
+        assert!(log.contains(part), "{}: no {part:?} in\n{log}", board.name);
     }
 }
 
@@ -116,14 +112,15 @@ fn last_words(board: &Board, machine: &mut Machine, parts: &[&str]) -> anyhow::R
     let mut report = String::new();
     let status = machine.wait(|line| report += &format!("{line}\n"))?;
     assert_eq!(status.code(), Some(1), "{report}");
-    assert_said(board, &report, parts);
+    assert_logged(board, &report, parts);
     Ok(report)
 }
 
 #[test]
-fn a_fault_in_a_picture_tells_the_scene_and_the_step() -> anyhow::Result<()> {
+fn a_fault_in_a_frame_reports_the_scene_and_the_step() -> anyhow::Result<()> {
     let registers = format!("pc {UNUSED:#010x}  lr 0x12345679");
     for board in &BOARDS {
+        // A Cortex-M0+ does not report the cause of a fault.
         let [why, cfsr] = match board.is_guarded() {
             true => ["HARDFAULT: undefined instruction", "cfsr 0x00010000"],
             false => ["HARDFAULT: unknown cause (a Cortex-M0+ tells none)", ""],
@@ -141,19 +138,24 @@ fn a_fault_in_a_picture_tells_the_scene_and_the_step() -> anyhow::Result<()> {
 }
 
 #[test]
-fn a_stack_that_overflows_in_a_picture_meets_the_guard_and_changes_nothing_below()
--> anyhow::Result<()> {
+fn a_stack_overflow_in_a_frame_meets_the_guard_and_damages_no_static() -> anyhow::Result<()> {
     for board in BOARDS.iter().filter(|board| board.is_guarded()) {
         let (elf, mut probe, frame) = within(board, SceneName::Butterfly, true)?;
+        // The statics are below the guard.
         let statics = address(&elf, "_ram_start")..address(&elf, "__euninit");
         let before = probe.read(statics.clone())?;
         assert!(before.len() > 1024, "there is something to damage");
+
+        // The stack pointer is at the guard, so the next function overflows the stack.
         probe.divert(&[
             (Register::Sp, UNUSED),
             (Register::Pc, address(&elf, "Player::execute")),
         ])?;
+
         probe.run_to(address(&elf, "HardFault"))?;
         assert!(probe.read(statics)? == before, "the statics are damaged");
+
+        // The registers were not saved, because there was no stack for them.
         let lost = "pc and lr are lost; the last call on the stack is at 0x";
         last_words(
             board,
@@ -182,7 +184,7 @@ fn function_after(what: &str, report: &str, image: &Image) -> String {
 }
 
 #[test]
-fn a_panic_tells_where_and_why_and_ends_the_run_as_a_failure() -> anyhow::Result<()> {
+fn a_panic_reports_its_place_and_reason_and_ends_with_failure() -> anyhow::Result<()> {
     let toolchain = toolchain();
     for board in &BOARDS {
         let elf = toolchain.build("inject-panic", board.target)?;
@@ -198,6 +200,8 @@ fn a_panic_tells_where_and_why_and_ends_the_run_as_a_failure() -> anyhow::Result
             &mut Machine::start(&settings(&toolchain, board, &elf))?,
             &parts,
         )?;
+
+        // The addresses in the report belong to the panic's functions.
         let image = Image::read(&elf)?;
         for (what, name) in [("pc", "panic_fmt"), ("lr", "main")] {
             let caller = function_after(what, &report, &image);
@@ -213,9 +217,10 @@ fn a_panic_tells_where_and_why_and_ends_the_run_as_a_failure() -> anyhow::Result
 }
 
 #[test]
-fn a_board_that_hangs_comes_back_where_it_was_and_says_why() -> anyhow::Result<()> {
+fn a_board_that_hangs_restarts_in_its_scene_and_reports_the_cause() -> anyhow::Result<()> {
     for board in watched() {
         let (_, mut probe, before) = within(board, SceneName::Butterfly, true)?;
+        // The watchdog restarts the board, and its first message names the cause.
         execute(&mut probe, HANG)?;
         let machine = probe.run()?;
         let Restarted {
@@ -238,6 +243,8 @@ fn a_board_that_hangs_comes_back_where_it_was_and_says_why() -> anyhow::Result<(
             "{}",
             board.name
         );
+
+        // The scene starts again, with the same mass ratio and no frame lost.
         for sequence in 0..FRAMES as u32 {
             let frame = machine.next_frame()?;
             let step = u64::from(sequence) + 1;
@@ -260,11 +267,13 @@ fn a_board_that_hangs_comes_back_where_it_was_and_says_why() -> anyhow::Result<(
             "{}",
             board.name
         );
+
+        // The log has both the report of the hang and the line after the restart.
         let pc = format!("pc {UNUSED:#010x}");
         let last = format!("restarted after a hang, 1 in a row: {pc}");
-        assert_said(
+        assert_logged(
             board,
-            &machine.said(),
+            &machine.log_text(),
             &[
                 "HANG: no frame finished for 1 s\n",
                 &pc,
@@ -304,7 +313,9 @@ fn without_a_debugger_a_fault_restarts_the_board() -> anyhow::Result<()> {
                     frame = frame.or(message.frame());
                 }
             }
-            let restarted = restarted.expect("said before the first frame");
+
+            // The message precedes the first frame.
+            let restarted = restarted.expect("sent before the first frame");
             let cfsr = if board.is_guarded() { 1 << 16 } else { 0 };
             assert_eq!(restarted.cause, Some(Cause::Fault), "{}", board.name);
             assert_eq!(
@@ -339,13 +350,16 @@ fn without_a_debugger_a_fault_restarts_the_board() -> anyhow::Result<()> {
 fn a_report_that_takes_long_is_no_hang() -> anyhow::Result<()> {
     for board in watched() {
         let (elf, mut probe, _) = within(board, SceneName::Butterfly, true)?;
+        // The report begins, and hangs.
         execute(&mut probe, UNDEFINED)?;
         probe.run_to(address(&elf, "crash::say"))?;
         execute(&mut probe, HANG)?;
+
+        // The first cause is reported, not the hang.
         let machine = probe.run()?;
         let restarted = machine.wait_for(ToHost::restarted)?;
         assert_eq!(restarted.cause, Some(Cause::Fault), "{}", board.name);
-        let log = machine.said();
+        let log = machine.log_text();
         assert!(!log.contains("HANG"), "{}: {log}", board.name);
     }
     Ok(())

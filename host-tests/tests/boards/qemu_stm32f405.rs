@@ -9,10 +9,10 @@ use firmware::job::{ON_BOARDS, Request};
 use firmware::protocol::{Answer, Command};
 
 #[test]
-fn it_starts_from_anywhere_goes_on_without_a_panel_and_steps_in_flash_and_in_memory()
+fn the_image_sets_its_vectors_runs_without_a_panel_and_steps_in_flash_and_in_memory()
 -> anyhow::Result<()> {
     const VTOR: u32 = 0xe000_ed08;
-    /// This is long enough for several searches for the panel.
+    /// The number of frames. It is enough for several searches for the panel.
     const FRAMES: u32 = 300;
 
     // The chip's own loader starts the program while the ROM is at address 0, so the program must
@@ -21,8 +21,10 @@ fn it_starts_from_anywhere_goes_on_without_a_panel_and_steps_in_flash_and_in_mem
     assert_eq!(probe.read(VTOR..VTOR + 4)?, [0; 4]);
     probe.run_to(address(&application(&STM32F405), "clock::cycles"))?;
     assert_eq!(probe.read(VTOR..VTOR + 4)?, 0x0800_0000_u32.to_le_bytes());
+
     let machine = probe.run()?;
 
+    // Frames are on time although no panel answers.
     for sequence in 0..FRAMES {
         let frame = machine.next_frame()?;
         assert_eq!(

@@ -19,19 +19,20 @@ const POLL: Duration = Duration::from_millis(20);
 /// The number of frames read after the gap.
 const FRAMES: usize = 120;
 
-/// This applies to the one board whose emulated port reports that it is full. The other machines
+/// The board is the only one with an emulated port that reports when it is full. The other machines
 /// stop as a whole.
 #[test]
 fn a_host_that_stops_reading_loses_frames_and_nothing_else() -> anyhow::Result<()> {
     let mut machine = on(BOARD, Machine::start)?;
     let first = machine.next_frame()?;
 
+    // The host does not read until the board has logged that its port is full.
     machine.listens = false;
-    let mut said = String::new();
+    let mut log = String::new();
     let since = Instant::now();
-    while !said.contains("serial link") {
-        assert!(since.elapsed() < LIMIT, "{said}");
-        said += &machine.said();
+    while !log.contains("serial link") {
+        assert!(since.elapsed() < LIMIT, "{log}");
+        log += &machine.log_text();
         sleep(POLL);
     }
     machine.listens = true;
@@ -40,6 +41,7 @@ fn a_host_that_stops_reading_loses_frames_and_nothing_else() -> anyhow::Result<(
     let mut last = first;
     let mut after = 0;
 
+    // The frames before the gap come first, then a gap, then all frames.
     while after < FRAMES {
         let frame = machine.next_frame()?;
         assert_eq!(frame, show.expected(&frame));
@@ -53,26 +55,27 @@ fn a_host_that_stops_reading_loses_frames_and_nothing_else() -> anyhow::Result<(
         last = frame;
     }
 
+    // The gap is counted as lost frames.
     let counts = machine.counts();
     assert!(counts.lost > 0, "{counts:?}");
     assert!(
         counts.damaged <= 1,
         "the frame that was cut short, no other: {counts:?}"
     );
-    said += &machine.said();
+    log += &machine.log_text();
     assert_eq!(
-        said.matches("serial link").count(),
+        log.matches("serial link").count(),
         1,
-        "said once, not for every frame: {said}"
+        "logged once, not for every frame: {log}"
     );
     Ok(())
 }
 
-/// If the host stops QEMU or has no time for it, the firmware is not at fault: its clock does not
+/// The firmware is not at fault if the host stops QEMU or has no time for it: its clock does not
 /// advance meanwhile.
 #[test]
 fn a_board_whose_emulator_pauses_does_not_take_it_for_a_hang() -> anyhow::Result<()> {
-    /// This is longer than the watchdog's two stages.
+    /// The duration of a stop. It is longer than the watchdog's two stages.
     const PAUSE: Duration = Duration::from_millis(2500);
     const FRAMES: usize = 20;
     BOARDS
@@ -86,6 +89,7 @@ fn a_board_whose_emulator_pauses_does_not_take_it_for_a_hang() -> anyhow::Result
                 })
             })?;
             let emulator = Pid::from_raw(machine.id().cast_signed());
+            // The board plays, is stopped for a while, and plays again.
             for pause in [true, false] {
                 for _ in 0..FRAMES {
                     machine.next_frame()?;
@@ -96,7 +100,7 @@ fn a_board_whose_emulator_pauses_does_not_take_it_for_a_hang() -> anyhow::Result
                     kill(emulator, Signal::SIGCONT)?;
                 }
             }
-            let log = machine.said();
+            let log = machine.log_text();
             assert!(
                 !log.contains("HANG") && !log.contains("restarted"),
                 "{}: {log}",
@@ -122,7 +126,7 @@ fn received_bytes_that_are_lost_are_counted() -> anyhow::Result<()> {
         let mut log = String::new();
         while lost == 0 || !log.contains("received bytes lost") {
             lost = machine.next_frame()?.lost;
-            log += &machine.said();
+            log += &machine.log_text();
         }
         assert!(lost < flood.len() as u32, "{}: {lost}", board.name);
 

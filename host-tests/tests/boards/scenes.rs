@@ -46,8 +46,8 @@ const MOST_CYCLES: f64 = 3.0;
 
 /// Returns the number of frames of a scene in a short run.
 ///
-/// Within 1.1 s the stack has been as deep as in an hour, except for an interrupt, whichever tick a
-/// scene is left at. On the M3 the butterfly's curve grows, and the most expensive frame is after
+/// Within 1.1 s the stack has been as deep as in an hour, except for an interrupt, at whatever tick
+/// the scene is left. On the M3 the butterfly's curve grows, and the most expensive frame is after
 /// 10 s.
 fn short(board: &Board, name: SceneName) -> u32 {
     if (board.core(), name) == (Core::M3, SceneName::Butterfly) {
@@ -70,7 +70,8 @@ fn every_board_plays_every_scene_for_an_hour() -> anyhow::Result<()> {
 
 fn every_board_plays(limit: Duration, ticks: fn(&Board, SceneName) -> u32) -> anyhow::Result<()> {
     println!(
-        "| board | text | data | bss | stack | idle (estimated) |\n| --- | ---: | ---: | ---: | ---: | ---: |"
+        "| board | text | data | bss | stack | idle (estimated) |\n\
+        | --- | ---: | ---: | ---: | ---: | ---: |"
     );
     let too_much = BOARDS
         .par_iter()
@@ -82,7 +83,7 @@ fn every_board_plays(limit: Duration, ticks: fn(&Board, SceneName) -> u32) -> an
 }
 
 /// Sends bytes to a board that runs freely, and waits for its next frame.
-fn told(machine: &mut Machine, words: &[u8]) -> anyhow::Result<Vec<ToHost>> {
+fn messages_after(machine: &mut Machine, words: &[u8]) -> anyhow::Result<Vec<ToHost>> {
     machine.send_bytes(words)?;
     let mut messages = Vec::new();
     while messages
@@ -134,10 +135,8 @@ impl<'a> SceneRun<'a> {
                 .filter_map(ToHost::frame)
                 .filter(is_here)
             {
-                let (place, step) = (
-                    format!("{}: {}", self.board.name, self.name.name()),
-                    self.step() + 1,
-                );
+                let place = format!("{}: {}", self.board.name, self.name.name());
+                let step = self.step() + 1;
                 assert_eq!(
                     (frame.report.step, frame.dropped),
                     (step.into(), 0),
@@ -155,13 +154,14 @@ impl<'a> SceneRun<'a> {
     }
 }
 
-/// Plays all scenes twice and compares the panel at intervals. Returns what exceeds the board's
-/// budgets.
+/// Plays all scenes twice and compares the panel at intervals. Returns the costs that exceed the
+/// board's budgets.
 fn plays(
     board: &'static Board,
     limit: Duration,
     ticks: fn(&Board, SceneName) -> u32,
 ) -> anyhow::Result<Vec<String>> {
+    // The unused stack is painted, so that its depth can be read at the end.
     let elf = application(board);
     let image = Image::read(&elf)?;
     let stack = stack(&elf);
@@ -185,7 +185,7 @@ fn plays(
             let mut run = SceneRun::new(board, name);
             for until in (EVERY..=ticks(board, name)).step_by(EVERY as usize) {
                 machine.run()?;
-                run.to(until, &mut |words| told(&mut machine, words))?;
+                run.to(until, &mut |words| messages_after(&mut machine, words))?;
                 machine.stop()?;
 
                 // When the processor is about to sleep, the panel shows exactly the received frame.
@@ -201,11 +201,16 @@ fn plays(
             if round > 0 {
                 continue;
             }
+
+            // The share of a frame that the scene and the whole frame take, in instructions.
             let frame =
                 board.instruction() * f64::from(board.processor_hertz()) / f64::from(TICK_RATE);
             let [scene, whole] = run
                 .highest
                 .map(|cycles| f64::from(cycles) / f64::from(board.hertz) / frame);
+
+            // A frame is logged only if its cost may exceed a budget, because the log takes
+            // seconds.
             let is_profiled = match board.core() {
                 Core::M3 => true,
                 Core::M0Plus => {
@@ -226,10 +231,12 @@ fn plays(
                 ..
             } = profile.whole;
             let cycles = cycles as f64 / instructions as f64;
-            let (scene, idle, showing) =
-                (scene * cycles, 1.0 - whole * cycles, profile.showing.cycles);
+            let scene = scene * cycles;
+            let idle = 1.0 - whole * cycles;
+            let showing = profile.showing.cycles;
             let found = format!(
-                "{:15} {:12} {:4.1} % of a frame, idle {:4.1} %, at {cycles:.2} cycles for an instruction; shown in {showing}",
+                "{:15} {:12} {:4.1} % of a frame, idle {:4.1} %, \
+                at {cycles:.2} cycles for an instruction; shown in {showing}",
                 board.name,
                 name.name(),
                 100.0 * scene,
@@ -255,6 +262,8 @@ fn plays(
         "{}: the stack reaches ever deeper: {reached:?}",
         board.name
     );
+
+    // No byte was lost, and the log has no error.
     let Counts { damaged, lost, .. } = machine.counts();
     assert_eq!((damaged, lost), (0, 0), "{}", board.name);
     let lines = machine.lines().into_iter().filter(|line| line.is_bad());
@@ -262,8 +271,10 @@ fn plays(
         .filter(|line| board.has_panel || !line.text.contains(NO_PANEL))
         .collect();
     assert!(bad.is_empty(), "{}: {bad:#?}", board.name);
+
+    // The commands can use more stack than the scenes.
     machine.run()?;
-    exercise(&mut |words| told(&mut machine, words))?;
+    exercise(&mut |words| messages_after(&mut machine, words))?;
     machine.stop()?;
     too_much.extend(beyond(
         board,
@@ -282,12 +293,15 @@ fn the_pico_plays_every_scene_as_the_host_does_within_its_budgets() -> anyhow::R
     let elf = application(&PICO);
     let stack = stack(&elf);
     let mut machine = PicoMachine::start(&node, &elf, LIMIT)?;
+    // The stack is painted.
     machine.tell(&format!("fill {} {} {PAINT}", stack.start, stack.len()))?;
     machine.next_frame()?;
     let mut next = |words: &[u8]| {
         machine.send_bytes(words)?;
         machine.run_to_frame()
     };
+
+    // Each scene is as on the host, and its most expensive frame counts.
     let mut name = SceneName::Page;
     let mut highest = 0;
 

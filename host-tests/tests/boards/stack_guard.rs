@@ -1,5 +1,5 @@
-//! No function of the firmware takes so much of the stack at once that it could step over the
-//! guard.
+//! The largest stack frame of the firmware. It must be smaller than the guard, so that no function
+//! steps over the guard.
 
 use std::collections::BTreeMap;
 
@@ -11,12 +11,13 @@ use emulator::boards::every_board;
 /// `board/cortex_m/stack.rs`.
 const REGION: u32 = 32 * 1024;
 const EIGHTH: u32 = REGION / 8;
-/// The size of the registers that a function pushes before its local variables: 9 of 4 bytes, 8 of
-/// 8, and the 4 of 4 bytes in which arguments may be passed.
+/// The size of the registers that a function may push before its local variables: r4 to r11 and lr
+/// of 4 bytes, d8 to d15 of 8 bytes, and the argument registers r0 to r3 of 4 bytes. The compiler
+/// pushes argument registers in place of a small subtraction from the stack pointer.
 const PUSHED: u32 = 9 * 4 + 8 * 8 + 4 * 4;
 
 /// The bytes that may follow at the deepest place before the guard is accessed: the registers that
-/// the next function pushes, or those of an interrupt with a floating-point unit.
+/// the next function pushes, or the registers that an interrupt saves with a floating-point unit.
 const NEXT: u32 = if PUSHED > 104 { PUSHED } else { 104 };
 /// The bytes of every guard that no stack frame may use, reserved for changes of the code or the
 /// compiler.
@@ -42,12 +43,13 @@ fn taken(first: u16, second: u16, literal: Option<(u16, u32)>) -> Option<u32> {
             _ => Some(u32::MAX),
         };
     }
-    match (first & 0xfbff, second >> 8 & 0xf) {
+    let is_sp = second >> 8 & 0xf == 0xd;
+    match first & 0xfbff {
         _ if first & 0xff80 == 0xb080 => Some(u32::from(first & 0x7f) * 4),
-        (0xf2ad, 0xd) => Some(imm12),
-        (0xf1ad, 0xd) => Some(expanded(imm12)),
+        0xf2ad if is_sp => Some(imm12),
+        0xf1ad if is_sp => Some(expanded(imm12)),
         // The register may have any value.
-        (0xebad, 0xd) => Some(u32::MAX),
+        0xebad if is_sp => Some(u32::MAX),
         _ => None,
     }
 }
@@ -109,6 +111,7 @@ fn no_function_steps_over_the_guard() {
         let image = Image::read(&elf).unwrap_or_else(|error| panic!("{error}"));
         let mut frames = BTreeMap::new();
         let mut constant = None;
+        // The stack of a function is the sum of all its instructions that take some.
         for (address, first, second) in image.words() {
             if let Some(bytes) = taken(first, second.unwrap_or_default(), constant) {
                 let frame: &mut u32 = frames.entry(image.function_at(address)).or_default();
@@ -124,6 +127,8 @@ fn no_function_steps_over_the_guard() {
         // The part of the region that the statics leave, in whole eighths.
         let guard = REGION
             - (address(&elf, "__euninit") - address(&elf, "_ram_start")).next_multiple_of(EIGHTH);
+
+        // The guard must be larger than the frame with everything that can follow it.
         let largest = function.map_or("", |function| &function.name);
         let needed = frame.saturating_add(PUSHED + NEXT + MARGIN);
         println!(

@@ -1,5 +1,5 @@
-//! The steps of every method, which real boards store twice, in flash and in memory. They must run
-//! wherever they are copied.
+//! The steps of every method. Real boards store them twice, in flash and in memory, so they must
+//! run at any address.
 
 use std::collections::BTreeSet;
 
@@ -35,6 +35,7 @@ fn no_branch_leads_out_of_the_steps() -> anyhow::Result<()> {
             board.name
         );
         let code = Code::read(&elf)?;
+        // All functions of the steps are in the section.
         for (name, end) in STEPS {
             let mut found = code
                 .functions_named(|step| step.contains(name) && step.ends_with(end))
@@ -42,10 +43,12 @@ fn no_branch_leads_out_of_the_steps() -> anyhow::Result<()> {
             assert!(found.peek().is_some(), "{}: no {name}", board.name);
             assert!(
                 found.all(|function| steps.contains(&function)),
-                "{}: {name} stands elsewhere",
+                "{}: {name} is in another section",
                 board.name
             );
         }
+
+        // A branch that leaves the section would have the wrong target after a copy.
         let name = |address| code.function_at(address).map_or("?", |(_, name)| name);
         let out: Vec<_> = code
             .leads_out_of(&steps)
@@ -70,6 +73,7 @@ fn reached(code: &Code, form: &str) -> BTreeSet<String> {
     let is_step =
         |name: &str| name.contains(form) && name.contains("Form>") && name.ends_with("advance");
     let mut found: Vec<u32> = code.functions_named(is_step).collect();
+    // The list grows while it is searched.
     let mut seen = 0;
     while let Some(&function) = found.get(seen) {
         seen += 1;
@@ -85,13 +89,14 @@ fn reached(code: &Code, form: &str) -> BTreeSet<String> {
         .collect()
 }
 
-/// This is the claim of the kernel's example `fixed_point`: on a Cortex-M0+ a step in 32 bits
-/// consists of integer operations, while a step in `f32` does not.
+/// The claim of the kernel's example `fixed_point`: on a Cortex-M0+ a step in 32 bits consists of
+/// integer operations, while a step in `f32` does not.
 #[test]
 fn steps_in_fixed_point_reach_no_soft_float() -> anyhow::Result<()> {
     let code = Code::read(&application(&PICO))?;
     let is_soft = |name: &String| name.starts_with("__aeabi_f") || name.starts_with("__aeabi_d");
     let [fixed, float] = ["Fixed32 as", "Rk4Direction<"].map(|form| reached(&code, form));
+    // The search finds soft floats where they are used.
     assert!(float.iter().any(is_soft), "{float:#?}");
     assert!(
         !fixed.is_empty() && !fixed.iter().any(is_soft),

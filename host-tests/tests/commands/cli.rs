@@ -53,7 +53,7 @@ fn played(line: &str, folder: &Path) -> String {
 }
 
 #[test]
-fn commands_say_what_they_said() {
+fn output_of_every_command_equals_its_snapshot() {
     let empty = tempfile::tempdir().expect("a folder");
     let folder = workspace().join("host-tests/golden/commands");
     let files = fs::read_dir(folder)
@@ -61,6 +61,7 @@ fn commands_say_what_they_said() {
         .map(|file| file.expect("a file").path());
     let mut differences = Vec::new();
 
+    // Each file has command lines, which run in parallel in an empty folder.
     for file in files {
         let old =
             fs::read_to_string(&file).unwrap_or_else(|error| panic!("{}: {error}", file.display()));
@@ -81,6 +82,8 @@ fn commands_say_what_they_said() {
                 "{block}"
             );
         }
+
+        // The files are renewed on request, otherwise compared.
         if std::env::var_os(BLESS).is_some() {
             fs::write(&file, blocks.join("\n"))
                 .unwrap_or_else(|error| panic!("{}: {error}", file.display()));
@@ -107,7 +110,7 @@ fn commands_say_what_they_said() {
     );
 }
 
-/// Commands that end after little work. Other commands use the same functions to print.
+/// Commands that end soon. Other commands use the same functions to print.
 const COMMANDS: [&str; 12] = [
     "count closed-form-f32 --on lm3s6965evb --steps 4",
     "count closed-form-f32 --on lm3s6965evb --steps 4 --listing",
@@ -132,6 +135,7 @@ fn closed() -> io::Result<Stdio> {
 
 #[test]
 fn a_closed_output_ends_every_command_quietly() -> io::Result<()> {
+    // The tools are set up first, so that no command needs to do it.
     toolchain();
     let folder = tempfile::tempdir()?;
     for line in COMMANDS {
@@ -151,7 +155,7 @@ fn a_closed_output_ends_every_command_quietly() -> io::Result<()> {
         );
     }
 
-    // An error that nobody reads is still reported by the exit code.
+    // The exit code of an error does not depend on a reader.
     let status = program("simulate")
         .args(["--until", "-1"])
         .stdout(closed()?)
@@ -174,10 +178,10 @@ fn a_scene_is_planned_as_the_boards_start_it() {
                 break plan.horizon;
             }
         };
-        let said = output(program("plan").args(["--scene", "page", "--target", target])).stdout;
+        let text = output(program("plan").args(["--scene", "page", "--target", target])).stdout;
         assert!(
-            said.contains(&format!("until {horizon:.2} s of 30 s")),
-            "{horizon} {said}"
+            text.contains(&format!("until {horizon:.2} s of 30 s")),
+            "{horizon} {text}"
         );
     }
 }
@@ -210,6 +214,7 @@ fn an_interrupted_proof_prints_what_it_has_proved() {
     use std::io::Read;
 
     let words = "--angles 0.1,0.1 --duration 1e4 --method rk4-fixed32 --steps 16";
+    // Interrupt the proof after its start.
     for signal in [Signal::SIGINT, Signal::SIGTERM] {
         let mut command = program("prove");
         command
@@ -221,6 +226,7 @@ fn an_interrupted_proof_prints_what_it_has_proved() {
         wait_for_handler(process);
         kill(Pid::from_raw(process as i32), signal).expect("it runs");
 
+        // The frames that are proved are printed, and the exit code comes from the signal.
         let mut text = String::new();
         let mut output = running.child.stdout.take().expect("piped");
         output.read_to_string(&mut text).expect("text");

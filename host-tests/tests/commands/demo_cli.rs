@@ -44,8 +44,8 @@ fn recorded(board: &str, folder: &TempDir, name: &str) -> ([PathBuf; 2], String)
     (files, output.stdout)
 }
 
-/// The boards are those of QEMU, and the Pico in its own emulator, whose panel is read through its
-/// own bus.
+/// The boards are one in QEMU and the Pico in its own emulator, which reads the panel through the
+/// panel's own bus.
 #[test]
 fn a_recording_shows_a_swinging_pendulum_and_is_the_same_every_time() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -55,7 +55,8 @@ fn a_recording_shows_a_swinging_pendulum_and_is_the_same_every_time() {
             "frames                120\n",
             "CRC errors            0\n",
             "dropped frames        0\n",
-            "shown                 extrapolation10-fixed64 · 3 steps per frame · accurate to half a pixel until",
+            "shown                 extrapolation10-fixed64 · 3 steps per frame \
+            · accurate to half a pixel until",
             "120 frames, all identical to the host",
         ] {
             assert!(summary.contains(line), "no {line:?} in\n{summary}");
@@ -75,6 +76,9 @@ fn a_recording_shows_a_swinging_pendulum_and_is_the_same_every_time() {
             late.contains(&(simulated - f64::from(SECONDS))),
             "{board}: {simulated}"
         );
+
+        // The animation has a picture for every second frame, and each picture differs from the one
+        // before.
         let frames = played(&animation).expect("a GIF file");
         let time: u32 = frames.iter().map(|(_, delay)| u32::from(*delay)).sum();
         assert_eq!((frames.len(), time), (FRAMES, 100 * SECONDS));
@@ -94,6 +98,8 @@ fn a_recording_shows_a_swinging_pendulum_and_is_the_same_every_time() {
             FRAMES - dark.max(1),
             "every frame differs from the one before"
         );
+
+        // The screenshot has the same size, and a second recording the same bytes.
         let screenshot = png::Decoder::new(BufReader::new(File::open(last).expect("a file")));
         let screenshot = screenshot.read_info().expect("a PNG file");
         assert_eq!((screenshot.info().width, screenshot.info().height), SIZE);
@@ -120,9 +126,9 @@ fn the_method_can_be_chosen_and_is_named() {
     }
 }
 
-/// If the host cannot read the panel, it draws it from the received numbers.
+/// The host draws a panel that it cannot read from the received numbers.
 #[test]
-fn of_a_board_without_a_panel_the_redrawn_one_is_shown() {
+fn the_panel_of_a_board_without_one_is_redrawn_and_recorded() {
     toolchain();
     let folder = tempfile::tempdir().expect("a folder");
     let animation = folder.path().join("figure-7.gif");
@@ -147,6 +153,7 @@ fn of_a_board_without_a_panel_the_redrawn_one_is_shown() {
         output.stdout
     );
 
+    // The host's scene advances two ticks for each picture.
     let name = SceneName::Figure7;
     let mut scene =
         Show::on(STM32F405, name, &name.first_settings()).expect("a scene of the catalogue");
@@ -165,7 +172,7 @@ fn of_a_board_without_a_panel_the_redrawn_one_is_shown() {
 
 /// The animation begins with the motion, and each frame is equal to the host's.
 #[test]
-fn a_motion_of_ones_own_is_played_recorded_and_compared() {
+fn a_motion_of_the_user_is_played_recorded_and_compared() {
     toolchain();
     let folder = tempfile::tempdir().expect("a folder");
     let animation = folder.path().join("own.gif");
@@ -182,16 +189,16 @@ fn a_motion_of_ones_own_is_played_recorded_and_compared() {
     ]);
     let output = output(command.arg("--record").arg(&animation));
     assert_eq!(output.status.code(), Some(0), "{output:?}");
-    let said = &output.stdout;
+    let summary = &output.stdout;
     assert!(
-        said.contains("60 frames, all identical to the host"),
-        "{said}"
+        summary.contains("60 frames, all identical to the host"),
+        "{summary}"
     );
     let saved = format!(
         "saved                 {}, 30 pictures, the panel redrawn here from the board's numbers\n",
         animation.display()
     );
-    assert!(said.ends_with(&saved), "{said}");
+    assert!(summary.ends_with(&saved), "{summary}");
 
     let own = Settings {
         parameters: Parameters {
@@ -208,7 +215,7 @@ fn a_motion_of_ones_own_is_played_recorded_and_compared() {
     let played = played(&animation).expect("a GIF file");
     assert_eq!(played.len(), 30);
 
-    // The first picture is of the first frame after the board has reported this motion.
+    // The first picture shows the first frame after the board has reported this motion.
     while Screenshot::from(&scene.frame()).greys != played[0].0 {
         scene.tick();
         assert!(scene.report().step < 10, "it is another motion");
@@ -223,9 +230,9 @@ fn a_motion_of_ones_own_is_played_recorded_and_compared() {
     }
 }
 
-/// Of 120 frames every second one shows a new tick.
+/// Half the speed shows a new tick in every second one of 120 frames.
 #[test]
-fn at_half_the_speed_half_as_much_time_is_simulated() {
+fn half_speed_simulates_half_the_time() {
     toolchain();
     let output = output(program("demo").args([
         "--board",
@@ -237,8 +244,8 @@ fn at_half_the_speed_half_as_much_time_is_simulated() {
         "2",
     ]));
     assert_eq!(output.status.code(), Some(0), "{output:?}");
-    let said = &output.stdout;
-    let time = said
+    let summary = &output.stdout;
+    let time = summary
         .lines()
         .find_map(|line| {
             line.strip_prefix("simulated time")?
@@ -247,17 +254,17 @@ fn at_half_the_speed_half_as_much_time_is_simulated() {
         })
         .and_then(|time| time.parse::<f64>().ok())
         .expect("the simulated time");
-    assert!((0.98..1.1).contains(&time), "{said}");
+    assert!((0.98..1.1).contains(&time), "{summary}");
     assert!(
-        said.contains(" frames, all identical to the host"),
-        "{said}"
+        summary.contains(" frames, all identical to the host"),
+        "{summary}"
     );
 }
 
 #[test]
-fn without_a_terminal_it_says_so_and_how_to_see_something() {
+fn without_a_terminal_the_reason_and_the_options_are_printed() {
     toolchain();
-    let told = |arguments: &[&str]| {
+    let messages = |arguments: &[&str]| {
         let mut command = program("demo");
         command.args(["--board", "mps2-an386", "--seconds", "0.1"]);
         let output = output(command.args(arguments));
@@ -266,15 +273,15 @@ fn without_a_terminal_it_says_so_and_how_to_see_something() {
         output.stderr
     };
     let reason = "no terminal: running headless; --record FILE.gif";
-    let by_itself = told(&[]);
-    assert!(by_itself.contains(reason), "{by_itself}");
-    let as_asked = told(&["--headless"]);
-    assert!(!as_asked.contains("no terminal"), "{as_asked}");
+    let without_terminal = messages(&[]);
+    assert!(without_terminal.contains(reason), "{without_terminal}");
+    let headless = messages(&["--headless"]);
+    assert!(!headless.contains("no terminal"), "{headless}");
 }
 
 /// The folder contains the pipes to QEMU.
 #[test]
-fn a_folder_for_pipes_that_cannot_be_had_is_named() {
+fn an_unusable_folder_for_pipes_is_named() {
     let output = output(
         program("demo")
             .args(["--headless", "--seconds", "0.1"])

@@ -1,4 +1,5 @@
-//! `cargo demo --port`: a pseudo-terminal with an emulated board behind it, whose cable can be pulled.
+//! `cargo demo --port`: a pseudo-terminal with an emulated board behind it, whose cable can be
+//! pulled.
 
 use std::fs::File;
 use std::io::{Read, Write};
@@ -13,11 +14,11 @@ use firmware::protocol::{Answer, Cause, Frame, Restarted, ToHost};
 use firmware::scenes::{Report, SceneName};
 use nix::pty::{OpenptyResult, Winsize, openpty};
 
-/// The time for which a cable is unplugged.
+/// The duration of an unplugged cable.
 const OUT: Duration = Duration::from_millis(700);
-/// The time for which the terminal is watched.
+/// The duration of the observation of a terminal.
 const SILENCE: Duration = Duration::from_secs(3);
-/// The data of a foreign device, and the time for which it is connected.
+/// The data of a foreign device, and the duration of its connection.
 const FOREIGNER: &[u8] = b"$GPGGA,123519,4807.038,N,01131.000,E,1,08,0.9,545.4,M,46.9,M,,*47\r\n";
 const FOREIGN: Duration = Duration::from_secs(4);
 
@@ -39,32 +40,38 @@ fn every_frame_of_a_board_at_a_port_is_compared_and_a_damaged_one_counted() {
         }
         wire
     };
-    let [said, _] = demo(0, "--scene butterfly --seconds 8", |bench| {
+    let [summary, _] = demo(0, "--scene butterfly --seconds 8", |bench| {
         bench.carry(damaged)
     });
-    assert!(said.contains("frames, all identical to the host"), "{said}");
     assert!(
-        said.contains("CRC errors            1\nlost frames           1\n"),
-        "{said}"
+        summary.contains("frames, all identical to the host"),
+        "{summary}"
+    );
+    assert!(
+        summary.contains("CRC errors            1\nlost frames           1\n"),
+        "{summary}"
     );
 }
 
 #[test]
-fn a_motion_of_ones_own_is_played_at_a_port_too() {
+fn a_motion_of_the_user_is_played_at_a_port() {
     let arguments = "--scene butterfly --angles 90,45 --degrees --masses 1,3 --seconds 2";
-    let [said, _] = demo(0, arguments, |bench| bench.carry(wire));
-    assert!(said.contains("frames, all identical to the host"), "{said}");
+    let [summary, _] = demo(0, arguments, |bench| bench.carry(wire));
+    assert!(
+        summary.contains("frames, all identical to the host"),
+        "{summary}"
+    );
 }
 
 /// The fastest board could execute these steps in time, so only this board can refuse them.
 #[test]
 fn a_method_that_the_board_refuses_is_named() {
     let arguments = "--method extrapolation10-fixed64 --angles 120,120 --degrees --lengths 1,1/10";
-    let [said, told] = demo(2, arguments, |bench| bench.carry(wire));
-    assert_eq!(said, "");
+    let [summary, messages] = demo(2, arguments, |bench| bench.carry(wire));
+    assert_eq!(summary, "");
     assert!(
-        told.ends_with("ttyACM0: the board refuses this method; change --method\n"),
-        "{told}"
+        messages.ends_with("ttyACM0: the board refuses this method; change --method\n"),
+        "{messages}"
     );
 }
 
@@ -78,10 +85,10 @@ fn one_flipped_bit_is_named_and_fails() {
         }
         wire(message)
     };
-    let [_, told] = demo(1, "--seconds 8", |bench| bench.carry(flipped));
+    let [_, messages] = demo(1, "--seconds 8", |bench| bench.carry(flipped));
     let is_it =
         |line: &str| line.starts_with("not well: frame 300, step ") && line.contains(": p1 is 0x");
-    assert!(told.lines().any(is_it), "{told}");
+    assert!(messages.lines().any(is_it), "{messages}");
 }
 
 /// Returns the message with this state of the panel.
@@ -108,11 +115,12 @@ fn state_of_the_panel_is_reported_with_the_remedy_when_it_changes() {
         shown: 60,
         ..PanelReport::default()
     };
-    let [said, told] = demo(0, "--seconds 8", |bench| {
+    let [summary, messages] = demo(0, "--seconds 8", |bench| {
+        // The panel is plugged in after some frames.
         let report = if bench.frame < 200 { absent } else { shown };
         bench.carry(|message| wire(with_panel(message, report)));
     });
-    let lines: Vec<_> = told
+    let lines: Vec<_> = messages
         .lines()
         .filter(|line| line.starts_with("panel: "))
         .collect();
@@ -120,28 +128,28 @@ fn state_of_the_panel_is_reported_with_the_remedy_when_it_changes() {
         matches!(&lines[..], [first, second]
             if first.contains("no answer at 0x3C and 0x3D: check the wiring")
                 && second.contains("sh1106 by reading its memory back (status 0x48)")),
-        "{told}"
+        "{messages}"
     );
     assert!(
-        said.contains("panel                 sh1106 by reading"),
-        "{said}"
+        summary.contains("panel                 sh1106 by reading"),
+        "{summary}"
     );
 }
 
 #[test]
 fn board_without_a_choice_of_controllers_refuses_one() {
-    let [_, told] = demo(2, "--panel sh1106", |bench| bench.carry(wire));
+    let [_, messages] = demo(2, "--panel sh1106", |bench| bench.carry(wire));
     assert!(
-        told.contains("the board refuses this panel; the board has none"),
-        "{told}"
+        messages.contains("the board refuses this panel; the board has none"),
+        "{messages}"
     );
 }
 
 /// The board's frames arrive, but they are always of another scene.
 #[test]
-fn a_board_that_does_not_play_what_it_is_told_is_given_up() {
+fn a_board_that_never_plays_the_requested_scene_is_an_error() {
     let mut sequence = 0;
-    let [_, told] = demo(1, "--scene butterfly", |bench| {
+    let [_, messages] = demo(1, "--scene butterfly", |bench| {
         sequence += 1;
         let report = Report {
             step: sequence.into(),
@@ -155,15 +163,16 @@ fn a_board_that_does_not_play_what_it_is_told_is_given_up() {
         bench.is_heard();
         sleep(Duration::from_millis(16));
     });
-    assert!(told.contains("no frame for 10 s"), "{told}");
+    assert!(messages.contains("no frame for 10 s"), "{messages}");
 }
 
 #[test]
-fn a_pulled_cable_is_said_and_waited_for_and_a_board_that_restarts_is_followed_again() {
+fn a_pulled_cable_is_reported_and_a_restarted_board_is_compared_again() {
     let mut pulled = None;
     let mut restarted = false;
-    let [said, told] = demo(0, "--seconds 8", |bench| {
+    let [summary, messages] = demo(0, "--seconds 8", |bench| {
         bench.carry(wire);
+        // The cable is pulled and plugged in again. Later the board is replaced by a new one.
         match pulled {
             None if bench.heard && bench.frame > 200 => {
                 bench.unplug();
@@ -177,26 +186,29 @@ fn a_pulled_cable_is_said_and_waited_for_and_a_board_that_restarts_is_followed_a
             _ => {}
         }
     });
-    let lines: Vec<_> = told
+    let lines: Vec<_> = messages
         .lines()
         .filter(|line| line.contains("ttyACM0 is "))
         .collect();
     assert!(
         lines.len() == 2 && lines[0].contains("is gone") && lines[1].ends_with("is back"),
-        "{told}"
+        "{messages}"
     );
-    assert!(lines[0].contains("or the board restarts"), "{told}");
+    assert!(lines[0].contains("or the board restarts"), "{messages}");
     assert!(
-        told.contains("the board has been switched on or reset"),
-        "{told}"
+        messages.contains("the board has been switched on or reset"),
+        "{messages}"
     );
-    assert!(said.contains("frames, all identical to the host"), "{said}");
+    assert!(
+        summary.contains("frames, all identical to the host"),
+        "{summary}"
+    );
 }
 
-/// Over USB a restart disconnects the port, and the board's message about it is lost. Only the
-/// answer to the question that is asked when the port is back remains.
+/// Over USB a restart disconnects the port, and the board's message about it is lost. The host
+/// learns of the restart only from the answer to its question after the port is back.
 #[test]
-fn a_board_that_comes_back_after_a_hang_is_not_taken_for_a_pulled_cable() {
+fn a_board_that_comes_back_after_a_hang_is_reported_as_restarted() {
     let end = Restarted {
         cause: Some(Cause::Hang),
         restarts: 2,
@@ -205,7 +217,8 @@ fn a_board_that_comes_back_after_a_hang_is_not_taken_for_a_pulled_cable() {
         ..Restarted::default()
     };
     let mut gone = None;
-    let [_, told] = demo(0, "--seconds 6", |bench| {
+    let [_, messages] = demo(0, "--seconds 6", |bench| {
+        // The new board reports a hang before its start.
         let has_restarted = gone.is_some();
         bench.carry(|message| match message {
             ToHost::Answer(request, Answer::Restart(None)) if has_restarted => {
@@ -213,6 +226,7 @@ fn a_board_that_comes_back_after_a_hang_is_not_taken_for_a_pulled_cable() {
             }
             message => wire(message),
         });
+        // The board hangs, which also ends the connection.
         match gone {
             None if bench.heard && bench.frame > 150 => {
                 bench.unplug();
@@ -223,19 +237,19 @@ fn a_board_that_comes_back_after_a_hang_is_not_taken_for_a_pulled_cable() {
             _ => {}
         }
     });
-    let restarts: Vec<_> = told
+    let restarts: Vec<_> = messages
         .lines()
         .filter(|line| line.contains("the board has"))
         .collect();
-    assert_eq!(restarts.len(), 1, "{told}");
+    assert_eq!(restarts.len(), 1, "{messages}");
     let line = "the board has restarted after a hang in scene butterfly, step 1234 (in a row: 2)";
-    assert!(restarts[0].ends_with(line), "{told}");
+    assert!(restarts[0].ends_with(line), "{messages}");
 }
 
 #[test]
-fn a_foreign_device_is_said_and_a_board_in_its_place_is_taken() {
+fn a_foreign_device_is_reported_and_a_board_in_its_place_is_accepted() {
     let mut foreign = None;
-    let [_, told] = demo(0, "--seconds 2", |bench| {
+    let [_, messages] = demo(0, "--seconds 2", |bench| {
         if bench.is_heard() && foreign.get_or_insert_with(Instant::now).elapsed() < FOREIGN {
             bench.say(FOREIGNER);
             sleep(Duration::from_millis(20));
@@ -243,20 +257,21 @@ fn a_foreign_device_is_said_and_a_board_in_its_place_is_taken() {
             bench.carry(wire);
         }
     });
-    let count = |words| told.matches(words).count();
+    let count = |words| messages.matches(words).count();
     assert_eq!(
         ["no message: another device", "the board sends again"].map(count),
         [1, 1],
-        "{told}"
+        "{messages}"
     );
 }
 
-/// In a terminal no time limit applies, because the user can quit. The terminal shows no number
-/// that was not received.
+/// The session in a terminal has no time limit, because the user can quit. The terminal shows no
+/// number that was not received.
 #[test]
-fn of_a_silent_or_foreign_device_the_terminal_shows_no_number() {
+fn the_terminal_shows_no_number_of_a_silent_or_foreign_device() {
     for says in [b"", FOREIGNER] {
         let mut bench = Bench::new();
+        // The command runs in a terminal of the usual size.
         let size = Winsize {
             ws_row: 24,
             ws_col: 80,
@@ -275,10 +290,8 @@ fn of_a_silent_or_foreign_device_the_terminal_shows_no_number() {
             .spawn()
             .expect("it starts");
         drop(command);
-        let (mut keyboard, mut screen) = (
-            File::from(master.try_clone().expect("a terminal")),
-            File::from(master),
-        );
+        let mut keyboard = File::from(master.try_clone().expect("a terminal"));
+        let mut screen = File::from(master);
         let shown = spawn(move || {
             let mut bytes = Vec::new();
 
@@ -286,6 +299,8 @@ fn of_a_silent_or_foreign_device_the_terminal_shows_no_number() {
             let _ = screen.read_to_end(&mut bytes);
             String::from_utf8_lossy(&bytes).into_owned()
         });
+
+        // The device sends nothing, or foreign data, until the user quits.
         let ends = Instant::now() + SILENCE;
         while Instant::now() < ends {
             bench.is_heard();
@@ -296,20 +311,22 @@ fn of_a_silent_or_foreign_device_the_terminal_shows_no_number() {
         let output = child.wait_with_output().expect("it ends");
         let shown = shown.join().expect("it ends");
         assert!(shown.contains("yet") && !shown.contains("every"), "{shown}");
-        let told = String::from_utf8(output.stderr).expect("text");
-        assert_eq!(output.status.code(), Some(1), "{told}");
+        let messages = String::from_utf8(output.stderr).expect("text");
+        assert_eq!(output.status.code(), Some(1), "{messages}");
         assert!(
-            told.lines().count() == 1 && told.contains("ttyACM0: no frame came"),
-            "{told}"
+            messages.lines().count() == 1 && messages.contains("ttyACM0: no frame came"),
+            "{messages}"
         );
     }
 }
 
 #[test]
-fn a_port_where_nothing_comes_is_given_up() {
-    let [said, told] = demo(1, "", |_| sleep(WAIT));
+fn a_silent_port_is_an_error() {
+    let [summary, messages] = demo(1, "", |_| sleep(WAIT));
     assert!(
-        said.is_empty() && told.contains("no data") && told.contains("no frame for 10 s"),
-        "{said}{told}"
+        summary.is_empty()
+            && messages.contains("no data")
+            && messages.contains("no frame for 10 s"),
+        "{summary}{messages}"
     );
 }

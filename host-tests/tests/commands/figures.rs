@@ -27,7 +27,7 @@ const SMALL: [[f64; 4]; 3] = [
 const START: f64 = 30.0;
 
 #[test]
-fn the_committed_files_are_what_the_kernel_gives() {
+fn the_committed_figures_equal_the_kernels() {
     for (name, svg) in figures().expect("the figures can be drawn") {
         assert!(
             fs::read_to_string(folder().join(&name)).ok() == Some(svg),
@@ -56,8 +56,8 @@ fn the_committed_animations_show_what_the_host_draws() {
     );
 }
 
-/// The number of ticks by which a picture may be late: a recording takes the first screenshot that
-/// comes at its time or later.
+/// The largest delay of a picture, ticks. A recording takes the first screenshot at its time or
+/// later.
 const LATE: usize = 2;
 
 /// Returns true if the committed animation shows the host's frames, none more than [`LATE`] ticks
@@ -77,6 +77,7 @@ fn is_shown(name: SceneName) -> bool {
             } else {
                 0
             };
+
             (0..to_its_time).for_each(|_| scene.tick());
 
             let mut is_shown = Screenshot::from(&scene.frame()).greys == *greys;
@@ -91,6 +92,7 @@ fn is_shown(name: SceneName) -> bool {
 
 /// Returns the mean time between two zero crossings, s.
 fn between_crossings(points: &[CurvePoint], value: impl Fn(&CurvePoint) -> f64) -> f64 {
+    // A straight line between the two points gives the crossing.
     let crossing = |pair: &[CurvePoint]| {
         let [(t, before), (later, after)] =
             [&pair[0], &pair[1]].map(|point| (point.time, value(point)));
@@ -160,15 +162,17 @@ fn figures_3_to_5_show_the_frequencies_envelopes_and_amplitudes_of_the_table() {
     }
 }
 
-/// No exact solution of the misprinted equations is available, so the path is compared with one of
+/// The misprinted equations have no known exact solution, so their path is compared with a path in
 /// half the step.
 #[test]
-fn the_right_path_of_figure_7_is_the_exact_one_and_the_printed_one_does_not_depend_on_the_step() {
+fn figure_7_shows_the_exact_path_and_a_converged_misprinted_path() {
     let pendulum = chaos::pendulum().expect("a pendulum");
     let State { a1, a2, .. } = chaos::start();
     let mut exact = Reference::new(pendulum.parameters(), &Motion::at_rest(a1, a2));
     let [[right, printed], [_, finer]] =
         [1, 2].map(|refinement| chaos::paths(refinement).expect("a pendulum"));
+
+    // The exact positions at the times of the points.
     let last = right.points.len() - 1;
     let exact = (0..=last).map(|i| {
         exact.advance_to(f64::from(chaos::DURATION) * i as f64 / last as f64);
@@ -184,13 +188,14 @@ fn the_right_path_of_figure_7_is_the_exact_one_and_the_printed_one_does_not_depe
         }
     }
 
+    // The right equations conserve the energy.
     let [least, greatest] = right.energies;
     assert!(
         greatest - least < tolerances::FIGURE_7_ENERGY,
         "{least} J to {greatest} J"
     );
 
-    // The printed equations do not conserve the energy.
+    // The misprinted equations do not.
     let [least, greatest] = printed.energies;
     let swing = least..greatest;
     assert!(
@@ -211,7 +216,7 @@ fn flips(arguments: &[&str], name: &str) -> Vec<u8> {
 }
 
 #[test]
-fn the_committed_picture_is_what_it_draws() {
+fn the_committed_map_equals_a_new_one() {
     let committed = fs::read(folder().join("figures/flips.png")).expect("a picture");
     assert!(
         flips(&["--limit", "100"], "flips.png") == committed,

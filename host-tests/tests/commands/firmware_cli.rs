@@ -1,6 +1,6 @@
-//! `cargo fw`: its end, and the project that it uses. `cargo flash-f4` with a stand-in for
-//! `probe-rs`, and without one. `cargo pico`: the file that it makes, and the drive that it copies
-//! it to. `cargo count`: its listing.
+//! `cargo fw`: its end, and the project that it uses. `cargo flash-f4` with a fake `probe-rs`, and
+//! without one. `cargo pico`: the file that it makes, and the drive that it copies it to. `cargo
+//! count`: its listing.
 
 use std::env;
 use std::fs::{self, Permissions};
@@ -27,12 +27,16 @@ fn fw(arguments: &[&str]) -> Output {
 }
 
 #[test]
-fn what_runs_for_ever_ends_well_when_it_is_told_to() {
-    let told = fw(&["mps2-an386", "--seconds", "2"]);
-    assert_eq!(told.status.code(), Some(0), "{}", told.stderr);
-    assert!(told.stdout.contains("boot: mps2-an386"), "{}", told.stdout);
+fn a_program_without_end_is_stopped_with_success_on_request() {
+    let output = fw(&["mps2-an386", "--seconds", "2"]);
+    assert_eq!(output.status.code(), Some(0), "{}", output.stderr);
+    assert!(
+        output.stdout.contains("boot: mps2-an386"),
+        "{}",
+        output.stdout
+    );
     assert_eq!(
-        told.stderr.lines().last(),
+        output.stderr.lines().last(),
         Some("stopped after 2 s, as requested")
     );
     assert_eq!(
@@ -44,28 +48,28 @@ fn what_runs_for_ever_ends_well_when_it_is_told_to() {
 
 /// A row is the difference of two runs, so that the cost of the call cancels.
 #[test]
-fn a_listing_adds_up_to_the_row() {
+fn the_costs_of_a_listing_add_up_to_the_row() {
     let numbers = |options: &str, place| -> Vec<f64> {
-        let said = output(
+        let printed = output(
             program("count")
                 .arg("rk4-fixed32")
                 .args(options.split_whitespace()),
         )
         .stdout;
-        said.lines()
+        printed
+            .lines()
             .filter_map(|line| line.split_whitespace().nth(place)?.parse().ok())
             .collect()
     };
+    // A listing has the costs of a step, so it is multiplied by the number of steps.
     let listed = |steps: f64| {
         steps
             * numbers(&format!("--listing --steps {steps}"), 1)
                 .iter()
                 .sum::<f64>()
     };
-    let (listed, row) = (
-        (listed(5.0) - listed(1.0)) / 4.0,
-        *numbers("--steps 4", 3).last().expect("a row"),
-    );
+    let listed = (listed(5.0) - listed(1.0)) / 4.0;
+    let row = *numbers("--steps 4", 3).last().expect("a row");
     assert!(
         listed > 0.0 && (listed - row).abs() < 0.06,
         "{listed} listed, {row} in the row"
@@ -83,6 +87,7 @@ fn ended_by(signal: Signal, temporary: &Path) -> Option<i32> {
         .stderr(Stdio::null());
     let mut fw = process::spawn(&mut command, LIMIT).unwrap_or_else(|error| panic!("{error}"));
     let mut log = BufReader::new(fw.child.stdout.take().expect("piped"));
+    // The first line of the log shows that the board runs.
     log.read_line(&mut String::new())
         .expect("the board says something");
     assert!(
@@ -109,7 +114,7 @@ fn an_interrupted_command_leaves_no_temporary_folder() {
 }
 
 #[test]
-fn the_folder_of_a_killed_command_is_removed_by_the_next() {
+fn the_folder_of_a_killed_command_is_removed_by_the_next_command() {
     const LONG_AGO: Duration = Duration::from_secs(3600);
     let temporary = tempfile::tempdir().expect("there is room for it");
     assert_eq!(ended_by(Signal::SIGKILL, temporary.path()), None);
@@ -117,6 +122,8 @@ fn the_folder_of_a_killed_command_is_removed_by_the_next() {
     let [folder] = &folders[..] else {
         panic!("{folders:?}")
     };
+
+    // The next command considers a folder as abandoned only if it is old.
     let opened = fs::File::open(folder).expect("a folder");
     opened
         .set_modified(SystemTime::now() - LONG_AGO)
@@ -131,12 +138,13 @@ fn the_folder_of_a_killed_command_is_removed_by_the_next() {
 /// A command that was built in one checkout and is run in another uses the latter. Outside of any
 /// checkout it reports an error.
 #[test]
-fn the_project_is_the_one_that_a_command_is_run_in() {
+fn a_command_uses_the_project_that_it_is_run_in() {
     let folder = tempfile::tempdir().expect("a folder");
     let copy = folder.path().join("fw");
     let checkout = folder.path().join("checkout");
     fs::copy(env!("CARGO_BIN_EXE_host-tests"), &copy).expect("a copy");
 
+    // Another checkout has the files that identify it, and one binary.
     for file in [
         "kernel/Cargo.toml",
         "firmware/Cargo.toml",
@@ -155,6 +163,7 @@ fn the_project_is_the_one_that_a_command_is_run_in() {
                 .env_remove("CARGO_MANIFEST_DIR"),
         )
     };
+    // Inside the other checkout, then outside of any.
     let inside = help(&checkout.join("firmware/src"));
     assert!(
         inside.status.success() && inside.stdout.contains("Binaries:\n  elsewhere\n"),
@@ -180,7 +189,7 @@ fn flash(arguments: &[&str], path: impl IntoIterator<Item = PathBuf>) -> Output 
 }
 
 #[test]
-fn without_probe_rs_it_says_what_is_missing() -> io::Result<()> {
+fn without_probe_rs_the_error_names_it() -> io::Result<()> {
     let nothing = tempfile::tempdir()?;
     let output = flash(&[], [nothing.path().to_owned()]);
     assert_eq!(output.status.code(), Some(2));
@@ -193,9 +202,9 @@ fn without_probe_rs_it_says_what_is_missing() -> io::Result<()> {
     Ok(())
 }
 
-/// Runs the command with a stand-in of this name first on the PATH. The stand-in prints its
-/// arguments and `said`, then executes `ends`. Checks that the command ends with `code`. Returns
-/// the last argument, a file.
+/// Runs the command with a fake program of this name first on the PATH. The fake prints its
+/// arguments and then executes `ends`. Checks that the command prints `said` first and ends with
+/// `code`. Returns the last argument, a file.
 fn handed(
     name: &str,
     arguments: &[&str],
@@ -204,9 +213,9 @@ fn handed(
     code: i32,
 ) -> io::Result<PathBuf> {
     let folder = tempfile::tempdir()?;
-    let stand_in = folder.path().join(name);
-    fs::write(&stand_in, format!("#!/bin/sh\necho \"$@\"\n{ends}\n"))?;
-    fs::set_permissions(&stand_in, Permissions::from_mode(0o755))?;
+    let fake = folder.path().join(name);
+    fs::write(&fake, format!("#!/bin/sh\necho \"$@\"\n{ends}\n"))?;
+    fs::set_permissions(&fake, Permissions::from_mode(0o755))?;
     let rest = env::var_os("PATH").unwrap_or_default();
     let output = flash(
         arguments,
@@ -223,7 +232,7 @@ fn handed(
 }
 
 #[test]
-fn it_hands_the_image_to_probe_rs() -> io::Result<()> {
+fn probe_rs_receives_the_image() -> io::Result<()> {
     let image = handed(
         "probe-rs",
         &["--chip", "STM32F407VGTx"],
@@ -242,7 +251,7 @@ fn it_hands_the_image_to_probe_rs() -> io::Result<()> {
 
 /// The program is sent over USB. QEMU runs exactly these bytes.
 #[test]
-fn it_hands_the_bytes_of_the_flash_to_dfu_util() -> io::Result<()> {
+fn dfu_util_receives_the_bytes_of_the_flash() -> io::Result<()> {
     let bin = handed(
         "dfu-util",
         &["--dfu"],
@@ -250,6 +259,7 @@ fn it_hands_the_bytes_of_the_flash_to_dfu_util() -> io::Result<()> {
         "echo 'File downloaded successfully'; exit 74",
         0,
     )?;
+    // The bytes are a program that runs.
     let mut qemu = Command::new(toolchain::ready().expect("the tools").qemu);
     qemu.args([
         "-machine",
@@ -276,7 +286,7 @@ fn it_hands_the_bytes_of_the_flash_to_dfu_util() -> io::Result<()> {
 }
 
 #[test]
-fn a_download_that_is_not_reported_as_complete_fails_whatever_its_exit_code_is() -> io::Result<()> {
+fn a_download_that_is_not_reported_as_complete_fails_with_any_exit_code() -> io::Result<()> {
     let said = "-d 0483:df11 -a 0 -s 0x08000000 -D /";
     handed("dfu-util", &["--dfu"], said, "exit 0", 1).map(drop)
 }
@@ -290,7 +300,7 @@ fn pico(drive: &Path) -> Output {
 
 /// The blocks are read as by the boot ROM.
 #[test]
-fn the_copied_file_brings_the_program_into_flash() {
+fn the_copied_file_has_the_program_as_in_flash() {
     let drive = tempfile::tempdir().expect("a folder");
     fs::write(drive.path().join("INFO_UF2.TXT"), LABEL).expect("a label");
     let output = pico(drive.path());
@@ -298,6 +308,8 @@ fn the_copied_file_brings_the_program_into_flash() {
     let file = fs::read(drive.path().join("pico.uf2")).expect("it is copied");
     let (blocks, rest) = file.as_chunks::<512>();
     assert!(rest.is_empty());
+
+    // The program as it must be in flash.
     let elf = toolchain::ready()
         .expect("the tools")
         .build_for(&PICO)
@@ -330,6 +342,7 @@ fn the_copied_file_brings_the_program_into_flash() {
         flashed.extend(&block[32..][..256]);
     }
 
+    // The last block is filled up to 256 bytes.
     assert_eq!(flashed.len(), image.len().next_multiple_of(256));
     assert!(flashed.starts_with(&image));
 }

@@ -59,6 +59,8 @@ fn every_dependency_has_its_reason() {
     let named = direct
         .filter(|one| !one["source"].is_null())
         .filter_map(|one| Some(one["name"].as_str()?.to_owned()));
+
+    // The table names each dependency once.
     let table = read(".ci/dependencies.md");
     let rows = table
         .lines()
@@ -95,6 +97,7 @@ fn the_kernels_examples_are_short() {
     assert!(examples.len() >= 5);
     for path in examples {
         let example = read(&path);
+        // The names that the example imports from the kernel.
         let imports = example
             .lines()
             .filter_map(|line| line.strip_prefix("use double_pendulum::"));

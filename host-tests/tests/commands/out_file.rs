@@ -41,13 +41,14 @@ fn a_full_disk_is_an_error_and_leaves_no_part_of_a_file() {
         ("simulate --out swing.csv", "swing.csv"),
         ("figures --out .", "./figures/figure-2.svg"),
     ] {
-        let said = on_a_full_disk(line, folder.path());
+        let output = on_a_full_disk(line, folder.path());
         let error = format!("error: --out: cannot write {file}: File too large (os error 27)\n");
         assert_eq!(
-            (said.status.code(), &*said.stdout, said.stderr),
+            (output.status.code(), &*output.stdout, output.stderr),
             (Some(1), "", error),
             "{line}"
         );
+        // No part of the file remains, nor a temporary file.
         let left = names(folder.path());
         assert!(
             left.iter().all(|name| name == "figures"),
@@ -58,7 +59,7 @@ fn a_full_disk_is_an_error_and_leaves_no_part_of_a_file() {
 }
 
 #[test]
-fn two_commands_with_one_file_both_end_well() {
+fn two_commands_that_write_one_file_both_succeed() {
     let folder = tempfile::tempdir().expect("a folder");
     let start = || {
         program("flips")
@@ -79,7 +80,7 @@ fn two_commands_with_one_file_both_end_well() {
 }
 
 #[test]
-fn what_is_there_stays_until_the_new_file_is_complete() {
+fn an_existing_file_remains_until_the_new_one_is_complete() {
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join("swing.csv");
     fs::write(&file, "old").expect("a file");
@@ -111,7 +112,7 @@ fn what_is_there_stays_until_the_new_file_is_complete() {
 
 /// The rows before a motion leaves the finite numbers are correct.
 #[test]
-fn the_rows_before_an_error_are_in_the_file() {
+fn rows_before_an_error_are_in_the_file() {
     let folder = tempfile::tempdir().expect("a folder");
     let said = output(
         program("simulate")

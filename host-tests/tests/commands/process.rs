@@ -14,7 +14,7 @@ use nix::unistd::Pid;
 const AMPLE: Duration = Duration::from_secs(60);
 /// The limit of children that must be stopped.
 const SHORT: Duration = Duration::from_millis(300);
-/// A process with a child of its own, neither of which ends on request.
+/// A process with a child of its own. Both ignore requests to end.
 const FAMILY: &str = "trap '' TERM; (sleep 20; echo late) & echo ready; sleep 20; echo late";
 /// The environment variable that turns [`interrupted_helper`] from an empty test into the process
 /// to interrupt.
@@ -42,7 +42,9 @@ fn rest(mut pipe: BufReader<ChildStdout>) -> String {
 
 #[test]
 fn output_and_exit_code_are_captured_while_a_watcher_sees_lines_and_silence() {
-    let script = "i=0; while [ $i -lt 20000 ]; do echo 0123456789; echo 0123456789 >&2; i=$((i+1)); done; sleep 1; exit 7";
+    let script = "i=0; while [ $i -lt 20000 ]; do echo 0123456789; echo 0123456789 >&2; \
+        i=$((i+1)); done; sleep 1; exit 7";
+    // The watcher sees some of the lines, and the silence at the end.
     let mut lines = 0;
     let mut ticks = 0;
     let watch = |line: Option<&str>| match line {
@@ -59,6 +61,8 @@ fn output_and_exit_code_are_captured_while_a_watcher_sees_lines_and_silence() {
         (220_000, 220_000, Some(7))
     );
     assert!(lines > 0 && ticks > 5, "{lines} lines, {ticks} ticks");
+
+    // A program that does not exist is an error with its name.
     let error = run(&mut Command::new("no-such-program"), AMPLE).expect_err("it does not exist");
     assert!(
         error
@@ -70,6 +74,7 @@ fn output_and_exit_code_are_captured_while_a_watcher_sees_lines_and_silence() {
 
 #[test]
 fn the_whole_group_ends_with_its_time_its_owner_or_its_leader() {
+    // The time limit ends the group.
     let mut late = spawn(&mut shell(FAMILY), SHORT).expect("it starts");
     assert_eq!(rest(output(&mut late)), "ready\n");
     assert_eq!(
@@ -77,12 +82,14 @@ fn the_whole_group_ends_with_its_time_its_owner_or_its_leader() {
         ErrorKind::TimedOut
     );
 
+    // The end of its owner ends the group.
     let mut dropped = spawn(&mut shell(FAMILY), AMPLE).expect("it starts");
     let mut pipe = output(&mut dropped);
     pipe.read_line(&mut String::new()).expect("it is ready");
     drop(dropped);
     assert_eq!(rest(pipe), "");
 
+    // The end of the first process of the group ends the others.
     let ended = run(&mut shell("(sleep 20; echo late) & echo done"), AMPLE).expect("it runs");
     assert_eq!(
         (ended.stdout.as_str(), ended.status.code()),
@@ -99,6 +106,7 @@ fn children_end_with_an_interrupted_or_killed_process() {
         (Signal::SIGQUIT, Some(131), "hook\n"),
         (Signal::SIGKILL, None, ""),
     ] {
+        // A process that has registered a hook and a folder, and has a child.
         let folder = tempfile::tempdir().expect("there is room for it");
         let mut helper = Command::new(std::env::current_exe().expect("a test has a path"));
         helper
@@ -116,6 +124,7 @@ fn children_end_with_an_interrupted_or_killed_process() {
                 "it ended too early"
             );
         }
+        // The hook has run and the folder is gone, unless the process was killed.
         kill(Pid::from_raw(helper.child.id().cast_signed()), signal).expect("it runs");
         assert_eq!(rest(pipe), said, "{signal}");
         assert_eq!(helper.wait().expect("it ends").code(), code, "{signal}");
@@ -123,7 +132,7 @@ fn children_end_with_an_interrupted_or_killed_process() {
     }
 }
 
-/// This is not a test of its own. It is the process that the test above interrupts.
+/// The process that the test above interrupts. As a test it does nothing.
 #[test]
 fn interrupted_helper() {
     if let Some(folder) = std::env::var_os(HELPER) {

@@ -57,7 +57,12 @@ fn number() -> impl Strategy<Value = f64> {
         1e-3,
         1e30,
     ];
-    prop_oneof![1 => any::<u64>().prop_map(f64::from_bits), 4 => select(USUAL), 4 => -10.0..10.0, 4 => 0.01..10.0]
+    prop_oneof![
+        1 => any::<u64>().prop_map(f64::from_bits),
+        4 => select(USUAL),
+        4 => -10.0..10.0,
+        4 => 0.01..10.0,
+    ]
 }
 
 fn parameters() -> impl Strategy<Value = Parameters<f64>> {
@@ -84,6 +89,7 @@ fn part() -> impl Strategy<Value = (Vec<u8>, Option<Vec<u8>>)> {
     let changes = vec((any::<Index>(), any::<u8>()), 0..4);
     let sent = (vec(any::<u8>(), 0..=MAX_MESSAGE), changes).prop_map(|(message, changes)| {
         let mut sent = wire(&message);
+        // Some bytes of the message may change, and may change to their old value.
         for (at, change) in changes {
             let at = at.index(sent.len());
             sent[at] ^= change;
@@ -136,6 +142,7 @@ fn constructed<R: Real>(
     let parameters = parameters.cast::<R>();
     let state = state.cast::<R>();
 
+    // Modes of valid parameters oscillate.
     if let Ok(modes) = Modes::new(&parameters) {
         let frequencies = [modes.fast.frequency, modes.slow.frequency];
         assert!(
@@ -153,6 +160,8 @@ fn constructed<R: Real>(
         [R::ZERO; 4],
         "{parameters:?}"
     );
+
+    // No function of a valid pendulum panics.
     let _ = (
         pendulum.bounds(&state),
         pendulum.energy(&state),
@@ -172,35 +181,41 @@ fn constructed<R: Real>(
 proptest! {
     #![proptest_config(cases(1000))]
 
-    /// With any bytes between the messages, no damaged message is accepted and no intact one is
+    /// Any bytes may be between the messages: no damaged message is accepted and no intact one is
     /// missed.
     #[test]
     fn intact_messages_are_received_and_nothing_else(stream in vec(part(), 0..40)) {
         let (bytes, messages): (Vec<_>, Vec<_>) = stream.into_iter().unzip();
-        prop_assert_eq!(intact(&bytes.concat()), messages.into_iter().flatten().collect::<Vec<_>>());
+        let messages: Vec<_> = messages.into_iter().flatten().collect();
+        prop_assert_eq!(intact(&bytes.concat()), messages);
     }
 
     /// Each intact command has one answer, a refused one changes nothing, and the scene continues.
     #[test]
     fn every_command_is_answered(commands in vec(command(), 1..3)) {
-        let mut sheets = FrameBuffers::BLANK;
+        let mut buffers = FrameBuffers::BLANK;
         let mut panel = NoDisplay;
-        let mut app = App::new(CORTEX_M4F, &mut sheets, &mut panel, Vec::new(), NoButtons);
+        let mut app = App::new(CORTEX_M4F, &mut buffers, &mut panel, Vec::new(), NoButtons);
         app.player.play(SceneName::Page, Settings::default()).expect("good settings");
         for (tick, bytes) in (1..).zip(commands) {
             let status = app.player.status();
             let sent = app.link.len();
+            // The answers to this part of the input.
             app.receive(bytes.iter().copied(), |_| ());
             let mut inbox = Inbox::default();
-            let answers: Vec<_> = app.link[sent..].iter().filter_map(|&byte| inbox.take(byte)).collect();
+            let new = app.link[sent..].iter();
+            let answers: Vec<_> = new.filter_map(|&byte| inbox.take(byte)).collect();
             prop_assert_eq!(inbox.damage, None);
+            // A message that is no command has no answer, and a request may be answered later.
             let asked = intact(&bytes).first().and_then(|message| decode_command(message));
             let is_silent = matches!(asked, None | Some((_, Some(Command::Simulate(_)))));
             let is_one = matches!(*answers, [_]) && asked.is_some();
             prop_assert!(is_one || answers.is_empty() && is_silent, "{answers:?} to {asked:?}");
+            // A refused command changes nothing.
             if let [ToHost::Answer(_, Answer::Refused(_))] = *answers {
                 prop_assert_eq!(app.player.status(), status, "{:?}", asked);
             }
+
             app.run_to(tick, |_| ());
             app.work(|_| ());
             prop_assert_eq!(app.player.report.state.check(), Ok(()));
@@ -210,10 +225,19 @@ proptest! {
     /// Every reading of a request is finite.
     #[test]
     fn requests_are_refused_or_computed(
-        (method, parameters, angles, velocities) in (select(ON_BOARDS), parameters(), uniform2(number()), uniform2(number())),
+        (method, parameters) in (select(ON_BOARDS), parameters()),
+        (angles, velocities) in (uniform2(number()), uniform2(number())),
         (dt, stride, samples) in (number(), any::<u8>(), any::<u32>()),
     ) {
-        let request = Request { method, parameters, angles, velocities, dt, stride: stride.into(), samples };
+        let request = Request {
+            method,
+            parameters,
+            angles,
+            velocities,
+            dt,
+            stride: stride.into(),
+            samples,
+        };
         let run = OnBoards::start(&request).expect("a method of the boards");
         let Ok(mut job) = run.and_then(|run| Job::new(run, &request)) else { return Ok(()) };
         for _ in 0..24 {
@@ -222,7 +246,8 @@ proptest! {
                 break;
             };
             let finite = reading.iter().all(|reading| {
-                reading.energy.is_finite() && reading.state.iter().chain(&reading.velocities).all(|x| x.is_finite())
+                let mut numbers = reading.state.iter().chain(&reading.velocities);
+                reading.energy.is_finite() && numbers.all(|x| x.is_finite())
             });
             prop_assert!(finite, "{reading:?}");
         }
@@ -230,9 +255,16 @@ proptest! {
 
     /// Parameters are refused, or valid for every method. Steps are finite or refused.
     #[test]
-    fn the_kernel_refuses_or_stays_finite(parameters in parameters(), dt in number(), state in uniform4(number())) {
+    fn the_kernel_refuses_or_stays_finite(
+        parameters in parameters(),
+        dt in number(),
+        state in uniform4(number()),
+    ) {
         let state = State::from(state);
-        let constructed = [constructed::<f32>(parameters, dt, state), constructed::<f64>(parameters, dt, state)];
+        let constructed = [
+            constructed::<f32>(parameters, dt, state),
+            constructed::<f64>(parameters, dt, state),
+        ];
         let stepped = Method::ALL.iter().map(|&method| stepped(method, &parameters, dt, &state));
         for error in constructed.into_iter().chain(stepped).filter_map(Result::err) {
             prop_assert!(!error.to_string().is_empty());
@@ -243,13 +275,21 @@ proptest! {
     /// of the search together cost no more than allowed, or the piece is a single step.
     #[test]
     fn a_plan_is_within_its_budget(
-        (pendulum, [a1, a2, w1, w2], rate) in (parameters(), uniform4(number()), prop_oneof![Just(60), any::<u16>()]),
+        (pendulum, [a1, a2, w1, w2]) in (parameters(), uniform4(number())),
+        rate in prop_oneof![Just(60), any::<u16>()],
         ([tolerance, duration, frame, planning, piece], steps) in (uniform5(number()), 0..200_u32),
         asked in prop::option::of(select(Method::ALL)),
     ) {
         let start = Motion { a1, a2, w1, w2 };
-        let scene = Problem { pendulum, start, tolerance: tolerance.abs(), duration: duration.abs(), rate };
-        let [frame, planning, piece] = [frame * 1e4, planning * 1e5, piece * 1e5].map(|number| number.abs() as f32);
+        let scene = Problem {
+            pendulum,
+            start,
+            tolerance: tolerance.abs(),
+            duration: duration.abs(),
+            rate,
+        };
+        let [frame, planning, piece] =
+            [frame * 1e4, planning * 1e5, piece * 1e5].map(|number| number.abs() as f32);
         let costs = CORTEX_M4F.costs;
         let budget = Budget { frame, planning };
         let search = match asked {
@@ -258,24 +298,37 @@ proptest! {
         };
         let Ok(mut search) = search else { return Ok(()) };
 
+        // Each piece of the search stays within its limit, or is a single step.
         for _ in 0..60 {
             let before = search.spent();
-            let most = if search.is_preparing() { costs.preparation } else { piece.max(costs.fixed64) };
+            let most = if search.is_preparing() {
+                costs.preparation
+            } else {
+                piece.max(costs.fixed64)
+            };
             let found = search.advance(piece);
-            prop_assert!(search.spent() - before <= most + 1e-6 * search.spent(), "{before} {}", search.spent());
+            let spent = search.spent();
+            prop_assert!(spent - before <= most + 1e-6 * spent, "{before} {spent}");
+            // The search ends with an error, or with a plan that meets all limits.
             match found {
                 Err(error) => {
-                    prop_assert!(!error.to_string().is_empty() && search.spent() <= planning, "{error:?} {}", search.spent());
+                    let has_reason = !error.to_string().is_empty();
+                    prop_assert!(has_reason && spent <= planning, "{error:?} {spent}");
                     break;
                 }
                 Ok(None) => {}
                 Ok(Some(plan)) => {
-                    prop_assert!((0.0..=duration.abs().max(scene.time(1))).contains(&plan.horizon), "{plan:?}");
-                    prop_assert!(plan.spent <= planning && plan.cost > 0.0 && plan.error <= 1.0, "{plan:?}");
-                    prop_assert!(asked.is_some() || plan.cost <= frame && plan.horizon > 0.0, "{plan:?}");
+                    let longest = duration.abs().max(scene.time(1));
+                    prop_assert!((0.0..=longest).contains(&plan.horizon), "{plan:?}");
+                    prop_assert!(plan.spent <= planning, "{plan:?}");
+                    prop_assert!(plan.cost > 0.0 && plan.error <= 1.0, "{plan:?}");
+                    let is_useful = plan.cost <= frame && plan.horizon > 0.0;
+                    prop_assert!(asked.is_some() || is_useful, "{plan:?}");
                     prop_assert!(plan.dt.is_finite() && plan.dt >= 0.0, "{plan:?}");
-                    prop_assert!((plan.limit == Limit::End) <= (plan.horizon >= duration.abs()), "{plan:?}");
-                    prop_assert!(asked.is_none_or(|method| method == plan.method), "{plan:?} for {asked:?}");
+                    let is_whole = plan.horizon >= duration.abs();
+                    prop_assert!((plan.limit == Limit::End) <= is_whole, "{plan:?}");
+                    let is_asked = asked.is_none_or(|method| method == plan.method);
+                    prop_assert!(is_asked, "{plan:?} for {asked:?}");
                     break;
                 }
             }
@@ -284,7 +337,9 @@ proptest! {
 
     /// A displayed number can be parsed and is the same number.
     #[test]
-    fn numbers_are_read_as_they_are_shown(text in "[-+]?[0-9]{0,4}\\.?[0-9]{0,4}(e-?[0-9]{1,4})?(/[0-9]{1,3})?|\\PC{0,8}") {
+    fn numbers_are_read_as_they_are_shown(
+        text in "[-+]?[0-9]{0,4}\\.?[0-9]{0,4}(e-?[0-9]{1,4})?(/[0-9]{1,3})?|\\PC{0,8}",
+    ) {
         if let Ok(number) = text.parse::<Number>() {
             prop_assert!(number.value().is_finite(), "{number}");
             prop_assert_eq!(number.to_string().parse::<Number>().ok(), Some(number));
@@ -298,13 +353,15 @@ proptest! {
             prop_oneof![
                 "--(angles|velocities|masses|lengths)=-?[0-9.]{1,4},-?[0-9/.]{1,4}",
                 "--(step|until|every|gravity|tolerance)=-?[0-9]{1,3}(/[0-9]{1,4}|e-?[0-9])?",
-                "--(method|on)=(rk4-f32|rk4-fixed32|closed-form-f64|extrapolation8-fixed64|lm3s6965evb)",
+                "--(method|on)=(rk4-f32|rk4-fixed32|closed-form-f64|\
+                extrapolation8-fixed64|lm3s6965evb)",
                 "\\PC{0,8}",
             ],
             0..6,
         ),
     ) {
-        let options = SimulateOptions::try_parse_from(std::iter::once(String::from("simulate")).chain(words));
+        let line = std::iter::once(String::from("simulate")).chain(words);
+        let options = SimulateOptions::try_parse_from(line);
         if let Ok(plan) = options.map_err(drop).and_then(|options| plan(&options).map_err(drop)) {
             prop_assert!(plan.every.is_positive() && plan.request.dt > 0.0);
         }

@@ -12,7 +12,7 @@ use emulator::toolchain::workspace;
 use super::cli::{output, program};
 use super::hygiene::read;
 
-/// The first README, and those of the crates.
+/// The first README, and the READMEs of the crates.
 const README: [&str; 4] = [
     "README.md",
     "kernel/README.md",
@@ -38,7 +38,7 @@ fn ours() -> BTreeSet<String> {
 /// Every help contains the command's own name, and if it has options, examples that use no other
 /// options.
 #[test]
-fn every_help_has_examples_of_what_it_lists() {
+fn every_help_has_examples_with_its_own_options_only() {
     for name in ours() {
         let help = output(program(&name).arg("--help")).stdout;
         let usage = help
@@ -46,6 +46,8 @@ fn every_help_has_examples_of_what_it_lists() {
             .find_map(|line| line.strip_prefix("Usage: cargo "))
             .unwrap_or_default();
         assert_eq!(usage.split_whitespace().next(), Some(&*name), "{help}");
+
+        // The examples use the command's own name and its listed options.
         let (listed, examples) = help.split_once("\nExample").unwrap_or((&help, ""));
         assert!(
             examples.contains(&format!("cargo {name}")) || !usage.contains("[OPTIONS]"),
@@ -118,16 +120,14 @@ fn the_readmes_name_every_command_and_no_other() {
 
 /// Every file and folder that a README links to exists.
 #[test]
-fn the_readmes_link_to_what_is_there() {
+fn every_link_of_the_readmes_has_its_file() {
     for file in README {
-        let (page, folder) = (
-            read(file),
-            workspace()
-                .join(file)
-                .parent()
-                .expect("a folder")
-                .to_owned(),
-        );
+        let page = read(file);
+        let folder = workspace()
+            .join(file)
+            .parent()
+            .expect("a folder")
+            .to_owned();
         let targets = page
             .split("](")
             .skip(1)
@@ -147,6 +147,7 @@ fn the_first_readme_is_short() {
 #[test]
 fn the_readme_lists_the_messages_as_they_are() {
     let readme = read("firmware/README.md");
+    // The table of messages in its section.
     let (_, page) = readme
         .split_once("\n## The serial stream\n")
         .expect("its section");
@@ -154,6 +155,8 @@ fn the_readme_lists_the_messages_as_they_are() {
         .lines()
         .filter_map(|line| line.strip_prefix("| `")?.split_once("` |"));
     let listed: BTreeSet<_> = rows.flat_map(|(names, _)| names.split("`, `")).collect();
+
+    // The variants of the three enums in the source.
     let sources = ["to_host", "command"]
         .map(|file| read(format!("firmware/src/protocol/{file}.rs")))
         .concat();
@@ -270,11 +273,13 @@ fn the_readmes_example_runs_in_an_empty_crate() {
         ],
         workspace(),
     );
+
     let package = format!(
         "{target}/package/double-pendulum-kernel-{}",
         env!("CARGO_PKG_VERSION")
     );
 
+    // The README's lines for the manifest, with the path of the package.
     let readme =
         fs::read_to_string(format!("{package}/README.md")).expect("the package has its README");
     let (before, path) = block(&readme, "toml")
@@ -284,9 +289,10 @@ fn the_readmes_example_runs_in_an_empty_crate() {
     let empty = folder.path().join("empty");
     fs::create_dir_all(empty.join("src")).expect("a temporary folder can be written to");
     let manifest = format!(
-        "[workspace]\n[package]\nname = \"empty\"\nedition = \"2024\"\n{before}path = \"{package}\"{after}"
+        "[workspace]\n[package]\nname = \"empty\"\nedition = \"2024\"\n\
+        {before}path = \"{package}\"{after}"
     );
-    fs::write(empty.join("Cargo.toml"), manifest).expect("likewise");
-    fs::write(empty.join("src/main.rs"), block(&readme, "rust")).expect("likewise");
+    fs::write(empty.join("Cargo.toml"), manifest).expect("a file");
+    fs::write(empty.join("src/main.rs"), block(&readme, "rust")).expect("a file");
     cargo(&["run", "--target-dir", &target], &empty);
 }

@@ -1,6 +1,6 @@
-//! The firmware's images are the same wherever they are built. They contain no folder of the
-//! builder, and `cargo release-files` makes the same files in another checkout with another cargo
-//! folder.
+//! The firmware's images are the same on any machine and in any folder. They contain no folder of
+//! the builder, and `cargo release-files` makes the same files in another checkout with another
+//! cargo folder.
 
 use std::env;
 use std::fs;
@@ -53,6 +53,7 @@ impl Elsewhere {
                 symlink(there, home.join(name))?;
             }
         }
+        // The tools are shared; only the builds are separate.
         let elsewhere = Self(folder);
         fs::create_dir_all(elsewhere.target())?;
         symlink(target().join("qemu"), elsewhere.target().join("qemu"))?;
@@ -143,6 +144,8 @@ fn an_image_built_elsewhere_has_the_same_bytes() -> anyhow::Result<()> {
         ran.stdout.contains("injected with the number 42"),
         "{ran:?}"
     );
+
+    // The image is compared as loaded bytes and as a whole file.
     let there = elsewhere
         .target()
         .join("firmware")
@@ -166,12 +169,15 @@ fn a_release_made_elsewhere_is_the_same_and_is_verified_here() -> anyhow::Result
     assert!(here.status.success(), "{}", here.stderr);
     let there = elsewhere.output(&mut program("release-files"));
     assert!(there.status.success(), "{}", there.stderr);
+
+    // The checksums of both releases are equal.
     let sums = |folder: PathBuf| fs::read_to_string(folder.join("release-files/SHA256SUMS"));
     let here = sums(target())?;
     let there = sums(elsewhere.target())?;
     assert_eq!(here, there);
     assert_eq!(here.lines().count(), every_board().count() + 2, "{here}");
 
+    // A board with the image from elsewhere is verified by this checkout.
     let blocks = fs::read(elsewhere.target().join("release-files/pico.uf2"))?;
     let node = toolchain::ready_for_pico().unwrap_or_else(|missing| panic!("{missing}"));
     let board = PicoMachine::flashed(&node, &blocks, &application(&PICO), LONG)?;

@@ -1,5 +1,5 @@
-//! Rooms are the top modules of a crate, or the crates of a folder. Each imports only from the rooms below it, there are few,
-//! and the name of a public type is unique.
+//! Rooms are the top modules of a crate, or the crates of a folder. Each room imports only from the
+//! rooms below it. There are few rooms, and the name of a public type is unique.
 
 use std::collections::BTreeSet;
 

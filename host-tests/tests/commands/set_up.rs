@@ -1,5 +1,5 @@
-//! `cargo setup` with stand-ins for the system's programs: it unpacks packages for this project,
-//! and installs packages on the system only after a question.
+//! `cargo setup` with fakes of the system's programs: it unpacks packages for this project, and
+//! installs packages on the system only after a question.
 
 use std::fs::{self, File, Permissions};
 use std::io::{Read, Write};
@@ -20,7 +20,7 @@ const GOOD_QEMU: &str = "echo QEMU emulator version 9.0.2";
 const GOOD_NODE: &str = "echo v20.1.0";
 const OLD_NODE: &str = "echo v12.22.12";
 
-/// A stand-in that logs its calls. If a package is requested, it prints the name of a file and then
+/// A fake that logs its calls. If a package is requested, it prints the name of a file and then
 /// makes the file. An installation makes a new Node.js.
 const APT_GET: &str = r#"
 echo "$@" >> "$LOG"
@@ -30,13 +30,13 @@ case "$*" in
     *update*) ;;
     *install*) printf '#!/bin/sh\necho v20.1.0\n' > "$(dirname "$0")/node" ;;
 esac"#;
-/// A stand-in that extracts a QEMU from any package.
+/// A fake that extracts a QEMU from any package.
 const DPKG_DEB: &str = r#"
 mkdir -p usr/bin
 printf '#!/bin/sh\necho QEMU emulator version 9.0.2\n' > usr/bin/qemu-system-arm
 chmod 755 usr/bin/qemu-system-arm"#;
 
-/// A system whose programs are stand-ins, and an empty target folder.
+/// A system whose programs are fakes, and an empty target folder.
 struct System {
     folder: TempDir,
 }
@@ -49,6 +49,7 @@ impl System {
         for folder in ["bin", "target"] {
             fs::create_dir(system.path(folder)).expect("a folder");
         }
+        // The fakes are first on the PATH.
         for (name, script) in [
             ("qemu-system-arm", qemu),
             ("node", node),
@@ -99,11 +100,11 @@ fn a_qemu_that_is_old_or_broken_is_replaced_by_an_unpacked_one() {
     ] {
         let system = System::new(qemu, GOOD_NODE);
         let unpacked = system.path("target").join("qemu/qemu-system-arm");
-        let said = output(&mut system.setup(&[]));
-        assert_eq!(said.status.code(), Some(0), "{said:?}");
-        assert!(said.stderr.contains(reason), "{said:?}");
+        let result = output(&mut system.setup(&[]));
+        assert_eq!(result.status.code(), Some(0), "{result:?}");
+        assert!(result.stderr.contains(reason), "{result:?}");
         let line = format!("QEMU: {}\n", unpacked.display());
-        assert!(said.stdout.contains(&line), "{said:?}");
+        assert!(result.stdout.contains(&line), "{result:?}");
         assert_eq!(system.installed(), [""; 0]);
 
         // The next set-up finds the unpacked program.
@@ -115,24 +116,24 @@ fn a_qemu_that_is_old_or_broken_is_replaced_by_an_unpacked_one() {
 #[test]
 fn a_good_qemu_of_the_system_is_used() {
     let system = System::new(GOOD_QEMU, GOOD_NODE);
-    let said = output(&mut system.setup(&[]));
+    let result = output(&mut system.setup(&[]));
     let line = format!("QEMU: {}\n", system.path("bin/qemu-system-arm").display());
-    assert!(said.stdout.contains(&line), "{said:?}");
+    assert!(result.stdout.contains(&line), "{result:?}");
     assert!(!system.path("log").exists(), "apt-get was called");
 }
 
 #[test]
 fn without_a_terminal_packages_are_installed_by_yes_only() {
     let system = System::new(GOOD_QEMU, OLD_NODE);
-    let said = output(&mut system.setup(&[]));
-    assert_eq!(said.status.code(), Some(2), "{said:?}");
-    let errors: Vec<_> = said
+    let result = output(&mut system.setup(&[]));
+    assert_eq!(result.status.code(), Some(2), "{result:?}");
+    let errors: Vec<_> = result
         .stderr
         .lines()
         .filter(|line| line.contains("error: "))
         .collect();
     let [error] = errors[..] else {
-        panic!("{said:?}")
+        panic!("{result:?}")
     };
     assert!(
         error.starts_with("error: Node.js is missing: Node.js v12.22.12 is older than 18; ")
@@ -143,9 +144,10 @@ fn without_a_terminal_packages_are_installed_by_yes_only() {
     );
     assert_eq!(system.installed(), [""; 0]);
 
+    // With the user's consent the packages are installed, if the user may do that.
     if geteuid().is_root() {
-        let said = output(&mut system.setup(&["--yes"]));
-        assert_eq!(said.status.code(), Some(0), "{said:?}");
+        let result = output(&mut system.setup(&["--yes"]));
+        assert_eq!(result.status.code(), Some(0), "{result:?}");
         assert!(
             system.installed()[0].ends_with("nodejs npm"),
             "{:?}",
@@ -162,6 +164,7 @@ fn typed(system: &System, text: &str) -> (Output, String) {
     grantpt(&master)
         .and_then(|()| unlockpt(&master))
         .expect("a terminal");
+    // Every end of the terminal is opened again, because the command closes its own.
     let name = ptsname_r(&master).expect("its name");
     let end = || {
         let mut options = File::options();
@@ -171,8 +174,11 @@ fn typed(system: &System, text: &str) -> (Output, String) {
             .custom_flags(OFlag::O_NOCTTY.bits());
         Stdio::from(options.open(&name).expect("its end"))
     };
+
     let mut command = system.setup(&[]);
     command.stdin(end()).stderr(end()).stdout(Stdio::null());
+
+    // The text is typed in advance, and read when the question is asked.
     let mut master = File::from(std::os::fd::OwnedFd::from(master));
     master.write_all(text.as_bytes()).expect("it is typed");
     let mut running = spawn(&mut command, LIMIT).expect("it starts");
@@ -193,18 +199,18 @@ fn typed(system: &System, text: &str) -> (Output, String) {
 
 #[test]
 fn on_a_terminal_the_user_is_asked() {
-    // Only root is asked, because nobody else may install packages.
+    // Other users are not asked, because only root may install packages.
     if !geteuid().is_root() {
         return;
     }
     for (answer, code, installed) in [("\n", 2, 0), ("n\n", 2, 0), ("y\n", 0, 1)] {
         let system = System::new(GOOD_QEMU, OLD_NODE);
-        let (said, shown) = typed(&system, answer);
+        let (output, shown) = typed(&system, answer);
         assert!(
             shown.contains("Install nodejs, npm on this system with apt-get? [y/N] "),
             "{shown}"
         );
-        assert_eq!(said.status.code(), Some(code), "{answer:?}: {shown}");
+        assert_eq!(output.status.code(), Some(code), "{answer:?}: {shown}");
         assert_eq!(system.installed().len(), installed, "{answer:?}: {shown}");
     }
 }

@@ -20,7 +20,8 @@ fn simulate(arguments: &str) -> String {
 /// The test `verify_board` compares every method, and `identity` every step.
 #[test]
 fn unequal_rods_with_velocities_have_the_same_bits_on_every_board() {
-    let rods = "--masses 2,0.5 --lengths 0.3,1.1 --velocities 3,-4 --step 1/256 --until 4 --every 1/2 --bits";
+    let rods = "--masses 2,0.5 --lengths 0.3,1.1 --velocities 3,-4 \
+        --step 1/256 --until 4 --every 1/2 --bits";
     for method in ["rk4-f32", "rk4-fixed32"] {
         let on = |place: &str| simulate(&format!("{rods} --method {method} --on {place}"));
         let host = on("host");
@@ -46,6 +47,7 @@ fn error(request: &Request) -> Result<f64, double_pendulum::Error> {
         Ok(())
     })?;
     let every = f64::from(request.stride) * request.dt;
+
     let times = (0..rows.len()).map(|row| row as f64 * every);
     let [a1, a2] = request.angles;
     let [w1, w2] = request.velocities;
@@ -76,17 +78,17 @@ const PLACES: [(&str, &[f64]); 3] = [
 ];
 
 #[test]
-fn every_row_is_within_the_tolerance_and_no_longer_step_would_do()
+fn every_row_is_within_the_tolerance_and_longer_steps_are_not()
 -> Result<(), Box<dyn std::error::Error>> {
     for motion in MOTIONS {
         for (place, tolerances) in PLACES {
             for tolerance in tolerances {
                 let case = format!("{motion} --on {place} --tolerance {tolerance:e}");
-                let (Plan { request, note, .. }, told) = chosen(&case)?;
+                let (Plan { request, note, .. }, reported) = chosen(&case)?;
                 let found = error(&request)?;
                 println!("{case}: {note:?}, {found:.1e} rad");
                 assert!(
-                    found <= told * ROUNDING && told <= *tolerance,
+                    found <= reported * ROUNDING && reported <= *tolerance,
                     "{case}: {found:e} rad"
                 );
 
@@ -121,8 +123,8 @@ fn planned(arguments: &str) -> Result<Plan, Box<dyn std::error::Error>> {
 }
 
 #[test]
-fn without_a_step_the_longest_that_fits_the_rows_is_chosen()
--> Result<(), Box<dyn std::error::Error>> {
+fn the_default_step_is_the_longest_that_divides_the_rows() -> Result<(), Box<dyn std::error::Error>>
+{
     const USUAL: f64 = 1.0 / 1024.0;
 
     for (arguments, stride) in [
@@ -142,6 +144,7 @@ fn without_a_step_the_longest_that_fits_the_rows_is_chosen()
             every,
             note,
         } = planned(arguments)?;
+        // The step divides the time between rows.
         let whole = request.dt * f64::from(request.stride) / every.value();
         assert!((whole - 1.0).abs() < 4.0 * f64::EPSILON, "{arguments}");
         assert_eq!((request.stride, note), (stride, None), "{arguments}");
@@ -169,7 +172,7 @@ fn without_a_step_the_longest_that_fits_the_rows_is_chosen()
     Ok(())
 }
 
-/// Motions whose energy is that of the velocities, from positions where the velocities change fast.
+/// Motions with the energy of their velocities, from positions that change the velocities fast.
 const FAST: [&str; 5] = [
     "--angles 0.3,-0.2 --velocities 0,30",
     "--angles 0,0.1 --velocities 20,-40 --masses 1,100",
@@ -185,8 +188,8 @@ const SAFE_STEP_ERROR: f64 = 7.2e-6;
 const ROUNDINGS: f64 = 1e-13;
 
 #[test]
-fn a_step_is_called_too_long_by_the_order_of_its_method() -> Result<(), Box<dyn std::error::Error>>
-{
+fn the_warning_of_a_long_step_depends_on_the_order_of_the_method()
+-> Result<(), Box<dyn std::error::Error>> {
     let methods = [
         Method::Rk4F64,
         Method::Extrapolation8Fixed64,
@@ -200,12 +203,15 @@ fn a_step_is_called_too_long_by_the_order_of_its_method() -> Result<(), Box<dyn 
         for method in methods {
             let case = format!("{motion} --method {method}");
             let safe = planned(&case)?.request.admissible_step().ok_or("no step")?;
+            // The longest step without a warning, and the next longer one.
             for (steps, is_warned) in [((1.0 / safe).ceil(), false), ((1.0 / safe).floor(), true)] {
                 let step = format!("--step 1/{steps} --until 1/{steps}");
                 let Plan { request, note, .. } = planned(&format!("{case} {step}"))?;
                 let found = error(&request)?;
                 println!("{case} {step}: {found:.1e} rad");
                 assert_eq!(note.is_some(), is_warned, "{case}: {note:?}");
+
+                // RK4's error is bounded, and no other method exceeds it.
                 let limit = if method.integrator() == Integrator::Rk4 {
                     rk4 = found;
                     SAFE_STEP_ERROR

@@ -22,12 +22,13 @@ use firmware::scenes::SceneName;
 const UNCOUNTED: &str = "| no cycle counter | no cycle counter | - |";
 
 #[test]
-fn a_board_with_the_hosts_bits_is_told_so_and_reported() {
+fn a_board_with_the_hosts_bits_is_verified_and_reported() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut command = program("verify-board");
     command
         .args(["--no-questions", "--report"])
         .arg(folder.path().join("mps2"));
+    // The board's panel is absent.
     let output = at_port(&mut Bench::new(), &mut command, |bench| {
         bench.carry(|mut message| {
             if let ToHost::Answer(_, Answer::Status(status)) = &mut message {
@@ -42,6 +43,8 @@ fn a_board_with_the_hosts_bits_is_told_so_and_reported() {
         "{}",
         output.stdout
     );
+
+    // The report has every method without a cycle count, and the board's data.
     let markdown = fs::read_to_string(folder.path().join("mps2.md")).expect("the report");
     assert_eq!(
         markdown.matches(UNCOUNTED).count(),
@@ -67,6 +70,8 @@ fn a_board_with_the_hosts_bits_is_told_so_and_reported() {
     ] {
         assert!(markdown.contains(row), "no {row:?} in {markdown}");
     }
+
+    // All methods in both motions and all scenes agree with the host.
     let agree = |columns: usize| {
         let is_row = |line: &&str| {
             line.matches('|').count() == columns + 1 && line.contains("| the host's |")
@@ -105,23 +110,23 @@ fn person(question: &str) -> Option<(Option<Key>, Option<&'static str>)> {
 /// 50 MHz.
 const OVERLONG: u32 = 0_u32.wrapping_sub(750_000);
 
-/// Changes the messages of an emulated board into those of a chip that has a cycle counter, which
-/// no emulated board has.
+/// Changes the messages of an emulated board into those that a chip with a cycle counter sends. No
+/// emulated board has one.
 ///
 /// The chip counts 100 cycles for a step of the second arithmetic from flash, 50 from RAM, and none
 /// for the others. An arithmetic without a count is measured once for each place, and the others
 /// until 256 steps are made. One bit is flipped in the second motion of the second arithmetic, and
 /// one in a scene. In another scene a frame takes longer than the run.
-fn counting(mut message: ToHost, asked: &mut u32) -> Vec<u8> {
+fn counting(mut message: ToHost, measurements: &mut u32) -> Vec<u8> {
     match &mut message {
         ToHost::Answer(_, Answer::Measured { steps, cycles }) => {
-            let each = match *asked {
+            let each = match *measurements {
                 2..18 => 100,
                 18..34 => 50,
                 _ => 0,
             };
             *cycles = *steps * each;
-            *asked += 1;
+            *measurements += 1;
         }
         ToHost::Answer(3, Answer::Sample { index: 5, reading }) => {
             let [_, w2] = &mut reading.velocities;
@@ -140,7 +145,7 @@ fn counting(mut message: ToHost, asked: &mut u32) -> Vec<u8> {
 }
 
 #[test]
-fn what_differs_what_the_person_says_and_the_chip_counts_is_in_the_report() {
+fn the_report_has_differences_answers_of_the_person_and_counted_cycles() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut bench = Bench::of(&BOARDS[0]);
     bench.machine.wake_keys().expect("buttons");
@@ -160,14 +165,14 @@ fn what_differs_what_the_person_says_and_the_chip_counts_is_in_the_report() {
         verification.child.stderr.take().expect("a pipe"),
     ));
     let mut said = Vec::new();
-    let mut asked = 0;
+    let mut measurements = 0;
     let mut step = 0;
 
     // Returns the current step of the motion.
     let mut carry = |bench: &mut Bench| {
         bench.carry(|message| {
             step = message.frame().map_or(step, |frame| frame.report.step);
-            counting(message, &mut asked)
+            counting(message, &mut measurements)
         });
         step
     };
@@ -177,6 +182,7 @@ fn what_differs_what_the_person_says_and_the_chip_counts_is_in_the_report() {
             break status;
         }
         let Ok(line) = lines.try_recv() else { continue };
+        // The person answers each question, and may press a button.
         if let Some((key, entered)) = person(&line) {
             if let Some(key) = key {
                 let before = carry(&mut bench);
@@ -187,6 +193,7 @@ fn what_differs_what_the_person_says_and_the_chip_counts_is_in_the_report() {
                 while carry(&mut bench) >= before && since.elapsed() < PATIENCE {}
                 bench.machine.set_key(key, false).expect("buttons");
             }
+            // The end of the input is no answer.
             input = input.filter(|_| entered.is_some());
             if let Some((input, entered)) = input.as_mut().zip(entered) {
                 input.write_all(entered.as_bytes()).expect("it listens");
@@ -197,6 +204,8 @@ fn what_differs_what_the_person_says_and_the_chip_counts_is_in_the_report() {
     said.extend(lines);
     assert_eq!(status.code(), Some(1), "{said:#?}");
     let markdown = fs::read_to_string(folder.path().join("asked.md")).expect("the report");
+
+    // The flipped bits are reported.
     let sample = format!("not well: {}, chaotic: step 160: w2 is 0x", ON_BOARDS[1]);
     assert!(
         said.iter().any(|line| line.starts_with(&sample)),
@@ -209,6 +218,8 @@ fn what_differs_what_the_person_says_and_the_chip_counts_is_in_the_report() {
         scene.is_some_and(|line| line.contains("step 20: a1 is 0x")),
         "{said:#?}"
     );
+
+    // The frame that takes too long is reported.
     let too_long = "not well: upright: a frame of 85884.35 ms in a run of ";
     assert!(
         said.iter().any(|line| line.starts_with(too_long)),
@@ -220,6 +231,8 @@ fn what_differs_what_the_person_says_and_the_chip_counts_is_in_the_report() {
         markdown.contains("5 not well") && markdown.contains("step 160: w2 is 0x"),
         "{markdown}"
     );
+
+    // The answers of the person.
     let panel = "the panel shows a swinging pendulum, upright and sharp".to_owned();
     let button = |key: &Key| {
         format!(
@@ -245,6 +258,7 @@ fn what_differs_what_the_person_says_and_the_chip_counts_is_in_the_report() {
         );
     }
 
+    // The counted cycles are next to the estimate.
     let counted = format!("| {} | 100.0 | 50.0 | ", ON_BOARDS[1]);
     let estimate: Option<f64> = markdown
         .split_once(&counted)

@@ -31,6 +31,7 @@ fn every_scene_is_the_canvas_through_the_map_of_colours() {
             scene.tick();
             let canvas = scene.frame();
             panel.flush(&canvas).expect("it never fails");
+            // Every pixel of the panel, inside and outside of the frame.
             for at in panel.target.bounding_box().points() {
                 let place = at - CORNER;
                 let grey = Gray4::new(canvas.get(place.x, place.y).unwrap_or(0));

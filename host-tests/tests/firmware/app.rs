@@ -28,6 +28,7 @@ fn run(clock: impl IntoIterator<Item = u32>) -> Plain {
 
 #[test]
 fn the_state_and_the_picture_after_n_ticks_are_the_same_at_any_frame_rate() {
+    // The clock advances by one tick, by three, unevenly, or by all ticks at once.
     let steady = run(1..=600);
     for (name, other) in [
         ("every third", run((1..=200).map(|n| 3 * n))),
@@ -48,6 +49,7 @@ fn every_frame_carries_the_kernels_state_bit_identically() {
     let frames = frames(&app.link);
     assert_eq!(frames.len(), 600);
 
+    // The expected motion by the kernel alone.
     let parameters = Parameters::equal_rods(1.0, ROD, GRAVITY as f32).cast::<f64>();
     let pendulum = Pendulum::new(&parameters).expect("good");
     let start_angle = 120.0_f32.to_radians();
@@ -96,6 +98,7 @@ fn every_frame_carries_the_kernels_state_bit_identically() {
 fn dropped_pictures_are_counted_and_no_tick_is_lost() {
     let mut app = app();
     let mut events = Vec::new();
+    // The clock has advanced by more ticks than one frame may take.
     let late = MOST_TICKS_PER_FRAME * 2 + 1;
     assert!(!app.run_to(late, |event| events.push(event)));
     assert!(!app.run_to(late, |event| events.push(event)));
@@ -107,8 +110,10 @@ fn dropped_pictures_are_counted_and_no_tick_is_lost() {
     assert_eq!(events, [], "at most one line a second");
     assert!(app.run_to(late + 2, |event| events.push(event)));
 
+    // Then the clock remains at tick 90 until the scene has caught up.
     while !app.run_to(90, |event| events.push(event)) {}
 
+    // Each frame shows a later step, and counts the dropped ones.
     let frames = frames(&app.link);
     let shown: Vec<_> = frames
         .iter()
@@ -138,7 +143,7 @@ fn dropped_pictures_are_counted_and_no_tick_is_lost() {
 }
 
 #[test]
-fn losses_are_said_once_a_second_and_lost_bytes_sent_with_each_frame() {
+fn losses_are_logged_once_a_second_and_sent_with_each_frame() {
     let mut app = app();
     let mut events = Vec::new();
 
@@ -148,7 +153,7 @@ fn losses_are_said_once_a_second_and_lost_bytes_sent_with_each_frame() {
         app.note_lost(tick, |event| events.push((tick, event)));
         app.receive([1, 0], |event| events.push((tick, event)));
     }
-    let said = |tick| {
+    let logged = |tick| {
         let grown = TICK_RATE;
         let last = LinkError::Malformed;
         [
@@ -164,7 +169,8 @@ fn losses_are_said_once_a_second_and_lost_bytes_sent_with_each_frame() {
         ]
         .map(|event| (tick, event))
     };
-    assert_eq!(events, [TICK_RATE, 2 * TICK_RATE].map(said).concat());
+    assert_eq!(events, [TICK_RATE, 2 * TICK_RATE].map(logged).concat());
+    // The frames have the count of each tick.
     let counts = frames(&app.link)
         .iter()
         .map(|frame| frame.lost)
@@ -172,7 +178,7 @@ fn losses_are_said_once_a_second_and_lost_bytes_sent_with_each_frame() {
     assert_eq!(counts, (0..2 * TICK_RATE).collect::<Vec<_>>());
 }
 
-/// After 828 days the counts of ticks, of frames and of dropped frames begin again at 0, without
+/// The counts of ticks, of frames and of dropped frames begin again at 0 after 828 days, without
 /// any other effect.
 #[test]
 fn counts_wrap_unnoticed() {
@@ -186,9 +192,12 @@ fn counts_wrap_unnoticed() {
         }
         (frames(&app.link), app.canvas.clone(), events)
     };
+
+    // The same frames, with counts that wrap in the middle of the run.
     let begin = 0_u32.wrapping_sub(AHEAD / 3);
     let plain = run(0);
     let wrapped = run(begin);
+    // Pictures and frames are equal, apart from the counts themselves.
     assert_eq!((&plain.1, plain.0.len()), (&wrapped.1, wrapped.0.len()));
     for (mut plain, wrapped) in plain.0.into_iter().zip(wrapped.0) {
         plain.sequence = plain.sequence.wrapping_add(begin);
@@ -250,6 +259,7 @@ fn buttons_restart_with_the_new_settings() {
             }
         });
     }
+    // Up changes the mass ratio at once. Select restarts when it is released.
     let heavier = Settings::equal_rods(1.25, 120.0);
     assert_eq!(
         started,
@@ -312,7 +322,7 @@ impl Write for Faulty {
 }
 
 #[test]
-fn a_failing_panel_or_link_is_reported_once_and_only_what_the_link_cut_is_lost() {
+fn a_failing_panel_or_link_is_reported_once_and_only_cut_frames_are_lost() {
     let mut app = of(BrokenPanel::default(), Faulty::default(), NoButtons);
     let mut events = Vec::new();
     for now in 1..=30 {
@@ -386,10 +396,10 @@ fn the_motion_never_touches_the_labels() {
     }
 }
 
-/// After a restart the scene continues, and the host receives the reason of the restart. A scene
+/// The scene continues after a restart, and the host receives the reason of the restart. A scene
 /// that cannot be played is dropped.
 #[test]
-fn a_restart_goes_on_with_what_was_played() {
+fn a_restart_resumes_the_scene_if_it_can_be_played() {
     let before = Show::new(SceneName::Butterfly, &Settings::equal_rods(2.5, 90.0)).expect("good");
     let played = before.player.status();
     let cause = Some(Cause::Hang);
@@ -403,6 +413,8 @@ fn a_restart_goes_on_with_what_was_played() {
         scene,
         step: 5,
     };
+    // A scene that has ended the board too often, a pendulum without mass, and a speed that is no
+    // number.
     let given_up = Restarted {
         restarts: MOST_RESTARTS + 1,
         ..end

@@ -2,7 +2,7 @@
 //! of a frame.
 
 use embedded_io::Write;
-use emulator::host::sheets;
+use emulator::host::frame_buffers;
 use emulator::link::Inbox;
 use firmware::app::{App, Buttons, NoButtons};
 use firmware::config::PROCESSOR;
@@ -21,7 +21,7 @@ pub fn of<P: Display + 'static, L: Write, K: Buttons>(
     keys: K,
 ) -> App<'static, P, L, K> {
     let panel = Box::leak(Box::new(panel));
-    let mut app = App::new(PROCESSOR, sheets(), panel, link, keys);
+    let mut app = App::new(PROCESSOR, frame_buffers(), panel, link, keys);
     app.player
         .play(SceneName::Page, Settings::default())
         .expect("good settings");

@@ -44,7 +44,7 @@ fn the_left_pixel_is_the_high_nibble() {
 }
 
 #[test]
-fn what_lies_outside_is_not_drawn() {
+fn pixels_outside_are_not_drawn() {
     let mut canvas = Canvas::default();
     let width = WIDTH as i32;
     let height = HEIGHT as i32;
@@ -56,6 +56,8 @@ fn what_lies_outside_is_not_drawn() {
         }
     }
     assert_eq!(canvas, Canvas::default());
+
+    // Characters that cross an edge are clipped.
     canvas.stamp(-2, -6, u64::MAX, 9);
     canvas.stamp(width - 3, height - 1, u64::MAX, 9);
     assert_eq!(
@@ -65,7 +67,7 @@ fn what_lies_outside_is_not_drawn() {
 }
 
 #[test]
-fn the_characters_are_those_of_the_library() {
+fn glyphs_equal_the_font_of_the_library() {
     for character in (' '..='~')
         .chain(['±', '°', 'μ'])
         .filter(|character| !" .".contains(*character))
@@ -75,6 +77,7 @@ fn the_characters_are_those_of_the_library() {
             glyph_mapping,
             ..
         } = FONT_5X8;
+        // The font is a picture of 16 characters in a row.
         let index = glyph_mapping.index(character) as i32;
         let corner = Point::new(index % 16 * 5, index / 16 * 8);
         let Glyph { width, rows } = glyph(character);
@@ -101,12 +104,12 @@ fn disc(x: f32, y: f32, pixels: f32) -> Disc {
 #[test]
 fn a_disc_is_where_it_was_put() {
     for number in 0..1000 {
-        let (x, y) = (
-            10.0 + (number as f32 * 0.377) % 100.0,
-            10.0 + (number as f32 * 0.713) % 40.0,
-        );
+        let x = 10.0 + (number as f32 * 0.377) % 100.0;
+        let y = 10.0 + (number as f32 * 0.713) % 40.0;
         let mut canvas = Canvas::default();
         disc(x, y, 1.5).draw(&mut canvas, u8::MAX);
+
+        // The centre of the light.
         let mut sum = [0.0; 3];
         for (column, row) in places() {
             let grey = f64::from(grey(&canvas, column, row));
@@ -143,11 +146,13 @@ fn a_stroke_of_any_numbers_is_safe() {
         f32::NEG_INFINITY,
         f32::NAN,
     ];
+
     let spots: Vec<_> = numbers
         .iter()
         .flat_map(|&x| numbers.map(|y| Spot::at(x, y)))
         .collect();
 
+    // Every pair of places, with the largest sizes.
     for &from in &spots {
         for &to in &spots {
             let mut canvas = Canvas::default();
@@ -181,9 +186,11 @@ fn covered((x, y): (i32, i32), [from, to]: [(f64, f64); 2], radius: f64) -> f64 
     let is_far = |at: i32, a: f64, b: f64| {
         (f64::from(at) - (a + b) / 2.0).abs() > (a - b).abs() / 2.0 + radius + 2.0
     };
+
     if is_far(x, from.0, to.0) || is_far(y, from.1, to.1) {
         return 0.0;
     }
+    // The point of the line that is next to the place.
     let is_inside = |(x, y): (f64, f64)| {
         let part = ((x - from.0) * along.0 + (y - from.1) * along.1) / squared;
         let part = if squared > 0.0 {
@@ -210,6 +217,7 @@ fn a_pixel_is_as_bright_as_it_is_covered() {
     let mut greatest = 0.0_f64;
 
     for _ in 0..100 {
+        // Long strokes, and short ones of some pixels.
         let mut place = || (rng.f64() * 160.0 - 16.0, rng.f64() * 80.0 - 8.0);
         let from = place();
         let mut to = place();
@@ -228,6 +236,8 @@ fn a_pixel_is_as_bright_as_it_is_covered() {
             radius,
         }
         .lighten(&mut canvas, u8::MAX);
+
+        // Each pixel is compared with the covered share of its area.
         for (x, y) in places() {
             let exact =
                 15.0 * covered((x, y), [from, to], f64::from(radius) / f64::from(SUBPIXELS));
@@ -254,6 +264,8 @@ fn a_gap_sets_a_disc_off() {
         ..disc(x, y, 3.0)
     }
     .draw(&mut canvas, u8::MAX);
+
+    // The disc is surrounded by a ring of black.
     for (column, row) in places() {
         let share = |radius: f64| covered((column, row), [(x.into(), y.into()); 2], radius);
         let exact = 15.0 * (1.0 - share(5.0) + share(3.0));
@@ -272,10 +284,8 @@ fn a_line_is_as_bright_in_every_direction() {
     let total = |degrees: f32| {
         let (sin, cos) = degrees.to_radians().sin_cos();
         let mut canvas = Canvas::default();
-        let (from, to) = (
-            Spot::at(60.0, 30.0),
-            Spot::at(60.0 + length * cos, 30.0 + length * sin),
-        );
+        let from = Spot::at(60.0, 30.0);
+        let to = Spot::at(60.0 + length * cos, 30.0 + length * sin);
         Stroke {
             from,
             to,

@@ -46,6 +46,7 @@ fn set(field: Field, value: f64) -> Command {
 
 #[test]
 fn every_parameter_is_set_in_si_units() {
+    // A field, its value in SI units, and the setting that it changes.
     for (field, value, read, expected) in [
         (
             Field::M1,
@@ -80,10 +81,10 @@ fn every_parameter_is_set_in_si_units() {
     }
 }
 
-/// Taps that arrive at the same time are all executed in order, like those of the board's own
-/// buttons.
+/// The taps arrive at the same time and are all executed in order, as if the board's own buttons
+/// were pressed.
 #[test]
-fn no_tap_is_lost_however_quick() {
+fn no_tap_is_lost_at_any_speed() {
     let mut app = app();
     let before = app.player.settings;
     let right = Command::TurnRight;
@@ -116,7 +117,7 @@ fn no_tap_is_lost_however_quick() {
 
 /// A board of 1 MHz whose steps take 100 cycles, and that knows its identity.
 #[test]
-fn a_board_tells_what_it_is_and_how_long_steps_take() {
+fn a_board_reports_its_identity_and_the_cycles_of_steps() {
     let mut app = app();
     let identity = Identity {
         board: BoardName::Pico,
@@ -135,7 +136,7 @@ fn a_board_tells_what_it_is_and_how_long_steps_take() {
         ..Instruments::default()
     };
 
-    // This is the check value of CRC-32/ISO-HDLC.
+    // The CRC is the check value of CRC-32/ISO-HDLC.
     let expected = Identity {
         image: 0xCBF4_3926,
         image_bytes: 9,
@@ -146,6 +147,7 @@ fn a_board_tells_what_it_is_and_how_long_steps_take() {
         Answer::Identity(expected)
     );
 
+    // The steps of a motion are measured after it was requested.
     let measure = |in_ram| Command::Measure {
         steps: u32::MAX,
         in_ram,
@@ -153,7 +155,7 @@ fn a_board_tells_what_it_is_and_how_long_steps_take() {
     assert_eq!(
         answer(&mut app, measure(false)),
         Answer::Refused(Field::Message),
-        "no motion was asked for"
+        "no motion was requested"
     );
     let request = Request {
         samples: 1,
@@ -181,6 +183,7 @@ fn a_board_tells_what_it_is_and_how_long_steps_take() {
 fn a_bad_command_is_answered_with_the_field_and_changes_nothing() {
     let mut app = app();
     app.run_to(30, |_| ());
+    // Each refused command names its field.
     let before = (status(&mut app), app.player.report);
 
     for (message, field) in [
@@ -214,10 +217,10 @@ fn a_bad_command_is_answered_with_the_field_and_changes_nothing() {
     assert_eq!((status(&mut app), app.player.report), before);
 }
 
-/// The panel shows it in words, the frames report that the scene has stopped, and the log reports
-/// it once. Other settings start the scene again.
+/// The panel shows the reason in words, the frames report that the scene has stopped, and the log
+/// reports it once. Other settings start the scene again.
 #[test]
-fn motion_that_is_too_fast_is_stopped_and_said_to_be() {
+fn a_motion_that_is_too_fast_is_stopped_and_reported() {
     let mut app = app();
     let mut events = Vec::new();
     app.receive(wire(1, set(Field::W2, 2e4)), |event| events.push(event));
@@ -230,6 +233,8 @@ fn motion_that_is_too_fast_is_stopped_and_said_to_be() {
         events,
         [Event::Started(SceneName::Page, settings), Event::Stopped]
     );
+
+    // Every frame reports the stop, without a step.
     let frames = frames(&app.link);
     assert_eq!(frames.len(), 10);
     for frame in frames {
@@ -237,6 +242,7 @@ fn motion_that_is_too_fast_is_stopped_and_said_to_be() {
         assert_eq!((frame.report.step, frame.report.stepping), (0, None));
         assert_eq!(frame.report.horizon, Horizon::Until(0.0));
     }
+
     let mut expected = Canvas::default();
 
     for (row, text) in [
@@ -255,9 +261,9 @@ fn motion_that_is_too_fast_is_stopped_and_said_to_be() {
     assert_eq!(app.player.report.step, 1);
 }
 
-/// A user's pause is not a stop, and is still in effect after one.
+/// The user's pause outlasts a stop. When the scene can be computed again, it is still paused.
 #[test]
-fn paused_and_stopped_are_told_apart() {
+fn a_pause_outlasts_a_stop() {
     let mut app = app();
     let states = [
         (Command::Pause(true), PlayState::Paused),
@@ -277,6 +283,7 @@ fn paused_and_stopped_are_told_apart() {
 #[test]
 fn an_intact_command_that_cannot_be_read_is_answered_too() {
     let mut app = app();
+    // The bytes of a message, and the request number of its answer.
     for (message, request) in [
         (&[0x80, 77, 0xEE][..], 77),
         (&[0x80, 77, 10], 77),
@@ -296,9 +303,9 @@ fn an_intact_command_that_cannot_be_read_is_answered_too() {
     assert!(refusal(Field::Message).ends_with("flash it anew"));
 }
 
-/// On a looped-back link the board receives its own messages.
+/// The board receives its own messages on a looped-back link.
 #[test]
-fn what_is_no_command_is_not_answered() {
+fn a_message_that_is_no_command_is_not_answered() {
     let mut app = app();
     for message in [
         ToHost::Frame(Frame::default()),
@@ -309,6 +316,7 @@ fn what_is_no_command_is_not_answered() {
             |event| panic!("{event:?}"),
         );
     }
+
     for kind in (0..=u8::MAX).filter(|kind| *kind != 0x80) {
         app.receive(
             frame(&[kind, 7, 0, 1], &mut [0; MAX_WIRE]).iter().copied(),
@@ -320,7 +328,7 @@ fn what_is_no_command_is_not_answered() {
 
 /// Bytes without a zero end no message.
 #[test]
-fn an_endless_message_holds_up_nothing() {
+fn an_endless_message_takes_one_queue_at_most() {
     let mut taken = 0;
     app().receive(
         std::iter::repeat_n(1, 1_000_000).inspect(|_| taken += 1),
@@ -341,6 +349,7 @@ fn every_scene_can_be_chosen_restarts_pauses_and_steps() {
             }
             app.player.report
         };
+        // Each command is followed by some ticks. A paused scene does not advance.
         app.receive(wire(1, Command::Choose(name)), |_| ());
         assert_eq!(app.player.name, name);
         let one = run(&mut app, 1);
@@ -368,48 +377,50 @@ fn every_scene_can_be_chosen_restarts_pauses_and_steps() {
 }
 
 #[test]
-fn the_plan_is_found_in_some_tick_told_when_asked_and_followed() {
+fn the_plan_is_found_reported_and_followed() {
     let mut app = app();
-    let asked = |app: &mut Plain| {
+    // The planner's state by the link.
+    let plan_report = |app: &mut Plain| {
         let Answer::Planned(planned) = answer(app, Command::AskPlan) else {
             panic!("no plan")
         };
         planned
     };
-    let mut news = Vec::new();
-    let run = |app: &mut Plain, news: &mut Vec<_>| {
-        assert!(app.run_to(app.frames + 1, |event| news.push(event)))
+    let mut events = Vec::new();
+    let run = |app: &mut Plain, events: &mut Vec<_>| {
+        assert!(app.run_to(app.frames + 1, |event| events.push(event)))
     };
-    let search = |app: &mut Plain, news: &mut Vec<_>| loop {
-        match asked(app).expect("a motion").found {
-            None => run(app, news),
+    let search = |app: &mut Plain, events: &mut Vec<_>| loop {
+        match plan_report(app).expect("a motion").found {
+            None => run(app, events),
             Some(found) => break found.expect("a plan"),
         }
     };
-    let plan = search(&mut app, &mut news);
+    let plan = search(&mut app, &mut events);
     assert!(plan.horizon > 19.0, "{plan:?}");
-    run(&mut app, &mut news);
-    assert_eq!(news, [Event::Motion(PlannerEvent::Found(Ok(plan)))]);
+    run(&mut app, &mut events);
+    assert_eq!(events, [Event::Motion(PlannerEvent::Found(Ok(plan)))]);
     assert_eq!(app.player.report.stepping, Some(plan.stepping()));
 
-    let before = asked(&mut app).expect("a motion");
+    // A small swing needs a cheaper method only.
+    let before = plan_report(&mut app).expect("a motion");
     app.receive(wire(1, set(Field::Angle, 20_f64.to_radians())), |_| ());
     assert_eq!(
-        asked(&mut app),
+        plan_report(&mut app),
         Some(Planned {
             found: None,
             ..before
         })
     );
-    let calm = search(&mut app, &mut news);
+    let calm = search(&mut app, &mut events);
     assert!(calm.horizon >= PLANNED && calm.cost < plan.cost, "{calm:?}");
-    (0..TICK_RATE).for_each(|_| run(&mut app, &mut news));
+    (0..TICK_RATE).for_each(|_| run(&mut app, &mut events));
     let stepping = Stepping {
         method: Method::Rk4Fixed32,
         steps: calm.steps,
     };
     assert_eq!(
-        news.last(),
+        events.last(),
         Some(&Event::Motion(PlannerEvent::Shown(stepping, calm.cost))),
         "the cheaper method is taken"
     );
@@ -420,9 +431,10 @@ fn the_plan_is_found_in_some_tick_told_when_asked_and_followed() {
         "{report:?}"
     );
 
+    // A scene without a motion has no plan.
     app.receive(wire(1, Command::Choose(SceneName::Frequencies)), |_| ());
     assert!(!app.player.look_ahead());
-    assert_eq!(asked(&mut app), None);
+    assert_eq!(plan_report(&mut app), None);
 }
 
 /// A requested method is used, and remains until the plan may choose again.
@@ -463,6 +475,7 @@ fn a_scene_that_cannot_use_the_requested_method_follows_its_plan() {
     assert_eq!(answer(&mut app, Command::Method(requested)), Answer::Done);
     assert_eq!(shown(&app), requested);
 
+    // A method that is too expensive for this motion is replaced, but remembered.
     play(&mut app, fast());
     assert_ne!(shown(&app), requested, "not possible here");
     assert_eq!(status(&mut app).method, requested, "but not forgotten");
@@ -470,7 +483,7 @@ fn a_scene_that_cannot_use_the_requested_method_follows_its_plan() {
     assert_eq!(
         answer(&mut app, Command::Method(requested)),
         Answer::Refused(Field::Method),
-        "said to one who insists"
+        "refused if requested again"
     );
     assert_eq!(status(&mut app), fallen_back, "and changes nothing");
 
@@ -480,6 +493,7 @@ fn a_scene_that_cannot_use_the_requested_method_follows_its_plan() {
     assert_eq!(replayed.player.report, app.player.report);
     assert_eq!(replayed.player.status(), fallen_back);
 
+    // A motion that the method can compute uses it again.
     play(&mut app, Settings::default());
     assert_eq!(
         shown(&app),
@@ -490,13 +504,14 @@ fn a_scene_that_cannot_use_the_requested_method_follows_its_plan() {
 
 /// Every method is requested, from every scene to the next and back.
 #[test]
-fn every_scene_is_reached_whatever_method_is_requested() {
+fn every_scene_is_reached_with_any_requested_method() {
     for &method in Method::DRAWN {
         let mut app = app();
         assert_eq!(
             answer(&mut app, Command::Method(Some(method))),
             Answer::Done
         );
+        // Through the catalogue and back.
         for (command, turned) in [
             (
                 Command::NextScene,
@@ -515,12 +530,13 @@ fn every_scene_is_reached_whatever_method_is_requested() {
 
 /// The plan may replace a method that a scene has fallen back to.
 #[test]
-fn a_scene_that_has_fallen_back_takes_what_the_plan_finds() {
+fn a_scene_that_has_fallen_back_follows_its_plan() {
     let mut app = app();
     app.receive(wire(1, Command::Method(Some(Method::Rk4Fixed32))), |_| ());
     app.receive(wire(1, Command::Play(SceneName::Page, fast())), |_| ());
     let initial = app.player.report.stepping;
     let mut found = None;
+
     for clock in 1..=30 * TICK_RATE {
         app.run_to(clock, |event| {
             if let Event::Motion(PlannerEvent::Found(Ok(plan))) = event {
@@ -532,7 +548,7 @@ fn a_scene_that_has_fallen_back_takes_what_the_plan_finds() {
     assert_eq!(
         app.player.report.stepping,
         Some(found),
-        "begun by {initial:?}"
+        "started by {initial:?}"
     );
 }
 
@@ -554,9 +570,9 @@ fn a_requested_method_that_a_frame_cannot_pay_for_is_not_used() {
     assert_eq!(app.player.settings.mass_ratio(), 100.0);
 }
 
-/// All settings are sent at once, because some of them alone may be impossible.
+/// The settings are sent at once, because some of them alone may be impossible.
 #[test]
-fn a_scene_is_played_with_settings_of_ones_own() {
+fn a_scene_is_played_with_settings_of_the_user() {
     let mut app = app();
     let own = Settings {
         parameters: Parameters {
@@ -571,6 +587,7 @@ fn a_scene_is_played_with_settings_of_ones_own() {
     };
     let before = status(&mut app);
     let play = Command::Play(SceneName::Butterfly, own);
+
     assert_eq!(answer(&mut app, play), Answer::Done);
     let played = Status {
         scene: SceneName::Butterfly,
@@ -586,6 +603,7 @@ fn a_scene_is_played_with_settings_of_ones_own() {
         settings
     };
 
+    // Each impossible setting is refused with its field, and the scene continues.
     for (scene, settings, field) in [
         (
             SceneName::Page,
@@ -645,6 +663,7 @@ fn speed_is_exact_in_the_long_run() {
     ] {
         let mut app = app();
         app.receive(wire(1, set(Field::Speed, speed)), |_| ());
+        // No tick of the clock is late at any speed.
         (1..=600).for_each(|clock| assert!(app.run_to(clock, |_| ())));
         assert_eq!(
             app.player.report.time,
@@ -666,14 +685,17 @@ fn flood(mut bytes: impl Iterator<Item = u8>, seconds: u32) -> Plain {
     for clock in 1..=seconds * TICK_RATE {
         assert!(app.run_to(clock, |event| lines +=
             u32::from(!matches!(event, Event::Motion(_)))));
+        // The queue of the boards is as long.
         waiting.extend(bytes.by_ref().take(BYTES_PER_TICK));
         waiting.truncate(RECEIVE_QUEUE); // the queue of the boards
-        let is_asked_for = |event: &Event<_, _>| {
+        let is_requested = |event: &Event<_, _>| {
             matches!(event, Event::Started(..) | Event::Motion(_) | Event::Asked)
         };
-        let mut counted = |event: Event<_, _>| lines += u32::from(!is_asked_for(&event));
+        let mut counted = |event: Event<_, _>| lines += u32::from(!is_requested(&event));
         app.receive(std::iter::from_fn(|| waiting.pop_front()), &mut counted);
     }
+
+    // Every tick has its frame, and no line of the log was written more than once a second.
     let frames = frames(&app.link);
     assert_eq!(frames.len(), (seconds * TICK_RATE) as usize);
     assert!(
@@ -710,13 +732,12 @@ fn noise_half_commands_and_floods_do_not_disturb_the_stream() {
     );
     assert_eq!(answers(&halves.link), []);
 
+    // A flood of valid commands is executed as far as the queue and the ticks allow.
     let restarts = flood(wire(6, Command::Restart).into_iter().cycle(), 10);
-    let (answered, most) = (
-        answers(&restarts.link).len(),
-        MOST_MESSAGES_PER_TICK * (10 * TICK_RATE) as usize,
-    );
+    let answered = answers(&restarts.link).len();
+    let most = MOST_MESSAGES_PER_TICK * (10 * TICK_RATE) as usize;
     assert!(
         (most / 2..=most).contains(&answered),
-        "{answered}: of more than can wait, the rest is lost"
+        "{answered}: commands that do not fit into the queue are lost"
     );
 }

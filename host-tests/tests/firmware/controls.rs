@@ -21,7 +21,7 @@ const SELECT: Pressed = Pressed {
     ..NONE
 };
 
-/// Returns the ticks, counted from 0, in which commands occur.
+/// Returns the commands, each with its tick, counted from 0.
 fn commands(
     controls: &mut Controls,
     readings: impl IntoIterator<Item = Pressed>,
@@ -56,6 +56,7 @@ fn a_button_held_since_reset_counts_only_once_released() {
         select: true,
         ..arrows
     };
+    // The buttons are held, released, and pressed again.
     assert_eq!(commands(&mut controls, [all; 200]), []);
     assert_eq!(commands(&mut controls, [NONE; 10]), []);
     let fired: Vec<_> = commands(&mut controls, [arrows; 10])
@@ -75,6 +76,7 @@ fn a_button_held_since_reset_counts_only_once_released() {
 
 #[test]
 fn readings_become_commands() {
+    // The readings of buttons that are held for some ticks each.
     let held = |readings: &[(Pressed, usize)]| {
         readings
             .iter()
@@ -82,10 +84,8 @@ fn readings_become_commands() {
             .collect::<Vec<_>>()
     };
     let first = usize::from(DEBOUNCE_TICKS) - 1;
-    let (delay, period) = (
-        usize::from(REPEAT_DELAY_TICKS),
-        usize::from(REPEAT_PERIOD_TICKS),
-    );
+    let delay = usize::from(REPEAT_DELAY_TICKS);
+    let period = usize::from(REPEAT_PERIOD_TICKS);
     let repeated = [
         first,
         first + delay,
@@ -93,6 +93,8 @@ fn readings_become_commands() {
         first + delay + 2 * period,
     ];
     let next_scene = first + usize::from(HOLD_TICKS) - 1;
+
+    // A case has a description, the readings, and the ticks with their commands.
     let mut cases = vec![
         ("bounces do not count", [UP, NONE].repeat(3), vec![]),
         (
@@ -117,6 +119,7 @@ fn readings_become_commands() {
         ),
     ];
 
+    // An arrow that is pressed while select is held has its own command.
     for (arrow, command) in [
         (Pressed { up: true, ..SELECT }, Command::TogglePause),
         (
@@ -156,8 +159,9 @@ fn readings_become_commands() {
 
 /// A single button is tapped a number of times and then held.
 #[test]
-fn taps_before_a_hold_choose_what_the_hold_does() {
+fn taps_before_a_hold_select_its_command() {
     let tap = || [SELECT; 5].into_iter().chain([NONE; 5]);
+    // A number of taps, a pause, and a hold.
     let after = |taps: usize, pause: usize, held: usize| {
         let taps = (0..taps)
             .flat_map(|_| tap())
@@ -174,6 +178,7 @@ fn taps_before_a_hold_choose_what_the_hold_does() {
     };
     let held = usize::from(HOLD_TICKS) + 2 * usize::from(REPEAT_PERIOD_TICKS) + 2;
 
+    // The hold lasts for three repetitions.
     for (taps, command) in [
         Command::Heavier,
         Command::Lighter,
@@ -197,13 +202,14 @@ fn taps_before_a_hold_choose_what_the_hold_does() {
         );
     }
 
-    assert_eq!(after(5, 0, held), [], "there is nothing for five taps");
+    assert_eq!(after(5, 0, held), [], "five taps have no command");
     assert_eq!(after(3, 0, 20), [], "not held long enough");
 }
 
 #[test]
 fn buttons_visit_every_mass_ratio_and_stop_at_the_ends() {
     let mut settings = Settings::equal_rods(MASS_RATIOS[0], 120.0);
+    // Every ratio upwards, then every ratio downwards.
     for ratio in MASS_RATIOS {
         assert_eq!(settings.mass_ratio(), ratio);
         assert!(settings.start().is_ok());
@@ -214,6 +220,8 @@ fn buttons_visit_every_mass_ratio_and_stop_at_the_ends() {
         settings = settings.lighter();
     }
     assert_eq!(settings.mass_ratio(), MASS_RATIOS[0]);
+
+    // A ratio between two of the table moves to its neighbours.
     let between = Settings::equal_rods(2.75, 120.0);
     assert_eq!(
         (
@@ -241,7 +249,7 @@ fn angles_stop_at_straight_up() {
 }
 
 #[test]
-fn labels_show_what_is_set() {
+fn labels_show_the_settings() {
     let ratios = [
         0.01,
         0.0125,
@@ -262,14 +270,17 @@ fn labels_show_what_is_set() {
         ratios.map(|label| label.to_string()),
         expected.map(|text| format!("μ {text}"))
     );
+
     let angles = [0.0, 120.0, -7.0, 171.5, -0.5].map(|degrees| label::degrees("α ", degrees));
     let expected = ["α 0°", "α 120°", "α -7°", "α 171.5°", "α -0.5°"];
     assert_eq!(angles.map(|label| label.to_string()), expected);
+
     let times = [0.0, 0.099, 59.96, 3600.0].map(label::time);
     assert_eq!(
         times.map(|label| label.to_string()),
         ["0.0 s", "0.0 s", "59.9 s", "3600.0 s"]
     );
+
     let horizons = [
         (Horizon::Until(8.46), "½px 8.4 s"),
         (Horizon::Until(9370.2), "½px 9370 s"),
@@ -281,6 +292,7 @@ fn labels_show_what_is_set() {
     for (horizon, text) in horizons {
         assert_eq!(horizon.label().to_string(), text, "{horizon:?}");
     }
+
     let ticks = [0.0, 0.05, 0.2, 1.0, 50.0].map(|time| label::tick(time, " s"));
     assert_eq!(
         ticks.map(|label| label.to_string()),

@@ -21,15 +21,14 @@ fn fault(cfsr: u32, hfsr: u32) -> Fault {
 
 #[test]
 fn names_the_cause() {
-    let (overflow, stray) = (
-        "stack overflow",
-        "data access refused by the memory protection unit",
-    );
+    let overflow = "stack overflow";
+    let stray = "data access refused by the memory protection unit";
     let fault_at = |cfsr, mmfar| Fault {
         mmfar,
         ..fault(cfsr, 0x4000_0000)
     };
 
+    // The registers CFSR and HFSR have one bit for each cause.
     for (fault, cause) in [
         (fault(0x0001_0000, 0x4000_0000), "undefined instruction"),
         (fault(0x0200_0000, 0x4000_0000), "division by zero"),
@@ -62,7 +61,7 @@ fn names_the_cause() {
 }
 
 #[test]
-fn a_fault_reads_well_and_says_what_is_lost_or_not_told() {
+fn the_text_of_a_fault_has_its_cause_place_and_registers() {
     let lost = Fault {
         stacked: None,
         ..fault(0x0000_0092, 0x4000_0000)
@@ -71,6 +70,8 @@ fn a_fault_reads_well_and_says_what_is_lost_or_not_told() {
     let registers =
         |cfsr| format!("  cfsr {cfsr}  hfsr 0x40000000  mmfar 0x20001234  bfar 0x00000000");
 
+    // All registers are known, or those on the stack are lost, or the processor has no status
+    // registers.
     for (fault, cause, place, registers) in [
         (
             fault(0x0001_0000, 0x4000_0000),
@@ -106,6 +107,7 @@ fn a_fault_reads_well_and_says_what_is_lost_or_not_told() {
         );
     }
 
+    // The processor was not in the Thumb state.
     let stacked = Some(Stacked {
         pc: 0x456,
         lr: 0x1234,
@@ -122,7 +124,7 @@ fn a_fault_reads_well_and_says_what_is_lost_or_not_told() {
 }
 
 #[test]
-fn calls_are_told_from_other_instructions() {
+fn calls_are_distinguished_from_other_instructions() {
     for (halfwords, size) in [
         ([0xf000, 0xf802], Some(4)), // bl forwards
         ([0xf7ff, 0xfffe], Some(4)), // bl backwards
@@ -137,7 +139,7 @@ fn calls_are_told_from_other_instructions() {
 }
 
 #[test]
-fn the_registers_of_the_floating_point_unit_are_stacked_too() {
+fn the_stacked_registers_include_the_floating_point_unit() {
     assert_eq!(
         (Stacked::size(0xffff_fff9), Stacked::size(0xffff_ffe9)),
         (32, 104)

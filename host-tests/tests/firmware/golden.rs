@@ -1,5 +1,5 @@
-//! The first 10 s of every scene on every class of processors are those stored in
-//! `golden/frames.csv`: each picture's greys and each report's bits.
+//! The first 10 s of every scene on every class of processors equal `golden/frames.csv`: each
+//! picture's greys and each report's bits.
 
 use double_pendulum::golden::{FNV_OFFSET, fnv_1a};
 use emulator::host::Show;

@@ -1,5 +1,5 @@
 //! The frames compared with the exact motion. They are accurate to half a pixel until the time that
-//! the panel predicts, and hardly longer, before and after a change of the method.
+//! the panel predicts, and not much longer, before and after a change of the method.
 
 use double_pendulum::{Parameters, Pendulum};
 use emulator::host::Show;
@@ -13,7 +13,7 @@ use host_tests::oracle::tolerances::PLAN_SHARE;
 use rayon::prelude::*;
 use reference::taylor::Reference;
 
-/// The time for which each motion is followed, s.
+/// The duration of each motion, s.
 const FOLLOWED: f64 = 25.0;
 
 /// The number of ticks between two comparisons with the exact motion.
@@ -25,11 +25,13 @@ type Case = (Processor, SceneName, Settings, f32);
 /// The page from regular to chaotic, rods of other lengths, and the other scenes that follow a
 /// plan, on both cores.
 fn cases() -> Vec<Case> {
+    // The page at several mass ratios and angles.
     let page = |settings| (SceneName::Page, settings, REACH);
     let ratios = MASS_RATIOS.into_iter().skip(5).step_by(10);
     let angles = [20.0, 60.0, 90.0, 105.0, 120.0, 171.0];
     let grid =
         ratios.flat_map(|ratio| angles.map(|angle| page(Settings::equal_rods(ratio, angle))));
+    // Rods of unequal lengths, and short and long rods.
     let unequal = [(0.3, 1.0), (1.0, 0.3), (0.1, 0.1), (3.0, 3.0)].map(|(l1, l2)| {
         let settings = Settings::equal_rods(1.0, 130.0);
         page(Settings {
@@ -41,6 +43,7 @@ fn cases() -> Vec<Case> {
             ..settings
         })
     });
+    // The scenes on half of the panel.
     let halves = [SceneName::Figure7, SceneName::Butterfly]
         .map(|name: SceneName| (name, name.first_settings(), Place::HALVES[0].reach));
     let scenes = grid
@@ -79,6 +82,7 @@ fn horizon((processor, name, settings, reach): &Case) -> Horizon {
     for tick in 1..=(FOLLOWED * f64::from(TICK_RATE)) as u32 {
         scene.tick();
         let time = f64::from(tick) / f64::from(TICK_RATE);
+        // The distance is compared until it exceeds half a pixel.
         if exact.is_infinite() && tick % EVERY == 0 {
             reference.advance_to(time);
             let [bobs, shown] = [
@@ -95,6 +99,7 @@ fn horizon((processor, name, settings, reach): &Case) -> Horizon {
         }
     }
 
+    // The horizon of the last frame is the final prediction.
     let report = scene.report();
     Horizon {
         predicted: report.horizon.verified().into(),
@@ -105,7 +110,7 @@ fn horizon((processor, name, settings, reach): &Case) -> Horizon {
 }
 
 #[test]
-fn half_a_pixel_is_kept_until_the_time_on_the_panel_and_hardly_longer() {
+fn frames_are_accurate_until_the_predicted_time_and_not_much_longer() {
     let horizons: Vec<_> = cases()
         .into_par_iter()
         .map(|case| (horizon(&case), case))
@@ -115,11 +120,15 @@ fn half_a_pixel_is_kept_until_the_time_on_the_panel_and_hardly_longer() {
         .for_each(|(horizon, (_, name, settings, _))| {
             println!("{} {settings:?} {horizon:?}", name.name())
         });
+
+    // No frame may be wrong before the predicted time.
     let late: Vec<_> = horizons
         .iter()
         .filter(|(horizon, _)| horizon.is_violated)
         .collect();
     assert!(late.is_empty(), "{late:#?}");
+
+    // The prediction is close to the exact time, where that is within the run.
     let ending = horizons
         .iter()
         .filter(|(horizon, _)| horizon.exact.is_finite());
@@ -154,7 +163,7 @@ const LEAST_CHANGES: usize = 10;
 /// The goals of the page and figure 7 on every class of processors, s. The page may take 15 % of a
 /// frame of a Cortex-M3 at 50 MHz. After 12 s it must be known to be accurate for 20 s.
 #[test]
-fn the_page_and_figure_7_are_right_for_as_long_as_they_should() {
+fn the_page_and_figure_7_reach_their_goals() {
     for (name, least, most) in [
         (SceneName::Page, 20.0, 125_000.0),
         (SceneName::Figure7, 20.0, f32::INFINITY),
@@ -165,10 +174,12 @@ fn the_page_and_figure_7_are_right_for_as_long_as_they_should() {
             let ticks = 40 * TICK_RATE;
             let early = 12 * TICK_RATE;
             (0..early).for_each(|_| show.tick());
+            // The page has an early goal on the slower processor.
             let is_early = name == SceneName::Page && processor == CORTEX_M3;
             let horizon = f64::from(show.report().horizon.verified());
             println!("{}: {horizon} s after 12 s", name.name());
             assert!(!is_early || horizon >= least, "{horizon} s after 12 s");
+
             (early..ticks).for_each(|_| show.tick());
             let report = show.report();
             let stepping = report.stepping.expect("it moves");

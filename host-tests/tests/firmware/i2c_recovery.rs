@@ -6,7 +6,7 @@ use firmware::display::free_bus;
 #[derive(Debug)]
 struct Wires {
     clock: bool,
-    /// The level to which the board drives the data line.
+    /// The board's level of the data line.
     data: bool,
     /// The number of clocks until the panel releases the line.
     held_for: u32,
@@ -20,6 +20,7 @@ impl Wires {
     }
 
     fn drive(&mut self, clock: bool, data: bool) -> bool {
+        // The panel releases the line after a number of clocks.
         if self.clock && !clock {
             self.clocks += 1;
             self.held_for = self.held_for.saturating_sub(1);
@@ -31,13 +32,14 @@ impl Wires {
             !clock || !before || self.is_data_high(),
             "a start where a stop is due"
         );
+        // A stop is a rise of the data line while the clock is high.
         self.stops += u32::from(clock && !before && self.is_data_high());
         self.is_data_high()
     }
 }
 
 #[test]
-fn a_panel_is_clocked_to_the_end_of_its_byte_and_stopped_or_given_up() {
+fn a_panel_is_clocked_until_it_releases_the_line_or_nine_bits_have_passed() {
     // The stop takes a clock of its own. A free bus is left alone.
     let cases = (1..=9)
         .map(|bits| (bits, true, bits + 1, 1))

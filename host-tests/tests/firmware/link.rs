@@ -34,8 +34,8 @@ fn wire(message: &[u8]) -> Vec<u8> {
     frame(message, &mut [0; MAX_WIRE]).to_vec()
 }
 
-/// Returns the four bytes of the check, found by trying what the decoder accepts. The body is
-/// version, message, CRC.
+/// Returns the four bytes of the check, read from an encoded message. The body is version, message,
+/// CRC.
 fn crc(message: &[u8]) -> u32 {
     let mut body = wire(message).split_off(1);
     let length = cobs::decode_in_place(&mut body).expect("a COBS encoding");
@@ -63,6 +63,8 @@ fn every_change_of_four_bits_is_detected() {
         })
         .collect();
     changes.extend((0..32).map(|bit| 1_u32 << bit));
+
+    // The changes by any two flips.
     let mut pairs = HashSet::new();
 
     for (index, one) in changes.iter().enumerate() {
@@ -87,11 +89,13 @@ fn every_change_of_four_bits_is_detected() {
 #[test]
 fn every_flipped_bit_on_the_wire_is_detected() {
     let message = [0x82, 7, 0, 0, 255, 0, 1, 2, 0, 0, 3];
+
     let good = wire(&message);
     let next = wire(&[9; MAX_MESSAGE]);
     assert_eq!(decoded(&good), Some(Ok(message.to_vec())));
     let mut by_check = 0;
     for bit in 0..8 * good.len() {
+        // The bit is flipped in a message that another message follows.
         let mut bad = good.clone();
         bad[bit / 8] ^= 1 << (bit % 8);
         let found = decoded(&bad);
@@ -109,6 +113,7 @@ fn every_flipped_bit_on_the_wire_is_detected() {
 /// The messages are the longest, with the largest possible whole numbers.
 #[test]
 fn every_message_fits() {
+    // The largest values of all fields.
     let method = Method::TextbookF32;
     let steps = u32::MAX;
     let number = u32::MAX;
@@ -131,6 +136,7 @@ fn every_message_fits() {
         busy_cycles: number,
         ..counts
     };
+
     let dt = 1.0;
     let horizon = 1.0;
     let error = 1.0;
@@ -154,6 +160,7 @@ fn every_message_fits() {
         frame: 1.0,
         planning: 1.0,
     };
+
     let sample = Answer::Sample {
         index: number,
         reading: Reading::default(),
@@ -165,6 +172,7 @@ fn every_message_fits() {
         [94, 71, 74]
     );
 
+    // The record of a restart has a status in it.
     let cause = Some(Cause::Fault);
     let scene = SceneName::Flips;
     let end = Restarted {
@@ -210,6 +218,7 @@ fn every_message_fits() {
         Some(Record { played, end })
     );
 
+    // The longest command.
     let command = Command::Simulate(Request {
         stride: number,
         samples: number,
@@ -237,16 +246,17 @@ fn variants<T: Debug>(read: fn(&[u8]) -> Option<T>) -> String {
         .collect()
 }
 
-/// A change of a number's meaning requires a new version, by which the two sides recognise each
-/// other.
+/// A change of a number's meaning requires a new version. The two sides recognise each other by the
+/// version.
 #[test]
-fn numbers_mean_the_same_as_long_as_the_version_does() -> Result<(), String> {
+fn numbers_keep_their_meaning_within_a_version() -> Result<(), String> {
     let messages = variants(read::<ToHost>)
         + &variants(read::<Answer>)
         + &variants(read::<Command>)
         + &variants(read::<Field>);
     let plans =
         variants(read::<PlanResult>) + &variants(read::<PlanError>) + &variants(read::<Error>);
+    // Every method has a number.
     assert_eq!(
         variants(read::<Method>)
             .lines()
@@ -255,12 +265,14 @@ fn numbers_mean_the_same_as_long_as_the_version_does() -> Result<(), String> {
         Method::ALL.len(),
         "a method is missing in Method::ALL"
     );
+
     let values = variants(read::<Method>)
         + &variants(read::<SceneName>)
         + &variants(read::<BoardName>)
         + &variants(read::<PlayState>)
         + &variants(read::<Horizon>)
         + &variants(read::<Cause>);
+
     let panels = variants(read::<PanelState>)
         + &variants(read::<Controller>)
         + &variants(read::<By>)

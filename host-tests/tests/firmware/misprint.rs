@@ -33,6 +33,7 @@ fn run(rhs: impl Fn(&[f64; 4]) -> [f64; 4]) -> [f64; 3] {
     let mut error = 0.0_f64;
     let mut above = 0.0;
     for run in 0..RUNS {
+        // Each run starts a little farther from the first.
         let angle = figure_7.a1 + 1e-6 * run as f64;
         let start = State::at_rest(angle, angle);
         let start_energy = pendulum.energy(&start);
@@ -46,6 +47,8 @@ fn run(rhs: impl Fn(&[f64; 4]) -> [f64; 4]) -> [f64; 3] {
             above += f64::from(u8::from(bob2.y > 0.0));
         }
     }
+
+    // Means over all samples of all runs.
     let samples = (RUNS * SECONDS * STEPS_PER_SECOND) as f64;
     [energy / samples, error, above / samples]
 }
@@ -109,6 +112,7 @@ fn printed_form_is_shown_only_while_it_is_resolved() {
                 .first_settings()
                 .with_mass_ratio(mass_ratio)
         };
+        // The scene's own motion, and the same equations in `f64` with finer steps.
         let (_, start) = settings.start().expect("good settings");
         let mut shown = Misprinted::new(&settings.parameters, &start);
         let parameters = settings.parameters.cast::<f64>();
@@ -124,6 +128,7 @@ fn printed_form_is_shown_only_while_it_is_resolved() {
                 z = rk4::step(rhs, &z, 1.0 / (TICK_RATE as usize * STEPS_PER_TICK) as f64);
             }
             let case = format!("{mass_ratio}, {degrees} degrees, tick {tick}");
+            // A motion that has ended does not move any more.
             if shown.is_lost() {
                 let directions = shown.directions();
                 shown.tick();
@@ -134,6 +139,8 @@ fn printed_form_is_shown_only_while_it_is_resolved() {
             for [sin, cos] in shown.directions() {
                 assert!((sin.hypot(cos) - 1.0).abs() < 1e-3, "{case}: {sin} {cos}");
             }
+
+            // Until then its energy is close to the exact one.
             let off = (f64::from(shown.energy()) - pendulum.energy(&State::from(z))).abs();
             assert!(
                 off <= tolerances::MISPRINT_ENERGY_SHOWN * span,
@@ -158,12 +165,13 @@ fn figure_7_shows_the_printed_form_for_ten_minutes() {
     }
 }
 
-/// In the scene a rod of a diverged motion is not drawn, and words replace its energy.
+/// A rod of a diverged motion is not drawn, and words replace its energy.
 #[test]
-fn lost_motion_is_not_drawn() {
+fn a_diverged_motion_is_not_drawn() {
     let settings = SceneName::Figure7.first_settings().with_mass_ratio(100.0);
     let mut show = Show::new(SceneName::Figure7, &settings).expect("good settings");
     (0..TICK_RATE).for_each(|_| show.tick());
+    // The words at their place, over the rest of the frame.
     let mut expected = Canvas::default();
     let label = "book too fast";
     text::write(&mut expected, label, Anchor::Right(0));
@@ -179,7 +187,7 @@ fn lost_motion_is_not_drawn() {
 }
 
 #[test]
-fn what_is_shown_of_the_printed_form_is_right_to_half_a_pixel_for_10_s() {
+fn the_printed_form_is_shown_right_to_half_a_pixel_for_10_s() {
     const STEPS_PER_TICK: usize = 64;
     let (pendulum, start) = figure_7();
     let mut shown = Misprinted::new(&pendulum.parameters().cast(), &start.cast());
@@ -192,6 +200,7 @@ fn what_is_shown_of_the_printed_form_is_right_to_half_a_pixel_for_10_s() {
 
     for tick in 1..=10 * TICK_RATE {
         shown.tick();
+        // The same equations in finer steps.
         for _ in 0..STEPS_PER_TICK {
             let rhs = |z: &[f64; 4]| textbook::misprinted_equal_rods(MU, 1.0, 9.8, z);
             z = rk4::step(rhs, &z, 1.0 / (TICK_RATE as usize * STEPS_PER_TICK) as f64);
@@ -204,7 +213,8 @@ fn what_is_shown_of_the_printed_form_is_right_to_half_a_pixel_for_10_s() {
             assert!(off <= HALF_PIXEL, "{off} pixels in tick {tick}");
         }
         if tick <= 5 * TICK_RATE {
-            let (energy, exact) = (f64::from(shown.energy()), pendulum.energy(&state));
+            let energy = f64::from(shown.energy());
+            let exact = pendulum.energy(&state);
             let off = (energy - exact).abs();
             assert!(
                 off < tolerances::MISPRINT_SHOWN,

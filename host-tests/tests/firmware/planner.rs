@@ -7,14 +7,14 @@ use firmware::config::{
 };
 use firmware::motion::{Planner, Settings};
 
-/// The initial stepping of these tests, with finer steps than any reference. It is accurate
-/// wherever any other is.
+/// The initial stepping of these tests, with finer steps than any reference. It is accurate for at
+/// least as long as any other stepping.
 const LASTING: Stepping = Stepping {
     method: Method::Extrapolation10Fixed64,
     steps: 8,
 };
 const HEIGHT: f32 = 57.0;
-/// The number of ticks by which all results here are found.
+/// The number of ticks until all results here are found.
 const PATIENCE: u64 = 1200;
 
 fn planner(processor: Processor, settings: &Settings) -> Planner {
@@ -25,7 +25,7 @@ fn planner(processor: Processor, settings: &Settings) -> Planner {
 
 /// A held button restarts the scene before any planning.
 #[test]
-fn nothing_is_looked_at_before_the_start_has_settled() {
+fn nothing_is_planned_before_the_start_has_settled() {
     let mut planner = planner(CORTEX_M3, &Settings::default());
     for _ in 0..SETTLED_TICKS {
         assert!(!planner.work_ahead());
@@ -43,9 +43,10 @@ fn nothing_is_looked_at_before_the_start_has_settled() {
 
 /// The results do not depend on whether all or some of the planning is done before its tick.
 #[test]
-fn what_is_found_in_a_tick_does_not_depend_on_when_the_work_is_done() {
+fn results_of_a_tick_do_not_depend_on_when_the_work_is_done() {
     for settings in [Settings::default(), Settings::equal_rods(1.0, 20.0)] {
         let [mut late, mut early, mut uneven] = [(); 3].map(|()| planner(CORTEX_M4F, &settings));
+        // All work in its tick, all work in advance, and some of it in advance.
         for tick in 0..PATIENCE {
             while early.work_ahead() {}
             for _ in 0..tick % 7 {
@@ -60,7 +61,7 @@ fn what_is_found_in_a_tick_does_not_depend_on_when_the_work_is_done() {
 }
 
 #[test]
-fn there_is_nothing_to_do_without_a_motion_or_when_all_is_found() {
+fn nothing_is_planned_without_a_motion_or_after_the_plan() {
     let mut still = Planner::new(CORTEX_M3);
     assert!(still.tick().is_none() && !still.work_ahead() && !still.is_searching());
     still.start(&Settings::default(), None, None, false);
@@ -77,9 +78,10 @@ fn there_is_nothing_to_do_without_a_motion_or_when_all_is_found() {
     );
     assert!(
         !planner.work_ahead() && planner.tick().is_some(),
-        "it is told in a tick of its own"
+        "the result has a tick of its own"
     );
     assert!(!planner.work_ahead() && planner.tick().is_none());
+
     planner.start(
         &Settings::equal_rods(1.0, 30.0),
         Some(HEIGHT),
@@ -92,15 +94,15 @@ fn there_is_nothing_to_do_without_a_motion_or_when_all_is_found() {
             planner.horizon(LASTING)
         ),
         (Some(None), 0.0),
-        "it begins anew"
+        "the new motion has no result yet"
     );
 }
 
-/// Steps in 64 bits that are as fine as those of the reference, four to a frame here, are accurate
-/// wherever any others are. Longer steps are accurate only as far as they have been verified
-/// themselves.
+/// Steps in 64 bits with at least as many steps per frame as the reference, four here, are accurate
+/// for as long as any other stepping. Longer steps are accurate only for the time that they have
+/// been verified themselves.
 #[test]
-fn only_steps_that_resolve_a_motion_are_right_wherever_others_are() {
+fn only_steps_as_fine_as_the_reference_inherit_its_horizon() {
     let in_32_bits = |planner: &Planner| {
         let steppings = [1, 2, 4, 8, 16].map(|steps| Stepping {
             method: Method::Rk4Fixed32,
@@ -112,8 +114,9 @@ fn only_steps_that_resolve_a_motion_are_right_wherever_others_are() {
             .fold(0.0, f64::max)
     };
 
+    // Two steps are coarser than the reference, four are not.
     for (steps, is_right) in [(2, false), (4, true)] {
-        let begun = Stepping {
+        let initial = Stepping {
             method: Method::Extrapolation10Fixed64,
             steps,
         };
@@ -121,33 +124,39 @@ fn only_steps_that_resolve_a_motion_are_right_wherever_others_are() {
         planner.start(
             &Settings::equal_rods(2.75, 171.0),
             Some(HEIGHT),
-            Some(begun),
+            Some(initial),
             false,
         );
+
+        // The planner has verified some method in 32 bits.
         while in_32_bits(&planner) < 1.0 {
             assert!(planner.tick().is_none());
         }
-        assert_eq!(planner.horizon(begun) > 0.0, is_right, "{begun:?}");
+        assert_eq!(planner.horizon(initial) > 0.0, is_right, "{initial:?}");
     }
 }
 
-/// Following a result takes time, so nothing else is done until it is reported. A motion that is
-/// accurate for the whole planned time is then verified further, always by the same time ahead.
+/// Following a result takes time, so nothing else is done until it is reported. The horizon of a
+/// motion that is accurate for the whole planned time is then extended, always by the same time
+/// ahead.
 #[test]
-fn a_calm_motion_is_looked_at_for_as_long_as_it_is_played() {
+fn a_calm_motion_is_verified_while_it_is_played() {
     let mut planner = planner(STM32F405, &Settings::equal_rods(1.0, 20.0));
-    let mut told = 1;
+    let mut ticks = 1;
     while planner
         .planned()
         .is_some_and(|answer| answer.found.is_none())
     {
         assert!(planner.tick().is_none());
-        told += 1;
+        ticks += 1;
     }
+
+    // The plan is complete, and reported one tick later.
     assert!(!planner.work_ahead() && planner.horizon(LASTING) == PLANNED);
     assert!(matches!(planner.tick(), Some(Ok(plan)) if plan.limit == Limit::End));
+
     assert!(planner.work_ahead());
-    for tick in told + 1..3600_u64 {
+    for tick in ticks + 1..3600_u64 {
         planner.tick();
         if tick > 600 {
             let ahead = planner.horizon(LASTING) - tick as f64 / 60.0;
@@ -160,7 +169,7 @@ fn a_calm_motion_is_looked_at_for_as_long_as_it_is_played() {
 }
 
 #[test]
-fn a_refused_motion_is_told_once() {
+fn a_refused_motion_is_reported_once() {
     let mut planner = planner(CORTEX_M3, &Settings::equal_rods(f32::NAN, 20.0));
     let found: Vec<_> = (0..PATIENCE).filter_map(|_| planner.tick()).collect();
     assert!(
@@ -171,7 +180,7 @@ fn a_refused_motion_is_told_once() {
 
 /// A processor with 100 cycles for a frame can afford neither a step nor a closed form.
 #[test]
-fn where_nothing_holds_that_is_what_is_told() {
+fn planner_reports_that_no_method_fits() {
     let mut planner = planner(
         Processor {
             frame: 100.0,
@@ -192,10 +201,10 @@ fn where_nothing_holds_that_is_what_is_told() {
     );
 }
 
-/// Only the requested method is verified, even if it costs more than a frame allows. `cargo prove
-/// --scene page --method rk4-f32-direction --steps 4` proves it accurate until 10.5 s.
+/// The planner verifies only the requested method, even if it costs more than a frame allows.
+/// `cargo prove --scene page --method rk4-f32-direction --steps 4` proves it accurate until 10.5 s.
 #[test]
-fn a_stepping_that_is_given_stays() {
+fn a_requested_stepping_is_kept() {
     let mut planner = Planner::new(STM32F405);
     let stepping = Stepping {
         method: Method::Rk4F32Direction,
@@ -213,9 +222,9 @@ fn a_stepping_that_is_given_stays() {
     assert!((9.5..=10.5).contains(&plan.horizon), "{plan:?}");
 }
 
-/// The code by which hosts identify a class of processors.
+/// The code of a class of processors on the link.
 #[test]
-fn every_processor_has_its_place_for_a_code() {
+fn the_code_of_every_processor_is_its_place() {
     assert!(
         (0..)
             .zip(PROCESSORS)

@@ -45,7 +45,7 @@ fn picture(canvas: &Canvas) -> String {
 
 /// Each scene's frame is drawn over the frame of another scene.
 #[test]
-fn every_scene_looks_as_it_did() {
+fn every_scene_equals_its_snapshot() {
     let before = after(SceneName::Page, 100).frame();
     let check = |name: SceneName, ticks| {
         let mut canvas = before.clone();
@@ -83,6 +83,7 @@ fn the_trail_is_the_path_and_fades_with_age() {
         ));
     }
 
+    // The path from the newest place to the oldest.
     path.reverse();
     let distance = |at: (f32, f32), [from, to]: [(f32, f32); 2]| {
         let along = (to.0 - from.0, to.1 - from.1);
@@ -91,6 +92,7 @@ fn the_trail_is_the_path_and_fades_with_age() {
         let part = part.clamp(0.0, 1.0);
         (at.0 - from.0 - part * along.0).hypot(at.1 - from.1 - part * along.1)
     };
+
     let mut compared = 0;
 
     for (x, y) in places() {
@@ -100,12 +102,15 @@ fn the_trail_is_the_path_and_fades_with_age() {
             .windows(2)
             .map(|piece| distance(middle, [piece[0], piece[1]]))
             .collect();
+        // A pixel that the trail covers completely, and a pixel that it touches.
         let covers = |far: &f32| *far < TRAIL_HALF_WIDTH - 0.5;
         let touches = |far: &f32| *far < TRAIL_HALF_WIDTH + 0.6;
         let youngest = far.iter().position(touches);
+
         if youngest.is_none() {
             assert_eq!(grey, 0.0, "no bob was ever at {x}, {y}");
         }
+        // Only pixels that were not visited again have the brightness of their age.
         if let (Some(touched), Some(age)) = (youngest, far.iter().position(covers))
             && age < touched + 5
         {
@@ -121,7 +126,7 @@ fn the_trail_is_the_path_and_fades_with_age() {
     assert!(compared > 50, "{compared} pixels compared");
 }
 
-/// A pause is marked by two bars below the top right corner, and nothing else is.
+/// Two bars below the top right corner mark a pause. They appear only then.
 #[test]
 fn a_pause_is_marked_and_only_a_pause() -> Result<(), String> {
     let mut app = app();
@@ -131,11 +136,11 @@ fn a_pause_is_marked_and_only_a_pause() -> Result<(), String> {
         app.canvas.clone()
     };
     let plain = |ticks| after(SceneName::Page, ticks).frame();
-    assert!(pause(false, 1) == plain(1), "what moves has no mark");
+    assert!(pause(false, 1) == plain(1), "a moving scene has no mark");
     snapshot::check("page-paused", &picture(&pause(true, 2)))?;
     assert!(
         pause(false, 3) == plain(2),
-        "the mark goes when time goes on"
+        "the mark disappears when the scene continues"
     );
     Ok(())
 }
@@ -144,7 +149,7 @@ fn a_pause_is_marked_and_only_a_pause() -> Result<(), String> {
 /// pendulum are as long as a radian on the frame. A figure of two modes shows angle 1 larger by
 /// sqrt((1 + mu)/mu), and both together by the root of the mean square.
 #[test]
-fn what_is_planned_is_what_is_shown() {
+fn the_planned_height_is_that_of_the_shown_figure() {
     let start = |scene: &mut AnyScene, name: SceneName| {
         scene
             .start(name, &name.first_settings(), &RESOURCES)
@@ -152,6 +157,7 @@ fn what_is_planned_is_what_is_shown() {
     };
     let mut scene = AnyScene::empty();
 
+    // The scenes of two modes.
     for name in [
         SceneName::Beats3To2,
         SceneName::Beats2To1,
@@ -183,7 +189,7 @@ fn what_is_planned_is_what_is_shown() {
 /// unit for it. The map is complete in time on the chip of 168 MHz, and on slower ones or ones
 /// without a floating-point unit.
 #[test]
-fn the_map_of_flips_is_that_of_the_boards_processor_and_finished_in_time() {
+fn the_map_of_flips_is_computed_as_on_the_boards_processor_and_in_time() {
     let settings = Settings::default();
     let map = |processor: Processor, in_float, ticks: u32| {
         let mut ink = FadeLayer::NONE;
@@ -193,6 +199,8 @@ fn the_map_of_flips_is_that_of_the_boards_processor_and_finished_in_time() {
         map.draw(&map.report(ticks.into()), &mut canvas);
         (canvas, map.is_done())
     };
+
+    // The two arithmetics give different maps.
     assert!(
         map(STM32F405, false, 60) != map(STM32F405, true, 60),
         "they differ"
@@ -204,6 +212,7 @@ fn the_map_of_flips_is_that_of_the_boards_processor_and_finished_in_time() {
         (CORTEX_M0PLUS, false, 60),
     ];
 
+    // The frame after a second, and the time of the complete map.
     for (processor, in_float, seconds) in processors {
         let mut show = Show::on(processor, SceneName::Flips, &settings).expect("a map");
         (0..60).for_each(|_| show.tick());
@@ -220,7 +229,7 @@ fn the_map_of_flips_is_that_of_the_boards_processor_and_finished_in_time() {
 
 /// A scene without a motion continues when the start angle is turned.
 #[test]
-fn only_what_starts_from_angles_starts_again_when_they_are_turned() {
+fn only_scenes_with_angles_restart_when_an_angle_is_turned() {
     for &name in SceneName::ALL {
         let mut show = scene(name);
         (0..20).for_each(|_| show.tick());
@@ -248,6 +257,7 @@ fn text_keeps_off_the_edges() {
         ] {
             let near = |&(x, y): &(i32, i32)| {
                 x < 1 || y < 1 || x > WIDTH as i32 - 2 || y > HEIGHT as i32 - 2
+                // One pixel at each edge stays free.
             };
             let mut canvas = Canvas::default();
             text::write(&mut canvas, text, anchor);
@@ -270,7 +280,7 @@ fn scales_have_round_steps() {
 
 /// A motion that no plan can change is verified while it is played.
 #[test]
-fn the_butterfly_is_looked_at_as_it_goes() {
+fn the_butterfly_is_planned_while_it_is_played() {
     let mut show = Show::new(SceneName::Butterfly, &Settings::equal_rods(1.0, 20.0))
         .expect("a scene of the catalogue");
     let found = (0..60 * TICK_RATE).find_map(|_| {

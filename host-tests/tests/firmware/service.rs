@@ -28,7 +28,7 @@ const REQUEST: Request = Request {
 
 /// Returns the answers to these requests, numbered from 1, after all requested motions are
 /// computed.
-fn asked(requests: &[Request]) -> Vec<(u16, Answer)> {
+fn answers_to(requests: &[Request]) -> Vec<(u16, Answer)> {
     let mut app = app();
     for (number, request) in (1..).zip(requests) {
         app.receive(wire(number, Command::Simulate(*request)), |event| {
@@ -63,7 +63,7 @@ fn readings(request: &Request) -> Result<Vec<Reading>, Error> {
 /// client. Both rods turn over, and the closed form, which counts no turns, makes steps of more than
 /// a quarter turn.
 #[test]
-fn every_method_of_the_boards_is_answered_in_full_with_what_the_host_computes() {
+fn every_method_of_the_boards_answers_with_the_hosts_readings() {
     for &method in ON_BOARDS {
         let parameters = Parameters {
             l2: 1.0,
@@ -92,7 +92,11 @@ fn every_method_of_the_boards_is_answered_in_full_with_what_the_host_computes() 
             let expected = (0..)
                 .zip(readings)
                 .map(|(index, reading)| (1, Answer::Sample { index, reading }));
-            assert_eq!(asked(&[request]), expected.collect::<Vec<_>>(), "{method}");
+            assert_eq!(
+                answers_to(&[request]),
+                expected.collect::<Vec<_>>(),
+                "{method}"
+            );
         }
     }
 }
@@ -100,7 +104,7 @@ fn every_method_of_the_boards_is_answered_in_full_with_what_the_host_computes() 
 /// Every method follows the canonical one, including whole turns of both rods. The linear methods
 /// follow it in a small motion.
 #[test]
-fn every_method_moves_alike() {
+fn every_method_computes_the_same_motion() {
     let turning = Request {
         velocities: [14.0, -9.0],
         dt: 1.0 / 8192.0,
@@ -116,6 +120,7 @@ fn every_method_moves_alike() {
     let readings = |method, motion: Request| {
         readings(&Request { method, ..motion }).unwrap_or_else(|error| panic!("{method}: {error}"))
     };
+
     let last = readings(Method::Rk4F64, turning)
         .last()
         .expect("a sample")
@@ -126,6 +131,7 @@ fn every_method_moves_alike() {
     );
 
     for &method in Method::ALL {
+        // The tolerance depends on the arithmetic.
         let [double, single, micromath] = tolerances::TURNING;
         let (motion, near) = match method {
             _ if method.equations() == Equations::Linear => (
@@ -137,6 +143,7 @@ fn every_method_moves_alike() {
             _ if method.is_single() => (turning, single),
             _ => (turning, double),
         };
+
         let mut farthest = 0.0_f64;
         for (reading, exact) in readings(method, motion)
             .iter()
@@ -156,7 +163,7 @@ fn every_method_moves_alike() {
 
 /// The two motions have equal ends, but different samples before.
 #[test]
-fn a_check_is_over_every_sample() -> Result<(), Error> {
+fn the_crc_covers_every_sample() -> Result<(), Error> {
     for &method in Method::ALL {
         let [often, once] = [(1, 2), (2, 1)].map(|(stride, samples)| {
             Request {
@@ -172,7 +179,7 @@ fn a_check_is_over_every_sample() -> Result<(), Error> {
 }
 
 #[test]
-fn a_request_comes_through_its_text_unchanged() {
+fn a_request_equals_its_parsed_text() {
     for &method in Method::ALL {
         let request = Request { method, ..REQUEST };
         assert_eq!(Request::parse(&request.to_string()), Some(request));
@@ -182,6 +189,8 @@ fn a_request_comes_through_its_text_unchanged() {
             "{method}"
         );
     }
+
+    // A text that is incomplete or has an impossible value is no request.
     let text = REQUEST.to_string();
     for broken in [
         "",
@@ -195,7 +204,7 @@ fn a_request_comes_through_its_text_unchanged() {
 }
 
 #[test]
-fn a_step_too_long_for_the_energy_is_taken_and_told() {
+fn a_step_too_long_for_the_energy_is_computed_with_a_warning() {
     let coarse = Request {
         parameters: Parameters {
             m2: 1000.0,
@@ -203,6 +212,7 @@ fn a_step_too_long_for_the_energy_is_taken_and_told() {
         },
         ..REQUEST
     };
+
     let admissible_step = coarse.admissible_step().expect("a pendulum");
     assert!(admissible_step < coarse.dt / 10.0);
     let fine = Request {
@@ -213,18 +223,18 @@ fn a_step_too_long_for_the_energy_is_taken_and_told() {
         method: Method::ClosedFormF64,
         ..coarse
     };
-    for (request, is_told) in [(coarse, true), (fine, false), (closed_form, false)] {
-        let answers = asked(&[request]);
-        let told = answers.strip_prefix(&[(1, Answer::StepTooLong(admissible_step))]);
+    for (request, is_warned) in [(coarse, true), (fine, false), (closed_form, false)] {
+        let answers = answers_to(&[request]);
+        let warned = answers.strip_prefix(&[(1, Answer::StepTooLong(admissible_step))]);
         assert_eq!(
-            (told.is_some(), samples(told.unwrap_or(&answers), 1)),
-            (is_told, 6)
+            (warned.is_some(), samples(warned.unwrap_or(&answers), 1)),
+            (is_warned, 6)
         );
     }
 }
 
 #[test]
-fn a_refusal_names_the_field_and_leaves_the_work_alone() {
+fn a_refusal_names_the_field_and_does_not_end_the_previous_request() {
     let pendulum = |m1, m2, l1, l2, g| Request {
         parameters: Parameters { m1, m2, l1, l2, g },
         ..REQUEST
@@ -260,7 +270,8 @@ fn a_refusal_names_the_field_and_leaves_the_work_alone() {
         (Request { dt: 0.0, ..REQUEST }, Field::Dt),
         (Request { dt: 9.0, ..REQUEST }, Field::Dt),
     ] {
-        let answers = asked(&[REQUEST, wrong]);
+        let answers = answers_to(&[REQUEST, wrong]);
+        // The refusal comes first, because the motion is computed later.
         assert_eq!(answers[0], (2, Answer::Refused(field)));
         assert_eq!((answers.len(), samples(&answers, 1)), (7, 6), "{field:?}");
     }
@@ -268,6 +279,6 @@ fn a_refusal_names_the_field_and_leaves_the_work_alone() {
 
 #[test]
 fn a_new_request_replaces_the_one_under_way() {
-    let answers = asked(&[REQUEST; 2]);
+    let answers = answers_to(&[REQUEST; 2]);
     assert_eq!((answers.len(), samples(&answers, 2)), (6, 6));
 }

@@ -55,8 +55,11 @@ impl Controller {
     fn commands(&mut self, mut bytes: &[u8]) {
         while let [command, rest @ ..] = bytes {
             let (arguments, rest) = rest.split_at(arguments(*command));
-            match (command, arguments) {
-                (0x15 | 0x75, &[first, last]) => {
+            match command {
+                0x15 | 0x75 => {
+                    let &[first, last] = arguments else {
+                        panic!("a window has two ends")
+                    };
                     assert!(first <= last && last <= 63);
                     let is_column = *command == 0x15;
                     *(if is_column {
@@ -70,8 +73,8 @@ impl Controller {
                         &mut self.at.1
                     }) = first;
                 }
-                (0xAE, _) => self.on = false,
-                (0xAF, _) => {
+                0xAE => self.on = false,
+                0xAF => {
                     assert!(
                         self.memory.iter().all(Option::is_some),
                         "switched on with noise in memory"
@@ -87,10 +90,8 @@ impl Controller {
     /// Stores a byte and advances along the row, then to the next row. Going beyond the last row is
     /// an error here.
     fn store(&mut self, byte: u8) {
-        let ((first, last), (_, last_row)) = (
-            self.columns.expect("columns first"),
-            self.rows.expect("rows first"),
-        );
+        let (first, last) = self.columns.expect("columns first");
+        let (_, last_row) = self.rows.expect("rows first");
         let (column, row) = self.at;
         assert!(row <= last_row, "more data than the window holds");
         self.memory[usize::from(row) * 64 + usize::from(column)] = Some(byte);
@@ -118,6 +119,7 @@ impl ErrorType for Wires<'_> {
 
 impl SpiDevice for Wires<'_> {
     fn transaction(&mut self, operations: &mut [Operation<'_, u8>]) -> Result<(), ErrorKind> {
+        // Each write fails once the bus has failed.
         let mut controller = self.0.borrow_mut();
         for operation in operations {
             let Operation::Write(bytes) = operation else {
@@ -153,8 +155,8 @@ impl OutputPin for Wires<'_> {
     }
 }
 
-/// Unchanged data is not sent. In a row, the words between two changed ones are sent. A row below
-/// one that was sent needs no address.
+/// Unchanged data is not sent. In a row, the words between two changed ones are sent. A row
+/// directly below a sent row needs no address.
 #[test]
 fn switches_on_with_a_black_frame_and_sends_what_has_changed() {
     let controller = RefCell::new(Controller::holding(None, usize::MAX));
@@ -163,6 +165,8 @@ fn switches_on_with_a_black_frame_and_sends_what_has_changed() {
     let mut panel = Ssd0323::new(Wires(&controller), Wires(&controller), &mut memory);
     panel.init().expect("the bus works");
     assert!(controller.borrow().shows(&canvas));
+
+    // The changed pixels, and the number of bytes that they need.
     for (changed, bytes) in [
         (&[][..], 0),
         (&[(127, 63)], 6 + 4),
@@ -179,10 +183,10 @@ fn switches_on_with_a_black_frame_and_sends_what_has_changed() {
     }
 }
 
-/// If the bus fails in the middle of a frame, the contents of the panel are unknown, so the next
+/// The contents of the panel are unknown after a failure in the middle of a frame, so the next
 /// frame is sent completely.
 #[test]
-fn hands_on_the_error_of_the_bus_and_shows_the_frame_after_one_that_failed() {
+fn the_error_of_the_bus_is_returned_and_the_next_frame_is_sent_completely() {
     let controller = RefCell::new(Controller::holding(None, 0));
     let mut memory = Canvas::default();
     let mut canvas = Canvas::default();
@@ -191,6 +195,8 @@ fn hands_on_the_error_of_the_bus_and_shows_the_frame_after_one_that_failed() {
         (panel.init(), panel.flush(&canvas)),
         (Err(BUS_ERROR), Err(BUS_ERROR))
     );
+
+    // The bus fails in the middle of a frame, which leaves noise in the panel's memory.
     controller.borrow_mut().fails_after = usize::MAX;
     panel.init().expect("the bus works");
     (0..64).for_each(|y| canvas.update(y, y, |_| 15));

@@ -12,7 +12,7 @@ use firmware::scenes::SceneName;
 use rayon::prelude::*;
 use reference::taylor::Reference;
 
-/// The time for which each scene is followed, ticks.
+/// The duration of each scene, ticks.
 const TICKS: u32 = 20 * TICK_RATE;
 
 /// The largest relative energy error of a frame until the predicted horizon, and of any frame.
@@ -25,8 +25,9 @@ const ENERGY: [f32; 2] = [1e-2, 0.1];
 /// The number of settings between two lines of progress. The long tests run for an hour.
 const CHUNK: usize = 500;
 
-/// A scene of every 2,000 may be inaccurate a little before its predicted horizon. Planning compares
-/// computed motions with each other, and roundings may be alike by chance (test `plan_study`).
+/// A scene of every 2,000 may be inaccurate a little before its predicted horizon. Planning
+/// compares computed motions with each other, and roundings may be alike by chance (test
+/// `plan_study`).
 const SCENES_TO_A_VIOLATION: usize = 2_000;
 
 /// A scene, with a setting that keys reach from its start.
@@ -70,6 +71,7 @@ struct Shown {
 impl Shown {
     fn new(case: &Case, processor: Processor) -> Self {
         let mut show = Show::on(processor, case.name, &case.settings).expect("good settings");
+
         let mut shown = Self {
             processor,
             angles: Vec::new(),
@@ -85,6 +87,7 @@ impl Shown {
             let report = show.report();
             shown.states.push(show.player.state());
             shown.angles.push(report.state.angles().map(f64::from));
+            // The largest claims and errors of all frames.
             shown.claimed = shown.claimed.max(report.horizon.verified().into());
             shown.energy_errors.push(report.energy_error.abs());
             match report.horizon {
@@ -127,6 +130,7 @@ impl Shown {
 /// Returns the distance between the drawn and the exact picture, pixels.
 fn distance(case: &Case, height: Option<f64>, exact: [f64; 2], shown: [f64; 2]) -> f64 {
     let parameters = case.settings.parameters.cast::<f64>();
+    // The errors of the angles, without whole turns.
     let off = [0, 1].map(|rod| {
         let off = shown[rod] - exact[rod];
         off - std::f64::consts::TAU * (off / std::f64::consts::TAU).round()
@@ -147,6 +151,7 @@ fn distance(case: &Case, height: Option<f64>, exact: [f64; 2], shown: [f64; 2]) 
             let [across, up] = in_modes(&parameters, off);
             figure_scale(&case.settings) * across.hypot(up)
         }
+        // The other scenes draw the bobs.
         name => {
             let reach = match name {
                 SceneName::Page => REACH,
@@ -202,7 +207,7 @@ fn faults(case: &Case) -> Vec<(Case, u8, Fault)> {
         .map(|&processor| Shown::new(case, processor))
         .collect();
 
-    // The exact motion, until the latest claimed time.
+    // The exact motion, as long as any processor claims accurate frames.
     let frames = shown.iter().map(Shown::claimed_frames).max().unwrap_or(0);
     let start = case.settings.motion().cast();
     let mut reference = Reference::new(&case.settings.parameters.cast(), &start);
@@ -217,6 +222,7 @@ fn faults(case: &Case) -> Vec<(Case, u8, Fault)> {
     for shown in shown {
         let code = shown.processor.code;
         let mut found = |fault| faults.push((*case, code, fault));
+
         if shown.is_too_fast() {
             // Plain `f32` computes sines, and its scene also needs a motion in 64 bits.
             let is_said_at_once = shown
@@ -234,6 +240,8 @@ fn faults(case: &Case) -> Vec<(Case, u8, Fault)> {
         let is_wrong = |(exact, angles): (&[f64; 2], &[f64; 2])| {
             distance(case, shown.height, *exact, *angles) > f64::from(HALF_PIXEL)
         };
+
+        // The first claimed frame that is wrong.
         let claimed = shown.claimed_frames();
         let wrong = exact
             .iter()
@@ -263,6 +271,7 @@ fn sweep(cases: &[Case]) {
         println!("{done} scenes, {} faults", found.len());
     }
 
+    // Only a few violations are allowed, and no other fault.
     let is_violation =
         |(_, _, fault): &&(Case, u8, Fault)| matches!(fault, Fault::Violation { .. });
     let violations = found.iter().filter(is_violation).count();
@@ -299,6 +308,7 @@ fn settings_of_all_kinds_are_shown_as_claimed() {
             name,
             settings: first,
         });
+        // Combinations that are at the limits of the scene.
         for (ratio, degrees) in [(0.01, 120.0), (1.0, 90.0), (100.0, -15.0), (100.0, 179.0)] {
             cases.push(Case::new(name, ratio, degrees));
         }
@@ -308,7 +318,7 @@ fn settings_of_all_kinds_are_shown_as_claimed() {
     sweep(&cases);
 }
 
-/// Returns every 15th degree, and those beside 0 and 180.
+/// Returns every 15th degree, and the neighbours of 0 and 180.
 fn some_degrees() -> Vec<f32> {
     let every_15th = (-12..=12).map(|turn| 15.0 * turn as f32);
     every_15th.chain([-179.0, -1.0, 1.0, 179.0]).collect()

@@ -76,6 +76,7 @@ impl TickTimer for FakeTimer {
 #[test]
 fn a_time_read_at_any_moment_is_between_the_moments_before_and_after() {
     // The interrupt handler and all readings together must fit into a period.
+    // The count of ticks begins at 0, or wraps during the test.
     for reading in 1..=5 {
         for is_masked in [false, true] {
             for first in [0, u32::MAX] {
@@ -95,6 +96,8 @@ fn a_time_read_at_any_moment_is_between_the_moments_before_and_after() {
                             timer.interrupt();
                         }
                     });
+
+                    // The reading itself is made with the interrupts masked or enabled.
                     let timer = FakeTimer { is_masked, ..timer };
 
                     let origin = first.wrapping_mul(PERIOD);

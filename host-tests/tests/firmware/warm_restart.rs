@@ -48,7 +48,7 @@ fn ended(end: Restarted) -> Record {
 }
 
 #[test]
-fn it_is_recalled_as_it_was_kept() {
+fn a_record_is_read_as_it_was_written() {
     let kept = Record::read(&record().write()).expect("intact");
     assert_eq!(kept, record());
     assert_eq!(
@@ -62,7 +62,7 @@ fn it_is_recalled_as_it_was_kept() {
 }
 
 #[test]
-fn what_memory_holds_when_it_is_switched_on_is_not_trusted() {
+fn memory_after_power_on_is_not_trusted() {
     let mut rng = Rng::with_seed(11);
     for byte in [0x00, 0xff, 0xcc, 0x55] {
         assert_eq!(Record::read(&[byte; MAX_WIRE]), None);
@@ -84,7 +84,7 @@ fn any_flipped_bit_is_noticed() {
 }
 
 #[test]
-fn a_reset_from_outside_starts_anew_and_one_by_the_watchdog_does_not() {
+fn only_a_reset_by_the_watchdog_resumes_the_scene() {
     let running = ended(Restarted {
         cause: None,
         ..record().end
@@ -97,7 +97,7 @@ fn a_reset_from_outside_starts_anew_and_one_by_the_watchdog_does_not() {
 }
 
 #[test]
-fn what_ends_the_board_each_time_is_given_up() {
+fn a_scene_that_ends_the_board_each_time_is_given_up() {
     for restarts in [0, 1, MOST_RESTARTS - 1, MOST_RESTARTS, u8::MAX] {
         let restart = ended(Restarted {
             restarts,
@@ -115,7 +115,7 @@ fn what_ends_the_board_each_time_is_given_up() {
 }
 
 #[test]
-fn a_minute_without_a_restart_forgets_those_before() {
+fn a_minute_without_a_restart_clears_the_count() {
     let player = player();
     let restart = record().restart(false);
     let mut journal = Journal::new(restart.as_ref());
@@ -140,11 +140,13 @@ fn a_minute_without_a_restart_forgets_those_before() {
 #[test]
 fn every_scene_is_resumed_with_its_settings() {
     for &name in SceneName::ALL {
-        let (mut player, mut resumed) = (player(), player());
+        let mut player = self::player();
+        let mut resumed = self::player();
         let speed = |value| Command::Set {
             field: Field::Speed,
             value,
         };
+        // Settings, speed and number of steps are as in the status.
         for value in [0.01, 0.7, 4.0] {
             for command in [
                 Command::Choose(name),

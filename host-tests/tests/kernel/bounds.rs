@@ -48,11 +48,13 @@ fn shares<R: Real>(pendulum: &Pendulum<R>, bounds: &Bounds<R>, state: &State<R>)
 /// speed only.
 fn hold<R: Real>() -> Result<(), Error> {
     let in_f64 = random::pendulums::<f64>(1, 10_000);
+    // The same pendulums in both precisions.
     for ((pendulum, start), (exact, start_in_f64)) in random::pendulums::<R>(1, 10_000).zip(in_f64)
     {
         let bounds = pendulum.bounds(&start);
         let dt = R::from_f64(0.05) / (bounds.w1 + bounds.w2);
         let mut state = start;
+        // The motion stays within its bounds.
         for _ in 0..100 {
             state = pendulum.step(&state, dt);
             let shares = shares(&pendulum, &bounds, &state);
@@ -75,6 +77,7 @@ fn hold<R: Real>() -> Result<(), Error> {
         );
     }
 
+    // Special cases: nothing moves, or there is no gravity.
     let free = Pendulum::new(&Parameters::equal_rods(R::ONE, R::ONE, R::ZERO))?;
     let hanging = State::at_rest(R::ZERO, R::ZERO);
     assert!(!free.admissible_step(&hanging)?.is_finite());
@@ -155,6 +158,7 @@ fn each_bound_is_reached_by_some_state() {
 #[test]
 fn certified_motions_do_not_turn_over() {
     let mut certified = 0;
+    // The amplitudes are halved, so that a part of the motions can be certified.
     for (pendulum, State { a1, a2, .. }) in random::pendulums::<f64>(3, 2000) {
         let start = State::at_rest(0.5 * a1, 0.5 * a2);
         if pendulum.cannot_turn_over(&start) {
@@ -281,6 +285,7 @@ fn an_admissible_step_resolves_every_motion() -> Result<(), Error> {
         let rate = pendulum.fastest_rate(&state)?;
         let dt = pendulum.admissible_step(&state)?;
 
+        // The classical step and the direction form.
         let mut direction = DirectionF64::new(&parameters, &state, dt)?;
         direction.advance(1);
         let after = [pendulum.step(&state, dt), direction.state()];

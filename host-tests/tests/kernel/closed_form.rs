@@ -119,6 +119,7 @@ fn beats_follow_the_formulas_and_only_the_linear_figure_closes() {
             }
         }
 
+        // The linear motion is at its start again, the exact motion is not.
         let modes = Modes::new(&settings.parameters.cast()).expect("a pendulum");
         let linear = SmallOscillations::new(modes, &settings.motion());
         let [first, last] = [0.0, period].map(|t| linear.at(t));

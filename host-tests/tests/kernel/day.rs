@@ -15,7 +15,7 @@ const DAY: f64 = 86_400.0;
 /// The number of samples in a day, one every three minutes.
 const SAMPLES: u32 = 480;
 /// The number of samples of a scene in a day.
-const LOOKS_OF_A_SCENE: u32 = 240;
+const SAMPLES_OF_A_SCENE: u32 = 240;
 
 /// Returns the methods in the direction form with numbers of 32 bits.
 fn narrow() -> impl Iterator<Item = Method> {
@@ -37,6 +37,7 @@ fn followed(trial: &Trial, method: Method, dt: f64) -> Result<(Vec<State<f64>>, 
     } = trial.held_by(method);
     let pendulum = Pendulum::new(&parameters)?;
     let mut run = trials::run(method, &parameters, &start, dt)?;
+    // The energy of the run and of its state, at each sample.
     let steps = (trial.seconds / dt / f64::from(SAMPLES)).round() as u32;
     let mut apart: f64 = 0.0;
     let states = (0..SAMPLES).map(|_| {
@@ -113,6 +114,7 @@ fn energy_is_kept_for_a_day_at_any_mass_ratio_and_step() -> Result<(), Error> {
 fn time_is_accurate_to_one_step_after_a_day() -> Result<(), Error> {
     for mass_ratio in [0.2, 5.0] {
         let dt = 1.0 / 100.0;
+        // The slow mode alone.
         let pendulum = Pendulum::new(&Trial::at_rest(mass_ratio, 0.0, 0.0, DAY).parameters)?;
         let slow = pendulum.modes()?.slow;
         let trial = Trial::at_rest(mass_ratio, 0.01, 0.01 * slow.shape, DAY);
@@ -161,8 +163,8 @@ fn reported_energy_is_that_of_one_instant_all_day() -> Result<(), Error> {
         let dt = 1.0 / f64::from(TICK_RATE * steps);
         let mut exact = pendulum.run::<DirectionF64>(&start, dt)?.counting_turns();
         let mut worst: f64 = 0.0;
-        for _ in 0..LOOKS_OF_A_SCENE {
-            let ticks = DAY as u32 * TICK_RATE / LOOKS_OF_A_SCENE;
+        for _ in 0..SAMPLES_OF_A_SCENE {
+            let ticks = DAY as u32 * TICK_RATE / SAMPLES_OF_A_SCENE;
             (0..ticks).for_each(|_| simulation.tick());
             // Extrapolation loses no energy.
             let lost = if method == Method::Extrapolation10Fixed64 {

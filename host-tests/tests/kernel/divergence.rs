@@ -2,7 +2,7 @@
 //! result is NaN.
 
 use double_pendulum::{Error, Integrator, Method, Parameter, Parameters, State};
-use emulator::host::sheets;
+use emulator::host::frame_buffers;
 use firmware::app::{App, NoButtons};
 use firmware::config::PROCESSOR;
 use firmware::display::NoDisplay;
@@ -51,6 +51,7 @@ fn diverged_run_keeps_its_last_good_state_in_every_method() -> Result<(), Error>
             run => run?,
         };
 
+        // The run advances until it diverges.
         let stopped = (0..MANY).find_map(|_| {
             let before = run.state();
             run.advance(1).err().map(|error| (error, before))
@@ -84,6 +85,7 @@ fn job_reports_its_step_when_the_motion_has_diverged() {
         .expect("of the boards")
         .expect("within the limit");
     let mut job = Job::new(run, &request).expect("a pendulum");
+
     let answers: Vec<_> =
         std::iter::from_fn(|| (!job.is_finished()).then(|| job.advance())).collect();
     let (last, readings) = answers.split_last().expect("answers");
@@ -94,6 +96,7 @@ fn job_reports_its_step_when_the_motion_has_diverged() {
         readings.len()
     );
 
+    // All readings before the last are finite.
     let is_finite = |answer: &Result<Option<Reading>, Error>| {
         let reading = answer.unwrap_or_default().unwrap_or_default();
         answer.is_ok()
@@ -106,8 +109,8 @@ fn job_reports_its_step_when_the_motion_has_diverged() {
     assert!(!readings.is_empty() && readings.iter().all(is_finite));
 }
 
-/// A motion that is too fast for any method is stopped from its start, also if the user has selected a
-/// method: nothing diverges, and the report stays finite.
+/// A motion that is too fast for any method is stopped from its start, also if the user has
+/// selected a method: nothing diverges, and the report stays finite.
 #[test]
 fn too_fast_motion_is_stopped_before_it_diverges() {
     let parameters = Parameters {
@@ -125,7 +128,14 @@ fn too_fast_motion_is_stopped_before_it_diverges() {
     };
 
     let mut panel = NoDisplay;
-    let mut app = App::new(PROCESSOR, sheets(), &mut panel, Vec::new(), NoButtons);
+    let mut app = App::new(
+        PROCESSOR,
+        frame_buffers(),
+        &mut panel,
+        Vec::new(),
+        NoButtons,
+    );
+    // A good scene is replaced by the fast one.
     app.player
         .play(SceneName::Page, Settings::default())
         .unwrap_or_else(|error| panic!("{error}"));

@@ -96,6 +96,7 @@ fn fixed_point_is_as_accurate_as_documented() -> Result<(), Error> {
         (page, Method::Extrapolation12Fixed64, 60.0, 4e-5),
         // Three times the measured error of 1.9e-8. With biased rounding the error would be 3e-7.
         (whirling, Method::Extrapolation10Fixed64, 7680.0, 6e-8),
+        // Each error is within the documented accuracy.
     ] {
         let error = trial.error(method, 1.0 / steps)?;
         println!("{method}, {steps} steps a second: {error:e} rad");
@@ -105,6 +106,7 @@ fn fixed_point_is_as_accurate_as_documented() -> Result<(), Error> {
         );
     }
 
+    // Steps that are too long for the light elbow are refused.
     let refused = light.states(Method::Rk4Fixed32, 1.0 / 512.0);
     assert!(
         matches!(
@@ -122,10 +124,10 @@ fn fixed_point_is_as_accurate_as_documented() -> Result<(), Error> {
     let start = Pendulum::new(&trial.parameters)?
         .run::<Fixed32>(&trial.start, 1.0 / 1024.0)?
         .state();
-    for (told, taken) in [(start.p1, trial.start.p1), (start.p2, trial.start.p2)] {
+    for (reported, given) in [(start.p1, trial.start.p1), (start.p2, trial.start.p2)] {
         assert!(
-            (told - taken).abs() <= tolerances::FIXED_32_FLOOR,
-            "{told} for {taken} kg m^2/s"
+            (reported - given).abs() <= tolerances::FIXED_32_FLOOR,
+            "{reported} for {given} kg m^2/s"
         );
     }
 
@@ -180,6 +182,7 @@ fn fixed32_rounds_no_worse_than_compensated_f32() -> Result<(), Error> {
     };
     let moving = Trial {
         start: State {
+            // Random starts in the longest steps, or somewhat shorter ones.
             a1: 0.5,
             a2: -0.5,
             p1: 2.0,
@@ -191,8 +194,10 @@ fn fixed32_rounds_no_worse_than_compensated_f32() -> Result<(), Error> {
     let ratios = [1.0, 0.0078125, 0.1, 0.125, 8.0, 10.0, 32.0]
         .map(|ratio| Trial::at_rest(ratio, 0.5, 0.5, 5.0));
     let unlike = [rods(0.625, 1.125), rods(0.125, 1.125), rods(1.125, 0.125)];
+
     for trial in ratios.into_iter().chain([moving]).chain(unlike) {
         let typical = |method| {
+            // The logarithms of the errors are averaged.
             let near = (0..4).map(|i| trial.start.a1 + 1e-3 * f64::from(i));
             let near = near.map(|a1| Trial {
                 start: State { a1, ..trial.start },
@@ -264,6 +269,7 @@ fn fixed32_is_of_order_four_at_any_speed() -> Result<(), Error> {
         let floor = tolerances::FIXED_32_ORDER_MEASURABLE.max(16.0 * fixed[4].max(fixed[5]));
         let order = |[coarse, fine]: [f64; 2]| (coarse / fine).log2();
         for i in 0..3 {
+            // An order is measured where both errors are above the floor and `f64` shows the order.
             let [fixed, double] = [&fixed, &double].map(|errors| [errors[i], errors[i + 1]]);
             if fixed[0] < 0.1 && fixed[1] > floor && order(double) > 3.7 {
                 measured += 1;
@@ -281,7 +287,7 @@ fn fixed32_is_of_order_four_at_any_speed() -> Result<(), Error> {
     Ok(())
 }
 
-/// Returns the longest accepted step, s, which the refusal of a longer one contains.
+/// Returns the longest accepted step, s, from the error of a longer one.
 fn longest_step<F: Form>(pendulum: &Pendulum<f64>, start: &State<f64>) -> f64 {
     match pendulum.run::<F>(start, 1e3).map(drop) {
         Err(Error::TooLarge { limit, .. }) => limit,
@@ -302,6 +308,7 @@ fn inputs_out_of_range_are_refused_by_name() -> Result<(), Error> {
     }
 
     for refuse in [refusal::<Fixed32>, refusal::<Fixed64<12>>] {
+        // Steps that are too long.
         assert_eq!(refuse(&good, &start, 1.0 / 64.0), None);
         for dt in [0.5, -0.5, 1e300] {
             let refused = refuse(&good, &start, dt);
@@ -317,6 +324,7 @@ fn inputs_out_of_range_are_refused_by_name() -> Result<(), Error> {
             );
         }
 
+        // Ratios out of range.
         for (parameters, parameter, value) in [
             (Parameters { m2: 1e5, ..good }, Parameter::M2, 1e5),
             (Parameters { m2: 1e-5, ..good }, Parameter::M2, 1e-5),
@@ -339,6 +347,7 @@ fn inputs_out_of_range_are_refused_by_name() -> Result<(), Error> {
             "the limit it names is accepted"
         );
 
+        // All masses larger by a factor make no difference.
         let heavy = Parameters {
             m1: 1024.0,
             m2: 1024.0,
@@ -397,7 +406,7 @@ fn fixed64_motion_is_accurate_or_reported_as_diverged() -> Result<(), Error> {
     }
 
     let mut rng = fastrand::Rng::with_seed(14);
-    let mut lost = 0;
+    let mut diverged = 0;
     for _ in 0..TRIALS {
         for difference in [
             compared::<4>(&mut rng)?,
@@ -409,15 +418,15 @@ fn fixed64_motion_is_accurate_or_reported_as_diverged() -> Result<(), Error> {
                     difference <= tolerances::FIXED_64_AND_DOUBLE,
                     "{difference:e}"
                 ),
-                None => lost += 1,
+                None => diverged += 1,
             }
         }
     }
 
-    println!("{lost} of {} lost", 3 * TRIALS);
+    println!("{diverged} of {} diverged", 3 * TRIALS);
     assert!(
-        (TRIALS / 30..3 * TRIALS / 2).contains(&lost),
-        "{lost} lost: the search is about the limit"
+        (TRIALS / 30..3 * TRIALS / 2).contains(&diverged),
+        "{diverged} diverged: the search must be near the limit"
     );
     Ok(())
 }
@@ -434,6 +443,7 @@ fn motion_of_less_energy_runs_in_the_same_units() -> Result<(), Error> {
         p2: -0.2,
     };
 
+    // The lower motion in the units of the higher one, and in its own.
     let highest = Fixed64::<10>::new(&parameters, &State::at_rest(PI, PI), dt)?;
     let [lower, own] =
         [highest.started(&low)?, Form::new(&parameters, &low, dt)?].map(|mut motion| {

@@ -13,7 +13,7 @@ use reference::taylor::Reference;
 /// The steps of the comparison are this many times finer. Its arithmetic is compensated `f64`.
 const FINER: u32 = 16;
 /// The time between two samples of the exact motion, sqrt(l1/g).
-const LOOKS: f64 = 0.1;
+const SAMPLE: f64 = 0.1;
 /// The number of points that are compared with the reference. Each takes 0.1 s.
 const JUDGED: usize = 60;
 
@@ -51,12 +51,14 @@ fn judge(map: &Map) -> Result<[usize; 4], Error> {
         .into_iter()
         .try_fold([0; 4], |counts, (start, point)| {
             let [a1, a2] = start.map(f64::from);
+            // The flip of the finer steps, rounded to `f32`.
             let exact = match reference::flip(&fine, a1, a2)? {
                 Flip::Never => Flip::Never,
                 Flip::After(time) => Flip::After(time as f32),
                 Flip::Later => Flip::Later,
             };
 
+            // The map is wrong, wrong without being in doubt, or in doubt.
             let wrong = map.differ([point[0], exact]);
             let doubtful = map.differ(point);
             let these = [wrong, wrong && !doubtful, doubtful, true];
@@ -71,16 +73,17 @@ fn exact(map: &Map, [a1, a2]: [f32; 2]) -> Flip<f32> {
         &Motion::at_rest(a1.into(), a2.into()),
     );
     let mut before = [a1, a2].map(f64::from);
-    for look in 1..=(f64::from(map.limit) / LOOKS) as u32 {
-        let time = f64::from(look) * LOOKS;
+    for look in 1..=(f64::from(map.limit) / SAMPLE) as u32 {
+        let time = f64::from(look) * SAMPLE;
         motion.advance_to(time);
         let after = motion.motion().angles();
+        // A rod has passed straight up since the last sample. The time is interpolated.
         let passed = |rod: usize| {
             (after[rod].abs() > PI)
                 .then(|| (after[rod].abs() - PI) / (after[rod] - before[rod]).abs())
         };
         if let Some(since) = [0, 1].into_iter().filter_map(passed).reduce(f64::max) {
-            return Flip::After((time - since * LOOKS) as f32);
+            return Flip::After((time - since * SAMPLE) as f32);
         }
         before = after;
     }

@@ -87,6 +87,7 @@ fn backward_steps_return_to_the_start_and_single_steps_are_bit_identical() -> Re
 
     let [carried, plain] = tolerances::RETURN_OF_32_BITS;
     for &method in Method::ALL {
+        // Forward in one call, and step by step.
         let mut forth = trials::run(method, &parameters, &start, 1.0 / 1024.0)?;
         forth.advance(1024)?;
         let mut each = trials::run(method, &parameters, &start, 1.0 / 1024.0)?;
@@ -97,6 +98,7 @@ fn backward_steps_return_to_the_start_and_single_steps_are_bit_identical() -> Re
             "{method}"
         );
 
+        // Back to the start, with the rounding errors of both ways.
         let mut back = trials::run(method, &parameters, &forth.state(), -1.0 / 1024.0)?;
         back.advance(1024)?;
         let budget = match method.numbers() {
@@ -128,15 +130,16 @@ fn directions_are_those_of_the_angles() -> Result<(), Error> {
             f32::EPSILON.into()
         };
 
-        for look in 1..=10 {
+        for sample in 1..=10 {
             motion.advance(7)?;
             // The directions are ahead of the state, because the steps are longer than dt.
-            let ahead = tolerances::LONGER * epsilon * f64::from(look * 7) / 64.0;
+            let ahead = tolerances::LONGER * epsilon * f64::from(sample * 7) / 64.0;
             let budget = tolerances::DIRECTIONS * epsilon + FASTEST * ahead;
             for ([sine, cosine], angle) in
                 motion.directions().into_iter().zip(motion.state().angles())
             {
                 let (s, c) = angle.sin_cos();
+                // The components along the exact direction and across it.
                 let [along, across] = [sine * s + cosine * c, sine * c - cosine * s];
                 assert!(across.abs() <= budget, "{method}: {across:e} at {angle}");
                 assert!(
@@ -168,15 +171,16 @@ fn turns_follow_the_angular_velocity() -> Result<(), Error> {
         let mut before = velocities(&start);
         let mut most = 0.0_f64;
         for _ in 0..10 * 2048 {
+            // The trapezoidal rule for the angle.
             motion.advance(1)?;
             let now = velocities(&motion.state());
-            for (i, told) in motion.angles().into_iter().enumerate() {
+            for (i, reported) in motion.angles().into_iter().enumerate() {
                 angles[i] += 0.5 * dt * (before[i] + now[i]);
                 assert!(
-                    (told - angles[i]).abs() < 0.1,
-                    "{method}: {told}, {angles:?}"
+                    (reported - angles[i]).abs() < 0.1,
+                    "{method}: {reported}, {angles:?}"
                 );
-                most = most.max(told.abs());
+                most = most.max(reported.abs());
             }
             before = now;
         }
@@ -196,6 +200,7 @@ fn turns_follow_the_angular_velocity() -> Result<(), Error> {
 fn turns_follow_an_angle_in_either_direction() {
     let mut rng = Rng::with_seed(7);
     let mut angle = 1.0_f64;
+    // Bit 31 of a word is the sign of a sine or cosine.
     let signs = |angle: f64| [[angle.sin(), angle.cos()].map(|part| -i32::from(part < 0.0)); 2];
     assert!(matches!(
         Turns::of([0.0, 1.4e10], signs(angle)),
@@ -213,6 +218,7 @@ fn turns_follow_an_angle_in_either_direction() {
         );
     }
 
+    // The angle changes at random by less than a quarter turn.
     let mut turns = Turns::of([angle; 2], signs(angle)).expect("few turns");
     let mut farthest = 0.0_f64;
     for _ in 0..100_000 {
@@ -252,6 +258,7 @@ fn bad_input_is_refused_by_name() -> Result<(), Error> {
 
     let still = State::at_rest(1.0, 1.0);
     for &method in Method::ALL {
+        // The error of this method for a bad input.
         let refused = |parameters: &Parameters<f64>, start: &State<f64>, dt: f64| {
             trials::run(method, parameters, start, dt)
                 .err()
@@ -316,6 +323,7 @@ fn bad_input_is_refused_by_name() -> Result<(), Error> {
         }
     }
 
+    // A velocity whose energy is out of range in `f32`.
     let light = Pendulum::new(&Parameters {
         m2: 0.1,
         l2: 0.1,

@@ -17,8 +17,8 @@ const STARTS: u32 = 24;
 /// up to 610).
 const PLAIN: f64 = 2000.0;
 
-/// Returns three limits on a typical error: the largest factor by which it may grow if the step is
-/// halved, the error up to which any growth is allowed, and the largest error in the finest steps.
+/// Returns three limits on a typical error: the largest growth for a halved step, as a factor, the
+/// error that may grow by any factor, and the largest error in the finest steps.
 fn budget(
     &HardCase {
         floor,
@@ -63,6 +63,7 @@ fn refining_pays(case: &HardCase, method: Method) -> Result<(), Error> {
     // For methods in 32 bits, order 16 in `f64` is accurate enough, at a tenth of the reference's
     // cost.
     let is_narrow = method.is_single() || method.numbers() == Numbers::Fixed32;
+    // Start i of the case, with its exact motion.
     let with_exact = |i| {
         let on = f64::from(i) * case.spread;
         let State { a1, a2, p1, p2 } = case.trial.start;
@@ -103,6 +104,7 @@ fn refining_pays(case: &HardCase, method: Method) -> Result<(), Error> {
         Ok((logarithms / starts.len() as f64).exp())
     };
 
+    // Fixed point refuses the longest steps.
     let is_too_long = |error: &_| {
         matches!(
             error,
@@ -113,6 +115,7 @@ fn refining_pays(case: &HardCase, method: Method) -> Result<(), Error> {
         )
     };
 
+    // The errors from coarse to fine steps.
     let errors = match HALVINGS
         .map(typical_error)
         .filter(|error| !is_too_long(error))

@@ -53,6 +53,7 @@ fn keeps_its_budgets(rows: &[(KnownAnswer, Reference)], method: Method) {
     let mut tested = 0_u32;
     for scene in rows.chunk_by(|(one, _), (next, _)| one.scene == next.scene) {
         let (first, _) = &scene[0];
+        // Fixed point refuses steps that are too long for a fast scene.
         let dt = 1.0 / f64::from(steps_per_second);
         let mut run = match trials::run(method, &first.parameters, &first.start.state(), dt) {
             Err(Error::TooLarge {
@@ -62,12 +63,14 @@ fn keeps_its_budgets(rows: &[(KnownAnswer, Reference)], method: Method) {
             run => run.unwrap_or_else(|error| panic!("{method}, {}: {error}", first.scene)),
         };
 
+        // The run advances from row to row.
         let mut made = 0;
         for (row, exact) in scene {
             let left = (row.time * f64::from(steps_per_second)) as u32 - made;
             made += left;
             let State { a1, a2, .. } = run
                 .advance(left)
+                // A motion that has diverged is infinitely wrong.
                 .map_or([f64::NAN; 4].into(), |()| run.state());
             let distance = distance(
                 row,

@@ -34,6 +34,7 @@ fn upright_pendulum_falls_with_the_exact_motion_in_direction_form() -> Result<()
     let is_meant =
         |method: &&Method| method.equations() == Equations::Directions && !method.is_fixed_point();
     for &method in Method::ALL.iter().filter(is_meant) {
+        // The angle of a method in `f32` is the nearest `f32` to pi.
         let single = f64::from(std::f32::consts::PI);
         let up = if method.is_single() { single } else { PI };
         let parameters = even(9.81_f64 as f32 as f64);
@@ -46,6 +47,7 @@ fn upright_pendulum_falls_with_the_exact_motion_in_direction_form() -> Result<()
         });
 
         assert!(exact.is_finite());
+        // Finer steps fall at the same time.
         for halvings in HALVINGS.skip(2) {
             let mut motion = run(
                 method,
@@ -98,6 +100,7 @@ fn upright_pendulum_stays_for_the_predicted_time_in_plain_sums() -> Result<(), E
             let dt = 1.0 / f64::from(steps_per_second);
             let stays = 0.5 * ulp / (9.81 * error * dt);
             let mut motion = run(method, &even(9.81), &State::at_rest(up, up), dt)?;
+            // The time until the first change of the angle.
             let mut steps = 0_u32;
             while motion.state().a1 == up && steps < 100 * steps_per_second {
                 motion.advance(1)?;
@@ -132,6 +135,7 @@ fn straight_rods_turn_uniformly_without_gravity() -> Result<(), Error> {
         let mut motion = run(method, &parameters, &start, 1.0 / 256.0)?;
         for seconds in 1..=20 {
             motion.advance(256)?;
+            // The error of the angles, and of the conserved momentum.
             let State { a1, a2, p1, p2 } = motion.state();
             let [miss1, miss2] =
                 [a1, a2].map(|angle| (angle - 1.0 - 2.0 * f64::from(seconds)).abs());
@@ -161,6 +165,7 @@ fn pendulum_at_rest_stays_at_rest() -> Result<(), Error> {
             motion.advance(10_000)?;
             let now = motion.state();
             let moved = (now.a1 - start.a1).abs().max((now.a2 - start.a2).abs());
+            // Fixed point in 64 bits rounds the momenta in each step.
             let [angle, momentum] = match method.numbers() {
                 Numbers::Fixed64 => [tolerances::REST_OF_FIXED_64; 2],
                 _ if method.is_single() => [f32::EPSILON.into(), 0.0],
@@ -201,6 +206,7 @@ fn tiny_oscillations_are_linear_and_subnormal_ones_stay_small() -> Result<(), Er
             1.0 / 256.0,
         )?;
 
+        // The tiny oscillation is a cosine.
         for step in 1..=10 * 64 {
             motion.advance(4)?;
             let expected = (slow.frequency * f64::from(step) / 64.0).cos();
@@ -211,6 +217,7 @@ fn tiny_oscillations_are_linear_and_subnormal_ones_stay_small() -> Result<(), Er
             );
         }
 
+        // The subnormal one loses all its digits, but does not grow.
         let mut motion = run(
             method,
             &parameters,
@@ -248,6 +255,7 @@ fn fast_mode_decays_below_the_step_limit_and_grows_above() -> Result<(), Error> 
             l2: 0.01,
             ..even(9.81)
         },
+        // Runs accept no step above the limit. `Pendulum::step` does.
     ] {
         let modes = Modes::new(&parameters)?;
         assert_eq!(modes.check_step(modes.step_limit()), Ok(()));

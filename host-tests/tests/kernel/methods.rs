@@ -40,6 +40,7 @@ fn every_method_has_its_order() -> Result<(), Error> {
     let trial = Trial::regular(16.0).held_by(Method::Rk4F32);
     let exact = trial.exact()?;
     let [coarse, fine] = tolerances::ORDER_OF_METHODS;
+    // Regular motion, every method.
     for method in exact_methods() {
         let order = order(method, &trial, &exact, steps(method))?;
         println!("{method}: {order:.2}");
@@ -95,6 +96,7 @@ fn every_method_has_its_order() -> Result<(), Error> {
 fn extrapolation_of_any_equation_has_the_requested_order() -> Result<(), Error> {
     for (order, steps) in [(6, 196), (8, 49), (12, 12), (16, 5)] {
         let method = Extrapolation::new(order)?;
+        // The error at the end, for position and velocity.
         let error = |steps: u32| {
             let dt = 20.0 / f64::from(steps);
             let [x, v] = (0..steps).fold([0.0, 1.0], |z, _| {

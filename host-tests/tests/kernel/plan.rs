@@ -161,6 +161,7 @@ fn planner_chooses_the_cheapest_method_with_the_longest_horizon() {
         ),
     ];
 
+    // Each plan equals its row, and its cost is that of the price list.
     for (costs, frame, scene, (method, steps), limit, horizon) in rows {
         let plan = Plan::search(
             &scene,
@@ -198,6 +199,7 @@ fn planner_chooses_the_cheapest_method_with_the_longest_horizon() {
 #[test]
 fn planner_keeps_to_the_frame_budget_and_pays_for_the_end() {
     let figure7 = scene(2.75, 171.0, 30.0);
+    // A small budget gives a shorter horizon.
     let frugal = within(&figure7, 5e3).expect("a good scene");
     assert!(
         frugal.limit == Limit::Budget && frugal.spent < 1e8,
@@ -208,6 +210,8 @@ fn planner_keeps_to_the_frame_budget_and_pays_for_the_end() {
         matches!(poor, PlanError::NoMethod { limit: Limit::Budget, spent } if spent < 4e6),
         "{poor:?}"
     );
+
+    // A budget that reaches the end of the scene.
     let short = scene(2.75, 171.0, 1.05 * frugal.horizon);
     let lavish = within(&short, 1e6).expect("a good scene");
     assert_eq!(
@@ -250,6 +254,7 @@ fn plans_keep_to_both_budgets() {
     let mut found = 0;
     for frame in [200.0, 1e3, 1e4, 1e6] {
         for planning in [1e5, 1e6, 1e7, 1e9] {
+            // Regular and chaotic motions.
             for degrees in [3.0, 60.0, 120.0, 171.0] {
                 match Plan::search(
                     &scene(2.75, degrees, 20.0),
@@ -272,7 +277,7 @@ fn plans_keep_to_both_budgets() {
 
     assert!(
         (20..64).contains(&found),
-        "{found} of 64: some hold, some cannot be had"
+        "{found} of 64: some plans are found, some budgets are too small"
     );
     // Planning cannot pay for a run in 64 bits for as long as the method is accurate, and does not
     // start one.
@@ -298,6 +303,7 @@ fn plans_keep_to_both_budgets() {
 fn frame_budget_of_the_exact_cost_is_enough() {
     for (mass_ratio, degrees) in [(1.0, 60.0), (1.0, 120.0), (2.75, 171.0), (1e3, 30.0)] {
         let scene = scene(mass_ratio, degrees, 20.0);
+        // The budget of the plan itself, and slightly less.
         for costs in [&M3, &M4F] {
             let within = |frame| {
                 Plan::search(
@@ -370,6 +376,7 @@ fn initial_method_resolves_the_energy_of_the_fastest_scenes() -> Result<(), Erro
         assert!(processor.costs.of_frame(stepping) <= processor.frame);
         in_32_bits += u32::from(stepping.method != Method::Extrapolation10Fixed64);
 
+        // The energy of the whole motion.
         let pendulum = Pendulum::new(&scene.pendulum)?;
         let start = pendulum.energy_above_rest(&pendulum.to_state(&scene.start));
         let mut run = PlannedRun::new(&scene, stepping)?;
@@ -499,6 +506,7 @@ fn errors_contain_the_parameter_and_its_value() {
         );
     };
 
+    // No number, infinite, zero, and negative.
     for value in [f64::NAN, f64::INFINITY, 0.0, -1.0] {
         let error = |parameter| match value.is_finite() {
             true => Error::NotPositive { parameter, value },
@@ -621,8 +629,8 @@ fn errors_contain_the_parameter_and_its_value() {
     ));
 }
 
-/// If no method meets the tolerance, the limit is the budget to raise: the planning budget if an
-/// affordable candidate has not failed yet, otherwise the frame budget.
+/// The limit without a method is the budget to raise: the planning budget if an affordable
+/// candidate has not failed yet, otherwise the frame budget.
 ///
 /// The example is a light elbow at 90 degrees. Steps that resolve it cost several times the frame
 /// budget of a Cortex-M3, and the closed form is accurate for two frames.
@@ -640,9 +648,9 @@ fn limit_without_a_method_is_the_budget_to_raise() {
         Err(PlanError::NoMethod { limit, .. }) => limit,
         other => panic!("{other:?}"),
     };
-    let begun = 1.2 * M3.preparation;
+    let started = 1.2 * M3.preparation;
     assert_eq!(
-        [limit(20.0, begun), limit(5.0, begun)],
+        [limit(20.0, started), limit(5.0, started)],
         [Limit::Planning, Limit::Budget]
     );
     assert_eq!(limit(20.0, 20.0 * M3.preparation), Limit::Budget);
@@ -651,15 +659,16 @@ fn limit_without_a_method_is_the_budget_to_raise() {
         [Limit::Planning; 2]
     );
 
+    // A requested method is evaluated, even if it is not accurate for long.
     let stepping = Stepping {
         method: Method::ClosedFormF32,
         steps: 1,
     };
     let mut search =
         Search::of(stepping, &light, &M3, &CORTEX_M3.budget(&light)).expect("a good scene");
-    let asked = finished(&mut search);
+    let requested = finished(&mut search);
     assert_eq!(
-        (asked.method, asked.horizon),
+        (requested.method, requested.horizon),
         (Method::ClosedFormF32, 2.0 / 60.0)
     );
 
@@ -680,9 +689,9 @@ fn limit_without_a_method_is_the_budget_to_raise() {
     )
     .expect("a good scene");
 
-    let asked = finished(&mut search);
+    let requested = finished(&mut search);
     assert_eq!(
-        (asked.method, asked.limit, asked.horizon),
+        (requested.method, requested.limit, requested.horizon),
         (stepping.method, Limit::End, heavy.duration)
     );
     assert_eq!(

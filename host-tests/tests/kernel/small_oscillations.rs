@@ -18,6 +18,7 @@ fn exact_modes(&Parameters { m1, m2, l1, l2, g }: &Parameters<f64>) -> [TwoFloat
     let shape = |square: TwoFloat| divide(square * l1, g - square * l2);
     let fast = square(1.0);
     let slow = square(-1.0);
+
     [
         fast.sqrt(),
         slow.sqrt(),
@@ -57,6 +58,7 @@ fn modes_to_the_last_places<R: Real>() {
         .cast::<R>()
         .cast::<f64>();
 
+        // The modes of the rounded parameters, compared with the formulas of the book.
         let modes = Modes::new(&parameters.cast::<R>()).expect("valid parameters");
         let values = [
             modes.fast.frequency,
@@ -103,6 +105,7 @@ fn linear_motion_is_the_limit_of_the_exact_motion() {
             exact.advance_to(t);
             let [linear, exact]: [[f64; 4]; 2] = [linear.at(t).into(), exact.motion().into()];
             let fast = modes.fast.frequency;
+            // Velocities are larger than angles by the fast frequency.
             for (i, scale) in [1e-6, 1e-6, 1e-6 * fast, 1e-6 * fast]
                 .into_iter()
                 .enumerate()
@@ -132,6 +135,7 @@ fn upright_pendulum_falls_at_the_rates_of_the_modes() {
     let modes = Modes::new(&parameters).expect("valid parameters");
     let upright = reference::twofloat::consts::PI;
     for Mode { frequency, shape } in [modes.fast, modes.slow] {
+        // The push is so small that the motion remains linear.
         let push = 1e-10;
         let [w1, w2] = [push * frequency, push * shape * frequency].map(TwoFloat::from);
         let constants = Parameters {
@@ -146,6 +150,8 @@ fn upright_pendulum_falls_at_the_rates_of_the_modes() {
             Reference::exact(constants, [upright + push, upright + push * shape, w1, w2]);
         exact.advance_to(1.0);
         let [a1, a2, ..] = exact.exact_state();
+
+        // Each angle has grown by the same factor.
         let growth = [
             f64::from(a1 - upright) / push,
             f64::from(a2 - upright) / (push * shape),

@@ -1,5 +1,5 @@
-//! The enclosure contains the exact motion, and no longer contains it when any of its allowances is
-//! removed.
+//! The enclosure contains the exact motion, and no longer contains it without one of its
+//! allowances.
 
 mod motions;
 mod periodic_orbits;
@@ -75,8 +75,9 @@ fn the_known_answers_are_those_that_the_command_makes() {
 /// Sums, products and quotients with known exact results are inside, and are not without the
 /// allowance for rounding.
 #[test]
-fn what_is_rounded_is_counted() {
+fn roundings_are_inside_the_enclosure() {
     let mut rng = Rng::with_seed(1);
+    // Each expression is zero without roundings.
     for _ in 0..1000 {
         let [a, b] = [(); 2].map(|()| symmetric(&mut rng) * 8.0);
         let [x, y] = [a, b].map(Fixed::of);
@@ -99,6 +100,7 @@ fn what_is_rounded_is_counted() {
         );
     }
 
+    // A third is not exact. Its middle alone is not enough.
     let third = Fixed::ONE.over(3);
     let three = Fixed::of(3.0);
     assert!(
@@ -122,6 +124,7 @@ fn what_is_rounded_is_counted() {
 #[test]
 fn whole_turns_are_removed_exactly() {
     let [zero, one] = [(0, 1), (1, 1)];
+    // The starts by fractions, and by the nearest `f64`.
     let hull = |angles: [(i64, u64); 2], degrees: bool| {
         let [a1, a2] = angles.map(|(above, below)| above as f64 / below as f64);
         let [a1, a2] = [a1, a2].map(|a| if degrees { a.to_radians() } else { a });
@@ -172,7 +175,7 @@ fn whole_turns_are_removed_exactly() {
 }
 
 #[test]
-fn nothing_is_known_of_what_leaves_the_range_or_is_divided_by_what_may_be_zero() {
+fn numbers_out_of_range_and_quotients_by_zero_have_no_bound() {
     let large = Fixed::of(200.0);
     let wide = Fixed::ZERO.wider(1e-30);
     let quotients =
@@ -205,8 +208,9 @@ fn is_left(reach: f64, fineness: Fineness) -> bool {
 /// The errors of the derivatives are the remainder of their series, the curvature of the motion,
 /// and the error of a difference quotient.
 #[test]
-fn what_the_derivatives_lack_is_counted() {
+fn errors_of_the_derivatives_are_inside_the_enclosure() {
     let fine = Fineness::default();
+    // Fewer terms of the derivatives, a long segment, and a coarse difference quotient.
     let cases = [
         (
             1e-7,
@@ -219,7 +223,7 @@ fn what_the_derivatives_lack_is_counted() {
         (
             1e-9,
             Fineness {
-                beside: 1e-4,
+                offset: 1e-4,
                 ..fine
             },
         ),
@@ -241,7 +245,7 @@ fn what_the_derivatives_lack_is_counted() {
 #[test]
 fn roundings_of_the_segments_are_counted() {
     let fineness = Fineness {
-        beside: 1e-29,
+        offset: 1e-29,
         ..Fineness::default()
     };
     let without = Fineness {
@@ -261,13 +265,14 @@ fn the_series_of_the_midpoint_is_bounded_to_its_last_term() {
         allowances: [1.0, 0.0, 1.0, 1.0],
         ..coarse
     };
+
     let hull = |fineness| after(10, equal_rods(9.81, RATE, Fixed::ZERO, fineness)).hull();
     let exact = hull(Fineness::default());
     assert!(meet(&exact, &hull(coarse), 0.0) && !meet(&exact, &hull(without), 0.0));
 }
 
-/// One point is advanced in steps of two lengths, which have different roundings. A second later it
-/// is in both sets. (The remainder of the series, which would hide that, is smaller than one
+/// The midpoint is advanced in steps of two lengths, which have different roundings. A second later
+/// it is in both sets. (The remainder of the series, which would hide that, is smaller than one
 /// rounding.)
 #[test]
 fn roundings_of_the_midpoint_are_counted() {

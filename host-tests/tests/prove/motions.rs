@@ -31,7 +31,7 @@ fn random(rng: &mut Rng) -> (Parameters<f64>, Motion<f64>) {
 }
 
 /// Checks every five frames that the box contains the reference, within the reference's own error,
-/// and that the energy is that of the start.
+/// and that it contains the energy of the start.
 fn is_inside(parameters: &Parameters<f64>, motion: &Motion<f64>, frames: u32) {
     let mut reference = Reference::new(parameters, motion);
     let mut set = Start::of(parameters, motion).enclose(RATE);
@@ -51,6 +51,8 @@ fn is_inside(parameters: &Parameters<f64>, motion: &Motion<f64>, frames: u32) {
             &directions,
             tolerances::REFERENCE * set.growth() * farthest,
         );
+
+        // The width, relative to the growth of a small error.
         let width = set
             .directions()
             .as_flattened()
@@ -58,6 +60,7 @@ fn is_inside(parameters: &Parameters<f64>, motion: &Motion<f64>, frames: u32) {
             .map(|x| x.radius())
             .fold(0.0, f64::max)
             / set.growth();
+
         assert!(
             width < tolerances::ENCLOSURE,
             "{parameters:?} {motion:?} frame {frame}: {width:e}"
@@ -87,7 +90,7 @@ fn random_motions_are_inside_for_long() {
     random_motions_are_inside(300);
 }
 
-/// The motions for which the reference is the standard: the hard cases and the scenes.
+/// The motions with the reference as their standard: the hard cases and the scenes.
 #[test]
 fn the_reference_is_inside_where_it_is_used() {
     for case in hard_cases() {
@@ -130,7 +133,7 @@ fn the_reference_is_inside_where_it_is_used() {
 
 /// Two motions that differ only in one bit of g separate within a second.
 #[test]
-fn one_bit_of_g_is_told_apart() {
+fn one_bit_of_g_makes_a_difference() {
     let hull = |g: f64| after(60, equal_rods(g, RATE, Fixed::ZERO, Fineness::default())).hull();
     assert!(!meet(&hull(9.81), &hull(9.81_f64.next_up()), 0.0));
 }

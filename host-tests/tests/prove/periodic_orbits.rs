@@ -6,8 +6,8 @@
 //! are computed with CAPD; its author checked energy 0 with Arb as well.
 //!
 //! Masses, rods and g are 1. The orbits start with both rods hanging, a1 = a2 = 0, with
-//! p1 = p2 + sqrt(2 (E + 3) - p2^2), so that the energy is E and rod 1 swings upwards. They are back
-//! at a1 = 0 with the same momenta when rod 2 has made one turn backwards.
+//! p1 = p2 + sqrt(2 (E + 3) - p2^2), so that the energy is E and rod 1 swings upwards. They are
+//! back at a1 = 0 with the same momenta when rod 2 has made one turn backwards.
 
 use std::f64::consts::TAU;
 
@@ -56,7 +56,8 @@ const RETURN: f64 = 1e-11;
 /// The finest bit of a time, s: 2^-50, so that times are rounded by a millionth of their interval.
 const FINEST: u32 = 50;
 
-/// Returns the set of starts: (sin a1, cos a1, S, C, P1, P2) within [`MOMENTA`] of the middle of p1 and p2.
+/// Returns the set of starts: (sin a1, cos a1, S, C, P1, P2) within [`MOMENTA`] of the middle of p1
+/// and p2.
 fn start(orbit: &Orbit) -> Enclosure {
     let energy = f64::from(orbit.twice_energy) / 2.0;
     let p2 = orbit.p2[0] + (orbit.p2[1] - orbit.p2[0]) / 2;
@@ -80,6 +81,7 @@ fn start(orbit: &Orbit) -> Enclosure {
         w1: w1_about,
         w2: w2 as f64 / UNIT as f64,
     };
+    // The start in exact fractions; masses, rods and gravity are 1.
     let one = (1, 1);
     let point = Start {
         about: (parameters, motion),
@@ -98,6 +100,7 @@ fn start(orbit: &Orbit) -> Enclosure {
     }
     .enclose(RATE);
 
+    // The momenta may be anywhere in their intervals.
     let mut box_of_starts = point.hull();
     for momentum in &mut box_of_starts[4..] {
         *momentum = momentum.wider(MOMENTA * f64::from(-point.frame.0).exp2());
@@ -120,6 +123,7 @@ fn check_start(orbit: &Orbit, set: &Enclosure) {
     // (p1 - p2)^2 = 2 (E + 3) - p2^2 has a solution p1 in the box for either end.
     let energy = Fixed::fraction(i64::from(6 + orbit.twice_energy), 1, 2 * exponent);
     for end in ends {
+        // The equation has opposite signs at the ends of the box.
         let beyond = [-1.0, 1.0].map(|side| {
             let p1 = p1.middle() + Fixed::of(side * p1.radius());
             ((p1 - end) * (p1 - end) + end * end - energy).is_positive()
@@ -168,6 +172,7 @@ fn periodic_orbits_return_when_and_where_another_proof_says() {
         let mut angles = [0.0; 2];
         for _ in 0..frames {
             moving.advance().expect("it can be followed");
+            // The angles without the whole turns that the directions hide.
             let now = moving
                 .directions()
                 .map(|[sin, cos]| sin.about().atan2(cos.about()));
@@ -183,6 +188,7 @@ fn periodic_orbits_return_when_and_where_another_proof_says() {
         let at_early = advanced(moving, early - shown);
         let at_late = advanced(at_early.clone(), late - early);
 
+        // The last piece of both angles.
         let now = at_late
             .directions()
             .map(|[sin, cos]| sin.about().atan2(cos.about()));
@@ -204,7 +210,7 @@ fn periodic_orbits_return_when_and_where_another_proof_says() {
             orbit.twice_energy
         );
 
-        // At that moment S and the momenta are those of the start.
+        // At that moment S and the momenta equal those at the start, within the width of the box.
         let [sin_before, sin_after] = [before[0], after[0]].map(Fixed::about);
         let share = -sin_before / (sin_after - sin_before);
         for i in [2, 4, 5] {

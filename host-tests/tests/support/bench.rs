@@ -90,6 +90,7 @@ impl<M: Linked> Bench<M> {
             _folder: folder,
             name,
         };
+
         bench.plug();
         bench
     }
@@ -111,6 +112,7 @@ impl<M: Linked> Bench<M> {
 
     /// Receives the host's bytes. Returns true if a program has the other end open.
     pub fn is_heard(&mut self) -> bool {
+        // An unplugged board hears nothing.
         let Some(cable) = &mut self.cable else {
             return false;
         };
@@ -132,6 +134,7 @@ impl<M: Linked> Bench<M> {
         while let Some(cable) = self.cable.as_mut().filter(|_| !bytes.is_empty()) {
             match cable.write(bytes) {
                 Ok(count) => bytes = &bytes[count..],
+                // The host may be waiting for its own bytes to be received.
                 Err(error) if error.kind() == ErrorKind::WouldBlock && self.is_heard() => {
                     sleep(WAIT)
                 }
@@ -145,6 +148,7 @@ impl<M: Linked> Bench<M> {
     /// Transfers the available data in both directions. `wire` converts the board's messages to
     /// bytes.
     pub fn carry(&mut self, mut wire: impl FnMut(ToHost) -> Vec<u8>) {
+        // Messages that no program can hear are lost.
         let is_heard = self.is_heard();
         let messages = self
             .machine
@@ -197,6 +201,7 @@ pub fn at_port_for<M: Linked>(
 ) -> Output {
     command.arg("--port").arg(&bench.name);
     scope(|scope| {
+        // The command runs in a thread, while the board is played here.
         let run =
             scope.spawn(move || run(command, limit).unwrap_or_else(|error| panic!("{error}")));
         while !run.is_finished() {

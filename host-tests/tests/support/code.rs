@@ -22,8 +22,11 @@ impl Code {
         let image = Image::read(path)?;
         let bytes = std::fs::read(path)?;
         let file = object::File::parse(&*bytes)?;
-        let is_loaded = |flags| matches!(flags, SectionFlags::Elf { sh_flags } if sh_flags & u64::from(SHF_ALLOC) != 0);
+        let allocates = |flags: u64| flags & u64::from(SHF_ALLOC) != 0;
+        let is_loaded =
+            |flags| matches!(flags, SectionFlags::Elf { sh_flags } if allocates(sh_flags));
         let mut names = Vec::new();
+        // Debugging information has relocations as well, but is not loaded.
         for section in file.sections().filter(|section| is_loaded(section.flags())) {
             for (at, note) in section.relocations() {
                 let RelocationTarget::Symbol(index) = note.target() else {
@@ -32,6 +35,7 @@ impl Code {
 
                 // Bit 0 marks the code as Thumb.
                 let address = file.symbol_by_index(index)?.address() as u32 & !1;
+                // A reference into the middle of a function is a branch within it.
                 if image
                     .function_at(address)
                     .is_some_and(|function| function.address == address)
@@ -50,6 +54,7 @@ impl Code {
 
     /// Returns the functions whose name satisfies `is_wanted`, by address.
     pub fn functions_named(&self, is_wanted: impl Fn(&str) -> bool) -> impl Iterator<Item = u32> {
+        // Labels have no size.
         let functions = self
             .image
             .functions_named("")

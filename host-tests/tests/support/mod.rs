@@ -49,7 +49,7 @@ pub fn settings<'a>(toolchain: &'a Toolchain, board: &'a Board, elf: &'a Path) -
     }
 }
 
-/// Returns the machine that `start` makes of a board with its application: one that runs, or one in
+/// Returns the machine that `start` makes of a board with its application. It runs freely or in
 /// lockstep.
 pub fn on<M>(
     board: &Board,
@@ -89,6 +89,7 @@ pub fn address(elf: &Path, name: &str) -> u32 {
     let bytes = std::fs::read(elf).unwrap_or_else(|error| panic!("{}: {error}", elf.display()));
     let file =
         object::File::parse(&*bytes).unwrap_or_else(|error| panic!("{}: {error}", elf.display()));
+    // The names of both versions without the brackets.
     let is_it = |mangled: &str| {
         let whole = format!("{:#}", rustc_demangle::demangle(mangled)).replace(['<', '>'], "");
         whole == name || whole.ends_with(&format!("::{name}"))

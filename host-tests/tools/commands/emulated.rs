@@ -17,8 +17,8 @@ use emulator::process;
 use emulator::qemu::{Clock, Machine, Settings};
 use emulator::toolchain::{self, Consent};
 
-/// Finds or fetches all that builds and runs the firmware: the ARM core library, QEMU, and rp2040js
-/// for the Pico.
+/// Finds or fetches everything that is needed to build and run the firmware: the ARM core library,
+/// QEMU, and rp2040js for the Pico.
 #[derive(Debug, Parser)]
 #[command(
     name = "cargo setup",
@@ -78,6 +78,7 @@ pub fn fw(options: &FwOptions) -> anyhow::Result<ExitCode> {
         return Ok(ExitCode::SUCCESS);
     };
     let name = binary.to_string_lossy();
+    // A name with a slash is a file, any other name is a binary of the firmware.
     let is_path = name.contains('/');
 
     if !is_path && !binaries().iter().any(|binary| *binary == name) {
@@ -87,6 +88,7 @@ pub fn fw(options: &FwOptions) -> anyhow::Result<ExitCode> {
         )));
     }
 
+    // The board is the user's, or follows from the binary.
     let board = options.board.unwrap_or_else(|| board_for(binary));
     let toolchain = toolchain::set_up()?;
     let elf = if is_path {
@@ -94,6 +96,7 @@ pub fn fw(options: &FwOptions) -> anyhow::Result<ExitCode> {
     } else {
         toolchain.build(&name, board.target)?
     };
+
     let limit = options
         .seconds
         .map_or(LIMIT, |seconds| Duration::from_secs(seconds.into()));
@@ -110,6 +113,8 @@ pub fn fw(options: &FwOptions) -> anyhow::Result<ExitCode> {
 
     // The board continues if the reader of the output has stopped.
     let ended = machine.wait(|line| drop(writeln!(output, "{line}").and_then(|()| output.flush())));
+
+    // With `--seconds` the end of the time is a success. Otherwise the exit code is the firmware's.
     let is_late = |error: &anyhow::Error| {
         error.downcast_ref().map(io::Error::kind) == Some(io::ErrorKind::TimedOut)
     };
@@ -138,6 +143,7 @@ fn board_for(binary: &Path) -> &'static Board {
     } else {
         of_target
     };
+    // The application of a board has the name of the board's binary.
     let runs_it = |board: &&&Board| binary.file_name().is_some_and(|file| file == board.binary);
     boards.iter().find(runs_it).unwrap_or(&boards[0])
 }
@@ -192,6 +198,7 @@ const THREADS: [&str; 2] = ["RUST_TEST_THREADS", "RAYON_NUM_THREADS"];
 /// exit code.
 pub fn verify(options: &TestOptions) -> anyhow::Result<ExitCode> {
     let limit = LIMITS[usize::from(options.long)];
+    // Returns a running `cargo test` with these arguments.
     let test = |arguments: &[&str]| {
         let mut command = Command::new("cargo");
         command

@@ -18,7 +18,7 @@ use emulator::flash::{flash_image, uf2};
 use emulator::link::{running_board, touch};
 use emulator::toolchain::{self, Toolchain, target};
 
-/// The name of the firmware's file, and that of the label on a board's drive.
+/// The name of the firmware's file, and the name of the label on a board's drive.
 pub const FILE: &str = "pico.uf2";
 const LABEL: &str = "INFO_UF2.TXT";
 /// The line in the label of an RP2040.
@@ -56,7 +56,9 @@ pub fn uf2_file(toolchain: &Toolchain) -> anyhow::Result<(usize, PathBuf)> {
 pub fn pico(options: &PicoOptions) -> anyhow::Result<()> {
     let (bytes, file) = uf2_file(&toolchain::set_up()?)?;
     say(format_args!("{}: {bytes} bytes of flash", file.display()))?;
+
     let blocks = fs::read(&file)?;
+    // The drive is the user's, or a mounted one, or appears after a running board was restarted.
     let drive = match options.drive.clone().or_else(find_drive) {
         Some(drive) => drive,
         None => {
@@ -116,6 +118,7 @@ fn drive(folder: &str) -> Result<PathBuf, String> {
 /// because a network file system whose server is gone would never answer.
 fn mounted(mounts: &str) -> Option<PathBuf> {
     let folder = |line: &str| {
+        // A line has the device, the folder, the type and more.
         let mut fields = line.split(' ').skip(1);
         let folder = fields.next()?;
         (fields.next()? == DRIVE_TYPE).then(|| folder.to_owned())
@@ -123,6 +126,7 @@ fn mounted(mounts: &str) -> Option<PathBuf> {
     mounts
         .lines()
         .filter_map(folder)
+        // The system writes a space in a path as `\040`.
         .map(|folder| folder.replace("\\040", " "))
         .find_map(|folder| drive(&folder).ok())
 }
@@ -177,6 +181,8 @@ pub fn stm32f405(options: &FlashOptions) -> anyhow::Result<()> {
         )));
     }
     let elf = toolchain::ready()?.build_for(&STM32F405)?;
+
+    // A debug probe takes the ELF file, the USB loader a flat image and its address.
     let mut command = Command::new(program);
 
     if options.dfu {
@@ -203,6 +209,7 @@ pub fn stm32f405(options: &FlashOptions) -> anyhow::Result<()> {
         command.args(["run", "--chip", &options.chip]).arg(elf);
     }
 
+    // `dfu-util` is watched, because its exit code is not reliable.
     let start = |error| Refused::because(format_args!("cannot start {program}: {error}"));
     if options.dfu {
         let mut child = command.stdout(Stdio::piped()).spawn().map_err(start)?;

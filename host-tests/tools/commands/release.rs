@@ -104,6 +104,7 @@ fn package(into: &Path) -> anyhow::Result<()> {
             .current_dir(workspace());
         process::run(&mut cargo, PACKAGE)
     };
+    // Without the network the package is the same, if the index is on this machine.
     if attempt(&["--offline"])?.status.success() {
         return Ok(());
     }

@@ -52,6 +52,8 @@ pub fn at_most(value: f64) -> String {
     if value == 0.0 || !value.is_finite() || is_enough(&rounded) {
         return rounded;
     }
+
+    // Half a unit or one unit of the second digit is usually enough.
     let more = value * 1.1;
     let unit = 10_f64.powi(value.log10().floor() as i32 - 1);
     [value + 0.5 * unit, value + unit, more]
@@ -78,7 +80,7 @@ fn bounds_are_rounded_up() {
 }
 
 #[test]
-fn what_stands_between_the_marks_is_replaced() {
+fn text_between_the_marks_is_replaced() {
     let [old, new] = ["old", "new"].map(|text| format!("before [{text}] after"));
     assert_eq!(between(&old, ["[", "]"], "new"), Some(new));
     assert_eq!(between("before ] after [", ["[", "]"], "new"), None);

@@ -1,5 +1,5 @@
-//! The hard cases, `reference/hard_cases.csv`: motions on which careless arithmetic fails, and the
-//! allowed errors of the direction form.
+//! The hard cases, `reference/hard_cases.csv`: motions that careless arithmetic computes wrongly,
+//! and the allowed errors of the direction form.
 
 use double_pendulum::{Parameters, State};
 
@@ -28,16 +28,16 @@ pub struct HardCase {
     ///
     /// With a heavy elbow the unit of time in 32 bits, which depends on the step, is half of its
     /// largest value (in steps that are a quarter longer the error is a third, measured 2.8e-8).
-    /// Near the upright position an error of 2^-30 of a sine near 0 is larger than that of an
-    /// `f32`. In 64 bits the roundings of each step accumulate, because no sum is compensated.
+    /// Near the upright position an error of 2^-30 of a sine near 0 exceeds an `f32`'s error. In 64
+    /// bits the roundings of each step accumulate, because no sum is compensated.
     pub fixed: [f64; 2],
     /// The largest allowed error of `f64` with the finest steps, rad. It is the error of the
     /// method.
     pub method: f64,
-    /// The factor by which plain sums may lose more in angles, whose last place is coarse many
-    /// turns away, or where an error grows while the pendulum falls.
+    /// The allowed error of plain sums in angles, divided by the one in directions. The last place
+    /// of an angle is coarse many turns away, and an error grows while the pendulum falls.
     pub in_angles: f64,
-    /// The largest factor by which a typical error may grow when the step is halved.
+    /// The largest allowed ratio of the typical errors with a halved step and with the whole step.
     pub growth: f64,
     /// The reason why the case is hard, and the reasons for the budgets.
     pub reason: &'static str,
@@ -57,12 +57,15 @@ pub fn hard_cases() -> Vec<HardCase> {
 
 impl HardCase {
     fn read(line: &'static str) -> Option<Self> {
+        // The reason is last and in quotes, so that it may contain commas.
         let (line, reason) = line.strip_suffix('"')?.split_once(",\"")?;
         let (name, numbers) = line.split_once(',')?;
         let numbers: Vec<f64> = numbers
             .split(',')
             .map(|text| text.parse().ok())
             .collect::<Option<_>>()?;
+
+        // The motion, then its budgets.
         let &[m1, m2, l1, l2, g, a1, a2, p1, p2, seconds, ref budgets @ ..] = numbers.as_slice()
         else {
             return None;

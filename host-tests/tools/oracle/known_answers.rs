@@ -28,7 +28,7 @@ pub struct KnownAnswer {
     pub directions: [TwoFloat; 4],
     /// The largest error of the directions: two units of the last digit written.
     pub radius: [f64; 4],
-    /// The factor by which a small error of the start has grown by that time.
+    /// The growth of a small error of the start until that time, as a factor.
     pub growth: f64,
 }
 
@@ -56,8 +56,11 @@ pub fn table() -> anyhow::Result<Vec<KnownAnswer>> {
 
 impl KnownAnswer {
     fn read(line: &'static str) -> Option<Self> {
+        // The text up to the time is kept as written.
         let (end, _) = line.match_indices(',').nth(GIVEN - 1)?;
         let (scene, numbers) = line.split_once(',')?;
+
+        // The last digit of each number gives its error.
         let places = |text: &str| {
             text.split_once('.')
                 .map_or(0, |(_, places)| places.len() as i32)
@@ -88,6 +91,8 @@ impl KnownAnswer {
         else {
             return None;
         };
+
+        // The start is in full precision, the other numbers are rounded.
         Some(Self {
             scene,
             given: &line[..end],
@@ -113,6 +118,7 @@ impl KnownAnswer {
 /// Parses a decimal number in double-double precision: up to 38 digits, with or without a point and
 /// an exponent.
 fn decimal(text: &str) -> Option<TwoFloat> {
+    // The digits without the point, and the power of ten.
     let (mantissa, exponent) = text.split_once('e').unwrap_or((text, "0"));
     let (whole, fraction) = mantissa.split_once('.').unwrap_or((mantissa, ""));
     let digits = i128::from_str(&format!("{whole}{fraction}")).ok()?;

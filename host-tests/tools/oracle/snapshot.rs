@@ -30,6 +30,7 @@ pub fn check(name: &str, picture: &str) -> Result<(), String> {
     let path = workspace()
         .join("host-tests/golden/scenes")
         .join(format!("{name}.txt"));
+    // A blessed run accepts the picture.
     if env::var_os(BLESS).is_some() {
         return fs::write(&path, picture).map_err(|error| format!("{}: {error}", path.display()));
     }
@@ -39,6 +40,8 @@ pub fn check(name: &str, picture: &str) -> Result<(), String> {
             path.display()
         )
     })?;
+
+    // The differing rows are shown one above the other.
     let differs = |(row, (old, new)): (usize, (&str, &str))| {
         (old != new).then(|| format!("row {row}\n  was |{old}|\n  is  |{new}|"))
     };
@@ -70,6 +73,7 @@ pub fn check_lines(file: &str, text: &str) -> Result<(), String> {
     if committed == text {
         return Ok(());
     }
+    // Only lines that both files have are compared; the message has the number of lines.
     let differing: Vec<String> = committed
         .lines()
         .zip(text.lines())

@@ -6,6 +6,7 @@
 ///
 /// Unless mu = 1, they are not Hamilton's equations of any system, and they lose or gain energy.
 pub fn misprinted_equal_rods(mu: f64, l: f64, g: f64, &[a1, a2, p1, p2]: &[f64; 4]) -> [f64; 4] {
+    // The page's own expressions, in its order.
     let (sin_d, cos_d) = libm::sincos(a1 - a2);
     let den = 1.0 + mu * sin_d * sin_d;
     let term_a1 = p1 * p2 * sin_d / (l * l * den);

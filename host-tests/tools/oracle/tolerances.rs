@@ -126,8 +126,8 @@ pub const LONGER: f64 = 17.0;
 /// interval, and RK4's error of the growth rate at 2^-6 s.
 pub const FALL: f64 = 1.5 / 64.0;
 
-/// The relative error of the time for which plain sums keep a pendulum upright: the step in which
-/// they no longer do, and the rounding of w.
+/// The relative error of the time for which plain sums keep a pendulum upright. The fall begins at
+/// a whole step, and w is rounded.
 pub const STAYS: f64 = 0.05;
 
 /// The limits of a swing of 1e-5 rad after 200 steps 2 % below and above the limit of stability,
@@ -145,8 +145,8 @@ pub const LENGTHS: f64 = 1e-5;
 /// of a last digit in each step (measured 2.6e-13).
 pub const REST_OF_FIXED_64: f64 = 1e-12;
 
-/// Straight rods that turn evenly without gravity, 20 s, rad and relative. In f32 the error is that
-/// of some 5000 steps of plain sums, each rounded. In f64 it is the direction form's own error,
+/// Straight rods that turn evenly without gravity, 20 s, rad and relative. In f32 the error comes
+/// from some 5000 steps of plain sums, each rounded. In f64 it is the direction form's own error,
 /// 6e-11 rad a second at 2 rad/s.
 pub const STRAIGHT: PerPrecision = PerPrecision {
     single: 1e-3,
@@ -206,8 +206,8 @@ pub const NOT_CLOSED: f64 = 1.0;
 /// the method's error is smaller (measured 2e-9; compensated `f32` has 3e-8).
 pub const FIXED_32_FLOOR: f64 = 5e-9;
 
-/// The error with which the order in 32 bits is measured, rad. The errors by roundings scatter from
-/// step to step, and are smaller in most of the tried motions.
+/// The error at the steps that measure the order in 32 bits, rad. The errors by roundings scatter
+/// from step to step, and are smaller in most of the tried motions.
 pub const FIXED_32_ORDER_MEASURABLE: f64 = 5e-6;
 
 /// The ratio of the errors of the 64-bit fixed point and of `f64` at the same steps in the chaotic
@@ -233,9 +233,9 @@ pub const FLIPS_UNSUSPECTED: f64 = 0.01;
 /// The difference between 64-bit fixed point and `f64` in three of the coarsest allowed steps, rad.
 pub const FIXED_64_AND_DOUBLE: f64 = 1e-9;
 
-/// The error after a second of a motion in which both rods turn over, in steps of 1/8192 s, by
-/// every row of the table: the method's error in double precision, the roundings of single
-/// precision, and the sines of `micromath`.
+/// The error after a second of a motion with both rods turning over, in steps of 1/8192 s, by every
+/// row of the table: the method's error in double precision, the roundings of single precision, and
+/// the sines of `micromath`.
 pub const TURNING: [f64; 3] = [5e-7, 5e-3, 1.0];
 
 /// The error after a second of a motion of 2e-5 rad in closed form, rad and kg m^2/s. In double

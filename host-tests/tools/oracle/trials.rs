@@ -96,7 +96,7 @@ pub struct Trial {
     pub seconds: f64,
 }
 
-/// The number of moments at which the errors are measured, evenly spread.
+/// The number of moments of a comparison, evenly spread over the motion.
 pub const MOMENTS: u32 = 16;
 
 impl Trial {

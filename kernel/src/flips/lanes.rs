@@ -1,7 +1,8 @@
 //! RK4 in the direction form for many motions of one pendulum at once, in the processor's vectors.
 //!
-//! The result of each lane is bit-identical to that of [`Rk4Direction`](crate::methods::Rk4Direction)
-//! in plain `f32`, whose page explains the equations and the step.
+//! The result of each lane is bit-identical to that of
+//! [`Rk4Direction`](crate::methods::Rk4Direction) in plain `f32`, whose page explains the equations
+//! and the step.
 //!
 //! The code uses loops and functions instead of array methods and closures, which are not always
 //! inlined in code for a processor's vectors.
@@ -28,7 +29,7 @@ struct Constants<const N: usize> {
     half_inverse_square: Numbers<N>,
 }
 
-/// A step in progress: the point of the next stage, and the weighted sum of the stages so far.
+/// A step in progress: the point of the next stage, and the weighted sum of the earlier stages.
 #[derive(Clone, Copy, Debug)]
 struct Stage<const N: usize> {
     at: Point<N>,
@@ -37,9 +38,9 @@ struct Stage<const N: usize> {
 
 /// `ROWS` times `N` motions of one pendulum.
 ///
-/// Each stage is computed for all rows before the next stage of any row, because a stage has to
-/// wait for the one before it, and meanwhile the processor computes the other rows. The caller
-/// restores the lengths and leaves out steps when each motion would do so alone.
+/// Each stage is computed for all rows before the next stage of any row. A stage must wait for the
+/// one before it, and meanwhile the processor computes the other rows. The caller restores the
+/// lengths and leaves out steps exactly when a single motion would.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct DirectionLanes<const N: usize, const ROWS: usize> {
     constants: Constants<N>,
@@ -52,12 +53,14 @@ impl<const N: usize, const ROWS: usize> DirectionLanes<N, ROWS> {
     #[inline(always)]
     pub fn new(motion: &DirectionF32Plain) -> Self {
         let (coefficients, half_inverse_square, z, inverse) = motion.parts();
+        // The same constants for all lanes.
         let constants = Constants {
             norm: Lanes::splat(coefficients.norm),
             inertia: Lanes::splat(coefficients.inertia),
             gravity: coefficients.gravity.map(Lanes::splat),
             half_inverse_square: Lanes::splat(half_inverse_square),
         };
+        // The same motion in all lanes.
         let start = Point {
             z: z.map(Lanes::splat),
             inverse: Lanes::splat(inverse),
@@ -88,6 +91,7 @@ impl<const N: usize, const ROWS: usize> DirectionLanes<N, ROWS> {
     /// Advances all motions by one step of RK4.
     #[inline(always)]
     pub fn step(&mut self) {
+        // All rows finish a stage before the next stage begins.
         let constants = &self.constants;
         for (start, stage) in &mut self.rows {
             *stage = constants.first_stage(start);
@@ -144,6 +148,7 @@ impl<const N: usize> Constants<N> {
     #[inline(always)]
     fn second_stage(&self, start: &Point<N>, stage: &mut Stage<N>) {
         let k2 = changes(&stage.at.z, self.rates(&stage.at));
+        // The middle stages count twice.
         for (sum, k2) in stage.sum.iter_mut().zip(&k2) {
             *sum = *sum + k2.twice();
         }
@@ -169,6 +174,8 @@ impl<const N: usize> Constants<N> {
             *z = *z + (*sum + *k4) * third;
         }
 
+        // The reciprocal is corrected by one step of Newton's method, from its value in the last
+        // stage.
         let one = Lanes::splat(1.0);
         let s = start.z[2];
         let r4 = stage.at.inverse;
@@ -183,6 +190,7 @@ impl<const N: usize> Constants<N> {
         let u = (p1 - c * p2) * at.inverse;
         let v = p2 - c * u;
         let force = u * v * s;
+        // sin a2 is this number divided by nu.
         let nu_sin2 = sin1 * c - cos1 * s;
         [u, v, -(gravity1 * sin1) - force, force - gravity2 * nu_sin2]
     }
@@ -191,6 +199,7 @@ impl<const N: usize> Constants<N> {
     fn restore_lengths(&self, point: &mut Point<N>) {
         let one = Lanes::splat(1.0);
         let half = Lanes::splat(0.5);
+        // Direction 1 has the length 1, and (S, C) has the length `norm`.
         for (i, length, gain) in [(0, one, half), (2, self.norm, self.half_inverse_square)] {
             let s = point.z[i];
             let c = point.z[i + 1];
@@ -209,6 +218,7 @@ impl<const N: usize> Point<N> {
         for i in 0..6 {
             z[i] = z[i] + k[i];
         }
+        // The change of a reciprocal follows from its derivative.
         let fall = k[2].twice() * (from.z[2] * from.inverse) * from.inverse;
         Self {
             z,

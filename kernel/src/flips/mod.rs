@@ -1,9 +1,9 @@
-//! The map of flips: the time at which a rod first turns over, for all starts from rest.
+//! The map of flips: the time of the first flip, for all starts from rest.
 //!
-//! A start from rest is given by two angles. All starts of a pendulum therefore fill a square, and the
-//! time of the first flip is a picture of this square (J. S. Heyl, "The double pendulum fractal",
-//! 2008). A rod turns over, or *flips*, when its angle passes plus or minus pi. Where the energy
-//! forbids that ([`Pendulum::cannot_turn_over`]), no step is computed.
+//! A start from rest is given by two angles. All starts of a pendulum therefore fill a square, and
+//! the time of the first flip is a picture of this square (J. S. Heyl, "The double pendulum
+//! fractal", 2008). A rod turns over, or *flips*, when its angle passes plus or minus pi. Where the
+//! energy forbids that ([`Pendulum::cannot_turn_over`]), no step is computed.
 //!
 //! ```
 //! use double_pendulum::{DirectionF32Plain, Parameters};
@@ -29,11 +29,11 @@ use crate::pendulum::{Parameters, Pendulum, State};
 /// The time of the first flip.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Flip<R> {
-    /// No rod ever flips, because the energy is too low.
+    /// The energy is too low for any flip.
     Never,
     /// A rod flips at this time after the start, s.
     After(R),
-    /// No rod flips within the time that is computed.
+    /// The first flip is later than the computed time.
     Later,
 }
 
@@ -52,7 +52,7 @@ pub struct Flips<F: Form> {
     steps: u32,
 }
 
-/// A motion without a flip so far.
+/// A motion that has not flipped yet.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[doc(hidden)]
 pub struct Falling<F: Form> {
@@ -63,19 +63,19 @@ pub struct Falling<F: Form> {
     pub steps: u32,
 }
 
-/// Returns the longest step, s, that resolves the motions from all starts at rest.
+/// Returns the longest step, s, that resolves the motion of every start from rest.
 ///
-/// It is twice the [admissible step](Pendulum::admissible_step) from straight up. With a light bob 2
-/// it is shorter, so that [`Fixed32`] accepts it.
+/// It is twice the [admissible step](Pendulum::admissible_step) from straight up. With a light bob
+/// 2 it is shorter, so that [`Fixed32`] accepts it.
 ///
-/// Refuses the parameters that [`Pendulum::new`] refuses, and zero gravity, without which nothing
-/// moves.
+/// Refuses the parameters that [`Pendulum::new`] refuses, and zero gravity, because nothing moves
+/// without it.
 ///
 /// [`Fixed32`]: crate::Fixed32
 pub fn step_size<R: Real>(parameters: &Parameters<R>) -> Result<f64, Error> {
-    /// The angle, rad, by which the elbow bends in a step at its largest rate: half a turn takes nine
-    /// steps.
+    /// The largest bend of the elbow in a step, rad. Half a turn takes nine steps.
     const BEND: f64 = 0.36;
+
     let pendulum = Pendulum::new(parameters)?;
     let highest = State::at_rest(R::PI, R::PI);
     let resolved = pendulum.admissible_step(&highest)?.twice();
@@ -86,8 +86,8 @@ pub fn step_size<R: Real>(parameters: &Parameters<R>) -> Result<f64, Error> {
 impl<F: Form> Flips<F> {
     /// Creates a map with steps of `dt` s and at most `steps` steps for each start.
     ///
-    /// Refuses the parameters, steps and energies (that of the highest start) that the method `F`
-    /// refuses.
+    /// Refuses the parameters and steps that the method `F` refuses, and a pendulum whose highest
+    /// start has more energy than `F` allows.
     pub fn new(parameters: &Parameters<F::Real>, dt: f64, steps: u32) -> Result<Self, Error> {
         let highest = F::new(
             &parameters.cast(),
@@ -129,6 +129,8 @@ impl<F: Form> Flips<F> {
                 return Some(Flip::Later);
             }
             falling.motion.advance_one();
+
+            // Both rods are tested after each step.
             let before = core::mem::replace(&mut falling.sides, falling.motion.sides());
             if passes(&before, &falling.sides) < 0 {
                 return Some(self.passage(falling.steps, before, falling.sides));
@@ -148,8 +150,8 @@ impl<F: Form> Flips<F> {
         Ok(self.advance(&mut falling, u32::MAX).unwrap_or(Flip::Later))
     }
 
-    /// Returns the time of the passage between the sides `before` and `after`, of which `before` are
-    /// those after `steps` steps.
+    /// Returns the time of the passage. The sides are `before` after `steps` steps, and `after` one
+    /// step later.
     fn passage(&self, steps: u32, before: [[i32; 2]; 2], after: [[i32; 2]; 2]) -> Flip<F::Real> {
         // The share of the step until a rod passes, by linear interpolation of its sine.
         let share = |rod: usize| {
@@ -162,6 +164,7 @@ impl<F: Form> Flips<F> {
                 F::Real::ONE
             }
         };
+        // The earlier of the two rods decides.
         let upper = share(0);
         let lower = share(1);
         let share = if lower < upper { lower } else { upper };
@@ -172,6 +175,7 @@ impl<F: Form> Flips<F> {
 /// Returns a negative number if a rod has passed straight up between the two.
 #[inline(always)]
 fn passes(before: &[[i32; 2]; 2], after: &[[i32; 2]; 2]) -> i32 {
+    // A rod passes straight up if its sine changes its sign while its cosine is negative.
     let [[upper_before, _], [lower_before, _]] = *before;
     let [[upper_after, upper_cos], [lower_after, lower_cos]] = *after;
     turns_over([upper_before, upper_after, upper_cos])

@@ -26,13 +26,13 @@ struct Lane {
 }
 
 impl Flips<DirectionF32Plain> {
-    /// Computes the first flip of each of `starts`, the angles a1 and a2, rad, and passes it to `give`
-    /// with the index of the start.
+    /// Computes the first flip of each of `starts`, the angles a1 and a2, rad, and passes it to
+    /// `give` with the index of the start.
     ///
-    /// The results are bit-identical to those of [`of`](Self::of). Three times `N` starts are computed
-    /// at a time; a lane whose motion has flipped takes the next start. 8 lanes suit processors with
-    /// vectors of 4 and of 8. The function is inlined into its caller, so that it is compiled for the
-    /// processor that the caller is compiled for.
+    /// The results are bit-identical to those of [`of`](Self::of). Three times `N` starts are
+    /// computed at a time; a lane whose motion has flipped takes the next start. 8 lanes suit
+    /// processors with vectors of 4 and of 8. The function is inlined into its caller, so that it
+    /// is compiled for the processor that the caller is compiled for.
     ///
     /// Refuses angles that are not finite, after the flips of all starts before.
     #[inline(always)]
@@ -46,11 +46,14 @@ impl Flips<DirectionF32Plain> {
         let hanging = self.highest.started(&State::at_rest(0.0, 0.0))?;
         let mut motions = Motions::<N>::new(&hanging);
         let mut lanes: [[Option<Lane>; N]; ROWS] = [[None; N]; ROWS];
+        // Each round fills the free lanes, and then computes a block of steps.
         loop {
             for (place, lane) in lanes.as_flattened_mut().iter_mut().enumerate() {
+                // The lane's steps are used up.
                 if let Some(Lane { start, .. }) = lane.take_if(|lane| lane.left == 0) {
                     give(start, Flip::Later);
                 }
+                // The lane takes the next start.
                 if lane.is_none() {
                     let next = self.next(&mut starts, &mut give)?;
                     motions.put(place, next.as_ref().map_or(&hanging, |(_, motion)| motion));
@@ -82,7 +85,8 @@ impl Flips<DirectionF32Plain> {
         Ok(None)
     }
 
-    /// Computes a block of steps and restores the lengths. A lane may leave out the last step.
+    /// Computes a block of steps and restores the lengths. A lane may leave out the last step of a
+    /// block.
     #[inline(always)]
     fn follow<const N: usize>(
         &self,
@@ -92,9 +96,11 @@ impl Flips<DirectionF32Plain> {
     ) {
         let mut before: [LaneDirections<N>; ROWS] = from_fn(|row| motions.rods(row));
         for step in 0..BLOCK {
+            // Keep the state before the last step for the lanes that leave it out.
             let kept = (step + 1 == BLOCK).then_some(*motions);
             motions.step();
             if let Some(mut kept) = kept {
+                // Undo the last step in those lanes.
                 for (place, lane) in lanes.as_flattened().iter().enumerate() {
                     let count = |lane: &Lane| {
                         u64::from(self.steps) - u64::from(lane.left) + u64::from(BLOCK)
@@ -108,8 +114,11 @@ impl Flips<DirectionF32Plain> {
                 }
                 motions.restore_lengths();
             }
+
+            // Look for flips in each row.
             for (row, before) in before.iter_mut().enumerate() {
                 let rods = motions.rods(row);
+                // A flip is rare, so the lanes are examined only if any has one.
                 if any_turns_over(before, &rods) {
                     for (place, lane) in lanes[row].iter_mut().enumerate() {
                         let at = |rods: &LaneDirections<N>| {
@@ -127,6 +136,8 @@ impl Flips<DirectionF32Plain> {
                 *before = rods;
             }
         }
+
+        // Count the block in all lanes.
         lanes
             .as_flattened_mut()
             .iter_mut()
@@ -137,12 +148,13 @@ impl Flips<DirectionF32Plain> {
 
 /// Returns true if a rod in any lane has passed straight up between the two.
 ///
-/// The loop goes rod by rod, so that the compiler uses vectors.
+/// The loop over the lanes is the inner one, so that the compiler uses vectors.
 #[inline(always)]
 fn any_turns_over<const N: usize>(before: &LaneDirections<N>, after: &LaneDirections<N>) -> bool {
     let mut any = [0; 2];
     for (rod, any) in any.iter_mut().enumerate() {
-        let ([from, _], [to, cos]) = (before[rod], after[rod]);
+        let [from, _] = before[rod];
+        let [to, cos] = after[rod];
         for place in 0..N {
             *any |= turns_over([from, to, cos].map(|part| part.0[place].side()));
         }
@@ -159,7 +171,8 @@ mod tests {
     use std::vec::Vec;
 
     const LIMIT: f64 = 30.0;
-    /// The side of the square of starts: enough for flips in the step after which lengths are restored.
+    /// The side of the square of starts: enough for flips in the step after which lengths are
+    /// restored.
     const SIDE: usize = 91;
 
     /// Returns a square of starts over a whole turn.
@@ -168,8 +181,8 @@ mod tests {
         (0..side * side).map(move |i| [angle(i % side), angle(i / side)])
     }
 
-    /// Returns a map whose number of steps is no multiple of a block, and whose number of starts is no
-    /// multiple of the lanes.
+    /// Returns a map whose number of steps is no multiple of a block, and whose number of starts is
+    /// no multiple of the lanes.
     fn flips(parameters: &Parameters<f32>) -> Result<Flips<DirectionF32Plain>, Error> {
         let dt = step_size(parameters)?;
         Flips::new(parameters, dt, (LIMIT / dt) as u32 | 1)
@@ -202,16 +215,21 @@ mod tests {
                 g: 1.0,
             },
         ] {
+            // Some motions leave out steps.
             let flips = flips(&parameters)?;
             let flips = Flips {
                 highest: flips.highest.leaving_out_more(),
                 ..flips
             };
+
+            // The same results in lanes and alone.
             let found = any(&flips)?;
             assert_eq!(found, all(&flips)?, "vectors as this processor has them");
             for (flip, [a1, a2]) in found.iter().zip(starts(SIDE)) {
                 assert_eq!(*flip, Some(flips.of(a1, a2)?), "{a1} {a2}");
             }
+
+            // Each kind of result occurs.
             let count = |kind: fn(&Flip<f32>) -> bool| {
                 found.iter().flatten().filter(|flip| kind(flip)).count()
             };
@@ -230,11 +248,15 @@ mod tests {
             let steps = (10.0 / dt) as u32;
             let float = Flips::<DirectionF32Plain>::new(&parameters, dt, steps)?;
             let fixed = Flips::<Fixed32>::new(&parameters, dt, steps)?;
+
+            // Most starts agree. In chaos the arithmetics differ.
             let mut other = 0;
             for [a1, a2] in starts(20) {
-                other += u32::from(match (float.of(a1, a2)?, fixed.of(a1, a2)?) {
+                let float = float.of(a1, a2)?;
+                let fixed = fixed.of(a1, a2)?;
+                other += u32::from(match (float, fixed) {
                     (Flip::After(one), Flip::After(other)) => (one - other).abs() > 0.05,
-                    (one, other) => one != other,
+                    _ => float != fixed,
                 });
             }
             assert!(other <= 4, "{other} of 400 at mass ratio {mass_ratio}");

@@ -1,4 +1,4 @@
-//! The direction form of Hamilton's equations, in which the fast methods compute.
+//! The direction form of Hamilton's equations, which the fast methods use.
 //!
 //! # Equations
 //!
@@ -21,7 +21,7 @@
 //! Each method has its own copy of these equations, in its own numbers. The unit test
 //! `every_form_is_that_of_hamiltons_equations` compares each copy with Hamilton's equations.
 //!
-//! # What this file contains
+//! # Contents of this file
 //!
 //! - the conversion between these six quantities and a [`State`]: [`quantities`], [`state_of`];
 //! - the constants of the equations in floating point: [`Coefficients`], [`prepare`];
@@ -52,7 +52,7 @@ pub(crate) fn quantities(state: &State<f64>, norm: f64, [unit1, unit2]: [f64; 2]
 
 /// Returns the state of the six quantities, with angles in (-pi, pi].
 ///
-/// The inverse of [`quantities`], apart from whole turns.
+/// The inverse of [`quantities`], except for whole turns.
 #[inline(never)] // Not inlined, to save flash.
 pub(crate) fn state_of(z: [f64; 6], [unit1, unit2]: [f64; 2]) -> State<f64> {
     let [sin1, cos1, s, c, p1, p2] = z;
@@ -94,7 +94,7 @@ pub(crate) struct Scale {
     pub momentum: f64,
     /// The length of a step in the unit of time tau.
     step: f64,
-    /// The amount by which a step is longer than dt.
+    /// The excess of a step over dt.
     pub lead: Lead,
 }
 
@@ -193,8 +193,8 @@ impl Scale {
 
     /// Returns the state at the time of `count` steps of dt, in SI units, with angles in (-pi, pi].
     ///
-    /// The motion is at `z`, plus `lost` by which `z` was rounded. `rates` returns the rates of
-    /// change at a point, per unit of time.
+    /// The motion is at `z` plus `lost`, which is the last rounding error of `z`. `rates` returns
+    /// the rates of change at a point, per unit of time.
     ///
     /// The motion can be up to half a step ahead of that time. Four stages take it back, each from
     /// the slope of the one before: of order 4 in small oscillations and of order 2 in others.
@@ -229,8 +229,7 @@ impl Scale {
 /// The lengths of the directions are restored at the same interval.
 pub(crate) const BLOCK: u32 = 32;
 
-/// The amount by which a step is longer than dt, because the constants of the equations are
-/// rounded.
+/// The excess of a step over dt. It exists because the constants of the equations are rounded.
 ///
 /// When a motion would be more than half a step ahead of the time, the last step of a block is left
 /// out.
@@ -274,7 +273,7 @@ impl Lead {
         after < i64::MIN + (self.each * u64::from(BLOCK)) as i64
     }
 
-    /// Returns the number of steps by which the motion is ahead at `count`: at most half a step,
+    /// Returns the motion's lead over the exact time at `count`, in steps: at most half a step,
     /// plus the lead of one block.
     #[inline(never)] // Not inlined, to save flash.
     pub fn ahead(self, count: u64) -> f64 {

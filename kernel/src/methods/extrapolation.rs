@@ -9,8 +9,8 @@
 //! y0 = z      y1 = y0 + h f(y0)      y(i+1) = y(i-1) + 2 h f(y(i))      i = 1 .. n - 1
 //! ```
 //!
-//! The error of y(n) is a series in the even powers of 1/n. The weighted sum of the ends y(n) of all
-//! rows, with the weights
+//! The error of y(n) is a series in the even powers of 1/n. The weighted sum of the ends y(n) of
+//! all rows, with the weights
 //!
 //! ```text
 //! w(n) = product over the other rows m of n^2/(n^2 - m^2),
@@ -36,8 +36,8 @@ pub(crate) const fn is_order(order: u32) -> bool {
 /// The phases in [`stable`], for the orders 2, 4 .. 16.
 const STABLE: [f64; ROWS] = [0.95, 2.86, 2.51, 3.67, 5.28, 4.77, 6.37, 7.35];
 
-/// Returns the phase w dt, rad, up to which a step of this order lets an oscillation of frequency w
-/// grow by less than a tenth.
+/// Returns the largest phase w dt, rad, of a step of this order that lets an oscillation of
+/// frequency w grow by less than a tenth.
 ///
 /// The orders 2, 6, 10 and 14 are stable in no step at all, but only just: an oscillation grows by
 /// less than 1e-4 in a step of up to 0.16, 0.94, 2.14 and 6.3 rad.

@@ -14,10 +14,10 @@
 //!
 //! # Order of computation
 //!
-//! The [rows](crate::methods::extrapolation) of a step do not depend on each other. Four of them are
-//! computed side by side, in the vectors of processors that have them. A lane that has finished its
-//! row takes the next one. The sum of the ends is taken in the order in which the rows end, which is
-//! the same on every machine.
+//! The [rows](crate::methods::extrapolation) of a step do not depend on each other. Four of them
+//! are computed side by side, in the vectors of processors that have them. A lane that has finished
+//! its row takes the next one. The ends are added in the order of their completion, which is the
+//! same on every machine.
 
 use crate::error::{Error, Parameter, check_finite};
 use crate::methods::Form;
@@ -26,7 +26,8 @@ use crate::methods::extrapolation::{Extrapolation, ROWS, is_order, stable};
 use crate::numbers::{Lanes, Real, Sealed};
 use crate::pendulum::{Direction, Parameters, State};
 
-/// The number of rows that are computed side by side. Two vectors of SSE2 hide each other's latency.
+/// The number of rows that are computed side by side. Two vectors of SSE2 hide each other's
+/// latency.
 const LANES: usize = 4;
 
 type Numbers = Lanes<f64, LANES>;
@@ -45,7 +46,7 @@ pub struct ExtrapolationF64<const ORDER: u32> {
     method: Extrapolation<f64>,
     /// sin a1, cos a1, S, C, P1 and P2.
     z: [f64; 6],
-    /// The amounts by which `z` was rounded in its last addition.
+    /// The rounding errors of the last addition to `z`.
     lost: [f64; 6],
     /// r = 1/(m + S^2).
     inverse: f64,
@@ -170,8 +171,8 @@ impl<const ORDER: u32> ExtrapolationF64<ORDER> {
 
     /// Returns the row that `lane` computes after it has `taken` others.
     ///
-    /// Long rows come first. The lanes take them in alternating directions, so that all end at about
-    /// the same time.
+    /// Long rows come first. The lanes take them in alternating directions, so that all end at
+    /// about the same time.
     fn next_work(&self, lane: usize, taken: usize) -> Work {
         let (_, _, rows) = self.method.parts();
         let place = if taken % 2 == 0 {

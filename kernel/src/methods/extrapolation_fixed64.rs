@@ -3,9 +3,9 @@
 //!
 //! # Number formats
 //!
-//! All numbers are [`Q64`]: fractions from -1/2 to below 1/2, in multiples of 2^-64. The unit of time
-//! T is chosen from the energy of the motion such that the [bounds](crate::Bounds) of that energy
-//! hold in these fractions:
+//! All numbers are [`Q64`]: fractions from -1/2 to below 1/2, in multiples of 2^-64. The unit of
+//! time T is chosen from the energy of the motion such that the [bounds](crate::Bounds) of that
+//! energy hold in these fractions:
 //!
 //! | quantity                              | at most | stored as       |
 //! |---------------------------------------|---------|-----------------|
@@ -25,9 +25,9 @@
 //!
 //! # Rounding
 //!
-//! Products round down. A bias in one direction would add up over all steps, so that each result is
-//! moved to the middle of the values it may have had before rounding, and the step corrects what is
-//! left ([`Rows::rounded_down`]).
+//! Products round down. A bias in one direction would add up over all steps. So each result is
+//! moved to the middle of the values it may have had before rounding, and the step corrects the
+//! remaining bias ([`Rows::rounded_down`]).
 
 mod rows;
 
@@ -48,9 +48,9 @@ use rows::{EIGHTH, Rows, unit_of_time};
 /// fixed point.
 ///
 /// The method accepts any start, and any masses and rods whose scaled ratios are below about 4,000.
-/// Others are refused with an error that names the parameter. It also refuses a step of more than 15
-/// of its units of time, or one in which the fastest rate would turn a rod by more than 1.5 rad; the
-/// error contains the longest possible step.
+/// Others are refused with an error that names the parameter. It also refuses a step of more than
+/// 15 of its units of time, or a step that would turn a rod by more than 1.5 rad at the fastest
+/// rate; the error contains the longest possible step.
 ///
 /// An order that is not 2, 4 .. 16 does not compile:
 ///
@@ -63,9 +63,9 @@ use rows::{EIGHTH, Rows, unit_of_time};
 ///
 /// # Accuracy
 ///
-/// The error in 10 s of regular motion (0.5 rad, rods of 1 m) by order 12 is below 1e-12 rad with 12
-/// steps a second. In chaotic motion it is that of `f64` with the same steps, or 1e-12 rad after 5 s
-/// (2 rad) with steps so short that only roundings are left. The tests of the repository assert
+/// The error in 10 s of regular motion (0.5 rad, rods of 1 m) by order 12 is below 1e-12 rad with
+/// 12 steps a second. In chaotic motion it is that of `f64` with the same steps, or 1e-12 rad after
+/// 5 s (2 rad) with steps so short that only roundings are left. The tests of the repository assert
 /// both. However short the steps, roundings alone amount to 2e-13 rad by order 8, 7e-13 by order 12
 /// and 3e-12 by order 16, and to about 1e-13 in `f64`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -81,7 +81,7 @@ struct Fixed64State {
     half_inverse_square: Q64,
     /// An eighth of sin a1, cos a1, S and C; P1 and P2.
     z: [Q64; 6],
-    /// Whether a quantity was ever out of range.
+    /// True if a quantity was ever out of range.
     lost: bool,
     /// nu and 1/nu.
     norm: f64,
@@ -96,9 +96,9 @@ const RATE: f64 = 0.125;
 const TORQUE: f64 = 1.0 / 256.0;
 /// The longest step, in units of time.
 const STEP: f64 = 15.0;
-/// The longest unit of time, s: that of a pendulum at rest without gravity. Its square is finite.
+/// The longest unit of time, s, which a pendulum at rest without gravity has. Its square is finite.
 const FOREVER: f64 = 1e150;
-/// The largest angle by which a rod may turn in a step, rad.
+/// The largest turn of a rod in a step, rad.
 const TURN: f64 = 1.5;
 
 /// The square of the length 1, over 64.

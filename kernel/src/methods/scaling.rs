@@ -11,13 +11,13 @@ const MOST: i32 = 12;
 
 /// The units of a motion, and the constants of the equations in these units.
 ///
-/// The constants and momenta are those of the [direction form](crate::methods::direction), with these
+/// The constants and momenta are as in the [direction form](crate::methods::direction), with these
 /// changes of units:
 ///
 /// - The unit of time T is so short that no rate and no torque that the energy allows ([`Bounds`])
 ///   exceeds a limit.
-/// - (S, C) is divided by sigma, the power of two that leaves nu/sigma in (1/2, 1]. The smaller one of
-///   u and v is multiplied by a power of two, so that both are of about the same size.
+/// - (S, C) is divided by sigma, the power of two that leaves nu/sigma in (1/2, 1]. The smaller one
+///   of u and v is multiplied by a power of two, so that both are of about the same size.
 /// - r is divided by the power of two that makes it at most 1, and P1 is scaled such that
 ///   u = (P1 - C P2) r still holds.
 ///
@@ -113,8 +113,9 @@ impl Scaling {
         })
     }
 
-    /// Returns the longest T in which no rate of a motion within `bounds` exceeds `rate`, and the
-    /// longest in which no torque of gravity exceeds `torque`.
+    /// Returns the longest units of time T for a motion within `bounds`: the longest that keeps
+    /// every rate within `rate`, and the longest that keeps every torque of gravity within
+    /// `torque`.
     pub fn longest(&self, bounds: &Bounds<f64>, [rate, torque]: [f64; 2]) -> [f64; 2] {
         let [momentum1, momentum2] = self.momenta;
         let rates = [

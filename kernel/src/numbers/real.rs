@@ -5,10 +5,10 @@ use core::ops::{Add, Div, Mul, Neg, Sub};
 
 use crate::numbers::{Sealed, sine};
 
-/// `f32` or `f64`, and no other type: the few operations the formulas need, one row each.
+/// `f32` or `f64`, and no other type: the operations that the formulas need.
 ///
-/// Every operation is either IEEE 754 arithmetic or a pure-Rust routine built on it, so that a result is
-/// bit-identical on every machine.
+/// Every operation is IEEE 754 arithmetic or a routine in Rust that uses only such arithmetic. So a
+/// result is bit-identical on every machine.
 pub trait Real:
     Sealed
     + Copy
@@ -52,18 +52,19 @@ pub trait Real:
     #[doc(hidden)]
     #[must_use]
     fn abs(self) -> Self;
-    /// Returns twice the number. Where an addition is a call of a library, the exponent is increased
+    /// Returns twice the number. If an addition is a call of a library, the exponent is increased
     /// instead, with the same bits as the sum.
     #[doc(hidden)]
     #[must_use]
     fn twice(self) -> Self;
-    /// Returns a word with the number's sign in its highest bit, from which
-    /// [`from_side`](Self::from_side) returns the number; the fraction of an `f64` is cut to 20 bits.
+    /// Returns a word with the sign of the number in its highest bit.
+    /// [`from_side`](Self::from_side) returns the number again, but the fraction of an `f64` is cut
+    /// to 20 bits.
     #[doc(hidden)]
     fn side(self) -> i32;
     #[doc(hidden)]
     fn from_side(side: i32) -> Self;
-    /// The square root, correctly rounded; NaN below 0.
+    /// Returns the square root, correctly rounded; NaN below 0.
     #[doc(hidden)]
     #[must_use]
     fn sqrt(self) -> Self;
@@ -71,27 +72,32 @@ pub trait Real:
     fn bits(self) -> u64;
     #[doc(hidden)]
     fn is_finite(self) -> bool;
-    /// Finite, not zero and not subnormal: holds its full relative precision.
+    /// Returns true if the number has its full relative precision: it is finite, not zero and not
+    /// subnormal.
     #[doc(hidden)]
     fn is_normal(self) -> bool;
-    /// The angle of the point (`x`, `self`) from the positive x axis, rad, in [-pi, pi]; by the `libm` crate.
+    /// Returns the angle of the point (`x`, `self`) from the positive x axis, rad, in [-pi, pi]. It
+    /// is computed by the `libm` crate.
     #[doc(hidden)]
     #[must_use]
     fn atan2(self, x: Self) -> Self;
-    /// (sin, cos) of an angle, rad, by the kernel's own routine.
+    /// Returns (sin, cos) of an angle, rad, by the kernel's own routine.
     ///
     /// | | largest error | arithmetic | cost on a Cortex-M4F |
     /// |---|---|---|---|
     /// | `f32` | 9e-8 to pi, 1e-7 to 1e4 | 13 multiplies, 12 adds | about 40 cycles (estimate) |
     /// | `f64` | 2 ulp | 19 multiplies, 21 adds | 40 calls of soft float |
     ///
-    /// Beyond 12,867 an `f32` is taken in double precision, beyond 1,647,098 the `libm` crate answers: correct, slow. Of
-    /// infinity and NaN both are NaN. Asserted by the kernel's tests; for all floats of [-pi, pi] on demand.
+    /// An `f32` beyond 12,867 is computed in double precision. An `f64` beyond 1,647,098 is
+    /// computed by the `libm` crate, which is accurate but slow. For infinity and NaN both results
+    /// are NaN. The kernel's tests assert the errors; a test of all floats in [-pi, pi] runs on
+    /// demand.
     #[doc(hidden)]
     fn own_sin_cos(self) -> (Self, Self);
 }
 
-/// `x` + `x`, the same bits, by integers unless `x` is zero, subnormal, NaN or close to overflow.
+/// Defines `x` + `x` with the same bits, by integers unless `x` is zero, subnormal, NaN or close to
+/// overflow.
 macro_rules! twice_by_bits {
     ($name:ident, $float:ident) => {
         #[inline(always)]
@@ -100,12 +106,15 @@ macro_rules! twice_by_bits {
             const LARGEST: u32 = 2 * $float::MAX_EXP as u32 - 3;
             let bits = x.to_bits();
             let exponent = (bits << 1 >> (PLACE + 1)) as u32;
-            // kept apart, or the compiler would make the sum in any case
+            // A separate function, because otherwise the compiler would compute the sum in any
+            // case.
             #[cold]
             #[inline(never)]
             fn sum(x: $float) -> $float {
                 x + x
             }
+
+            // Add 1 to the exponent if both exponents are those of normal numbers.
             if exponent.wrapping_sub(1) < LARGEST {
                 $float::from_bits(bits + (1 << PLACE))
             } else {
@@ -166,7 +175,7 @@ macro_rules! real {
             fn abs(self) -> Self {
                 $float::abs(self)
             }
-            // Seldom wanted, and in software a kilobyte.
+            // Not inlined, because it is rarely used, and takes a kilobyte in software.
             #[inline(never)]
             fn sqrt(self) -> Self {
                 $sqrt(self)
@@ -217,7 +226,7 @@ real!(
 mod tests {
     use super::*;
 
-    /// Every sign and exponent with a spread of fractions, the ends among them.
+    /// The numbers have every sign and exponent, and a spread of fractions that includes the ends.
     #[test]
     fn twice_by_bits_is_the_sum() {
         for high in 0..=u16::MAX {

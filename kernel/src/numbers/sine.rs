@@ -1,6 +1,6 @@
-//! Sines and cosines from few additions and multiplications, because each is a call in software.
+//! Sines and cosines with few additions and multiplications, because each is a call in software.
 //!
-//! The argument is reduced by the nearest multiple of pi/2 (Cody-Waite reduction), then minimax
+//! The argument is reduced by the nearest multiple of pi/2 (Cody-Waite reduction). Then minimax
 //! polynomials are used. `host-tests/tools/sine_polynomials.py` computes the constants.
 
 use core::ops::Neg;
@@ -10,16 +10,16 @@ use super::Real;
 /// Returns (sin x, cos x) of an `f32`.
 #[inline]
 pub(super) fn single(x: f32) -> (f32, f32) {
-    /// pi/2 in three parts. The first two have 11 bits each, so that their products with k are exact
-    /// for every k up to 2^13.
+    /// pi/2 in three parts. The first two have 11 bits each, so that their products with k are
+    /// exact for every k up to 2^13.
     const PI_OVER_TWO: [f32; 3] = [1.5703125, 0.0004837513, 0.0000000754979];
-    /// The largest argument, rad, for which k is below 2^13.
+    /// The largest argument, rad. Its k is below 2^13.
     const LARGEST: f32 = 12_867.0;
     /// 3 * 2^22. Adding it rounds to a whole number, which is then in the low bits of the sum.
     const ROUNDER: f32 = 12_582_912.0;
-    /// (sin r - r)/r^3 in powers of r^2, for abs r <= pi/4; error of the fit 2.0e-9.
+    /// (sin r - r)/r^3 in powers of r^2, for |r| <= pi/4. The error of the fit is 2.0e-9.
     const SINE: [f32; 3] = [-0.1666665, 0.008331901, -0.00019485931];
-    /// (cos r - 1 + r^2/2)/r^4 in powers of r^2, for abs r <= pi/4; error of the fit 1.1e-10.
+    /// (cos r - 1 + r^2/2)/r^4 in powers of r^2, for |r| <= pi/4. The error of the fit is 1.1e-10.
     const COSINE: [f32; 3] = [0.041666646, -0.0013887301, 0.00002443067];
 
     /// Computes arguments beyond the range of the reduction, and NaN, in double precision.
@@ -29,7 +29,9 @@ pub(super) fn single(x: f32) -> (f32, f32) {
         let (s, c) = double(x.into());
         (s as f32, c as f32)
     }
+
     if x.abs() <= LARGEST {
+        // k is the number of quarter turns, and r the rest of the argument.
         let rounded = x * core::f32::consts::FRAC_2_PI + ROUNDER;
         let k = rounded - ROUNDER;
         let r = ((x - k * PI_OVER_TWO[0]) - k * PI_OVER_TWO[1]) - k * PI_OVER_TWO[2];
@@ -42,14 +44,14 @@ pub(super) fn single(x: f32) -> (f32, f32) {
 /// Returns (sin x, cos x) of an `f64`.
 #[inline]
 pub(super) fn double(x: f64) -> (f64, f64) {
-    /// pi/2 in three parts. The first two have 33 bits each, so that their products with k are exact
-    /// for every k up to 2^20.
+    /// pi/2 in three parts. The first two have 33 bits each, so that their products with k are
+    /// exact for every k up to 2^20.
     const PI_OVER_TWO: [f64; 3] = [
         1.5707963267341256,
         6.077100506303966e-11,
         2.0222662487959506e-21,
     ];
-    /// The largest argument, rad, for which k is below 2^20.
+    /// The largest argument, rad. Its k is below 2^20.
     const LARGEST: f64 = 1_647_098.0;
     /// 3 * 2^51, which rounds to a whole number as above.
     const ROUNDER: f64 = 6_755_399_441_055_744.0;
@@ -78,6 +80,7 @@ pub(super) fn double(x: f64) -> (f64, f64) {
     fn huge(x: f64) -> (f64, f64) {
         libm::sincos(x)
     }
+
     if x.abs() <= LARGEST {
         let rounded = x * core::f64::consts::FRAC_2_PI + ROUNDER;
         let k = rounded - ROUNDER;
@@ -99,6 +102,7 @@ pub(super) fn double(x: f64) -> (f64, f64) {
 #[inline(always)]
 fn first_octant<R: Real, const N: usize>(r: R, sine: [R; N], cosine: [R; N]) -> (R, R) {
     let z = r * r;
+    // Horner's scheme.
     let series = |terms: [R; N]| {
         (0..N - 1)
             .rev()
@@ -114,11 +118,14 @@ fn first_octant<R: Real, const N: usize>(r: R, sine: [R; N], cosine: [R; N]) -> 
 /// `quarters` are used.
 #[inline]
 fn by_quarters<R: Neg<Output = R>>((sine, cosine): (R, R), quarters: u32) -> (R, R) {
+    // An odd number of quarter turns exchanges sine and cosine.
     let (sine, cosine) = if quarters & 1 == 0 {
         (sine, cosine)
     } else {
         (cosine, -sine)
     };
+
+    // Two quarter turns change both signs.
     if quarters & 2 == 0 {
         (sine, cosine)
     } else {

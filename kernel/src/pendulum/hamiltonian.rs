@@ -6,7 +6,7 @@ use crate::pendulum::{Parameters, State};
 
 /// A double pendulum: validated parameters, and the products of them that the equations use.
 ///
-/// It is configuration only. One pendulum serves any number of [`State`]s.
+/// It has no state of motion. One pendulum serves any number of [`State`]s.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pendulum<R> {
     parameters: Parameters<R>,
@@ -23,8 +23,9 @@ pub struct Pendulum<R> {
 impl<R: Real> Pendulum<R> {
     /// Checks the parameters and prepares the equations.
     ///
-    /// Refuses NaN, infinite, zero or negative masses and lengths, negative gravity, and combinations
-    /// whose products leave the range of `R`. The [`Error`] names the parameter and its value.
+    /// Refuses NaN, infinite, zero or negative masses and lengths, negative gravity, and
+    /// combinations whose products leave the range of `R`. The [`Error`] names the parameter and
+    /// its value.
     pub fn new(parameters: &Parameters<R>) -> Result<Self, Error> {
         parameters.check()?;
         let &Parameters { m1, m2, l1, l2, g } = parameters;
@@ -35,6 +36,7 @@ impl<R: Real> Pendulum<R> {
             coupling: m2 * l1 * l2,
             torque: [(m1 + m2) * g * l1, m2 * g * l2],
         };
+
         let [inverse_l1, inverse_l2] = pendulum.inverse_length;
         // 1/m1 is the largest value of 1/den.
         let products = [
@@ -70,7 +72,8 @@ impl<R: Real> Pendulum<R> {
     /// - p1' = -(m1 + m2) g l1 sin a1 - F
     /// - p2' = -m2 g l2 sin a2 + F
     ///
-    /// Here F = m2 l1 l2 w1 w2 sin D; `[math24]` calls it A1 - A2. Costs two sincos and one division.
+    /// Here F = m2 l1 l2 w1 w2 sin D, which `[math24]` writes as A1 - A2. The cost is two sincos
+    /// and one division.
     ///
     /// The difference from the form of `[math24]` is at most 1e-13 (`f64`) or 2e-6 (`f32`) of the
     /// largest term.
@@ -81,8 +84,7 @@ impl<R: Real> Pendulum<R> {
         self.derivatives_at([a1.own_sin_cos(), a2.own_sin_cos()], [p1, p2])
     }
 
-    /// Returns the [`derivatives`](Self::derivatives) where the directions (sin, cos) of both rods are
-    /// known.
+    /// Returns the [`derivatives`](Self::derivatives) for known directions (sin, cos) of both rods.
     #[doc(hidden)]
     #[inline]
     pub fn derivatives_at(
@@ -94,27 +96,31 @@ impl<R: Real> Pendulum<R> {
         let [inverse_l1, inverse_l2] = self.inverse_length;
         let [torque1, torque2] = self.torque;
 
+        // The direction of the elbow's angle, by the addition theorems.
         let sin_d = sin1 * cos2 - cos1 * sin2;
         let cos_d = cos1 * cos2 + sin1 * sin2;
 
+        // The velocities.
         let q1 = p1 * inverse_l1;
         let q2 = p2 * inverse_l2;
         let inverse_den = R::ONE / (m1 + m2 * sin_d * sin_d);
         let w1 = (q1 - q2 * cos_d) * inverse_den * inverse_l1;
         let w2 = (q2 * self.total_over_m2 - q1 * cos_d) * inverse_den * inverse_l2;
 
+        // The force between the rods acts on both momenta with opposite signs.
         let force = self.coupling * w1 * w2 * sin_d;
         [w1, w2, -torque1 * sin1 - force, -torque2 * sin2 + force]
     }
 
-    /// Returns the Hamiltonian H = T + V of the canonical state, J. It is zero where both bobs are
-    /// level with the pivot.
+    /// Returns the Hamiltonian H = T + V of the canonical state, J. It is zero if both bobs are at
+    /// the height of the pivot.
     ///
     /// H = (q1 - q2 cos D)^2 / (2 den) + q2^2 / (2 m2) - (m1 + m2) g l1 cos a1 - m2 g l2 cos a2
     ///
-    /// with q1 = p1/l1, q2 = p2/l2 and the D and den of [`derivatives`](Self::derivatives). The kinetic
-    /// energy is a sum of squares, so that it cannot be negative. The exact motion conserves H; its
-    /// minimum is [`least_energy`](Self::least_energy). Costs three sincos and two divisions.
+    /// with q1 = p1/l1, q2 = p2/l2 and the D and den of [`derivatives`](Self::derivatives). The
+    /// kinetic energy is a sum of squares, so that it cannot be negative. The exact motion
+    /// conserves H; its minimum is [`least_energy`](Self::least_energy). The cost is three sincos
+    /// and two divisions.
     #[must_use]
     pub fn energy(&self, state: &State<R>) -> R {
         let (_, cos1) = state.a1.own_sin_cos();
@@ -124,8 +130,8 @@ impl<R: Real> Pendulum<R> {
             - self.torque[1] * cos2
     }
 
-    /// Returns the [`energy`](Self::energy) where the directions (sin, cos) of both rods and the momenta
-    /// (p1, p2), kg m^2/s, are known. Needs no trigonometry.
+    /// Returns the [`energy`](Self::energy) for known directions (sin, cos) of both rods and
+    /// momenta (p1, p2), kg m^2/s. It needs no trigonometry.
     #[must_use]
     #[inline(never)] // Not inlined, to save flash.
     pub fn energy_at(&self, [[sin1, cos1], [sin2, cos2]]: [[R; 2]; 2], momenta: [R; 2]) -> R {
@@ -137,7 +143,7 @@ impl<R: Real> Pendulum<R> {
     ///
     /// K = T + (m1 + m2) g l1 (1 - cos a1) + m2 g l2 (1 - cos a2)
     ///
-    /// No term is negative, so that K keeps its relative precision down to the smallest motions, where
+    /// No term is negative, so that K keeps its relative precision for the smallest motions. There
     /// H and min V nearly cancel.
     #[must_use]
     pub fn energy_above_rest(&self, state: &State<R>) -> R {
@@ -148,8 +154,8 @@ impl<R: Real> Pendulum<R> {
             + self.torque[1] * height2
     }
 
-    /// Returns the [energy above rest](Self::energy_above_rest) where the directions (sin, cos) of both
-    /// rods and the momenta (p1, p2), kg m^2/s, are known. Needs no trigonometry.
+    /// Returns the [energy above rest](Self::energy_above_rest) for known directions (sin, cos) of
+    /// both rods and momenta (p1, p2), kg m^2/s. It needs no trigonometry.
     #[doc(hidden)]
     #[must_use]
     #[inline(never)] // Not inlined, to save flash.
@@ -164,7 +170,7 @@ impl<R: Real> Pendulum<R> {
             + self.torque[1] * one_minus_cos((sin2, cos2))
     }
 
-    /// Returns the least possible energy, that of hanging at rest, J:
+    /// Returns the least possible energy, J, which is the energy of hanging at rest:
     /// min V = -(m1 + m2) g l1 - m2 g l2.
     #[must_use]
     pub fn least_energy(&self) -> R {

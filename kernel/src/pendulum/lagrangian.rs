@@ -1,7 +1,7 @@
 //! The equations in angles and angular velocities: positions, the Lagrangian, Lagrange's equations,
 //! and the Legendre transformation to canonical momenta and back.
 //!
-//! Apart from the transformation they share no formula with
+//! Except for the transformation, they share no formula with
 //! [Hamilton's equations](crate::Pendulum::derivatives), so that each form is a check of the other.
 
 use crate::numbers::Real;
@@ -10,9 +10,9 @@ use crate::pendulum::{Motion, Parameters, Pendulum, State};
 /// A vector in the plane of motion; the pivot is the origin, x points right, y up.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Vector<R> {
-    /// To the right.
+    /// The horizontal part, positive to the right.
     pub x: R,
-    /// Upwards.
+    /// The vertical part, positive upwards.
     pub y: R,
 }
 
@@ -45,7 +45,8 @@ impl<R: Real> Pendulum<R> {
     /// Returns the velocities of bob 1 and bob 2, m/s: the time derivatives of
     /// [`positions`](Self::positions).
     ///
-    /// x1' = l1 w1 cos a1, y1' = l1 w1 sin a1, x2' = x1' + l2 w2 cos a2, y2' = y1' + l2 w2 sin a2 (`[math24]`)
+    /// x1' = l1 w1 cos a1, y1' = l1 w1 sin a1, x2' = x1' + l2 w2 cos a2, y2' = y1' + l2 w2 sin a2
+    /// (`[math24]`)
     #[must_use]
     pub fn velocities(&self, motion: &Motion<R>) -> [Vector<R>; 2] {
         let rod = |l: R, a: R, w: R| {
@@ -67,16 +68,16 @@ impl<R: Real> Pendulum<R> {
     /// T = (m1 + m2)/2 l1^2 w1^2 + m2/2 l2^2 w2^2 + m2 l1 l2 w1 w2 cos(a1 - a2)
     #[must_use]
     pub fn kinetic_energy(&self, motion: &Motion<R>) -> R {
-        let &Motion { a1, a2, w1, w2 } = motion;
+        let &Motion { w1, w2, .. } = motion;
         let &Parameters { m1, m2, l1, l2, .. } = self.parameters();
-        let (_, cos_d) = (a1 - a2).own_sin_cos();
+        let (_, cos_d) = elbow(motion);
         let v1 = l1 * w1;
         let v2 = l2 * w2;
         R::HALF * (m1 + m2) * v1 * v1 + R::HALF * m2 * v2 * v2 + m2 * v1 * v2 * cos_d
     }
 
-    /// Returns the potential energy, J, for the angles (a1, a2), rad. It is zero where both bobs are
-    /// level with the pivot.
+    /// Returns the potential energy, J, for the angles (a1, a2), rad. It is zero if both bobs are
+    /// at the height of the pivot.
     ///
     /// V = -(m1 + m2) g l1 cos a1 - m2 g l2 cos a2 (`[math24]`)
     #[must_use]
@@ -108,8 +109,9 @@ impl<R: Real> Pendulum<R> {
         let total = m1 + m2;
         let (sin1, _) = a1.own_sin_cos();
         let (sin2, _) = a2.own_sin_cos();
-        let (sin_d, cos_d) = (a1 - a2).own_sin_cos();
+        let (sin_d, cos_d) = elbow(motion);
 
+        // The right-hand sides of the equations, which are solved by determinants.
         let f1 = -m2 * l2 * w2 * w2 * sin_d - total * g * sin1;
         let f2 = l1 * w1 * w1 * sin_d - g * sin2;
         let den = m1 + m2 * sin_d * sin_d;
@@ -121,7 +123,8 @@ impl<R: Real> Pendulum<R> {
 
     /// Returns the mass matrix M, kg m^2, row by row, where `cos_d` is cos(a1 - a2).
     ///
-    /// M = [[(m1 + m2) l1^2, m2 l1 l2 cos D], [m2 l1 l2 cos D, m2 l2^2]], so that T = w.M w/2 and p = M w.
+    /// M = [[(m1 + m2) l1^2, m2 l1 l2 cos D], [m2 l1 l2 cos D, m2 l2^2]], so that T = w.M w/2 and
+    /// p = M w.
     #[must_use]
     pub fn mass_matrix(&self, cos_d: R) -> [[R; 2]; 2] {
         let &Parameters { m1, m2, l1, l2, .. } = self.parameters();
@@ -138,7 +141,7 @@ impl<R: Real> Pendulum<R> {
     #[must_use]
     pub fn to_state(&self, motion: &Motion<R>) -> State<R> {
         let &Motion { a1, a2, w1, w2 } = motion;
-        let (_, cos_d) = (a1 - a2).own_sin_cos();
+        let (_, cos_d) = elbow(motion);
         let [[m11, m12], [m21, m22]] = self.mass_matrix(cos_d);
         State {
             a1,
@@ -159,4 +162,10 @@ impl<R: Real> Pendulum<R> {
         let [w1, w2, ..] = self.derivatives(&(*state).into());
         Motion { a1, a2, w1, w2 }
     }
+}
+
+/// Returns (sin, cos) of the elbow's angle D.
+#[inline(always)]
+fn elbow<R: Real>(motion: &Motion<R>) -> (R, R) {
+    (motion.a1 - motion.a2).own_sin_cos()
 }

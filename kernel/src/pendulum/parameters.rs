@@ -1,9 +1,9 @@
-//! The constants of a pendulum, as the caller gives them.
+//! The constants of a pendulum, chosen by the caller.
 
 use crate::error::{Error, Parameter};
 use crate::numbers::Real;
 
-/// The five constants of a double pendulum, SI units, as the caller gives them.
+/// The five constants of a double pendulum, in SI units, chosen by the caller.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -23,8 +23,8 @@ pub struct Parameters<R> {
 impl<R: Real> Parameters<R> {
     /// Returns equal rods of length `l`, a bob 1 of 1 kg, and a bob 2 of `mu` kg: mu = m2/m1.
     ///
-    /// If `l` and `g` are 1, the equations are the dimensionless ones of `[math24]` for equal rods:
-    /// the unit of time is sqrt(l/g), that of momenta m1 l^2 sqrt(g/l), that of energy m1 g l.
+    /// If `l` and `g` are 1, the equations are the dimensionless equations of `[math24]` for equal
+    /// rods. Then the unit of time is sqrt(l/g), of momenta m1 l^2 sqrt(g/l), and of energy m1 g l.
     #[must_use]
     pub fn equal_rods(mu: R, l: R, g: R) -> Self {
         Self {
@@ -42,7 +42,8 @@ impl<R: Real> Parameters<R> {
         self.m2 / self.m1
     }
 
-    /// Returns the same numbers in the arithmetic `S`, each rounded once. Exact from `f32` to `f64`.
+    /// Returns the same numbers in the arithmetic `S`, each rounded once. From `f32` to `f64` the
+    /// numbers are exact.
     ///
     /// The result is not checked: a large number in `f64` can be infinite in `f32`.
     #[must_use]
@@ -74,12 +75,14 @@ impl<R: Real> Parameters<R> {
         Ok(())
     }
 
-    /// Returns the error for parameters whose products overflow or underflow. It names the value that
-    /// is farthest from 1.
+    /// Returns the error for parameters whose products overflow or underflow. It names the value
+    /// that is farthest from 1.
     #[inline(never)] // Not inlined, to save flash.
     pub(crate) fn out_of_range(&self) -> Error {
+        // Factors above and below 1 count alike.
         let distance = |value: f64| if value < 1.0 { 1.0 / value } else { value };
         let [first, rest @ ..] = self.named();
+        // Gravity may be zero, which is not the reason.
         let (parameter, value) =
             rest.into_iter()
                 .filter(|(_, value)| *value != 0.0)

@@ -1,4 +1,4 @@
-//! Position and motion of a pendulum: angles with momenta, or angles with velocities.
+//! The position and motion of a pendulum: angles with momenta, or angles with velocities.
 
 use crate::error::{Error, Parameter, check_finite};
 use crate::numbers::Real;
@@ -22,7 +22,7 @@ pub struct State<R> {
 }
 
 impl<R: Real> State<R> {
-    /// Returns a pendulum that is held still at the angles `a1`, `a2`, rad.
+    /// Returns a pendulum that is at rest at the angles `a1`, `a2`, rad.
     #[must_use]
     pub fn at_rest(a1: R, a2: R) -> Self {
         Self {
@@ -39,7 +39,8 @@ impl<R: Real> State<R> {
         [self.a1, self.a2]
     }
 
-    /// Returns the same numbers in the arithmetic `S`, each rounded once. Exact from `f32` to `f64`.
+    /// Returns the same numbers in the arithmetic `S`, each rounded once. From `f32` to `f64` the
+    /// numbers are exact.
     #[must_use]
     pub fn cast<S: Real>(self) -> State<S> {
         <[R; 4]>::from(self).map(R::cast).into()
@@ -75,10 +76,10 @@ impl<R> From<State<R>> for [R; 4] {
 impl<R: Real> State<R> {
     /// Returns the state if all its numbers are finite, and [`Error::Diverged`] otherwise.
     ///
-    /// A step that resolves the motion leads from a finite state to a finite state. A longer one can
-    /// lead anywhere ([`Modes::step_limit`](crate::Modes::step_limit) is valid for small motions only).
-    /// Once a number is not finite, none becomes finite again, so that it is enough to check before
-    /// the state is used.
+    /// A step that resolves the motion leads from a finite state to a finite state. A longer step
+    /// can have any result ([`Modes::step_limit`](crate::Modes::step_limit) is valid for small
+    /// motions only). After a number is not finite, no number becomes finite again, so that a check
+    /// before the state is used is sufficient.
     ///
     /// ```
     /// use double_pendulum::{Error, Parameters, Pendulum, State};
@@ -101,7 +102,7 @@ impl<R: Real> State<R> {
 
 /// Angles and angular velocities: the variables of the Lagrangian, with w = da/dt.
 ///
-/// Angles are those of [`State`]. [`Pendulum::to_state`](crate::Pendulum::to_state) converts to
+/// Angles are as in [`State`]. [`Pendulum::to_state`](crate::Pendulum::to_state) converts to
 /// canonical momenta.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Motion<R> {
@@ -116,7 +117,7 @@ pub struct Motion<R> {
 }
 
 impl<R: Real> Motion<R> {
-    /// Returns a pendulum that is held still at the angles `a1`, `a2`, rad.
+    /// Returns a pendulum that is at rest at the angles `a1`, `a2`, rad.
     #[must_use]
     pub fn at_rest(a1: R, a2: R) -> Self {
         Self {
@@ -133,7 +134,8 @@ impl<R: Real> Motion<R> {
         [self.a1, self.a2]
     }
 
-    /// Returns the same numbers in the arithmetic `S`, each rounded once. Exact from `f32` to `f64`.
+    /// Returns the same numbers in the arithmetic `S`, each rounded once. From `f32` to `f64` the
+    /// numbers are exact.
     #[must_use]
     pub fn cast<S: Real>(self) -> Motion<S> {
         <[R; 4]>::from(self).map(R::cast).into()

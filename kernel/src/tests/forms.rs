@@ -10,8 +10,8 @@ use double_pendulum::{
 
 use super::{EQUATIONS, assert_near};
 
-/// The number of steps. It is so small that an error in one equation has not yet spread to the
-/// others.
+/// The number of steps. It is so small that an error in one equation has not spread to the others
+/// yet.
 const STEPS: u32 = 8;
 const DT: f64 = 1.0 / 256.0;
 /// The number of steps by `Pendulum::step` per step of the form.
@@ -57,8 +57,8 @@ const MOTIONS: [(Parameters<f64>, Motion<f64>); 2] = [
 /// It covers the truncation error in steps of 1/256 s and rounding to 24 bits. Measured: 1.1e-8,
 /// and 5e-9 for fixed point with 30 bits.
 pub const RK4: f64 = 3e-8;
-/// The tolerance of extrapolation. It covers the truncation error of the finer RK4, and rounding to
-/// 53 and 61 bits. Measured: 4e-14.
+/// The tolerance of extrapolation. It covers the truncation error of the finer RK4, and the
+/// rounding to 53 and 61 bits. Measured: 4e-14.
 const ORDER_12: f64 = 2e-13;
 
 #[track_caller]
@@ -89,6 +89,8 @@ pub fn is_that_of_hamiltons_equations<F: Form>(tolerance: f64) {
             core::array::from_fn::<f64, 4, _>(|i| (end[i] - start[i]) / (f64::from(STEPS) * DT))
         });
         let error = |&i: &usize| ((rates[i] - exact[i]) / scales[i]).abs();
+
+        // Report the worst of the four.
         let worst = (0..4)
             .max_by(|i, j| error(i).total_cmp(&error(j)))
             .expect("four");

@@ -61,6 +61,7 @@ fn every_method_computes_the_golden_bits() {
         }
     }
 
+    // The file has the lines of all methods and no others.
     assert_eq!(file.lines().next(), Some(HEADER));
     let methods = Method::ALL.len() - 1; // all except that of these tests
     assert_eq!(golden.len(), methods * MOTIONS.len());
@@ -73,6 +74,7 @@ fn golden_bits_have_an_entry_in_the_change_log() {
     let name = format!("`golden/bits.csv` {checksum:016x}");
     assert!(
         read("CHANGELOG.md").contains(&name),
-        "the golden bits have changed: say in kernel/CHANGELOG.md which and why, in an entry that contains {name}"
+        "the golden bits have changed: say in kernel/CHANGELOG.md which and why, \
+        in an entry that contains {name}"
     );
 }

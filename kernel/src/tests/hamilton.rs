@@ -7,8 +7,8 @@ use super::{EQUATIONS, assert_near, random, tolerances};
 
 const STATES: u32 = 100_000;
 
-/// Returns the terms of the derivatives of a1, a2, p1 and p2 as the book prints Hamilton's
-/// equations ("Double Pendulum", math24.net), with its A1 and A2.
+/// Returns the terms of the derivatives of a1, a2, p1 and p2 as Hamilton's equations are printed in
+/// the book ("Double Pendulum", math24.net), with its A1 and A2.
 ///
 /// `den` is m1 + m2 sin^2 D, and the last argument is [sin D, cos D].
 fn page_terms(
@@ -20,11 +20,16 @@ fn page_terms(
     let w1 = [p1 * l2, -p2 * l1 * cos_d, 0.0].map(|term| term / (l1 * l1 * l2 * den));
     let w2 = [p2 * (m1 + m2) * l1, -p1 * m2 * l2 * cos_d, 0.0]
         .map(|term| term / (m2 * l1 * l2 * l2 * den));
+    // The book's A1.
     let term_a1 = p1 * p2 * sin_d / (l1 * l2 * den);
+
+    // The book's A2.
     let bracket = p1 * p1 * m2 * l2 * l2 - 2.0 * p1 * p2 * m2 * l1 * l2 * cos_d
         + p2 * p2 * (m1 + m2) * l1 * l1;
     let sin_2d = 2.0 * sin_d * cos_d;
     let term_a2 = bracket * sin_2d / (2.0 * l1 * l1 * l2 * l2 * den * den);
+
+    // The rates of the momenta.
     let p1_rate = [-(m1 + m2) * g * l1 * a1.sin(), -term_a1, term_a2];
     let p2_rate = [-m2 * g * l2 * a2.sin(), term_a1, -term_a2];
     [w1, w2, p1_rate, p2_rate]
@@ -38,21 +43,28 @@ fn largest(terms: &[f64]) -> f64 {
 
 /// Compares the derivatives with the book's terms, relative to the largest term.
 ///
-/// For this scale nothing cancels within a term: neither in the bracket of A2, nor in sin D = sin
-/// a1 cos a2 - cos a1 sin a2 and the same formula of cos D.
+/// This scale also covers cancellation within a term: in the bracket of A2, and in sin D = sin a1
+/// cos a2 - cos a1 sin a2 and the same formula of cos D.
 fn derivatives_are_the_pages<R: Real>() {
     for (pendulum, state) in random::pendulums::<R>(1, STATES) {
         let parameters = pendulum.parameters().cast::<f64>();
         let z @ [a1, a2, p1, p2]: [f64; 4] = state.cast().into();
+
+        // The directions in the standard library's arithmetic.
         let (s1, c1) = a1.sin_cos();
+
         let (s2, c2) = a2.sin_cos();
-        let (sin_d, cos_d) = (a1 - a2).sin_cos();
+        let elbow = a1 - a2;
+        let (sin_d, cos_d) = elbow.sin_cos();
         let den = parameters.m1 + parameters.m2 * sin_d * sin_d;
         // With this sign of cos D every term of the bracket is positive.
         let uncancelled = [largest(&[s1 * c2, c1 * s2]), -largest(&[c1 * c2, s1 * s2])];
         let magnitudes = page_terms(&parameters, [a1, a2, p1.abs(), p2.abs()], den, uncancelled);
+
+        // The book's terms, and the derivatives.
         let page = page_terms(&parameters, z, den, [sin_d, cos_d]);
         let values = pendulum.derivatives(&state.into()).map(R::to_f64);
+        // Each derivative.
         for i in 0..4 {
             let exact = page[i].iter().sum();
             let scale = largest(&magnitudes[i]);
@@ -83,12 +95,13 @@ const GRADIENT: f64 = 1e-7;
 const STEP: f64 = 1.0 / 131_072.0;
 
 /// The derivatives are (dH/dp1, dH/dp2, -dH/da1, -dH/da2). H is quadratic in the momenta, so that a
-/// difference of any step in these is exact.
+/// central difference in the momenta is exact for any step.
 #[test]
 fn derivatives_are_the_gradient_of_h() {
     for (pendulum, state) in random::pendulums::<f64>(2, STATES) {
         let z: [f64; 4] = state.into();
         let bounds = pendulum.bounds(&state);
+        // The central difference of H in the variable `i`.
         let slope = |i: usize, step: f64| {
             let [ahead, behind] = [step, -step].map(|by| {
                 let mut moved = z;
@@ -98,6 +111,7 @@ fn derivatives_are_the_gradient_of_h() {
             (ahead - behind) / (2.0 * step)
         };
 
+        // Hamilton's equations, as differences.
         let gradient = [
             slope(2, bounds.p1),
             slope(3, bounds.p2),
@@ -110,7 +124,7 @@ fn derivatives_are_the_gradient_of_h() {
         let values = pendulum.derivatives(&z);
         for i in 0..4 {
             assert_near(
-                format_args!("{} beside the gradient of H", EQUATIONS[i]),
+                format_args!("{} compared with the gradient of H", EQUATIONS[i]),
                 values[i],
                 gradient[i],
                 scales[i],
@@ -132,6 +146,7 @@ fn energy_above_rest_is_accurate_in_a_tiny_motion() {
     })
     .expect("valid");
 
+    // The angles are so small that the cosines round to 1.
     let above = pendulum.energy_above_rest(&State::at_rest(1e-10, 2e-10));
     let exact = 9.8 * (2.0 * 1e-20 + 4e-20) / 2.0; // K = ((m1 + m2) g l1 a1^2 + m2 g l2 a2^2)/2
     assert!(

@@ -12,6 +12,7 @@ fn all<R: Real>() {
     let half = R::HALF;
     let mut rng = Rng::with_seed(4);
     for _ in 0..20_000 {
+        // Random parameters, and velocities that are not small.
         let parameters @ Parameters { m1, m2, l1, l2, g } =
             random::parameters(&mut rng).cast::<R>();
         let motion: Motion<R> = [0; 4]
@@ -54,12 +55,26 @@ fn all<R: Real>() {
         let slope2 = half * (lagrangian(w1, w2 + one) - lagrangian(w1, w2 - one));
         let [torque1, torque2] = [pendulum.stiffness()[0][0], pendulum.stiffness()[1][1]];
         let scale = kinetic + torque1 + torque2 + (m1 + m2) * l1 * l1 + m2 * l2 * l2;
-        same("p1 beside dL/dw1", p1, slope1, R::from_f64(8.0) * scale);
-        same("p2 beside dL/dw2", p2, slope2, R::from_f64(8.0) * scale);
+        same(
+            "p1 compared with dL/dw1",
+            p1,
+            slope1,
+            R::from_f64(8.0) * scale,
+        );
+        same(
+            "p2 compared with dL/dw2",
+            p2,
+            slope2,
+            R::from_f64(8.0) * scale,
+        );
+
+        // Back to the velocities.
         let back = pendulum.to_motion(&state);
         let speed = (w1.abs() + w2.abs()) * (m1 + m2) / m1 * (l1 / l2 + l2 / l1);
         same("w1 of (p1, p2)", back.w1, w1, speed);
         same("w2 of (p1, p2)", back.w2, w2, speed * (m1 + m2) / m2);
+
+        // A pendulum at rest has no momenta.
         assert_eq!(
             pendulum.to_state(&Motion::at_rest(a1, a2)),
             State::at_rest(a1, a2)
@@ -97,24 +112,28 @@ fn all<R: Real>() {
         // derivative of p = M w.
         let [_, _, force1, force2] = pendulum.derivatives(&state.into());
         let [acceleration1, acceleration2] = pendulum.accelerations(&motion);
-        let (sin_d, cos_d) = (a1 - a2).to_f64().sin_cos();
+        let elbow = (a1 - a2).to_f64();
+        let (sin_d, cos_d) = elbow.sin_cos();
         let [[m11, m12], [m21, m22]] = pendulum.mass_matrix(R::from_f64(cos_d));
         let m12_rate = -m2 * l1 * l2 * R::from_f64(sin_d) * (w1 - w2);
+
+        // The two sides of the equation.
         let p1_rate = m11 * acceleration1 + m12 * acceleration2 + m12_rate * w2;
         let p2_rate = m21 * acceleration1 + m22 * acceleration2 + m12_rate * w1;
         let magnitude =
             (m11 + m12.abs()) * acceleration1.abs() + (m22 + m12.abs()) * acceleration2.abs();
+        // The scale includes all terms before they cancel.
         let square = (w1.abs() + w2.abs()) * (w1.abs() + w2.abs());
         let scale = (magnitude + (m11 + m22) * square + force1.abs() + force2.abs()) * unlike;
         same(
-            "p1' by Pendulum::accelerations, beside derivatives,",
+            "p1' by Pendulum::accelerations, compared with derivatives,",
             p1_rate,
             force1,
             scale,
         );
 
         same(
-            "p2' by Pendulum::accelerations, beside derivatives,",
+            "p2' by Pendulum::accelerations, compared with derivatives,",
             p2_rate,
             force2,
             scale,
@@ -149,6 +168,8 @@ fn bobs_follow_the_directions_of_the_rods() {
 
     let [bob1, bob2] = pendulum.positions(motion.angles());
     let [v1, v2] = pendulum.velocities(&motion);
+
+    // Bob 1 is 3 m below the pivot. Bob 2 moves with bob 1, and turns about it.
     let exact = [
         (bob1, [0.0, -3.0]),
         (bob2, [4.0, -3.0]),

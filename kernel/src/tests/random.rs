@@ -1,5 +1,5 @@
 //! Random pendulums for the property tests. The seeds are fixed, so that every run uses the same
-//! ones.
+//! pendulums.
 
 use double_pendulum::{Parameters, Pendulum, Real, State};
 use fastrand::Rng;
@@ -31,6 +31,7 @@ pub fn parameters(rng: &mut Rng) -> Parameters<f64> {
 /// Returns a random state, rounded to `f32`: any angles within one turn in either direction, and
 /// momenta of the size that gravity can cause.
 pub fn state(rng: &mut Rng, &Parameters { m1, m2, l1, l2, g }: &Parameters<f64>) -> State<f64> {
+    // The energy of turning over is about this.
     let energy = g * ((m1 + m2) * l1 + m2 * l2);
     let [p1, p2] = [
         l1 * (2.0 * (m1 + m2) * energy).sqrt(),

@@ -41,6 +41,7 @@ fn errors_contain_the_parameter_and_its_value() {
         limit,
     };
 
+    // Each of these inputs is refused.
     for (refused, error) in [
         (
             pendulum(Parameters { l1: 0.0, ..GOOD }),
@@ -117,6 +118,7 @@ fn errors_contain_the_parameter_and_its_value() {
         assert_eq!(refused, Err(error));
     }
 
+    // NaN is not equal to itself, so that its error is matched by hand.
     let nan = pendulum(Parameters {
         m2: f64::NAN,
         ..GOOD
@@ -125,6 +127,8 @@ fn errors_contain_the_parameter_and_its_value() {
         matches!(nan, Err(Error::NotFinite { parameter: M2, value }) if value.is_nan()),
         "{nan:?}"
     );
+
+    // Zero gravity is allowed.
     let good = [
         pendulum(Parameters { g: 0.0, ..GOOD }),
         State::at_rest(1.0, 2.0).check(),
@@ -135,6 +139,7 @@ fn errors_contain_the_parameter_and_its_value() {
 
 #[test]
 fn errors_are_printed_in_one_line() {
+    // A message names the parameter, its value, and the reason.
     for (error, line) in [
         (
             Error::NotPositive {

@@ -19,15 +19,18 @@ const EVEN: Parameters<f64> = Parameters {
     g: 9.81,
 };
 
-/// Checks that steps of up to `phase` rad of the fast mode are accepted, and no longer ones.
+/// Checks that steps whose phase of the fast mode is at most `phase` rad are accepted, and longer
+/// steps refused.
 fn is_stable_up_to<F: Form>(phase: f64) -> Result<(), Error> {
     let start = State::at_rest(1e-6, 1e-6);
     for parameters in [EVEN, Parameters { m2: 1000.0, ..EVEN }] {
         let pendulum = Pendulum::new(&parameters)?;
         let longest = phase / Modes::new(&parameters)?.fast.frequency;
+        // In both directions of time.
         for dt in [0.999 * longest, -0.999 * longest] {
             pendulum.run::<F>(&start, dt)?.advance(1)?;
         }
+        // The error reports the longest step.
         for dt in [1.001 * longest, -1.001 * longest, 1e6] {
             let Err(Error::TooLarge {
                 parameter: Parameter::Dt,
@@ -71,6 +74,8 @@ fn fixed_point_accepts_the_limit_that_run_reports() -> Result<(), Error> {
         let start = State::at_rest(1e-6, 1e-6);
         let Err(Error::TooLarge { limit, .. }) = pendulum.run::<F>(&start, 1e6) else {
             panic!("1e6 s is accepted")
+
+            // The reported limit is accurate to a part in a million.
         };
         pendulum.run::<F>(&start, 0.999_999 * limit)?.advance(100)
     }
@@ -84,8 +89,9 @@ fn fixed_point_accepts_the_limit_that_run_reports() -> Result<(), Error> {
     Ok(())
 }
 
-/// A motion at rest without gravity accepts steps of up to 1e150 s. It refuses steps of 1e152 s or
-/// more, whose squares are near the end of the range of `f64` or beyond it.
+/// The step of a motion at rest without gravity is limited only by its unit of time. The longest
+/// unit is 1e150 s, so that its square is a finite `f64`, and a step has at most 15 units. So a
+/// step of 1e150 s is accepted, and a step of 1e152 s is refused.
 #[test]
 fn fixed64_at_rest_without_gravity_stays_at_rest_or_is_refused() -> Result<(), Error> {
     let free = Pendulum::new(&Parameters { g: 0.0, ..EVEN })?;
@@ -112,11 +118,12 @@ fn fixed64_at_rest_without_gravity_stays_at_rest_or_is_refused() -> Result<(), E
 }
 
 /// Advances motions that are far too fast for their steps, step by step. More than half of them are
-/// refused. Until then their energies and directions are within the documented bounds.
+/// refused. Before that, their energies and directions are within the documented bounds.
 fn energy_stays_within_its_bound<F: Form>() -> Result<(), Error> {
     let mut rng = Rng::with_seed(5);
     let mut symmetric = |most: f64| most * (2.0 * rng.f64() - 1.0);
     let mut refused = 0;
+    // Any masses and lengths, and any rates up to 300 rad/s.
     for _ in 0..200 {
         let parameters = Parameters {
             m2: symmetric(5.0).exp2(),
@@ -132,6 +139,7 @@ fn energy_stays_within_its_bound<F: Form>() -> Result<(), Error> {
             w2: symmetric(300.0),
         };
 
+        // The documented bound is a hundred times the energy at the start.
         let start = pendulum.to_state(&motion);
         let most = 100.0 * pendulum.energy_above_rest(&start);
 
@@ -149,7 +157,7 @@ fn energy_stays_within_its_bound<F: Form>() -> Result<(), Error> {
                 }
                 Err(error) => {
                     assert!(matches!(error, Error::Diverged { .. }), "{error:?}");
-                    assert_eq!(run, before, "the run stays as it was");
+                    assert_eq!(run, before, "a refused step does not change the run");
                     refused += 1;
                     break;
                 }

@@ -24,7 +24,7 @@ const FIGURES: [[f64; 5]; 3] = [
 
 /// The book's figures in all digits, and their motions in the worked example: a1 = (pi/12)
 /// sqrt(mu/(1 + mu)) (cos w2 t - cos w1 t), a2 = (pi/12)(cos w1 t + cos w2 t). In `f32` the phase
-/// stays accurate for a day.
+/// is accurate for a day.
 #[test]
 fn figures_3_to_5_are_those_of_the_book() {
     for [mu, w1, w2, envelope, largest_a1] in FIGURES {
@@ -35,6 +35,8 @@ fn figures_3_to_5_are_those_of_the_book() {
         let fast = modes.fast.frequency;
         let slow = modes.slow.frequency;
         let amplitude = (double.fast.amplitude() + double.slow.amplitude()).to_degrees();
+
+        // The numbers of the book.
         for (value, exact, digits) in [
             (fast, w1, 1e-6),
             (slow, w2, 1e-6),
@@ -49,6 +51,7 @@ fn figures_3_to_5_are_those_of_the_book() {
             );
         }
 
+        // The motion of the book.
         let off = |t: f64, [a1, a2]: [f64; 2]| {
             let fast = (fast * t).cos();
             let slow = (slow * t).cos();
@@ -57,6 +60,7 @@ fn figures_3_to_5_are_those_of_the_book() {
             (a1 - exact1).abs().max((a2 - exact2).abs())
         };
 
+        // The motion in `f64`, and in `f32` after half a day and a day.
         for t in (0..600).map(|tick| f64::from(tick) / 60.0) {
             let error = off(t, double.at(t).angles());
             assert!(
@@ -70,6 +74,8 @@ fn figures_3_to_5_are_those_of_the_book() {
                     "{mu} in f32 at {later} s: {error:e} rad"
                 );
             }
+
+            // The directions, which have their own series.
             directions_are_those_of_the_angles::<f64>(&double, t);
             directions_are_those_of_the_angles::<f32>(&single, t);
         }
@@ -96,13 +102,15 @@ fn directions_are_those_of_the_angles<R: Real>(motion: &SmallOscillations<R>, t:
         .zip(motion.at(t).angles().map(R::to_f64))
     {
         let [sine, cosine] = direction.map(R::to_f64);
-        let left_out = a.abs().min(0.6);
+
+        // The series is used only for small angles.
+        let small = a.abs().min(0.6);
         assert!(
-            (sine - a.sin()).abs() <= left_out.powi(5) / 120.0 + rounding * (1.0 + a.abs()),
+            (sine - a.sin()).abs() <= small.powi(5) / 120.0 + rounding * (1.0 + a.abs()),
             "{t:?}: sin {a} = {sine}"
         );
         assert!(
-            (cosine - a.cos()).abs() <= left_out.powi(6) / 720.0 + rounding * (1.0 + a.abs()),
+            (cosine - a.cos()).abs() <= small.powi(6) / 720.0 + rounding * (1.0 + a.abs()),
             "{t:?}: cos {a} = {cosine}"
         );
     }
@@ -118,6 +126,7 @@ fn modes_solve_the_matrix_equation_and_motions_have_amplitudes_and_phases() {
         let mass = pendulum.mass_matrix(1.0);
         let stiffness = pendulum.stiffness();
         let modes = pendulum.modes().expect("there is gravity");
+        // Each mode solves the two equations.
         for Mode { frequency, shape } in [modes.fast, modes.slow] {
             for row in 0..2 {
                 let force = stiffness[row][0] + stiffness[row][1] * shape;
@@ -132,6 +141,7 @@ fn modes_solve_the_matrix_equation_and_motions_have_amplitudes_and_phases() {
             }
         }
 
+        // A random motion at a random time, as a sum of two cosines.
         let motion =
             SmallOscillations::<f64>::new(modes, &[0; 4].map(|_| symmetric(&mut rng)).into());
         let t = 3.0 * rng.f64();
@@ -139,6 +149,7 @@ fn modes_solve_the_matrix_equation_and_motions_have_amplitudes_and_phases() {
         let slow = motion.slow;
         let a1 = fast.amplitude() * (modes.fast.frequency * t + fast.phase()).cos()
             + slow.amplitude() * (modes.slow.frequency * t + slow.phase()).cos();
+        // The phase is rounded in proportion to the time.
         let scale = (fast.amplitude() + slow.amplitude()) * (1.0 + modes.fast.frequency * t);
         assert!(
             (motion.at(t).a1 - a1).abs() < tolerances::FORMULAS.double * scale,
@@ -160,10 +171,14 @@ fn motions_with_a_periodic_mass_ratio_repeat() {
         (7, 3, [2.0, 0.5], None),
     ] {
         let mu = periodic_mass_ratio(fast, slow, lengths).expect("the ratio is possible");
+
+        // The mass ratio of equal rods is exact.
         assert!(
             exact.is_none_or(|exact| mu == exact),
             "{mu} instead of {exact:?}"
         );
+
+        // The frequencies have the given ratio.
         let modes = Modes::new(&Parameters {
             m1: 1.0,
             m2: mu,
@@ -179,6 +194,7 @@ fn motions_with_a_periodic_mass_ratio_repeat() {
             "{ratio}"
         );
 
+        // The motion is at its start again after the common period.
         let motion = SmallOscillations::new(
             modes,
             &Motion {

@@ -1,4 +1,5 @@
-//! Time reversal, mirror image and scaling laws. Only the return to the start is not bit-identical.
+//! Time reversal, mirror image and scaling laws. All except the return to the start are
+//! bit-identical.
 
 use double_pendulum::{Parameters, Pendulum, Real, State};
 
@@ -26,6 +27,7 @@ fn stronger<R: Real>(State { a1, a2, p1, p2 }: State<R>, by: R) -> State<R> {
 fn hold<R: Real>() {
     let [two, four, eight] = [2.0, 4.0, 8.0].map(R::from_f64);
     for (pendulum, start) in random::pendulums::<R>(3, 200) {
+        // Reversed momenta reverse the velocities, but not the forces.
         let [w1, w2, f1, f2] = pendulum.derivatives(&start.into());
         assert_eq!(
             pendulum.derivatives(&stronger(start, -R::ONE).into()),
@@ -40,6 +42,7 @@ fn hold<R: Real>() {
         let mirrored = |state: State<R>| State::from(<[R; 4]>::from(state).map(|x| -x));
         assert_eq!(run(parameters, mirrored(start), dt), mirrored(end));
 
+        // The scaling laws.
         let longer = Parameters {
             l1: l1 * four,
             l2: l2 * four,
@@ -82,6 +85,8 @@ fn reversed_momenta_return_to_the_start() {
             run(parameters, stronger(run(parameters, start, dt), -1.0), dt),
             -1.0,
         );
+
+        // All four variables return.
         for (name, back, start, scale) in [
             ("a1", back.a1, start.a1, 1.0),
             ("a2", back.a2, start.a2, 1.0),

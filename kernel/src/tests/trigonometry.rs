@@ -8,14 +8,14 @@ use double_pendulum::Real;
 
 /// The error of the `f32` pair on [-pi, pi] (measured: 8.56e-8).
 ///
-/// Half an ulp is due to the rounding of the reduced argument, half an ulp to the last addition,
-/// and a little to the terms between.
+/// Half an ulp comes from the rounding of the reduced argument, half an ulp from the last addition,
+/// and a little from the terms between.
 const NEAR: f64 = 9e-8;
-/// The error of the `f32` pair for abs x <= 1e4: the same bound with a margin, because fewer floats
-/// are tested.
+/// The error of the `f32` pair for |x| <= 1e4. It is the same bound with a margin, because fewer
+/// floats are tested.
 const FAR: f64 = 1e-7;
-/// The error of the `f64` pair, in units of the last place: one for the reduced argument, and one
-/// for the polynomial. The error of the reference, 0.6, is subtracted.
+/// The error of the `f64` pair, ulp: one for the reduced argument, and one for the polynomial. The
+/// error of the reference, 0.6, is subtracted.
 const ULPS: f64 = 2.0 - 0.6;
 
 /// Returns the larger of the absolute errors of sine and cosine.
@@ -34,7 +34,7 @@ fn largest_error(limit: f32, stride: usize) -> f64 {
     positive.fold(0.0, |worst: f64, x| worst.max(error(x)).max(error(-x)))
 }
 
-/// Returns abs(`value` - `truth`) in units of the last place of `truth`.
+/// Returns |`value` - `truth`| in units of the last place of `truth`.
 fn ulps(value: f64, truth: f64) -> f64 {
     let one = f64::from_bits(truth.abs().to_bits() + 1) - truth.abs();
     (value - truth).abs() / one
@@ -59,6 +59,7 @@ fn own_f32_is_within_its_bound_on_every_float_to_pi() {
 #[test]
 fn own_f32_is_within_its_bound_near_multiples_of_half_pi() {
     for k in 1..=6366 {
+        // The sine or the cosine is small here, so that errors of the reduction show.
         let nearest = (f64::from(k) * core::f64::consts::FRAC_PI_2) as f32;
         for x in [
             nearest.to_bits() - 1,
@@ -75,6 +76,8 @@ fn own_f32_is_within_its_bound_near_multiples_of_half_pi() {
 #[test]
 fn own_f64_is_within_two_units_of_the_last_place() {
     let mut worst = 0.0_f64;
+    // Arguments of all ranges: near zero, large, of every size, and near the multiples of pi/2,
+    // where digits cancel.
     let uniform = (-2_000_000..=2_000_000).map(|i| f64::from(i) * 8.1e-7);
     let huge = (0..200_000).map(|i| f64::from(i) * 8.235_490_1);
     let every_size =
@@ -92,7 +95,7 @@ fn own_f64_is_within_two_units_of_the_last_place() {
     assert!(worst <= ULPS, "{worst:.3}");
 }
 
-/// Beyond the range of the reduction the result is that of `libm`. Infinities and NaN give NaN.
+/// Beyond the range of the reduction `libm` computes the result. Infinities and NaN give NaN.
 #[test]
 fn every_bit_pattern_has_a_defined_result() {
     for x in (0..=u32::MAX).step_by(65_521).map(f32::from_bits) {
@@ -108,16 +111,21 @@ fn every_bit_pattern_has_a_defined_result() {
         );
     }
 
+    // Huge arguments.
     for x in [f32::MAX, 1e20, 12_868.0] {
         assert_eq!(x.own_sin_cos(), libm::sincosf(x));
     }
     for x in [f64::MAX, 1e200, 1_647_100.0] {
         assert_eq!(x.own_sin_cos(), libm::sincos(x));
     }
+
+    // Arguments without a sine.
     for x in [f64::INFINITY, f64::NEG_INFINITY, f64::NAN] {
         let (sine, cosine) = x.own_sin_cos();
         assert!(sine.is_nan() && cosine.is_nan());
     }
+
+    // Tiny arguments.
     for x in [0.0, -0.0, 1e-45, -1e-45, 1e-30, 1e-10_f32] {
         assert_eq!(x.own_sin_cos(), (x, 1.0), "small arguments pass through");
     }

@@ -32,6 +32,7 @@ fn SysTick() {
 pub fn start(mut systick: SYST, hertz: u32) {
     systick.set_clock_source(SystClkSource::Core);
     PERIOD.store(hertz / TICK_RATE, Ordering::Relaxed);
+    // The counter counts from this value down to 0, and then begins again.
     systick.set_reload((hertz / TICK_RATE).saturating_sub(1));
     systick.clear_current();
     systick.enable_interrupt();

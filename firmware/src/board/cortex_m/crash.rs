@@ -6,7 +6,7 @@
 //! records the cause and restarts, and the next run reports it.
 //!
 //! A program that hangs is reported at the first interrupt of the watchdog. If the program
-//! continues after all, nothing else happens. If not, the watchdog resets the board.
+//! continues nevertheless, nothing else happens. Otherwise the watchdog resets the board.
 //!
 //! # A debugger that is gone
 //!
@@ -46,7 +46,7 @@ const STACK_SIZE: usize = 2048;
 
 /// True if no debugger is assumed to be present: a call was not answered, or the board is a chip.
 static ALONE: AtomicBool = AtomicBool::new(false);
-/// True after a crash report has begun. A crash within the report is not reported.
+/// True after the start of a crash report. A crash within the report is not reported.
 static CRASHED: AtomicBool = AtomicBool::new(false);
 /// The stack for the reports of faults. The other stack may be the cause of the fault.
 static STACK: Stack = Stack(UnsafeCell::new([0; STACK_SIZE]));
@@ -127,10 +127,13 @@ extern "C" fn hard_fault(frame: *mut ExceptionFrame, exception: u32) {
         lr: frame.lr(),
         xpsr: frame.xpsr(),
     });
+
+    // Without stacked registers, report the last call on the stack.
     let last_call = calls(sp).next();
     let (pc, lr) = stacked.map_or((0, last_call.unwrap_or_default()), |stacked| {
         (stacked.pc, stacked.lr)
     });
+
     crash(
         (Cause::Fault, pc, lr, cfsr),
         &Fault {
@@ -169,7 +172,8 @@ pub(super) fn hang(interrupted: &ExceptionFrame) {
     if CRASHED.load(Ordering::Relaxed) {
         return;
     }
-    let (pc, lr) = (interrupted.pc(), interrupted.lr());
+    let pc = interrupted.pc();
+    let lr = interrupted.lr();
 
     retained::end(Cause::Hang, pc, lr, 0);
     if watchdog::has_ticked() && !ALONE.load(Ordering::Relaxed) {
@@ -195,6 +199,7 @@ fn crash((cause, pc, lr, cfsr): (Cause, u32, u32, u32), report: &dyn Display) ->
     cortex_m::interrupt::disable();
     let is_first = !CRASHED.load(Ordering::Relaxed);
     CRASHED.store(true, Ordering::Relaxed);
+    // The first crash is the cause; a crash within its report is a consequence.
     if is_first {
         retained::end(cause, pc, lr, cfsr);
     }
@@ -221,8 +226,8 @@ fn say(report: &dyn Display) {
     }
 }
 
-/// Returns the status of a fault: CFSR, HFSR, MMFAR and BFAR; zeros on a Cortex-M0+, which has none
-/// of them. If `clears`, HFSR is cleared.
+/// Returns the status of a fault: CFSR, HFSR, MMFAR and BFAR. A Cortex-M0+ has no such registers,
+/// and the values are zero. If `clears`, HFSR is cleared.
 #[cfg(not(armv6m))]
 fn fault_status(clears: bool) -> [u32; 4] {
     // SAFETY: the registers always exist, and no other code uses them.

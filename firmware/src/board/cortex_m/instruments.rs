@@ -22,6 +22,7 @@ pub fn start(core: Peripherals, board: BoardName, hertz: u32, chip: [u32; 4]) ->
     clock::start(core.SYST, hertz);
     start_counter(core.DCB, core.DWT);
 
+    // The identity that the host can request.
     let processor = core.CPUID.base.read();
     let identity = Identity {
         board,
@@ -94,6 +95,8 @@ pub(in crate::board) fn cycles_of(work: impl FnOnce()) -> u32 {
         counter.clear_current();
         work();
         let taken = FULL.wrapping_sub(SYST::get_current());
+
+        // Restore the period.
         counter.set_reload(reload);
         counter.clear_current();
         taken

@@ -14,8 +14,8 @@ use crate::protocol::{Cause, MAX_WIRE, Restarted};
 #[unsafe(link_section = ".uninit.kept")]
 static KEPT: [[AtomicU8; MAX_WIRE]; 2] = [const { [const { AtomicU8::new(0) }; MAX_WIRE] }; 2];
 
-/// Returns the copies, hidden from the optimiser. The compiler must assume nothing about them,
-/// because the bytes were written by a program that has ended, or are for one that has not started.
+/// Returns the copies, hidden from the optimiser. The compiler must assume nothing about them:
+/// their bytes come from the program before a reset, and are read by the program after it.
 fn copies() -> &'static [[AtomicU8; MAX_WIRE]; 2] {
     black_box(&KEPT)
 }

@@ -1,11 +1,11 @@
-//! The stack guard, which stops a stack that grows too long before it overwrites anything. Also the
-//! search for calls on the stack, which shows where a program has crashed if nothing else does.
+//! The stack guard, which stops the stack before it overwrites anything. Also the search for calls
+//! on the stack, which often shows where a program has crashed.
 //!
 //! The upper 32 KB of memory are for the stack, which grows downwards. The statics are at the
 //! bottom of the lower 32 KB. The memory protection unit blocks all access to the rest of these, in
 //! eighths of 4 KB. `memory.x` ensures that the rest is at least 8 KB.
 //!
-//! The guard is that large because a function that takes kilobytes at once, such as one that
+//! The guard is that large because a function with kilobytes of local variables, such as one that
 //! creates a scene, could step over a thinner one. No function of the firmware takes as much as the
 //! guard, with a margin of 512 bytes and the registers that the next call pushes (test
 //! `stack_guard`). So the stack pointer cannot pass the guard. If it stops within the guard, the

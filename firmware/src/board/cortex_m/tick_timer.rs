@@ -32,8 +32,9 @@ pub fn elapsed(timer: &impl TickTimer, period: u32) -> u32 {
         if !is_pending {
             return start.wrapping_add(last.wrapping_sub(counter));
         }
-        // A period has ended that is not yet in `ticks`. The first counter may be from before its
-        // end, so it is read again. At 0 the period has just ended and the next one has not begun.
+        // A period has ended that is not yet in `ticks`. The first counter may have been read
+        // before its end, so it is read again. At 0 the period has just ended, and the reload is
+        // still to come.
         return match timer.counter() {
             0 => start.wrapping_add(last),
             counter => start

@@ -37,12 +37,15 @@ pub fn take() -> Option<Lm3s6965evb> {
     let core = Peripherals::take()?;
     let hertz = system::start();
     let instruments = start(core, BoardName::Lm3s6965evb, hertz, system::chip());
+
     // Deselect the memory card, which shares the panel's bus.
     let Ok(()) = pins::D.use_for_output(1 << 0).set_high();
 
+    // The buttons.
     pins::E.use_for_input(1 << 0 | 1 << 1 | 1 << 2 | 1 << 3);
     pins::F.use_for_input(1 << 1);
 
+    // The serial link and the panel.
     let link = start_link(hertz);
     let memory = cortex_m::singleton!(: Canvas = Canvas::BLACK)?;
     let mut panel = Ssd0323::new(Ssi::start(hertz), pins::C.use_for_output(1 << 7), memory);
@@ -125,6 +128,7 @@ fn start_link(hertz: u32) -> Outward {
 
 /// Takes the received bytes.
 fn receive(inbox: &mut Inbox) {
+    // Clear the interrupt first, so that a byte that comes now interrupts again.
     INTERRUPT_CLEAR.write(RECEIVED);
     while FLAGS.read() & RECEIVER_EMPTY == 0 {
         inbox.push(DATA.read() as u8);

@@ -115,6 +115,7 @@ fn send(bytes: &[u8]) -> Result<(), ErrorKind> {
         DATA.write(byte.into());
     }
 
+    // Wait until the bytes are sent.
     if !STATUS.wait(BUSY, 0, BUS_TRIES) {
         return Err(ErrorKind::Other);
     }

@@ -126,6 +126,8 @@ impl PanelPort for I2c0 {
         let port = registers();
         // The last stop may still be in progress.
         let _ = (0..TRIES).any(|_| port.ic_status().read().mst_activity().is_idle());
+
+        // The address can be set only while the block is disabled.
         port.ic_enable().write(|w| w.enable().disabled());
         // SAFETY: an address of seven bits.
         port.ic_tar()
@@ -138,6 +140,8 @@ impl PanelPort for I2c0 {
         // While a device holds the clock low, a transfer does not end, and the block cannot be
         // disabled. Its reset ends every transfer.
         hold_in_reset(true);
+
+        // The pins are driven by hand for this.
         free_bus(|clock, data| {
             drive(CLOCK, clock);
             drive(DATA, data);
@@ -150,6 +154,7 @@ impl PanelPort for I2c0 {
             hold_in_reset(false);
             set_up(registers());
         });
+        // Return the lines to the block.
         for line in [DATA, CLOCK] {
             pin(line)
                 .gpio_ctrl()
@@ -198,6 +203,8 @@ fn advance(port: &RegisterBlock, outbox: &mut Outbox) -> Option<Sent> {
         if !is_sent || !is_read {
             return None;
         }
+
+        // The transfer is complete.
         for _ in 0..outbox.asked() {
             outbox.answer(port.ic_data_cmd().read().dat().bits());
         }

@@ -64,6 +64,7 @@ fn uart() -> &'static rp2040_hal::pac::uart0::RegisterBlock {
 /// sent half of them.
 #[interrupt]
 fn UART0_IRQ() {
+    // The bytes in the queue, while the UART takes them.
     QUEUE.with(|queue| {
         while uart().uartfr().read().txff().bit_is_clear()
             && let Some(byte) = queue.pop_front()

@@ -1,5 +1,5 @@
 //! Raspberry Pi Pico: an RP2040 with a Cortex-M0+ at 125 MHz, a one-colour OLED panel on I2C0, up
-//! to five buttons, and the serial link over USB and UART0 at once. One of the two cores is used.
+//! to five buttons, and the serial link over USB and UART0 at once. The second core is not used.
 //!
 //! Source: RP2040 data sheet, for the watchdog 2.8 (boot sequence), 2.13 (its resets), 2.14
 //! (subsystem resets), 4.7; Raspberry Pi Pico data sheet, for the pins.
@@ -35,7 +35,7 @@ use i2c::I2c0;
 
 /// The code that the chip's boot ROM runs first. It makes the flash readable as memory, if that is
 /// a W25Q080 or a chip with the same commands.
-// SAFETY: the linker puts this section where the ROM expects it, and nothing else into it.
+// SAFETY: the linker puts only this section where the ROM expects it.
 #[unsafe(link_section = ".boot2")]
 #[used]
 static BOOT: [u8; 256] = rp2040_boot2::BOOT_LOADER_W25Q080;
@@ -49,21 +49,18 @@ pub type Pico = Board<OledI2c<'static, Bus<I2c0>>, Outward, PinKeys, Watchdog>;
 pub fn take() -> Option<Pico> {
     let core = cortex_m::Peripherals::take()?;
     let mut chip = pac::Peripherals::take()?;
+
+    // The cause of the reset must be read before the clocks are set up.
     log::into_memory();
     let reset_by_watchdog = reset_by_watchdog(&chip.WATCHDOG, &chip.RESETS);
-    let (pll, usb_pll, resets, mut unit) = (
-        chip.PLL_SYS,
-        chip.PLL_USB,
-        &mut chip.RESETS,
-        Watchdog::new(chip.WATCHDOG),
-    );
+    let mut unit = Watchdog::new(chip.WATCHDOG);
     let clocks = init_clocks_and_plls(
         CRYSTAL,
         chip.XOSC,
         chip.CLOCKS,
-        pll,
-        usb_pll,
-        resets,
+        chip.PLL_SYS,
+        chip.PLL_USB,
+        &mut chip.RESETS,
         &mut unit,
     )
     .ok()?;
@@ -103,6 +100,8 @@ pub fn take() -> Option<Pico> {
     let bus = i2c::start(chip.I2C0, wires, clocks.system_clock.freq())?;
     let memory = cortex_m::singleton!(: Bitmap = Bitmap::BLACK)?;
 
+    // The panel and the buttons may be absent: the driver looks for a panel, and an open pin reads
+    // as high.
     Some(Board {
         panel: OledI2c::new(bus, memory, BUILT_FOR),
         link,

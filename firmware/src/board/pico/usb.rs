@@ -28,8 +28,8 @@ const IDS: UsbVidPid = UsbVidPid(0x16c0, 0x27dd);
 /// The size of a packet of data, bytes.
 const PACKET: usize = 64;
 /// The packet size of the control endpoint, bytes. With the library's 8 bytes a descriptor takes
-/// many packets, each of which must be answered in time, and some hosts give up ("Set Address
-/// Failed", rp-rs/rp-hal#937).
+/// many packets. Each must be answered in time, and some hosts give up ("Set Address Failed",
+/// rp-rs/rp-hal#937).
 const CONTROL_PACKET: u8 = 64;
 /// The time without the pull-up at a start, processor cycles at 125 MHz: 12 ms.
 ///
@@ -72,6 +72,7 @@ pub(super) fn start(
     let bus = singleton!(: UsbBusAllocator<UsbBus> = UsbBusAllocator::new(bus))?;
     let port = CdcAcmClass::new(bus, PACKET as u16);
 
+    // The descriptors of the device.
     let names = StringDescriptors::default()
         .manufacturer("double-pendulum")
         .product("Double pendulum");
@@ -83,6 +84,7 @@ pub(super) fn start(
         .ok()?
         .build();
 
+    // The device lives for ever.
     let usb = singleton!(: Usb = Usb {
         device,
         port,
@@ -121,12 +123,16 @@ pub(super) fn poll(inbox: &mut Inbox) -> bool {
         usb.device.poll(&mut [&mut usb.port]);
         usb.obey_speed();
         let mut packet = [0; PACKET];
+
+        // Take a packet only if its bytes fit.
         if has_room && let Ok(length) = usb.port.read_packet(&mut packet) {
             packet
                 .into_iter()
                 .take(length)
                 .for_each(|byte| inbox.push(byte));
         }
+
+        // Send, and count the interrupts in a row that left something pending.
         usb.pass_on();
 
         usb.futile = if is_pending() {
@@ -142,8 +148,8 @@ pub(super) fn poll(inbox: &mut Inbox) -> bool {
 /// Returns true if the device has an interrupt pending, except for a reset of the bus, which lasts.
 ///
 /// The libraries leave an unexpected packet to the control endpoint in place until the next request
-/// of the host. Such a packet belongs to a request that is longer than their buffer of 128 bytes,
-/// or to one that the host has broken off.
+/// of the host. Such a packet belongs to a request that the host has abandoned, or to a request
+/// that is longer than their buffer of 128 bytes.
 fn is_pending() -> bool {
     // SAFETY: the register is only read; no other code reads it for its side effects.
     let interrupts = unsafe { &*USBCTRL_REGS::ptr() }.ints().read();
@@ -171,6 +177,8 @@ impl Usb {
             .zip(&self.leaving)
             .map(|(place, byte)| *place = *byte)
             .count();
+
+        // The bytes that the device has taken leave the queue.
         if length > 0
             && self
                 .port

@@ -40,6 +40,7 @@ pub(super) fn start(port: I2C1, clock: PB6, data: PB7, rcc: &mut Rcc) -> Option<
     let data = data.internal_resistor(Pull::Up);
     let (_, pins) = I2c::new(port, (clock, data), 400.kHz(), rcc).release();
 
+    // The panel's messages need both interrupts: one for progress, one for errors.
     let bus = Bus::new(I2c1(pins), HERTZ)?;
     [Interrupt::I2C1_EV, Interrupt::I2C1_ER]
         .into_iter()
@@ -61,6 +62,8 @@ impl PanelPort for I2c1 {
     fn reset(&mut self) {
         let port = registers();
         silence(port);
+
+        // Free the bus with its pins as ordinary outputs.
         if let (Scl::PB6(clock), Sda::PB7(data)) = &mut self.0 {
             clock.with_open_drain_output_in_state(PinState::High, |clock| {
                 data.with_open_drain_output_in_state(PinState::High, |data| {
@@ -75,11 +78,10 @@ impl PanelPort for I2c1 {
         }
 
         // Reset the device, and restore its settings.
-        let (frequency, clock, rise) = (
-            port.cr2().read().bits(),
-            port.ccr().read().bits(),
-            port.trise().read().bits(),
-        );
+        let frequency = port.cr2().read().bits();
+        let clock = port.ccr().read().bits();
+        let rise = port.trise().read().bits();
+
         port.cr1().write(|w| w.swrst().set_bit());
         port.cr1().write(|w| w.swrst().clear_bit());
         // SAFETY: these registers had the same values before.
@@ -114,6 +116,7 @@ fn advance(port: &RegisterBlock, outbox: &mut Outbox) -> Option<Sent> {
 
     // True if all messages are sent, and only the answer is outstanding.
     let reads = outbox.is_empty() && outbox.asked() > 0;
+    // Each flag ends one phase of the transfer.
     let is_ready = if status & START_SENT != 0 {
         port.dr()
             .write(|w| w.dr().set(outbox.address << 1 | u8::from(reads)));
@@ -202,7 +205,8 @@ fn is_read(status: u16, bytes: usize) -> bool {
 /// disturbed hangs, and is freed for that reason.
 fn fail(port: &RegisterBlock) -> Option<Sent> {
     let status = port.sr1().read();
-    // A written 1 leaves a flag unchanged, such as one that has been set meanwhile.
+    // Clear the flags read here. Writing a 1 leaves a flag unchanged, so a flag set since then is
+    // kept.
     port.sr1().write(|w| {
         w.af()
             .bit(!status.af().bit())
@@ -212,10 +216,12 @@ fn fail(port: &RegisterBlock) -> Option<Sent> {
             .bit(!status.berr().bit())
     });
 
-    let error = match (status.af().bit(), status.arlo().bit()) {
-        (true, _) => SILENCE,
-        (_, true) => ErrorKind::ArbitrationLoss,
-        _ => return None,
+    let error = if status.af().bit() {
+        SILENCE
+    } else if status.arlo().bit() {
+        ErrorKind::ArbitrationLoss
+    } else {
+        return None;
     };
     stop(port);
     Some(Err(error))

@@ -38,8 +38,7 @@ use crate::protocol::BoardName;
 
 use i2c::I2c1;
 
-/// The processor's clock, Hz. It is the fastest of this chip, and the fixed one of the emulated
-/// machine.
+/// The processor's clock, Hz: the fastest of this chip. The emulated machine always has it.
 const HERTZ: u32 = 168_000_000;
 
 /// The address of the chip's unique number (RM0090, 39.1), in its system memory.
@@ -52,6 +51,8 @@ pub fn take() -> Option<Stm32f405> {
     let core = cortex_m::Peripherals::take()?;
     let chip = pac::Peripherals::take()?;
     let (mut rcc, is_emulated) = start_clock(chip.RCC);
+    // The emulator needs the log on its standard output; a chip needs a place for the probe to
+    // read.
     if is_emulated {
         log::into_emulator()
     } else {
@@ -62,7 +63,9 @@ pub fn take() -> Option<Stm32f405> {
     let chip_number = if is_emulated { [0; 4] } else { chip_number() };
     let instruments = start(core, BoardName::Stm32f405, HERTZ, chip_number);
 
-    let (b, c) = (chip.GPIOB.split(&mut rcc), chip.GPIOC.split(&mut rcc));
+    // The panel's bus.
+    let b = chip.GPIOB.split(&mut rcc);
+    let c = chip.GPIOC.split(&mut rcc);
     let bus = i2c::start(chip.I2C1, b.pb6, b.pb7, &mut rcc)?;
     let memory = cortex_m::singleton!(: Bitmap = Bitmap::BLACK)?;
     Some(Board {
@@ -152,12 +155,13 @@ fn uart() -> &'static RegisterBlock {
     unsafe { &*USART3::ptr() }
 }
 
-/// Takes the received bytes; reading a byte ends its interrupt. A byte that came before the last
-/// one was read is lost; that interrupts until the data are read.
+/// Takes the received bytes. Reading a byte ends its interrupt. If a byte comes before the last
+/// byte was read, it is lost, and the overrun interrupts until the data are read.
 fn receive(inbox: &mut Inbox) {
     loop {
         let status = uart().sr().read();
-        let (has_byte, overrun) = (status.rxne().bit_is_set(), status.ore().bit_is_set());
+        let has_byte = status.rxne().bit_is_set();
+        let overrun = status.ore().bit_is_set();
         if !has_byte && !overrun {
             return;
         }

@@ -41,6 +41,7 @@ pub struct Inbox {
 impl Inbox {
     /// Takes a byte and returns the message that it completes.
     pub fn take(&mut self, byte: u8) -> Option<ToHost> {
+        // A message is complete, damaged, or not complete yet.
         let message = match self
             .decoder
             .push(byte)?
@@ -48,6 +49,7 @@ impl Inbox {
         {
             Ok(message) => message,
             Err(error) => {
+                // The first damaged message of a connection may have begun before it.
                 self.counts.damaged += u64::from(!std::mem::take(&mut self.joins));
                 self.damage = Some(error);
                 return None;
@@ -115,7 +117,7 @@ mod tests {
     }
 
     #[test]
-    fn missing_frames_are_counted_over_the_wrap_but_none_of_a_board_that_was_switched_off() {
+    fn missing_frames_are_counted_over_the_wrap_but_not_over_a_restart_from_0() {
         let sequences = [u32::MAX - 2, u32::MAX - 1, 1, 2, 5];
         assert_eq!(
             counts(sequences),
@@ -136,7 +138,7 @@ mod tests {
     }
 
     #[test]
-    fn frames_between_two_connections_are_not_lost_and_a_restart_there_is_seen() {
+    fn frames_between_two_connections_are_not_lost_and_a_restart_between_them_is_counted() {
         let mut inbox = Inbox::default();
         for (sequence, restarts) in [(700, 0), (900, 0), (30, 1), (90, 1)] {
             inbox.join();
@@ -152,11 +154,13 @@ mod tests {
     }
 
     #[test]
-    fn who_joins_in_the_middle_of_a_message_finds_nothing_damaged() {
+    fn a_message_that_is_joined_in_its_middle_is_not_damaged() {
         let mut inbox = Inbox::default();
         inbox.join();
+
         let mut wire = [0; MAX_WIRE];
         let wire = encode(&ToHost::Frame(Frame::default()), &mut wire);
+        // The end of a message, a whole message, and a message with a wrong bit.
         let stream = [
             &wire[20..],
             wire,

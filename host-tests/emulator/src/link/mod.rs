@@ -1,5 +1,5 @@
 //! The serial link to a board, emulated or real: the decoding of bytes into messages, and the
-//! serial port. The port is named by the user or is the only one of a USB device.
+//! serial port. The user names the port, or it is the only port of a USB device.
 
 mod inbox;
 mod panel;
@@ -70,7 +70,8 @@ impl Device {
         self.others = names.filter(|other| other != name).collect();
     }
 
-    /// Returns the port at which the device is back: the only new port with the same ids and names.
+    /// Returns the port of the device after its return: the only new port with the same ids and
+    /// names.
     fn back<'a>(&self, ports: &'a [SerialPortInfo]) -> Option<&'a str> {
         let is_it = |port: &&SerialPortInfo| {
             usb(port) == Some(&self.usb) && !self.others.contains(&port.port_name)
@@ -92,6 +93,7 @@ fn choose(ports: &[SerialPortInfo]) -> Result<String, String> {
                 .unwrap_or_else(|| "no name".to_owned()),
         ))
     };
+
     match &ports.iter().filter_map(over_usb).collect::<Vec<_>>()[..] {
         [] => Err(format!(
             "{AUTO}: no board and no serial adapter found on USB; name the port, as in --port /dev/ttyUSB0"
@@ -146,8 +148,9 @@ mod tests {
             choose(&[built_in, pico.clone()]),
             Ok("/dev/ttyACM0".to_owned())
         );
-        let several =
-            "auto: there are several, name one: /dev/ttyACM0 (Double pendulum), /dev/ttyUSB0 (no name)".to_owned();
+        let several = "auto: there are several, name one: \
+            /dev/ttyACM0 (Double pendulum), /dev/ttyUSB0 (no name)"
+            .to_owned();
         assert_eq!(choose(&[pico, other]), Err(several));
     }
 
@@ -159,8 +162,11 @@ mod tests {
             usb("/dev/ttyACM3", Some("modem")),
         ];
         let mut device = Device::at("/dev/ttyACM0", &[old.clone(), twin.clone()]).expect("it is");
+
+        // While the device is absent, neither its twin nor a foreign device is taken for it.
         device.gone("/dev/ttyACM0", vec![old.clone(), twin.clone()]);
         assert_eq!(device.back(&[twin.clone(), foreign.clone()]), None);
+        // The device is back, under its old or under a new name.
         for back in [old, new] {
             let ports = [twin.clone(), foreign.clone(), back.clone()];
             assert_eq!(device.back(&ports), Some(&*back.port_name));
@@ -170,10 +176,14 @@ mod tests {
     #[test]
     fn a_running_board_is_known_by_its_names() {
         let mut board = usb("/dev/ttyACM0", Some(PRODUCT));
+
+        // The USB ids alone do not identify the board; both names must be right.
         assert_eq!(running_board(std::slice::from_ref(&board)), None);
         if let SerialPortType::UsbPort(usb) = &mut board.port_type {
             usb.manufacturer = Some(MANUFACTURER.to_owned());
         }
+
+        // Two such boards are ambiguous.
         let ports = [usb("/dev/ttyUSB0", None), board.clone()];
         assert_eq!(running_board(&ports), Some("/dev/ttyACM0"));
         assert_eq!(running_board(&[board.clone(), board]), None, "which?");

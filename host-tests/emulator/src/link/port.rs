@@ -29,8 +29,8 @@ const PATIENCE: Duration = Duration::from_secs(2);
 const MOST_BYTES: usize = 1 << 16;
 /// The request number of the question about restarts. The answer is recognised by its kind.
 const QUESTION: u16 = u16::MAX - 1;
-/// The speed at which a board restarts in its boot loader, bits per second: the convention of
-/// Arduino's boards. The Pico obeys when the port is closed at this speed.
+/// The speed that restarts a board in its boot loader, bits per second: the convention of Arduino's
+/// boards. The Pico obeys when the port is closed at this speed.
 pub const BAUD_OF_BOOT_LOADER: u32 = 1200;
 
 pub struct Port {
@@ -52,6 +52,7 @@ pub struct Port {
 impl Port {
     /// Opens the port of this name, or the only one over USB. Returns an error as one line.
     pub fn open(name: &str) -> Result<Self, String> {
+        // A port without a name may take a moment to appear.
         let (name, open) = if name == AUTO {
             let since = Instant::now();
             only_one(ports, open, || {
@@ -65,6 +66,7 @@ impl Port {
             let open = open(name).map_err(|error| reason(name, &error))?;
             (name.to_owned(), open)
         };
+
         let mut port = Self {
             device: Device::at(&node(&name), &ports()),
             name,
@@ -87,6 +89,8 @@ impl Port {
             self.reopen();
         }
         let mut messages = Vec::new();
+
+        // Each message can show a restart, and then causes a question to the board.
         for byte in self.read() {
             let restarts = self.inbox.counts.restarts;
             let Some(message) = self.inbox.take(byte) else {
@@ -122,6 +126,7 @@ impl Port {
     fn read(&mut self) -> Vec<u8> {
         let mut bytes = Vec::new();
         let mut buffer = [0; 4096];
+        // The loop ends when no byte arrives in time, or the port is gone.
         while bytes.len() < MOST_BYTES
             && let Some(port) = &mut self.open
         {
@@ -154,11 +159,13 @@ impl Port {
         if self.since.elapsed() < RETRY {
             return;
         }
+
         self.since = Instant::now();
         self.bytes = 0;
         self.complained = false;
         self.open = open(&self.name).ok();
         let mut notice = format!("{} is back", self.name);
+        // A USB device may return under another name.
         if self.open.is_none()
             && let Some(device) = &self.device
             && let Some(name) = device.back(&ports())
@@ -169,6 +176,8 @@ impl Port {
                 self.name = name.to_owned();
             }
         }
+
+        // A connection begins in the middle of a message.
         if self.open.is_some() {
             self.inbox.join();
             self.restarts.join();
@@ -178,6 +187,7 @@ impl Port {
 
     /// Reports a problem of the other end, or its recovery, by the messages or their absence.
     fn note(&mut self, messages: &[ToHost]) {
+        // Every message ends a silence.
         if !messages.is_empty() {
             if self.complained {
                 self.notices
@@ -241,6 +251,7 @@ fn only_one<P>(
 ) -> Result<(String, P), String> {
     let mut has_waited = false;
     loop {
+        // The only port, opened; or the reason why there is none yet.
         let found = ports();
         let missing = match choose(&found) {
             Ok(name) => match open(&name) {
@@ -248,6 +259,7 @@ fn only_one<P>(
                 Err(error) if has_waited => reason(&name, &error),
                 Err(error) => return Err(reason(&name, &error)),
             },
+            // Several ports are ambiguous, and waiting does not help.
             Err(several) if found.iter().any(|port| super::usb(port).is_some()) => {
                 return Err(several);
             }
@@ -270,7 +282,7 @@ pub fn touch(name: &str) -> Result<(), String> {
         .open()
         .map_err(|error| reason(name, &error))?;
 
-    // A quick board is gone before this is answered. Closing the port has the same effect.
+    // A quick board is gone before it has answered. Closing the port has the same effect.
     let _ = port.write_data_terminal_ready(false);
     Ok(())
 }
@@ -324,31 +336,35 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_port_that_does_not_open_is_told_with_the_remedy() {
+    fn a_port_that_does_not_open_is_reported_with_the_remedy() {
         let refused = |kind| {
             reason(
                 "/dev/ttyX",
                 &serialport::Error::new(kind, "Not a typewriter"),
             )
         };
-        let told = refused(serialport::ErrorKind::Io(ErrorKind::PermissionDenied));
+        let denied = refused(serialport::ErrorKind::Io(ErrorKind::PermissionDenied));
         assert!(
-            told.contains("permission denied") && told.contains("chmod"),
-            "{told}"
+            denied.contains("permission denied") && denied.contains("chmod"),
+            "{denied}"
         );
         assert!(refused(serialport::ErrorKind::NoDevice).contains("another program"));
         assert!(refused(serialport::ErrorKind::Unknown).contains("Not a typewriter"));
+
+        // Names that are no serial port.
         let error = Port::open("/nowhere/tty").err();
-        assert!(error.is_some_and(|told| told.starts_with("/nowhere/tty: there is no such port")));
+        assert!(
+            error.is_some_and(|reason| reason.starts_with("/nowhere/tty: there is no such port"))
+        );
         assert!(
             Port::open("/dev/null")
                 .err()
-                .is_some_and(|told| told.contains("cannot be used as a serial port"))
+                .is_some_and(|reason| reason.contains("cannot be used as a serial port"))
         );
     }
 
     #[test]
-    fn the_group_is_that_of_the_port_and_not_a_distributions_habit() {
+    fn the_remedy_names_the_group_of_the_port() {
         assert!(denied("/dev/ttyX", Some("uucp")).contains("usermod -aG uucp USER"));
 
         // The group of a terminal may write to it but not read it, and root is the group of these
@@ -398,7 +414,8 @@ mod tests {
     }
 
     #[test]
-    fn auto_does_not_wait_without_end_or_where_waiting_is_of_no_use() {
+    fn auto_does_not_wait_for_ever_nor_after_a_final_error() {
+        // No port appears until the time is over.
         let mut waits = 0;
         let nothing = only_one(
             Vec::new,
@@ -408,8 +425,10 @@ mod tests {
                 waits < 9
             },
         );
-        assert!(nothing.is_err_and(|told| told.contains("no board and no serial adapter")));
+        assert!(nothing.is_err_and(|reason| reason.contains("no board and no serial adapter")));
         assert_eq!(waits, 9);
+
+        // A port without rights at the first attempt, and an ambiguous choice, are final.
         for ports in [vec!["/dev/ttyACM0"], vec!["/dev/ttyACM0", "/dev/ttyACM1"]] {
             let list = || ports.iter().map(|name| usb_port(name)).collect();
             let refused = only_one(list, |_| Err::<(), _>(denial()), || panic!("it waits"));
@@ -418,8 +437,8 @@ mod tests {
     }
 
     #[test]
-    fn a_port_that_ends_is_not_said_to_be_a_pulled_cable() {
-        let told = gone("/dev/ttyACM0", "Broken pipe");
-        assert!(told.contains("or the board restarts"), "{told}");
+    fn a_port_that_ends_may_be_a_cable_or_a_restart() {
+        let notice = gone("/dev/ttyACM0", "Broken pipe");
+        assert!(notice.contains("or the board restarts"), "{notice}");
     }
 }

@@ -1,8 +1,8 @@
 //! The restarts of a board, as a host at its port observes them.
 //!
 //! A restart ends a USB connection, so the board's own message about it reaches no host. The host
-//! therefore asks for the last restart after opening the port, and whenever the frames are counted
-//! from 0 again.
+//! therefore sends a question about the last restart after it has opened the port, and whenever the
+//! frames are counted from 0 again.
 
 use firmware::protocol::{Answer, Cause, Restarted, ToHost};
 
@@ -55,6 +55,7 @@ impl Restarts {
                 self.learn(end, recounted)
             }
             _ => {
+                // The next report of the board names the cause.
                 if recounted {
                     self.recounted = true;
                     self.question = Question::Due;
@@ -79,6 +80,7 @@ impl Restarts {
     /// Takes the board's report of its last restart.
     fn learn(&mut self, end: Option<Restarted>, recounted: bool) -> Option<String> {
         let is_first = !std::mem::replace(&mut self.is_known, true);
+        // A report that was already there at the first connection is not a new restart.
         let is_new = std::mem::replace(&mut self.last, end) != end;
         let has_restarted = recounted || is_new && !is_first && end.is_some();
         self.count += u32::from(has_restarted);
@@ -128,7 +130,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_is_asked_before_a_message_and_an_unanswered_question_is_repeated() {
+    fn no_question_precedes_a_message_and_an_unanswered_one_is_repeated() {
         let mut restarts = Restarts::default();
         let mut asked = 0;
         for _ in 0..=PATIENCE + 1 {
@@ -136,6 +138,7 @@ mod tests {
             asked += u32::from(restarts.is_question_due());
         }
         assert_eq!(asked, 2);
+
         restarts.take(&answer(None), false);
         assert!((0..1000).all(|_| !restarts.is_question_due()));
         restarts.join();
@@ -143,7 +146,7 @@ mod tests {
     }
 
     #[test]
-    fn a_restart_is_reported_however_late_the_port_is_opened_and_once_for_each_connection() {
+    fn an_earlier_restart_is_reported_at_the_first_connection_only() {
         let mut restarts = Restarts::default();
         let line = restarts.take(&answer(Some(end(1))), false).expect("a line");
         for part in ["after a hang", "scene page, step 0", "0x10001234", "row: 1"] {
@@ -177,7 +180,7 @@ mod tests {
     }
 
     #[test]
-    fn a_board_that_was_switched_off_is_not_said_to_have_crashed() {
+    fn a_board_that_was_switched_off_is_not_reported_as_crashed() {
         let mut restarts = Restarts::default();
         restarts.take(&answer(Some(end(1))), false);
         restarts.take(&frame(), true);

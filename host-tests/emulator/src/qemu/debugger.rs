@@ -2,9 +2,8 @@
 //! exactly the frame just received, or at any place in its program.
 //!
 //! The machine is stopped through QEMU's debugger port when the firmware has done its work and goes
-//! to sleep. A frame is then on the panel and sent, and the next one has not started. The firmware is
-//! not involved. Its clock counts instructions, so no result depends on how long the machine was
-//! stopped.
+//! to sleep. A frame is then on the panel and sent, and the next one has not started. The firmware
+//! is not involved. Its clock counts instructions, so the duration of a stop affects no result.
 //!
 //! This module implements the few packets of GDB's remote protocol that it needs. Source: GDB
 //! manual, appendix E (Remote Serial Protocol): `$text#checksum`, each acknowledged with `+`.
@@ -41,13 +40,13 @@ pub enum Register {
     Pc = 15,
 }
 
-/// The places in the program at which a machine can be stopped.
+/// The possible stops of a machine in its program.
 #[derive(Debug, Default)]
 pub(super) struct Places {
     /// The address of every `wfi`.
     sleeps: Vec<u32>,
     breakpoints: Vec<u32>,
-    /// The breakpoint at which the machine is stopped.
+    /// The breakpoint of the current stop.
     here: Option<u32>,
 }
 
@@ -59,6 +58,7 @@ impl Machine {
             clock: Clock::Counted,
             ..*settings
         })?;
+        // The program sleeps only at a `wfi`.
         let words = Image::read(settings.elf)?.words().into_iter();
         machine.places.sleeps = words
             .filter(|(_, first, _)| *first == WFI)
@@ -93,11 +93,13 @@ impl Machine {
         let writer = File::options().write(true).open(&path)?;
         drop(both);
 
+        // The log is read by a thread, because QEMU waits while its pipe is full.
         thread::scope(|scope| {
             let reader = scope.spawn(|| read(pipe));
             let frame = self
                 .log(&path, "cpu,nochain", "on")
                 .and_then(|()| self.run_to_frame());
+            // The log is closed even if the run fails, so that the reader ends.
             let ended = self.log(Path::new("/dev/null"), "none", "off");
             drop(writer);
             let read = reader
@@ -147,6 +149,7 @@ impl Machine {
 
     pub fn write(&mut self, address: u32, bytes: &[u8]) -> anyhow::Result<()> {
         for (start, piece) in (address..)
+            // A packet has a limited size.
             .step_by(PIECE as usize)
             .zip(bytes.chunks(PIECE as usize))
         {
@@ -160,6 +163,9 @@ impl Machine {
     fn run_until(&mut self, places: &[u32]) -> anyhow::Result<()> {
         self.leave(places)?;
         self.expect("c", "T05")?;
+
+        // The program counter tells which of the places was reached. GDB sends it in the target's
+        // byte order.
         let answer = self.ask(&format!("p{:x}", Register::Pc as u32))?;
         let here = u32::from_str_radix(&answer, 16).map_err(|_| unexpected("p", &answer))?;
         self.places.here = Some(here.swap_bytes());
@@ -172,12 +178,15 @@ impl Machine {
     /// wake at any time. While the machine was stopped, QEMU has advanced its clock to the next
     /// event, which is exactly the effect of sleeping.
     fn leave(&mut self, places: &[u32]) -> anyhow::Result<()> {
+        // Only breakpoints that change are removed and set.
         let set = std::mem::replace(&mut self.places.breakpoints, places.to_vec());
         for (change, these, others) in [('z', &set[..], places), ('Z', places, &set[..])] {
             for place in these.iter().filter(|place| !others.contains(place)) {
                 self.expect(&format!("{change}0,{place:x},{SIZE}"), "OK")?;
             }
         }
+
+        // An instruction with a breakpoint must be passed before the machine can continue.
         match self.places.here.take() {
             Some(here) if self.places.sleeps.contains(&here) => self.set(Register::Pc, here + SIZE),
             // A machine that was stopped in another way makes no single step: it may be asleep and
@@ -216,6 +225,7 @@ impl Machine {
 
     fn hear(&mut self) -> anyhow::Result<String> {
         let reply = self.wait_until(|machine| {
+            // A reply is complete if its checksum of two digits has arrived.
             let bytes = &mut machine.debugger.stream.bytes;
             let [start, end] = [b'$', b'#'].map(|mark| bytes.iter().position(|byte| *byte == mark));
             let (start, end) = start.zip(end.filter(|end| end + 2 < bytes.len()))?;

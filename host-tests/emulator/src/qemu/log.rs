@@ -65,8 +65,8 @@ impl LogDecoder {
                 locations: Locations::new(),
             });
         };
-        let (locations, table): (_, &'static Table) =
-            (table.get_locations(&program)?, Box::leak(table));
+        let locations = table.get_locations(&program)?;
+        let table: &'static Table = Box::leak(table);
         let can_recover = table.encoding().can_recover();
         Ok(Self {
             stream: Some(table.new_stream_decoder()),
@@ -81,6 +81,9 @@ impl LogDecoder {
         let Some(stream) = &mut self.stream else {
             return lines;
         };
+
+        // An incomplete line waits for more bytes. A damaged line is reported, and ends the
+        // decoding if the stream has no marks to start again.
         stream.received(bytes);
         loop {
             match stream.decode() {

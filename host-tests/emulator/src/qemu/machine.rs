@@ -82,7 +82,9 @@ impl Machine {
             .elf
             .canonicalize()
             .with_context(|| settings.elf.display().to_string())?;
+
         let folder = Scratch::new()?;
+        // QEMU runs in its own folder, which has the pipes.
         let mut command = Command::new(settings.qemu);
         command.current_dir(folder.path());
         command
@@ -100,11 +102,9 @@ impl Machine {
             command.args(["-chardev", &format!("pipe,id={name},path={name}")]);
             Channel::make(&folder.path().join(name))
         };
-        let (monitor, debugger, serial) = (
-            channel("monitor")?,
-            channel("debugger")?,
-            channel("serial")?,
-        );
+        let monitor = channel("monitor")?;
+        let debugger = channel("debugger")?;
+        let serial = channel("serial")?;
         command.args([
             "-display",
             "none",
@@ -136,6 +136,7 @@ impl Machine {
             .stdout(Stdio::piped())
             .stderr(Stdio::piped());
 
+        // The start. QEMU accepts commands after these two requests.
         let decoder = LogDecoder::new(settings.elf)?;
         let mut process = process::spawn(&mut command, settings.limit)?;
         let log = process.streams()?;
@@ -170,6 +171,8 @@ impl Machine {
             log,
             ..
         } = self;
+
+        // A link that is not read fills its pipe, as a host does that has stopped reading.
         let serial = if self.listens {
             Some(&mut serial.stream)
         } else {
@@ -197,27 +200,28 @@ impl Machine {
             }
         }
 
+        // A machine that has ended reports its status and its last lines.
         let Some(status) = ended else { return Ok(()) };
         let last = &self.lines[self.lines.len().saturating_sub(4)..];
         Err(last
             .iter()
-            .fold(anyhow!("QEMU ended ({status})"), |said, line| {
-                anyhow!("{said}\n{line}")
+            .fold(anyhow!("QEMU ended ({status})"), |text, line| {
+                anyhow!("{text}\n{line}")
             }))
     }
 
-    /// Waits until `found` returns a value from the output so far. Returns an error if QEMU ends
-    /// before.
+    /// Waits until `found` returns a value from the output. Returns an error if QEMU ends before.
     pub(super) fn wait_until<T>(
         &mut self,
         mut found: impl FnMut(&mut Self) -> Option<T>,
     ) -> anyhow::Result<T> {
         loop {
-            let goes_on = self.take_in();
+            let taken = self.take_in();
+            // The output may have the value even if QEMU has ended.
             if let Some(found) = found(self) {
                 return Ok(found);
             }
-            goes_on?;
+            taken?;
             let channels =
                 [&self.monitor, &self.debugger, &self.serial].map(|channel| &channel.stream);
             stream::wait(channels.into_iter().chain(&self.log));
@@ -273,7 +277,7 @@ impl Machine {
         std::mem::take(&mut self.lines)
     }
 
-    pub fn said(&mut self) -> String {
+    pub fn log_text(&mut self) -> String {
         self.lines()
             .iter()
             .map(|line| format!("{line}\n"))

@@ -39,7 +39,8 @@ impl Machine {
         } else {
             key.name()
         };
-        let event = json!({ "type": "key", "data": { "down": down, "key": { "type": "qcode", "data": code } } });
+        let key = json!({ "type": "qcode", "data": code });
+        let event = json!({ "type": "key", "data": { "down": down, "key": key } });
         self.execute("input-send-event", json!({ "events": [event] }))
             .map(drop)
     }
@@ -58,6 +59,7 @@ impl Machine {
     /// Switches QEMU's mode of one instruction per translation block `on` or `off`.
     pub(super) fn single_step(&mut self, switch: &str) -> anyhow::Result<()> {
         let [name, name_before] = SINGLE_STEP.map(|name| format!("{name} {switch}"));
+        // An old QEMU refuses the new name.
         self.console(&name).or_else(|_| self.console(&name_before))
     }
 
@@ -78,6 +80,7 @@ impl Machine {
             "{}",
             json!({ "execute": command, "arguments": arguments })
         )?;
+        // Lines that are neither a result nor an error are events.
         loop {
             let line = self.wait_until(|machine| machine.monitor.stream.line())?;
             let mut answer: Value = serde_json::from_str(&line)?;

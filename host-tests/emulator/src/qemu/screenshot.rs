@@ -44,6 +44,7 @@ impl Screenshot {
         let pixels = file
             .strip_prefix(HEADER)
             .context("the panel's screenshot is no PPM file of 512 x 256 pixels")?;
+        // The middle of the square that shows a pixel of the panel.
         let index =
             |x: usize, y: usize| 3 * ((MAGNIFIED * y + 1) * MAGNIFIED * WIDTH + MAGNIFIED * x + 1);
         ensure!(
@@ -73,7 +74,7 @@ impl From<&Canvas> for Screenshot {
 }
 
 #[test]
-fn what_is_no_whole_dump_of_the_panel_is_refused() {
+fn a_dump_of_another_size_or_cut_short_is_refused() {
     let whole = [HEADER, &[0xFF; 3 * 512 * 256]].concat();
     assert!(
         Screenshot::from_ppm(&whole).is_ok_and(|panel| panel.greys.iter().all(|grey| *grey == 15))

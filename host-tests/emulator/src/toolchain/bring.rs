@@ -45,6 +45,7 @@ pub(super) fn bring<T>(
         Ok(found) => return Ok(found),
         Err(why) => vec![why],
     };
+    // Each way is followed by a new search, because an installation may succeed without effect.
     for (done, way) in ways.iter().filter(|_| installs) {
         match way().and_then(|()| find()) {
             Ok(found) => {
@@ -61,7 +62,7 @@ pub(super) fn bring<T>(
 /// The user's consent to install packages on the system.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Consent {
-    /// The user is asked on the terminal. Without a terminal, nothing is installed.
+    /// Asks the user on the terminal. Without a terminal, nothing is installed.
     Ask,
     /// The user has passed `--yes`.
     Given,
@@ -76,6 +77,7 @@ impl Consent {
         }
         let input = io::stdin();
         let output = io::stderr();
+        // Without a terminal nobody can answer.
         if !(input.is_terminal() && output.is_terminal()) {
             return Err(format!(
                 "{packages} would be installed on the system, which needs --yes"
@@ -109,6 +111,7 @@ pub(super) fn install_packages(packages: &[&str], consent: Consent) -> Result<()
         return Err("only root may install packages".to_owned());
     }
     consent.obtain(&packages.join(", "))?;
+
     let updated = attempt(
         &mut apt_get("update"),
         INSTALL,
@@ -150,7 +153,7 @@ fn apt_get(action: &str) -> Command {
 
 /// Runs a command to its end and shows progress. If it fails, returns the line with the reason.
 pub(super) fn attempt(command: &mut Command, limit: Duration, doing: &str) -> Result<(), String> {
-    said(command, |command| run_shown(command, limit, doing)).map(drop)
+    output_or_reason(command, |command| run_shown(command, limit, doing)).map(drop)
 }
 
 /// Runs a command to its end within the time limit and shows progress meanwhile.
@@ -160,12 +163,12 @@ pub(super) fn run_shown(command: &mut Command, limit: Duration, doing: &str) -> 
 }
 
 /// Returns the output of a quick command, or the reason of its failure.
-pub(super) fn says(command: &mut Command) -> Result<String, String> {
-    said(command, |command| run(command, QUICK))
+pub(super) fn quick_output(command: &mut Command) -> Result<String, String> {
+    output_or_reason(command, |command| run(command, QUICK))
 }
 
 /// Returns the output of a command, or the line with the reason of its failure.
-fn said(
+fn output_or_reason(
     command: &mut Command,
     run: impl FnOnce(&mut Command) -> io::Result<Output>,
 ) -> Result<String, String> {
@@ -173,6 +176,8 @@ fn said(
     if output.status.success() {
         return Ok(output.stdout);
     }
+
+    // The line with the reason has one of these marks, or else is the last line.
     let lines = || output.stderr.lines();
     let marked = |mark: &&str| lines().find(|line| line.contains(*mark));
     let marks = ["No space left on device", "E: ", "error: ", "npm "];

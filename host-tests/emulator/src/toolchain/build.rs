@@ -9,7 +9,7 @@ use std::{env, fs};
 
 use anyhow::{anyhow, ensure};
 
-use super::bring::{run_shown, says};
+use super::bring::{quick_output, run_shown};
 use super::{TARGETS, Toolchain, remap, set_up_for, target, workspace};
 use crate::boards::{Board, PICO, every_board};
 
@@ -60,12 +60,14 @@ impl Toolchain {
             .as_ref()
             .map_or("cargo".as_ref(), |own| own.cargo.as_path());
         let mut command = Command::new(cargo);
+        // The variables of the surrounding cargo would change the flags of this build.
         for (name, _) in env::vars_os().filter(|(name, _)| is_foreign(name)) {
             command.env_remove(name);
         }
         command
             .current_dir(workspace())
             .env("RUSTUP_AUTO_INSTALL", "0");
+
         if let Some(own) = &self.from_source {
             // Debian's cargo is a stable release, and building the core library is still an
             // unstable feature.
@@ -103,6 +105,7 @@ impl Toolchain {
         let elf = Self::folder().join(target).join("release").join(binary);
         let this = (binary.to_owned(), target.to_owned());
         if !BUILT.lock().is_ok_and(|built| built.contains(&this)) {
+            // The application of a board needs the board's feature.
             let feature = every_board()
                 .find(|board| board.binary == binary)
                 .map_or("", |board| board.feature);
@@ -141,7 +144,7 @@ impl Toolchain {
         let mut command = self.for_targets("build", targets)?;
         command.args(["--bin", "cores", "--features", "cores"]);
         if let Some(cpu) = double {
-            // These flags replace those of the configuration, which are for a Cortex-M4F.
+            // These flags replace the flags of the configuration, which are for a Cortex-M4F.
             command.args(["--features", "double-pendulum-kernel/double-fpu"]);
             command.env("RUSTFLAGS", format!("-Ctarget-cpu={cpu} -Cdebuginfo=0"));
         }
@@ -194,7 +197,7 @@ impl Toolchain {
             sysroot
                 .args(["--print", "sysroot"])
                 .current_dir(workspace());
-            let sysroot = says(&mut sysroot).map_err(|error| anyhow!(error))?;
+            let sysroot = quick_output(&mut sysroot).map_err(|error| anyhow!(error))?;
             let suffix = env::consts::EXE_SUFFIX;
             let rustc = PathBuf::from(sysroot.trim()).join(format!("bin/rustc{suffix}"));
             command.env("RUSTC", rustc);
@@ -223,18 +226,21 @@ impl Toolchain {
         every_board().try_for_each(|board| self.build_for(board).map(drop))
     }
 
-    /// Checks all of the firmware's binaries and its examples for microcontrollers, for every
-    /// target. A warning is an error, including clippy's warnings if the compiler has clippy.
+    /// Checks the firmware's binaries and its examples for microcontrollers, for every target. A
+    /// warning is an error, including clippy's warnings if the compiler has clippy.
     pub fn check(&self) -> anyhow::Result<()> {
         for target in TARGETS {
+            // All boards of a target are checked at once, with the features of all.
             let features = every_board()
                 .filter(|board| board.target == target)
                 .map(|board| board.feature);
             let features = features.collect::<Vec<_>>().join(",");
             let is_ready_made = self.from_source.is_none();
+
             let mut command =
                 self.for_targets(if is_ready_made { "clippy" } else { "check" }, &[target])?;
             command.args(["--bins", "--example", "embassy", "--features", &features]);
+            // One example is for the Pico only.
             if features.contains(PICO.feature) {
                 command.args(["--example", "colour_panel", "--features", "colour-panel"]);
             }

@@ -1,5 +1,5 @@
 //! Compiler flags that remove the builder's folders from the firmware's images, so that the same
-//! commit has the same bytes wherever it is built.
+//! commit has the same bytes on any machine and in any folder.
 //!
 //! Panic messages contain the names of source files. The files of other crates are in cargo's
 //! folder, and the files of the core library may be in the compiler's folder. Both are usually in
@@ -9,12 +9,13 @@ use std::path::{Path, PathBuf, absolute};
 use std::process::Command;
 use std::{env, fs};
 
-use super::bring::says;
+use super::bring::quick_output;
 use super::{target, workspace};
 
 /// Returns the flags for builds by this compiler. If several prefixes match, the compiler uses the
 /// last one.
 pub(super) fn flags(rustc: &Path) -> Result<Vec<String>, String> {
+    // The workspace and the folder of everything built.
     let mut renamed = vec![
         (workspace().to_owned(), ".".to_owned()),
         (target(), "target".to_owned()),
@@ -63,13 +64,13 @@ fn cargo_home() -> Option<PathBuf> {
 /// Returns the folder for the sources of the core library, and the name that the ready-made core
 /// library has for it.
 fn core_library(rustc: &Path) -> Result<(PathBuf, String), String> {
-    let said = |arguments: &[&str]| {
+    let output = |arguments: &[&str]| {
         let mut command = Command::new(rustc);
         command.args(arguments).current_dir(workspace());
-        says(command.env("RUSTUP_AUTO_INSTALL", "0"))
+        quick_output(command.env("RUSTUP_AUTO_INSTALL", "0"))
     };
-    let sysroot = said(&["--print", "sysroot"])?;
-    let version = said(&["--version", "--verbose"])?;
+    let sysroot = output(&["--print", "sysroot"])?;
+    let version = output(&["--version", "--verbose"])?;
     let entry = |name: &str| version.lines().find_map(|line| line.strip_prefix(name));
 
     // A compiler of a distribution has no commit hash.

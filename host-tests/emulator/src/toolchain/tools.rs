@@ -7,7 +7,7 @@ use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
 use std::{env, fs};
 
-use super::bring::{Consent, INSTALL, Way, attempt, bring, install_packages, says};
+use super::bring::{Consent, INSTALL, Way, attempt, bring, install_packages, quick_output};
 use super::{missing, target, workspace};
 use console::cli::Refused;
 
@@ -20,8 +20,7 @@ fn debian_folders() -> [PathBuf; 2] {
 const RUST_FOLDER: &str = "rust";
 /// The Debian packages that build the ARM core library.
 pub(super) const CORE_PACKAGES: [&str; 3] = ["rustc-web", "cargo-web", "rust-web-src"];
-/// The time limit of `rustup target add`, which loads 40 MB. A machine on which it hangs waits for
-/// this time once.
+/// The time limit of `rustup target add`, which loads 40 MB. If it hangs, this time is lost once.
 const RUSTUP: Duration = Duration::from_secs(60);
 const UNPACK: &str = "host-tests/emulator/src/toolchain/unpack.sh";
 
@@ -71,6 +70,7 @@ pub(super) const QEMU_AARCH64: Emulator = Emulator {
 /// Finds or provides the core library for these targets. It is either the ready-made one of rustup
 /// for the compiler in use (`None`), or Debian's sources with their compiler.
 pub(super) fn core(installs: bool, targets: &[&str]) -> Result<Option<FromSource>, String> {
+    // The first way: rustup's ready-made library. It needs the network.
     let rustup = || {
         if find("rustup").is_none() {
             return Err("rustup was not found".to_owned());
@@ -87,6 +87,8 @@ pub(super) fn core(installs: bool, targets: &[&str]) -> Result<Option<FromSource
         );
         attempt(&mut rustup, RUSTUP, &doing)
     };
+
+    // The second way: Debian's compiler and sources, unpacked here.
     let folder = target().join(RUST_FOLDER);
     let debian = || {
         linker()?;
@@ -131,6 +133,7 @@ fn shown(path: &Path) -> String {
 }
 
 fn find_core(targets: &[&str]) -> Result<Option<FromSource>, String> {
+    // The library of the compiler in use, if rustup has installed it for all targets.
     let (in_use, _) = libraries("rustc".as_ref())?;
     let has_core = |target: &&str| {
         let mut files = fs::read_dir(in_use.join(target).join("lib"))
@@ -142,6 +145,8 @@ fn find_core(targets: &[&str]) -> Result<Option<FromSource>, String> {
     if targets.iter().all(has_core) {
         return Ok(None);
     }
+
+    // Debian's compiler, or the most specific reason why it is not usable.
     let mut why = "rustup has none for these targets".to_owned();
     for folder in debian_folders() {
         match from_source(&folder) {
@@ -162,7 +167,9 @@ fn from_source(folder: &Path) -> Result<FromSource, Option<String>> {
         let all = CORE_PACKAGES.join(", ");
         return Err(Some(format!("of Debian's {all} not all are installed")));
     }
-    let version = says(Command::new(&rustc).arg("--version"))?;
+
+    // Debian's compiler must be new enough for this workspace.
+    let version = quick_output(Command::new(&rustc).arg("--version"))?;
     let least = env!("CARGO_PKG_RUST_VERSION");
     if number(&version, 1) < number(least, 1) {
         let version = version.trim();
@@ -194,8 +201,8 @@ fn libraries(rustc: &Path) -> Result<(PathBuf, String), String> {
     command
         .args(["--print", "sysroot", "--print", "host-tuple"])
         .current_dir(workspace());
-    let said = says(command.env("RUSTUP_AUTO_INSTALL", "0"))?;
-    let (sysroot, host) = said
+    let output = quick_output(command.env("RUSTUP_AUTO_INSTALL", "0"))?;
+    let (sysroot, host) = output
         .split_once('\n')
         .ok_or("rustc does not say where its libraries are")?;
     Ok((
@@ -226,6 +233,7 @@ pub(super) fn qemu(installs: bool, emulator: &Emulator) -> Result<PathBuf, Strin
         folder,
     } = *emulator;
     let folder = target().join(folder);
+    // The project's own emulator first, then the system's.
     let look = || {
         if let Some(own) = executable(folder.join(program)).filter(|own| judged(own).is_ok()) {
             return Ok(own);
@@ -241,9 +249,11 @@ pub(super) fn qemu(installs: bool, emulator: &Emulator) -> Result<PathBuf, Strin
 /// Returns an error if a QEMU does not print its version or is too old.
 fn judged(path: &Path) -> Result<(), String> {
     let shown = path.display();
-    let said = says(Command::new(path).arg("--version"))
+    let output = quick_output(Command::new(path).arg("--version"))
         .map_err(|why| format!("{shown} does not work ({why})"))?;
-    let version = said
+
+    // The version follows the word "version" and ends at a space or a bracket.
+    let version = output
         .split_once("version ")
         .and_then(|(_, rest)| rest.split(|c: char| c.is_whitespace() || c == '(').next());
     let Some((version, major)) = version.and_then(|version| Some((version, number(version, 0)?)))
@@ -297,8 +307,9 @@ pub(super) fn node(consent: Option<Consent>) -> Result<PathBuf, Refused> {
     let installs = consent.is_some();
     let install = |packages: &[&str]| install_packages(packages, consent.unwrap_or(Consent::Ask));
     let find_node = || {
+        // Node.js must be present and new enough.
         let node = find("node").ok_or("there is no node on PATH")?;
-        let version = says(Command::new(&node).arg("--version"))?;
+        let version = quick_output(Command::new(&node).arg("--version"))?;
         let is_new = number(&version, 0).is_some_and(|number| number >= LEAST_NODE);
         if is_new {
             Ok(node)
@@ -327,22 +338,25 @@ pub(super) fn node(consent: Option<Consent>) -> Result<PathBuf, Refused> {
 }
 
 /// Returns Node.js with the emulator of the Raspberry Pi Pico, an npm package with a fixed version.
-/// With a `consent`, provides what is missing.
+/// With a `consent`, provides them if they are missing.
 pub(super) fn rp2040js(consent: Option<Consent>) -> Result<PathBuf, Refused> {
     let node = node(consent)?;
     let installs = consent.is_some();
     let install = |packages: &[&str]| install_packages(packages, consent.unwrap_or(Consent::Ask));
     let folder = workspace().join("host-tests/emulator/rp2040");
+    // The installed version is compared with the required one.
     let fetched = || {
-        let asked = says(
+        let checked = quick_output(
             Command::new(&node)
                 .args(["--eval", ASK])
                 .current_dir(&folder),
         );
-        asked
+        checked
             .map(drop)
             .map_err(|_| "the version needed has not been fetched".to_owned())
     };
+
+    // npm fetches exactly the versions of the lock file, without running their scripts.
     let npm = || {
         if find("npm").is_none() {
             install(&["npm"])?;
@@ -352,10 +366,8 @@ pub(super) fn rp2040js(consent: Option<Consent>) -> Result<PathBuf, Refused> {
             .current_dir(&folder);
         attempt(&mut npm, NPM, "npm fetches rp2040js")
     };
-    let (what, by_hand) = (
-        "the emulator of the Raspberry Pi Pico",
-        "run npm ci --prefix host-tests/emulator/rp2040",
-    );
+    let what = "the emulator of the Raspberry Pi Pico";
+    let by_hand = "run npm ci --prefix host-tests/emulator/rp2040";
     bring(
         installs,
         fetched,

@@ -37,6 +37,8 @@ impl Equations {
         let [mut den, mut u, mut v, mut uv, mut turn] = [(); 5].map(|()| Vec::new());
 
         for k in 0..order {
+            // Coefficient k of each intermediate quantity, then coefficient k + 1 of the six
+            // numbers.
             let [sin1, cos1, s, c, p1, p2] = &z;
             let square = lower * Fixed::product(s, s);
             den.push(if k == 0 {
@@ -49,6 +51,8 @@ impl Equations {
             v.push(p2[k] - rods * Fixed::product(c, &u));
             uv.push(Fixed::product(&u, &v));
             turn.push(u[k] - v[k]);
+
+            // The torque of the rods on each other, and the slopes.
             let force = Fixed::product(&uv, s);
             let sin2 = Fixed::product(sin1, c) - Fixed::product(cos1, s);
             let slopes = [
@@ -76,6 +80,8 @@ impl Equations {
             coupling,
             gravity: [gravity1, gravity2],
         } = self;
+
+        // The velocities, then the kinetic and the potential energy.
         let u = (p1 - coupling * c * p2) * (upper + lower * s * s).inverse();
         let v = p2 - rods * c * u;
         let square = coupling * rods.inverse();
@@ -91,7 +97,7 @@ pub const STARTS: f64 = 0.0625;
 /// then at most 1/4 of the region where solutions may start.
 const LEAST: [f64; 2] = [1.0 / 65_536.0, 64.0];
 /// The times to try, in steps, and the number of attempts for each. An attempt sets the radii to
-/// those that the time needs, with a margin.
+/// the values that the time needs, with a margin.
 const TIMES: [f64; 5] = [24.0, 16.0, 12.0, 9.0, 7.0];
 const TRIES: usize = 12;
 /// The shortest usable time, in steps. With it, a power series of 48 terms ends at 2^-116.
@@ -116,6 +122,7 @@ pub fn discs(
     for time in TIMES {
         let mut radii = least;
         for _ in 0..TRIES {
+            // The largest slopes within the discs of these radii.
             let slopes = equations
                 .series(&from_fn(|i| middle[i].wider(radii[i])), 1, step)
                 .map(|z| z[1].size());
@@ -132,6 +139,7 @@ pub fn discs(
             if held == 0.0 {
                 break;
             }
+
             radii = from_fn(|i| least[i].max(1.1 * time * slopes[i]));
         }
     }

@@ -76,20 +76,20 @@ impl Fixed {
 
     /// Makes a ball of a fraction times 2^`exponent`, computed bit by bit.
     pub fn fraction(numerator: i64, denominator: u64, exponent: i32) -> Self {
-        let (above, below) = (
-            u128::from(numerator.unsigned_abs()),
-            u128::from(denominator),
-        );
+        let above = u128::from(numerator.unsigned_abs());
+        let below = u128::from(denominator);
         let Some(places) = FRACTION.checked_add_signed(exponent) else {
             return Self::new(LIMIT, 0.0);
         };
+        // Long division, one bit at a time.
         let next = |(whole, rest): (u128, u128), _| {
             (
                 (2 * whole + 2 * rest / below).min(LIMIT as u128),
                 2 * rest % below,
             )
         };
-        let (middle, rest) = (0..places).fold((above / below, above % below), next);
+        let start = (above / below, above % below);
+        let (middle, rest) = (0..places).fold(start, next);
         Self::new(
             numerator.signum() as i128 * middle as i128,
             if rest == 0 { 0.0 } else { 1.0 },
@@ -133,10 +133,12 @@ impl Fixed {
 
     /// Returns all known digits, but no more than `most`. The last digit is accurate to two units.
     pub fn decimal(self, most: f64) -> String {
+        // Decimals down to the radius, but not more than `most` significant digits.
         let places = (-self.radius().log10())
             .min(most - self.about().abs().log10().floor() - 1.0)
             .max(0.0) as usize;
-        let (size, mask) = (self.middle.unsigned_abs(), (1 << FRACTION) - 1);
+        let size = self.middle.unsigned_abs();
+        let mask = (1 << FRACTION) - 1;
         let next = |rest: &u128| Some((rest & mask) * 10);
         let digits = std::iter::successors(next(&size), next)
             .map(|rest| char::from(b'0' + (rest >> FRACTION) as u8));
@@ -163,9 +165,12 @@ impl Fixed {
     pub fn inverse(self) -> Self {
         let middle = self.middle();
         let mut inverse = Self::of(1.0 / middle.about()).middle();
+        // Each iteration doubles the number of correct bits.
         for _ in 0..2 {
             inverse = (inverse + inverse * (Self::ONE - middle * inverse)).middle();
         }
+
+        // The error of the inverse is proved afterwards.
         let missing = (Self::ONE - self * inverse).size();
         inverse.wider(if missing < 0.5 {
             inverse.size() * missing / (1.0 - missing)
@@ -186,6 +191,7 @@ impl Fixed {
         let mut cross = 0_i128;
         let mut radius = 0.0;
         for (a, b) in a.iter().zip(b.iter().rev()) {
+            // The halves of each midpoint.
             let [(a1, a0), (b1, b0)] = [a, b].map(|x| ((x.middle >> 64) as i64, x.middle as u64));
             high += i128::from(a1) * i128::from(b1);
             let low = ((u128::from(a0) * u128::from(b0)) >> 72) as i128;
@@ -198,6 +204,8 @@ impl Fixed {
                 [a1, b1].map(|x| (x.unsigned_abs() + 1) as f64 * ((1_u128 << 64) as f64 * ULP));
             radius += size_a * b.radius + a.radius * (size_b + b.radius * ULP);
         }
+
+        // The sum is exact in its upper part, and rounded in its lower part.
         let fits = a.len() <= MOST_TERMS && high.abs() < LIMIT >> (128 - FRACTION);
         let middle = if fits {
             (high << (128 - FRACTION)) + (cross >> (FRACTION - 72))

@@ -24,7 +24,8 @@ pub use start::{Start, fastest_rate, sin_cos};
 /// The number of steps whose errors are collected in a box, before the box is converted to
 /// segments.
 const STEPS: u32 = 64;
-/// The largest number of segments. Then a box replaces all segments except those of the start.
+/// The largest number of segments. Beyond it, a box replaces all segments except the six of the
+/// start.
 const SEGMENTS: usize = 6 * 2048;
 /// The binary logarithm of the largest number of steps in a frame.
 const MOST_HALVINGS: i32 = 24;
@@ -36,9 +37,9 @@ pub struct Fineness {
     pub terms: usize,
     /// The highest power of the derivatives' power series.
     pub tangents: usize,
-    /// The distance from the midpoint at which a difference quotient replaces a derivative,
-    /// relative to the radius of the disc; at least 2^-100.
-    pub beside: f64,
+    /// The distance from the midpoint for a difference quotient in place of a derivative, relative
+    /// to the radius of the disc; at least 2^-100.
+    pub offset: f64,
     /// The factors of the allowances, all 1 except in tests that remove one. They are for the
     /// roundings of the midpoint, the remainder of its series, the errors of the derivatives, and
     /// the roundings of the segments.
@@ -50,7 +51,7 @@ impl Default for Fineness {
         Self {
             terms: MOST_TERMS,
             tangents: 10,
-            beside: 1.0 / (1_u64 << 56) as f64,
+            offset: 1.0 / (1_u64 << 56) as f64,
             allowances: [1.0; 4],
         }
     }
@@ -67,7 +68,7 @@ pub struct Enclosure {
     /// of frames in a second.
     pub frame: (i32, u16),
     middle: [Fixed; 6],
-    /// The segments. Those of the start are the first six.
+    /// The segments. The first six belong to the start.
     segments: Vec<[f64; 6]>,
     /// The lengths of the six segments of the start.
     start: [f64; 6],
@@ -119,7 +120,7 @@ impl Enclosure {
             .map(up)
     }
 
-    /// Returns about the factor by which a small error of the start has grown.
+    /// Returns about the growth of a small error of the start, as a factor.
     pub fn growth(&self) -> f64 {
         let of = |i: usize| {
             self.segments
@@ -146,6 +147,7 @@ impl Enclosure {
     /// Advances like [`advance`](Self::advance), and returns `None` in the middle of the frame if
     /// `stopped` is not zero.
     pub fn advance_unless(&mut self, stopped: &AtomicUsize) -> Option<()> {
+        // The frame is divided into halves until every piece can be enclosed.
         let mut left = vec![0];
         while let Some(halvings) = left.pop() {
             (stopped.load(Ordering::Relaxed) == 0).then_some(())?;
@@ -164,22 +166,20 @@ impl Enclosure {
     /// Theorem (Cauchy's estimate on the disc m + s e, |s| <= 1/t, `share` being t): |F(m + e) -
     /// F(m) - F'(m) e| <= B t^2/(1 - t) if F is within B of m there, as every sum of the series is;
     /// and if F is at most b, |F(m + e) - F(m)| <= b t/(1 - t). The first inequality for one
-    /// coordinate, e being `beside`, bounds the error of the difference quotient that replaces the
+    /// coordinate, e being `offset`, bounds the error of the difference quotient that replaces the
     /// derivative. In time, the coefficient of t^k is at most the disc's radius times `time`^-k,
     /// and the remainder of a series beyond an order is at most `tail` times the radius.
     fn step(&mut self, halvings: i32) -> Option<()> {
         let (unit, rate) = self.frame;
-        let (step, extent) = (
-            Fixed::fraction(1, rate.into(), unit - halvings),
-            self.extent(0),
-        );
+        let step = Fixed::fraction(1, rate.into(), unit - halvings);
+        let extent = self.extent(0);
         extent.iter().all(|&extent| extent < 1.0).then_some(())?;
 
         let (time, radii) = discs(&self.equations, &self.middle, &extent, step)?;
         let Fineness {
             terms,
             tangents,
-            beside,
+            offset,
             allowances: [rounding, rest, bend, turn],
         } = self.fineness;
 
@@ -191,13 +191,11 @@ impl Enclosure {
             .unwrap_or(terms - 1);
         let low = order.min(tangents);
         let z = self.equations.series(&self.middle, order, step);
-        let (end, short) = (
-            z.each_ref().map(|z| sum(z)),
-            z.each_ref().map(|z| sum(&z[..=low])),
-        );
+        let end = z.each_ref().map(|z| sum(z));
+        let short = z.each_ref().map(|z| sum(&z[..=low]));
 
         // The derivatives `v` with respect to the start, by difference quotients.
-        let off = radii.map(|radius| (beside * radius).log2().floor().exp2());
+        let off = radii.map(|radius| (offset * radius).log2().floor().exp2());
         let columns: [[Fixed; 6]; 6] = from_fn(|j| {
             let mut start = self.middle;
             start[j] = start[j] + Fixed::of(off[j]);
@@ -212,13 +210,15 @@ impl Enclosure {
             .fold(0.0, f64::max);
 
         // The last term is for six quotients, each with an error of no more than twice this.
-        let lacking = bend * share / (1.0 - share) * (share + tail(low) + 12.0 * beside / STARTS);
+        let lacking = bend * share / (1.0 - share) * (share + tail(low) + 12.0 * offset / STARTS);
 
         // Higham, (3.5): a sum of six products is rounded by at most 7 u, u = 2^-53, times the sum
         // of their sizes. One u is for v.
         let rounded = |i: usize, j: usize| {
             columns[j][i].radius() / off[j] + 5.0 * f64::EPSILON * v[i][j].abs()
         };
+
+        // The new box: the old one, moved, and the allowances.
         let about = from_fn(|i| {
             let moved = (0..6)
                 .map(|j| v[i][j].abs() * self.about[j] + turn * rounded(i, j) * extent[j])
@@ -230,6 +230,7 @@ impl Enclosure {
             .all(|radius| radius.is_finite())
             .then_some(())?;
 
+        // The segments are turned and stretched by the derivatives.
         for segment in &mut self.segments {
             *segment = v.map(|row| row.iter().zip(*segment).map(|(x, y)| x * y).sum());
         }

@@ -1,4 +1,4 @@
-//! The set in which the motion of a pendulum starts.
+//! The set of starts of a pendulum's motion.
 
 use std::array::from_fn;
 
@@ -58,6 +58,7 @@ impl Start {
             .ceil()
             .max(-64.0) as i32;
         let e = (0.5 * (1.0 + m2 / m1).log2()).clamp(0.0, 7.0).round() as i32;
+        // Powers of two near the mass and the lengths.
         let [by, by1, by2] = [m1.max(m2), l1, l2].map(|x| x.log2() as i32);
 
         // The given numbers, exact if possible, with angles less than a whole circle.
@@ -128,6 +129,7 @@ impl Start {
 /// Returns an angle in degrees without whole circles, exactly. The result is between -180 and 180
 /// degrees.
 fn without_whole_circles((numerator, denominator): (i64, u64)) -> (i64, u64) {
+    // The nearest multiple of a circle is removed.
     let circle = 360 * i128::from(denominator);
     let rest = i128::from(numerator).rem_euclid(circle);
     let nearest = if 2 * rest > circle {
@@ -170,6 +172,7 @@ pub fn sin_cos(angle: Fixed) -> [Fixed; 2] {
     let turn = Fixed::PI + Fixed::PI;
     let x = angle - turn * Fixed::of((angle.about() / turn.about()).round());
     let square = x * x;
+    // The sine and the cosine have the same series, with different first terms.
     [(x, 1), (Fixed::ONE, 0)].map(|(first, power)| {
         let mut sum = first;
         let mut term = first;

@@ -1,10 +1,10 @@
-//! No panic on the device: every place in the release images that could panic is found and must be
-//! in a short list.
+//! A search for panics on the device: every place in the release images that could panic is found
+//! and must be in a short list.
 //!
-//! The search goes backwards from the panic handler: it follows the branches to it and the branches
-//! to those, through the helpers of the core library, to the places in other code where a panic
-//! begins. A place belongs to the innermost function there that is not of the core library; inlined
-//! functions count.
+//! The search goes backwards from the panic handler. It follows the branches to it, and the
+//! branches to their functions in turn, through the helpers of the core library, to the places in
+//! other code where a panic begins. A place belongs to its innermost function outside of the core
+//! library; inlined functions count.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -40,7 +40,8 @@ const PERMITTED: [(&str, &str); 17] = [
     ),
     (
         "usb_device::",
-        "the USB device is set up with constant numbers; if a host could lead it astray, the board would restart",
+        "the USB device is set up with constant numbers; \
+        if a host could lead it astray, the board would restart",
     ),
     ("usbd_serial::", "as above"),
     ("rp2040_hal::usb::", "as above"),
@@ -64,7 +65,8 @@ const PERMITTED: [(&str, &str); 17] = [
     ),
     (
         "core::num::",
-        "as above; one version of the core library keeps it in `flt2dec`, the next in `imp::flt2dec`",
+        "as above; one version of the core library keeps it in `flt2dec`, \
+        the next in `imp::flt2dec`",
     ),
 ];
 
@@ -85,7 +87,7 @@ fn owner(frames: &Frames) -> &str {
         .unwrap_or_default()
 }
 
-/// Returns true for a helper function by which the core library panics.
+/// Returns true for a helper function of the core library that panics.
 fn is_helper(name: &str) -> bool {
     name.starts_with("core::")
         && (name.contains("panic") || name.ends_with("_fail") || name.ends_with("_failed"))
@@ -99,6 +101,8 @@ fn places(elf: &Path) -> BTreeMap<u32, Frames> {
         .functions_named(|name| name.ends_with("rust_begin_unwind"))
         .collect();
     assert_eq!(panicking.len(), 1, "one panic handler in {}", elf.display());
+
+    // The list grows while it is searched: each helper that panics has its own callers.
     let mut places = BTreeMap::new();
     let mut seen = 0;
 
@@ -106,11 +110,13 @@ fn places(elf: &Path) -> BTreeMap<u32, Frames> {
         seen += 1;
         for address in code.names_of(function) {
             match code.function_at(address) {
+                // A helper is searched in turn.
                 Some((helper, name)) if is_helper(name) => {
                     if !panicking.contains(&helper) {
                         panicking.push(helper);
                     }
                 }
+                // Any other code is a place where a panic begins.
                 caller => {
                     let mut frames = frames(&lines, address);
                     frames.extend(caller.map(|(_, name)| (name.to_owned(), String::new())));
@@ -139,6 +145,7 @@ fn lines(elf: &Path) -> anyhow::Result<Lines> {
 
 fn frames(lines: &Lines, address: u32) -> Frames {
     let mut frames = Vec::new();
+    // A place may be in several functions that are inlined into each other.
     let found = lines.find_frames(address.into()).skip_all_loads();
     let mut found = found.unwrap_or_else(|error| panic!("{address:#x}: {error}"));
     while let Some(frame) = found
@@ -180,6 +187,7 @@ fn only_permitted_code_can_panic() {
     for elf in images() {
         for (address, frames) in places(&elf) {
             let owner = owner(&frames);
+            // Each place has a row that permits it, or is refused.
             match PERMITTED
                 .iter()
                 .position(|(name, _)| owner.trim_start_matches('<').starts_with(name))
@@ -199,6 +207,7 @@ fn only_permitted_code_can_panic() {
         refused.join("\n")
     );
 
+    // A row without any place is out of date.
     for (row, (name, _)) in PERMITTED.iter().enumerate() {
         assert!(
             used.contains(&row),

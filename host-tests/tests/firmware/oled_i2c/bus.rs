@@ -27,7 +27,7 @@ pub struct Line {
     /// True if another device holds the clock low.
     pub hangs: bool,
     pub freed: u32,
-    /// The number of transfers that were begun.
+    /// The number of transfers.
     pub sent: u32,
 }
 
@@ -70,16 +70,21 @@ impl Line {
         } = self;
 
         while outbox.sent.is_none() {
+            // The bits of the next byte, or of the start, the address and the answer.
             let asked = outbox.asked();
-            let needed = match (outbox.is_within_message(), outbox.is_empty(), asked) {
-                (true, ..) => BYTE,
-                (false, true, 0) => 1,
-                (false, true, asked) => 1 + (1 + asked as u32) * BYTE,
-                (false, false, _) => 1 + 2 * BYTE,
+            let needed = if outbox.is_within_message() {
+                BYTE
+            } else if !outbox.is_empty() {
+                1 + 2 * BYTE
+            } else if asked == 0 {
+                1
+            } else {
+                1 + (1 + asked as u32) * BYTE
             };
             if self.time < needed {
                 return;
             }
+
             self.time -= needed;
             self.taken += needed;
             if !panel.plugged_in || outbox.address != panel.address {
@@ -136,7 +141,7 @@ pub enum Says {
     /// The byte is the first one until it is read for the first time after power-on, then the
     /// second one. Bit 6 is set while the display is off.
     FirstThen(u8, u8),
-    /// The byte is always this one, whether the display is on or off.
+    /// The byte is always the same, and does not depend on the display.
     Always(u8),
     /// A read is not acknowledged.
     Nothing,
@@ -282,6 +287,7 @@ impl Controller {
 
     /// Returns the bytes that are read, or `None` if the read is not acknowledged.
     pub fn read(&mut self, count: usize) -> Option<Vec<u8>> {
+        // A status is read unless nothing is asked.
         let status = (count > 0 && self.kind.says != Says::Nothing)
             .then(|| self.status())
             .flatten();
@@ -291,6 +297,8 @@ impl Controller {
         if !(self.reads_memory && self.kind.returns_memory) {
             return Some(vec![status.unwrap_or(0); count]);
         }
+
+        // The first byte of memory is a dummy.
         let at = self.page * self.kind.columns + self.column;
         let dummy = 0x55;
         Some(
@@ -309,6 +317,7 @@ impl Controller {
     /// Executes commands. The arguments of a command must be in the same message.
     fn commands(&mut self, mut bytes: &[u8]) {
         while let [command, rest @ ..] = bytes {
+            // A command of this controller, or one that all have.
             let own = || {
                 self.kind
                     .own
@@ -320,6 +329,7 @@ impl Controller {
                 .or_else(|| arguments(*command))
                 .unwrap_or_else(|| panic!("unknown command {command:#04x}"));
             assert!(rest.len() >= count, "all arguments in one message");
+
             match *command {
                 low @ 0x00..=0x0F => self.column = self.column & 0xF0 | usize::from(low),
                 high @ 0x10..=0x1F => {
@@ -334,6 +344,7 @@ impl Controller {
                         assert!(self.is_given(needed), "lit before {needed:#04x?}");
                     }
                 }
+                // Any other command is a setting, which is allowed while the display is off.
                 setting => {
                     assert!(
                         !self.on || self.kind.for_lit.contains(&setting),
@@ -352,8 +363,10 @@ impl Controller {
         assert!(self.column < self.kind.columns, "beyond the last column");
         let at = self.page * self.kind.columns + self.column;
         self.memory[at] = byte;
-        let is_told = |needed: &&[u8]| needed.starts_with(&[0x20]);
-        let is_placed = !self.kind.needed.iter().any(is_told)
+
+        // The addressing mode decides on the place of the byte.
+        let is_addressing = |needed: &&[u8]| needed.starts_with(&[0x20]);
+        let is_placed = !self.kind.needed.iter().any(is_addressing)
             || self.given.iter().any(|given| given.starts_with(&[0x20]));
         self.unknown[at] = !is_placed;
         self.column += 1;
@@ -366,6 +379,8 @@ impl Controller {
         while let [control, after @ ..] = rest {
             let is_data = control & 0x40 != 0;
             self.reads_memory = is_data;
+
+            // A control byte applies to the next byte, or to the rest of the message.
             let (bytes, next) = if control & 0x80 == 0 {
                 (after, &[][..])
             } else {
@@ -393,10 +408,12 @@ impl Controller {
     /// Returns the pages with a byte that is in none of these frames.
     pub fn late_pages(&self, frames: &[&Bitmap]) -> Vec<usize> {
         let Kind { columns, left, .. } = self.kind;
+        // The part of a page that the panel shows.
         let visible = |page: usize| page * columns + left..page * columns + left + WIDTH;
         let is_current = |page: usize| {
             let seen = &self.memory[visible(page)];
             let is_one = || frames.iter().any(|frame| seen == frame.pages[page]);
+            // A page may be between two frames while it is sent.
             let is_mixed = || {
                 let mut bytes = seen.iter().enumerate();
                 bytes.all(|(at, byte)| frames.iter().any(|frame| frame.pages[page][at] == *byte))

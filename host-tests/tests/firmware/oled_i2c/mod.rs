@@ -22,11 +22,12 @@ use bus::{
     BLIND, BYTE, Controller, IDEAL, Kind, Line, SH1106, SH1107, SILENT, SSD1306, Says, USUAL, WORST,
 };
 
-/// More bits than any frame needs, including the settings that wake the panel.
+/// A number of bits that is larger than any frame needs, including the settings that wake the
+/// panel.
 const LONG: u32 = 4 * 400_000 / TICK_RATE;
 /// The largest number of frames until a panel at the first address shows one.
 const FIRST: u32 = 6;
-/// The number of frames in which a panel must be back: 2 s.
+/// The largest number of frames until a panel is back: 2 s.
 const BACK: u32 = 2 * TICK_RATE;
 
 type Panel = OledI2c<'static, Line>;
@@ -42,16 +43,16 @@ fn on(line: Line, chosen: Option<Name>) -> Panel {
 
 /// Sends a frame, and advances the time of the bus by `bits` bits.
 fn flush(panel: &mut Panel, frame: &Canvas, bits: u32) -> Result<(), OledError> {
-    let told = panel.flush(frame);
+    let result = panel.flush(frame);
     panel.bus.run(bits);
-    told
+    result
 }
 
 /// Sends a frame, and advances the time by a tick.
 fn tick(panel: &mut Panel, frame: &Canvas) -> Result<(), OledError> {
-    let told = panel.flush(frame);
+    let result = panel.flush(frame);
     panel.bus.run_tick();
-    told
+    result
 }
 
 fn shows(panel: &Panel, frame: &Canvas) -> bool {
@@ -70,7 +71,8 @@ fn scene(ticks: u32) -> Canvas {
 }
 
 #[test]
-fn black_is_dark_and_the_upper_half_of_the_greys_is_solid_but_in_a_picture() {
+fn greys_become_patterns_of_pixels() {
+    // The number of lit pixels out of 16 for each grey. A scene with all greys spreads them evenly.
     for (all_greys, lit) in [
         (
             false,
@@ -153,7 +155,7 @@ fn the_panel_shows_each_picture_at_either_address() {
     }
 }
 
-/// The modules that were found in the field, and the way in which each is identified.
+/// The modules that were found in the field, and the way to identify each.
 ///
 /// Source of the status bytes: Meshtastic's `probeOLED` and its threads 1363, 8850 and 11265;
 /// MeshCom 458; ss_oled 61.
@@ -187,6 +189,7 @@ const MODULES: [(Kind, Says, Name, By); 21] = {
 #[test]
 fn every_module_in_the_field_shows_the_picture() {
     for (kind, says, controller, by) in MODULES {
+        // The panel is identified only once, by the expected property.
         let kind = kind.says(says);
         let mut panel = panel(Controller::new(kind, 0x3C).plugged(false));
         let mut found = Vec::new();
@@ -195,10 +198,10 @@ fn every_module_in_the_field_shows_the_picture() {
         for number in 0..4 * TICK_RATE {
             panel.bus.panel.plugged_in = number > FIRST;
             let frame = scene(number / 10);
-            let told = tick(&mut panel, &frame);
+            let result = tick(&mut panel, &frame);
             found.extend(panel.found());
             if number > FIRST + BACK {
-                assert_eq!(told, Ok(()), "{kind:?}");
+                assert_eq!(result, Ok(()), "{kind:?}");
                 assert!(shows(&panel, &frame), "{kind:?}, frame {number}");
             }
         }
@@ -212,7 +215,7 @@ fn every_module_in_the_field_shows_the_picture() {
 }
 
 #[test]
-fn status_byte_decides_only_where_reading_memory_is_broken_off() {
+fn status_byte_decides_only_if_reading_memory_fails() {
     for (kind, status, controller) in [
         (SH1106, 0x08, Name::Sh1106),
         (BLIND, 0x06, Name::Ssd1306),
@@ -221,7 +224,7 @@ fn status_byte_decides_only_where_reading_memory_is_broken_off() {
         let says = Says::Off(status);
         let mut panel = panel(Controller::new(kind.says(says), 0x3C));
 
-        // The panel is switched off and asked; then it no longer answers.
+        // The panel is switched off and its status read; then it no longer answers.
         (0..2).for_each(|_| assert_eq!(flush(&mut panel, &scene(1), LONG), Ok(())));
         panel.bus.panel.kind.says = Says::Nothing;
         let found = (0..2).find_map(|_| {
@@ -229,6 +232,7 @@ fn status_byte_decides_only_where_reading_memory_is_broken_off() {
             panel.bus.run(LONG);
             panel.found()
         });
+
         let expected = Found {
             controller,
             by: By::Status,
@@ -254,6 +258,7 @@ fn chosen_controller_has_precedence_and_is_applied_at_once() {
     run(&mut panel);
     assert!(!shows(&panel, &frame), "it is shifted by two columns");
 
+    // The choice can change at any time.
     for chosen in [
         None,
         Some(Name::Sh1106),
@@ -264,6 +269,7 @@ fn chosen_controller_has_precedence_and_is_applied_at_once() {
         run(&mut panel);
         let is_right = chosen == Some(Name::Sh1106);
         assert_eq!(shows(&panel, &frame), is_right, "{chosen:?}");
+
         let found = Found {
             controller: chosen.unwrap_or_default(),
             by: if chosen.is_some() {
@@ -293,9 +299,10 @@ const fn bits(columns: u32) -> u32 {
 }
 
 #[test]
-fn only_changes_are_sent_and_a_part_that_is_sent_again() {
+fn only_changes_are_sent_and_one_part_again() {
     let mut panel = panel(Controller::new(SSD1306, 0x3C));
     let mut canvas = scene(30);
+    // No change, one changed column, and two in the same page.
     let taken = [&[][..]; 10]
         .into_iter()
         .chain([&[20][..], &[20, 90]])
@@ -324,6 +331,7 @@ fn panel_that_lost_its_power_is_set_up_again() {
     for kind in [SSD1306, SH1106, SH1107] {
         let mut panel = panel(Controller::new(kind, 0x3C));
         let frame = scene(30);
+        // The power fails at different moments of the frame's transfer.
         for moment in [97, 60, 83] {
             for _ in 0..moment {
                 let _ = tick(&mut panel, &frame);
@@ -341,6 +349,8 @@ fn panel_that_lost_its_power_is_set_up_again() {
         for _ in 0..FIRST {
             assert_eq!(tick(&mut panel, &frame), Ok(()));
         }
+
+        // The panel reports once that it is off, although it is on.
         panel.bus.panel.kind.says = Says::Always(0x46);
         panel.bus.panel.last_read = None;
         while panel.bus.panel.last_read != Some(0x46) {
@@ -354,8 +364,8 @@ fn panel_that_lost_its_power_is_set_up_again() {
     }
 }
 
-/// The numbers of ticks for which the panel is away: between two ticks, so shortly that no answer
-/// is missed; in one tick; and longer.
+/// The numbers of ticks without a panel. At 0 the panel is away between two ticks, so shortly that
+/// no answer is missed.
 const AWAY: [u32; 5] = [0, 0, 1, 50, 100];
 /// The number of moments in each run, which lasts 40 s.
 const MOMENTS: usize = 15;
@@ -395,17 +405,20 @@ fn panel_plugged_in_again_shows_every_scene_within_two_seconds() {
             }
             was_idle && is_shown
         };
+        // The panel shows each frame, is pulled, and plugged in again.
         for (away, moment) in AWAY
             .into_iter()
             .zip([97, 101, 83, 89, 103])
             .cycle()
             .take(MOMENTS)
         {
+            // The first picture must come in time, and every later one.
             let back = (0..BACK).find(|_| step(&mut panel));
             longest = longest.max(back.unwrap_or_else(|| panic!("{run}: it is not back")));
             for _ in 0..moment {
                 assert!(step(&mut panel), "{run}");
             }
+
             panel.bus.panel.lose_power();
             panel.bus.panel.plugged_in = false;
             for _ in 0..away {
@@ -420,10 +433,10 @@ fn panel_plugged_in_again_shows_every_scene_within_two_seconds() {
 /// The number of frames in each run: 40 s.
 const FRAMES: u32 = 2400;
 
-/// The number of ticks by which a page may lag behind its frame, at any speed.
+/// The largest delay of a page relative to its frame, ticks, at any speed.
 const LATE: u32 = 1;
 
-/// Every frame of every scene is sent, at least in part, however slow the bus is. The rest follows
+/// At least a part of every frame of every scene is sent, at any speed of the bus. The rest follows
 /// with the next frame.
 #[test]
 fn no_frame_of_any_scene_is_skipped_at_any_speed() {
@@ -436,6 +449,7 @@ fn no_frame_of_any_scene_is_skipped_at_any_speed() {
             let line = Line::at(speed.0, Controller::new(SSD1306, 0x3C));
             on(line, None)
         });
+        // For each speed: skipped frames, complete frames, and the largest age of a page.
         let mut counts = [(0, 0, 0); 3];
         let mut ages = [[0; HEIGHT / 8]; 3];
         for number in 0..FRAMES {
@@ -445,9 +459,11 @@ fn no_frame_of_any_scene_is_skipped_at_any_speed() {
             for ((panel, count), ages) in panels.iter_mut().zip(&mut counts).zip(&mut ages) {
                 let was_idle = panel.bus.is_idle();
                 let _ = tick(panel, &frame);
+                // The panel is identified first.
                 if number < 2 * FIRST {
                     continue;
                 }
+
                 let late = panel.bus.panel.late_pages(&[&bitmap]);
                 for (page, age) in ages.iter_mut().enumerate() {
                     *age = if late.contains(&page) { *age + 1 } else { 0 };
@@ -457,6 +473,8 @@ fn no_frame_of_any_scene_is_skipped_at_any_speed() {
                 count.1 += u32::from(late.is_empty());
             }
         }
+
+        // No frame is skipped, and every page is at most one tick late.
         for (((byte_nanos, least), panel), (skipped, whole, late)) in
             SPEEDS.iter().zip(&panels).zip(counts)
         {
@@ -503,6 +521,7 @@ fn no_frame_is_skipped_when_frames_are_not_equally_far_apart() {
             let frame = scene.frame();
             let _ = panel.flush(&frame);
             let mut done = late;
+            // The bus makes progress in pieces, and the frame may be completed between them.
             while done < SLICES {
                 let piece = rng.u32(1..=PIECE);
                 panel.bus.run(piece.min(SLICES - done) * slice);
@@ -525,16 +544,16 @@ fn no_frame_is_skipped_when_frames_are_not_equally_far_apart() {
 fn a_bus_that_is_held_up_is_reported_once_a_second() {
     let mut panel = panel(Controller::new(SSD1306, 0x3C));
     let mut second = |is_slow: bool| {
-        let mut told = Ok(());
+        let mut result = Ok(());
         for number in 0..2 * TICK_RATE {
-            told = panel.flush(&scene(number));
+            result = panel.flush(&scene(number));
 
             // In every other tick another device holds the clock.
             if !is_slow || number % 2 == 1 {
                 panel.bus.run_tick();
             }
         }
-        (told, panel.report().shown)
+        (result, panel.report().shown)
     };
     assert_eq!(second(false), (Ok(()), 60));
     let shown = TICK_RATE / 2;
@@ -543,7 +562,7 @@ fn a_bus_that_is_held_up_is_reported_once_a_second() {
 }
 
 #[test]
-fn an_absent_panel_is_looked_for_once_a_second_and_may_come_and_go() {
+fn an_absent_panel_is_searched_once_a_second_and_may_come_and_go() {
     let plug = |panel: &mut Panel, plugged_in| {
         panel.bus.panel = Controller::new(SSD1306, 0x3C).plugged(plugged_in)
     };
@@ -571,13 +590,14 @@ fn an_absent_panel_is_looked_for_once_a_second_and_may_come_and_go() {
     assert_eq!(panel.bus.sent, 2, "no other try within the second");
     assert_eq!((flush(&mut panel, 1), panel.bus.sent), (absent, 3));
 
+    // The panel is plugged in twice, and pulled in between.
     for (ticks, before) in [(1, absent), (4, Err(OledError::Lost))] {
         plug(&mut panel, true);
-        let told: Vec<_> = (0..TICK_RATE + 12)
+        let results: Vec<_> = (0..TICK_RATE + 12)
             .map(|_| flush(&mut panel, ticks))
             .collect();
         assert!(
-            told.contains(&before) && told.last() == Some(&Ok(())),
+            results.contains(&before) && results.last() == Some(&Ok(())),
             "within a second"
         );
         assert!(shows(&panel, &scene(ticks)));
@@ -593,15 +613,15 @@ fn an_absent_panel_is_looked_for_once_a_second_and_may_come_and_go() {
 }
 
 #[test]
-fn a_bus_that_hangs_holds_up_nothing_and_is_freed() {
+fn a_bus_that_hangs_delays_nothing_and_is_freed() {
     let flush = |panel: &mut Panel, ticks| tick(panel, &scene(ticks));
     let mut panel = panel(Controller::new(SSD1306, 0x3C));
     (0..10).for_each(|ticks| assert_eq!(flush(&mut panel, ticks), Ok(())));
     panel.bus.hangs = true;
-    let told: Vec<_> = (5..20).map(|ticks| flush(&mut panel, ticks)).collect();
+    let results: Vec<_> = (5..20).map(|ticks| flush(&mut panel, ticks)).collect();
     assert!(
-        told.starts_with(&[Ok(()); 5]) && told.ends_with(&[Err(OledError::Lost); 5]),
-        "{told:?}"
+        results.starts_with(&[Ok(()); 5]) && results.ends_with(&[Err(OledError::Lost); 5]),
+        "{results:?}"
     );
     assert_eq!(panel.bus.freed, 1);
 
@@ -614,7 +634,8 @@ fn a_bus_that_hangs_holds_up_nothing_and_is_freed() {
         (Err(OledError::Absent(ErrorKind::Other)), 2)
     );
     assert_eq!(panel.report().state, PanelState::Absent(BusFault::Stuck));
+
     panel.bus.hangs = false;
-    let told = (0..TICK_RATE + 12).map(|_| flush(&mut panel, 21)).last();
-    assert!(told == Some(Ok(())) && shows(&panel, &scene(21)));
+    let last = (0..TICK_RATE + 12).map(|_| flush(&mut panel, 21)).last();
+    assert!(last == Some(Ok(())) && shows(&panel, &scene(21)));
 }

@@ -1,4 +1,5 @@
-//! The planner's predictions against the exact motion, over scenes of all kinds, for every processor.
+//! The planner's predictions against the exact motion, over scenes of all kinds, for every
+//! processor.
 
 mod scenes;
 
@@ -12,26 +13,27 @@ use rayon::prelude::*;
 use reference::taylor::Reference;
 use scenes::Class;
 
-/// The most scenes of 2,000 with a frame that is inaccurate before the predicted horizon, and the
-/// largest error of theirs, half pixels.
+/// The largest number of scenes out of 2,000 with a frame that is inaccurate before the predicted
+/// horizon, and the largest error of such a frame, half pixels.
 const VIOLATIONS: usize = 1;
 const LARGEST: f64 = 1.5;
-/// The predicted horizon over the longest true one of any method that a frame can pay for: in the
-/// median of the scenes that end early, and for 95 % of them.
+/// The smallest ratio of the predicted horizon to the longest true one of any method that a frame
+/// can pay for: in the median of the scenes that end early, and for 95 % of them.
 const SHARE: [f64; 2] = [0.8, 0.5];
-/// The fewest scenes that end early of which a share is asserted.
+/// The smallest number of scenes that end early for an assertion about their shares.
 const LEAST_ENDING: usize = 20;
 
-/// Scenes of each class in the default run.
+/// The number of scenes of each class in the default run.
 const SAMPLE: usize = 1;
-/// Scenes of a class in the long run, for each of its seeds.
+/// The number of scenes of a class in the long run, for each of its seeds.
 const SCENES: usize = 2_000;
 const SEEDS: u64 = 3;
 
-/// In one scene of so many the reference is compared with another one: in the default run, and in the
-/// long one.
+/// The number of scenes for each comparison of the reference with another one: in the default run,
+/// and in the long one.
 const CHECKED: [usize; 2] = [3, 16];
-/// The order of that one, and how far apart the two may be, half pixels: a hundredth of a pixel.
+/// The order of the other reference, and the largest distance between the two, half pixels: a
+/// hundredth of a pixel.
 const OTHER_ORDER: usize = 30;
 const REFERENCE_ERROR: f64 = 0.02;
 
@@ -76,7 +78,9 @@ impl Exact {
         let Ok(mut run) = PlannedRun::new(&self.scene, stepping) else {
             return (0, f64::INFINITY);
         };
-        let (mut accurate, mut is_accurate, mut largest) = (0, true, 0.0_f64);
+        let mut accurate = 0;
+        let mut is_accurate = true;
+        let mut largest = 0.0_f64;
         for frame in 1..=self.scene.frames() {
             if !is_accurate && frame > until {
                 break;
@@ -86,6 +90,7 @@ impl Exact {
                 Ok(()) => distance(&self.scene, run.directions(), exact),
                 Err(_) => f64::INFINITY,
             };
+            // The count ends with the first inaccurate frame.
             is_accurate &= error <= 1.0;
             accurate += u32::from(is_accurate);
             if frame <= until {
@@ -95,8 +100,8 @@ impl Exact {
         (accurate, largest)
     }
 
-    /// Returns how far the reference is from one of another order, half pixels, in the last frame
-    /// that it was used for.
+    /// Returns the distance of the reference from a reference of another order, half pixels, in the
+    /// last frame that it was used for.
     fn error(&self) -> f64 {
         let Some(last) = self.frames.last() else {
             return 0.0;
@@ -111,8 +116,8 @@ impl Exact {
     }
 }
 
-/// Returns how far either bob, or bob 2 as seen from bob 1, is from the exact motion, half pixels;
-/// infinite if anything is not a number.
+/// Returns the largest distance of either bob, or of bob 2 as seen from bob 1, from the exact
+/// motion, half pixels; infinite if anything is not a number.
 fn distance<T: Into<f64>>(scene: &Problem, shown: [[T; 2]; 2], exact: Directions) -> f64 {
     let [l1, l2] = [scene.pendulum.l1, scene.pendulum.l2].map(|l| l / scene.tolerance);
     let [[sin1, cos1], [sin2, cos2]] = shown.map(|direction| direction.map(Into::into));
@@ -141,7 +146,7 @@ fn every_stepping() -> Vec<Stepping> {
         .collect()
 }
 
-/// A scene planned for a chip and carried out.
+/// A scene that is planned for a chip, with the judgement of its plan.
 #[derive(Clone, Copy, Debug)]
 struct Case {
     scene: Problem,
@@ -149,8 +154,8 @@ struct Case {
     plan: Option<Plan>,
     /// The true horizon of the plan, s: the time of its last accurate frame.
     horizon: f64,
-    /// The longest true horizon of any method that a frame can pay for, s. It is searched for if the
-    /// plan ends early.
+    /// The longest true horizon of any method that a frame can pay for, s. It is searched for if
+    /// the plan ends early.
     longest: f64,
     /// The largest error until the predicted horizon, half pixels.
     error: f64,
@@ -168,6 +173,7 @@ impl Case {
         };
         match Plan::search(scene, &chip.processor.costs, &budget) {
             Ok(plan) => {
+                // The plan is judged until its predicted horizon, and further while it is accurate.
                 let predicted = (plan.horizon * f64::from(scene.rate)).round() as u32;
                 let (accurate, error) = exact.judge(plan.stepping(), predicted);
                 case.plan = Some(plan);
@@ -199,9 +205,9 @@ impl Case {
     }
 }
 
-/// Plans a scene for every chip and carries the plans out. `by_force`, the longest true horizon is
-/// searched for. `is_checked`, the reference is compared with another one.
-fn carried_out(scene: &Problem, by_force: bool, is_checked: bool) -> Vec<Case> {
+/// Plans a scene for every chip and runs the plans. With `by_force`, searches the longest true
+/// horizon. With `is_checked`, compares the reference with another one.
+fn judged(scene: &Problem, by_force: bool, is_checked: bool) -> Vec<Case> {
     let mut exact = Exact::new(scene);
     let mut cases: Vec<_> = CHIPS
         .iter()
@@ -212,6 +218,7 @@ fn carried_out(scene: &Problem, by_force: bool, is_checked: bool) -> Vec<Case> {
             let is_affordable =
                 |chip: &Chip| chip.processor.costs.of_frame(stepping) <= chip.processor.frame;
             let needed = |case: &Case, chip: &Chip| case.ends_early() && is_affordable(chip);
+            // A method is run only for chips that can pay for it.
             if !cases
                 .iter()
                 .zip(&CHIPS)
@@ -248,8 +255,8 @@ impl Results {
     }
 }
 
-/// Studies scenes on every chip and prints a line for each. At most `most` violations, none by more
-/// than `largest` half pixels.
+/// Studies scenes on every chip and prints a line for each. Allows `most` violations, each of at
+/// most `largest` half pixels.
 fn study(
     name: &str,
     scenes: &[Problem],
@@ -261,8 +268,10 @@ fn study(
     let cases: Vec<_> = scenes
         .par_iter()
         .enumerate()
-        .map(|(i, scene)| carried_out(scene, by_force, i % checked == 0))
+        .map(|(i, scene)| judged(scene, by_force, i % checked == 0))
         .collect();
+
+    // The results of one chip.
     let of_chip = |(i, chip): (usize, &Chip)| {
         let cases = cases.iter().map(|cases| &cases[i]);
         let violations: Vec<_> = cases.clone().filter(|case| case.is_violation()).collect();
@@ -274,6 +283,8 @@ fn study(
             ending: shares.len(),
             shares,
         };
+
+        // A line of the README's table.
         println!(
             "| {name} | {} | {nothing} | {} | {} | {error:.2} | {:.2} | {:.2} |",
             chip.title,
@@ -292,7 +303,7 @@ fn study(
     CHIPS.iter().enumerate().map(of_chip).collect()
 }
 
-/// Scenes of every class and those that have once been wrong.
+/// The scenes of every class, and the scenes that were once wrong.
 #[test]
 fn half_a_pixel_is_kept_until_the_predicted_horizon() {
     let sample = Class::ALL
@@ -308,10 +319,10 @@ fn half_a_pixel_is_kept_until_the_predicted_horizon() {
     }
 }
 
-/// The whole study of a class. The README's table is what
-/// `cargo test -p host-tests --test kernel plan_study::thousands -- --ignored --nocapture` prints.
+/// Studies a whole class. `cargo test -p host-tests --test kernel plan_study::thousands --
+/// --ignored --nocapture` prints the README's table.
 ///
-/// `SCENES=200 SEED=1`, in the environment, studies fewer.
+/// The environment variables `SCENES=200 SEED=1` select fewer scenes.
 fn thousands(class: Class) {
     let number = |name: &str| {
         env::var(name)
@@ -321,7 +332,8 @@ fn thousands(class: Class) {
     let count = number("SCENES").map_or(SCENES, |count| count as usize);
     let seeds = number("SEED").map_or(1..=SEEDS, |seed| seed..=seed);
     println!(
-        "| class, seed | processor | no method | end early | violations | largest error | median share | 5 % |"
+        "| class, seed | processor | no method | end early | violations | largest error \
+        | median share | 5 % |"
     );
     for seed in seeds {
         let scenes: Vec<_> = class.scenes(seed).take(count).collect();

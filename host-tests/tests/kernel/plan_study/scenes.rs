@@ -1,4 +1,4 @@
-//! The scenes of the study: classes to draw from at random, and single ones that are difficult.
+//! The scenes of the study: random classes, and single scenes that are difficult.
 
 use std::f64::consts::PI;
 
@@ -16,45 +16,45 @@ const RATE: u16 = 60;
 /// The duration of a scene, s, if the class has no other.
 const SECONDS: [f64; 2] = [2.0, 30.0];
 
-/// The least amplitude, rad.
+/// The smallest amplitude, rad.
 const LEAST: f64 = 0.01;
-/// The greatest velocity of a rod, in units of its own sqrt(g/l) and in rad/s.
+/// The largest velocity of a rod, in units of its own sqrt(g/l) and in rad/s.
 const GREATEST: [f64; 2] = [20.0, 60.0];
 
 /// A kind of scene.
 ///
-/// Bob 1 has 1 kg and rod 1 has 1 m: with gravity given, the ratios are all there is. `log` means
-/// evenly spread in the logarithm.
+/// Bob 1 has 1 kg and rod 1 has 1 m. Since gravity is given, only the ratios matter. `log` means
+/// evenly distributed in the logarithm.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Class {
     /// Mass ratio m2/m1 1e-3 to 1e3, length ratio l2/l1 1e-2 to 1e2, 2 to 30 s: log.
     ///
     /// - Amplitude 0.01 to pi rad: every other one log, the others evenly.
-    /// - One angle is as large as the amplitude. The other one is too in every third scene,
-    ///   otherwise anything up to it.
-    /// - Every other scene starts at rest, the others with velocities up to a share of the greatest
-    ///   ones: 20 times the rod's own sqrt(g/l), at most 60 rad/s. The share 0.01 to 1 is spread as
-    ///   the amplitude is.
+    /// - One angle is as large as the amplitude. The other one is equal to it in every third scene,
+    ///   and at most as large in the other scenes.
+    /// - Every other scene starts at rest. The others start with velocities up to a share of the
+    ///   largest ones: 20 times the rod's own sqrt(g/l), at most 60 rad/s. The share of 0.01 to 1
+    ///   has the same distribution as the amplitude.
     Broad,
-    /// At rest with both rods at 1.5 to 3.3 rad, to either side. Mass ratio 1 to 10 and length ratio
-    /// 0.5 to 2, log. 30 s.
+    /// A start at rest with both rods at 1.5 to 3.3 rad, to either side. Mass ratio 1 to 10 and
+    /// length ratio 0.5 to 2, log. 30 s.
     High,
-    /// At rest with one rod or both within 1e-10 to 1e-7 rad of upright, log, the other one hanging.
-    /// Mass ratio 1e-2 to 1e2 and length ratio 0.1 to 10, log.
+    /// A start at rest with one rod or both within 1e-10 to 1e-7 rad of upright, log, and the other
+    /// rod hanging. Mass ratio 1e-2 to 1e2 and length ratio 0.1 to 10, log.
     Upright,
-    /// As [`Broad`](Self::Broad), but mass ratio 10 to 1000.
+    /// The class [`Broad`](Self::Broad) with mass ratios of 10 to 1000.
     Heavy,
-    /// As [`Broad`](Self::Broad), but mass ratio 1e-3 to 0.1.
+    /// The class [`Broad`](Self::Broad) with mass ratios of 1e-3 to 0.1.
     Light,
-    /// As [`Broad`](Self::Broad), but mass ratio 0.1 to 10, length ratio 0.3 to 3, and velocities of
-    /// -60 to 60 rad/s, evenly.
+    /// The class [`Broad`](Self::Broad) with mass ratios of 0.1 to 10, length ratios of 0.3 to 3,
+    /// and velocities of -60 to 60 rad/s, evenly.
     Fast,
-    /// As [`Broad`](Self::Broad), but 1 to 3000 frames per second and a height of 32 to 1e5 pixels,
-    /// log. At most [`MOST_FRAMES`].
+    /// The class [`Broad`](Self::Broad) with 1 to 3000 frames per second and heights of 32 to 1e5
+    /// pixels, log. At most [`MOST_FRAMES`].
     Odd,
 }
 
-/// The most frames of a scene of odd frame rate, so that the study ends.
+/// The largest number of frames of a scene with an odd frame rate, so that the study ends.
 const MOST_FRAMES: f64 = 3_000.0;
 
 impl Class {
@@ -75,6 +75,7 @@ impl Class {
     }
 
     fn scene(self, rng: &mut Rng) -> Problem {
+        // The ranges of the class.
         let [least_mass, greatest_mass] = match self {
             Self::Broad | Self::Odd => [1e-3, 1e3],
             Self::High => [1.0, 10.0],
@@ -97,6 +98,7 @@ impl Class {
             g: GRAVITY,
         };
 
+        // The start.
         let start = match self {
             Self::High => {
                 let mut angle = || (1.5 + 1.8 * rng.f64()) * if rng.bool() { 1.0 } else { -1.0 };
@@ -123,6 +125,7 @@ impl Class {
             }
         };
 
+        // The duration, and the display.
         let [shortest, longest] = SECONDS;
         let duration = match self {
             Self::High => 30.0,
@@ -142,7 +145,8 @@ impl Class {
     }
 }
 
-/// Returns a number of `LEAST` to `most`: every other one log, the others evenly.
+/// Returns a number from `LEAST` to `most`. Half of the numbers are distributed evenly in the
+/// logarithm, the others evenly.
 fn size(rng: &mut Rng, most: f64) -> f64 {
     if rng.bool() {
         log_uniform(rng, LEAST, most)
@@ -211,7 +215,7 @@ fn pendulum(m2: f64, l2: f64) -> Parameters<f64> {
     }
 }
 
-/// Returns scenes for which planners have once predicted horizons that were too long.
+/// Returns scenes with horizons that planners have once predicted too long.
 ///
 /// In most of them the 64-bit run that others were compared with was as inaccurate as these, by the
 /// truncation of its steps and along the same unstable direction. The last three start so close to

@@ -129,6 +129,7 @@ fn in_application(board: &'static Board, toolchain: &Toolchain) -> Result<(f32, 
     let image = Image::read(&elf)?;
     let qemu = &toolchain.qemu;
     let settings = Settings {
+        // The application is built and started, halted before its first instruction.
         qemu,
         board,
         elf: &elf,
@@ -138,6 +139,7 @@ fn in_application(board: &'static Board, toolchain: &Toolchain) -> Result<(f32, 
     };
 
     let mut machine = Machine::halted(&settings)?;
+    // Returns the cycles of the most expensive call of a function within the next frame.
     let most = |machine: &mut Machine, entry: u32| {
         let (_, calls) = next_frame(machine, &image, board.core(), BTreeSet::from([entry]))?;
         anyhow::Ok(
@@ -149,11 +151,14 @@ fn in_application(board: &'static Board, toolchain: &Toolchain) -> Result<(f32, 
         )
     };
 
+    // The first frame includes the start of the program, so it is not counted.
     machine.run_to_frame()?;
     let step = most(
         &mut machine,
         image.function("Fixed64State::advance")?.address,
     )?;
+
+    // A motion is prepared whenever the method changes, so every method is selected once.
     let preparation = image.function("PlannedRun::new")?.address;
     let mut prepared: f32 = 0.0;
     for &method in Method::DRAWN {

@@ -23,7 +23,8 @@ use emulator::toolchain::{self, Toolchain};
 
 /// The gravity of the report's regular scene, m/s^2, so that the figures agree with it.
 const GRAVITY: f32 = 9.81;
-/// The limit of steps. Every executed instruction is logged, so a much larger number would take hours.
+/// The limit of steps. Every executed instruction is logged, so a much larger number would take
+/// hours.
 const MOST_STEPS: i64 = 65_536;
 
 const EXAMPLES: &str = "Examples:
@@ -144,8 +145,8 @@ pub fn run(options: &CountOptions) -> anyhow::Result<()> {
 }
 
 impl CountOptions {
-    /// Returns a request for each method whose name matches, except those that refuse this
-    /// pendulum; at least one. The host checks this before anything is built or printed.
+    /// Returns a request for each method whose name matches and that accepts this pendulum; at
+    /// least one. The host checks this before anything is built or printed.
     fn requests(&self) -> anyhow::Result<Vec<Request>> {
         let Self { m2, l2, angle, .. } = *self;
         let request = |method| Request {
@@ -161,6 +162,7 @@ impl CountOptions {
             samples: 1,
             ..Request::on_any_core(method)
         };
+        // A request of one step shows whether the method accepts the pendulum.
         let check = |request| {
             Request {
                 stride: 1,
@@ -171,6 +173,7 @@ impl CountOptions {
             .map(|_| request)
         };
 
+        // A complete name selects this method only, a part of a name all methods that contain it.
         let is_name = Method::ALL
             .iter()
             .any(|method| method.name() == self.method);
@@ -192,6 +195,7 @@ impl CountOptions {
             bail!("no method '{}'; there are {names}", self.method)
         }
 
+        // A method may refuse the pendulum, but not all of them may.
         if checked.iter().all(Result::is_err) {
             let requests = checked.into_iter().collect::<Result<_, _>>();
             return requests.map_err(|error| anyhow!("{}{error}", option_of(&error)));
@@ -260,6 +264,7 @@ fn row(method: Method, board: &Board, cost: &StepCost) -> String {
         code_bytes,
         stack_bytes,
     } = cost;
+    // Counts of a step are averages; sizes are whole bytes.
     let [instructions, cycles, stalls] =
         [instructions, cycles, stalls].map(|count| format!("{count:.1}"));
     let [steps, hot, code, stack] = [steps, hot_bytes, code_bytes, stack_bytes].map(u32::to_string);
@@ -285,6 +290,7 @@ fn list(target: &Target, request: &Request, steps: Option<u32>) -> anyhow::Resul
         request.method, target.board.name
     ))?;
     say(ERROR_BAR)?;
+    // A heading is printed at each instruction that begins another function.
     let mut function = None;
 
     for (
@@ -382,12 +388,14 @@ fn count_calls(
     elf: &Path,
     function: &str,
 ) -> anyhow::Result<()> {
+    // An unreadable program or an unknown function is bad input, with exit code 2.
     let refused = |error: anyhow::Error| Refused::because(format_args!("{error:#}"));
     let board = options.on.first().copied().unwrap_or(&BOARDS[1]);
     let target = Target::of(toolchain, board, elf.to_owned()).map_err(refused)?;
     let limit = Duration::from_secs(options.seconds.into());
     let (function, calls, ended) = calls_of(&target, function, limit).map_err(refused)?;
 
+    // A program that failed has no valid figures.
     let number = calls.len();
     if let Ok(status) = &ended.status {
         ensure!(
@@ -397,6 +405,7 @@ fn count_calls(
         );
     }
 
+    // Everything about the program goes to stderr, only the figures to stdout.
     ended.output.lines().for_each(complain);
 
     match ended.status {

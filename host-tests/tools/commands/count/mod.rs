@@ -20,7 +20,7 @@ use trace::counted;
 const COUNTED: &str = "counted_steps";
 
 /// The number of steps whose average includes everything that a method does rarely. It is a second
-/// of steps of 2^-8 s, in which the direction form restores its lengths eight times.
+/// of steps of 2^-8 s. The direction form restores its lengths eight times in it.
 pub const FULL_CYCLE: u32 = 256;
 /// The period, in steps, of the rarest thing that a method does regularly.
 const REGULAR: u64 = 32;
@@ -59,6 +59,7 @@ pub fn affordable_steps(target: &Target, request: &Request) -> Result<u32> {
     )?
     .cost()
     .instructions;
+    // A multiple of the period, so that the rare work has its true share of the average.
     let steps = (AFFORDABLE_INSTRUCTIONS / one.max(1)).clamp(LEAST_STEPS, FULL_CYCLE.into());
     Ok(if steps < REGULAR {
         steps
@@ -96,6 +97,7 @@ pub fn step_cost(target: &Target, request: &Request) -> Result<StepCost> {
             },
         )
     };
+    // The difference of the two runs is the cost of `steps` steps.
     let calling = run(1)?.cost();
     let whole = run(1 + steps)?;
     let all = whole.cost();

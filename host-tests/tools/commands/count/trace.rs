@@ -33,7 +33,7 @@ pub struct Ended {
     pub output: String,
 }
 
-/// An emulated board with a program, by default the one that measures.
+/// An emulated board with a program. The default program runs one request and prints its result.
 #[derive(Debug)]
 pub struct Target {
     pub board: &'static Board,
@@ -80,6 +80,7 @@ impl Target {
     /// Runs `request` at full speed. Returns its CRC and the ticks of the board's clock under
     /// `-icount`, where an instruction takes 1 ns.
     pub fn run(&self, request: &Request) -> Result<(u32, u64)> {
+        // The program prints the CRC in hexadecimal digits and then the ticks.
         let output = self.output(request)?;
         let numbers = output.trim().split_once(' ');
         let numbers = numbers.and_then(|(crc, ticks)| {
@@ -106,6 +107,7 @@ impl Target {
         limit: Duration,
         each: &mut dyn FnMut(Registers) -> Result<()>,
     ) -> Result<Ended> {
+        // QEMU writes the registers to stderr before every instruction.
         let mut command = self.emulator(argument);
         command
             .args(self.single_step()?)
@@ -115,6 +117,7 @@ impl Target {
             .stdout(Stdio::piped())
             .stderr(Stdio::piped());
 
+        // The output is read by a thread, because a full pipe would stop the program.
         let mut child = process::spawn(&mut command, limit)?;
         let stdout = child
             .child
@@ -125,6 +128,7 @@ impl Target {
             for_each_instruction(&mut log, each)?;
         }
 
+        // A program that ends closes its log.
         let status = child.wait();
         let output = stdout
             .and_then(|reader| reader.join().ok())
@@ -165,11 +169,14 @@ impl Target {
 
 /// Runs `request` on `target` and returns all calls of the counted function.
 pub fn counted<'a>(target: &'a Target, request: &Request) -> Result<Calls<'a>> {
+    // The compiler makes one copy of the function for each method.
     let entries = target
         .image
         .functions_named(COUNTED)
         .map(|function| function.address)
         .collect();
+
+    // Every call of any copy is counted.
     let mut calls = Calls::of(&target.image, target.board.core(), entries);
     let ended = target.trace(&request.to_string(), LIMIT, &mut |registers| {
         calls.see(registers)
@@ -206,6 +213,7 @@ pub fn calls_of<'a>(
 
     let mut calls = Calls::of(image, core, BTreeSet::from([function.address]));
     let progress = Progress::start(&format!("counts the calls of {}", function.name));
+    // The first instruction that the core does not have is the likely cause if nothing is called.
     let mut instructions = 0_u64;
     let mut unknown = None;
     let ended = target.trace("", limit, &mut |registers| {
@@ -227,6 +235,7 @@ pub fn calls_of<'a>(
     let name = &function.name;
     let failed = ended.status.as_ref().is_ok_and(|status| !status.success());
 
+    // A program that ended well must have called the function, and the call must have returned.
     if calls.ended.is_empty() && !failed {
         ensure!(
             calls.running.is_none(),

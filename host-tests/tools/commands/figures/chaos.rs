@@ -1,4 +1,4 @@
-//! Figure 7: the path of bob 2 by the right equations and by the ones that the book prints.
+//! Figure 7: the path of bob 2 by the right equations, and by the misprinted equations of the book.
 
 use anyhow::Result;
 use double_pendulum::{Error, Parameters, Pendulum, State, rk4};
@@ -36,7 +36,7 @@ pub fn start() -> State<f64> {
     State::at_rest(START.to_radians(), START.to_radians())
 }
 
-/// Returns the paths by the right equations and by the printed ones, with `refinement` times the
+/// Returns the paths by the right equations and by the misprinted ones, with `refinement` times the
 /// figure's steps; 1 is the figure itself.
 pub fn paths(refinement: u32) -> Result<[Path; 2], Error> {
     let pendulum = pendulum()?;
@@ -53,6 +53,7 @@ fn path(pendulum: &Pendulum<f64>, refinement: u32, rhs: impl Fn(&[f64; 4]) -> [f
     let mut points = Vec::new();
     let [mut least, mut greatest] = [f64::INFINITY, f64::NEG_INFINITY];
     for step in 0..=DURATION * STEPS * refinement {
+        // Finer steps give the same number of points.
         if step.is_multiple_of(STEPS_PER_POINT * refinement) {
             let [_, bob2] = pendulum.positions(state.angles());
             points.push((bob2.x, bob2.y));
@@ -77,11 +78,14 @@ pub fn figure() -> Result<String> {
     let marks =
         "○ start, ● end; · every 1 s, with the seconds; paler earlier, darker later; × pivot";
     svg([800, 468], [&title, &particulars, marks], |area| {
+        // The right equations on the left, the misprinted ones on the right.
         let halves = area.split_evenly((1, 2));
         let names = ["the right equations", "as printed, a factor μ missing"];
         for (((area, name), colour), path) in
             halves.iter().zip(names).zip([BLUE, ORANGE]).zip(&paths)
         {
+            // The right equations keep the energy, so its smallest and largest values look the
+            // same.
             let [least, greatest] = path.energies.map(|energy| format!("{energy:.1} J"));
             let energy = if least == greatest {
                 least
@@ -117,6 +121,7 @@ fn draw(points: &[(f64, f64)], chart: &mut Axes, colour: RGBColor) -> Result<()>
         chart.draw_series(LineSeries::new(piece, line(pale(colour, strength), 9)))?;
     }
 
+    // A dot and the number of each second. The start and the end have their own marks.
     let per_second = (STEPS / STEPS_PER_POINT) as usize;
     for (second, &(x, y)) in points
         .iter()
@@ -137,6 +142,7 @@ fn draw(points: &[(f64, f64)], chart: &mut Axes, colour: RGBColor) -> Result<()>
         return Ok(());
     };
 
+    // The start is a white disc with a rim, the end a dark disc.
     for (place, style) in [
         (start, WHITE.filled()),
         (start, line(TEXT, 12)),

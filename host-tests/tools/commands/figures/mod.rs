@@ -58,6 +58,8 @@ pub fn run(options: &FiguresOptions) -> Result<()> {
     for (name, svg) in figures()? {
         write(&folder.join(name), svg)?;
     }
+
+    // The animations take minutes, so they are recorded only on request.
     if options.animations {
         std::fs::create_dir_all(folder.join("panel"))
             .map_err(|error| unwritable("--out", &folder, &error))?;
@@ -84,17 +86,15 @@ fn record(scene: SceneName, folder: &Path) -> Result<()> {
         SceneName::Flips => "60",
         _ => "10",
     };
-    let (words, file) = (
-        [
-            "cargo demo",
-            "--scene",
-            scene.name(),
-            "--headless",
-            "--seconds",
-            seconds,
-        ],
-        animation(scene, folder),
-    );
+    let file = animation(scene, folder);
+    let words = [
+        "cargo demo",
+        "--scene",
+        scene.name(),
+        "--headless",
+        "--seconds",
+        seconds,
+    ];
     complain(format_args!(
         "{} --record {}",
         words.join(" "),

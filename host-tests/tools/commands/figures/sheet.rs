@@ -64,6 +64,8 @@ pub fn axes<'a>(
         .x_label_area_size(units(if across.is_empty() { 20 } else { 40 }))
         .y_label_area_size(units(54))
         .build_cartesian_2d(left..right, bottom..top)?;
+
+    // A chart without a name of its horizontal quantity shares the axis of the chart below.
     let mut mesh = chart.configure_mesh();
     if !across.is_empty() {
         mesh.x_desc(across);
@@ -101,6 +103,8 @@ pub fn svg<const N: usize>(
     let area =
         SVGBackend::with_string(&mut file, (units(width), units(height))).into_drawing_area();
     area.fill(&WHITE)?;
+
+    // The first line is the title, in larger letters than the others.
     let styles = [15].into_iter().chain(std::iter::repeat(12)).map(text);
     draw(
         &lines

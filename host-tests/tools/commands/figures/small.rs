@@ -67,6 +67,7 @@ pub fn figure(number: u32, mass_ratio: f64) -> Result<String> {
         TAU / modes.exchange()
     );
     svg([720, 503], [&title, start, &particulars], |area| {
+        // Angle 1 above angle 2, with a common axis of time.
         let (upper, lower) = area.split_vertically((area.dim_in_pixel().1 - units(20)) / 2);
         let rods = [
             (upper, "", "angle α₁, degrees", BLUE),
@@ -79,6 +80,8 @@ pub fn figure(number: u32, mass_ratio: f64) -> Result<String> {
                 (upwards, [-32.0, 32.0]),
                 [11, 7],
             )?;
+
+            // The shade between the envelopes, then the angle on top of it.
             let edge = |sign: f64| {
                 points
                     .iter()
@@ -110,6 +113,7 @@ pub fn frequencies() -> Result<String> {
     let [.., greatest] = MASS_RATIOS;
     let ratios = (1..=RATIOS).map(|i| greatest * (f64::from(i) / f64::from(RATIOS)).powi(2));
     let points = ratios.map(at_ratio).collect::<Result<Vec<_>, _>>()?;
+
     let marks = MASS_RATIOS
         .into_iter()
         .map(at_ratio)

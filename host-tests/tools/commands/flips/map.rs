@@ -108,6 +108,8 @@ impl Map {
     /// completed since its last call.
     pub fn points(&self, tick: impl Fn(usize) + Sync) -> Result<Vec<FlipPair>, Error> {
         let starts = self.starts();
+
+        // A portion is a few seconds of work, and large enough to fill the lanes.
         let [search, finer] = &self.searches;
         let portion = ((PORTION_STEPS / self.steps()) as usize).clamp(LEAST_PORTION, PORTION);
         let portions = starts.par_chunks(portion).map(|portion| {
@@ -127,6 +129,7 @@ impl Map {
         let rows = self.rows();
         let [width, height] = self.size;
         self.pixels(height).map(move |[column, row]| {
+            // A row that was not computed mirrors a computed one.
             let [x, y] = if row < rows {
                 [column, row]
             } else {
@@ -140,6 +143,7 @@ impl Map {
     /// limit counts as at the limit, and a start that cannot flip differs from all others. If the
     /// flips of the two steps differ, the start is in doubt.
     pub fn differ(&self, [one, other]: FlipPair) -> bool {
+        // One step size finds no flip at any time, the other one may.
         if [one, other].contains(&Flip::Never) {
             return one != other;
         }

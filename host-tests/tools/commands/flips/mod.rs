@@ -84,7 +84,7 @@ pub struct FlipsOptions {
     out: PathBuf,
 }
 
-/// The number of steps of a start from which a note is printed. Even a small map then takes a
+/// The largest number of steps of a start without a note. With more steps even a small map takes a
 /// minute or more.
 const ANNOUNCED_STEPS: f64 = 1e6;
 
@@ -92,6 +92,7 @@ const ANNOUNCED_STEPS: f64 = 1e6;
 pub fn run(options: &FlipsOptions) -> Result<()> {
     let map = options
         .map()
+        // Everything that can be refused is refused before the computation.
         .map_err(|error| Refused::because(format_args!("{error:#}")))?;
     let file = OutFile::create("--out", &options.out)?;
     let all: usize = map.size.iter().product();
@@ -113,6 +114,7 @@ pub fn run(options: &FlipsOptions) -> Result<()> {
     drop(bar);
     file.write_whole(&output::file(&options.out, &map, &points, options.doubt)?)?;
 
+    // The summary shows the share of starts whose flips differ between the two steps.
     let out = options.out.display();
     let doubtful = map
         .shown(&points)
@@ -168,6 +170,7 @@ impl FlipsOptions {
         let Self {
             limit, zoom, size, ..
         } = self;
+        // The options in the order of the help.
         ensure!(
             limit.value() >= LEAST_LIMIT,
             "--limit {limit}: must be at least {LEAST_LIMIT}"
@@ -175,6 +178,7 @@ impl FlipsOptions {
         ensure!(zoom.value() >= 1.0, "--zoom {zoom}: must be at least 1");
         let pixel = 2.0 * PI / zoom.value() / size[0].max(size[1]) as f64;
         ensure!(pixel >= FINEST, "--zoom {zoom}: f32 has no angles so close");
+
         let [centre, [m1, m2], [l1, l2]] =
             [&self.centre, &self.masses, &self.lengths].map(Pair::values);
         let is_inside = centre.iter().all(|angle| angle.abs() <= PI);
@@ -193,6 +197,8 @@ impl FlipsOptions {
             g: l1,
         }
         .cast::<f32>();
+
+        // An error of the kernel is attributed to the option that sets the refused value.
         let map =
             Map::new(parameters, limit.value() as f32, *size).map_err(|error| {
                 match option_of(&error, "") {
@@ -209,6 +215,8 @@ impl FlipsOptions {
             half: PI / zoom.value(),
             ..map
         };
+
+        // A start must end within `MOST_STEPS` steps.
         let longest = limit.value() * MOST_STEPS / map.steps();
 
         // The limit has two digits, rounded down.

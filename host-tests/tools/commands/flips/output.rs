@@ -35,14 +35,14 @@ pub fn file(name: &Path, map: &Map, points: &[FlipPair], doubt: bool) -> Result<
 
 type Colour = [u8; 3];
 
-/// The colours of starts that cannot flip by their energy, that do not flip within the limit, and
-/// for which the two steps disagree.
+/// The colours of three kinds of starts: the energy forbids a flip, no flip happens within the
+/// limit, and the two steps disagree.
 const NEVER: Colour = [0, 0, 0];
 const LATER: Colour = [110, 110, 118];
 const DOUBT: Colour = [255, 0, 90];
 
-/// Returns the colour of a share of the scale: viridis, in which equal steps look equal. Bright
-/// colours are early.
+/// Returns the colour of a share of the scale. In this scale, viridis, equal steps look equal.
+/// Bright colours are early.
 fn scale(share: f32) -> Colour {
     colorous::VIRIDIS
         .eval_continuous(f64::from(1.0 - share))
@@ -103,6 +103,7 @@ fn legend(map: &Map, doubt: bool) -> Vec<Colour> {
         pixels: vec![WHITE; width * HEIGHT * unit],
     };
 
+    // The scale.
     for x in 0..LENGTH {
         legend.fill(
             [LEFT + x, 4, 1, 10],
@@ -110,16 +111,16 @@ fn legend(map: &Map, doubt: bool) -> Vec<Colour> {
         );
     }
 
+    // The powers of ten below the limit, and the limit itself, are centred under their places on
+    // the scale. A power too close to the limit would overlap it, so it is left out.
     let tens = std::iter::successors(Some(1.0), |time| Some(10.0 * time));
     let tens = tens
         .take_while(|time| *time < 0.7 * map.limit)
         .chain([map.limit]);
 
     for time in tens {
-        let (x, words) = (
-            LEFT + (LENGTH as f32 * time.ln() / map.limit.ln()) as usize,
-            time.to_string(),
-        );
+        let x = LEFT + (LENGTH as f32 * time.ln() / map.limit.ln()) as usize;
+        let words = time.to_string();
         let half = words
             .chars()
             .map(|character| glyph(character).width as usize)
@@ -128,6 +129,7 @@ fn legend(map: &Map, doubt: bool) -> Vec<Colour> {
         legend.text([x.saturating_sub(half), 17], &words);
     }
 
+    // The colours of starts without a time.
     let mut x = BESIDE;
     for (colour, name) in [
         (NEVER, "cannot"),
@@ -142,6 +144,7 @@ fn legend(map: &Map, doubt: bool) -> Vec<Colour> {
     }
     legend.text([BESIDE, 17], "first turn-over of a rod, √(l₁/g)");
 
+    // The ranges of the axes and the pendulum.
     let half = map.half.to_degrees();
     let [a1, a2] = map
         .centre

@@ -31,6 +31,7 @@ pub struct PlanOptions {
 pub fn run(PlanOptions { scene }: &PlanOptions) -> anyhow::Result<()> {
     let (problem, plan) = scene.plan().map_err(Refused::because)?;
     scene.start.advice().iter().for_each(complain);
+    // A linear scene has no plan, only the horizon of its linear motion.
     if let (true, Ok(plan)) = (scene.is_linear(), &plan) {
         return Ok(linear_words(plan).iter().try_for_each(say)?);
     }
@@ -42,6 +43,7 @@ pub fn run(PlanOptions { scene }: &PlanOptions) -> anyhow::Result<()> {
 /// Returns the plan with its reasons, one line each, or the lines that no method meets the
 /// tolerance.
 fn words(scene: &Problem, plan: &Result<Plan, Limit>, chip: &Chip) -> Vec<String> {
+    // One line for each number, and two lines of reasons.
     let frame = chip.processor.frame;
     let mut lines = match plan {
         Ok(plan) => {
@@ -158,8 +160,8 @@ fn energy(scene: &Problem) -> Option<String> {
     let pendulum = Pendulum::new(&scene.pendulum).ok()?;
     let state = pendulum.to_state(&scene.start);
 
-    // An admissible step is a quarter of the time in which the fastest motion of this energy turns
-    // by a radian.
+    // An admissible step is a quarter of the time that the fastest motion of this energy takes to
+    // turn by a radian.
     let radian = 4.0 * pendulum.admissible_step(&state).ok()?;
     if !radian.is_finite() {
         return Some(String::from("without energy nothing moves"));

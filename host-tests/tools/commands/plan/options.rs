@@ -75,11 +75,14 @@ impl SceneOptions {
     ///
     /// The plan of a [linear](SceneName::is_linear) scene is the horizon of the linear motion.
     pub fn plan(&self) -> anyhow::Result<(Problem, Result<Plan, Limit>)> {
+        // A built-in scene defines the whole problem; otherwise the options do.
         let problem = self
             .scene
             .map_or_else(|| self.given(), |name| self.of_scene(name))?;
         let Processor { costs, .. } = &self.target.processor;
         let budget = self.target.processor.budget(&problem);
+
+        // A linear scene always has the same method, so only its horizon is evaluated.
         let found = if self.is_linear() {
             Search::of(LINEAR, &problem, costs, &budget).and_then(finish)
         } else {
@@ -101,6 +104,7 @@ impl SceneOptions {
     /// Returns the problem that a board of this class plans when it starts the scene.
     fn of_scene(&self, name: SceneName) -> anyhow::Result<Problem> {
         let settings = name.first_settings();
+        // The board's own code starts the scene, and so determines the size of the drawing.
         let show = Show::on(self.target.processor, name, &settings)?;
         let planned = show
             .player
@@ -140,7 +144,7 @@ pub struct Chip {
     pub processor: Processor,
 }
 
-/// Reads the name of a chip, or that of a board with such a chip.
+/// Reads the name of a chip, or of a board with such a chip.
 fn chip() -> impl TypedValueParser<Value = Chip> {
     let boards = |chip: &Chip| {
         let boards = every_board().filter(|board| board.processor() == chip.processor);
@@ -157,7 +161,7 @@ fn chip() -> impl TypedValueParser<Value = Chip> {
 
 /// Every chip; the first is the default. They are the LM3S6965 without a floating-point unit, the
 /// STM32F405 with a floating-point unit for `f32`, the slowest board's chip with such a unit, and
-/// that of the Raspberry Pi Pico, whose products have 32 bits only.
+/// the chip of the Raspberry Pi Pico, which multiplies 32 bits only.
 pub const CHIPS: [Chip; 4] = [
     Chip {
         name: "m3",

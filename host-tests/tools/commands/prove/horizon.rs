@@ -19,8 +19,8 @@ pub struct Verdict {
     is_right: Option<bool>,
 }
 
-/// Returns every frame up to one that is proved wrong, while the motion can be enclosed and
-/// `stopped` is zero.
+/// Returns the frames one by one. The sequence ends after a frame that is proved wrong, when the
+/// motion can no longer be enclosed, or when `stopped` is not zero.
 pub fn frames<'a>(
     scene: &Problem,
     start: &Start,
@@ -28,9 +28,12 @@ pub fn frames<'a>(
     stopped: &'a AtomicUsize,
 ) -> Result<impl Iterator<Item = Verdict> + use<'a>, Error> {
     let mut motion = PlannedRun::new(scene, stepping)?;
-    let (scene, mut set, mut last) = (*scene, start.enclose(scene.rate), None);
+    let scene = *scene;
+    let mut set = start.enclose(scene.rate);
+    let mut last = None;
     Ok((0..scene.frames()).map_while(move |_| {
         (last != Some(false)).then(|| set.advance_unless(stopped))??;
+        // The exact motion and the drawn motion advance by one frame each.
         let exact = set.directions();
         let drawn = motion.advance(1);
         let shown = || {
@@ -38,6 +41,7 @@ pub fn frames<'a>(
                 .directions()
                 .map(|direction| direction.map(|x| Fixed::of(x.into())))
         };
+        // A drawn motion that diverges is wrong.
         last = drawn.map_or(Some(false), |()| are_near(&scene, &exact, &shown()));
         let width = exact
             .as_flattened()
@@ -58,6 +62,7 @@ pub fn frames<'a>(
 ///
 /// Returns `None` if the result depends on the positions of the directions in their boxes.
 fn are_near(scene: &Problem, one: &[[Fixed; 2]; 2], other: &[[Fixed; 2]; 2]) -> Option<bool> {
+    // One bob that is too far away is enough to be wrong; all must be near to be right.
     let apart = are_apart(scene, one, other, scene.tolerance);
     if apart.contains(&Some(true)) {
         Some(false)
@@ -67,8 +72,8 @@ fn are_near(scene: &Problem, one: &[[Fixed; 2]; 2], other: &[[Fixed; 2]; 2]) -> 
 }
 
 /// Returns for bob 1, bob 2, and bob 2 as seen from bob 1 true if they are more than `distance`, m,
-/// apart in these directions. Returns `None` for one that depends on the positions of the
-/// directions in their boxes.
+/// apart in these directions. An element is `None` if it depends on the positions of the directions
+/// in their boxes.
 fn are_apart(
     scene: &Problem,
     one: &[[Fixed; 2]; 2],
@@ -77,7 +82,7 @@ fn are_apart(
 ) -> [Option<bool>; 3] {
     let Parameters { l1, l2, .. } = scene.pendulum;
 
-    // All lengths are divided by that of the longer rod, and rounded.
+    // All lengths are divided by the length of the longer rod, and rounded.
     let [l1, l2, distance] =
         [l1, l2, distance].map(|x| Fixed::of(x / l1.max(l2)).wider(f64::EPSILON));
     let off = |rod: usize, l: Fixed| [0, 1].map(|axis| (one[rod][axis] - other[rod][axis]) * l);
@@ -107,8 +112,8 @@ impl Verdict {
     /// Returns the row of the frame at `time`, s: the middles of the box that contains the exact
     /// motion, the box's radius, and the verdict.
     ///
-    /// The box is that of the printed numbers, read as decimals or as `f64`: its radius includes
-    /// the rounding of the middles and is rounded up.
+    /// The box refers to the printed numbers, read as decimals or as `f64`: its radius includes the
+    /// rounding of the middles and is rounded up.
     pub fn row(&self, time: f64) -> String {
         let middles = self
             .exact
@@ -142,13 +147,15 @@ fn printed_radius(x: Fixed) -> f64 {
 
 /// Returns the time after which the panel's numbers do not determine the position of a bob.
 ///
-/// It is the time of the first frame in which two motions are more than the longer rod apart,
-/// although their starts look the same on the panel (the mass ratio to three digits, angles to a
-/// degree). Only the first `frames` frames are searched, until `stopped`.
-fn told_apart(scene: &Problem, frames: u32, stopped: &AtomicUsize) -> Option<f64> {
+/// This is the time of the first frame with two motions more than the longer rod apart, although
+/// their starts look the same on the panel (the mass ratio to three digits, angles to a degree).
+/// Only the first `frames` frames are searched, until `stopped`.
+fn ambiguity_time(scene: &Problem, frames: u32, stopped: &AtomicUsize) -> Option<f64> {
     let Parameters { m1, m2, l1, l2, .. } = scene.pendulum;
+    // One unit of the third digit of the mass ratio.
     let digit = m1 * 10_f64.powf((m2 / m1).log10().floor() - 2.0);
     let shown = [scene.start.a1, scene.start.a2].map(|a| a.to_degrees().round());
+    // Two starts near opposite ends of the range that rounds to the same digits.
     let [mut one, mut other] = [-0.49, 0.49].map(|share| {
         let [a1, a2] = shown.map(|degrees| (degrees + share).to_radians());
         let pendulum = Parameters {
@@ -181,6 +188,7 @@ fn told_apart(scene: &Problem, frames: u32, stopped: &AtomicUsize) -> Option<f64
 fn not_enclosed(scene: &Problem, frames: &[Verdict]) -> String {
     let Parameters { m1, m2, l1, l2, .. } = scene.pendulum;
     let ratio = |a: f64, b: f64| (a / b).max(b / a);
+    // The likeliest cause first.
     if frames.last().is_some_and(|frame| frame.width > WIDE) {
         String::from("its enclosure has grown too wide: a shorter --duration ends before")
     } else if ratio(l1, l2) > LENGTHS {
@@ -195,7 +203,7 @@ fn not_enclosed(scene: &Problem, frames: &[Verdict]) -> String {
 /// The width of a box beyond which the width is the reason that the enclosure ends.
 const WIDE: f64 = 1e-12;
 
-/// The ratios of lengths and of masses up to which the numbers of the equations are in range
+/// The ratios of lengths and of masses that keep the numbers of the equations in range
 /// ([`Start::enclose`]).
 const LENGTHS: f64 = 30.0;
 const MASSES: f64 = 1000.0;
@@ -211,6 +219,7 @@ pub fn words(
     let (right, open) = counts(frames);
     let end = scene.time(frames.len() as u32);
     let is_complete = frames.len() as u32 == scene.frames();
+    // The reason why the sequence of frames has ended.
     let first = match frames.last().map(|frame| frame.is_right) {
         Some(Some(false)) => format!("wrong at {end:.3} s: more than {HALF_PIXEL} pixels off"),
         _ if stopped.load(Ordering::Relaxed) != 0 => {
@@ -226,6 +235,7 @@ pub fn words(
         ),
     };
 
+    // The prediction of the board, for comparison.
     let predicted = match plan {
         Ok(plan) => format!(
             "right until {:.3} s by {}, steps to a frame: {}",
@@ -233,7 +243,7 @@ pub fn words(
         ),
         Err(_) => String::from("no method is fast enough"),
     };
-    let unknown = told_apart(scene, frames.len() as u32, stopped).map_or(String::new(), |time| {
+    let unknown = ambiguity_time(scene, frames.len() as u32, stopped).map_or(String::new(), |time| {
         format!("\nunknown    the numbers on the panel are too coarse to tell where a bob is after {time:.3} s")
     });
 
@@ -282,6 +292,7 @@ mod tests {
         // Rod 1 has moved by 0.4 m, rod 2 back by 0.6 m. Only as seen from bob 1 is bob 2 too far
         // away.
         let [one, other] = [[0.0, 0.0], [0.4, -0.6]].map(rods);
+
         let near = |tolerance| {
             let scene = Problem {
                 tolerance,
@@ -289,10 +300,15 @@ mod tests {
             };
             are_near(&scene, &one, &other)
         };
+
+        // Both rods have moved the same way. Each error is near, but bob 2 has both.
         assert_eq!(near(0.5), Some(false));
         assert_eq!(near(0.61), Some(true));
+
         let [one, other] = [[0.0, 0.0], [0.4, 0.4]].map(rods);
         assert_eq!(are_near(&scene(), &one, &other), Some(false), "bob 2");
+
+        // Boxes that are half a unit wide allow both results.
         let wide = one.map(|rod| rod.map(|x| x.wider(0.5)));
         assert_eq!(are_near(&scene(), &one, &wide), None);
     }
@@ -301,6 +317,7 @@ mod tests {
     /// as an `f64`.
     #[test]
     fn the_printed_box_contains_the_exact_motion() {
+        // Fractions with short and long decimals, of either sign.
         for (above, below) in [
             (1, 3),
             (-2, 7),
@@ -309,6 +326,7 @@ mod tests {
             (1, 1000),
         ] {
             for width in [0.0, 1e-33, 3e-17, 2e-9] {
+                // The exact number is within `width` of the fraction.
                 let x = Fixed::fraction(above, below, 0).wider(width);
                 let text = x.about().to_string();
                 let decimal: Number = text.parse().expect("a decimal");
@@ -332,6 +350,7 @@ mod tests {
             method: double_pendulum::Method::Rk4F32Direction,
             steps: 256,
         };
+
         let [running, stopped] = [0, 15].map(AtomicUsize::new);
         let count = |stopped| {
             frames(&scene, &start, stepping, stopped)
@@ -343,7 +362,7 @@ mod tests {
 
         // The motions with the same digits on the panel separate after some seconds, and later
         // frames are not searched.
-        let parted = |frames, stopped| told_apart(&scene, frames, stopped);
+        let parted = |frames, stopped| ambiguity_time(&scene, frames, stopped);
         let time = parted(scene.frames(), &running).expect("they part");
         assert_eq!(parted(time as u32, &running), Some(time));
         assert_eq!(parted(time as u32 - 1, &running), None);

@@ -1,4 +1,4 @@
-//! `cargo prove`: a proof of how long the frames of a chip are accurate.
+//! `cargo prove`: a proof that the frames of a chip are accurate until some time.
 
 mod horizon;
 mod tables;
@@ -55,6 +55,7 @@ pub struct ProveOptions {
 }
 
 pub fn run(options: &ProveOptions) -> anyhow::Result<ExitCode> {
+    // Tables of many scenes, without a scene of the user.
     if options.table {
         say(HEADING)?;
         for &name in moving() {
@@ -71,6 +72,7 @@ pub fn run(options: &ProveOptions) -> anyhow::Result<ExitCode> {
         return Ok(ExitCode::SUCCESS);
     }
 
+    // The exact start: the user's decimals and fractions, or the board's own numbers.
     let (scene, plan) = options.scene.plan().map_err(Refused::because)?;
     let given = || {
         let start = &options.scene.start;
@@ -87,6 +89,7 @@ pub fn run(options: &ProveOptions) -> anyhow::Result<ExitCode> {
         .map(|_| Start::of(&scene.pendulum, &scene.start));
     let start = of_board.map_or_else(given, Ok).map_err(Refused::because)?;
 
+    // The drawn method: the user's, or the planned one.
     let asked = options.method.map(|method| Stepping {
         method,
         steps: options.steps,
@@ -98,6 +101,7 @@ pub fn run(options: &ProveOptions) -> anyhow::Result<ExitCode> {
         return Ok(ExitCode::SUCCESS);
     };
 
+    // Ctrl-C ends the proof, and the frames proved so far are reported.
     let stopped = interrupted()?;
     if options.csv {
         say("t,sin_a1,cos_a1,sin_a2,cos_a2,radius,verdict")?;

@@ -26,6 +26,7 @@ pub const HEADING: &str = "\
 
 /// Returns the table's line of one scene, with its predicted and proved horizons.
 pub fn horizons(name: SceneName) -> Result<String> {
+    // Each chip adds the predicted and the proved horizon.
     let mut cells = vec![name.name().to_owned()];
     let mut unproved = 0;
     for chip in ["m3", "m4f", "pico"] {
@@ -55,6 +56,7 @@ const DIGITS: f64 = 33.0;
 /// number has an error of at most two units of its last digit, except the growth of a small error,
 /// which is approximate.
 pub fn known_answers(scene: &[KnownAnswer]) -> Result<Vec<String>> {
+    // The nine numbers after the name of the scene: the start and the pendulum.
     let exact = |text: &str| text.parse::<Number>().ok()?.exact();
     let fractions = scene[0]
         .given
@@ -67,6 +69,7 @@ pub fn known_answers(scene: &[KnownAnswer]) -> Result<Vec<String>> {
         .and_then(|all| all.try_into().ok())
         .context("more digits than can be enclosed")?;
 
+    // The table has angles in degrees and velocities in radians per second.
     let about = (scene[0].parameters, scene[0].start.motion());
     let mut set = Start {
         about,
@@ -77,6 +80,7 @@ pub fn known_answers(scene: &[KnownAnswer]) -> Result<Vec<String>> {
 
     let mut frame = 0;
     let line = |row: &KnownAnswer| {
+        // The set advances to the row's time.
         while f64::from(frame) < row.time * f64::from(RATE) {
             set.advance()
                 .context("the set has grown too large to be followed")?;

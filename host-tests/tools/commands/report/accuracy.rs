@@ -1,5 +1,5 @@
 //! The errors of methods in the report's motions, compared with the reference. They are computed on
-//! the host, whose bits are those of the target (test `identity`).
+//! the host, which computes the same bits as the target (test `identity`).
 
 use double_pendulum::{Method, Motion, Parameters, Pendulum, State};
 use firmware::config::{GRAVITY, REACH};
@@ -105,8 +105,8 @@ const HIGH: [u32; 21] = [
 ];
 const LOW: [u32; 3] = [16, 32, 64];
 
-/// Returns the numbers of steps a second with which `method` is tried through a scene: some small
-/// ones and all larger powers of two. The long scene is tried with the typical number only.
+/// Returns the numbers of steps a second to try with `method` in a scene: some small ones and all
+/// larger powers of two. The long scene is tried with the typical number only.
 pub fn rates(method: Method, scene: &Scene, finest: u32) -> impl Iterator<Item = u32> {
     let few: &[u32] = if method.order() > 4 { &HIGH } else { &LOW };
     let all = few
@@ -138,6 +138,7 @@ pub fn error(request: &Request, exact: &[[f64; 2]]) -> Option<Error> {
         Ok(())
     });
     match (run, &angles[..]) {
+        // The first reading is the start, which has no error.
         (Ok(()), [_start, angles @ ..]) => Some(worst(&request.parameters, angles, exact)),
         (Err(double_pendulum::Error::Diverged { .. }), _) => Some(LOST),
         _ => None,
@@ -151,10 +152,12 @@ pub fn worst(parameters: &Parameters<f64>, angles: &[[f64; 2]], exact: &[[f64; 2
         return LOST;
     };
     let scale = f64::from(REACH) / (parameters.l1 + parameters.l2);
+    // The reference may have more moments than the method. Every `apart_by`-th one is compared.
     let mut worst = Error {
         angle: 0.0,
         pixels: 0.0,
     };
+
     let apart_by = (exact.len() / angles.len().max(1)).max(1);
 
     for (&angles, &exact) in angles
@@ -163,6 +166,7 @@ pub fn worst(parameters: &Parameters<f64>, angles: &[[f64; 2]], exact: &[[f64; 2
     {
         let angle = apart(angles[0], exact[0]).max(apart(angles[1], exact[1]));
         worst.angle = worst.angle.max(angle);
+        // A motion that has left the finite numbers is infinitely far away.
         let [drawn, right] = [angles, exact].map(|angles| pendulum.positions(angles));
         let off =
             |bob: usize| libm::hypot(drawn[bob].x - right[bob].x, drawn[bob].y - right[bob].y);

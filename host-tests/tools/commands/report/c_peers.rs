@@ -30,7 +30,7 @@ const LIMIT: Duration = Duration::from_secs(180);
 const TEXTBOOK: Method = Method::TextbookF32;
 
 /// Returns the costs and errors of every program on every board, through scenes with their exact
-/// motions. Also returns what was left out, with the reasons.
+/// motions. Also returns a line for each missing program, with the reason.
 pub fn points(
     toolchain: &Toolchain,
     targets: &[Target],
@@ -43,6 +43,7 @@ pub fn points(
         .flat_map(|program| targets.iter().map(move |target| (program, target.board)));
 
     for ((name, sine), board) in each {
+        // A program that cannot be built here is left out of the report.
         let target = match elf(sine, board) {
             Ok(elf) => Target::of(toolchain, board, elf)?,
             Err(reason) => {
@@ -50,10 +51,13 @@ pub fn points(
                 continue;
             }
         };
+
         let step = affordable_cost(
             &target,
             &request(TEXTBOOK, &SCENES[0], usual_rate(TEXTBOOK)),
         )?;
+
+        // The error depends on the scene and the rate, the cost of a step does not.
         for &(scene, ref exact) in scenes {
             for rate in rates(TEXTBOOK, scene, 8) {
                 let error = error(&target, scene, rate, exact).context(name)?;
@@ -77,6 +81,7 @@ fn elf(sine: [&str; 2], board: &Board) -> Result<PathBuf> {
     let elf = format!("{}-{}.elf", sine[0], board.cpu);
     let mut build = Command::new(workspace().join("host-tests/peers/c/build.sh"));
     build.arg(board.cpu).args(sine).arg(&elf);
+    // A processor with a floating-point unit also passes floating-point arguments in its registers.
     if board.target.ends_with("eabihf") {
         build.args(["-mfloat-abi=hard", "-mfpu=fpv4-sp-d16"]);
     }
@@ -98,6 +103,7 @@ fn elf(sine: [&str; 2], board: &Board) -> Result<PathBuf> {
 fn error(target: &Target, scene: &Scene, rate: u32, exact: &[[f64; 2]]) -> Result<Error> {
     let request = request(TEXTBOOK, scene, rate);
     let printed = target.output(&request)?;
+    // Each line has two angles, as the bits of `f64` in hexadecimal digits.
     let state = |line: &str| {
         let mut bits = line
             .split_ascii_whitespace()

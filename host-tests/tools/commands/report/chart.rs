@@ -16,8 +16,8 @@ use emulator::boards::Board;
 const SIZE: (u32, u32) = (860, 460);
 /// The range of errors. Points outside are not drawn, and errors decrease to the right.
 const ERRORS: Range<f64> = 1e-15..0.1;
-/// The largest ratio of a finer step's error to the smallest error so far, above which the finer
-/// step is not worth its cycles.
+/// Limits the points of a line. A finer step is drawn only if its error is less than this share of
+/// the smallest error of the coarser steps. Otherwise it is not worth its cycles.
 const WORTH: f64 = 0.9;
 /// The marked errors, rad: half a pixel of the panel, for an error of both angles, and typical
 /// accuracies.
@@ -61,6 +61,8 @@ fn lines<'a>(
     let shown: Vec<_> = shown
         .filter(|point| ERRORS.contains(&point.error.angle))
         .collect();
+
+    // A line has the points that improve the error, from the coarsest step on.
     let line = |all: &[&'a Point]| {
         let mut least = f64::INFINITY;
         let is_better = |point: &&Point| {
@@ -68,10 +70,9 @@ fn lines<'a>(
             least = least.min(point.error.angle);
             is_it
         };
-        let (name, line) = (
-            all[0].name,
-            all.iter().copied().filter(is_better).collect::<Vec<_>>(),
-        );
+        let name = all[0].name;
+        let line: Vec<_> = all.iter().copied().filter(is_better).collect();
+
         let is_peer = PROGRAMS.iter().any(|(program, _)| *program == name);
         let best = line
             .iter()
@@ -79,6 +80,8 @@ fn lines<'a>(
             .count();
         (if is_peer { usize::MAX } else { best }, name, line)
     };
+
+    // The points of a method are neighbours in the table.
     let mut lines: Vec<_> = shown.chunk_by(|a, b| a.name == b.name).map(line).collect();
     lines.sort_by_key(|(best, ..)| Reverse(*best));
     lines
@@ -89,6 +92,8 @@ pub fn speed_against_error(points: &[Point], scene: &Scene, board: &Board) -> Re
     let lines = lines(points, scene, board);
     let best = lines.iter().take_while(|(best, ..)| *best > 0).count();
     let (named, others) = lines.split_at(best.min(NAMED));
+
+    // The range of cycles of all points.
     let cycles = lines
         .iter()
         .flat_map(|(.., points)| points)
@@ -100,6 +105,7 @@ pub fn speed_against_error(points: &[Point], scene: &Scene, board: &Board) -> Re
     {
         let area = SVGBackend::with_string(&mut svg, SIZE).into_drawing_area();
         area.fill(&WHITE)?;
+
         let Scene {
             name,
             angle,
@@ -129,6 +135,8 @@ pub fn speed_against_error(points: &[Point], scene: &Scene, board: &Board) -> Re
             .bold_line_style(RGBColor(238, 238, 238))
             .light_line_style(TRANSPARENT)
             .draw()?;
+
+        // A vertical line for each marked error, with its meaning at the top.
         let small = TextStyle::from((FONT, 12)).color(&TEXT);
         for (error, meaning) in MARKS {
             chart.draw_series([PathElement::new(
@@ -139,6 +147,8 @@ pub fn speed_against_error(points: &[Point], scene: &Scene, board: &Board) -> Re
                 EmptyElement::at((error, most * 2.0)) + Text::new(meaning, (4, 2), small.clone());
             chart.draw_series([top])?;
         }
+
+        // The lines without a name are drawn first, so that the others are in front.
         let place = |point: &&Point| (point.error.angle, point.cycles());
         for (.., points) in others {
             chart.draw_series(LineSeries::new(
@@ -146,6 +156,8 @@ pub fn speed_against_error(points: &[Point], scene: &Scene, board: &Board) -> Re
                 GREY.stroke_width(1),
             ))?;
         }
+
+        // The lines with a name, and the boxes of the names that are already drawn.
         let mut taken: Vec<[i32; 3]> = Vec::new();
         for ((_, name, points), colour) in named.iter().zip(COLOURS) {
             chart.draw_series(LineSeries::new(
@@ -214,6 +226,8 @@ mod tests {
         };
         let mut points: Vec<_> = names.iter().enumerate().map(each).collect();
         points.insert(0, point("worse than all others", 1e12, 0.5));
+
+        // Only the best lines have names, and the programs in C always have one.
         let svg = speed_against_error(&points, &SCENES[0], &BOARDS[0])?;
         let named = |name: &str| svg.lines().any(|line| line.trim() == name);
         assert_eq!(

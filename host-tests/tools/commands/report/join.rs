@@ -52,8 +52,8 @@ impl Point {
 }
 
 /// Returns the points of every method and of every program in C, through the scenes on all targets.
-/// The closed forms are left out, because their errors are those of their equations. The long scene
-/// has the typical number of steps. Also returns what was left out, one line each.
+/// The closed forms are left out, because their error is that of the linear equations. The long
+/// scene has the typical number of steps. Also returns a line for each missing program.
 pub fn join(toolchain: &Toolchain, targets: &[Target]) -> Result<(Vec<Point>, Vec<String>)> {
     let scenes = [&SCENES[0], &SCENES[1], &LONG]
         .map(|scene| (scene, accuracy::exact(scene, SAMPLES * scene.duration)));
@@ -71,6 +71,8 @@ pub fn join(toolchain: &Toolchain, targets: &[Target]) -> Result<(Vec<Point>, Ve
             .iter()
             .map(|target| Ok((target.board, cost(target)?)))
             .collect::<Result<Vec<_>>>()?;
+
+        // A method that does not support a scene or a step has no point there.
         let mut points = Vec::new();
         for &(scene, ref exact) in &scenes {
             for rate in rates(method, scene, FINEST) {
@@ -93,6 +95,8 @@ pub fn join(toolchain: &Toolchain, targets: &[Target]) -> Result<(Vec<Point>, Ve
         Ok(points)
     });
     let mut points = points.collect::<Result<Vec<_>>>()?.concat();
+
+    // The programs in C are measured in the same way.
     let (peers, absent) = c_peers::points(toolchain, targets, &scenes)?;
     points.extend(peers);
     Ok((points, absent))
@@ -108,6 +112,7 @@ pub fn table(points: &[Point]) -> Table {
             step,
             error,
         } = *point;
+        // The columns in the order of `COLUMNS`.
         let mut row = [scene.name, board.cpu, name].map(str::to_owned).to_vec();
         row.push(format!("1/{rate}"));
         row.extend(
@@ -118,6 +123,8 @@ pub fn table(points: &[Point]) -> Table {
         );
         row.push(format!("{:.0}", point.cycles()));
         row.extend([error.angle, error.pixels].map(small));
+
+        // A step is resolved if it is at most the admissible step of the motion.
         let request = request(Method::Rk4F64, scene, rate);
         let is_resolved = request
             .admissible_step()
@@ -130,8 +137,9 @@ pub fn table(points: &[Point]) -> Table {
         }));
         row
     };
-    const COLUMNS: &str = "scene,processor,method,step (s),instructions of a step,cycles of a step (estimate),stalls,hot bytes,\
-                           code bytes,stack bytes,cycles per s (estimate),error (rad),error (pixels),resolved,verdict";
+    const COLUMNS: &str = "scene,processor,method,step (s),instructions of a step,\
+        cycles of a step (estimate),stalls,hot bytes,code bytes,stack bytes,\
+        cycles per s (estimate),error (rad),error (pixels),resolved,verdict";
     Table {
         columns: COLUMNS.split(',').collect(),
         rows: points.iter().map(row).collect(),
@@ -170,6 +178,8 @@ pub(super) mod tests {
         assert!(one(1.0, 2.0).is_dominated(&[one(1.0, 1.0)]));
         assert!(!one(1.0, 1.0).is_dominated(&[one(1.0, 1.0)]));
         assert!(!one(2.0, 1.0).is_dominated(&[one(1.0, 2.0)]));
+
+        // Points of different boards are not compared.
         let elsewhere = Point {
             board: &BOARDS[1],
             ..one(0.0, 0.0)

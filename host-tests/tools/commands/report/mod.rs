@@ -53,12 +53,16 @@ pub fn run(options: &ReportOptions) -> Result<()> {
         .clone()
         .unwrap_or_else(|| workspace().join("host-tests/report"));
     fs::create_dir_all(&folder).map_err(|error| unwritable("--out", &folder, &error))?;
+
+    // The main result is the table of all points.
     let targets = Target::build_all(&toolchain)?;
     let (points, absent) = join::join(&toolchain, &targets)?;
     write(
         &folder.join("speed-against-error.csv"),
         join::table(&points).csv(),
     )?;
+
+    // The READMEs show only complete results.
     let is_shown = options.readme && absent.is_empty();
 
     for (scene, target) in SCENES
@@ -73,6 +77,7 @@ pub fn run(options: &ReportOptions) -> Result<()> {
         }
     }
 
+    // The advice is always printed. It is written into the READMEs only on request.
     let advice = advice(&points);
     absent.iter().chain(&advice).try_for_each(say)?;
     let pages = pages(&advice, &points)?;
@@ -158,6 +163,7 @@ fn advice(points: &[Point]) -> Vec<String> {
         .iter()
         .filter(|board| points.iter().any(|point| point.board == *board));
     let sentence = |board: &Board, scene: &Scene| {
+        // The cheapest method of each purpose, for this core and scene.
         let of = points
             .iter()
             .filter(|point| point.scene == scene && point.board == board);
@@ -196,6 +202,7 @@ fn thousands(cycles: f64) -> String {
 
 /// Returns the table of the cycles of a step, and of the errors in the regular and the long scene.
 fn table(points: &[Point], names: &[&str]) -> Table {
+    // A method has a row only if it was counted and compared in the long scene.
     let row = |&name: &&str| {
         let long = points
             .iter()
@@ -204,6 +211,7 @@ fn table(points: &[Point], names: &[&str]) -> Table {
             .iter()
             .filter(|point| point.name == name && point.rate == long.rate);
         let short = same.clone().find(|point| point.scene == &SCENES[0])?;
+        // The cost of a step on each core, and the errors of both scenes with the same steps.
         let on = |cpu: &str| {
             same.clone()
                 .find(|point| point.board.cpu == cpu && point.scene == &SCENES[0])

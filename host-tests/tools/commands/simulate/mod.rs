@@ -30,6 +30,8 @@ pub fn run(options: &SimulateOptions) -> anyhow::Result<()> {
     if options.list {
         return Ok(say(list())?);
     }
+
+    // Everything that can be wrong is reported before the first row.
     let planned = match &options.tolerance {
         Some(tolerance) => choose(options, tolerance).map(|(plan, _)| plan),
         None => plan(options),
@@ -37,6 +39,8 @@ pub fn run(options: &SimulateOptions) -> anyhow::Result<()> {
     let plan = planned.map_err(|error| Refused::because(format_args!("{error:#}")))?;
     let notes = options.start.advice().into_iter().chain(plan.note.clone());
     notes.for_each(complain);
+
+    // Without a file the rows are printed.
     let Some(path) = &options.out else {
         let (rows, done) = write_rows(&plan, options, &mut stdout().lock())?;
         return done.with_context(|| after(rows));
@@ -69,6 +73,8 @@ fn write_rows(
     let bar = Progress::of("rows", u64::from(plan.request.samples) + 1);
     let mut rows = 0;
     let mut unwritten = None;
+    // The heading is written with the first row, so that a motion that fails at once prints
+    // nothing.
     let mut write = |reading: &Reading| -> anyhow::Result<()> {
         bar.advance(1);
         let head = (rows == 0).then(|| header(options) + "\n");
@@ -80,11 +86,13 @@ fn write_rows(
         rows += 1;
         Ok(())
     };
+    // The motion is computed here, or on a board by the same code.
     let done = match options.place {
         None => plan.request.readings(&mut write),
         Some(board) => on_board(&plan.request, board, &mut write),
     };
     drop(bar);
+    // An error of the output is not an error of the motion.
     match unwritten {
         Some(error) => Err(error),
         None => output.flush().map(|()| (rows, done)),
@@ -178,6 +186,7 @@ fn row(plan: &Plan, options: &SimulateOptions, number: u64, reading: &Reading) -
         velocities: [w1, w2],
         energy,
     } = *reading;
+    // The positions follow from the angles.
     let pendulum = Pendulum::<f64>::new(&plan.request.parameters);
     let bobs = pendulum.map(|pendulum| pendulum.positions([a1, a2]).map(|bob| [bob.x, bob.y]));
     let [[x1, y1], [x2, y2]] = bobs.unwrap_or([[f64::NAN; 2]; 2]);

@@ -150,6 +150,7 @@ impl StartOptions {
                 angle
             }
         };
+        // Without `--angles`, both rods have the usual start angle, which is in degrees.
         let first = [f64::from(FIRST_ANGLE).to_radians(); 2];
         let [a1, a2] = self
             .angles
@@ -166,6 +167,7 @@ impl StartOptions {
         let largest = [&angles.0, &angles.1]
             .into_iter()
             .max_by(|one, other| one.value().abs().total_cmp(&other.value().abs()))?;
+        // A start may need more than one turn, but rarely does.
         let turns = largest.value().abs() / TAU;
         (turns > 1.0).then(|| {
             format!("note: --angles {angles}: {largest} rad is {turns:.1} turns; for degrees add --degrees")
@@ -175,6 +177,7 @@ impl StartOptions {
     /// Returns the pair of options whose value is farthest from 1, which makes the motion fast or
     /// its numbers too large.
     pub(super) fn extreme(&self) -> String {
+        // The options and their numbers.
         let pairs = [
             ("--masses", &self.masses),
             ("--lengths", &self.lengths),
@@ -231,11 +234,13 @@ impl StartOptions {
     /// many.
     pub fn exact(&self) -> Option<Exact> {
         let [gravity, first] =
+            // The values of options that were not given.
             [GRAVITY.to_string(), FIRST_ANGLE.to_string()].map(|text| text.parse::<Number>().ok());
         let first = first?;
         let angles = self.angles.clone().unwrap_or(Pair(first.clone(), first));
         let degrees = [self.degrees || self.angles.is_none(), self.degrees];
         let [m, l, a, w] = [&self.masses, &self.lengths, &angles, &self.velocities];
+        // The order of [`Exact::fractions`].
         let numbers = [
             &a.0,
             &a.1,

@@ -54,10 +54,14 @@ pub fn plan(options: &SimulateOptions) -> anyhow::Result<Plan> {
         stride,
         samples,
     } = timing;
+
+    // The kernel decides whether the motion can be computed.
     let request = request(options, method, &step, stride, samples);
     accepted(options, &request)?;
     check_first_step(options, &request)?;
 
+    // A step that is too long for the fastest motion is a warning only, because this motion may be
+    // slow.
     let longest = request
         .admissible_step()
         .filter(|longest| request.dt > *longest);
@@ -81,6 +85,7 @@ pub fn plan(options: &SimulateOptions) -> anyhow::Result<Plan> {
 /// Returns the times if a step is given.
 fn given(options: &SimulateOptions, step: &Number) -> anyhow::Result<Timing> {
     let until = &options.until;
+    // A row for each step, unless the user wants fewer.
     let every = options.every.as_ref().unwrap_or(step);
     for (option, time) in [("--step", step), ("--every", every)] {
         ensure!(
@@ -106,6 +111,7 @@ fn given(options: &SimulateOptions, step: &Number) -> anyhow::Result<Timing> {
 /// resolves every motion of this energy, unless that takes too many steps.
 fn chosen(options: &SimulateOptions, method: Method) -> anyhow::Result<Timing> {
     let until = &options.until;
+    // Without `--every`, the rows divide the time into `ROWS` parts.
     let every = match &options.every {
         Some(every) => every.clone(),
         None if until.is_positive() => until.divided_by(ROWS),
@@ -116,6 +122,8 @@ fn chosen(options: &SimulateOptions, method: Method) -> anyhow::Result<Timing> {
         "--every {every}: must be greater than zero"
     );
     let samples = count(("--until", until), ("--every", &every))?;
+
+    // Returns the request, and its step, with this number of steps between rows.
     let in_parts = |parts: u32| {
         let step = if parts == 1 {
             every.clone()
@@ -125,6 +133,7 @@ fn chosen(options: &SimulateOptions, method: Method) -> anyhow::Result<Timing> {
         (request(options, method, &step, parts, samples), step)
     };
 
+    // The closed form reaches every row in one step.
     if method.integrator() == Integrator::ClosedForm {
         return Ok(Timing {
             step: every.clone(),
@@ -151,6 +160,9 @@ fn chosen(options: &SimulateOptions, method: Method) -> anyhow::Result<Timing> {
     let safe = usual
         .admissible_step()
         .map_or(limit, |safe| safe.min(limit));
+
+    // The number of steps between rows. The safe step is preferred if it does not need too many
+    // steps.
     let parts = |longest: f64| (every.value() / longest).ceil();
     let rows = f64::from(samples.max(1));
     let parts = [safe, limit]
@@ -164,6 +176,7 @@ fn chosen(options: &SimulateOptions, method: Method) -> anyhow::Result<Timing> {
         options.start.extreme(),
         at_most(limit)
     );
+
     let stride = parts as u32;
     let (_, step) = in_parts(stride);
     Ok(Timing {
@@ -177,6 +190,7 @@ fn chosen(options: &SimulateOptions, method: Method) -> anyhow::Result<Timing> {
 /// Returns an error if numbers overflow in the first step, before anything is printed.
 fn check_first_step(options: &SimulateOptions, request: &Request) -> anyhow::Result<()> {
     const SHORTER: f64 = 1e-6;
+    // Computes the first step only, with the step `dt`.
     let first = |dt: f64| {
         let request = Request {
             dt,
@@ -189,6 +203,8 @@ fn check_first_step(options: &SimulateOptions, request: &Request) -> anyhow::Res
     let Err(error) = first(request.dt) else {
         return Ok(());
     };
+
+    // If a much shorter step succeeds, the step is to blame. Otherwise the motion itself is.
     match (&options.step, first(SHORTER * request.dt)) {
         (Some(step), Ok(())) => bail!("--step {step}: too long for the first step: {error}"),
         _ => bail!(
@@ -199,7 +215,7 @@ fn check_first_step(options: &SimulateOptions, request: &Request) -> anyhow::Res
     }
 }
 
-/// Returns the largest short number that is not above `limit`, s, as text.
+/// Returns a short number that is at most `limit`, s, as text.
 pub(super) fn at_most(limit: f64) -> String {
     const LONG: f64 = 0.1;
     const SHORT: f64 = 1e-6;
@@ -220,6 +236,8 @@ pub(super) fn count(
     (unit_option, unit): (&str, &Number),
 ) -> anyhow::Result<u32> {
     let count = time.whole_multiple_of(unit);
+
+    // The remedy is a step that divides the time between rows.
     let count = count.with_context(|| {
         let parts = (time.value() / unit.value()).ceil();
         let remedy = if option == "--every" && (1.0..1e9).contains(&parts) {
@@ -245,8 +263,8 @@ pub(super) fn request(
     stride: u32,
     samples: u32,
 ) -> Request {
-    let (parameters, Motion { a1, a2, w1, w2 }) =
-        (options.start.parameters(), options.start.motion());
+    let parameters = options.start.parameters();
+    let Motion { a1, a2, w1, w2 } = options.start.motion();
     let angles = [a1, a2];
     let velocities = [w1, w2];
     let dt = step.value();
@@ -263,6 +281,7 @@ pub(super) fn request(
 
 /// Returns an error for everything that the kernel refuses, with the option's name, and for angles
 /// whose whole turns need more digits than the direction has left.
+// Half of the digits of a number are for the turns, the other half for the direction.
 pub(super) fn accepted(options: &SimulateOptions, request: &Request) -> anyhow::Result<()> {
     let digits = if request.method.is_single() {
         f32::MANTISSA_DIGITS
@@ -278,6 +297,7 @@ pub(super) fn accepted(options: &SimulateOptions, request: &Request) -> anyhow::
         );
     }
 
+    // A request without samples is checked and computes nothing.
     Request {
         samples: 0,
         ..*request
@@ -316,6 +336,7 @@ pub(super) fn accepted(options: &SimulateOptions, request: &Request) -> anyhow::
 /// Returns the requested method, or the first of the table, if the requested place can compute it.
 pub(super) fn method(options: &SimulateOptions) -> anyhow::Result<Method> {
     let method = options.method.unwrap_or(Method::ALL[0]);
+    // A board has fewer methods than the host.
     let is_there = methods(options.place).contains(&method);
     ensure!(
         is_there,

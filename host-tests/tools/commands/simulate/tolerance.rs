@@ -26,6 +26,7 @@ const ROWS: u32 = 100;
 /// Returns the cheapest method and step that the options allow, and the largest error of an angle
 /// in any row, rad. An error is one line that names the option and the value.
 pub fn choose(options: &SimulateOptions, tolerance: &Number) -> anyhow::Result<(Plan, f64)> {
+    // The times of the rows.
     let SimulateOptions { until, every, .. } = options;
     ensure!(
         tolerance.is_positive(),
@@ -46,19 +47,24 @@ pub fn choose(options: &SimulateOptions, tolerance: &Number) -> anyhow::Result<(
         "--every {every}: more than {MOST_ROWS} rows with --tolerance"
     );
 
-    // Returns the request for the motion in this number of steps between rows, and the step.
+    // The request for the motion with this number of steps between rows, and the step.
     let in_parts = |method, parts| {
         let step = every.divided_by(parts);
         (request(options, method, &step, parts, samples), step)
     };
 
     // If the kernel refuses the motion in the finest steps, it refuses it in all steps.
-    let asked = method(options)?;
+    let first_method = method(options)?;
     accepted(
         options,
-        &in_parts(asked, divisions(asked, samples).last().unwrap_or(1)).0,
+        &in_parts(
+            first_method,
+            divisions(first_method, samples).last().unwrap_or(1),
+        )
+        .0,
     )?;
 
+    // The exact motion at each row.
     let bar = Progress::of("reference, rows", samples.into());
     let times = (0..=samples.into())
         .map(|row| every.times(row))
@@ -74,6 +80,7 @@ pub fn choose(options: &SimulateOptions, tolerance: &Number) -> anyhow::Result<(
     let mut trials: Vec<_> = trials.collect();
     trials.sort_by(|(one, ..), (other, ..)| one.total_cmp(other));
 
+    // The first trial that is accurate in every row is the cheapest one.
     let bar = Progress::of("trials", trials.len() as u64);
     let mut reached = 0;
 
@@ -100,6 +107,7 @@ pub fn choose(options: &SimulateOptions, tolerance: &Number) -> anyhow::Result<(
         reached = reached.max(rows);
     }
 
+    // The best trial was accurate for this time.
     let until = every.times((reached as u64).saturating_sub(1));
     bail!("--tolerance {tolerance}: no allowed method stays within it beyond {until} s")
 }
@@ -119,10 +127,11 @@ fn divisions(method: Method, samples: u32) -> impl Iterator<Item = u32> {
     all.take_while(move |parts| *parts <= most)
 }
 
-/// Returns how long a motion stays within `limit`, rad, of the exact one: the number of rows before
-/// the first row that exceeds the limit, and the largest error of an angle in these rows.
+/// Returns the time for which a motion stays within `limit`, rad, of the exact motion, as a number
+/// of rows, and the largest error of an angle in these rows. The first row that exceeds the limit
+/// ends the comparison.
 ///
-/// The error includes half a unit of the last place, by which the exact angle was rounded.
+/// The error includes the rounding of the exact angle, at most half a unit of its last place.
 fn agreement(request: &Request, exact: &[State<f64>], limit: f64) -> (usize, f64) {
     let mut rows = 0;
     let mut largest = 0.0_f64;
@@ -141,11 +150,12 @@ fn agreement(request: &Request, exact: &[State<f64>], limit: f64) -> (usize, f64
     (rows, largest)
 }
 
-/// Returns the unit of the prices, and the methods that the options allow with their prices. The
-/// prices are those of the place. If the place has no price for any of the methods, a price is the
+/// Returns the unit of the prices, and the methods that the options allow with their prices. They
+/// are the prices of the place. If the place has no price for any of the methods, a price is the
 /// number of evaluations of the equations.
 fn candidates(options: &SimulateOptions) -> (&'static str, Vec<(Method, f64)>) {
     const EVALUATIONS: &str = "evaluations of the equations";
+    // The methods of the place, or the one method that the user selects.
     let left = methods(options.place).iter().copied();
     let left = left.filter(|method| options.method.is_none_or(|asked| asked == *method));
     let price = |method| {
@@ -157,6 +167,8 @@ fn candidates(options: &SimulateOptions) -> (&'static str, Vec<(Method, f64)>) {
         .clone()
         .filter_map(|method| Some((method, price(method)?)))
         .collect();
+
+    // Without any price, the evaluations decide.
     match priced.is_empty() {
         true => (
             EVALUATIONS,
@@ -178,8 +190,8 @@ pub(super) fn methods(place: Place) -> &'static [Method] {
 }
 
 /// Returns the price of a method on the host: the number of evaluations, because the host computes
-/// in `f64` as fast as in other numbers. Returns `None` for methods that are never the best because
-/// another one is as accurate and costs less.
+/// in `f64` as fast as in other numbers. Returns `None` for methods that are never the best,
+/// because another method is as accurate and costs less.
 fn on_host(method: Method) -> Option<f64> {
     use Equations::{Directions, Linear};
     use Numbers::{CompensatedF64, F64};

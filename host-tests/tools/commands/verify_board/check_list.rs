@@ -8,7 +8,7 @@ use emulator::link::{Port, describe_restart};
 /// A manual check that the firmware's README describes.
 pub struct Check {
     pub name: &'static str,
-    /// The boards to which the check applies; all boards if the list is empty.
+    /// The boards that need the check; all boards if the list is empty.
     boards: &'static [&'static str],
 }
 
@@ -19,7 +19,7 @@ const fn check(name: &'static str, boards: &'static [&'static str]) -> Check {
 const WITH_I2C: &[&str] = &["pico", "stm32f405"];
 const WITH_USB: &[&str] = &["pico"];
 
-/// The checks, in the order in which a new board meets them.
+/// The checks, in the order of a new board's first use.
 pub const CHECKS: &[Check] = &[
     check("enumeration at the first try", WITH_USB),
     check("control packets of 64 bytes", WITH_USB),
@@ -48,6 +48,7 @@ pub fn section(port: &Port, name: &str) -> Section {
     let note = "Restarts by the board's own report. The rest is the owner's to fill in, by the check list in \
                 `firmware/README.md`; what does not apply stays.";
     let mut section = Section::new("Check list", note, &["what", "found"]);
+    // The observed restarts, then a row to fill in for each manual check.
     for (what, found) in restarts(port.restarts.count, port.restarts.last.as_ref()) {
         section.add(vec![what.to_owned(), found], None);
     }

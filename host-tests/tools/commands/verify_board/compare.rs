@@ -1,4 +1,4 @@
-//! The comparison of a board's results with those of the host: the motions of every method, and
+//! The comparison of a board's results with the host's results: the motions of every method, and
 //! every scene for a second. The times of the scenes are measured, and the cycles of the methods
 //! are compared with the estimate of `cargo count`.
 
@@ -71,7 +71,7 @@ pub fn methods(talk: &mut Talk) -> anyhow::Result<Section> {
     Ok(section)
 }
 
-/// Returns the first number of the board that differs from that of the host.
+/// Returns the first number that differs between the board and the host.
 fn difference(talk: &mut Talk, request: &Request, number: u16) -> anyhow::Result<Option<String>> {
     const NAMES: [&str; 7] = ["a1", "a2", "p1", "p2", "w1", "w2", "energy"];
     let bits = |&Reading {
@@ -79,6 +79,8 @@ fn difference(talk: &mut Talk, request: &Request, number: u16) -> anyhow::Result
                     velocities: [w1, w2],
                     energy,
                 }: &Reading| { [a1, a2, p1, p2, w1, w2, energy].map(f64::to_bits) };
+
+    // The board computes and sends its samples while the host computes the same motion.
     talk.port.send(number, Command::Simulate(*request));
     let mut difference = None;
     let mut index = 0;
@@ -86,6 +88,8 @@ fn difference(talk: &mut Talk, request: &Request, number: u16) -> anyhow::Result
         let (given, sample) = sample(talk, number)?;
         ensure!(given == index, "sample {index} was lost on the way");
         let board = bits(&sample);
+
+        // The comparison is of bits. Only the first difference is reported.
         let host = bits(reading);
         let differs = NAMES
             .iter()
@@ -136,9 +140,13 @@ pub fn cycles(measured: &[[Option<f64>; 2]], board: Option<&Board>) -> anyhow::R
         note,
         &["method", "from flash", "from RAM", "estimated"],
     );
+
+    // The counts come from an emulated board with the same code. Without a cycle counter on the
+    // real board there is nothing to compare.
     let board =
         board.and_then(|board| BOARDS.iter().find(|counted| counted.target == board.target));
     let board = board.filter(|_| measured.iter().any(|[flash, _]| flash.is_some()));
+
     let target = board
         .map(|board| Target::build(&toolchain::ready()?, board))
         .transpose()?;
@@ -152,11 +160,11 @@ pub fn cycles(measured: &[[Option<f64>; 2]], board: Option<&Board>) -> anyhow::R
         let cell = |cycles: Option<f64>, none: &str| {
             cycles.map_or(none.to_owned(), |cycles| format!("{cycles:.1}"))
         };
+
+        // A missing copy in RAM is a dash. A missing cycle counter is a property of the board.
         let none = "no cycle counter";
-        let (ram, estimated) = (
-            cell(ram, flash.map_or(none, |_| "-")),
-            cell(estimated.map(|cost| cost.cycles), "-"),
-        );
+        let ram = cell(ram, flash.map_or(none, |_| "-"));
+        let estimated = cell(estimated.map(|cost| cost.cycles), "-");
         section.add(
             vec![method.to_string(), cell(flash, none), ram, estimated],
             None,
@@ -168,6 +176,7 @@ pub fn cycles(measured: &[[Option<f64>; 2]], board: Option<&Board>) -> anyhow::R
 
 /// Returns the cycles of a step, or `None` if the board has no cycle counter or no copy in RAM.
 fn step(talk: &mut Talk, method: Method, in_ram: bool) -> anyhow::Result<Option<f64>> {
+    // The request starts the motion whose steps are measured.
     talk.port.send(
         REQUEST,
         Command::Simulate(Request {
@@ -179,6 +188,7 @@ fn step(talk: &mut Talk, method: Method, in_ram: bool) -> anyhow::Result<Option<
     let mut steps = 0;
     let mut cycles = 0.0;
 
+    // The cycles of several measurements are added up.
     while steps < FULL_CYCLE {
         let (made, taken) = talk.ask(
             Command::Measure {
@@ -235,6 +245,7 @@ fn play(talk: &mut Talk, name: SceneName, hertz: u32, section: &mut Section) -> 
     let mut compared = 0;
 
     while compared < FRAMES && comparison.difference().is_none() {
+        // The frames of this scene, and the answers about its settings.
         let frame = match talk.next(Some)? {
             ToHost::Frame(frame) if frame.scene == name => frame,
             ToHost::Answer(_, Answer::Status(status)) => {
@@ -250,6 +261,7 @@ fn play(talk: &mut Talk, name: SceneName, hertz: u32, section: &mut Section) -> 
             name.name(),
             frames.len()
         );
+        // The comparison needs the board's settings.
         if comparison.frame(&frame) {
             talk.port.send(0, Command::Ask);
         }
@@ -258,6 +270,7 @@ fn play(talk: &mut Talk, name: SceneName, hertz: u32, section: &mut Section) -> 
         }
     }
 
+    // The results: the first difference, the dropped frames and the times.
     let difference = comparison
         .difference()
         .map(|difference| difference.to_string());
@@ -278,6 +291,8 @@ fn play(talk: &mut Talk, name: SceneName, hertz: u32, section: &mut Section) -> 
         .wrapping_sub(first.sequence)
         .wrapping_add(dropped);
     let run = 1e3 * (f64::from(ticks) + 2.0) / f64::from(TICK_RATE);
+
+    // A time longer than the whole run is impossible, so the board's clock must be wrong.
     let longest = computing.max(whole);
     let too_long = (longest > run).then(|| {
         format!(
@@ -288,6 +303,7 @@ fn play(talk: &mut Talk, name: SceneName, hertz: u32, section: &mut Section) -> 
         .clone()
         .or(too_long)
         .map(|fault| format!("{}: {fault}", name.name()));
+
     let [computing, whole] = [computing, whole].map(|time| format!("{time:.2}"));
     let compared = compared.to_string();
     let dropped = dropped.to_string();

@@ -89,10 +89,8 @@ pub fn run(options: &VerifyOptions) -> anyhow::Result<bool> {
     let board = every_board().find(|board| board.name == name);
 
     let progress = Progress::start(&format!("verifying {name} at {}", talk.port.name));
-    let (methods, scenes) = (
-        compare::methods(&mut talk)?,
-        compare::scenes(&mut talk, identity.hertz)?,
-    );
+    let methods = compare::methods(&mut talk)?;
+    let scenes = compare::scenes(&mut talk, identity.hertz)?;
     let panel = talk.ask(protocol::Command::Ask, |answer| {
         if let Answer::Status(status) = answer {
             Some(link::panel(&status.panel))
@@ -103,6 +101,7 @@ pub fn run(options: &VerifyOptions) -> anyhow::Result<bool> {
     let measured = compare::measured(&mut talk)?;
     drop(progress);
 
+    // The person is asked after the long measurements.
     let asked = if options.no_questions {
         Section::default()
     } else {
@@ -111,12 +110,11 @@ pub fn run(options: &VerifyOptions) -> anyhow::Result<bool> {
     let checks = check_list::section(&talk.port, name);
 
     // All questions to the board come before the builds, because the board continues to send.
-    let (cycles, program) = (
-        compare::cycles(&measured, board)?,
-        program(board, &identity)?,
-    );
+    let cycles = compare::cycles(&measured, board)?;
+    let program = program(board, &identity)?;
     let sections = [methods, cycles, scenes, asked, checks];
 
+    // The verdict in one line.
     let faults: Vec<&String> = sections
         .iter()
         .flat_map(|section| &section.faults)
@@ -131,6 +129,7 @@ pub fn run(options: &VerifyOptions) -> anyhow::Result<bool> {
     let headline =
         format!("{name}: {motions} motions of {methods} methods, {scenes} scenes: {verdict}");
 
+    // The report, in Markdown. A section without rows is left out.
     let chip = identity.chip.map(|word| format!("{word:08x}")).join(" ");
     let mut text = format!("# {name}\n\n{headline}.\n\n");
     text += &format!(
@@ -140,10 +139,10 @@ pub fn run(options: &VerifyOptions) -> anyhow::Result<bool> {
     if let Some(panel) = &panel {
         text += &format!("- panel: {panel}\n");
     }
-    let told = sections
+    let filled = sections
         .iter()
         .filter(|section| !section.table.rows.is_empty());
-    told.for_each(
+    filled.for_each(
         |Section {
              head: [title, note],
              table,
@@ -153,6 +152,7 @@ pub fn run(options: &VerifyOptions) -> anyhow::Result<bool> {
         },
     );
 
+    // The faults go to stderr, the verdict to stdout.
     let path = options.report.with_extension("md");
     fs::write(&path, text).with_context(|| path.display().to_string())?;
     faults
@@ -166,10 +166,10 @@ pub fn run(options: &VerifyOptions) -> anyhow::Result<bool> {
     Ok(faults.is_empty())
 }
 
-/// Returns a line about the program in the board's flash: whether it is the one that is built here
-/// for `board`, from which commit and by which compiler.
+/// Returns a line about the program in the board's flash. It names the commit and the compiler of
+/// this workspace, and says if the flash has the program that they build for `board`.
 fn program(board: Option<&Board>, identity: &Identity) -> anyhow::Result<String> {
-    let said = |program: &str, arguments: &[&str]| {
+    let output_of = |program: &str, arguments: &[&str]| {
         let output = process::run(
             Command::new(program)
                 .args(arguments)
@@ -183,15 +183,13 @@ fn program(board: Option<&Board>, identity: &Identity) -> anyhow::Result<String>
     };
 
     // A plus marks files that have changed since the commit.
-    let changed = if said("git", &["status", "--porcelain"]).is_empty() {
+    let changed = if output_of("git", &["status", "--porcelain"]).is_empty() {
         ""
     } else {
         "+"
     };
-    let (commit, compiler) = (
-        said("git", &["rev-parse", "--short=12", "HEAD"]),
-        said("rustc", &["--version"]),
-    );
+    let commit = output_of("git", &["rev-parse", "--short=12", "HEAD"]);
+    let compiler = output_of("rustc", &["--version"]);
     let Identity {
         image, image_bytes, ..
     } = *identity;
@@ -205,11 +203,12 @@ fn program(board: Option<&Board>, identity: &Identity) -> anyhow::Result<String>
     ))
 }
 
-/// Returns true if the program that is built here for `board` is the one that the board reports,
-/// from its vectors to its constants.
+/// Returns true if the program that is built here for `board` equals the program that the board
+/// reports, from its vectors to its constants.
 fn is_built(board: &Board, identity: &Identity) -> anyhow::Result<bool> {
     let elf = fs::read(toolchain::ready()?.build_for(board)?)?;
     let file = object::File::parse(&*elf)?;
+    // The program's first address, and the address after its constants.
     let address = |name: &str| {
         let symbol = file
             .symbols()
@@ -219,6 +218,8 @@ fn is_built(board: &Board, identity: &Identity) -> anyhow::Result<bool> {
     };
     let start = address("__vector_table")?;
     let end = address("__erodata")?;
+    // Flash that the program does not use is erased, or was filled with zeros by the flashing
+    // program.
     let is_at = |unused: u8| {
         let (first, flash) = flash_image_over(&elf, unused)?;
         let image = flash

@@ -38,13 +38,14 @@ impl Talk {
     /// Returns the next message of one kind and drops the others. A refusal is an error.
     pub fn next<M>(&mut self, kind: impl Fn(ToHost) -> Option<M>) -> anyhow::Result<M> {
         let since = Instant::now();
-        let mut told = None;
+        let mut notice = None;
         let mut silence = format!(
             "{}: no message for {} s",
             self.port.name,
             PATIENCE.as_secs()
         );
         while since.elapsed() < PATIENCE {
+            // The messages that have arrived, one by one.
             for message in self.arrived.by_ref() {
                 if let ToHost::Answer(_, Answer::Refused(field)) = message {
                     bail!("the board refuses: {}", refusal(field));
@@ -57,11 +58,14 @@ impl Talk {
                     self.port.name
                 );
             }
+
+            // More messages, and the notices of the port. The latest notice explains a silence
+            // best.
             self.arrived = self.port.messages().into_iter();
-            told = self.port.notices.drain(..).next_back().or(told);
+            notice = self.port.notices.drain(..).next_back().or(notice);
             sleep(LOOK);
         }
-        bail!(told.unwrap_or(silence))
+        bail!(notice.unwrap_or(silence))
     }
 
     pub fn next_frame(&mut self) -> anyhow::Result<Frame> {
@@ -97,11 +101,14 @@ const UNDER_WAY: u32 = 12;
 
 /// Asks the person about the panel and the buttons of the board `name`.
 pub fn ask_person(talk: &mut Talk, name: &str) -> anyhow::Result<Section> {
+    // The panel and the keys that each board has.
     let (has_panel, keys): (_, &[Key]) = match name {
         "lm3s6965evb" | "pico" => (true, Key::ALL),
         "stm32f405" => (true, &[Key::Select]),
         _ => (false, &[]),
     };
+
+    // A known scene, so that the question about the panel has a definite answer.
     talk.ask(Command::Choose(SceneName::Page), |answer| {
         (answer == Answer::Done).then_some(())
     })?;
@@ -116,6 +123,7 @@ pub fn ask_person(talk: &mut Talk, name: &str) -> anyhow::Result<Section> {
         section.add(vec![what, answer.to_owned()], fault);
     };
 
+    // The panel, then each key.
     if has_panel {
         let what = "the panel shows a swinging pendulum, upright and sharp";
         let (answer, _) = entered(talk, &format!("{what}? [y/n, anything else: cannot say]"))?;
@@ -144,6 +152,7 @@ pub fn ask_person(talk: &mut Talk, name: &str) -> anyhow::Result<Section> {
 /// started again meanwhile.
 fn entered(talk: &mut Talk, question: &str) -> anyhow::Result<(String, bool)> {
     complain(question);
+    // The line is read by a thread, because the board's frames must be read meanwhile.
     let (line, lines) = mpsc::channel();
     spawn(move || {
         let mut text = String::new();
@@ -151,6 +160,9 @@ fn entered(talk: &mut Talk, question: &str) -> anyhow::Result<(String, bool)> {
         line.send(if read.is_ok() { text } else { String::new() })
     });
     let mut answer = None;
+
+    // Frames continue to arrive for a short time after the answer. A restart is a frame with a
+    // smaller step number.
     let mut restarted = false;
     let mut left = UNDER_WAY;
     let mut last = talk.next_frame()?.report.step;

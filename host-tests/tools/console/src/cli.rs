@@ -13,8 +13,8 @@ use double_pendulum::{Error, Parameter};
 /// The exit code of a request that cannot be served: wrong options, missing tools.
 pub const REFUSED: u8 = 2;
 
-/// A request that cannot be served, with the reason in one line. The exit code is 2; that of any
-/// other error is 1.
+/// A request that cannot be served, with the reason in one line. The exit code is 2; any other
+/// error has the exit code 1.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Refused(String);
 
@@ -68,8 +68,8 @@ pub fn verdict(well: bool) -> ExitCode {
     ExitCode::from(u8::from(!well))
 }
 
-/// Prints a line of the command's result. If the output is closed, returns an error for which
-/// [`main`] ends the command quietly.
+/// Prints a line of the command's result. If the output is closed, returns an error, and [`main`]
+/// then ends the command quietly.
 pub fn say(line: impl Display) -> io::Result<()> {
     writeln!(stdout(), "{line}")
 }
@@ -146,6 +146,7 @@ fn parse<Options: Parser>() -> Result<Options, ExitCode> {
 
 /// Returns the first paragraph of clap's report as one line, with its tip. The usage is omitted;
 /// `--help` prints it.
+// Only the first paragraph explains the error; the others repeat the usage.
 fn one_line(report: &str) -> String {
     let first = report.lines().take_while(|line| !line.is_empty());
     let line = first.map(str::trim).collect::<Vec<_>>().join(" ");

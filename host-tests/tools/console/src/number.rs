@@ -93,6 +93,8 @@ impl FromStr for Number {
         if denominator == 0.0 {
             return Err(ZERO_DENOMINATOR);
         }
+
+        // A fraction is the nearest `f64` to its exact value. A decimal was rounded by its parser.
         let fraction = above
             .zip(below)
             .and_then(|(above, below)| quotient(above, below));
@@ -121,6 +123,7 @@ fn decimal(text: &str) -> Result<(f64, Option<Fraction>), &'static str> {
     }
     let (mantissa, exponent) = text.split_once(['e', 'E']).unwrap_or((text, "0"));
     let (whole, places) = mantissa.split_once('.').unwrap_or((mantissa, ""));
+    // The digits without the point are a whole number, times a power of ten.
     let exact = || {
         let digits: i64 = format!("{whole}{places}").parse().ok()?;
         let exponent = exponent
@@ -141,6 +144,7 @@ fn decimal(text: &str) -> Result<(f64, Option<Fraction>), &'static str> {
 fn quotient((a, b): Fraction, (c, d): Fraction) -> Option<Fraction> {
     let above = i128::from(a) * i128::from(d);
     let below = i128::from(c) * i128::from(b);
+    // Euclid's algorithm for the common divisor of numerator and denominator.
     let mut common = above.abs();
     let mut rest = below.abs();
     while rest != 0 {
@@ -196,7 +200,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn decimals_and_fractions_round_once_and_what_is_none_is_refused() {
+    fn decimals_and_fractions_round_once_and_other_text_is_refused() {
         for (text, value) in [
             ("0.1", Ok(0.1)),
             ("-2.5e-3", Ok(-2.5e-3)),
@@ -238,6 +242,8 @@ mod tests {
             );
         }
 
+        // A part keeps its exact fraction, so that the product with the number of parts has one
+        // rounding.
         for (one, parts, part, times) in [
             ("0.1", 3, "1/30", 0.3),
             ("3", 3, "1", 9.0),

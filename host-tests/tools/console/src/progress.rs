@@ -72,8 +72,11 @@ impl Progress {
     }
 
     fn remind(&self) {
-        let (bar, seconds) = (&self.bar, self.bar.elapsed().as_secs());
+        let bar = &self.bar;
+        let seconds = bar.elapsed().as_secs();
         let due = seconds / REMINDER;
+
+        // A hidden bar means that the output is no terminal. Its reminders are lines.
         if bar.is_hidden() && self.reminders.fetch_max(due, Ordering::Relaxed) < due {
             let pieces = bar.length().map_or(String::new(), |length| {
                 format!("{} of {length}, ", bar.position())

@@ -20,8 +20,8 @@ use emulator::qemu::Screenshot;
 
 /// The number of frames without an answer after which the host repeats the question.
 const PATIENCE: u32 = TICK_RATE;
-/// The largest number of ticks in one call by which the host catches up with a board that has
-/// played for a long time, so that the terminal remains responsive.
+/// The largest number of ticks that one call advances the host's scene. A board may have played for
+/// a long time, and the terminal must remain responsive while the host catches up.
 const MOST_TICKS: u32 = 2000;
 
 #[derive(Debug, Default)]
@@ -37,7 +37,7 @@ pub struct Comparison {
     /// The difference in the first waiting frame, unless the board reports that it has started
     /// another scene.
     doubt: Option<String>,
-    /// The number of frames for which the board's scene has been unknown or in doubt.
+    /// Counts the frames while the board's scene is unknown or in doubt.
     unknown: u32,
     last: Option<Frame>,
     compared: u64,
@@ -46,8 +46,10 @@ pub struct Comparison {
 }
 
 impl Comparison {
-    /// Takes a frame that has just arrived. Returns true if the board must be asked for its scene.
+    /// Takes a frame that has just arrived. Returns true if the host must send a request for the
+    /// board's scene.
     pub fn frame(&mut self, frame: &Frame) -> bool {
+        // Another scene or a smaller step number means that the board has started anew.
         let starts =
             |last: &Frame| frame.scene != last.scene || frame.report.step < last.report.step;
         if self.last.as_ref().is_none_or(starts) {
@@ -58,8 +60,11 @@ impl Comparison {
             self.unsure = 0;
             self.unknown = 0;
         }
+
         self.last = Some(*frame);
         self.waiting.push_back(*frame);
+
+        // The question is sent with the first frame and repeated if no answer comes.
         let is_unknown = self.playing.is_none() || self.doubt.is_some();
         self.unknown = if is_unknown { self.unknown + 1 } else { 0 };
         self.unknown % PATIENCE == 1
@@ -75,10 +80,14 @@ impl Comparison {
             ..*status
         };
         match (self.doubt.take(), &self.playing) {
+            // The board still plays the same scene, so the difference is real.
             (Some(doubt), Some((playing, _))) if *playing == start => {
                 self.first.get_or_insert(doubt);
             }
+            // The answer confirms a scene that is already known.
             (None, Some(_)) => {}
+            // The board plays another scene than assumed. Earlier waiting frames may belong to
+            // either.
             _ => {
                 self.playing = played(&start).ok().map(|show| (start, show));
                 self.unsure = self.waiting.len();
@@ -96,10 +105,14 @@ impl Comparison {
             .copied()
             .filter(|frame| is_reached(show, frame))?;
         let difference = difference(&frame, &show.player.frame());
+
+        // A first difference is not reported at once. The board may have started another scene.
         if difference.is_some() && self.first.is_none() && self.unsure == 0 {
             self.doubt = difference;
             return None;
         }
+
+        // Frames of a scene that has ended in the meantime are skipped, not faults.
         self.waiting.pop_front();
         self.unsure = self.unsure.saturating_sub(1);
         *(if difference.is_none() {
@@ -150,6 +163,7 @@ impl fmt::Display for Comparison {
 }
 
 /// Returns the scene that the board plays from such a start, or the field that is not possible.
+// A processor class that this host does not know is treated as the default one.
 fn played(start: &Status) -> Result<Show, Field> {
     let processor = PROCESSORS
         .get(usize::from(start.processor))
@@ -173,6 +187,7 @@ fn is_reached(show: &mut Show, frame: &Frame) -> bool {
 
 /// Returns the first number of the board's frame that differs from the host's.
 fn difference(board: &Frame, here: &Frame) -> Option<String> {
+    // Floating-point numbers are compared by their bits.
     let numbers = |frame: &Frame| {
         let report = &frame.report;
         let [a1, a2, p1, p2] =
@@ -195,6 +210,8 @@ fn difference(board: &Frame, here: &Frame) -> Option<String> {
     };
     let mut pairs = numbers(board).into_iter().zip(numbers(here));
     let ((number, board_bits), (_, here_bits)) = pairs.find(|(board, here)| board != here)?;
+
+    // Only the first difference is reported; those after it follow from it.
     let sequence = board.sequence;
     let step = board.report.step;
     Some(format!(

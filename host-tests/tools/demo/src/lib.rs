@@ -52,6 +52,7 @@ const LIMIT: [f64; 2] = [60.0, 20.0];
 
 pub fn run(options: &DemoOptions) -> anyhow::Result<bool> {
     let is_live = !options.headless && stdout().is_terminal() && stdin().is_terminal();
+    // All options are checked before anything is built.
     options.check()?;
     let seconds = options.seconds.unwrap_or(if is_live {
         f64::INFINITY
@@ -88,6 +89,8 @@ pub fn port(name: &str) -> Result<Port, Refused> {
 fn emulated(board: &'static Board, seconds: f64, is_live: bool) -> anyhow::Result<Source> {
     let (toolchain, elf) = toolchain::set_up_and_build(board)?;
     let limit = Duration::from_secs_f64(LIMIT[0] + LIMIT[1] * seconds.min(MOST_SECONDS));
+
+    // The Pico runs in its own emulator, all other boards in QEMU.
     if *board == PICO {
         let emulator = toolchain::set_up_pico()?;
         return Ok(Source::Pico(Box::new(PicoMachine::start(
@@ -121,6 +124,7 @@ const ANSWER: f64 = 3.0;
 /// board at a port.
 fn headless(session: &mut Session, seconds: f64) -> anyhow::Result<()> {
     let name = session.name().to_owned();
+    // The comparison may need an answer of the board after the last frame.
     let progress = Progress::start(&format!("running {name} for {seconds} s of its time"));
     let mut reached = 0.0;
     let mut since = Instant::now();
@@ -135,6 +139,8 @@ fn headless(session: &mut Session, seconds: f64) -> anyhow::Result<()> {
         if session.is_recording_due() {
             session.look()?;
         }
+
+        // A real board keeps its own time. The run fails if its time does not advance.
         if session.source.is_port() {
             session
                 .readings
@@ -163,14 +169,21 @@ fn headless(session: &mut Session, seconds: f64) -> anyhow::Result<()> {
 fn finish(options: &DemoOptions, mut session: Session) -> anyhow::Result<bool> {
     let is_silent = session.readings.frame.is_none();
     ensure!(!is_silent, "{}: no frame came", session.name());
+
+    // All messages are collected before they are judged.
     let saved = save_files(options, &mut session)?;
-    session.readings.lines.extend(session.source.told().0);
+    session
+        .readings
+        .lines
+        .extend(session.source.log_and_counts().0);
     let (
         name,
         Session {
             readings, source, ..
         },
     ) = (session.name(), &session);
+
+    // Only an emulated board that is run frame by frame has no excuse for a lost frame.
     let is_repeatable = matches!(source, Source::Lockstep(_) | Source::Pico(_));
     let mut faults = if is_repeatable {
         readings.faults()
@@ -200,6 +213,8 @@ fn save_files(options: &DemoOptions, session: &mut Session) -> anyhow::Result<St
     } else {
         ", the panel redrawn here from the board's numbers"
     };
+
+    // The recording is completed first; its file is incomplete until then.
     let mut saved = String::new();
     if let Some(recording) = session.take_recording() {
         let (path, pictures) = recording.finish()?;

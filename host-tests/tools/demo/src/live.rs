@@ -22,6 +22,7 @@ const LOOK: Duration = Duration::from_nanos(1_000_000_000 / TICK_RATE as u64);
 
 /// Shows the board for this number of seconds, or until the user quits.
 pub fn watch(session: &mut Session, seconds: f64) -> anyhow::Result<()> {
+    // Ctrl-C must leave a usable terminal.
     process::on_interrupt(|| {
         ratatui::restore();
 
@@ -39,6 +40,7 @@ fn show(session: &mut Session, seconds: f64, mut terminal: DefaultTerminal) -> a
     let mut is_due = false;
 
     while session.seconds() < seconds {
+        // The messages of one tick.
         let heard = Instant::now();
         session.hear()?;
 
@@ -56,6 +58,8 @@ fn show(session: &mut Session, seconds: f64, mut terminal: DefaultTerminal) -> a
                 )
             })?;
         }
+
+        // Keys are read for the rest of the tick.
         while event::poll(LOOK.saturating_sub(heard.elapsed()))? {
             let Event::Key(key) = event::read()? else {
                 continue;
@@ -98,6 +102,7 @@ fn action(key: KeyEvent, help: Help) -> Action {
     if kind == KeyEventKind::Release {
         return Action::Nothing;
     }
+    // These keys have their effect on every page.
     match code {
         KeyCode::Char('c') if modifiers.contains(KeyModifiers::CONTROL) => return Action::Quit,
         KeyCode::Char('?') => return Action::Help(help.next()),
@@ -144,6 +149,8 @@ mod tests {
                 assert_eq!(action(pressed(code), page), Action::Help(Help::Hidden));
             }
         }
+
+        // Without a help page the same keys have their usual effects.
         let hidden = |code| action(pressed(code), Help::Hidden);
         assert_eq!(hidden(KeyCode::Esc), Action::Nothing);
         assert_eq!(hidden(KeyCode::Char('q')), Action::Quit);

@@ -11,7 +11,7 @@ use firmware::scenes::{AnyScene, SceneName};
 use console::cli::{Refused, option_of};
 use console::number::{Number, Pair};
 
-/// The pendulum and its start. A value that is not given is that of the scene.
+/// The pendulum and its start. The scene's value applies where an option is missing.
 #[derive(Args, Clone, Debug)]
 pub struct OwnMotion {
     /// Masses of the bobs, kg [default: the scene's, like all of these]
@@ -40,7 +40,7 @@ const GRAVITY: &str = "--gravity";
 const ANGLES: &str = "--angles";
 const VELOCITIES: &str = "--velocities";
 
-/// Returns the options that change what a scene shows.
+/// Returns the options that affect a scene.
 fn used_by(scene: SceneName) -> &'static [&'static str] {
     match scene {
         SceneName::Frequencies => &[MASSES],
@@ -77,6 +77,7 @@ impl OwnMotion {
         scene: SceneName,
         processor: Processor,
     ) -> Result<Option<Settings>, Refused> {
+        // An option without effect is an error.
         let given = self.given();
         let used = used_by(scene);
         if let Some((option, value)) = given.iter().find(|(option, _)| !used.contains(option)) {
@@ -88,6 +89,8 @@ impl OwnMotion {
         if given.is_empty() {
             return Ok(None);
         }
+
+        // The values are checked by the rules of the board, and by starting its scene.
         let settings = self.applied_to(scene.first_settings());
         self.check_angles(&settings)?;
 
@@ -107,6 +110,7 @@ impl OwnMotion {
 
     /// Returns the settings, with the given values replaced.
     fn applied_to(&self, mut settings: Settings) -> Settings {
+        // The board computes scenes in `f32`.
         let single = |pair: &Pair| pair.values().map(|value| value as f32);
         let parameters = &mut settings.parameters;
         if let Some(masses) = &self.masses {
@@ -142,6 +146,7 @@ impl OwnMotion {
     }
 
     fn check_angles(&self, settings: &Settings) -> Result<(), Refused> {
+        // Only an angle that the user has given can be too large.
         let is_beyond = settings
             .degrees
             .iter()
@@ -162,6 +167,7 @@ impl OwnMotion {
 /// Returns the reason why a scene cannot start, with the responsible option. It is the option of
 /// the refused parameter if that is given, or else all given options.
 fn refusal(given: &[(&'static str, String)], scene: SceneName, error: &Error) -> Refused {
+    // The refused parameter names the option, if the user has given that option.
     let option = option_of(error, "");
     let is_to_blame = |(name, _): &&(&str, String)| *name == option;
     let blamed = match given.iter().find(is_to_blame) {

@@ -19,7 +19,7 @@ pub const NARROWEST: u16 = 15;
 const WIDEST: u16 = 24;
 /// The number of rows that the numbers need in the narrowest column.
 pub const ROWS: u16 = 13;
-/// The smallest scale of the bars. Smaller errors are hardly more than the rounding of the energy.
+/// The smallest scale of the bars. Smaller errors are mainly the rounding of the energy.
 const LEAST_SCALE: f32 = 1e-14;
 
 pub fn draw(frame: &mut Frame, area: Rect, readings: &Readings) {
@@ -27,6 +27,7 @@ pub fn draw(frame: &mut Frame, area: Rect, readings: &Readings) {
         width: area.width.min(WIDEST),
         ..area
     };
+    // The table has its full height; the bars get the rest.
     let lines: Vec<_> = rows(readings)
         .into_iter()
         .flat_map(|row| lines(row, area.width.into()))
@@ -40,10 +41,8 @@ pub fn draw(frame: &mut Frame, area: Rect, readings: &Readings) {
 }
 
 fn rows(readings: &Readings) -> [(&'static str, String); 9] {
-    let (is_shown, moves) = (
-        readings.frame.is_some(),
-        readings.frame.is_some_and(|now| now.scene.has_angles()),
-    );
+    let is_shown = readings.frame.is_some();
+    let moves = readings.frame.is_some_and(|now| now.scene.has_angles());
     let now = readings.frame.unwrap_or_default();
 
     // The angles at the start; a single one if both rods have the same.
@@ -56,9 +55,13 @@ fn rows(readings: &Readings) -> [(&'static str, String); 9] {
     } else {
         degrees.join(", ")
     };
+
+    // The angles of a rod that turns over grow without limit, so they are shown within half a turn.
     let State { a1, a2, .. } = now.report.state;
     let [angle_1, angle_2] =
         [a1, a2].map(|angle| within_half_a_turn(f64::from(angle).to_degrees()));
+
+    // A number that does not exist in this scene is shown as a dash.
     let rows = [
         ("time", is_shown, format!("{:.2} s", now.report.time)),
         (
@@ -83,6 +86,7 @@ fn rows(readings: &Readings) -> [(&'static str, String); 9] {
 
 /// Returns a row as one line, or as two lines if one is too narrow.
 fn lines((name, value): (&'static str, String), width: usize) -> Vec<Line<'static>> {
+    // The name is on the left and the value on the right, with at least one space between them.
     let left = width.saturating_sub(name.chars().count());
     if value.chars().count() < left {
         return vec![Line::from(vec![
@@ -101,6 +105,7 @@ fn lines((name, value): (&'static str, String), width: usize) -> Vec<Line<'stati
 fn energy_errors(frame: &mut Frame, area: Rect, past: &[Report]) {
     const HEIGHT: f32 = 1000.0;
     const STEPS: u64 = TICK_RATE as u64 / 2;
+    // Each bar is the largest error of half a second.
     let largest = |bar: &[Report]| {
         bar.iter()
             .map(|report| report.energy_error.abs())
@@ -111,6 +116,7 @@ fn energy_errors(frame: &mut Frame, area: Rect, past: &[Report]) {
         .map(largest)
         .collect();
 
+    // The newest bars are shown, as many as there are columns.
     let shown = &errors[errors.len().saturating_sub(area.width.into())..];
     let exponent = shown
         .iter()
@@ -118,6 +124,8 @@ fn energy_errors(frame: &mut Frame, area: Rect, past: &[Report]) {
         .fold(LEAST_SCALE, f32::max)
         .log10()
         .ceil() as i32;
+
+    // A narrow column has a shorter title.
     let long = format!("bars: full height 1e{exponent}");
     let scale = if long.len() <= usize::from(area.width) {
         long
@@ -125,6 +133,8 @@ fn energy_errors(frame: &mut Frame, area: Rect, past: &[Report]) {
         format!("bars to 1e{exponent}")
     };
     let scale = Block::new().title(scale.dim());
+
+    // The bars are whole numbers, so they are scaled to `HEIGHT` steps.
     let bars = shown
         .iter()
         .map(|error| (error / 10.0_f32.powi(exponent) * HEIGHT) as u64)
@@ -141,8 +151,8 @@ fn energy_errors(frame: &mut Frame, area: Rect, past: &[Report]) {
 
 /// The simulated time that the chart shows, s.
 const SPAN: f64 = 5.0;
-/// The possible limits of the chart, degrees. The smallest one that contains every shown angle is
-/// used.
+/// The possible limits of the chart, degrees. The chart uses the smallest limit that contains every
+/// shown angle.
 const REACHES: [f64; 5] = [10.0, 30.0, 60.0, 90.0, HALF_TURN];
 const HALF_TURN: f64 = 180.0;
 /// The colours and marks of angle 1 and angle 2. A thin and a thick line can also be distinguished
@@ -158,6 +168,7 @@ fn within_half_a_turn(degrees: f64) -> f64 {
 }
 
 pub fn draw_angles(frame: &mut Frame, area: Rect, past: &[Report]) {
+    // The chart shows the last `SPAN` seconds, and from the start before that time.
     let end = past.last().map_or(0.0, |last| last.time).max(SPAN);
     let past = &past[past.partition_point(|report| report.time < end - SPAN)..];
     let strands: Vec<_> = (0..2)
@@ -168,6 +179,7 @@ pub fn draw_angles(frame: &mut Frame, area: Rect, past: &[Report]) {
         })
         .collect();
 
+    // The smallest scale that contains all angles.
     let largest = strands
         .iter()
         .flat_map(|(_, strand)| strand)
@@ -176,11 +188,14 @@ pub fn draw_angles(frame: &mut Frame, area: Rect, past: &[Report]) {
         .into_iter()
         .find(|reach| *reach >= largest)
         .unwrap_or(HALF_TURN);
+
+    // Each rod has its own colour and mark.
     let lines = strands.iter().map(|(rod, strand)| {
         let line = Dataset::default().data(strand).graph_type(GraphType::Line);
         line.marker(MARKERS[*rod]).style(COLOURS[*rod])
     });
 
+    // The axes and their labels.
     let faint = Style::new().dim();
     let title = Line::from(vec![
         "angles, degrees: ".into(),

@@ -36,12 +36,12 @@ pub struct DemoOptions {
     #[arg(long, value_name = "NAME",
           value_parser = choice([None].into_iter().chain(Method::DRAWN.iter().copied().map(Some)),
                                 |method| method.map_or("plan", Method::name)))]
-    pub method: Option<Asked>,
+    pub method: Option<MethodChoice>,
     /// The controller of the panel, kept until the board is switched off; `auto` identifies it [default: as it is]
     #[arg(long, value_name = "NAME",
           value_parser = choice([None].into_iter().chain(Controller::ALL.iter().copied().map(Some)),
                                 |panel| panel.map_or("auto", Controller::name)))]
-    pub panel: Option<Chosen>,
+    pub panel: Option<PanelChoice>,
     /// What moves, in place of the scene's own motion.
     #[command(flatten)]
     pub motion: OwnMotion,
@@ -131,15 +131,16 @@ fn shows(scene: SceneName) -> &'static str {
 }
 
 /// A method, or none to leave it to the board's plan.
-pub type Asked = Option<Method>;
+pub type MethodChoice = Option<Method>;
 
 /// A controller of the panel, or none to identify it.
-pub type Chosen = Option<Controller>;
+pub type PanelChoice = Option<Controller>;
 
 impl DemoOptions {
-    /// Refuses what is known to fail before anything is built: files that cannot be written, a
-    /// speed out of range, a method or a motion that the scene cannot show.
+    /// Refuses requests that are known to fail before anything is built: files that cannot be
+    /// written, a speed out of range, a method or a motion that the scene cannot show.
     pub fn check(&self) -> Result<(), Refused> {
+        // The files must be writable.
         for (option, file) in [
             ("--record", &self.record),
             ("--screenshot", &self.screenshot),
@@ -147,6 +148,9 @@ impl DemoOptions {
             file.as_deref()
                 .map_or(Ok(()), |file| check_writable(option, file))?;
         }
+
+        // An emulated board starts with the first scene. The scene of a board at a port is not
+        // known yet.
         self.speed()?;
         let first = self.port.is_none().then_some(SceneName::Page);
         match self.scene.or(first) {
@@ -190,7 +194,7 @@ impl DemoOptions {
     }
 
     /// Returns the class of the board's processor. A board at a port reports its class only later
-    /// and may refuse then, so it is assumed to be one of the fastest.
+    /// and may refuse then, so the fastest class is assumed.
     fn processor(&self) -> Processor {
         if self.port.is_some() {
             STM32F405
@@ -211,10 +215,13 @@ pub fn usable(
         processor,
         method: Some(method),
     };
+    // The scene is started with the method as a trial.
     let mut started = AnyScene::empty();
     let stepping = started
         .start(scene, settings, &resources)
         .map(|_| started.report(0).stepping);
+
+    // A scene either uses this method, always uses another one, or refuses it with an error.
     let scene = scene.name();
     match stepping {
         Ok(Some(stepping)) if stepping.method == method => Ok(()),

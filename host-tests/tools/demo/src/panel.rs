@@ -22,6 +22,7 @@ use emulator::qemu::{HEIGHT, Screenshot, WIDTH};
 const SET: u8 = 3;
 
 pub fn draw(frame: &mut Frame, area: Rect, screenshot: &Screenshot) {
+    // A terminal that is wide enough shows every pixel in its grey.
     let in_greys = usize::from(area.width) >= WIDTH;
     let canvas = Canvas::default().marker(if in_greys {
         Marker::HalfBlock
@@ -100,7 +101,7 @@ pub struct Recording {
     /// The number of its pictures.
     pictures: usize,
     shown: Vec<u8>,
-    /// The tick from which the next screenshot is needed. The last one is shown until then.
+    /// The tick of the next screenshot. The last one is shown until then.
     due: Option<i64>,
 }
 
@@ -108,6 +109,7 @@ impl Recording {
     pub fn create(path: &Path) -> anyhow::Result<Self> {
         let file =
             File::create(path).with_context(|| format!("cannot write {}", path.display()))?;
+        // The palette has one entry more, for unchanged pixels.
         let [width, height] = SIZE;
         let palette = [palette(), vec![0; 3]].concat();
         let mut encoder = Encoder::new(BufWriter::new(file), width, height, &palette)?;
@@ -131,11 +133,16 @@ impl Recording {
         if !self.is_due(tick) {
             return Ok(());
         }
+
+        // The previous picture is extended to the next due tick, so that the animation keeps the
+        // board's time.
         let hundredths = |tick: i64| tick * GIF_RATE / i64::from(TICK_RATE);
         let next = tick + TICKS_PER_FRAME;
         let length = hundredths(next) - hundredths(self.due.replace(next).unwrap_or(tick));
         let delay = u16::try_from(length).unwrap_or(u16::MAX);
         let [width, height] = SIZE;
+
+        // Only the pixels that have changed are written.
         let now = magnified(screenshot);
         let change = |(index, grey): (usize, &u8)| {
             if self.shown.get(index) == Some(grey) {
@@ -151,6 +158,7 @@ impl Recording {
             .collect::<Vec<_>>()
             .into();
         self.shown = now;
+
         let transparent = Some(UNCHANGED);
         let picture = Picture {
             delay,
@@ -215,12 +223,15 @@ pub fn played(path: &Path) -> anyhow::Result<Vec<(Vec<u8>, u16)>> {
     options.set_color_output(ColorOutput::Indexed);
     let mut decoder = options.read_info(File::open(path)?)?;
     let mut played = Vec::new();
+    // A transparent dot keeps the colour of the picture before.
     let mut shown = Vec::new();
     while let Some(frame) = decoder.read_next_frame()? {
         shown.resize(frame.buffer.len(), 0);
         let dots = shown.iter_mut().zip(frame.buffer.iter());
         dots.filter(|(_, dot)| frame.transparent != Some(**dot))
             .for_each(|(shown, dot)| *shown = *dot);
+
+        // Each pixel is a square of `SCALE` dots; one of them is read.
         let greys = shown
             .chunks(WIDTH * SCALE)
             .step_by(SCALE)
@@ -263,6 +274,8 @@ mod tests {
         terminal
             .draw(|frame| draw(frame, frame.area(), &Screenshot::from(&canvas)))
             .expect("it is drawn");
+
+        // Blank characters and completely filled ones show no single pixel.
         let cells = terminal.backend().buffer().content();
         let lit = cells
             .iter()
@@ -272,7 +285,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_lit_is_a_dot_or_a_pixel_in_its_colour() {
+    fn a_lit_pixel_is_a_dot_or_half_a_character_in_its_colour() {
         let dots = [("⠁", 15), ("⠠", 15), ("⢀", 6)];
         assert_eq!(
             drawn(64),

@@ -67,7 +67,7 @@ pub struct Readings {
     pub help: Help,
     /// The simulated time per real time, as last reported by the board or set by the user.
     pub speed: Option<f32>,
-    /// The last scene for which a warning was shown that it does not use the requested method.
+    /// The last scene and method of a warning that the scene does not use the requested method.
     unusable: Option<(SceneName, Method)>,
     pub(super) arrivals: Vec<Instant>,
     frames: u64,
@@ -77,23 +77,31 @@ pub struct Readings {
 }
 
 impl Readings {
-    /// Takes a frame that has just arrived. Returns true if the board must be asked for its scene.
+    /// Takes a frame that has just arrived. Returns true if the host must send a request for the
+    /// board's scene.
     pub fn frame(&mut self, frame: Frame) -> bool {
         let last = self.frame.replace(frame);
         let report = frame.report;
+        // A frame of another scene, or of an earlier time, starts a new motion.
         let before =
             last.filter(|last| last.scene == frame.scene && last.report.time <= report.time);
         if before.is_none() {
             self.start = None;
             self.past.clear();
         }
+
+        // These figures are of all motions together.
         self.simulated += report.time - before.map_or(0.0, |last| last.report.time);
         self.greatest_energy_error = self.greatest_energy_error.max(report.energy_error.abs());
         self.frames += 1;
+
+        // The chart shows the frames of this motion, but none twice while the scene is paused.
         if frame.scene.has_angles() && self.past.last().is_none_or(|last| report.time > last.time) {
             self.past.push(report);
         }
         self.past.drain(..self.past.len().saturating_sub(KEPT));
+
+        // The arrivals of the last second give the frame rate.
         self.arrivals.push(Instant::now());
         self.arrivals
             .retain(|arrival| arrival.elapsed() <= RATE_SPAN);
@@ -111,6 +119,7 @@ impl Readings {
     /// Takes the state of the panel. A change is written to the log.
     pub fn panel(&mut self, report: &PanelReport) {
         let before = self.panel.replace(*report);
+        // The panel has changed if it is found or lost, or begins or ceases to work well.
         let is_news = before.is_none_or(|before| {
             before.state != report.state || link::is_well(&before) != link::is_well(report)
         });
@@ -130,6 +139,7 @@ impl Readings {
 
     /// Warns once in a scene that it does not use the requested method.
     fn note_method(&mut self, status: &Status) {
+        // Nothing is requested, so nothing can be unusable.
         let Some(method) = status.method else {
             self.unusable = None;
             return;
@@ -143,6 +153,8 @@ impl Readings {
             return;
         };
         let unusable = Some((status.scene, method));
+
+        // A restart of the same scene causes no second warning.
         if self.unusable != unusable {
             self.unusable = unusable;
             self.lines
@@ -159,6 +171,8 @@ impl Readings {
 
     /// Returns the faults of an emulated board; empty if all is well.
     pub fn faults(&self) -> Vec<String> {
+        // Everything that goes wrong between an emulated board and the host is a fault of the
+        // program.
         let Counts { damaged, lost, .. } = self.counts;
         let dropped = self.frame.map_or(0, |last| last.dropped);
         let findings = [
@@ -166,6 +180,7 @@ impl Readings {
             (lost > 0, format!("{lost} frames were lost on the way")),
             (dropped > 0, format!("{dropped} frames were dropped")),
         ];
+        // Errors and warnings in the log are faults as well.
         let findings = findings
             .into_iter()
             .filter_map(|(found, text)| found.then_some(text));
@@ -215,7 +230,7 @@ impl Readings {
     }
 }
 
-/// Returns the method of a frame, and how long such frames are accurate, in one line.
+/// Returns the method of a frame and the accuracy horizon, in one line.
 pub fn stepping(frame: &Frame) -> String {
     if frame.state == PlayState::Stopped {
         return "this motion is too fast for this chip: change the masses or the angle, or choose \
@@ -268,7 +283,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_method_that_a_scene_does_not_use_is_said_once() {
+    fn a_method_that_a_scene_does_not_use_is_reported_once() {
         let mut readings = Readings::default();
         let status = |scene: SceneName, method| Status {
             scene,
@@ -300,7 +315,7 @@ mod tests {
     }
 
     #[test]
-    fn horizon_and_stop_are_said_in_words() {
+    fn horizon_and_stop_are_shown_in_words() {
         let words = |scene, state, horizon| {
             let stepping = Some(Stepping {
                 method: Method::Rk4Fixed32,
@@ -355,7 +370,7 @@ mod tests {
     }
 
     #[test]
-    fn energy_error_below_what_f64_shows_is_said_to_be_so() {
+    fn energy_error_below_the_resolution_of_f64_is_shown_as_a_limit() {
         let written = |error| energy_error(error, |error| format!("{error:+.1e}"));
         assert_eq!(written(2.4e-14), "+2.4e-14");
         assert_eq!(written(-1e-15), "< 4e-15");
@@ -363,7 +378,7 @@ mod tests {
     }
 
     #[test]
-    fn the_simulated_time_is_that_of_all_restarts_and_scenes() {
+    fn simulated_time_adds_up_all_restarts_and_scenes() {
         let mut readings = Readings::default();
         let [page, butterfly] = [SceneName::Page, SceneName::Butterfly];
         for (scene, times) in [

@@ -47,7 +47,7 @@ impl Source {
 
     /// Returns the lines of the log since the last call, or the notices of a port, and the counts
     /// of the link.
-    pub fn told(&mut self) -> (Vec<LogLine>, Counts) {
+    pub fn log_and_counts(&mut self) -> (Vec<LogLine>, Counts) {
         match self {
             Self::Live(machine) | Self::Lockstep(machine) => (machine.lines(), machine.counts()),
             Self::Pico(machine) => (machine.lines(), machine.counts()[0]),
@@ -131,6 +131,7 @@ impl<'a> Session<'a> {
     pub fn hear(&mut self) -> anyhow::Result<()> {
         for message in self.source.messages()? {
             match message {
+                // Answers about the scene, and refusals of the user's options or of a key.
                 ToHost::Answer(question, Answer::Status(status)) => self.status(question, &status),
                 ToHost::Answer(SETUP, Answer::Refused(field)) => bail!(self.refused(field)),
                 ToHost::Answer(_, Answer::Refused(field)) => self.readings.lines.push(warning(
@@ -140,13 +141,15 @@ impl<'a> Session<'a> {
                 _ => {}
             }
         }
+
+        // Each compared frame of a board without a readable panel is drawn and recorded here.
         while let Some(frame) = self.readings.comparison.follow() {
             if !self.has_panel() {
                 self.screenshot = self.readings.comparison.panel(&frame);
                 self.record(self.tick(&frame))?;
             }
         }
-        let (lines, counts) = self.source.told();
+        let (lines, counts) = self.source.log_and_counts();
         self.readings.lines.extend(lines);
         self.readings.counts = counts;
         Ok(())
@@ -159,13 +162,16 @@ impl<'a> Session<'a> {
             Some(now) if self.tick(frame) < now => self.before += now + 1 - self.tick(frame),
             Some(_) => {}
         }
+
         let now = *self.now.insert(self.tick(frame));
+
+        // The time counts from the first frame of the user's scene.
         let is_scene = self.options.scene.is_none_or(|scene| scene == frame.scene);
         if is_scene && self.awaited.is_none() {
             self.begun.get_or_insert(now);
         }
 
-        // A real board is asked for its panel once a second.
+        // Once a second the state of a real board's panel is requested.
         let is_time = self.source.is_port() && frame.sequence.is_multiple_of(TICK_RATE);
         if self.readings.frame(*frame) || is_time {
             self.ask()
@@ -235,12 +241,15 @@ impl<'a> Session<'a> {
 
     /// Sends the user's options to the board.
     fn begin(&mut self, first: &Frame) -> anyhow::Result<()> {
+        // The board starts its scene anew only if the user's options require it.
         let scene = self.options.scene.unwrap_or(first.scene);
         self.awaited = self.options.start(scene)?;
         let play = match self.awaited {
             Some(settings) => Some(Command::Play(scene, settings)),
             None => (scene != first.scene).then_some(Command::Choose(scene)),
         };
+
+        // The panel is selected first, so that the scene is visible from its first frame.
         let panel = self.options.panel.map(Command::Panel);
         let method = self.options.method.map(Command::Method);
         let speed = self.options.speed()?.map(|value| Command::Set {

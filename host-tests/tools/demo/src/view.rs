@@ -45,7 +45,7 @@ const KEYS: [&str; 9] = [
 ];
 const KEYS_ROWS: usize = 2;
 const LEAST_USED: [usize; 2] = [4, 6];
-/// A space at which no row ends.
+/// A space at which a row must not break.
 const JOINT: &str = "\u{a0}";
 
 pub fn draw(
@@ -66,13 +66,16 @@ pub fn draw(
         return;
     };
     if readings.help != Help::Hidden {
+        // A page of the help replaces everything else.
         return help::draw(frame, readings.help);
     }
+
     let now = readings.frame.as_ref();
 
     let words = now.map_or("no frame yet".to_owned(), |now| {
         format!("{} · {}", stepping(now), readings.comparison)
     });
+    // The words and the keys take as many rows as this width needs.
     let words = rows(&words, area.width, "");
     let keys = keys(area.width);
     let top = (width / 4).max(numbers::ROWS);
@@ -121,7 +124,8 @@ pub fn draw(
     frame.render_widget(Paragraph::new(words.join("\n")), words_at);
 
     // The angles and the log.
-    let (mut log, block) = (lower, Block::bordered().title("log"));
+    let mut log = lower;
+    let block = Block::bordered().title("log");
     if lower.height >= ANGLES {
         let [angles, framed] = Layout::horizontal([Percentage(ANGLES_WIDTH), Fill(1)]).areas(lower);
         if now.is_none_or(|now| now.scene.has_angles()) {
@@ -134,6 +138,7 @@ pub fn draw(
         frame.render_widget(block, framed);
     }
 
+    // The newest lines are at the bottom.
     let latest = &readings.lines[readings.lines.len().saturating_sub(log.height.into())..];
     let lines: Vec<_> = latest
         .iter()
@@ -146,6 +151,7 @@ pub fn draw(
         keys_at,
     );
 
+    // A terminal without colours gets its own foreground and background everywhere.
     if !colours {
         frame
             .buffer_mut()
@@ -165,6 +171,7 @@ fn keys(width: u16) -> Vec<String> {
     if all.len() <= KEYS_ROWS {
         return all;
     }
+    // In two rows without the least-used keys.
     let few = (0..KEYS.len()).filter(|place| !LEAST_USED.contains(place));
     rows_of(few.map(|place| KEYS[place]).collect())
 }
@@ -175,6 +182,7 @@ fn keys(width: u16) -> Vec<String> {
 fn panel_width(area: Rect, colours: bool) -> Option<u16> {
     let columns = area.width.checked_sub(GAP + numbers::NARROWEST)?;
     let rows = area.height.checked_sub(WORDS)?;
+    // The panel needs a quarter as many rows as columns, because a character is two pixels high.
     let most = columns.min(4 * rows);
     let best = if colours && most >= PIXELS {
         PIXELS
@@ -196,8 +204,8 @@ fn rows(text: &str, width: u16, indent: &str) -> Vec<String> {
         .collect()
 }
 
-/// Returns a line of the log as rows, all but the first indented. The place in the source is left
-/// out.
+/// Returns a line of the log as rows and indents all but the first row. The place in the source is
+/// left out.
 fn logged(line: &LogLine, width: u16) -> Vec<Line<'static>> {
     let (level, colour) = match line.level.as_deref() {
         None => ("", Color::Red),
@@ -272,6 +280,7 @@ mod tests {
 
     /// Returns the rows of the terminal, for a panel with a frame, a line and words.
     fn rows(readings: &Readings, colours: bool, (width, height): (u16, u16)) -> String {
+        // The frame, a line and words on the panel.
         let mut canvas = Canvas::default();
         (0..128).for_each(|x| {
             [0, x / 2, 63]
@@ -292,12 +301,14 @@ mod tests {
         };
         terminal.draw(drawn).expect("it is drawn");
         let cells = terminal.backend().buffer().content();
+        // Without colours no cell may set one.
         assert!(
             colours
                 || cells
                     .iter()
                     .all(|cell| (cell.fg, cell.bg) == (Color::Reset, Color::Reset))
         );
+
         let row = |row: &[ratatui::buffer::Cell]| {
             row.iter().map(|cell| cell.symbol()).collect::<String>()
         };

@@ -56,7 +56,8 @@ struct Row {
     gravity: [Q64; 2],
 }
 
-/// A factor of any size, as a whole number and the rest. The weights reach 51, which no [`Q64`] holds.
+/// A factor of any size, as a whole number and the rest. The weights reach 51, which no [`Q64`]
+/// holds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Factor {
     whole: i32,
@@ -146,8 +147,8 @@ impl Rows {
         self.norm
     }
 
-    /// Returns the amounts that a step loses by rounding down, in halves of 2^-64: in P1, and in all
-    /// other quantities.
+    /// Returns the amounts that a step loses by rounding down, in halves of 2^-64: in P1, and in
+    /// all other quantities.
     ///
     /// A step loses one half for each weighted difference of rows, and gains one for each torque of
     /// gravity on rod 1, which is subtracted. All other products are moved to the middle of the
@@ -160,8 +161,8 @@ impl Rows {
 
     /// Returns the end of a step from `z`. Sets bits of `reach` if a quantity left its range.
     ///
-    /// Compiled for three kinds of pendulum, because shifts by constants are cheaper: equal rods with
-    /// a bob 2 that is at most as heavy as bob 1, a heavier bob 2, and all others.
+    /// Compiled for three kinds of pendulum, because shifts by constants are cheaper: equal rods
+    /// with a bob 2 that is at most as heavy as bob 1, a heavier bob 2, and all others.
     pub fn end(&self, z: &[Q64; 6], reach: &Cell<u32>) -> [Q64; 6] {
         match self.shifts {
             Shifts::NONE => self.end_in::<false, false>(z, reach),

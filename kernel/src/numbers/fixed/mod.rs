@@ -1,7 +1,7 @@
 //! Fixed-point numbers of 32 and 64 bits.
 
-/// Defines a number that adds like its word. `$narrowed` converts a sum, which is twice as wide, back
-/// to a word.
+/// Defines a number with the sums of its word. `$narrowed` converts a sum, which is twice as wide,
+/// back to a word.
 macro_rules! fixed_point {
     ($(#[$doc:meta])* $type:ident($word:ident), $narrowed:ident($wide:ident)) => {
         $(#[$doc])*
@@ -52,9 +52,9 @@ pub(crate) fn nearest(value: f64) -> f64 {
     libm::rint(value)
 }
 
-/// True if the processor has no instruction for the 64-bit product of two words, as the Cortex-M0 and
-/// M0+. They are recognised by the lack of atomic exchange. The function in the compiler's library
-/// takes twice as long as [`product_of_halves`].
+/// True if the processor has no instruction for the 64-bit product of two words, such as the
+/// Cortex-M0 and M0+. They are recognised by the lack of atomic exchange. The function in the
+/// compiler's library takes twice as long as [`product_of_halves`].
 pub(crate) const IN_HALVES: bool = cfg!(all(
     target_arch = "arm",
     target_os = "none",
@@ -77,16 +77,22 @@ pub(crate) fn product(a: i32, b: i32) -> i64 {
     }
 }
 
-/// Returns the product of two words from four products of half words. No intermediate sum overflows.
+/// Returns the product of two words from four products of half words. No intermediate sum
+/// overflows.
 #[inline(always)]
 fn product_of_halves(a: i32, b: i32) -> i64 {
+    // The lower half is without sign, the upper half has the sign.
     let halves = |word: i32| (word & 0xffff, word >> 16);
     let (a0, a1) = halves(a);
     let (b0, b1) = halves(b);
+
+    // The four products. The first has no sign.
     let lowest = a0.wrapping_mul(b0) as u32;
+    // Each sum carries the upper half of the product below it.
     let (middle, carried) = halves(a1 * b0 + (lowest >> 16) as i32);
     let upper = a1 * b1 + carried;
     let middle = a0 * b1 + middle;
+
     let lower = lowest & 0xffff | (middle as u32) << 16;
     i64::from(upper + (middle >> 16)) << 32 | i64::from(lower)
 }
@@ -111,6 +117,8 @@ mod tests {
             i32::MIN,
             i32::MIN + 1,
         ];
+
+        // Random numbers of all sizes, and numbers at the ends of a range.
         let mut rng = fastrand::Rng::with_seed(1);
         let drawn: [i32; 64] = core::array::from_fn(|_| rng.i32(..) >> rng.u8(..16));
         for a in ends.into_iter().chain(drawn) {

@@ -56,20 +56,28 @@ impl Q64 {
 
     /// Returns 2^-8/d, where d = 2^6 `self` is from 1 to 8, with a relative error of at most 2^-56.
     ///
-    /// A quotient of words is improved by one step of Newton's method on words and one step of third
-    /// order, whose residue 1 - d r has 32 bits.
+    /// A quotient of words is improved by one step of Newton's method on words and one step of
+    /// third order, whose residue 1 - d r has 32 bits.
     #[inline(always)]
     pub fn inverse(self) -> Self {
         let divisor = self.0 as u64;
         let upper = (divisor >> 32) as u32;
-        let quotient = u32::MAX / (upper >> 12 | 1); // 2^44/upper
-        let residue = upper.wrapping_mul(quotient).wrapping_neg() as i32; // (1 - upper quotient 2^-44) 2^44
+
+        // A quotient of words with its error: 2^44/upper, and (1 - upper quotient 2^-44) 2^44.
+        let quotient = u32::MAX / (upper >> 12 | 1);
+        let residue = upper.wrapping_mul(quotient).wrapping_neg() as i32;
+        // A step of Newton's method gives 2^88/divisor in a word.
         let correction = ((i64::from(quotient as i32) * i64::from(residue)) >> 32) as i32;
-        let word = ((quotient << 12) as i32).wrapping_add(correction); // 2^88/divisor
+        let word = ((quotient << 12) as i32).wrapping_add(correction);
+
+        // Its error in 32 bits, (1 - divisor word 2^-88) 2^56. Only the lowest bits of the product
+        // are needed.
         let product = u64::from(divisor as u32)
             .wrapping_mul(u64::from(word as u32))
             .wrapping_add(u64::from(upper.wrapping_mul(word as u32)) << 32);
-        let [residue, _] = Self(product.wrapping_neg() as i64).words(); // (1 - divisor word 2^-88) 2^56
+        let [residue, _] = Self(product.wrapping_neg() as i64).words();
+
+        // The step of third order.
         let square = ((i64::from(residue) * i64::from(residue)) >> 56) as i32;
         let correction = i64::from(word) * i64::from(residue.wrapping_add(square));
         Self((i64::from(word) << 32).wrapping_add(correction >> 24))
@@ -78,13 +86,14 @@ impl Q64 {
 
 /// Returns the product, rounded down.
 ///
-/// The product of the lower words is left out. It is negative as often as positive, and below 1/4 of
-/// the last digit.
+/// The product of the lower words is left out. It is negative as often as positive, and below 1/4
+/// of the last digit.
 impl Mul for Q64 {
     type Output = Self;
     #[inline(always)]
     fn mul(self, factor: Self) -> Self {
-        let ([a, a_lower], [b, b_lower]) = (self.words(), factor.words());
+        let [a, a_lower] = self.words();
+        let [b, b_lower] = factor.words();
         Self(product(a, b) + (product(a, b_lower).wrapping_add(product(a_lower, b)) >> 32))
     }
 }
@@ -114,8 +123,8 @@ impl Q64 {
         Self(self.0.wrapping_add(i64::from(1_u32 << by >> 1)) >> by)
     }
 
-    /// Returns the number times 2^`by`, moved to the middle of the values that it may have had before
-    /// it was rounded down, so that no bias is left. `by` is at least 1.
+    /// Returns the number times 2^`by`, moved to the middle of the values that it may have had
+    /// before it was rounded down, so that no bias is left. `by` is at least 1.
     #[inline(always)]
     pub fn up(self, by: u32) -> Self {
         Self(self.0 << by | 1 << (by - 1))
@@ -129,6 +138,7 @@ mod tests {
     /// Compares products of numbers of all sizes with products of 128 bits.
     #[test]
     fn products_are_exact_to_the_last_digit() {
+        // Numbers of every size, with either sign.
         let numbers = (0..64).flat_map(|bits| {
             [1, -1, 3, -5, 0x1234_5678_9abc_def1, -0x0fed_cba9_8765_4321].map(|x: i64| x >> bits)
         });
@@ -136,12 +146,14 @@ mod tests {
         for a in numbers.clone() {
             for b in numbers.clone() {
                 let exact = (i128::from(a) * i128::from(b)) as f64 / UNIT;
-                // Rounding down takes 1, the lower words 1/4, and the `f64` of the test rounds, too.
+                // Rounding down takes 1, and the lower words take 1/4. The `f64` of the test also
+                // rounds.
                 let error = (Q64(a) * Q64(b)).0 as f64 - exact;
                 assert!(
                     (-1.25..=0.25).contains(&error) || error.abs() < exact.abs() * 1e-15,
                     "{a:#x} {b:#x}: {error}"
                 );
+
                 let word = (b >> 32) as i32;
                 let exact = (i128::from(a) * i128::from(word)) >> 32;
                 assert_eq!(
