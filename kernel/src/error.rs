@@ -189,17 +189,25 @@ impl fmt::Display for Error {
             Error::Diverged { parameter, value } => write!(
                 f,
                 "{parameter} = {value:?}: \
-                 the motion has left the finite numbers; the step is too long for it"
+                 the motion has diverged; use a shorter step"
             ),
             Error::OutOfRange { parameter, value } => write!(
                 f,
-                "{parameter} = {value:?}: out of range for this arithmetic, with the other values"
+                "{parameter} = {value:?}: too large or too small for this arithmetic, \
+                 together with the other values; use less extreme values"
             ),
             Error::UnequalRods { l1, l2 } => {
-                write!(f, "l2 = {l2:?}: the equal-rod form needs l2 = l1 = {l1:?}")
+                write!(
+                    f,
+                    "l2 = {l2:?}: must equal l1 = {l1:?}; \
+                     these equations are for rods of equal length"
+                )
             }
             Error::NotDrawn { method } => {
-                write!(f, "{method}: not a method that frames are drawn by")
+                write!(
+                    f,
+                    "{method}: not a method for drawing; choose one of `Method::DRAWN`"
+                )
             }
         }
     }

@@ -1,10 +1,10 @@
 //! The application of every board: its parts, its main loop and its log.
 
-use core::fmt::Debug;
+use core::fmt;
 use core::iter::from_fn;
 use core::mem::MaybeUninit;
 
-use defmt::Debug2Format;
+use defmt::Display2Format;
 use double_pendulum::Parameters;
 use double_pendulum::plan::{Plan, PlanError, Stepping};
 use embedded_io::{Error, ErrorKind, Write};
@@ -66,7 +66,7 @@ macro_rules! program {
     };
 }
 
-impl<Panel: Display<Error: Debug> + 'static, Link: Write, Keys: Buttons, Dog: Watchdog>
+impl<Panel: Display<Error: fmt::Display> + 'static, Link: Write, Keys: Buttons, Dog: Watchdog>
     Board<Panel, Link, Keys, Dog>
 {
     /// Runs the application for ever. The application, the driver of the panel and the frame
@@ -119,7 +119,7 @@ fn application<'a, Panel: Display, Link: Write, Keys: Buttons>(
 
 /// Runs the application for ever. Between ticks it works for the host, plans, or sleeps.
 #[inline(never)] // Unlike the start-up code, this must not panic (test `no_panic`).
-fn run<Panel: Display<Error: Debug>, Link: Write, Keys: Buttons>(
+fn run<Panel: Display<Error: fmt::Display>, Link: Write, Keys: Buttons>(
     app: &'static mut App<Panel, Link, Keys>,
     mut watchdog: impl Watchdog,
     reset_by_watchdog: bool,
@@ -160,7 +160,7 @@ fn run<Panel: Display<Error: Debug>, Link: Write, Keys: Buttons>(
 /// Plays again the scene from before an unplanned reset. The restart is counted first, because its
 /// scene may end the board again.
 #[inline(never)]
-fn resume<Panel: Display<Error: Debug>, Link: Write, Keys: Buttons>(
+fn resume<Panel: Display<Error: fmt::Display>, Link: Write, Keys: Buttons>(
     app: &mut App<Panel, Link, Keys>,
     reset_by_watchdog: bool,
 ) -> Journal {
@@ -189,18 +189,18 @@ fn resume<Panel: Display<Error: Debug>, Link: Write, Keys: Buttons>(
 
 /// Writes the log line of an event.
 #[inline(never)]
-fn log<Panel: Debug, Link: Error>(event: Event<Panel, Link>) {
+fn log<Panel: fmt::Display, Link: Error>(event: Event<Panel, Link>) {
     match event {
         Event::Restarted(end, resumed) => {
             defmt::warn!(
-                "restarted after a {}, {} in a row: pc {:#010x}, lr {:#010x}",
-                end.cause.map_or("", Cause::name),
+                "restarted after a {} (in a row: {}): pc {:#010x}, lr {:#010x}",
+                end.cause.map_or("reset", Cause::name),
                 end.restarts,
                 end.pc,
                 end.lr
             );
             if !resumed {
-                defmt::warn!("too often: now with the first scene");
+                defmt::warn!("too many restarts in a row: the first scene starts instead");
             }
         }
         Event::Started(
@@ -242,18 +242,22 @@ fn log<Panel: Debug, Link: Error>(event: Event<Panel, Link>) {
         Event::Dropped { ticks, total } => {
             defmt::warn!("dropped {} frames, {} since reset", ticks, total)
         }
-        Event::Panel(error) => defmt::warn!("panel: {}", Debug2Format(&error)),
+        Event::Panel(error) => defmt::warn!("panel: {}", Display2Format(&error)),
         Event::PanelFound(Found {
             controller,
             by,
             status,
         }) => {
-            defmt::info!(
-                "panel: {=str}, {=str}, status {}",
-                controller.name(),
-                by.name(),
-                status
-            )
+            if let Some(status) = status {
+                defmt::info!(
+                    "panel: {=str}, {=str}, status {=u8:#04x}",
+                    controller.name(),
+                    by.name(),
+                    status
+                );
+            } else {
+                defmt::info!("panel: {=str}, {=str}", controller.name(), by.name());
+            }
         }
         Event::Damaged {
             messages,
@@ -271,10 +275,15 @@ fn log<Panel: Debug, Link: Error>(event: Event<Panel, Link>) {
             defmt::warn!("{} received bytes lost, {} since reset", bytes, total)
         }
         Event::Stopped => defmt::warn!(
-            "stopped: this motion is too fast; change the masses or the angle, or choose another scene"
+            "stopped: this motion is too fast; \
+             change the masses or the angle, or choose another scene"
         ),
         Event::StepTooLong(step) => {
-            defmt::warn!("the step is too long for this energy, {} s would do", step)
+            defmt::warn!(
+                "the requested step may be too long for the fastest motion possible \
+                 at this energy; {} s is safe",
+                step
+            )
         }
         Event::Motion(PlannerEvent::Found(Ok(plan))) => log_plan(&plan),
         Event::Motion(PlannerEvent::Found(Err(PlanError::NoMethod { limit, .. }))) => {
@@ -345,7 +354,7 @@ fn log_plan(
 /// Returns the reason why the serial link has not taken a message.
 fn reason(kind: ErrorKind) -> &'static str {
     match kind {
-        ErrorKind::TimedOut => "the host does not read, frames are dropped",
+        ErrorKind::TimedOut => "the host does not read; frames are dropped",
         _ => "a message could not be sent",
     }
 }

@@ -82,7 +82,7 @@ choice! {
         /// Reading the memory failed, and only the status byte was available.
         Status = "by its status byte";
         /// The panel acknowledges no read and is taken for the most common controller.
-        Silence = "as it answers no read";
+        Silence = "assumed, because it answers no read";
         /// The host, or the build variable `PANEL`, named the controller.
         Choice = "as chosen";
     }

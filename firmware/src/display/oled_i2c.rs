@@ -24,6 +24,8 @@
 //! Source: Solomon Systech, SSD1306 data sheet; Sino Wealth, SH1106 and SH1107 data sheets; the
 //! FlashFloppy firmware (`oled_probe_model`), for reading the memory back.
 
+use core::fmt;
+
 use embedded_hal::i2c::ErrorKind;
 
 use super::bus::{Outbox, PanelBus, Sent};
@@ -173,6 +175,20 @@ pub enum OledError {
         /// The number of frames, of the last [`TICK_RATE`], that were sent to the panel.
         shown: u32,
     },
+}
+
+impl fmt::Display for OledError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match *self {
+            Self::Absent(error) => write!(f, "absent: {}", BusFault::from(error).name()),
+            Self::Lost => f.write_str("it no longer answers, or it lost its power"),
+            Self::Slow { shown } => write!(
+                f,
+                "the bus is slow: {shown} of {TICK_RATE} frames were sent; \
+                 use resistors of 2.2 to 4.7 kOhm and short wires"
+            ),
+        }
+    }
 }
 
 /// Driver for a panel that may be absent or plugged in later.

@@ -227,11 +227,22 @@ pub fn workspace() -> &'static Path {
     static FOUND: OnceLock<PathBuf> = OnceLock::new();
     FOUND.get_or_init(|| {
         let run_by_cargo = env::var_os("CARGO_MANIFEST_DIR").map(PathBuf::from);
-        let starts = [run_by_cargo, env::current_dir().ok(), env::current_exe().ok()];
-        starts.into_iter().flatten().find_map(|start| above(&start)).unwrap_or_else(|| {
-            complain("error: the project's folder is neither above this one nor above the program: run it from there");
-            exit(REFUSED.into())
-        })
+        let starts = [
+            run_by_cargo,
+            env::current_dir().ok(),
+            env::current_exe().ok(),
+        ];
+        starts
+            .into_iter()
+            .flatten()
+            .find_map(|start| above(&start))
+            .unwrap_or_else(|| {
+                complain(
+                    "error: the project was not found: run this command inside the project's \
+                      folder",
+                );
+                exit(REFUSED.into())
+            })
     })
 }
 

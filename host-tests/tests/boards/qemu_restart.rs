@@ -270,7 +270,7 @@ fn a_board_that_hangs_restarts_in_its_scene_and_reports_the_cause() -> anyhow::R
 
         // The log has both the report of the hang and the line after the restart.
         let pc = format!("pc {UNUSED:#010x}");
-        let last = format!("restarted after a hang, 1 in a row: {pc}");
+        let last = format!("restarted after a hang (in a row: 1): {pc}");
         assert_logged(
             board,
             &machine.log_text(),

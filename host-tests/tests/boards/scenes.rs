@@ -40,7 +40,7 @@ const LONG_LIMIT: Duration = Duration::from_secs(6 * 3600);
 /// stack in one round only.
 const INTERRUPT: u32 = 108 + 96;
 /// The log line of a firmware whose panel QEMU does not emulate.
-const NO_PANEL: &str = "panel: Absent";
+const NO_PANEL: &str = "panel: absent";
 /// The largest number of cycles per instruction, averaged over a frame; 1.3 to 1.7 were found.
 const MOST_CYCLES: f64 = 3.0;
 

@@ -87,7 +87,7 @@ fn one_flipped_bit_is_named_and_fails() {
     };
     let [_, messages] = demo(1, "--seconds 8", |bench| bench.carry(flipped));
     let is_it =
-        |line: &str| line.starts_with("not well: frame 300, step ") && line.contains(": p1 is 0x");
+        |line: &str| line.starts_with("problem: frame 300, step ") && line.contains(": p1 is 0x");
     assert!(messages.lines().any(is_it), "{messages}");
 }
 
@@ -140,7 +140,7 @@ fn state_of_the_panel_is_reported_with_the_remedy_when_it_changes() {
 fn board_without_a_choice_of_controllers_refuses_one() {
     let [_, messages] = demo(2, "--panel sh1106", |bench| bench.carry(wire));
     assert!(
-        messages.contains("the board refuses this panel; the board has none"),
+        messages.contains("the board refuses this panel; it has no panel"),
         "{messages}"
     );
 }
@@ -259,7 +259,7 @@ fn a_foreign_device_is_reported_and_a_board_in_its_place_is_accepted() {
     });
     let count = |words| messages.matches(words).count();
     assert_eq!(
-        ["no message: another device", "the board sends again"].map(count),
+        ["no message; is it another device", "the board sends again"].map(count),
         [1, 1],
         "{messages}"
     );
@@ -314,7 +314,8 @@ fn the_terminal_shows_no_number_of_a_silent_or_foreign_device() {
         let messages = String::from_utf8(output.stderr).expect("text");
         assert_eq!(output.status.code(), Some(1), "{messages}");
         assert!(
-            messages.lines().count() == 1 && messages.contains("ttyACM0: no frame came"),
+            messages.lines().count() == 1
+                && messages.contains("ttyACM0: ended before the first frame"),
             "{messages}"
         );
     }

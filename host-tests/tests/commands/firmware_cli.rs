@@ -196,7 +196,7 @@ fn without_probe_rs_the_error_names_it() -> io::Result<()> {
     assert!(
         output
             .stderr
-            .starts_with("error: flashing needs probe-rs, which is not installed; see https://")
+            .starts_with("error: flashing needs probe-rs, which is not installed: cargo install ")
     );
     assert_eq!(output.stderr.lines().count(), 1);
     Ok(())

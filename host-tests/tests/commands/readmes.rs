@@ -138,6 +138,49 @@ fn every_link_of_the_readmes_has_its_file() {
     }
 }
 
+/// Returns the anchors of a page's headings, as GitHub makes them.
+fn anchors(page: &str) -> BTreeSet<String> {
+    let headings = page.lines().filter(|line| line.starts_with('#'));
+    let anchor = |heading: &str| {
+        heading
+            .trim_start_matches('#')
+            .trim()
+            .to_lowercase()
+            .chars()
+            .filter(|c| c.is_alphanumeric() || " -_".contains(*c))
+            .map(|c| if c == ' ' { '-' } else { c })
+            .collect()
+    };
+    headings.map(anchor).collect()
+}
+
+#[test]
+fn readme_links_to_a_section_name_one_of_its_headings() {
+    let mut checked = 0;
+    for file in README {
+        let page = read(file);
+        let folder = Path::new(file).parent().expect("a file has a folder");
+        let targets = page
+            .split("](")
+            .skip(1)
+            .filter_map(|rest| rest.split_once(')')?.0.split_once('#'))
+            .filter(|(target, _)| !target.starts_with("http"));
+
+        for (target, anchor) in targets {
+            let linked = match target {
+                "" => page.clone(),
+                target => read(folder.join(target)),
+            };
+            assert!(
+                anchors(&linked).contains(anchor),
+                "{file} links to {target}#{anchor}"
+            );
+            checked += 1;
+        }
+    }
+    assert!(checked > 20, "{checked} links to sections");
+}
+
 #[test]
 fn the_first_readme_is_short() {
     assert!(read(README[0]).lines().count() <= 120);

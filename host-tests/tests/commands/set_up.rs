@@ -96,7 +96,7 @@ fn a_qemu_that_is_old_or_broken_is_replaced_by_an_unpacked_one() {
             "is QEMU 2.11.1, which is too old: 6.0 or newer is needed",
         ),
         ("exit 127", "does not work ("),
-        ("echo hello", "does not say its version"),
+        ("echo hello", "does not print its version"),
     ] {
         let system = System::new(qemu, GOOD_NODE);
         let unpacked = system.path("target").join("qemu/qemu-system-arm");
@@ -109,7 +109,7 @@ fn a_qemu_that_is_old_or_broken_is_replaced_by_an_unpacked_one() {
 
         // The next set-up finds the unpacked program.
         let again = output(&mut system.setup(&[]));
-        assert!(again.stdout.contains("nothing had to be done"), "{again:?}");
+        assert!(again.stdout.contains("everything was ready"), "{again:?}");
     }
 }
 

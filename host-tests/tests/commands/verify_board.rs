@@ -39,7 +39,7 @@ fn a_board_with_the_hosts_bits_is_verified_and_reported() {
     });
     assert_eq!(output.status.code(), Some(0), "{output:?}");
     assert!(
-        output.stdout.contains("every bit the host's"),
+        output.stdout.contains("all bit-identical to the host"),
         "{}",
         output.stdout
     );
@@ -65,7 +65,7 @@ fn a_board_with_the_hosts_bits_is_verified_and_reported() {
     // The board's report of restarts, and the checks for its owner.
     for row in [
         "| restarts during this verification | 0 |",
-        "| last restart by itself | none since it was switched on |",
+        "| last unplanned restart | none since power-on |",
         "| a night's run | (fill in) |",
     ] {
         assert!(markdown.contains(row), "no {row:?} in {markdown}");
@@ -74,7 +74,7 @@ fn a_board_with_the_hosts_bits_is_verified_and_reported() {
     // All methods in both motions and all scenes agree with the host.
     let agree = |columns: usize| {
         let is_row = |line: &&str| {
-            line.matches('|').count() == columns + 1 && line.contains("| the host's |")
+            line.matches('|').count() == columns + 1 && line.contains("| identical |")
         };
         markdown.lines().filter(is_row).count()
     };
@@ -206,21 +206,21 @@ fn the_report_has_differences_answers_of_the_person_and_counted_cycles() {
     let markdown = fs::read_to_string(folder.path().join("asked.md")).expect("the report");
 
     // The flipped bits are reported.
-    let sample = format!("not well: {}, chaotic: step 160: w2 is 0x", ON_BOARDS[1]);
+    let sample = format!("problem: {}, chaotic: step 160: w2 is 0x", ON_BOARDS[1]);
     assert!(
         said.iter().any(|line| line.starts_with(&sample)),
         "no {sample:?} in {said:#?}"
     );
     let scene = said
         .iter()
-        .find(|line| line.starts_with("not well: butterfly: frame"));
+        .find(|line| line.starts_with("problem: butterfly: frame"));
     assert!(
         scene.is_some_and(|line| line.contains("step 20: a1 is 0x")),
         "{said:#?}"
     );
 
     // The frame that takes too long is reported.
-    let too_long = "not well: upright: a frame of 85884.35 ms in a run of ";
+    let too_long = "problem: upright: a frame of 85884.35 ms in a run of ";
     assert!(
         said.iter().any(|line| line.starts_with(too_long)),
         "no {too_long:?} in {said:#?}"
@@ -228,7 +228,7 @@ fn the_report_has_differences_answers_of_the_person_and_counted_cycles() {
 
     // In addition to the panel and a button.
     assert!(
-        markdown.contains("5 not well") && markdown.contains("step 160: w2 is 0x"),
+        markdown.contains("problems: 5") && markdown.contains("step 160: w2 is 0x"),
         "{markdown}"
     );
 
@@ -252,7 +252,7 @@ fn the_report_has_differences_answers_of_the_person_and_counted_cycles() {
             "{what}: not {answer} in {markdown}"
         );
         assert_eq!(
-            said.contains(&format!("not well: not so: {what}")),
+            said.contains(&format!("problem: answered no: {what}")),
             answer == "no",
             "{said:#?}"
         );

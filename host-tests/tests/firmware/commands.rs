@@ -300,7 +300,7 @@ fn an_intact_command_that_cannot_be_read_is_answered_too() {
             "{message:?}"
         );
     }
-    assert!(refusal(Field::Message).ends_with("flash it anew"));
+    assert!(refusal(Field::Message).ends_with("flash the board again"));
 }
 
 /// The board receives its own messages on a looped-back link.

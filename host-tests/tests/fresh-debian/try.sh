@@ -105,7 +105,7 @@ sets_up() {
     enter "$folder/root" > "$folder/said" 2>&1 <<'END' || fail "it does not set up"
         target/debug/host-tests setup --yes && target/debug/host-tests setup
 END
-    said "nothing had to be done"
+    said "everything was ready"
 }
 
 # The command $1 ends with exit code $2; the rest are options of unshare.

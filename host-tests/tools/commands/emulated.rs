@@ -17,15 +17,16 @@ use emulator::process;
 use emulator::qemu::{Clock, Machine, Settings};
 use emulator::toolchain::{self, Consent};
 
-/// Finds or fetches everything that is needed to build and run the firmware: the ARM core library,
-/// QEMU, and rp2040js for the Pico.
+/// Finds or fetches everything that builds and runs the firmware: the ARM core library, QEMU, and
+/// rp2040js for the Pico.
 #[derive(Debug, Parser)]
 #[command(
     name = "cargo setup",
     after_help = "Example: cargo setup --yes
 
-Everything goes into target, host-tests/emulator/rp2040 and rustup's own folder, but for Node.js and npm: where they are missing, they
-are installed with apt-get after a question, or by --yes without one; elsewhere nothing is installed."
+Everything goes into target, host-tests/emulator/rp2040 and rustup's own folder. Only Node.js and
+npm are system packages: if they are missing, apt-get installs them after a question, or with --yes
+without one. Without apt-get nothing is installed."
 )]
 pub struct SetupOptions {
     /// Install missing system packages (nodejs, npm) without asking
@@ -45,7 +46,7 @@ pub fn setup(options: &SetupOptions) -> anyhow::Result<()> {
         toolchain::set_up_pico_with(consent(options.yes))?.display()
     ))?;
     if is_ready {
-        say("nothing had to be done")?;
+        say("everything was ready")?;
     }
     Ok(())
 }
@@ -53,20 +54,21 @@ pub fn setup(options: &SetupOptions) -> anyhow::Result<()> {
 /// The time limit of a firmware without `--seconds`.
 const LIMIT: Duration = Duration::from_secs(3600);
 
-/// Builds a firmware binary, runs it in QEMU and prints its log; exits as the firmware does.
+/// Builds a firmware binary, runs it in QEMU and prints its log; the exit code is the firmware's.
 #[derive(Debug, Parser)]
 #[command(name = "cargo fw", after_help = runnable())]
 pub struct FwOptions {
-    /// A binary of the firmware, or the path of an ELF file that is built already
+    /// A binary of the firmware, or the path of an existing ELF file
     #[arg(value_name = "BIN", required_unless_present = "check")]
     binary: Option<PathBuf>,
-    /// The board to run it on [default: the first that it is made for]
+    /// The board to run it on [default: the first board below that can run it]
     #[arg(long, visible_alias = "on", value_name = "NAME", value_parser = choice(&BOARDS, |board| board.name), hide_possible_values = true)]
     board: Option<&'static Board>,
-    /// Stop it after this long and end with success [default: fails after one hour]
+    /// Stop it after this many seconds, with exit code 0 [default: fails after one hour]
     #[arg(long, value_name = "N")]
     seconds: Option<u32>,
-    /// Only check that all binaries compile for all targets without a warning, clippy's included if it is installed
+    /// Only check that all binaries compile for all targets without a warning; includes clippy's
+    /// warnings if it is installed
     #[arg(long, conflicts_with = "binary")]
     check: bool,
 }
@@ -83,7 +85,7 @@ pub fn fw(options: &FwOptions) -> anyhow::Result<ExitCode> {
 
     if !is_path && !binaries().iter().any(|binary| *binary == name) {
         bail!(Refused::because(format_args!(
-            "no binary {name}; there are {}",
+            "{name}: no binary of the firmware; choose one of {}, or write a path",
             binaries().join(", ")
         )));
     }
@@ -174,11 +176,11 @@ fn binaries() -> Vec<String> {
     names
 }
 
-/// Sets everything up and runs every test, those in QEMU included.
+/// Sets everything up and runs all tests, including those in QEMU. Takes about ten minutes.
 #[derive(Debug, Parser)]
 #[command(name = "cargo verify", after_help = "Example: cargo verify --long")]
 pub struct TestOptions {
-    /// Run the tests that take hours, too
+    /// Also run the tests that take hours
     #[arg(long)]
     long: bool,
     /// Install missing system packages (nodejs, npm) without asking
@@ -215,9 +217,9 @@ pub fn verify(options: &TestOptions) -> anyhow::Result<ExitCode> {
         process::spawn(&mut command, limit)
     };
     complain(if options.long {
-        "note: all tests, those that take hours included"
+        "note: running all tests, including those that take hours"
     } else {
-        "note: all tests take some ten minutes"
+        "note: all tests take about ten minutes"
     });
 
     // The tests are compiled while the tools are fetched and the firmware is compiled, because none

@@ -31,15 +31,16 @@ const DRIVE_TYPE: &str = "vfat";
 const MOUNTING: Duration = Duration::from_secs(10);
 const LOOK: Duration = Duration::from_millis(250);
 
-/// Builds the firmware of the Raspberry Pi Pico as a file, and copies it onto the board: one that
-/// shows itself as a drive, or one that runs this firmware at a USB port.
+/// Builds the firmware of the Raspberry Pi Pico as target/pico.uf2, and copies it onto the board if
+/// one is connected: as the drive RPI-RP2, or running this firmware at a USB port.
 #[derive(Debug, Parser)]
 #[command(
     name = "cargo pico",
     after_help = "Example: cargo pico --drive /media/$USER/RPI-RP2"
 )]
 pub struct PicoOptions {
-    /// The board's drive, which is there when BOOTSEL is held while the cable goes in [default: looked for]
+    /// The board's drive; it appears if BOOTSEL is held while the cable is plugged in [default: the
+    /// mounted drive RPI-RP2]
     #[arg(long, value_name = "FOLDER", value_parser = drive)]
     drive: Option<PathBuf>,
 }
@@ -64,7 +65,8 @@ pub fn pico(options: &PicoOptions) -> anyhow::Result<()> {
         None => {
             let ports = serialport::available_ports().unwrap_or_default();
             let Some(port) = running_board(&ports) else {
-                const BY_HAND: &str = "hold BOOTSEL while you plug the Pico in, then copy this file onto the drive RPI-RP2; it starts by itself";
+                const BY_HAND: &str = "hold BOOTSEL while you plug the Pico in, then copy this \
+                                       file onto the drive RPI-RP2; it starts by itself";
                 return Ok(say(BY_HAND)?);
             };
             restart_in_boot_loader(port)?
@@ -136,16 +138,20 @@ const CHIPS: [&str; 4] = ["STM32F405", "STM32F407", "STM32F415", "STM32F417"];
 
 const EXAMPLES: &str = "Examples:
   cargo flash-f4 --chip STM32F407VGTx
-  cargo flash-f4 --dfu    (BOOT0 at 3.3 V, then reset: the chip waits at its USB port; afterwards the wire off, then reset)";
+  cargo flash-f4 --dfu
 
-/// Builds the firmware of the STM32F405 and flashes it: through a debug probe, whose log it shows until Ctrl-C, or by USB.
+To flash over USB, first connect BOOT0 with 3.3 V and press reset. Afterwards take the wire off and
+press reset.";
+
+/// Builds the firmware of the STM32F405 and flashes it: with a debug probe (then shows the log
+/// until Ctrl-C), or over USB.
 #[derive(Debug, Parser)]
 #[command(name = "cargo flash-f4", after_help = EXAMPLES)]
 pub struct FlashOptions {
-    /// The chip, by probe-rs's name: an STM32F405 or F407
+    /// The chip, an STM32F405, F407, F415 or F417, by probe-rs's name
     #[arg(long, default_value = "STM32F405RGTx", value_parser = chip)]
     chip: String,
-    /// Without a probe, over the USB loader that the chip has built in
+    /// Flash without a probe, over the chip's built-in USB loader
     #[arg(long, conflicts_with = "chip")]
     dfu: bool,
 }
@@ -157,7 +163,7 @@ fn chip(name: &str) -> Result<String, String> {
     if is_it {
         Ok(name.to_owned())
     } else {
-        Err(format!("the firmware is for {}", CHIPS.join(", ")))
+        Err(format!("the firmware runs on {}", CHIPS.join(", ")))
     }
 }
 
@@ -170,14 +176,14 @@ pub fn stm32f405(options: &FlashOptions) -> anyhow::Result<()> {
     } else {
         (
             "probe-rs",
-            "https://probe.rs/docs/getting-started/installation",
+            "cargo install probe-rs-tools --locked, or https://probe.rs",
         )
     };
 
     // This check precedes the build, which takes a long time.
     if toolchain::find(program).is_none() {
         bail!(Refused::because(format_args!(
-            "flashing needs {program}, which is not installed; see {source}"
+            "flashing needs {program}, which is not installed: {source}"
         )));
     }
     let elf = toolchain::ready()?.build_for(&STM32F405)?;

@@ -28,7 +28,7 @@ const HASHERS: [(&str, &[&str]); 2] = [("sha256sum", &[]), ("shasum", &["-a", "2
 /// Makes target/release-files/: the Pico's UF2, the ELF file of every board, the packaged kernel,
 /// and their SHA-256 sums.
 ///
-/// The files depend on the commit and the compiler alone, not on folders or the machine.
+/// The files depend only on the commit and the compiler, not on folders or the machine.
 #[derive(Debug, Parser)]
 #[command(name = "cargo release-files")]
 pub struct ReleaseOptions {}
@@ -39,7 +39,8 @@ pub fn run(_: &ReleaseOptions) -> anyhow::Result<()> {
         .find(|(program, _)| toolchain::find(program).is_some());
     let Some((hasher, arguments)) = hasher else {
         bail!(Refused::because(
-            "neither sha256sum nor shasum is installed: a release needs one, as in the package coreutils"
+            "neither sha256sum nor shasum is installed: a release needs one, as in the package \
+             coreutils"
         ));
     };
     let toolchain = toolchain::set_up()?;

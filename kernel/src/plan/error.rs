@@ -29,11 +29,11 @@ impl Limit {
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
-            Limit::End => "the end of the time asked for",
+            Limit::End => "the requested duration",
             Limit::Growth => "the growth of errors",
             Limit::Budget => "the budget for a frame",
             Limit::Planning => "the budget for planning",
-            Limit::Method => "what this method can do",
+            Limit::Method => "the method itself",
         }
     }
 }
@@ -72,7 +72,8 @@ impl fmt::Display for PlanError {
                 let limit = limit.name();
                 write!(
                     f,
-                    "no method within the budgets meets the tolerance; finer steps are forbidden by {limit}"
+                    "no method within the budgets meets the tolerance; \
+                     finer steps are ruled out by {limit}"
                 )
             }
         }

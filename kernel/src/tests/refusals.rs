@@ -158,7 +158,7 @@ fn errors_are_printed_in_one_line() {
         ),
         (
             Error::UnequalRods { l1: 3.0, l2: 4.0 },
-            "l2 = 4.0: the equal-rod form needs l2 = l1 = 3.0",
+            "l2 = 4.0: must equal l1 = 3.0; these equations are for rods of equal length",
         ),
     ] {
         assert_eq!(error.to_string(), line);

@@ -17,8 +17,8 @@ pub fn refusal(field: Field) -> &'static str {
     match field {
         // A board of this version can read every message of this host, unless the two have
         // different tables of methods.
-        Field::Message => "message; its firmware is not of this version, flash it anew",
-        Field::Panel => "panel; the board has none with a choice of controllers",
+        Field::Message => "message; its firmware has another version: flash the board again",
+        Field::Panel => "panel; it has no panel with a choice of controllers",
         field => field.name(),
     }
 }

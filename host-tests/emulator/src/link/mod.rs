@@ -96,7 +96,8 @@ fn choose(ports: &[SerialPortInfo]) -> Result<String, String> {
 
     match &ports.iter().filter_map(over_usb).collect::<Vec<_>>()[..] {
         [] => Err(format!(
-            "{AUTO}: no board and no serial adapter found on USB; name the port, as in --port /dev/ttyUSB0"
+            "{AUTO}: no board and no serial adapter found on USB; name the port, as in --port \
+             /dev/ttyUSB0"
         )),
         [(name, _)] => Ok(name.clone()),
         several => {
@@ -105,7 +106,7 @@ fn choose(ports: &[SerialPortInfo]) -> Result<String, String> {
                 .map(|(name, product)| format!("{name} ({product})"))
                 .collect();
             Err(format!(
-                "{AUTO}: there are several, name one: {}",
+                "{AUTO}: several were found; name one: {}",
                 named.join(", ")
             ))
         }
@@ -148,9 +149,10 @@ mod tests {
             choose(&[built_in, pico.clone()]),
             Ok("/dev/ttyACM0".to_owned())
         );
-        let several = "auto: there are several, name one: \
-            /dev/ttyACM0 (Double pendulum), /dev/ttyUSB0 (no name)"
-            .to_owned();
+        let several =
+            "auto: several were found; name one: /dev/ttyACM0 (Double pendulum), /dev/ttyUSB0 (no \
+             name)"
+                .to_owned();
         assert_eq!(choose(&[pico, other]), Err(several));
     }
 

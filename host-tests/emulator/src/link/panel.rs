@@ -24,7 +24,7 @@ fn identified(found: &Found) -> String {
     } = found;
     let status = status.map_or(String::new(), |status| format!(" (status {status:#04x})"));
     let tried = if *controller == Controller::Sh1107 {
-        ", of which only panels of 128 x 128 can be right"
+        "; only panels of 128 x 128 are supported"
     } else {
         ""
     };
@@ -35,7 +35,7 @@ fn identified(found: &Found) -> String {
 fn frames(report: &PanelReport) -> String {
     let shown = report.shown;
     match u32::from(shown) {
-        0 => "no second is over yet".to_owned(),
+        0 => "frame rate not known yet".to_owned(),
         TICK_RATE => format!("{shown} frames/s"),
         _ => format!(
             "{shown} of {TICK_RATE} frames/s: the bus is slow; use 2.2 to 4.7 kOhm from SCL and SDA \

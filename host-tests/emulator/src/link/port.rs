@@ -213,11 +213,13 @@ impl Port {
             }
             Some(LinkError::Version(version)) => {
                 format!(
-                    "{name}: the board speaks version {version} of the protocol, this program {VERSION}; flash it anew"
+                    "{name}: the board uses version {version} of the protocol, this program \
+                     version {VERSION}; flash the board again"
                 )
             }
             _ => format!(
-                "{name}: {bytes} bytes and no message: another device, or its link at another speed"
+                "{name}: {bytes} bytes received, but no message; is it another device, or another \
+                 baud rate?"
             ),
         }
     }
@@ -226,7 +228,7 @@ impl Port {
 /// Returns the notice of a port that has gone. Over USB, a board's restart looks like an unplugged
 /// cable; the board reports the cause when it is back.
 fn gone(name: &str, why: &str) -> String {
-    format!("{name} is gone ({why}): the cable is out, or the board restarts; waiting for it")
+    format!("{name} is gone ({why}): the cable is unplugged, or the board restarts; waiting for it")
 }
 
 fn open(name: &str) -> serialport::Result<Box<dyn SerialPort>> {
@@ -292,11 +294,12 @@ fn reason(name: &str, error: &serialport::Error) -> String {
     use serialport::ErrorKind::{Io, NoDevice};
     match error.kind() {
         NoDevice => format!(
-            "{name}: another program has it open; ModemManager lets a new port go after some seconds"
+            "{name}: another program uses this port; close it, or wait some seconds if it is \
+             ModemManager"
         ),
         Io(ErrorKind::PermissionDenied) => denied(name, group(name).as_deref()),
         Io(ErrorKind::NotFound) => format!("{name}: there is no such port{}", present()),
-        _ => format!("{name}: it cannot be used as a serial port: {error}"),
+        _ => format!("{name}: not usable as a serial port: {error}"),
     }
 }
 
@@ -317,7 +320,7 @@ fn group(name: &str) -> Option<String> {
 fn denied(name: &str, group: Option<&str>) -> String {
     let remedy = match group {
         Some(group) => format!("as root: usermod -aG {group} USER, then log in again"),
-        None => format!("only root may; as root: chmod a+rw {name}"),
+        None => format!("only root has access; as root: chmod a+rw {name}"),
     };
     format!("{name}: permission denied; {remedy}")
 }
@@ -359,7 +362,7 @@ mod tests {
         assert!(
             Port::open("/dev/null")
                 .err()
-                .is_some_and(|reason| reason.contains("cannot be used as a serial port"))
+                .is_some_and(|reason| reason.contains("not usable as a serial port"))
         );
     }
 

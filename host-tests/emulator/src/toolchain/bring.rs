@@ -183,7 +183,7 @@ fn output_or_reason(
     let marks = ["No space left on device", "E: ", "error: ", "npm "];
     let line = marks.iter().find_map(marked).or_else(|| lines().last());
     let line: String = line
-        .unwrap_or("it fails without a word")
+        .unwrap_or("it failed without a message")
         .chars()
         .take(200)
         .collect();

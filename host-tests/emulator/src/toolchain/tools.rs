@@ -114,7 +114,9 @@ fn unpack(
     limit: Duration,
 ) -> Result<(), String> {
     if find("apt-get").is_none() {
-        return Err("there is no apt-get, by which Debian's packages are unpacked".to_owned());
+        return Err(
+            "there is no apt-get, which this command needs to unpack Debian's packages".to_owned(),
+        );
     }
     let mut command = Command::new("sh");
     command
@@ -165,7 +167,9 @@ fn from_source(folder: &Path) -> Result<FromSource, Option<String>> {
     let (libraries, _) = libraries(&rustc).map_err(|_| None)?;
     if !libraries.join("src/rust/library/core").is_dir() || !cargo.is_file() {
         let all = CORE_PACKAGES.join(", ");
-        return Err(Some(format!("of Debian's {all} not all are installed")));
+        return Err(Some(format!(
+            "not all of Debian's packages {all} are installed"
+        )));
     }
 
     // Debian's compiler must be new enough for this workspace.
@@ -204,7 +208,7 @@ fn libraries(rustc: &Path) -> Result<(PathBuf, String), String> {
     let output = quick_output(command.env("RUSTUP_AUTO_INSTALL", "0"))?;
     let (sysroot, host) = output
         .split_once('\n')
-        .ok_or("rustc does not say where its libraries are")?;
+        .ok_or("rustc does not print where its libraries are")?;
     Ok((
         Path::new(sysroot).join("lib/rustlib"),
         host.trim().to_owned(),
@@ -258,7 +262,7 @@ fn judged(path: &Path) -> Result<(), String> {
         .and_then(|(_, rest)| rest.split(|c: char| c.is_whitespace() || c == '(').next());
     let Some((version, major)) = version.and_then(|version| Some((version, number(version, 0)?)))
     else {
-        return Err(format!("{shown} does not say its version"));
+        return Err(format!("{shown} does not print its version"));
     };
     if major < LEAST_QEMU {
         return Err(format!(

@@ -562,6 +562,24 @@ fn a_bus_that_is_held_up_is_reported_once_a_second() {
 }
 
 #[test]
+fn errors_of_the_panel_are_printed_in_words() {
+    let text = |error: OledError| error.to_string();
+    assert_eq!(
+        text(OledError::Absent(SILENCE)),
+        "absent: no answer at 0x3C and 0x3D"
+    );
+    assert_eq!(
+        text(OledError::Absent(ErrorKind::Other)),
+        "absent: the bus hangs"
+    );
+    let slow = text(OledError::Slow { shown: 30 });
+    assert!(
+        slow.starts_with("the bus is slow: 30 of 60 frames"),
+        "{slow}"
+    );
+}
+
+#[test]
 fn an_absent_panel_is_searched_once_a_second_and_may_come_and_go() {
     let plug = |panel: &mut Panel, plugged_in| {
         panel.bus.panel = Controller::new(SSD1306, 0x3C).plugged(plugged_in)

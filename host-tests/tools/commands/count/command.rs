@@ -34,14 +34,16 @@ const EXAMPLES: &str = "Examples:
   cargo count --minimal                                   Run::advance in a crate outside, on three cores
   cargo count --elf firmware.elf --function step --seconds 5
 
-A function's figures are from its first instruction to its return: the call itself comes on top, about 2 cycles and 1 for
-each argument. What the program prints, and how it ended, goes to stderr. If it fails: no figures, exit code 1.";
+A function is counted from its first instruction to its return. The call itself costs about 2
+cycles more, and 1 for each argument. The program's output and its end are printed to stderr. If it
+fails, there are no figures and the exit code is 1.";
 
-/// Counts executed instructions (exact) and Cortex-M cycles (an estimate from the published instruction timings).
+/// Counts executed instructions (exact) and Cortex-M cycles (an estimate from the published
+/// instruction timings).
 #[derive(Debug, Parser)]
 #[command(name = "cargo count", after_help = EXAMPLES)]
 pub struct CountOptions {
-    /// The method of this name, or all whose name contains this
+    /// The method of this name, or all methods whose name contains it
     #[arg(default_value = "")]
     method: String,
     /// The boards, with commas between them [default: lm3s6965evb, a Cortex-M3; with --elf
@@ -53,19 +55,19 @@ pub struct CountOptions {
     #[arg(long, value_name = "FILE", requires = "function",
           conflicts_with_all = ["method", "steps", "m2", "l2", "angle", "halvings", "listing"])]
     elf: Option<PathBuf>,
-    /// The function of that program: mangled, demangled, or a part of its name that no other has
+    /// The function of that program: its mangled or demangled name, or a unique part of it
     #[arg(long, value_name = "NAME", requires = "elf")]
     function: Option<String>,
-    /// How long that program may run, s
+    /// The time limit of that program, s
     #[arg(long, value_name = "N", default_value_t = 600, requires = "elf", value_parser = clap::value_parser!(u32).range(1..))]
     seconds: u32,
-    /// Steps to average over [default: 256, or fewer of a costly method]
+    /// Number of steps to average over [default: 256, fewer for an expensive method]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=MOST_STEPS))]
     steps: Option<u32>,
-    /// The mass of bob 2, kg; that of bob 1 is 1
+    /// The mass of bob 2, kg; bob 1 has 1 kg
     #[arg(long, value_name = "KG", default_value_t = 1.0)]
     m2: f64,
-    /// The length of rod 2, m; that of rod 1 is 1
+    /// The length of rod 2, m; rod 1 has 1 m
     #[arg(long, value_name = "M", default_value_t = 1.0)]
     l2: f64,
     /// Both starting angles, rad
@@ -84,7 +86,7 @@ pub struct CountOptions {
     /// Write these prices into the kernel's README, too
     #[arg(long, requires = "minimal", conflicts_with = "on")]
     readme: bool,
-    /// Count what a plan's steps cost on each kind of core and write it into the firmware's price lists instead
+    /// Count the prices of plans on each kind of core, and write them into kernel/src/plan/prices.rs
     #[arg(long, conflicts_with_all = ["method", "on", "elf", "steps", "m2", "l2", "angle", "halvings", "listing"])]
     write_prices: bool,
 }
@@ -192,7 +194,7 @@ impl CountOptions {
                 .map(|method| method.name())
                 .collect::<Vec<_>>()
                 .join(", ");
-            bail!("no method '{}'; there are {names}", self.method)
+            bail!("{}: no such method; choose from {names}", self.method)
         }
 
         // A method may refuse the pendulum, but not all of them may.
@@ -409,9 +411,9 @@ fn count_calls(
     ended.output.lines().for_each(complain);
 
     match ended.status {
-        Ok(status) => complain(format_args!("the program ended by itself, {status}")),
+        Ok(status) => complain(format_args!("the program ended, {status}")),
         Err(_) => complain(format_args!(
-            "stopped after {} s and {number} calls; see --seconds",
+            "the program was stopped after {} s and {number} calls; --seconds sets this limit",
             limit.as_secs()
         )),
     }

@@ -208,7 +208,8 @@ pub fn calls_of<'a>(
     // Without vectors, the program would never run.
     ensure!(
         image.holds(vectors),
-        "never called: the program has nothing at {vectors:#x}, where {board} reads its vectors; see --on"
+        "never called: the program has nothing at {vectors:#x}, where {board} reads its vectors; \
+         see --on"
     );
 
     let mut calls = Calls::of(image, core, BTreeSet::from([function.address]));
@@ -247,7 +248,8 @@ pub fn calls_of<'a>(
         let instruction = instruction.row.name;
         let cpu = target.board.cpu;
         bail!(
-            "{name} was never called: {instruction} at {address:#x} is no instruction of a {cpu}; see --on"
+            "{name} was never called: {instruction} at {address:#x} is no instruction of a {cpu}; \
+             see --on"
         );
     }
 

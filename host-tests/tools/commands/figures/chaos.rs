@@ -73,7 +73,8 @@ pub fn figure() -> Result<String> {
     let paths = paths(1)?;
     let title = format!("Figure 7: path of bob 2 in the first {DURATION} s");
     let particulars = format!(
-        "mass ratio {MASS_RATIO}, both rods let go at rest at {START}°; l = {ROD} m, g = {PAGE_GRAVITY} m/s², m₁ = 1 kg"
+        "mass ratio {MASS_RATIO}, both rods let go at rest at {START}°; l = {ROD} m, g = \
+         {PAGE_GRAVITY} m/s², m₁ = 1 kg"
     );
     let marks =
         "○ start, ● end; · every 1 s, with the seconds; paler earlier, darker later; × pivot";

@@ -18,17 +18,17 @@ use demo::DemoOptions;
 use emulator::out_file::write;
 use emulator::toolchain::workspace;
 
-/// Draws the book's figures 2 to 5 and 7 from the kernel, as SVG.
+/// Draws figures 2 to 5 and 7 of math24.net's page on the double pendulum, as SVG.
 #[derive(Debug, Parser)]
 #[command(
     name = "cargo figures",
     after_help = "Example: cargo figures --out /tmp/figures"
 )]
 pub struct FiguresOptions {
-    /// Also record an animation of every scene, each by the `cargo demo` that is printed as it begins
+    /// Also record an animation of every scene; prints the `cargo demo` command of each
     #[arg(long)]
     animations: bool,
-    /// Where to write [default: host-tests/pictures of the project, over what the READMEs show]
+    /// The folder to write to [default: host-tests/pictures, which the READMEs show]
     #[arg(long, alias = "folder", value_name = "FOLDER")]
     out: Option<PathBuf>,
 }
@@ -104,6 +104,10 @@ fn record(scene: SceneName, folder: &Path) -> Result<()> {
         record: Some(file),
         ..DemoOptions::try_parse_from(words)?
     };
-    ensure!(demo::run(&options)?, "not all was well in {}", scene.name());
+    ensure!(
+        demo::run(&options)?,
+        "{} was recorded with the problems above",
+        scene.name()
+    );
     Ok(())
 }

@@ -59,9 +59,11 @@ pub fn figure(number: u32, mass_ratio: f64) -> Result<String> {
     let modes = modes(mass_ratio)?;
     let points = points(modes);
     let title = format!("Figure {number}: small oscillations, mass ratio {mass_ratio}");
-    let start = "let go at rest at α₁ = 0°, α₂ = 30°; line: the angle; shade: how far it can swing while the modes beat";
+    let start = "let go at rest at α₁ = 0°, α₂ = 30°; line: the angle; shade: how far it can \
+                 swing while the modes beat";
     let particulars = format!(
-        "l = {ROD} m, g = {PAGE_GRAVITY} m/s²; ω₁ = {:.3} rad/s, ω₂ = {:.3} rad/s; the envelope repeats every {:.3} s",
+        "l = {ROD} m, g = {PAGE_GRAVITY} m/s²; ω₁ = {:.3} rad/s, ω₂ = {:.3} rad/s; the envelope \
+         repeats every {:.3} s",
         modes.fast.frequency,
         modes.slow.frequency,
         TAU / modes.exchange()

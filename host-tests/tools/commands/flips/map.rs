@@ -18,7 +18,7 @@ pub struct Map {
     pub limit: f32,
     /// Pixels across and down.
     pub size: [usize; 2],
-    /// The start in the middle, rad.
+    /// The start in the middle of the map, rad.
     pub centre: [f64; 2],
     /// The distance from the middle to each side, rad.
     pub half: f64,

@@ -18,10 +18,11 @@ use console::progress::Progress;
 use emulator::out_file::OutFile;
 use map::Map;
 
-/// Draws when a rod first turns over, for every start from rest: a1 across, a2 upwards, colour the time.
+/// Draws a map of the time until a rod first turns over, for every start from rest: a1 across, a2
+/// upwards, the time as colour.
 ///
-/// Each start is followed twice, with a step and with half of it, in f32; the time shown is the first's.
-/// Numbers are decimals (0.25, 1e-3) or fractions (1/256).
+/// Each start is computed twice in f32, with a step and with half of it; the map shows the first
+/// time. Numbers are decimals (0.25, 1e-3) or fractions (1/256).
 #[derive(Debug, Parser)]
 #[command(
     name = "cargo flips",
@@ -30,13 +31,13 @@ use map::Map;
   cargo flips --size 1024 --out flips.png
   cargo flips --size 512 --limit 100 --centre 1.9,2.2 --zoom 8 --doubt --out corner.png
 
-Bad input: one line on stderr, exit code 2."
+Exit code 2: bad input, with one line on stderr."
 )]
 pub struct FlipsOptions {
-    /// Pixels: one number for a square, or two
+    /// Size in pixels: one number for a square, or two
     #[arg(long, value_name = "N|WxH", default_value = "512", value_parser = size)]
     size: [usize; 2],
-    /// How long to wait for a turn-over, sqrt(l1/g)
+    /// The longest time to wait for a turn-over, sqrt(l1/g)
     #[arg(
         long,
         value_name = "T",
@@ -60,7 +61,7 @@ pub struct FlipsOptions {
         allow_hyphen_values = true
     )]
     lengths: Pair,
-    /// The start in the middle, rad
+    /// The start in the middle of the map, rad
     #[arg(
         long,
         value_name = "A1,A2",
@@ -76,10 +77,10 @@ pub struct FlipsOptions {
         allow_hyphen_values = true
     )]
     zoom: Number,
-    /// Show the starts of which the two steps differ by more than a grey level of the panel
+    /// Mark the starts whose two times differ by more than a grey level of the panel
     #[arg(long)]
     doubt: bool,
-    /// What to write: a picture (.png) or a table (.csv)
+    /// The file to write: a picture (.png) or a table (.csv)
     #[arg(long, value_name = "FILE", default_value = "flips.png", value_parser = picture_or_table)]
     out: PathBuf,
 }
@@ -100,7 +101,8 @@ pub fn run(options: &FlipsOptions) -> Result<()> {
     let steps = map.steps();
     if steps > ANNOUNCED_STEPS {
         complain(format_args!(
-            "note: up to {steps:.1e} steps for each of {computed} starts; a smaller --limit takes less time"
+            "note: up to {steps:.1e} steps for each of {computed} starts; a smaller --limit takes \
+             less time"
         ));
     }
 
@@ -223,7 +225,8 @@ impl FlipsOptions {
         let unit = 10_f64.powf(longest.log10().floor() - 1.0);
         ensure!(
             limit.value() <= longest,
-            "--limit {limit}: at most {:.1e} for these --masses and --lengths (over {MOST_STEPS:.0e} steps a start)",
+            "--limit {limit}: at most {:.1e} for these --masses and --lengths (more takes \
+             over {MOST_STEPS:.0e} steps a start)",
             (longest / unit).floor() * unit
         );
         Ok(map)

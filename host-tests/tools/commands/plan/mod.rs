@@ -53,7 +53,8 @@ fn words(scene: &Problem, plan: &Result<Plan, Limit>, chip: &Chip) -> Vec<String
                 format!("method   {}", plan.method),
                 format!("step     {}", step(scene, plan)),
                 format!(
-                    "horizon  expected to stay within half a pixel of the exact motion until {horizon:.2} s of {} s",
+                    "horizon  expected to stay within half a pixel of the exact motion until \
+                     {horizon:.2} s of {} s",
                     scene.duration
                 ),
                 format!(
@@ -73,7 +74,7 @@ fn words(scene: &Problem, plan: &Result<Plan, Limit>, chip: &Chip) -> Vec<String
             ]
         }
         Err(limit) => vec![
-            format!("nothing  no method is fast enough for a {}", chip.title),
+            format!("method   none is fast enough for a {}", chip.title),
             format!("why      {}", forbidden(*limit, frame)),
         ],
     };
@@ -103,23 +104,23 @@ fn pixels(error: f32) -> String {
 
 fn step(scene: &Problem, plan: &Plan) -> String {
     match plan.steps {
-        0 => String::from("none: every frame is computed by itself"),
-        1 => format!("1/{} s, one to a frame", scene.rate),
+        0 => String::from("none: the closed form computes each frame directly"),
+        1 => format!("1/{} s, 1 per frame", scene.rate),
         steps => format!(
-            "1/{} s, {steps} to a frame",
+            "1/{} s, {steps} per frame",
             u64::from(scene.rate) * u64::from(steps)
         ),
     }
 }
 
 fn method(method: Method) -> String {
-    let directions = |why| format!("to draw, directions are enough and no angles needed; {why}");
+    let directions = |why| format!("drawing needs only directions, no angles; {why}");
     match method {
         Method::ClosedFormF32 => {
             "until the horizon the linear motion is within half a pixel".into()
         }
-        Method::Rk4F32DirectionPlain => directions("the roundings of plain sums do not show"),
-        Method::Rk4F32Direction => directions("the roundings of plain sums would show"),
+        Method::Rk4F32DirectionPlain => directions("the rounding errors of plain sums do not show"),
+        Method::Rk4F32Direction => directions("the rounding errors of plain sums would show"),
         Method::Rk4Fixed32 => directions("integers are cheapest here"),
         Method::Extrapolation10Fixed64 => {
             "32-bit methods are too inaccurate, or need so many steps that they cost more".into()
@@ -133,9 +134,10 @@ fn limit(plan: &Plan, frame: f32) -> String {
         Limit::End if plan.steps > 1 => {
             "half as many steps would be too inaccurate, or could miss the fastest motion".into()
         }
-        Limit::End => "nothing cheaper that was tried is right to the end".into(),
+        Limit::End => "no cheaper method that was tried stays accurate to the end".into(),
         Limit::Growth => {
-            "the motion is chaotic: even 64 bits are not enough beyond this time, in any number of steps"
+            "the motion is chaotic: even 64 bits are not enough beyond this time, in any number \
+             of steps"
                 .into()
         }
         Limit::Budget => format!(
@@ -151,8 +153,8 @@ fn forbidden(limit: Limit, frame: f32) -> String {
         Limit::Budget => {
             format!("steps fine enough cost more than the {frame:.0} cycles allowed for a frame")
         }
-        Limit::Planning => String::from("the time for planning ended before anything was found"),
-        other => format!("what forbids finer steps: {}", other.name()),
+        Limit::Planning => String::from("the time for planning ended before a method was found"),
+        other => format!("finer steps are ruled out by {}", other.name()),
     }
 }
 
@@ -164,7 +166,7 @@ fn energy(scene: &Problem) -> Option<String> {
     // turn by a radian.
     let radian = 4.0 * pendulum.admissible_step(&state).ok()?;
     if !radian.is_finite() {
-        return Some(String::from("without energy nothing moves"));
+        return Some(String::from("there is no energy, so nothing moves"));
     }
     let turns = if pendulum.cannot_turn_over(&state) {
         "there is not enough energy for a rod to turn over"
@@ -172,7 +174,7 @@ fn energy(scene: &Problem) -> Option<String> {
         "there is enough energy for a rod to turn over"
     };
     Some(format!(
-        "{turns}; at most {:.0} rad/s",
+        "{turns}; the rods turn at most {:.0} rad/s",
         (1.0 / radian).ceil()
     ))
 }

@@ -36,12 +36,12 @@ fn finish(mut search: Search) -> Result<Plan, PlanError> {
 pub struct SceneOptions {
     #[command(flatten)]
     pub start: StartOptions,
-    /// A built-in scene as the boards start it, in f32 (excludes --angles, --velocities, --masses,
-    /// --lengths, --gravity, --height, --duration and --rate)
+    /// A built-in scene, with the f32 values that the boards start it with (excludes --angles,
+    /// --velocities, --masses, --lengths, --gravity, --height, --duration and --rate)
     #[arg(long, value_name = "NAME", value_parser = choice(SceneName::ALL.iter().copied(), SceneName::name),
           conflicts_with_all = ["masses", "lengths", "gravity", "angles", "velocities", "degrees", "height", "duration", "rate"])]
     pub scene: Option<SceneName>,
-    /// Height of the display, pixels, at most 1e6; both rods together are half of it long
+    /// Height of the display, pixels, at most 1e6; both rods together have half this length
     #[arg(
         long,
         value_name = "PIXELS",
@@ -49,7 +49,7 @@ pub struct SceneOptions {
         allow_hyphen_values = true
     )]
     pub height: Number,
-    /// How long the scene lasts, s
+    /// Duration of the scene, s
     #[arg(
         long,
         value_name = "T",
@@ -60,7 +60,7 @@ pub struct SceneOptions {
     /// Frames per second, 1 to 65535
     #[arg(long, value_name = "N", default_value_t = 60, value_parser = value_parser!(u16).range(1..))]
     pub rate: u16,
-    /// The chip that computes it; a board's name stands for its chip
+    /// The chip that computes it, or the board with this chip
     #[arg(long, visible_alias = "on", value_name = "CHIP", default_value = CHIPS[0].name, value_parser = chip())]
     pub target: Chip,
 }
@@ -106,10 +106,12 @@ impl SceneOptions {
         let settings = name.first_settings();
         // The board's own code starts the scene, and so determines the size of the drawing.
         let show = Show::on(self.target.processor, name, &settings)?;
-        let planned = show
-            .player
-            .plan()
-            .with_context(|| format!("--scene {}: has no motion to plan", name.name()))?;
+        let planned = show.player.plan().with_context(|| {
+            format!(
+                "--scene {}: has no motion to plan; choose another scene, as in --scene page",
+                name.name()
+            )
+        })?;
         Ok(settings.problem(planned.height))
     }
 

@@ -190,13 +190,15 @@ fn not_enclosed(scene: &Problem, frames: &[Verdict]) -> String {
     let ratio = |a: f64, b: f64| (a / b).max(b / a);
     // The likeliest cause first.
     if frames.last().is_some_and(|frame| frame.width > WIDE) {
-        String::from("its enclosure has grown too wide: a shorter --duration ends before")
+        String::from(
+            "its enclosure has become too wide; a shorter --duration ends before this time",
+        )
     } else if ratio(l1, l2) > LENGTHS {
-        format!("rods that differ more than {LENGTHS}-fold may be out of range: change --lengths")
+        format!("rods that differ more than {LENGTHS}-fold may be out of range; change --lengths")
     } else if ratio(m1, m2) > MASSES {
-        format!("bobs that differ more than {MASSES}-fold may be out of range: change --masses")
+        format!("bobs that differ more than {MASSES}-fold may be out of range; change --masses")
     } else {
-        String::from("it is too fast for a frame: take a higher --rate or slower --velocities")
+        String::from("it is too fast for a frame; take a higher --rate or slower --velocities")
     }
 }
 
@@ -230,7 +232,7 @@ pub fn words(
             not_enclosed(scene, frames)
         ),
         _ => format!(
-            "none wrong of all {} frames, until {end:.3} s",
+            "no frame wrong of all {} frames, until {end:.3} s",
             frames.len()
         ),
     };
@@ -238,14 +240,18 @@ pub fn words(
     // The prediction of the board, for comparison.
     let predicted = match plan {
         Ok(plan) => format!(
-            "right until {:.3} s by {}, steps to a frame: {}",
+            "right until {:.3} s by {}, steps per frame: {}",
             plan.horizon, plan.method, plan.steps
         ),
         Err(_) => String::from("no method is fast enough"),
     };
-    let unknown = ambiguity_time(scene, frames.len() as u32, stopped).map_or(String::new(), |time| {
-        format!("\nunknown    the numbers on the panel are too coarse to tell where a bob is after {time:.3} s")
-    });
+    let unknown =
+        ambiguity_time(scene, frames.len() as u32, stopped).map_or(String::new(), |time| {
+            format!(
+                "\nunknown    the numbers on the panel are too coarse to tell where a bob is \
+                 after {time:.3} s"
+            )
+        });
 
     let known = frames.last().map_or_else(
         || String::from("the start only"),
@@ -255,7 +261,7 @@ pub fn words(
         },
     );
     format!(
-        "method     {method}, steps to a frame: {steps}
+        "method     {method}, steps per frame: {steps}
 proved     within half a pixel until {:.3} s, all {right} frames
            {first}
 undecided  {open} frames

@@ -24,32 +24,34 @@ const EXAMPLES: &str = "Examples:
   cargo prove --scene page
   cargo prove --angles 120,120 --degrees --method rk4-f32-direction --steps 4
 
-Ctrl-C leaves what is proved until then.";
+Ctrl-C ends early and prints the proof so far.";
 
 /// Proves how long the frames that a chip draws stay within half a pixel of the exact motion. It
 /// encloses that motion, rounding errors included, and checks each frame of the planned method,
 /// which is bit-identical on every chip.
 ///
-/// The motion is that of the decimals and fractions given; with --scene it is that of the board's own numbers.
+/// The exact motion starts from exactly the decimals and fractions given, or with --scene from the
+/// board's f32 values.
 #[derive(Debug, Parser)]
 #[command(name = "cargo prove", after_help = EXAMPLES)]
 pub struct ProveOptions {
     /// What moves, and who draws it.
     #[command(flatten)]
     scene: SceneOptions,
-    /// Draws by this method in place of the planned one
+    /// Draw with this method instead of the planned one
     #[arg(long, value_name = "NAME", value_parser = choice(Method::DRAWN.iter().copied(), Method::name))]
     method: Option<Method>,
-    /// Its steps to a frame
+    /// Steps of that method per frame
     #[arg(long, value_name = "N", requires = "method", default_value_t = 1, value_parser = value_parser!(u32).range(1..=65_536))]
     steps: u32,
-    /// Prints the box that the exact motion is in at each frame, and the frame's verdict, as CSV
+    /// Print for each frame the box that encloses the exact motion, and the verdict, as CSV
     #[arg(long)]
     csv: bool,
-    /// Prints the horizons of all scenes on all chips, predicted and proved, as a table
+    /// Print a table of the horizons of all scenes on all chips, predicted and proved (takes a
+    /// minute or two)
     #[arg(long, conflicts_with_all = ["scene", "method", "csv"])]
     table: bool,
-    /// Prints the table of known answers in host-tests/reference anew, every digit of it proved
+    /// Print the table of known answers, with every digit proved again (takes minutes)
     #[arg(long, conflicts_with_all = ["scene", "method", "csv", "table"])]
     known_answers: bool,
 }
@@ -78,7 +80,7 @@ pub fn run(options: &ProveOptions) -> anyhow::Result<ExitCode> {
         let start = &options.scene.start;
         start.exact().ok_or_else(|| {
             format!(
-                "{}: at most 18 digits of a number can be enclosed",
+                "{}: a number with more than 18 digits cannot be enclosed; write fewer digits",
                 start.too_long()
             )
         })

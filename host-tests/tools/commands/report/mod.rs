@@ -31,17 +31,18 @@ use emulator::out_file::write;
 use emulator::toolchain::{self, workspace};
 use join::Point;
 
-/// Measures every method's cost on the target and its error, and writes them as CSV and as charts.
+/// Measures the cost of every method on three kinds of core, and its error, and writes both as CSV
+/// and charts. Takes a few minutes.
 #[derive(Debug, Parser)]
 #[command(
     name = "cargo write-report",
     after_help = "Example: cargo write-report --out /tmp/report"
 )]
 pub struct ReportOptions {
-    /// Puts what to take, the main table and the charts into the READMEs
+    /// Also put the recommendations, the main table and the charts into the READMEs
     #[arg(long)]
     readme: bool,
-    /// Where to write [default: host-tests/report of the project]
+    /// The folder to write to [default: host-tests/report]
     #[arg(long, alias = "folder", value_name = "FOLDER")]
     out: Option<PathBuf>,
 }
@@ -85,13 +86,13 @@ pub fn run(options: &ReportOptions) -> Result<()> {
     if options.readme {
         ensure!(
             absent.is_empty(),
-            "the READMEs keep their figures: some are missing in these"
+            "the READMEs were not changed, because some figures are missing, see above"
         );
         pages
             .iter()
             .try_for_each(|(path, [_, made])| fs::write(path, made))?;
     } else if pages.iter().any(|(_, [page, made])| page != made) {
-        say("the READMEs show other figures; cargo write-report --readme puts these there")?;
+        say("the READMEs show other figures; cargo write-report --readme updates them")?;
     }
 
     Ok(say(format_args!("wrote {}", folder.display()))?)
@@ -229,7 +230,8 @@ fn table(points: &[Point], names: &[&str]) -> Table {
             .concat(),
         )
     };
-    const COLUMNS: &str = "method,steps a second,M4F cycles a step,M3 cycles,M0+ cycles,error in 10 s (rad),error in 100 s (rad)";
+    const COLUMNS: &str = "method,steps a second,M4F cycles a step,M3 cycles,M0+ cycles,error in \
+                           10 s (rad),error in 100 s (rad)";
     Table {
         columns: COLUMNS.split(',').collect(),
         rows: names.iter().filter_map(row).collect(),
@@ -255,7 +257,8 @@ mod tests {
                 .all(|sentence| sentence.split_whitespace().count() <= 25),
             "{advice:?}"
         );
-        let expected = "`rk4-fixed32` draws at 60 fps for 44k; `extrapolation12-fixed64` keeps 1e-9 rad for 2.0M;";
+        let expected = "`rk4-fixed32` draws at 60 fps for 44k; `extrapolation12-fixed64` keeps \
+                        1e-9 rad for 2.0M;";
         assert!(advice[0].contains(expected), "{advice:?}");
     }
 }

@@ -256,7 +256,8 @@ fn list() -> String {
             ""
         };
         format!(
-            "\n{name:24} {equations:11} {numbers:15} {integrator:14} {order:>5}  host{boards}{scenes}"
+            "\n{name:24} {equations:11} {numbers:15} {integrator:14} {order:>5}  \
+             host{boards}{scenes}"
         )
     };
     HEAD.to_owned() + &Method::ALL.iter().map(line).collect::<String>()

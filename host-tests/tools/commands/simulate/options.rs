@@ -32,10 +32,11 @@ Examples:
   cargo simulate --angles 0.5,0.5 --step 1/16 --method extrapolation12-f64 --columns t,x2,y2 --header units
   cargo simulate --list
 
-Bad input, and values that fail on the first step: one line on stderr, exit code 2. A motion that leaves the finite
-numbers later: its rows until then, one line on stderr, exit code 1.";
+Exit code 2: bad input, or values that fail on the first step; one line on stderr. Exit code 1: the
+motion diverges later; the rows until then are valid, one line on stderr.";
 
-/// Computes a motion of the double pendulum and prints it as CSV, SI units. Numbers are decimals (0.25, 1e-3) or fractions (1/256).
+/// Computes a motion of the double pendulum and prints it as CSV in SI units. Numbers are decimals
+/// (0.25, 1e-3) or fractions (1/256).
 #[derive(Debug, Parser)]
 #[command(name = "cargo simulate", after_help = AFTER_HELP)]
 pub struct SimulateOptions {
@@ -47,7 +48,7 @@ pub struct SimulateOptions {
     #[arg(long, value_name = "DT", allow_hyphen_values = true)]
     pub step: Option<Number>,
     /// Largest error allowed in any angle, rad; finds and uses the cheapest method and step that
-    /// meet it. The exact motion is that of the f64 nearest to each number given
+    /// meet it. The exact motion starts from the f64 nearest to each number given
     #[arg(
         long,
         value_name = "E",
@@ -66,21 +67,22 @@ pub struct SimulateOptions {
     /// Time from row to row, s [default: one --step; without --step a hundredth of --until]
     #[arg(long, value_name = "T", allow_hyphen_values = true)]
     pub every: Option<Number>,
-    /// A method of --list [default: rk4-f64]
+    /// The method, one of --list [default: rk4-f64]
     #[arg(long, value_name = "NAME", value_parser = choice(Method::ALL.iter().copied(), Method::name), hide_possible_values = true)]
     pub method: Option<Method>,
     /// Print the table of methods: name, equations, numbers, integrator, order, where it runs
     #[arg(long, exclusive = true)]
     pub list: bool,
-    /// Where it is computed: here, or by the firmware on an emulated board
+    /// Where to compute it: on this computer, or in the firmware on an emulated board
     #[arg(long = "on", visible_alias = "board", value_name = "PLACE", default_value = HOST,
           value_parser = choice([None].into_iter().chain(BOARDS.iter().map(Some)), name))]
     pub place: Place,
-    /// The columns, of t, a1, a2, p1, p2, w1, w2, energy, and x1, y1, x2, y2 of the bobs from the pivot, y upwards
+    /// The columns: any of t, a1, a2, p1, p2, w1, w2, energy, and the bobs' positions x1, y1, x2,
+    /// y2 from the pivot, y upwards
     #[arg(long, value_name = "NAMES", value_delimiter = ',', default_value = "t,a1,a2,p1,p2,w1,w2,energy",
           value_parser = choice(0..NAMES.len(), |column| NAMES[column]), hide_possible_values = true)]
     pub columns: Vec<usize>,
-    /// The first line: the names of the columns, or their units as well
+    /// The first line: the names of the columns, or names with units
     #[arg(long = "header", value_name = "KIND", default_value = "names", action = ArgAction::Set,
           value_parser = choice([false, true], |units| if units { "units" } else { "names" }))]
     pub units: bool,
@@ -115,7 +117,8 @@ pub struct StartOptions {
           help = format!("Gravitational acceleration, m/s^2 [default: {GRAVITY}]"))]
     gravity: Option<Number>,
     #[arg(long, value_name = "A1,A2", allow_hyphen_values = true,
-          help = format!("Angles at the start from hanging, rad (see --degrees) [default: {FIRST_ANGLE} degrees both]"))]
+          help = format!("Angles at the start from hanging, rad (see --degrees) [default: \
+                          {FIRST_ANGLE} degrees both]"))]
     angles: Option<Pair>,
     /// Angular velocities at the start, rad/s (see --degrees)
     #[arg(
@@ -125,7 +128,7 @@ pub struct StartOptions {
         allow_hyphen_values = true
     )]
     pub velocities: Pair,
-    /// Read angles in degrees and velocities in degrees per second; what is printed stays in radians
+    /// Read angles in degrees and velocities in degrees per second; results are printed in radians
     #[arg(long)]
     degrees: bool,
 }
@@ -170,7 +173,10 @@ impl StartOptions {
         // A start may need more than one turn, but rarely does.
         let turns = largest.value().abs() / TAU;
         (turns > 1.0).then(|| {
-            format!("note: --angles {angles}: {largest} rad is {turns:.1} turns; for degrees add --degrees")
+            format!(
+                "note: --angles {angles}: {largest} rad is {turns:.1} turns; for degrees add \
+                     --degrees"
+            )
         })
     }
 

@@ -71,7 +71,8 @@ pub fn plan(options: &SimulateOptions) -> anyhow::Result<Plan> {
             None => format!("steps of {step} s"),
         };
         format!(
-            "warning: {what} may be too long for the fastest motion possible at this energy; {} is safe",
+            "warning: {what} may be too long for the fastest motion possible at this energy; {} \
+             is safe",
             at_most(longest)
         )
     });
@@ -172,7 +173,8 @@ fn chosen(options: &SimulateOptions, method: Method) -> anyhow::Result<Timing> {
         .unwrap_or(parts(limit));
     ensure!(
         parts * rows <= f64::from(u32::MAX),
-        "{}: so fast a motion needs steps of at most {}, too many for --until {until}",
+        "{}: this fast motion needs steps of at most {}, too many for --until {until}; take a \
+         shorter --until",
         options.start.extreme(),
         at_most(limit)
     );
@@ -208,7 +210,7 @@ fn check_first_step(options: &SimulateOptions, request: &Request) -> anyhow::Res
     match (&options.step, first(SHORTER * request.dt)) {
         (Some(step), Ok(())) => bail!("--step {step}: too long for the first step: {error}"),
         _ => bail!(
-            "{}: too extreme: not even one step stays within the numbers of {}",
+            "{}: the first step leaves the range of {}; take less extreme values",
             options.start.extreme(),
             request.method
         ),
@@ -249,7 +251,7 @@ pub(super) fn count(
     })?;
     u32::try_from(count).ok().with_context(|| {
         format!(
-            "{option} {time}: more than {} times {unit_option} {unit}",
+            "{option} {time}: at most {} times {unit_option} {unit}",
             u32::MAX
         )
     })
@@ -293,7 +295,8 @@ pub(super) fn accepted(options: &SimulateOptions, request: &Request) -> anyhow::
     if let Some(angle) = request.angles.into_iter().find(|angle| angle.abs() > limit) {
         let numbers = request.method.numbers();
         bail!(
-            "--angles: {angle:?} rad: must not exceed {limit}, beyond which {numbers} has too few digits for a direction"
+            "--angles: {angle:?} rad: must not exceed {limit}, beyond which {numbers} has too few \
+             digits for a direction; subtract whole turns"
         );
     }
 
@@ -309,7 +312,8 @@ pub(super) fn accepted(options: &SimulateOptions, request: &Request) -> anyhow::
             ..
         } => {
             anyhow!(
-                "{}: the energy at the start is too large a number",
+                "{}: the energy at the start is too large for the numbers of this method; take \
+                 smaller values",
                 options.start.extreme()
             )
         }
@@ -324,7 +328,7 @@ pub(super) fn accepted(options: &SimulateOptions, request: &Request) -> anyhow::
                 at_most(limit)
             ),
             _ => anyhow!(
-                "{}: so fast a motion needs steps of at most {}",
+                "{}: this fast motion needs steps of at most {}",
                 options.start.extreme(),
                 at_most(limit)
             ),
@@ -340,7 +344,7 @@ pub(super) fn method(options: &SimulateOptions) -> anyhow::Result<Method> {
     let is_there = methods(options.place).contains(&method);
     ensure!(
         is_there,
-        "--method {method}: not on {}; --list says where it runs",
+        "--method {method}: does not run on {}; --list shows where each method runs",
         name(options.place)
     );
     Ok(method)

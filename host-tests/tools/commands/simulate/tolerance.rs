@@ -44,7 +44,7 @@ pub fn choose(options: &SimulateOptions, tolerance: &Number) -> anyhow::Result<(
     let samples = count(("--until", until), ("--every", &every))?;
     ensure!(
         samples < MOST_ROWS,
-        "--every {every}: more than {MOST_ROWS} rows with --tolerance"
+        "--every {every}: at most {MOST_ROWS} rows with --tolerance; take a longer --every"
     );
 
     // The request for the motion with this number of steps between rows, and the step.
@@ -109,7 +109,10 @@ pub fn choose(options: &SimulateOptions, tolerance: &Number) -> anyhow::Result<(
 
     // The best trial was accurate for this time.
     let until = every.times((reached as u64).saturating_sub(1));
-    bail!("--tolerance {tolerance}: no allowed method stays within it beyond {until} s")
+    bail!(
+        "--tolerance {tolerance}: no allowed method stays within it beyond {until} s; take a \
+         shorter --until or a larger tolerance"
+    )
 }
 
 /// Returns the numbers of steps between rows that are tried: 1, 2, 3, 4, 6, 8, 12 and so on. The

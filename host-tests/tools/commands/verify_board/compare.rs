@@ -98,7 +98,7 @@ fn difference(talk: &mut Talk, request: &Request, number: u16) -> anyhow::Result
         if let Some((name, (board, host))) = differs {
             let step = index * request.stride;
             difference.get_or_insert(format!(
-                "step {step}: {name} is {board:#018x}, the host's {host:#018x}"
+                "step {step}: {name} is {board:#018x} on the board, {host:#018x} on the host"
             ));
         }
         index += 1;
@@ -132,9 +132,9 @@ pub fn measured(talk: &mut Talk) -> anyhow::Result<Vec<[Option<f64>; 2]>> {
 /// Returns the measured cycles with the estimate of `cargo count`. Instructions are counted in
 /// QEMU, on a board with the same processor.
 pub fn cycles(measured: &[[Option<f64>; 2]], board: Option<&Board>) -> anyhow::Result<Section> {
-    let note = "Measured by the processor's cycle counter, interrupts off, over 256 steps of the regular motion, by the code in \
-                flash and, where there is one, by its copy in RAM (constants are read from flash by both); estimated for memory \
-                without wait states, over as many steps or, of the expensive ones, fewer.";
+    let note = "Measured with the processor's cycle counter, interrupts off, over 256 steps of the regular motion: once with the \
+                code in flash and, if there is one, once with its copy in RAM (both read constants from flash). Estimated \
+                for memory without wait states, over the same number of steps or, for an expensive method, fewer.";
     let mut section = Section::new(
         "Cycles of a step",
         note,
@@ -229,7 +229,7 @@ pub fn scenes(talk: &mut Talk, hertz: u32) -> anyhow::Result<Section> {
     ];
     let mut section = Section::new(
         "Scenes",
-        "The longest of a second's frames, by the board's tick clock.",
+        "The longest frame of one second, by the board's tick clock.",
         columns,
     );
     SceneName::ALL

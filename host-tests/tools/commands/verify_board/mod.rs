@@ -25,21 +25,22 @@ use emulator::process;
 use emulator::toolchain::{self, QUICK, workspace};
 use talk::Talk;
 
-/// Verifies a board at a serial port: the bits of every method and scene beside the host's, the cycles of every method, the
-/// times of the scenes, its buttons and its panel; and writes a report.
+/// Verifies a board at a serial port and writes a report. Compares the bits of every method and
+/// scene with the host's, measures the cycles of every method and the frame time of every scene,
+/// and asks about buttons and panel.
 #[derive(Clone, Debug, Parser)]
 #[command(
     name = "cargo verify-board",
     after_help = "Example: cargo verify-board --port auto --report feather"
 )]
 pub struct VerifyOptions {
-    /// The serial port; `auto` is the only one over USB
+    /// The serial port; `auto` takes the only one over USB
     #[arg(long, value_name = "PATH")]
     pub port: String,
     /// Do not ask about buttons and panel
     #[arg(long)]
     pub no_questions: bool,
-    /// Where the report goes: FILE.md
+    /// The file of the report, written as FILE.md
     #[arg(long, value_name = "FILE", default_value = "board-report")]
     pub report: PathBuf,
 }
@@ -73,7 +74,7 @@ impl Section {
 
 /// Returns the cell for bits that may differ.
 fn verdict(difference: Option<String>) -> String {
-    difference.unwrap_or_else(|| "the host's".to_owned())
+    difference.unwrap_or_else(|| "identical".to_owned())
 }
 
 pub fn run(options: &VerifyOptions) -> anyhow::Result<bool> {
@@ -120,9 +121,9 @@ pub fn run(options: &VerifyOptions) -> anyhow::Result<bool> {
         .flat_map(|section| &section.faults)
         .collect();
     let verdict = if faults.is_empty() {
-        "every bit the host's".into()
+        "all bit-identical to the host".into()
     } else {
-        format!("{} not well", faults.len())
+        format!("problems: {}", faults.len())
     };
     let [motions, methods, scenes, ..] =
         sections.each_ref().map(|section| section.table.rows.len());
@@ -157,7 +158,7 @@ pub fn run(options: &VerifyOptions) -> anyhow::Result<bool> {
     fs::write(&path, text).with_context(|| path.display().to_string())?;
     faults
         .iter()
-        .for_each(|fault| complain(format_args!("not well: {fault}")));
+        .for_each(|fault| complain(format_args!("problem: {fault}")));
     let panel = panel.map_or(String::new(), |panel| format!("panel: {panel}\n"));
     say(format_args!(
         "{headline}\n{panel}report: {}",

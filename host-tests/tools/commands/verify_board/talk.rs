@@ -40,7 +40,7 @@ impl Talk {
         let since = Instant::now();
         let mut notice = None;
         let mut silence = format!(
-            "{}: no message for {} s",
+            "{}: no message for {} s; is the board powered and connected?",
             self.port.name,
             PATIENCE.as_secs()
         );
@@ -48,13 +48,13 @@ impl Talk {
             // The messages that have arrived, one by one.
             for message in self.arrived.by_ref() {
                 if let ToHost::Answer(_, Answer::Refused(field)) = message {
-                    bail!("the board refuses: {}", refusal(field));
+                    bail!("the board refuses this {}", refusal(field));
                 }
                 if let Some(wanted) = kind(message) {
                     return Ok(wanted);
                 }
                 silence = format!(
-                    "{}: the board plays, and does not answer; flash it anew",
+                    "{}: the board sends frames but does not answer; flash it again",
                     self.port.name
                 );
             }
@@ -114,12 +114,12 @@ pub fn ask_person(talk: &mut Talk, name: &str) -> anyhow::Result<Section> {
     })?;
     let mut section = Section::new(
         "Seen and pressed",
-        "By the person at the board.",
-        &["what", "is so"],
+        "Answered by the person at the board.",
+        &["what", "answer"],
     );
     let mut note = |what: String, is_so: Option<bool>| {
         let answer = is_so.map_or("not answered", |is_so| if is_so { "yes" } else { "no" });
-        let fault = (is_so == Some(false)).then(|| format!("not so: {what}"));
+        let fault = (is_so == Some(false)).then(|| format!("answered no: {what}"));
         section.add(vec![what, answer.to_owned()], fault);
     };
 
@@ -136,7 +136,7 @@ pub fn ask_person(talk: &mut Talk, name: &str) -> anyhow::Result<Section> {
     }
 
     for key in keys.iter().map(|key| key.name()) {
-        let question = format!("tap the button '{key}', then press enter [n: there is none]");
+        let question = format!("tap the button '{key}', then press enter [n: no such button]");
         let (answer, restarted) = entered(talk, &question)?;
         let is_tapped = !matches!(answer.trim(), "n" | "no") && !answer.is_empty();
         note(

@@ -155,8 +155,16 @@ fn one_line(report: &str) -> String {
         .find_map(|line| line.trim().strip_prefix("tip: a similar "))
         .map_or(String::new(), |tip| format!("; a similar {tip}"));
 
-    // Replace the standard library's messages about invalid numbers.
+    // Use plainer words than clap and, about invalid numbers, the standard library.
     let line = line
+        .replace(
+            "one or more of the other specified arguments",
+            "other options",
+        )
+        .replace(
+            "the following required arguments were not provided:",
+            "required, but missing:",
+        )
         .replace("invalid digit found in string", "not a whole number")
         .replace("invalid float literal", "not a number");
     line + &tip

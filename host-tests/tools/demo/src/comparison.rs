@@ -215,6 +215,7 @@ fn difference(board: &Frame, here: &Frame) -> Option<String> {
     let sequence = board.sequence;
     let step = board.report.step;
     Some(format!(
-        "frame {sequence}, step {step}: {number} is {board_bits:#x}, the host's {here_bits:#x}"
+        "frame {sequence}, step {step}: {number} is {board_bits:#x} on the board, {here_bits:#x} \
+         on the host"
     ))
 }

@@ -13,7 +13,8 @@ use super::readings::Help;
 const NUMBERS: [(&str, &str); 10] = [
     (
         "½px>19.8 s on the panel",
-        "accurate to half a pixel until at least 19.8 s; without >: until then; ?: not known yet; ok: for ever",
+        "accurate to half a pixel until at least 19.8 s; without >: until then; ?: not known yet; \
+         ok: for ever",
     ),
     ("μ, mass ratio", "mass of bob 2 over that of bob 1"),
     ("time", "simulated time since the motion began"),
@@ -26,7 +27,8 @@ const NUMBERS: [(&str, &str); 10] = [
     ("CRC errors", "messages damaged on the way"),
     (
         "energy error",
-        "of the motion as computed, relative to the energy above hanging at rest; < 4e-15: too little for f64 to show",
+        "of the motion as computed, relative to the energy above hanging at rest; < 4e-15: too \
+         little for f64 to show",
     ),
     ("bars", "its largest size in each half second"),
     (

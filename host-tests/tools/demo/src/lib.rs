@@ -45,7 +45,8 @@ use emulator::toolchain;
 
 /// The duration of a run without a terminal, if the user gives none.
 const DEFAULT_SECONDS: f64 = 10.0;
-const NO_TERMINAL: &str = "no terminal: running headless; --record FILE.gif or --screenshot FILE.png saves what the panel shows";
+const NO_TERMINAL: &str = "no terminal: running headless; --record FILE.gif or --screenshot \
+                           FILE.png saves what the panel shows";
 /// The time limit of an emulated board: a constant part, and a part for each second of the board's
 /// time.
 const LIMIT: [f64; 2] = [60.0, 20.0];
@@ -153,7 +154,7 @@ fn headless(session: &mut Session, seconds: f64) -> anyhow::Result<()> {
             }
             ensure!(
                 since.elapsed() < PATIENCE,
-                "{name}: no frame for {} s",
+                "{name}: no frame for {} s; is the board powered and connected?",
                 PATIENCE.as_secs()
             );
             sleep(LOOK);
@@ -168,7 +169,11 @@ fn headless(session: &mut Session, seconds: f64) -> anyhow::Result<()> {
 /// clock may drop frames, and a cable may corrupt bits. Both are printed, and neither is a fault.
 fn finish(options: &DemoOptions, mut session: Session) -> anyhow::Result<bool> {
     let is_silent = session.readings.frame.is_none();
-    ensure!(!is_silent, "{}: no frame came", session.name());
+    ensure!(
+        !is_silent,
+        "{}: ended before the first frame",
+        session.name()
+    );
 
     // All messages are collected before they are judged.
     let saved = save_files(options, &mut session)?;
@@ -193,7 +198,7 @@ fn finish(options: &DemoOptions, mut session: Session) -> anyhow::Result<bool> {
     faults.extend(readings.comparison.difference().map(str::to_owned));
     faults
         .iter()
-        .for_each(|fault| complain(format_args!("not well: {fault}")));
+        .for_each(|fault| complain(format_args!("problem: {fault}")));
     let said = say(format_args!(
         "board                 {name}\n{}{saved}",
         readings.report()

@@ -82,7 +82,8 @@ impl OwnMotion {
         let used = used_by(scene);
         if let Some((option, value)) = given.iter().find(|(option, _)| !used.contains(option)) {
             return Err(Refused::because(format_args!(
-                "{option} {value}: scene {} does not use it; take another scene, as in --scene page",
+                "{option} {value}: scene {} does not use it; take another scene, as in --scene \
+                 page",
                 scene.name()
             )));
         }
@@ -178,7 +179,8 @@ fn refusal(given: &[(&'static str, String)], scene: SceneName, error: &Error) ->
     let scene = scene.name();
     match error {
         Error::UnequalRods { .. } => Refused::because(format_args!(
-            "{blamed}: scene {scene} needs rods of equal length; take another scene, as in --scene page"
+            "{blamed}: scene {scene} needs rods of equal length; take another scene, as in \
+             --scene page"
         )),
         _ if error.parameter() == Parameter::Dt => too_fast(&blamed),
         error => Refused::because(format_args!("{blamed}: {error}")),
@@ -195,6 +197,7 @@ fn all(given: &[(&'static str, String)]) -> String {
 
 fn too_fast(blamed: &str) -> Refused {
     Refused::because(format_args!(
-        "{blamed}: too fast a motion for this chip; take masses more alike, longer rods, less gravity or lower velocities"
+        "{blamed}: too fast a motion for this chip; take masses more alike, longer rods, less \
+         gravity or lower velocities"
     ))
 }

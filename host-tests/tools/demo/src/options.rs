@@ -37,7 +37,8 @@ pub struct DemoOptions {
           value_parser = choice([None].into_iter().chain(Method::DRAWN.iter().copied().map(Some)),
                                 |method| method.map_or("plan", Method::name)))]
     pub method: Option<MethodChoice>,
-    /// The controller of the panel, kept until the board is switched off; `auto` identifies it [default: as it is]
+    /// The controller of the panel, kept until the board is switched off; `auto` identifies it
+    /// [default: as it is]
     #[arg(long, value_name = "NAME",
           value_parser = choice([None].into_iter().chain(Controller::ALL.iter().copied().map(Some)),
                                 |panel| panel.map_or("auto", Controller::name)))]
@@ -49,13 +50,13 @@ pub struct DemoOptions {
     /// power-on]
     #[arg(long, value_name = "N", allow_hyphen_values = true)]
     pub speed: Option<Number>,
-    /// Run without a terminal, at full speed, same result every time, with a summary at the end
+    /// Run without a terminal, at full speed, with the same result every time, and print a summary
     #[arg(long)]
     pub headless: bool,
-    /// How long, in seconds by the board's clock [default: 10 when headless, else until q is pressed]
+    /// Duration in seconds of the board's clock [default: 10 if headless, else until q is pressed]
     #[arg(long, value_name = "N", value_parser = seconds)]
     pub seconds: Option<f64>,
-    /// Save what the panel showed as an animation, 30 frames per second
+    /// Save the panel's pictures as an animation, 30 frames per second
     #[arg(long, value_name = "FILE.gif", value_parser = |file: &str| ends_in("gif", file))]
     pub record: Option<PathBuf>,
     /// Save the last picture of the panel
@@ -114,19 +115,19 @@ pub fn scene_of_key(key: char) -> Option<SceneName> {
 
 fn shows(scene: SceneName) -> &'static str {
     match scene {
-        SceneName::Page => "the book's animation: a motion from 120 degrees, soon chaotic",
-        SceneName::SmallLight => "both angles of a small oscillation, bob 2 light: figure 3",
-        SceneName::SmallEqual => "the same of equal bobs: figure 4",
-        SceneName::SmallHeavy => "the same, bob 2 heavy: figure 5",
-        SceneName::Frequencies => "both normal frequencies over the mass ratio: figure 2",
-        SceneName::Beats3To2 => "frequencies as 3 to 2: the curve of both angles closes",
-        SceneName::Beats2To1 => "the same as 2 to 1",
-        SceneName::Beats5To2 => "the same as 5 to 2",
-        SceneName::Beats3To1 => "the same as 3 to 1",
-        SceneName::Figure7 => "the right equations beside those misprinted in the book",
+        SceneName::Page => "the animation of math24.net: from 120 degrees, soon chaotic",
+        SceneName::SmallLight => "both angles of a small oscillation with a light bob 2 (figure 3)",
+        SceneName::SmallEqual => "the same with equal bobs (figure 4)",
+        SceneName::SmallHeavy => "the same with a heavy bob 2 (figure 5)",
+        SceneName::Frequencies => "both normal frequencies over the mass ratio (figure 2)",
+        SceneName::Beats3To2 => "frequencies in the ratio 3 to 2: the curve of both angles closes",
+        SceneName::Beats2To1 => "the same, 2 to 1",
+        SceneName::Beats5To2 => "the same, 5 to 2",
+        SceneName::Beats3To1 => "the same, 3 to 1",
+        SceneName::Figure7 => "the right equations next to those misprinted on math24.net (`book`)",
         SceneName::Butterfly => "two pendulums a millionth of a radian apart, until they part",
-        SceneName::Upright => "straight up: which arithmetic lets it fall, and when",
-        SceneName::Flips => "a map of all starts: how soon a rod turns over",
+        SceneName::Upright => "balanced straight up: when it falls in plain and in compensated f32",
+        SceneName::Flips => "a map of all starts: the time until a rod turns over",
     }
 }
 

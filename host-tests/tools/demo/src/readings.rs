@@ -211,18 +211,23 @@ impl Readings {
             .map_or(String::new(), |panel| {
                 format!("panel                 {panel}\n")
             });
+        // A scene without a motion has no energy.
+        let error = if *greatest_energy_error == 0.0 && !last.scene.has_angles() {
+            "-".to_owned()
+        } else {
+            energy_error(*greatest_energy_error, |error| format!("{error:.1e}"))
+        };
         format!(
             "frames                {frames}\n\
              simulated time        {simulated:.3} s\n\
              shown                 {}\n\
-             largest energy error  {}\n\
+             largest energy error  {error}\n\
              CRC errors            {}\n\
              lost frames           {}\n\
              dropped frames        {}\n\
              {panel}\
              bits                  {comparison}",
             stepping(&last),
-            energy_error(*greatest_energy_error, |error| format!("{error:.1e}")),
             counts.damaged,
             counts.lost,
             last.dropped
@@ -375,6 +380,21 @@ mod tests {
         assert_eq!(written(2.4e-14), "+2.4e-14");
         assert_eq!(written(-1e-15), "< 4e-15");
         assert_eq!(written(0.0), "< 4e-15");
+    }
+
+    #[test]
+    fn scene_without_a_motion_reports_no_energy_error() {
+        for (scene, line) in [
+            (SceneName::Flips, "largest energy error  -\n"),
+            (SceneName::Page, "largest energy error  < 4e-15\n"),
+        ] {
+            let mut readings = Readings::default();
+            readings.frame(Frame {
+                scene,
+                ..Frame::default()
+            });
+            assert!(readings.report().contains(line), "{}", readings.report());
+        }
     }
 
     #[test]

@@ -237,7 +237,8 @@ mod tests {
     /// Returns the readings after half a second of a scene, with the longest possible numbers.
     fn readings(scene: SceneName) -> Readings {
         let mut readings = Readings::default();
-        let text = "plan: direction form, 4 steps to a frame, and as many words as make it longer than a pane is wide";
+        let text = "plan: direction form, 4 steps to a frame, and as many words as make it longer \
+                    than a pane is wide";
         readings.lines.push(LogLine {
             level: Some("info".to_owned()),
             text: text.to_owned(),
