@@ -12,7 +12,7 @@ fn main() {
         println!("cargo:rustc-cfg=armv6m");
     }
 
-    // Other targets need nothing else.
+    // The rest is only for chips.
     let is = |name: &str, value: &str| env::var(name).as_deref() == Ok(value);
     if !is("CARGO_CFG_TARGET_OS", "none") || !is("CARGO_CFG_TARGET_ARCH", "arm") {
         return;

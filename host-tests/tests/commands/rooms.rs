@@ -49,7 +49,7 @@ const ROOMS: [(&str, &[&str]); 4] = [
     ),
 ];
 
-/// Groups of folders in which a public type has a name of its own.
+/// Groups of folders. The name of a public type is unique within a group.
 const NAMESPACES: [&[&str]; 3] = [
     &["kernel/src"],
     &["firmware/src"],
