@@ -6,6 +6,7 @@ use std::process::ExitCode;
 use console::cli::{main as run, verdict};
 use host_tests::commands::{
     count, emulated, figures, flash, flips, plan, prove, release, report, simulate, verify_board,
+    web,
 };
 
 fn main() -> ExitCode {
@@ -23,6 +24,7 @@ fn main() -> ExitCode {
         Some("simulate") => run(simulate::run),
         Some("verify") => run(emulated::verify),
         Some("verify-board") => run(|options| verify_board::run(options).map(verdict)),
+        Some("web") => run(web::run),
         Some("write-report") => run(report::run),
         _ => run(|options| demo::run(options).map(verdict)),
     }

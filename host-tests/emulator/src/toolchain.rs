@@ -34,6 +34,9 @@ pub const TARGETS: [&str; 3] = [
     "thumbv7em-none-eabihf",
 ];
 
+/// The compiler's target for the page in a browser.
+pub const WASM: &str = "wasm32-unknown-unknown";
+
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Toolchain {
     /// Debian's compiler. It is used if rustup has no ready-made core library.
@@ -120,6 +123,20 @@ pub fn set_up_for(target: &str) -> Result<Toolchain, Refused> {
     };
     let _turn = turn()?;
     both(true, &[target], emulator)
+}
+
+/// Returns the core library for the page in a browser, and provides it if necessary. The page needs
+/// no emulator.
+pub fn set_up_web() -> Result<Toolchain, Refused> {
+    let _turn = turn()?;
+    both(true, &[WASM], |_| Ok(PathBuf::new()))
+}
+
+/// Returns a Chromium, and provides it if necessary: Debian's is unpacked into the target folder.
+pub fn set_up_chromium() -> Result<PathBuf, Refused> {
+    let _turn = turn()?;
+    let by_hand = "install this system's package chromium";
+    tools::chromium().map_err(|why| missing(true, "Chromium", &why, SETUP, by_hand))
 }
 
 /// Returns the core library of these targets and an emulator, or a line for each that is missing.

@@ -19,3 +19,4 @@ mod stack_guard;
 mod steps;
 #[path = "../support/mod.rs"]
 mod support;
+mod web;

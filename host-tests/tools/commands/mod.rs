@@ -12,3 +12,4 @@ pub mod report;
 pub mod simulate;
 pub mod table;
 pub mod verify_board;
+pub mod web;

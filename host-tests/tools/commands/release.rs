@@ -9,7 +9,7 @@ use std::time::Duration;
 use anyhow::{Context, bail, ensure};
 use clap::Parser;
 
-use crate::commands::flash;
+use crate::commands::{flash, web};
 use console::cli::{Refused, say};
 use emulator::boards::every_board;
 use emulator::process;
@@ -25,8 +25,8 @@ const KERNEL: &str = "double-pendulum-kernel";
 /// The programs that print checksums in that format, with their arguments.
 const HASHERS: [(&str, &[&str]); 2] = [("sha256sum", &[]), ("shasum", &["-a", "256"])];
 
-/// Makes target/release-files/: the Pico's UF2, the ELF file of every board, the packaged kernel,
-/// and their SHA-256 sums.
+/// Makes target/release-files/: the Pico's UF2, the ELF file of every board, the page for a browser,
+/// the packaged kernel, and their SHA-256 sums.
 ///
 /// The files depend only on the commit and the compiler, not on folders or the machine.
 #[derive(Debug, Parser)]
@@ -57,6 +57,9 @@ pub fn run(_: &ReleaseOptions) -> anyhow::Result<()> {
     }
     let (_, file) = flash::uf2_file(&toolchain)?;
     copy(&file, &folder.join(flash::FILE))?;
+
+    // The page for a browser.
+    copy(&web::write_page()?, &folder.join(web::FILE))?;
 
     // The kernel.
     let scratch = tempfile::tempdir_in(target())?;

@@ -10,7 +10,7 @@ use std::{env, fs};
 use anyhow::{anyhow, ensure};
 
 use super::bring::{quick_output, run_shown};
-use super::{TARGETS, Toolchain, remap, set_up_for, target, workspace};
+use super::{TARGETS, Toolchain, WASM, remap, set_up_for, target, workspace};
 use crate::boards::{Board, PICO, every_board};
 
 /// The binaries that this process has built, each with its target. The list saves time: another
@@ -216,6 +216,17 @@ impl Toolchain {
             &format!("building the minimal programs for {target}"),
         )?;
         Ok(folder.join(target).join("release"))
+    }
+
+    /// Builds the application as a WebAssembly module, without names and debug information.
+    pub fn build_web(&self) -> anyhow::Result<PathBuf> {
+        let mut command = self.for_targets("build", &[WASM])?;
+        command
+            .args(["--bin", "web", "--features", "web"])
+            .env("CARGO_PROFILE_RELEASE_DEBUG", "false")
+            .env("CARGO_PROFILE_RELEASE_STRIP", "symbols");
+        self.finish(command, "building the application for the browser")?;
+        Ok(Self::folder().join(WASM).join("release/web.wasm"))
     }
 
     /// Builds the binaries that run on every target, concurrently, and every board's application.

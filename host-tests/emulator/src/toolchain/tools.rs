@@ -297,6 +297,26 @@ fn executable(path: PathBuf) -> Option<PathBuf> {
         .then_some(path)
 }
 
+/// Chromium without windows, by its name in Debian.
+const BROWSER: &str = "chromium-headless-shell";
+/// The time limit to fetch and unpack 100 MB.
+const FETCH_BROWSER: Duration = Duration::from_secs(180);
+
+/// Finds a Chromium that prints its version, or unpacks Debian's for this project.
+pub(super) fn chromium() -> Result<PathBuf, String> {
+    let folder = target().join("chromium");
+    let packages = [BROWSER, "chromium-common"];
+    let look = || {
+        let own = executable(folder.join(BROWSER));
+        let all = ["chromium", "google-chrome", BROWSER].map(find);
+        let mut all = all.into_iter().chain([own]).flatten();
+        all.find(|path| quick_output(Command::new(path).arg("--version")).is_ok())
+            .ok_or_else(|| "there is neither chromium nor google-chrome on PATH".to_owned())
+    };
+    let way = || unpack(&folder, &[BROWSER], &packages, FETCH_BROWSER);
+    bring(true, look, &[(unpacked(&folder, &packages), &way)])
+}
+
 const NPM: Duration = Duration::from_secs(120);
 const LEAST_NODE: u32 = 18;
 /// A script that fails if the installed version of the Pico's emulator differs from the required

@@ -46,7 +46,9 @@ for folder in "$here"/usr/lib/*-linux-gnu* "$here"/lib/*-linux-gnu* "$here"/usr/
     LD_LIBRARY_PATH=$folder${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}
 done
 export LD_LIBRARY_PATH
-exec "$here/usr/bin/$(basename "$0")" "$@"
+program=$here/usr/lib/chromium/$(basename "$0") # its script in usr/bin runs the installed one
+[ -x "$program" ] || program=$here/usr/bin/$(basename "$0")
+exec "$program" "$@"
 END
     chmod 755 "$program"
     "./$program" --version

@@ -23,7 +23,10 @@ pub mod snapshot;
 mod view;
 
 pub use options::DemoOptions;
+pub use options::{KEYS, scene_key, shows};
+pub use panel::palette;
 pub use panel::played;
+pub use session::SPEEDS;
 
 use std::io::{IsTerminal, stdin, stdout};
 use std::thread::sleep;

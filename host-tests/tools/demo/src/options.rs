@@ -113,17 +113,18 @@ pub fn scene_of_key(key: char) -> Option<SceneName> {
     SceneName::ALL.get(place).copied()
 }
 
-fn shows(scene: SceneName) -> &'static str {
+/// Returns what a scene shows, in one line.
+pub fn shows(scene: SceneName) -> &'static str {
     match scene {
         SceneName::Page => "the animation of math24.net: from 120 degrees, soon chaotic",
         SceneName::SmallLight => "both angles of a small oscillation with a light bob 2 (figure 3)",
-        SceneName::SmallEqual => "the same with equal bobs (figure 4)",
-        SceneName::SmallHeavy => "the same with a heavy bob 2 (figure 5)",
+        SceneName::SmallEqual => "both angles of a small oscillation with equal bobs (figure 4)",
+        SceneName::SmallHeavy => "both angles of a small oscillation with a heavy bob 2 (figure 5)",
         SceneName::Frequencies => "both normal frequencies over the mass ratio (figure 2)",
         SceneName::Beats3To2 => "frequencies in the ratio 3 to 2: the curve of both angles closes",
-        SceneName::Beats2To1 => "the same, 2 to 1",
-        SceneName::Beats5To2 => "the same, 5 to 2",
-        SceneName::Beats3To1 => "the same, 3 to 1",
+        SceneName::Beats2To1 => "frequencies in the ratio 2 to 1: the curve of both angles closes",
+        SceneName::Beats5To2 => "frequencies in the ratio 5 to 2: the curve of both angles closes",
+        SceneName::Beats3To1 => "frequencies in the ratio 3 to 1: the curve of both angles closes",
         SceneName::Figure7 => "the right equations next to those misprinted on math24.net (`book`)",
         SceneName::Butterfly => "two pendulums a millionth of a radian apart, until they part",
         SceneName::Upright => "balanced straight up: when it falls in plain and in compensated f32",

@@ -69,7 +69,7 @@ fn in_terminal(grey: u8) -> Color {
 }
 
 /// Returns the colours of all greys, red, green, blue, in the format of image files.
-fn palette() -> Vec<u8> {
+pub fn palette() -> Vec<u8> {
     let most = u32::from(BRIGHTEST_GREY);
     let mix = |grey: u32| {
         DARKEST

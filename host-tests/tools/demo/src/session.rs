@@ -71,7 +71,7 @@ const SETUP: u16 = 1;
 
 /// The speeds that the keys select, simulated time per real time, from the smallest to the largest
 /// possible one.
-const SPEEDS: [f32; 9] = [0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 4.0];
+pub const SPEEDS: [f32; 9] = [0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 4.0];
 
 /// Returns the next larger speed, or `None` at the largest.
 pub fn faster(now: f32) -> Option<f32> {

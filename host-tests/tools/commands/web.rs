@@ -1,0 +1,168 @@
+//! `cargo web`: the application as a page for a browser, in one file that needs no network.
+
+use std::fs;
+use std::path::{Path, PathBuf, absolute};
+use std::process::{Command, Stdio};
+use std::time::Duration;
+
+use anyhow::ensure;
+use clap::Parser;
+use double_pendulum::{Method, Parameters};
+use firmware::config::{CORTEX_M0PLUS, CORTEX_M3, CORTEX_M4F, MASS_RATIOS, Processor, TICK_RATE};
+use firmware::graphics::Place;
+use firmware::protocol::{Field, PlayState};
+use firmware::scenes::{LEAST_ENERGY_ERROR, SceneName};
+use serde_json::{Value, json};
+
+use console::cli::{Refused, say};
+use demo::{KEYS, SPEEDS, palette, scene_key, shows};
+use emulator::link::refusal;
+use emulator::out_file::{OutFile, check_writable};
+use emulator::process;
+use emulator::toolchain::{self, find, target};
+
+/// The name of the file in the target folder.
+pub const FILE: &str = "double-pendulum.html";
+const TEMPLATE: &str = include_str!("../../../firmware/web/page.html");
+
+/// The processors that the page offers, each with its name in links and a description.
+pub const PROCESSORS: [(&str, &str, Processor); 3] = [
+    ("m3", "Cortex-M3 at 50 MHz", CORTEX_M3),
+    ("m4f", "Cortex-M4F at 25 MHz", CORTEX_M4F),
+    ("m0", "Cortex-M0+ at 125 MHz", CORTEX_M0PLUS),
+];
+
+/// The options of Chromium without a window, also for root, without requests of its own.
+pub const HEADLESS: &str = "--headless --no-sandbox --disable-gpu --disable-quic --no-first-run \
+    --disable-background-networking --disable-component-update --disable-sync --hide-scrollbars";
+/// The options of a picture. The virtual time passes in a moment.
+const PICTURE: &str = "--window-size=1000,850 --virtual-time-budget=60000";
+const PICTURE_LIMIT: Duration = Duration::from_secs(120);
+/// A clock for the picture: 8.5 s in frames of 1/60 s, whatever the speed of the machine.
+const CLOCK: &str = "<script>let frames = 0; window.requestAnimationFrame = (frame) =>
+  frames++ < 510 && setTimeout(() => frame(frames * 1000 / 60));</script>";
+
+/// Writes target/double-pendulum.html: the panel of a board in a browser. The page is one file,
+/// opens without a server, and makes no request.
+#[derive(Debug, Parser)]
+#[command(name = "cargo web", after_help = "Example: cargo web --open")]
+pub struct WebOptions {
+    /// Open the page in the browser
+    #[arg(long)]
+    open: bool,
+    /// Save a picture of the page, which Chromium makes
+    #[arg(long, value_name = "FILE.png")]
+    picture: Option<PathBuf>,
+}
+
+pub fn run(options: &WebOptions) -> anyhow::Result<()> {
+    // Refuse before the build.
+    let picture = options.picture.as_deref();
+    picture.map_or(Ok(()), |picture| check_writable("--picture", picture))?;
+    let chromium = picture.map(|_| toolchain::set_up_chromium()).transpose()?;
+    let opener = options.open.then(opener).transpose()?;
+
+    let page = write_page()?;
+    say(format_args!("wrote {}", page.display()))?;
+    if let Some((chromium, picture)) = chromium.zip(picture) {
+        take_picture(&chromium, &page, picture)?;
+        say(format_args!("wrote {}", picture.display()))?;
+    }
+    if let Some(opener) = opener {
+        // It starts a browser, which stays open.
+        Command::new(opener)
+            .arg(page)
+            .stdin(Stdio::null())
+            .spawn()?;
+    }
+    Ok(())
+}
+
+/// Returns the desktop's program that opens files.
+fn opener() -> Result<PathBuf, Refused> {
+    const NONE: &str = "--open: neither xdg-open nor open is installed; leave --open out, and open \
+                        the page in a browser";
+    let found = ["xdg-open", "open"]
+        .iter()
+        .find_map(|program| find(program));
+    found.ok_or(Refused::because(NONE))
+}
+
+/// Builds the application and writes the page. Returns its path.
+pub fn write_page() -> anyhow::Result<PathBuf> {
+    let module = fs::read(toolchain::set_up_web()?.build_web()?)?;
+    let digits: String = module.iter().map(|byte| format!("{byte:02x}")).collect();
+    let page = TEMPLATE
+        .replace("{facts}", &facts().to_string())
+        .replace("{module}", &digits);
+    let file = target().join(FILE);
+    OutFile::create("the page", &file)?.write_whole(page.as_bytes())?;
+    Ok(file)
+}
+
+/// Returns the tables of the firmware and of the terminal that the page uses.
+fn facts() -> Value {
+    let scenes = SceneName::ALL.iter().enumerate().map(|(index, scene)| {
+        let settings = scene.first_settings();
+        let Parameters { m1, m2, l1, l2, g } = settings.parameters;
+        let [[a1, a2], [w1, w2]] = [settings.degrees, settings.velocities];
+        json!({
+            "name": scene.name(),
+            "key": scene_key(index).to_string(),
+            "shows": shows(*scene),
+            "hasAngles": scene.has_angles(),
+            "isLinear": scene.is_linear(),
+            "place": place(*scene).map(|place| [place.pivot.0, place.pivot.1, place.reach]),
+            "first": [m1, m2, l1, l2, g, a1, a2, w1, w2],
+        })
+    });
+
+    // In a browser, Tab moves the focus, the help is one page, and the user closes the page.
+    let keys = KEYS
+        .iter()
+        .filter(|(key, _)| !["?", "q, ctrl-C"].contains(key));
+    let keys = keys.map(|(key, text)| [key.replace("tab, ", ""), text.replace("shift-tab, ", "")]);
+    json!({
+        "rate": TICK_RATE,
+        "palette": palette().chunks(3).collect::<Vec<_>>(),
+        "scenes": scenes.collect::<Vec<_>>(),
+        "processors": PROCESSORS.map(|(name, text, chip)| json!([name, text, chip.code])),
+        "methods": names(Method::ALL, Method::name),
+        "drawn": names(Method::DRAWN, Method::name),
+        "states": names(PlayState::ALL, PlayState::name),
+        "fields": names(Field::ALL, refusal),
+        "massRatios": MASS_RATIOS.to_vec(),
+        "speeds": SPEEDS,
+        "leastEnergyError": LEAST_ENERGY_ERROR,
+        "keys": keys.collect::<Vec<_>>(),
+    })
+}
+
+fn names<T: Copy>(all: &[T], name: fn(T) -> &'static str) -> Vec<&'static str> {
+    all.iter().copied().map(name).collect()
+}
+
+/// Returns the place of the first pendulum of a scene, if it shows one.
+fn place(scene: SceneName) -> Option<Place> {
+    match scene {
+        SceneName::Page => Some(Place::WHOLE),
+        SceneName::Figure7 | SceneName::Butterfly | SceneName::Upright => Some(Place::HALVES[0]),
+        _ => None,
+    }
+}
+
+/// Saves a picture of the page some seconds after its start.
+fn take_picture(chromium: &Path, page: &Path, picture: &Path) -> anyhow::Result<()> {
+    let folder = tempfile::tempdir()?;
+    let timed = folder.path().join(FILE);
+    fs::write(&timed, format!("{CLOCK}{}", fs::read_to_string(page)?))?;
+    let mut chromium = Command::new(chromium);
+    chromium
+        .args(HEADLESS.split(' ').chain(PICTURE.split(' ')))
+        .arg(format!("--user-data-dir={}", folder.path().display()))
+        .arg(format!("--screenshot={}", absolute(picture)?.display()))
+        .arg(timed);
+    let output = process::run(&mut chromium, PICTURE_LIMIT)?;
+    ensure!(output.status.success(), "Chromium: {}", output.stderr);
+    Ok(())
+}
