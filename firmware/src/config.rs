@@ -194,7 +194,7 @@ pub const MASS_RATIOS: [f32; 41] = [
     1.0, 1.25, 1.6, 2.0, 2.5, 3.15, 4.0, 5.0, 6.3, 8.0, //
     10.0, 12.5, 16.0, 20.0, 25.0, 31.5, 40.0, 50.0, 63.0, 80.0, 100.0,
 ];
-/// The step of the start angle, degrees.
+/// The change of the start angle by a press of left or right, degrees. The panel shows whole ones.
 pub const ANGLE_STEP: f32 = 1.0;
 /// The largest start angle, degrees: straight up. The smallest is its negative.
 pub const GREATEST_ANGLE: f32 = 180.0;

@@ -20,6 +20,23 @@
 //! advances the scene; then the scene is drawn on the canvas, and the frame is sent to the panel
 //! and over the link.
 //!
+//! # Where to look
+//!
+//! - **The step of a motion on the panel**: from a scene by `motion::Simulation` to the kernel's
+//!   `plan/run.rs` (`PlannedRun`) and `methods/any.rs` (`DrawnMotion`), and from there to the file
+//!   of the method: `rk4_fixed32.rs`, `rk4_direction.rs` or `extrapolation_fixed64.rs`.
+//! - **Its method and step count**: before there is a plan, the kernel's `Stepping::initial`
+//!   (`plan/cost.rs`). Then `plan/search.rs`, with the prices of `plan/prices.rs` and the budgets
+//!   of [`config`]; `Player::follow` adopts the plan.
+//! - **A button**: the board's `Buttons`, `app/controls.rs`, a [`protocol::Command`],
+//!   `Player::execute`, `motion/settings.rs`.
+//! - **A frame on the link**: `Player::frame`, `App::show`, and the table of bytes at
+//!   [`protocol::Frame`].
+//! - **A fault**: `board/cortex_m/crash.rs`, `board/main_loop.rs` (`resume`),
+//!   `app/warm_restart.rs`.
+//! - **The bytes for a panel**: `display/oled_i2c.rs`, with a row for each controller, or
+//!   `display/ssd0323.rs`.
+//!
 //! # Glossary
 //!
 //! Terms of physics, numerics and plans are in the glossary of the kernel ([`double_pendulum`]).

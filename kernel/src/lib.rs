@@ -35,7 +35,7 @@
 //! | Legendre transformation | [`Pendulum::to_state`], [`Pendulum::to_motion`] | `lagrange` |
 //! | Hamilton's equations, H | [`Pendulum::derivatives`], [`Pendulum::energy`] | `hamilton` |
 //! | equal rods | [`Parameters::equal_rods`] | `hamilton` |
-//! | Runge-Kutta method | [`Pendulum::step`], [`rk4::step`] | `integrators`; host: `methods` |
+//! | Runge-Kutta method | [`rk4::step`]; drawn: [`Fixed32`], [`DirectionF32`] | `integrators` |
 //! | small oscillations | [`Modes`], [`SmallOscillations`] | `small_oscillations` |
 //! | coordinates | [`Pendulum::positions`], [`Pendulum::velocities`] | `lagrange` |
 //!

@@ -102,8 +102,8 @@ impl<R: Real> Modes<R> {
         R::HALF * (self.fast.frequency + self.slow.frequency)
     }
 
-    /// Returns the modulation frequency (w1 - w2)/2, rad/s, of the slow cosine of each amplitude.
-    /// `[math24]` calls it "beat frequency".
+    /// Returns the modulation frequency (w1 - w2)/2 > 0, rad/s, of the slow cosine of each
+    /// amplitude. `[math24]` calls it "beat frequency".
     #[must_use]
     pub fn modulation(&self) -> R {
         R::HALF * self.exchange

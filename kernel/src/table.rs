@@ -381,7 +381,7 @@ impl Method {
         self.row().drawn
     }
 
-    /// Returns true if the numbers are those of an `f32`.
+    /// Returns true if the numbers are `f32`, compensated or not.
     #[must_use]
     pub const fn is_single(self) -> bool {
         matches!(self.numbers(), Numbers::F32 | Numbers::CompensatedF32)
@@ -400,8 +400,8 @@ impl fmt::Display for Method {
     }
 }
 
-// The order of `Method::ALL` is that of the variants, and the order of `Method::DRAWN` is that of the
-// variants of `DrawnMethod`. Each row of a drawn method has the variant of its own.
+// The order of `Method::ALL` is that of the variants, and the order of `Method::DRAWN` is that of
+// the variants of `DrawnMethod`. Each row of a drawn method has the variant of its own.
 const _: () = {
     let mut i = 0;
     let mut drawn = 0;

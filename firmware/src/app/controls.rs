@@ -16,7 +16,7 @@ choice! {
     }
 }
 
-/// A reading of the five buttons; `true` means pressed.
+/// A reading of the five buttons, not debounced; `true` means pressed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Pressed {
     pub up: bool,

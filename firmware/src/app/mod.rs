@@ -120,7 +120,8 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
         self.panel.choose(controller)
     }
 
-    /// Returns the state of the player and of the panel.
+    /// Returns what the host may ask for at any time: scene, settings, method, processor, speed,
+    /// and the state of player and panel.
     pub fn status(&self) -> Status {
         Status {
             panel: self.panel.report(),

@@ -48,8 +48,8 @@ enum MotionState {
     KeepsMethod,
     /// The motion follows the plan: the next better result of the planner replaces its method.
     FollowsPlan,
-    /// The planned motion catches up with the current one, and then takes over. Meanwhile nothing is
-    /// planned.
+    /// The planned motion catches up with the current one, and then takes over. Meanwhile nothing
+    /// is planned.
     Switching(CatchingUp),
     /// The motion cannot be computed. It is too fast for every method that a frame can pay for, or
     /// has left the finite numbers.
@@ -238,8 +238,8 @@ impl<'a> Player<'a> {
         !self.is_still() && !self.is_switching() && self.planner.work_ahead()
     }
 
-    /// Returns the last result of the planner and its problem; `None` if the scene shows no planned
-    /// motion.
+    /// Returns the last result of the planner, if there is one, and its problem; `None` if the
+    /// scene shows no planned motion.
     pub fn plan(&self) -> Option<Planned> {
         self.planner.planned()
     }

@@ -339,7 +339,8 @@ fn log_plan(
     }
     let thousandths = libm::ceilf(1e3 * HALF_PIXEL * error) as u32;
     defmt::info!(
-        "plan: {=str}, steps per frame: {}; error up to {}.{:03} pixels until {}.{:02} s (limited by {=str}), {} cycles per frame",
+        "plan: {=str}, steps per frame: {}; error up to {}.{:03} pixels until {}.{:02} s \
+         (limited by {=str}), {} cycles per frame",
         method,
         steps,
         thousandths / 1000,

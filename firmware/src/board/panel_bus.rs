@@ -25,7 +25,7 @@ pub struct Bus<P> {
 }
 
 /// The number of tries to wait for a start or stop. It takes 5 us, and these tries take at least 12
-/// us.
+/// us. After the last one the bus goes on without it; a transfer that hangs is then reset.
 pub const TRIES: u32 = 500;
 
 /// An outbox that is being sent, and the processor cycles of its begin and end.

@@ -17,7 +17,8 @@ const RIGHT: i32 = WIDTH as i32 - 1 - MARGIN;
 pub const LINE: i32 = 8;
 pub const LOWEST: i32 = HEIGHT as i32 - MARGIN - LINE;
 
-/// The position of a line of text, whose top is at row y.
+/// The position of a line of text. The last number is y, the row of its top; a number before it is
+/// the column x. Text beyond the edges is not drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Anchor {
     /// The line is at the left edge, at the right edge, or in the middle.

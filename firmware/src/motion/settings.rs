@@ -97,8 +97,8 @@ impl Settings {
         Motion { a1, a2, w1, w2 }
     }
 
-    /// Returns the pendulum and its initial state. Returns the kernel's error if the settings
-    /// describe no pendulum, or no finite state.
+    /// Returns the pendulum and its initial state, in SI units. Returns the kernel's error if the
+    /// settings describe no pendulum, or no finite state.
     pub fn start(&self) -> Result<(Pendulum<f32>, State<f32>), Error> {
         let pendulum = Pendulum::new(&self.parameters)?;
         let motion = self.motion();

@@ -140,11 +140,12 @@ pub struct Energy {
 }
 
 impl Energy {
-    /// Returns the energy of the start that `settings` describe.
+    /// Returns the energy of the start that `settings` describe, J. It is not finite if they are
+    /// not.
     ///
     /// # Errors
     ///
-    /// Refuses settings that describe no pendulum.
+    /// Refuses masses, lengths and gravity that describe no pendulum.
     pub fn new(settings: &Settings) -> Result<Self, Error> {
         let pendulum = Pendulum::new(&settings.parameters.cast())?;
         let start = pendulum.energy_above_rest(&pendulum.to_state(&settings.motion().cast()));

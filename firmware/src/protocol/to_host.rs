@@ -102,8 +102,12 @@ impl ToHost {
 /// | 1, or 1 and 1 and varint | `report.stepping`: 0; or 1, the method's number, the step count |
 /// | varint, 1 to 5 each | `scene_cycles`, `busy_cycles` |
 ///
-/// The numbers of all kinds are in `wire-12.txt` in this folder (test `link`). To add a field, add
-/// it here and to `Player::frame`, and raise [`VERSION`](super::VERSION).
+/// The numbers of all kinds are in `wire-12.txt` in this folder (test `link`). To add a field:
+///
+/// 1. Add it here, and to `Player::frame`. If only the board knows it, such as its cycles, add it
+///    to `App::show`, and to `Show::expected` of the host's emulator.
+/// 2. Raise [`VERSION`](super::VERSION) and, if a frame becomes longer than that, `MAX_MESSAGE`.
+///    Run the tests `firmware link:: golden::` with `BLESS=1`, and name the version in the README.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Frame {
     /// The number of frames drawn since reset. A gap means that a frame was lost on the way, unless

@@ -119,8 +119,12 @@ impl Block {
 }
 
 impl Flips {
-    /// Creates the map as [`Scene::new`] does, with the pace of any processor, in `f32` or in fixed
-    /// point.
+    /// Creates the map as [`Scene::new`] does, with the work per tick of any processor, in `f32` or
+    /// in fixed point.
+    ///
+    /// # Errors
+    ///
+    /// Refuses settings that describe no pendulum, or one out of the range of the numbers.
     #[inline(never)] // Not inlined, to save flash.
     pub fn at_pace(settings: &Settings, pace: FlipsPace, in_float: bool) -> Result<Self, Error> {
         // The search lasts for a fixed number of units of time.

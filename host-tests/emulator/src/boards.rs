@@ -60,8 +60,9 @@ impl Board {
         }
     }
 
-    /// Returns true if the processor has a memory protection unit and reports the cause of a fault.
-    /// An M0+ does not report the cause, and QEMU's M0+ has no memory protection unit.
+    /// Returns true if the stack has a guard: a memory protection unit, and a processor that
+    /// reports the cause of a fault. An M0+ does not report the cause, and QEMU's M0+ has no memory
+    /// protection unit.
     pub fn is_guarded(&self) -> bool {
         self.core() != Core::M0Plus
     }
@@ -82,7 +83,8 @@ impl Board {
     }
 }
 
-/// QEMU's board with the OLED panel, which supports several processors.
+/// The board with an OLED panel in QEMU, here with the Cortex-M3 of the real one. QEMU can give it
+/// other processors.
 pub const LM3S6965EVB: Board = Board {
     name: "lm3s6965evb",
     machine: "lm3s6965evb",

@@ -13,8 +13,9 @@ use double_pendulum::flips::{Flip, Flips};
 use double_pendulum::parts::DirectionF64;
 use double_pendulum::{Error, Run};
 
-/// Advances RK4 in compensated `f64`, with a count of turns. Tests compare RK4 in fewer bits with it for as long as a day.
-/// This function is in this package because the package is optimised in every profile.
+/// Advances RK4 in compensated `f64`, with a count of turns. Tests compare RK4 in fewer bits with
+/// it for as long as a day. This function is in this package because the package is optimised in
+/// every profile.
 pub fn advance(run: &mut Run<DirectionF64, true>, steps: u32) -> Result<(), Error> {
     run.advance(steps)
 }

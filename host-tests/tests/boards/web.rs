@@ -82,7 +82,7 @@ fn page_works_in_chromium_and_makes_no_request() -> anyhow::Result<()> {
         let profile = tempfile::tempdir()?;
         let folder = profile.path().display();
         let options = format!("{HEADLESS} --remote-debugging-pipe --user-data-dir={folder}");
-        let pictures = workspace().join("host-tests/pictures/scenes");
+        let pictures = workspace().join("host-tests/golden/scenes");
         run(node
             .arg(set_up_chromium()?)
             .arg(options)

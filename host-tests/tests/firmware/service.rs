@@ -60,8 +60,8 @@ fn readings(request: &Request) -> Result<Vec<Reading>, Error> {
 }
 
 /// One step at a time and all steps at once give the same readings with the same method, for any
-/// client. Both rods turn over, and the closed form, which counts no turns, makes steps of more than
-/// a quarter turn.
+/// client. Both rods turn over, and the closed form, which counts no turns, makes steps of more
+/// than a quarter turn.
 #[test]
 fn every_method_of_the_boards_answers_with_the_hosts_readings() {
     for &method in ON_BOARDS {

@@ -62,7 +62,13 @@ pub struct FwOptions {
     #[arg(value_name = "BIN", required_unless_present = "check")]
     binary: Option<PathBuf>,
     /// The board to run it on [default: the first board below that can run it]
-    #[arg(long, visible_alias = "on", value_name = "NAME", value_parser = choice(&BOARDS, |board| board.name), hide_possible_values = true)]
+    #[arg(
+        long,
+        visible_alias = "on",
+        value_name = "NAME",
+        value_parser = choice(&BOARDS, |board| board.name),
+        hide_possible_values = true,
+    )]
     board: Option<&'static Board>,
     /// Stop it after this many seconds, with exit code 0 [default: fails after one hour]
     #[arg(long, value_name = "N")]

@@ -25,8 +25,8 @@ const KERNEL: &str = "double-pendulum-kernel";
 /// The programs that print checksums in that format, with their arguments.
 const HASHERS: [(&str, &[&str]); 2] = [("sha256sum", &[]), ("shasum", &["-a", "256"])];
 
-/// Makes target/release-files/: the Pico's UF2, the ELF file of every board, the page for a browser,
-/// the packaged kernel, and their SHA-256 sums.
+/// Makes target/release-files/: the Pico's UF2, the ELF file of every board, the page for a
+/// browser, the packaged kernel, and their SHA-256 sums.
 ///
 /// The files depend only on the commit and the compiler, not on folders or the machine.
 #[derive(Debug, Parser)]

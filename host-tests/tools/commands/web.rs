@@ -147,7 +147,15 @@ fn place(scene: SceneName) -> Option<Place> {
     match scene {
         SceneName::Page => Some(Place::WHOLE),
         SceneName::Figure7 | SceneName::Butterfly | SceneName::Upright => Some(Place::HALVES[0]),
-        _ => None,
+        SceneName::SmallLight
+        | SceneName::SmallEqual
+        | SceneName::SmallHeavy
+        | SceneName::Frequencies
+        | SceneName::Beats3To2
+        | SceneName::Beats2To1
+        | SceneName::Beats5To2
+        | SceneName::Beats3To1
+        | SceneName::Flips => None,
     }
 }
 

@@ -19,7 +19,8 @@ pub fn exact_methods() -> impl Iterator<Item = Method> {
     Method::ALL.iter().copied().filter(is_exact)
 }
 
-/// A [`Run`] that counts turns, whose method is chosen at run time. Its numbers are widened to `f64`.
+/// A [`Run`] that counts turns, whose method is chosen at run time. Its numbers are widened to
+/// `f64`.
 pub trait AnyRun: Debug {
     fn advance(&mut self, steps: u32) -> Result<(), Error>;
     fn state(&self) -> State<f64>;

@@ -1,4 +1,5 @@
-//! The loop of all programs of this crate: a motion by a method of the kernel is advanced and drawn.
+//! The loop of all programs of this crate: a motion by a method of the kernel is advanced and
+//! drawn.
 //!
 //! `cargo count --minimal` counts the calls of [`advance`], and the bytes of each program.
 #![no_std]

@@ -1,4 +1,7 @@
 //! The classical Runge-Kutta method of order 4 (RK4), for any system of first-order equations.
+//!
+//! Scenes are drawn by RK4 steps that are written out for their numbers: those of `f32` are in
+//! `rk4_direction.rs`, those of fixed point in `rk4_fixed32.rs`.
 
 use super::RungeKutta;
 use crate::bounds::RK4_STABLE;

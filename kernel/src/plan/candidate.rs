@@ -55,7 +55,8 @@ impl Candidate {
         self.state = CandidateState::Excluded;
     }
 
-    /// Returns true if the horizon is enough longer than that of `other` to be worth a higher cost.
+    /// Returns true if the horizon is more than [`WORTH`] times as long as that of `other`, which
+    /// is worth a higher cost.
     pub fn has_longer_horizon(&self, other: &Self) -> bool {
         f64::from(self.accurate_frames) > WORTH * f64::from(other.accurate_frames)
     }

@@ -155,7 +155,7 @@ impl Pair {
 
     /// Returns the pair whose coarse run makes `steps` steps per frame.
     ///
-    /// The fine run makes a third more, or `least` if that is more.
+    /// The fine run makes a third more steps, and at least `least`.
     pub fn of_coarse(steps: u32, least: u32) -> Self {
         let more = (steps / 3).max(1);
         Self::new(steps, steps.saturating_add(more).max(least))

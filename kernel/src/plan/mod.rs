@@ -41,8 +41,8 @@
 //! budgets can pay for.
 //!
 //! Planning needs no heap. It is divided into pieces that a busy caller can afford ([`Search`]).
-//! The caller provides the cost of a step: [`Costs`] is a price list in any unit. The kernel has the
-//! lists of three processors, in cycles.
+//! The caller provides the cost of a step: [`Costs`] is a price list in any unit. The kernel has
+//! the lists of three processors, in cycles.
 //!
 //! # Example
 //!

@@ -333,6 +333,10 @@ impl Trial {
     ///
     /// If a method refuses a perturbed start, the opposite perturbation is used. A start close to
     /// the end of the range of a method may have a neighbour outside that range on one side only.
+    ///
+    /// # Errors
+    ///
+    /// Returns the error of a method that refuses the motion and, if it is perturbed, its opposite.
     #[inline(never)]
     pub fn prepare(&mut self, problem: &Problem) -> Result<bool, Error> {
         let has_reference = self.has_reference();

@@ -56,7 +56,8 @@ fn every_method_computes_the_golden_bits() {
             assert_eq!(
                 of(method),
                 here,
-                "{method} computes other bits. If they are meant to change: `BLESS=1 cargo test -p host-tests --test kernel golden::`"
+                "{method} computes other bits. If they are meant to change: \
+                `BLESS=1 cargo test -p host-tests --test kernel golden::`"
             );
         }
     }

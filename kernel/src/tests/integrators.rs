@@ -1,8 +1,8 @@
-//! The order conditions of every integrator (`[Hairer I]`, II.2). A failure names the condition that
-//! does not hold, and the weight that is wrong.
+//! The order conditions of every integrator (`[Hairer I]`, II.2). A failure names the condition
+//! that does not hold, and the weight that is wrong.
 //!
-//! The weights are read off from a step: it is computed for equations whose slopes at the stages are
-//! unit vectors, so that the points and the end of the step show each weight by itself.
+//! The weights are read off from a step: it is computed for equations whose slopes at the stages
+//! are unit vectors, so that the points and the end of the step show each weight by itself.
 
 use core::any::type_name;
 use core::cell::Cell;

@@ -34,7 +34,8 @@ pub const DERIVATIVES: PerPrecision = PerPrecision {
 /// Energies, momenta and velocities that two formulas give for one state, relative to the sum of
 /// the magnitudes of the terms.
 ///
-/// There are about thirty rounding errors. The kinetic energy is divided by den.
+/// There are about thirty rounding errors. The kinetic energy is divided by m1 + m2
+/// sin^2(a1 - a2), which is small for a light bob 1.
 pub const FORMULAS: PerPrecision = PerPrecision {
     single: 4e-6,
     double: 8e-15,

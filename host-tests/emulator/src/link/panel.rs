@@ -38,8 +38,8 @@ fn frames(report: &PanelReport) -> String {
         0 => "frame rate not known yet".to_owned(),
         TICK_RATE => format!("{shown} frames/s"),
         _ => format!(
-            "{shown} of {TICK_RATE} frames/s: the bus is slow; use 2.2 to 4.7 kOhm from SCL and SDA \
-             to 3.3 V and short wires"
+            "{shown} of {TICK_RATE} frames/s: the bus is slow; use 2.2 to 4.7 kOhm from SCL and \
+             SDA to 3.3 V and short wires"
         ),
     }
 }

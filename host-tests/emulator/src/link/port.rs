@@ -207,8 +207,8 @@ impl Port {
         match self.inbox.damage {
             _ if *bytes == 0 => {
                 format!(
-                    "{name}: no data; is the board powered, and (with an adapter) its TX wired to RX? \
-                     A Pico behind a hub may need its cable pulled and plugged in again"
+                    "{name}: no data; is the board powered, and (with an adapter) its TX wired to \
+                     RX? A Pico behind a hub may need its cable pulled and plugged in again"
                 )
             }
             Some(LinkError::Version(version)) => {

@@ -31,7 +31,7 @@ const EXAMPLES: &str = "Examples:
   cargo count                                             every method on a Cortex-M3
   cargo count fixed32 --on lm3s6965evb,lm3s6965evb-m4,lm3s6965evb-m0
   cargo count rk4-f32-direction --on lm3s6965evb-m4 --listing
-  cargo count --minimal                                   Run::advance in a crate outside, on three cores
+  cargo count --minimal                                   Run::advance in a crate outside
   cargo count --elf firmware.elf --function step --seconds 5
 
 A function is counted from its first instruction to its return. The call itself costs about 2
@@ -48,7 +48,13 @@ pub struct CountOptions {
     method: String,
     /// The boards, with commas between them [default: lm3s6965evb, a Cortex-M3; with --elf
     /// lm3s6965evb-m4; with --minimal one of each core]
-    #[arg(long, visible_alias = "board", value_name = "NAME", value_delimiter = ',', value_parser = cli::choice(&BOARDS, |board| board.name))]
+    #[arg(
+        long,
+        visible_alias = "board",
+        value_name = "NAME",
+        value_delimiter = ',',
+        value_parser = cli::choice(&BOARDS, |board| board.name),
+    )]
     on: Vec<&'static Board>,
     /// Count a function of this program instead, including interrupts; the program should exit by
     /// semihosting, else it is stopped after --seconds
@@ -59,7 +65,13 @@ pub struct CountOptions {
     #[arg(long, value_name = "NAME", requires = "elf")]
     function: Option<String>,
     /// The time limit of that program, s
-    #[arg(long, value_name = "N", default_value_t = 600, requires = "elf", value_parser = clap::value_parser!(u32).range(1..))]
+    #[arg(
+        long,
+        value_name = "N",
+        default_value_t = 600,
+        requires = "elf",
+        value_parser = clap::value_parser!(u32).range(1..),
+    )]
     seconds: u32,
     /// Number of steps to average over [default: 256, fewer for an expensive method]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=MOST_STEPS))]
@@ -74,20 +86,36 @@ pub struct CountOptions {
     #[arg(long, value_name = "RAD", default_value_t = 0.5)]
     angle: f64,
     /// The step is 1/2^K s
-    #[arg(long, value_name = "K", default_value_t = 8, value_parser = clap::value_parser!(u8).range(0..=30))]
+    #[arg(
+        long,
+        value_name = "K",
+        default_value_t = 8,
+        value_parser = clap::value_parser!(u8).range(0..=30),
+    )]
     halvings: u8,
     /// List every instruction executed, with its cycles
     #[arg(long)]
     listing: bool,
     /// Count the public function Run::advance in the programs of kernel/minimal, a crate outside
     /// this workspace, instead: a step, a call on top of its steps, and the program's flash
-    #[arg(long, conflicts_with_all = ["method", "elf", "steps", "m2", "l2", "angle", "halvings", "listing", "write_prices"])]
+    #[arg(
+        long,
+        conflicts_with_all = [
+            "method", "elf", "steps", "m2", "l2", "angle", "halvings", "listing", "write_prices",
+        ],
+    )]
     minimal: bool,
     /// Write these prices into the kernel's README, too
     #[arg(long, requires = "minimal", conflicts_with = "on")]
     readme: bool,
-    /// Count the prices of plans on each kind of core, and write them into kernel/src/plan/prices.rs
-    #[arg(long, conflicts_with_all = ["method", "on", "elf", "steps", "m2", "l2", "angle", "halvings", "listing"])]
+    /// Count the prices of plans on each kind of core, and write them into
+    /// kernel/src/plan/prices.rs
+    #[arg(
+        long,
+        conflicts_with_all = [
+            "method", "on", "elf", "steps", "m2", "l2", "angle", "halvings", "listing",
+        ],
+    )]
     write_prices: bool,
 }
 
@@ -216,8 +244,9 @@ impl CountOptions {
             ..
         } = self;
         format!(
-            "one step of 2^-{halvings} s, averaged over the first steps from rest at {angle} rad; masses 1,{m2} kg, lengths \
-             1,{l2} m, gravity {GRAVITY} m/s^2 (as an f32); instructions are counted"
+            "one step of 2^-{halvings} s, averaged over the first steps from rest at {angle} rad; \
+             masses 1,{m2} kg, lengths 1,{l2} m, gravity {GRAVITY} m/s^2 (as an f32); \
+             instructions are counted"
         )
     }
 }
@@ -236,7 +265,8 @@ fn option_of(error: &Error) -> &'static str {
 
 #[rustfmt::skip]
 const TITLES: [&str; 9] = [
-    "method", "board", "steps", "instructions", "cycles (estimate)", "stalls", "hot bytes", "code bytes", "stack bytes",
+    "method", "board", "steps", "instructions", "cycles (estimate)", "stalls",
+    "hot bytes", "code bytes", "stack bytes",
 ];
 
 fn line(
@@ -339,8 +369,9 @@ fn count_minimal(toolchain: &Toolchain, options: &CountOptions) -> anyhow::Resul
         let counted = MinimalPrices::count(toolchain, board)?;
         if place == 0 {
             say(
-                "Run::advance in the programs of kernel/minimal: a step of 2^-8 s from rest at 0.5 rad, rods of 1 m, bobs of \
-                 1 kg; a call is on top of its steps; flash is beyond that of a program without a motion",
+                "Run::advance in the programs of kernel/minimal: a step of 2^-8 s from rest at \
+                 0.5 rad, rods of 1 m, bobs of 1 kg; a call is on top of its steps; flash is \
+                 beyond that of a program without a motion",
             )?;
             say(ERROR_BAR)?;
             let titles = ["steps", "cycles (estimate)", "a call", "flash bytes"];

@@ -38,8 +38,15 @@ pub struct SceneOptions {
     pub start: StartOptions,
     /// A built-in scene, with the f32 values that the boards start it with (excludes --angles,
     /// --velocities, --masses, --lengths, --gravity, --height, --duration and --rate)
-    #[arg(long, value_name = "NAME", value_parser = choice(SceneName::ALL.iter().copied(), SceneName::name),
-          conflicts_with_all = ["masses", "lengths", "gravity", "angles", "velocities", "degrees", "height", "duration", "rate"])]
+    #[arg(
+        long,
+        value_name = "NAME",
+        value_parser = choice(SceneName::ALL.iter().copied(), SceneName::name),
+        conflicts_with_all = [
+            "masses", "lengths", "gravity", "angles", "velocities", "degrees", "height",
+            "duration", "rate",
+        ],
+    )]
     pub scene: Option<SceneName>,
     /// Height of the display, pixels, at most 1e6; both rods together have half this length
     #[arg(
@@ -58,10 +65,21 @@ pub struct SceneOptions {
     )]
     pub duration: Number,
     /// Frames per second, 1 to 65535
-    #[arg(long, value_name = "N", default_value_t = 60, value_parser = value_parser!(u16).range(1..))]
+    #[arg(
+        long,
+        value_name = "N",
+        default_value_t = 60,
+        value_parser = value_parser!(u16).range(1..),
+    )]
     pub rate: u16,
     /// The chip that computes it, or the board with this chip
-    #[arg(long, visible_alias = "on", value_name = "CHIP", default_value = CHIPS[0].name, value_parser = chip())]
+    #[arg(
+        long,
+        visible_alias = "on",
+        value_name = "CHIP",
+        default_value = CHIPS[0].name,
+        value_parser = chip(),
+    )]
     pub target: Chip,
 }
 

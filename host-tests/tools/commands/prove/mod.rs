@@ -39,10 +39,20 @@ pub struct ProveOptions {
     #[command(flatten)]
     scene: SceneOptions,
     /// Draw with this method instead of the planned one
-    #[arg(long, value_name = "NAME", value_parser = choice(Method::DRAWN.iter().copied(), Method::name))]
+    #[arg(
+        long,
+        value_name = "NAME",
+        value_parser = choice(Method::DRAWN.iter().copied(), Method::name),
+    )]
     method: Option<Method>,
     /// Steps of that method per frame
-    #[arg(long, value_name = "N", requires = "method", default_value_t = 1, value_parser = value_parser!(u32).range(1..=65_536))]
+    #[arg(
+        long,
+        value_name = "N",
+        requires = "method",
+        default_value_t = 1,
+        value_parser = value_parser!(u32).range(1..=65_536),
+    )]
     steps: u32,
     /// Print for each frame the box that encloses the exact motion, and the verdict, as CSV
     #[arg(long)]

@@ -22,8 +22,11 @@ pub struct Point {
     pub name: &'static str,
     pub scene: &'static Scene,
     pub board: &'static Board,
+    /// Steps per second.
     pub rate: u32,
+    /// The cost of a step.
     pub step: StepCost,
+    /// The largest errors in the scene.
     pub error: Error,
 }
 

@@ -29,7 +29,7 @@ Examples:
   cargo simulate --angles 0.5,0.5 --until 10 --every 1/10 --tolerance 1e-5 --on lm3s6965evb
   cargo simulate --angles 171,171 --degrees --masses 1,2.75 --step 1/4096 --until 5 --every 1
   cargo simulate --angles 0.5,0.5 --step 1/256 --method rk4-fixed32 --on lm3s6965evb --bits
-  cargo simulate --angles 0.5,0.5 --step 1/16 --method extrapolation12-f64 --columns t,x2,y2 --header units
+  cargo simulate --angles 0.5,0.5 --step 1/16 --columns t,x2,y2 --header units
   cargo simulate --list
 
 Exit code 2: bad input, or values that fail on the first step; one line on stderr. Exit code 1: the
@@ -68,7 +68,12 @@ pub struct SimulateOptions {
     #[arg(long, value_name = "T", allow_hyphen_values = true)]
     pub every: Option<Number>,
     /// The method, one of --list [default: rk4-f64]
-    #[arg(long, value_name = "NAME", value_parser = choice(Method::ALL.iter().copied(), Method::name), hide_possible_values = true)]
+    #[arg(
+        long,
+        value_name = "NAME",
+        value_parser = choice(Method::ALL.iter().copied(), Method::name),
+        hide_possible_values = true,
+    )]
     pub method: Option<Method>,
     /// Print the table of methods: name, equations, numbers, integrator, order, where it runs
     #[arg(long, exclusive = true)]
@@ -79,8 +84,14 @@ pub struct SimulateOptions {
     pub place: Place,
     /// The columns: any of t, a1, a2, p1, p2, w1, w2, energy, and the bobs' positions x1, y1, x2,
     /// y2 from the pivot, y upwards
-    #[arg(long, value_name = "NAMES", value_delimiter = ',', default_value = "t,a1,a2,p1,p2,w1,w2,energy",
-          value_parser = choice(0..NAMES.len(), |column| NAMES[column]), hide_possible_values = true)]
+    #[arg(
+        long,
+        value_name = "NAMES",
+        value_delimiter = ',',
+        default_value = "t,a1,a2,p1,p2,w1,w2,energy",
+        value_parser = choice(0..NAMES.len(), |column| NAMES[column]),
+        hide_possible_values = true,
+    )]
     pub columns: Vec<usize>,
     /// The first line: the names of the columns, or names with units
     #[arg(long = "header", value_name = "KIND", default_value = "names", action = ArgAction::Set,

@@ -45,8 +45,8 @@ pub const BLANK: &str = "(fill in)";
 /// Returns the check list of the board `name`: the observed restarts, and a row for each manual
 /// check.
 pub fn section(port: &Port, name: &str) -> Section {
-    let note = "The board reports its restarts itself. Please fill in the other rows as the check list in \
-                `firmware/README.md` describes; leave rows that do not apply.";
+    let note = "The board reports its restarts itself. Please fill in the other rows as the check \
+                list in `firmware/README.md` describes; leave rows that do not apply.";
     let mut section = Section::new("Check list", note, &["what", "found"]);
     // The observed restarts, then a row to fill in for each manual check.
     for (what, found) in restarts(port.restarts.count, port.restarts.last.as_ref()) {

@@ -132,9 +132,10 @@ pub fn measured(talk: &mut Talk) -> anyhow::Result<Vec<[Option<f64>; 2]>> {
 /// Returns the measured cycles with the estimate of `cargo count`. Instructions are counted in
 /// QEMU, on a board with the same processor.
 pub fn cycles(measured: &[[Option<f64>; 2]], board: Option<&Board>) -> anyhow::Result<Section> {
-    let note = "Measured with the processor's cycle counter, interrupts off, over 256 steps of the regular motion: once with the \
-                code in flash and, if there is one, once with its copy in RAM (both read constants from flash). Estimated \
-                for memory without wait states, over the same number of steps or, for an expensive method, fewer.";
+    let note = "Measured with the processor's cycle counter, interrupts off, over 256 steps of the \
+                regular motion: once with the code in flash and, if there is one, once with its \
+                copy in RAM (both read constants from flash). Estimated for memory without wait \
+                states, over the same number of steps or, for an expensive method, fewer.";
     let mut section = Section::new(
         "Cycles of a step",
         note,

@@ -123,7 +123,8 @@ impl Comparison {
         Some(frame)
     }
 
-    /// Returns the panel's picture of the compared `frame`, redrawn here.
+    /// Returns the panel's picture of `frame`, redrawn on the host from the scene that was compared
+    /// last.
     pub fn panel(&self, frame: &Frame) -> Screenshot {
         let mut canvas = self
             .playing

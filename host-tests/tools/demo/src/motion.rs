@@ -45,7 +45,17 @@ fn used_by(scene: SceneName) -> &'static [&'static str] {
     match scene {
         SceneName::Frequencies => &[MASSES],
         SceneName::Flips => &[MASSES, LENGTHS, GRAVITY],
-        _ => &[MASSES, LENGTHS, GRAVITY, ANGLES, VELOCITIES],
+        SceneName::Page
+        | SceneName::SmallLight
+        | SceneName::SmallEqual
+        | SceneName::SmallHeavy
+        | SceneName::Beats3To2
+        | SceneName::Beats2To1
+        | SceneName::Beats5To2
+        | SceneName::Beats3To1
+        | SceneName::Figure7
+        | SceneName::Butterfly
+        | SceneName::Upright => &[MASSES, LENGTHS, GRAVITY, ANGLES, VELOCITIES],
     }
 }
 

@@ -29,7 +29,11 @@ pub struct DemoOptions {
     #[arg(long, value_name = "PATH", conflicts_with = "board")]
     pub port: Option<String>,
     /// The scene [default: the board's current scene, page after power-on]
-    #[arg(long, value_name = "NAME", value_parser = choice(SceneName::ALL.iter().copied(), SceneName::name))]
+    #[arg(
+        long,
+        value_name = "NAME",
+        value_parser = choice(SceneName::ALL.iter().copied(), SceneName::name),
+    )]
     pub scene: Option<SceneName>,
     /// The method that computes the motion; `plan` lets the board choose [default: the board's
     /// current choice, plan after power-on]
@@ -78,7 +82,7 @@ fn after_help() -> String {
          Examples:\n  \
          cargo demo --angles 90,45 --degrees --masses 1,3 --lengths 1,0.7 --speed 1/2\n  \
          cargo demo --port /dev/ttyUSB0      # a real board\n  \
-         cargo demo --port auto --panel sh1106   # if its picture is shifted or dark; or ssd1306\n  \
+         cargo demo --port auto --panel sh1106   # for a picture shifted or dark; or ssd1306\n  \
          cargo demo --scene butterfly --headless --seconds 10 --record butterfly.gif",
         keys.collect::<String>(),
         scenes.collect::<String>()

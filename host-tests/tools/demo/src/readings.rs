@@ -41,7 +41,7 @@ impl Help {
     }
 }
 
-/// Returns a line of the host's own for the log.
+/// Returns a warning of the host, as a line of the board's log.
 pub fn warning(text: String) -> LogLine {
     LogLine {
         level: Some("warn".to_owned()),

@@ -305,7 +305,8 @@ impl<'a> Session<'a> {
         self.before + i64::from(frame.sequence) + i64::from(frame.dropped)
     }
 
-    /// Returns the seconds since the first frame of the requested scene, including that frame.
+    /// Returns the seconds of the board's clock since the first frame of the requested scene,
+    /// including that frame; 0 before it.
     pub fn seconds(&self) -> f64 {
         self.begun.zip(self.now).map_or(0.0, |(begun, now)| {
             (now - begun + 1) as f64 / f64::from(TICK_RATE)

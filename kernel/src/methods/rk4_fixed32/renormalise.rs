@@ -1,5 +1,5 @@
-//! The corrections after every 32 steps of [`Fixed32`]: lengths, rounded constants, and the check of
-//! the energy.
+//! The corrections after every 32 steps of [`Fixed32`]: lengths, rounded constants, and the check
+//! of the energy.
 
 use super::{Fixed32, OFFSET};
 use crate::numbers::fixed::product;

@@ -57,7 +57,8 @@ pub struct Units {
     pub square: i64,
     /// 1/nu^2 with 29 fractional bits.
     pub inverse_square: i64,
-    /// The energy above which the motion is lost, in the format of [`Fixed32::energy`](super::Fixed32).
+    /// The energy above which the motion is lost, in the format of
+    /// [`Fixed32::energy`](super::Fixed32).
     pub most_energy: i64,
     pub scaling: Scaling,
 }

@@ -26,7 +26,7 @@ impl Q64 {
         self.over(1.0)
     }
 
-    /// Returns the number over `divisor`, a power of two, rounded once.
+    /// Returns the number over `divisor`, rounded once if that is a power of two.
     pub fn over<R: Real>(self, divisor: f64) -> R {
         R::from_i64(self.0) * R::from_f64(1.0 / (UNIT * divisor))
     }
