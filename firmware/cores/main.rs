@@ -20,6 +20,7 @@ mod machine {
         end(hio::hstdout().is_ok_and(|mut output| super::write_golden(&mut output).is_ok()))
     }
 
+    /// Ends the program with an exit status of success or failure.
     pub fn end(is_success: bool) -> ! {
         loop {
             debug::exit(if is_success {
@@ -37,12 +38,15 @@ mod machine {
     use core::arch::asm;
     use core::fmt;
 
+    /// The numbers of the system calls, and the file of the standard output.
     const WRITE: usize = 64;
     const EXIT: usize = 93;
     const OUTPUT: usize = 1;
 
     struct Output;
 
+    /// Makes a system call with three arguments. Returns its result, which is negative for an
+    /// error.
     #[cfg(target_arch = "riscv32")]
     fn call(number: usize, [a, b, c]: [usize; 3]) -> isize {
         let result;
@@ -82,6 +86,7 @@ mod machine {
         end(super::write_golden(&mut Output).is_ok())
     }
 
+    /// Ends the program with the exit status 0, or 1 after a failure.
     pub fn end(is_success: bool) -> ! {
         loop {
             call(EXIT, [usize::from(!is_success), 0, 0]);
@@ -97,6 +102,7 @@ mod machine {
 
     #[link(wasm_import_module = "host")]
     unsafe extern "C" {
+        /// Prints this number of bytes of UTF-8 text.
         fn print(text: *const u8, bytes: usize);
     }
 
@@ -118,7 +124,7 @@ mod machine {
         }
     }
 
-    /// Traps: a module that succeeds returns.
+    /// Traps. It is called after a failure only: a module that succeeds returns.
     pub fn end(_is_success: bool) -> ! {
         unreachable()
     }

@@ -26,8 +26,9 @@ use rp2040_hal::fugit::RateExtU32;
 use rp2040_hal::gpio::{FunctionSpi, Pins};
 use rp2040_hal::{Sio, Spi, Timer, Watchdog, pac};
 
-/// The Pico's crystal, and the panel's bus, Hz: a frame takes 2 ms there.
+/// The Pico's crystal, Hz.
 const CRYSTAL: u32 = 12_000_000;
+/// The clock of the panel's bus, Hz: a frame takes 2 ms there.
 const SPEED: u32 = 62_500_000;
 /// The frame's upper left corner on the panel: in the middle.
 const CORNER: Point = Point::new((240 - 128) / 2, (240 - 64) / 2);

@@ -1,5 +1,6 @@
-//! The CRCs of [requests](firmware::job::Request) on this machine, line by line: for builds with
-//! other settings.
+//! Reads [requests](firmware::job::Request), one a line, and prints the CRC of each as this machine
+//! computes it: for builds with other settings. Ends with an error at a line that is no request, or
+//! at a request that cannot be computed.
 
 use std::error::Error;
 use std::io::{self, BufRead};

@@ -16,8 +16,9 @@ use embassy_sync::signal::Signal;
 
 /// The processor's clock of an STM32F405 after reset, Hz.
 const CLOCK: u32 = 16_000_000;
-/// The frames per second, and the steps per frame.
+/// The frames per second.
 const RATE: u32 = 60;
+/// The steps per frame.
 const STEPS: u32 = 4;
 
 /// The timer's tick.
@@ -53,6 +54,7 @@ async fn pendulum() {
     let _error = swing().await; // report it here
 }
 
+/// Steps the pendulum at each tick of the timer. Returns only if its numbers are no longer finite.
 async fn swing() -> Result<(), Error> {
     let dt = 1.0 / f64::from(RATE * STEPS);
     let pendulum = Pendulum::new(&Parameters::equal_rods(1.0, 1.0, 9.81))?;

@@ -9,7 +9,7 @@ pub const TICK_RATE: u32 = 60;
 /// The number of RK4 steps per tick, of 1/120 s each, of a motion that is shown next to the planned
 /// one.
 pub const STEPS_PER_TICK: u32 = 2;
-/// The length of such a step, s.
+/// The length of such a step, s: 1/120.
 pub const DT: f64 = 1.0 / (TICK_RATE * STEPS_PER_TICK) as f64;
 /// The largest number of ticks that are integrated before a frame is drawn. So a board that is too
 /// slow for every frame still shows 60/15 = 4 frames per second. The other ticks are integrated
@@ -35,14 +35,14 @@ pub const HALF_PIXEL: f32 = 0.5;
 
 // ---- The plan -----------------------------------------------------------------------------------
 
-/// The time that is planned for each scene, s. It is longer than the most energetic motion can be
-/// predicted in 64 bits.
+/// The simulated time that is planned for each scene, s. It is longer than the most energetic
+/// motion can be predicted in 64 bits.
 ///
 /// A motion that is accurate for all of this time is verified further while the scene runs. The
 /// verification stays ahead of the scene by this time.
 pub const PLANNED: f64 = 30.0;
-/// The number of ticks from the start of a scene until planning begins. A held button restarts the
-/// scene sooner than that.
+/// The number of ticks of the scene from its start until planning begins. A held button restarts
+/// the scene sooner than that.
 pub const SETTLED_TICKS: u64 = 6;
 const _: () = assert!(SETTLED_TICKS > REPEAT_PERIOD_TICKS as u64);
 /// The size of a piece of the search, cycles. A single step may exceed it.
@@ -54,32 +54,35 @@ pub const PLANNING_PIECE: f32 = 20_000.0;
 pub struct Processor {
     /// The index in [`PROCESSORS`].
     pub code: u8,
-    /// The price list.
+    /// The price list: the cost of a step by each drawn method, cycles.
     pub costs: Costs,
     /// The budget for computing a frame, cycles. The rest of the time is for drawing and sending
     /// it.
     pub frame: f32,
-    /// The budget for planning in each tick, cycles. The comparison of frames takes up to a quarter
-    /// more.
+    /// The budget for planning in each tick of the scene, cycles. The comparison of frames takes up
+    /// to a quarter more.
     pub look_ahead: f32,
+    /// The work of the map of flips in a tick.
     pub flips: FlipsPace,
 }
 
 impl Processor {
-    /// Returns true if the processor has a floating-point unit. Without one, steps in fixed point
-    /// cost less.
+    /// Returns true if the processor has a floating-point unit. It is recognised by the price list:
+    /// without one, a step in fixed point costs less than a plain `f32` step.
     pub fn has_float(&self) -> bool {
         self.costs.direction_plain < self.costs.fixed32
     }
 
-    /// Returns the least cost of a piece of planning, cycles, and of a frame that is not shown. The
-    /// steps may cost less than the work around them.
+    /// Returns the least number of cycles that a piece of planning, or a frame that is computed but
+    /// not shown, is charged: the cost of a closed form, at least 1,000. The steps may cost less
+    /// than the work around them.
     pub fn piece(&self) -> f32 {
         self.costs.closed_form.max(1_000.0)
     }
 
-    /// Returns the budgets of a problem. Planning may spend its budget in as many ticks as the
-    /// problem has frames, so that the search stays ahead of the scene.
+    /// Returns the budgets of a problem, cycles: of each frame, and of all its planning. Planning
+    /// may spend [`look_ahead`](Self::look_ahead) in as many ticks as the problem has frames, so
+    /// that the search stays ahead of the scene.
     pub fn budget(&self, problem: &Problem) -> Budget {
         Budget {
             frame: self.frame,
@@ -148,11 +151,13 @@ pub const PROCESSOR: Processor = if cfg!(target_abi = "eabihf") {
 
 // ---- The map of flips ---------------------------------------------------------------------------
 
-/// The budget of the map of flips for a tick, in steps of the map.
+/// The budget of the map of flips for a tick, and the costs that are charged to it, all in steps of
+/// the motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FlipsPace {
+    /// The budget of a tick.
     pub steps: u32,
-    /// The number of steps that a new start counts as.
+    /// The number of steps that a new start counts as if its motion must be computed.
     pub start: u32,
     /// The number of steps that a start counts as if it has not enough energy to turn over.
     pub never: u32,
@@ -174,7 +179,8 @@ const FLOAT: FlipsPace = FlipsPace {
 
 // ---- The pendulum -------------------------------------------------------------------------------
 
-/// The length of either rod, m. It gives a period of about 2 s, which is pleasant to watch.
+/// The length of either rod at power-on, m. It gives a period of about 2 s, which is pleasant to
+/// watch.
 pub const ROD: f32 = 1.0;
 /// The gravity, m/s^2.
 pub const GRAVITY: f64 = 9.81;
@@ -201,37 +207,39 @@ pub const GREATEST_ANGLE: f32 = 180.0;
 
 // ---- Buttons, in ticks of 1/60 s ----------------------------------------------------------------
 
-/// The number of equal readings in a row that count as a level. 2 readings are 17 ms apart, which
-/// is longer than contacts bounce.
+/// The number of equal readings in a row, one per tick, that count as a level. 2 readings are 17 ms
+/// apart, which is longer than contacts bounce.
 pub const DEBOUNCE_TICKS: u8 = 2;
-/// The time after which a held button repeats for the first time: 24/60 = 0.4 s.
+/// The time after which a held button repeats for the first time, ticks: 24/60 = 0.4 s.
 pub const REPEAT_DELAY_TICKS: u8 = 24;
-/// The time after which it repeats again: 4/60 s, or 15 repetitions per second.
+/// The time after which a held button repeats again, ticks: 4/60 s, or 15 repetitions per second.
 pub const REPEAT_PERIOD_TICKS: u8 = 4;
 
-/// The time after which the select button, held alone, changes the scene: 48/60 = 0.8 s.
+/// The time after which the select button, held alone, changes the scene, ticks: 48/60 = 0.8 s.
 pub const HOLD_TICKS: u8 = 48;
-/// The longest time between taps and a hold that belong together: 24/60 = 0.4 s.
+/// The longest time between taps and a hold that belong together, ticks: 24/60 = 0.4 s.
 pub const MOST_TICKS_BETWEEN_TAPS: u8 = 24;
 
 // ---- The frame, in pixels -----------------------------------------------------------------------
 
-/// The position of the pivot, from the top left corner of the panel. It is the middle, so that the
-/// motion has the full height.
+/// The position (x, y) of the pivot, pixels to the right of and down from the top left corner of
+/// the panel. It is the middle, so that the motion has the full height.
 pub const PIVOT: (f32, f32) = (64.0, 32.0);
-/// The length of both rods together: half the height less the largest bob and its soft edge, 32 - 3
-/// - 0.5.
+/// The length of both rods together, pixels: half the height less the largest bob and its soft
+/// edge, 32 - 3 - 0.5.
 pub const REACH: f32 = 28.5;
-/// The radius of the heavier bob. The radius of the lighter one follows from its volume.
+/// The radius of the heavier bob, pixels. The radius of the lighter one follows from its volume.
 pub const GREATEST_RADIUS: f32 = 3.0;
-/// The smallest radius of a bob.
+/// The smallest radius of a bob, pixels.
 pub const LEAST_RADIUS: f32 = 1.5;
+/// Half the width of a rod, pixels.
 pub const ROD_HALF_WIDTH: f32 = 0.6;
+/// Half the width of the trail of the scene `page`, pixels.
 pub const TRAIL_HALF_WIDTH: f32 = 0.8;
-/// The brightness of the trail at the bob, of 255. Its grey is 11.
+/// The brightness of the trail at the bob, of 255. Its grey is 11 of 15.
 pub const TRAIL_BRIGHTNESS: u8 = 184;
-/// The number of rows of the trail that lose a grey in a tick. The last of 11 greys is gone after
-/// 11 x 64/5 = 141 ticks, 2.3 s of motion.
+/// The number of rows of the frame, of 64, in which the trail loses a grey in a tick. The last of
+/// 11 greys is gone after 11 x 64/5 = 141 ticks, 2.3 s of motion.
 pub const TRAIL_FADING: u8 = 5;
 
 // ---- The serial link ----------------------------------------------------------------------------
@@ -239,21 +247,21 @@ pub const TRAIL_FADING: u8 = 5;
 /// The speed of the serial link, bits per second. A frame message of at most 94 bytes takes 94 x
 /// 10/460,800 = 2.0 ms of the 16.7 ms of a tick.
 pub const BAUD: u32 = 460_800;
-/// The largest number of steps that are measured at once. With order 8 in `f64` they block a
-/// Cortex-M3 at 50 MHz for 16 x 136,500/50e6 = 44 ms.
+/// The largest number of steps that are measured at once; a request for more measures this number.
+/// With order 8 in `f64` they block a Cortex-M3 at 50 MHz for 16 x 136,500/50e6 = 44 ms.
 pub const MOST_MEASURED_STEPS: u32 = 16;
 /// The number of times that a bus is polled before it counts as stuck. A try takes at least 4
 /// processor cycles, so that the tries last 0.24 ms on the fastest board. The longest wait is for a
 /// byte of the serial port, 10/460,800 s = 22 us.
 pub const BUS_TRIES: u32 = 10_000;
-/// The capacity for received bytes that wait for the application. A tick brings at most
-/// 460,800/10/60 = 768.
+/// The size, bytes, of the queue of received bytes that wait for the application. When it is full,
+/// further ones are lost. A tick brings at most 460,800/10/60 = 768.
 pub const RECEIVE_QUEUE: usize = 1024;
-/// The capacity for bytes that wait for the USB host. The host fetches 63 bytes about every 0.1 ms.
-/// If it is late, the queue holds a dozen frames.
+/// The size, bytes, of the queue of bytes that wait for the USB host. The host fetches 63 bytes
+/// about every 0.1 ms. If it is late, the queue holds a dozen frames.
 pub const USB_QUEUE: usize = 1024;
-/// The capacity for bytes on their way to the Pico's UART: a frame and two answers. The line
-/// carries 768 bytes in a tick.
+/// The size, bytes, of the queue of bytes that wait for the Pico's UART: a frame and two answers.
+/// The line carries 768 bytes in a tick.
 pub const UART_QUEUE: usize = 256;
 /// The largest number of messages that are executed in a tick. Others wait in the queue. When that
 /// is full, bytes are lost, and messages remain unanswered.

@@ -4,9 +4,7 @@ use core::fmt;
 
 /// The registers that describe a HardFault.
 ///
-/// The last four are the Configurable Fault Status Register, the HardFault Status Register, the
-/// MemManage Address Register and the BusFault Address Register. On a Cortex-M0+, which lacks them,
-/// they are 0.
+/// On a Cortex-M0+, which lacks the last four, they are 0.
 ///
 /// Source: ARM DDI 0403 (ARMv7-M Architecture Reference Manual), B3.2.15 to B3.2.18; ARM DDI 0419
 /// (ARMv6-M), B3.2.
@@ -14,13 +12,19 @@ use core::fmt;
 pub struct Fault {
     /// The registers that the processor has stacked; `None` if it could not stack them.
     pub stacked: Option<Stacked>,
-    /// The stack pointer at the time of the fault.
+    /// The stack pointer at the time of the fault, as computed from the stacked registers. It is 4
+    /// bytes too low if the processor has aligned the stack.
     pub sp: u32,
-    /// The last call found on the stack. It is the only evidence if the registers are missing.
+    /// The address of the last call found on the stack; `None` if none is found. It is the only
+    /// evidence if the registers are missing.
     pub last_call: Option<u32>,
+    /// The Configurable Fault Status Register.
     pub cfsr: u32,
+    /// The HardFault Status Register.
     pub hfsr: u32,
+    /// The MemManage Address Register.
     pub mmfar: u32,
+    /// The BusFault Address Register.
     pub bfar: u32,
 }
 
@@ -33,6 +37,7 @@ pub struct Stacked {
     /// The link register: the return address of the function that failed, unless it has called
     /// other functions before.
     pub lr: u32,
+    /// The program status register.
     pub xpsr: u32,
 }
 
@@ -70,9 +75,9 @@ const CAUSES: [(u32, &str); 13] = [
 ];
 
 impl Stacked {
-    /// Returns the number of bytes that the processor has stacked. `exception` is the value of the
-    /// link register on entry to the handler. It shows whether the registers of the floating-point
-    /// unit are included.
+    /// Returns the number of bytes that the processor has stacked, without the word that aligns the
+    /// stack. `exception` is the value of the link register on entry to the handler. It shows
+    /// whether the registers of the floating-point unit are included.
     pub fn size(exception: u32) -> u32 {
         if exception & (1 << 4) == 0 {
             26 * 4
@@ -83,12 +88,13 @@ impl Stacked {
 }
 
 impl Fault {
-    /// Returns true if the registers are on the stack.
+    /// Returns true if all registers are on the stack, as CFSR reports it. On a Cortex-M0+, whose
+    /// value is 0, it is always true.
     pub fn has_stacked(cfsr: u32) -> bool {
         cfsr & NOT_STACKED == 0
     }
 
-    /// Returns the cause of the fault.
+    /// Returns the cause of the fault in words; if several bits are set, the most specific cause.
     pub fn cause(&self) -> &'static str {
         if self.is_stack_overflow() {
             return "stack overflow";
@@ -118,6 +124,8 @@ impl Fault {
     }
 }
 
+/// Writes the report in three lines, with the registers in hexadecimal digits. The last line has no
+/// line end. The status registers are left out if CFSR and HFSR are 0.
 impl fmt::Display for Fault {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Fault {
@@ -156,8 +164,8 @@ impl fmt::Display for Fault {
     }
 }
 
-/// Returns the size in bytes of the call, `bl` or `blx`, that ends with these two halfwords; `None`
-/// if they are no call.
+/// Returns the size in bytes of the call that ends with these two halfwords: 4 for `bl`, 2 for
+/// `blx`, which is the second halfword alone. Returns `None` if they are no call.
 pub fn call_size([first, second]: [u16; 2]) -> Option<u32> {
     if first & 0xf800 == 0xf000 && second & 0xd000 == 0xd000 {
         Some(4)

@@ -66,6 +66,7 @@
 //! Drawing:
 //!
 //! - **canvas**: 128 x 64 pixels of 16 greys ([`graphics::Canvas`]).
+//! - **grey, brightness**: of a pixel, 0 (black) to 15; of a brush, 0 (black) to 255 (grey 15).
 //! - **ink, fade layer**: the traces of earlier frames, which may fade ([`graphics::FadeLayer`]).
 //! - **frame buffers**: the canvas and the ink of the application ([`graphics::FrameBuffers`]).
 //! - **subpixel**: 1/64 of a pixel.
@@ -104,8 +105,10 @@ macro_rules! choice {
         pub enum $name { $($(#[$row_doc])* #[doc = concat!("`", $text, "`")] $row,)* }
 
         impl $name {
+            /// All choices in the order of their table.
             pub const ALL: &[$name] = &[$($name::$row,)*];
 
+            /// Returns the name for people, as in the documentation of the variant.
             pub const fn name(self) -> &'static str {
                 match self { $($name::$row => $text,)* }
             }

@@ -46,18 +46,22 @@ struct Board {
 }
 
 /// The numbers for the page, which reads them in this order. Choices are indices of their tables,
-/// and an absent number is NaN.
+/// and an absent choice is NaN. All are 0 until the board has started.
 #[repr(C)]
 #[derive(Default)]
 struct Readings {
-    /// The time, angle 1, angle 2, the energy error, the horizon, 1 if planning may raise it, the
-    /// method, its steps.
+    /// Of the last frame: the time (s), angle 1 and angle 2 (rad), the energy error (of the energy
+    /// above rest), the horizon (s; 0 if unknown, infinity if always accurate), 1 if planning may
+    /// raise it, the method ([`Method::ALL`]), its steps per frame (0 without a method).
     frame: [f64; 8],
-    /// The scene, its state, the speed, the requested method.
+    /// The scene ([`SceneName::ALL`]), its state ([`PlayState::ALL`]), the speed (1 is full speed),
+    /// the requested method ([`Method::DRAWN`]; NaN if the plan chooses).
     status: [f64; 4],
-    /// m1, m2, l1, l2, g, the angles in degrees, the angular velocities.
+    /// m1, m2 (kg), l1, l2 (m), g (m/s^2), the initial angles (degrees) and angular velocities
+    /// (rad/s).
     settings: [f64; 9],
-    /// The field that is wrong in the last command.
+    /// The field that is wrong in the command of the last call ([`Field::ALL`]); NaN if none is, or
+    /// if that call was no command.
     refused: f64,
 }
 
@@ -99,6 +103,7 @@ impl Readings {
     }
 }
 
+/// Returns the index of a choice in the table of all; NaN for `None`.
 fn index_of<T: PartialEq>(choice: Option<T>, all: &[T]) -> f64 {
     choice
         .and_then(|choice| all.iter().position(|one| *one == choice))
@@ -112,7 +117,7 @@ fn pass(app: &mut Application, command: Command) {
     app.receive(bytes, |_| ());
 }
 
-/// Returns a part of the board; 0 if it has not started.
+/// Calls `act` with the board and returns its result; 0 if the board has not started.
 fn with(act: impl FnOnce(&mut Board) -> usize) -> usize {
     // SAFETY: there is one thread, and `act` does not call this, so this is the only reference.
     let board = unsafe { &mut *BOARD.0.get() };
@@ -139,6 +144,7 @@ fn run(act: impl FnOnce(&mut Application)) -> usize {
     })
 }
 
+/// Passes a command to the board. Returns as [`run`].
 fn send(command: Command) -> usize {
     run(|app| pass(app, command))
 }
@@ -157,7 +163,8 @@ macro_rules! exports {
 }
 
 exports! {
-    /// Switches the board on, with a processor of this class. Later calls do nothing.
+    /// Switches the board on, with a processor of this class, an index of [`PROCESSORS`]; any other
+    /// number is a Cortex-M3. Later calls do nothing and return 0.
     start(processor: usize) => if with(|_| 1) == 1 { 0 } else {
         let processor = PROCESSORS.get(processor).copied().unwrap_or(CORTEX_M3);
         // SAFETY: only the first call reaches this, so these are the only references.
@@ -169,17 +176,22 @@ exports! {
         });
         send(Command::Choose(SceneName::Page))
     };
-    /// Returns the address of the canvas: rows of pixels, two in a byte, the left one high.
+    /// Returns the address of the canvas, 64 rows of 128 pixels from the top: two greys of 0 to 15
+    /// in a byte, the left one high. Returns 0 if the board has not started.
     canvas() => with(|board| board.app.canvas.rows.as_ptr() as usize);
-    /// Returns the address of the [`Readings`].
+    /// Returns the address of the [`Readings`]; 0 if the board has not started.
     readings() => with(|board| &raw const board.readings as usize);
     /// Returns the address of the bytes that the last call has sent. Their number is the result of
-    /// the functions below.
+    /// the functions below, and of [`start`]: the messages to the host, the status at the end.
+    /// Bytes beyond 1,024 are lost.
     sent() => with(|board| board.app.link.as_ptr() as usize);
 
-    /// Runs the board to this tick, at most 15 ticks at once.
+    /// Runs the board to this tick of 1/60 s since the start, at most 15 ticks at once, and draws a
+    /// frame. The ticks that are left are run by the next call. The tick must not be less than that
+    /// of the call before; if it is the same, nothing is done.
     run_to(tick: u32) => run(|app| _ = app.run_to(tick, |_| ()));
 
+    // The buttons. Their effects are those of the commands.
     heavier() => send(Command::Heavier);
     lighter() => send(Command::Lighter);
     turn_left() => send(Command::TurnLeft);
@@ -188,12 +200,17 @@ exports! {
     next_scene() => send(Command::NextScene);
     previous_scene() => send(Command::PreviousScene);
     toggle_pause() => send(Command::TogglePause);
+    /// Pauses the scene, or lets it continue if `paused` is 0.
     pause(paused: u32) => send(Command::Pause(paused != 0));
+    /// Pauses the scene after one more tick.
     step() => send(Command::Step(1));
+    /// Starts a scene of [`SceneName::ALL`] with its own settings; any other number is the first.
     choose(scene: usize) => send(Command::Choose(scene_at(scene)));
     /// Requests a method of [`Method::DRAWN`]; any other number leaves the choice to the plan.
     method(place: usize) => send(Command::Method(Method::DRAWN.get(place).copied()));
+    /// Sets the speed, simulated time per real time.
     speed(value: f64) => send(Command::Set { field: Field::Speed, value });
+    /// Starts a scene with these settings: kg, m, m/s^2, the angles in degrees, rad/s.
     play(scene: usize, m1: f32, m2: f32, l1: f32, l2: f32, g: f32, a1: f32, a2: f32, w1: f32,
         w2: f32) => send(Command::Play(scene_at(scene), Settings {
             parameters: Parameters { m1, m2, l1, l2, g },
@@ -202,6 +219,7 @@ exports! {
         }));
 }
 
+/// Returns the scene with this index; for any other number the first.
 fn scene_at(index: usize) -> SceneName {
     SceneName::ALL.get(index).copied().unwrap_or_default()
 }

@@ -30,6 +30,7 @@ pub struct Bounds<R> {
 }
 
 impl<R: Real> Bounds<R> {
+    /// Returns the bounds for K = `energy_above_rest`, J, which is not negative.
     #[inline(never)]
     pub(crate) fn new(parameters: &Parameters<R>, energy_above_rest: R) -> Self {
         let &Parameters { m1, m2, l1, l2, .. } = parameters;
@@ -75,7 +76,8 @@ impl<R: Real> Modes<R> {
 }
 
 impl<R: Real> Pendulum<R> {
-    /// Returns the bounds of the motion through `state`.
+    /// Returns the bounds of the motion through `state`, forwards and backwards in time. A state
+    /// that is not finite gives bounds that are NaN or infinite.
     #[must_use]
     pub fn bounds(&self, state: &State<R>) -> Bounds<R> {
         Bounds::new(self.parameters(), self.energy_above_rest(state))
@@ -84,7 +86,8 @@ impl<R: Real> Pendulum<R> {
     /// Returns the least energy above rest that allows a rod to turn over, J:
     /// 2 g min((m1 + m2) l1, m2 l2).
     ///
-    /// It is the height of the lower of the two saddles V(pi, 0) and V(0, pi) above min V.
+    /// It is the height of the lower of the two saddles V(pi, 0) and V(0, pi) above min V. Without
+    /// gravity it is 0.
     #[must_use]
     pub fn turnover_energy(&self) -> R {
         // A torque of gravity is the weight on a rod times its length.
@@ -96,15 +99,18 @@ impl<R: Real> Pendulum<R> {
     /// [`turnover_energy`](Self::turnover_energy).
     ///
     /// `false` means that a rod may turn over or not. The result is also `false` for energies
-    /// within 16 roundings of the limit.
+    /// within 16 roundings of the limit, without gravity, and for a state that is not finite.
     #[must_use]
     pub fn cannot_turn_over(&self, state: &State<R>) -> bool {
         let margin = R::ONE + R::from_f64(ROUNDING_MARGIN) * R::EPSILON;
         self.energy_above_rest(state) * margin < self.turnover_energy()
     }
 
-    /// Refuses the steps that [`Modes::check_step`] refuses. Without gravity, where no modes exist,
-    /// any step forward is accepted.
+    /// Refuses the steps `dt` (s) that [`Modes::check_step`] refuses: those that are not positive
+    /// and finite, out of the range of `R`, or longer than [`Modes::step_limit`].
+    ///
+    /// Without gravity, where no modes exist, there is no limit. Also refuses parameters whose
+    /// modes are out of range ([`Error::OutOfRange`]).
     pub fn check_step(&self, dt: f64) -> Result<(), Error> {
         if self.parameters().g == R::ZERO {
             check_forward::<R>(dt)
@@ -120,7 +126,8 @@ impl<R: Real> Pendulum<R> {
     /// The forces between the rods contain 1/(m1 + m2 sin^2 D), which doubles within
     /// sin D = sqrt(m1/m2). An elbow with the rate d passes this peak in sqrt(m1/m2)/d.
     ///
-    /// Refuses parameters whose modes are out of range.
+    /// It is 0 if nothing can move, and NaN for a state that is NaN. Refuses parameters whose modes
+    /// are out of range.
     #[doc(hidden)]
     pub fn fastest_rate(&self, state: &State<R>) -> Result<R, Error> {
         let &Parameters { m1, m2, g, .. } = self.parameters();
@@ -157,6 +164,11 @@ impl<R: Real> Pendulum<R> {
     /// assert!(step(1000.0)? < 1.0 / 50_000.0); // A light elbow snaps through.
     /// # Ok::<(), double_pendulum::Error>(())
     /// ```
+    ///
+    /// # Errors
+    ///
+    /// Refuses parameters whose modes are out of range ([`Error::OutOfRange`]). The state is not
+    /// checked: one that is NaN gives NaN.
     pub fn admissible_step(&self, state: &State<R>) -> Result<R, Error> {
         Ok(R::from_f64(RESOLVED) / self.fastest_rate(state)?)
     }
@@ -176,7 +188,7 @@ pub(crate) fn stable_step(parameters: &Parameters<f64>, phase: f64) -> f64 {
     Modes::new(parameters).map_or(f64::INFINITY, |modes| phase / modes.fast.frequency)
 }
 
-/// Refuses the steps that [`check_step`] refuses, and steps backwards.
+/// Refuses the steps of `dt` s that [`check_step`] refuses, and steps backwards.
 fn check_forward<R: Real>(dt: f64) -> Result<(), Error> {
     if dt.is_finite() && dt <= 0.0 {
         return Err(Error::NotPositive {

@@ -5,7 +5,8 @@ use core::fmt;
 use crate::numbers::Real;
 use crate::table::Method;
 
-/// A quantity that the caller chooses. Displays as its symbol in `[math24]`.
+/// A quantity that an [`Error`] names: an input, or a number of a motion. Displays as its symbol in
+/// `[math24]`, or in words.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -35,13 +36,13 @@ pub enum Parameter {
     P2,
     /// Step size, s.
     Dt,
-    /// Order of a method.
+    /// Order of an extrapolation.
     Order,
     /// Ratio of the normal frequencies, fast over slow.
     FrequencyRatio,
-    /// Energy, J.
+    /// Energy H of a motion, J.
     Energy,
-    /// Method.
+    /// The method itself, which is not a number.
     Method,
     /// Largest allowed distance of a bob from its exact position, m.
     Tolerance,
@@ -49,9 +50,9 @@ pub enum Parameter {
     Duration,
     /// Frames per second.
     Rate,
-    /// Cost of a step, in the unit of the budget.
+    /// Cost of a step or of its preparation, in the unit of the price list.
     Cost,
-    /// Largest allowed cost of computing a frame, or of planning.
+    /// Largest allowed cost of computing a frame, or of planning, in the unit of the price list.
     Budget,
 }
 
@@ -83,7 +84,8 @@ impl fmt::Display for Parameter {
     }
 }
 
-/// The reason why an input is refused: the parameter and its value.
+/// The reason why an input is refused, or why a motion cannot go on: the parameter and its value,
+/// in the unit of the [`Parameter`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -118,20 +120,26 @@ pub enum Error {
         parameter: Parameter,
         /// The refused value.
         value: f64,
-        /// The smallest possible value.
+        /// The smallest possible value. A frequency ratio must exceed it.
         limit: f64,
     },
-    /// Every input was valid, but a step was too long for the motion, which left the finite
-    /// numbers.
+    /// Every input was valid, but a step was too long for the motion, which left the finite numbers
+    /// or the range of its method.
     Diverged {
-        /// The first quantity that is not finite.
+        /// The first quantity that is out of range; `A1` in fixed point, whichever it is.
         parameter: Parameter,
-        /// The value of that quantity.
+        /// A number that is out of range: NaN or infinite, the length of a direction, or an energy,
+        /// J. NaN in fixed point.
         value: f64,
     },
-    /// Each value alone is valid, but a product of them leaves the range of the arithmetic.
+    /// Each value alone is valid, but one of them or a product of them leaves the range of the
+    /// arithmetic.
+    ///
+    /// Also the error for an order that is not 2, 4 .. 16, and for a start of 2^31 - 1 turns or
+    /// more.
     OutOfRange {
-        /// The parameter whose value is farthest from 1.
+        /// The refused parameter. If a product is out of range, the mass, length or gravity whose
+        /// value is farthest from 1 as a factor.
         parameter: Parameter,
         /// The refused value.
         value: f64,
@@ -143,7 +151,7 @@ pub enum Error {
         /// Length of rod 2, m.
         l2: f64,
     },
-    /// A plan cannot choose the method, because it is not in [`Method::DRAWN`].
+    /// No scene can be drawn by the method, because it is not in [`Method::DRAWN`].
     NotDrawn {
         /// The refused method.
         method: Method,
@@ -151,7 +159,8 @@ pub enum Error {
 }
 
 impl Error {
-    /// Returns the refused parameter.
+    /// Returns the parameter of the error: `L2` for unequal rods, `Method` for a method that is not
+    /// drawn.
     #[must_use]
     pub const fn parameter(&self) -> Parameter {
         match *self {
@@ -214,7 +223,8 @@ impl fmt::Display for Error {
 }
 
 impl Error {
-    /// Returns the error for a computed value instead of an input.
+    /// Returns the error for a computed value instead of an input: [`Error::NotFinite`] becomes
+    /// [`Error::Diverged`]. Other errors are unchanged.
     pub(crate) fn diverged(self) -> Self {
         match self {
             Error::NotFinite { parameter, value } => Error::Diverged { parameter, value },
@@ -225,7 +235,7 @@ impl Error {
 
 impl core::error::Error for Error {}
 
-/// Refuses the first of `values` that is NaN or infinite.
+/// Refuses the first of `values` that is NaN or infinite, by [`Error::NotFinite`].
 pub(crate) fn check_finite<R: Real>(
     values: impl IntoIterator<Item = (Parameter, R)>,
 ) -> Result<(), Error> {

@@ -10,7 +10,7 @@ use crate::methods::Form;
 use crate::pendulum::{Parameters, Pendulum, State};
 use crate::table::Method;
 
-/// The header line of the file.
+/// The header line of the file, without a line feed.
 pub const HEADER: &str = "method,motion,checksum,a1,a2,p1,p2";
 
 /// The number of steps of each motion.
@@ -19,16 +19,20 @@ pub const STEPS: u32 = 640;
 /// The step, s. It is not an `f32`, so that the rounding of a method's constants takes effect.
 const DT: f64 = 1.0 / 240.0;
 
-/// A motion of the file.
+/// A motion of the file: a pendulum, its start and its step. It has [`STEPS`] steps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Golden {
+    /// The name in the column `motion`.
     pub name: &'static str,
+    /// The pendulum, in SI units.
     pub parameters: Parameters<f64>,
+    /// The state before the first step, in SI units.
     pub start: State<f64>,
     /// The step, s; negative if time runs backwards.
     pub dt: f64,
 }
 
+/// A regular motion of unequal rods and masses.
 const REGULAR: Golden = Golden {
     name: "regular",
     parameters: Parameters {
@@ -47,6 +51,7 @@ const REGULAR: Golden = Golden {
     dt: DT,
 };
 
+/// A chaotic motion of unequal rods and masses.
 const CHAOTIC: Golden = Golden {
     name: "chaotic",
     parameters: Parameters {
@@ -87,12 +92,17 @@ pub struct Bits {
     /// The FNV-1a hash, 64 bits, of all words that the method carries, little-endian, after each
     /// step.
     pub checksum: u64,
-    /// The words of a1, a2, p1 and p2 at the end.
+    /// The bits of a1, a2, p1 and p2 at the end, as `f64` in SI units. The angles include whole
+    /// turns.
     pub state: [u64; 4],
 }
 
 impl Golden {
-    /// Computes the bits of this motion by the method `F`.
+    /// Computes the bits of this motion by the method `F`, in [`STEPS`] single steps.
+    ///
+    /// # Errors
+    ///
+    /// Returns the errors of [`Pendulum::run`] and of [`Run::advance`](crate::Run::advance).
     pub fn bits<F: Form>(&self) -> Result<Bits, Error> {
         let pendulum = Pendulum::<f64>::new(&self.parameters)?;
         let mut run = pendulum.run::<F>(&self.start, self.dt)?.counting_turns();
@@ -111,7 +121,10 @@ impl Golden {
     }
 }
 
-/// A line of the file.
+/// A line of the file: a motion by a method, and its bits.
+///
+/// Displays as the columns of [`HEADER`], the bits as 16 hexadecimal digits each, without a line
+/// feed.
 #[derive(Clone, Copy, Debug)]
 pub struct Line<'a>(pub Method, pub &'a Golden, pub Bits);
 
@@ -125,6 +138,7 @@ impl fmt::Display for Line<'_> {
     }
 }
 
+/// The factor of the FNV-1a hash of 64 bits.
 const FNV_PRIME: u64 = 0x0000_0100_0000_01b3;
 /// The FNV-1a hash of an empty sequence of bytes.
 pub const FNV_OFFSET: u64 = 0xcbf2_9ce4_8422_2325;

@@ -62,6 +62,7 @@
 //! - **flip**: a rod turns over, when its angle passes plus or minus pi.
 //! - **turn**: a whole revolution of a rod since the start.
 //! - **elbow**: the joint between the rods; its angle is D = a1 - a2.
+//! - **den**: m1 + m2 sin^2 D, the denominator of the equations.
 //! - **regular, chaotic**: a motion whose errors grow slowly, or exponentially.
 //!
 //! Numerics:
@@ -78,6 +79,8 @@
 //! - **order**: the power of the step size that the error is proportional to.
 //! - **admissible step**: the longest step that resolves every motion of an energy.
 //! - **diverged, lost**: a motion that has left the finite numbers or the range of its method.
+//! - **sincos**: sine and cosine of one angle, computed together, as a measure of cost.
+//! - **ulp**: unit in the last place of a floating-point number.
 //! - **bit-identical**: all bits of all numbers are equal.
 //! - **golden bits**: the bits of a method that are stored in a file.
 //!

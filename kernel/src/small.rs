@@ -9,7 +9,8 @@ use crate::pendulum::{Parameters, Pendulum};
 pub struct Mode<R> {
     /// Angular frequency, rad/s.
     pub frequency: R,
-    /// The shape r = H2/H1 of the mode: the angle of rod 2 if the angle of rod 1 is 1.
+    /// The shape r = H2/H1 of the mode, a ratio of angles: the angle of rod 2 if the angle of rod 1
+    /// is 1.
     pub shape: R,
 }
 
@@ -44,8 +45,15 @@ impl<R: Real> Modes<R> {
     /// that nothing cancels.
     ///
     /// Both frequencies are within 4 ulp, in `f32` and `f64`, for m2/m1 from 1e-7 to 1e7 and l1/l2
-    /// from 1e-3 to 1e3. Refuses the parameters that [`Pendulum::new`] refuses, zero gravity, and
-    /// results out of range.
+    /// from 1e-3 to 1e3.
+    ///
+    /// # Errors
+    ///
+    /// Refuses:
+    ///
+    /// - NaN, infinite, zero or negative masses and lengths, and gravity that is not positive;
+    /// - by [`Error::OutOfRange`], parameters for which a frequency, a shape or the exchange
+    ///   frequency overflows, underflows or is subnormal in `R`.
     pub fn new(parameters: &Parameters<R>) -> Result<Self, Error> {
         parameters.check()?;
         let &Parameters { m1, m2, l1, l2, g } = parameters;
@@ -126,7 +134,8 @@ impl<R: Real> Pendulum<R> {
         [[k1, R::ZERO], [R::ZERO, k2]]
     }
 
-    /// Returns the normal modes. Refuses zero gravity.
+    /// Returns the normal modes ([`Modes::new`]). Refuses zero gravity, and modes out of the range
+    /// of `R`.
     pub fn modes(&self) -> Result<Modes<R>, Error> {
         Modes::new(self.parameters())
     }
@@ -142,8 +151,14 @@ impl<R: Real> Pendulum<R> {
 /// which follows from (w1/w2 + w2/w1)^2 = (1 + mu)(l1 + l2)^2/(l1 l2). For equal rods it is
 /// mu = ((r^2 - 1)/(2r))^2 with r = p/q. The common period is 2 pi p/w1 = 2 pi q/w2.
 ///
-/// Refuses lengths that are not positive, and a `slow` of 0. Also refuses a ratio p/q that no
-/// masses can give: it must exceed the square root of the longer rod over the shorter rod.
+/// The result is not checked: lengths whose squares, times p^4, leave the range of `R` give a
+/// meaningless ratio or NaN.
+///
+/// # Errors
+///
+/// Refuses lengths that are not positive and finite, and a `slow` of 0. Also refuses a ratio p/q
+/// that no masses can give, by [`Error::TooSmall`]: it must exceed the square root of the longer
+/// rod over the shorter rod.
 pub fn periodic_mass_ratio<R: Real>(fast: u16, slow: u16, lengths: [R; 2]) -> Result<R, Error> {
     // Only the lengths can be wrong here.
     let [l1, l2] = lengths;

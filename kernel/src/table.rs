@@ -42,7 +42,7 @@ pub enum Numbers {
     F64,
     /// Double precision. The rounding error of each sum is carried into the next.
     CompensatedF64,
-    /// Fixed point of 32 bits.
+    /// Fixed point of 32 bits. The state has 64 bits.
     Fixed32,
     /// Fixed point of 64 bits.
     Fixed64,
@@ -82,7 +82,7 @@ impl fmt::Display for Integrator {
     }
 }
 
-/// The ways to compute a motion.
+/// The ways to compute a motion. [`Method::visit`] lists the type that computes each.
 ///
 /// | name | equations | numbers | integrator | order | scenes are drawn by it |
 /// |---|---|---|---|---|---|
@@ -101,6 +101,9 @@ impl fmt::Display for Integrator {
 /// | `closed-form-f32` | Linear | F32 | ClosedForm | 0 | yes |
 /// | `rk4-f32-micromath` | Hamilton | F32 | Rk4 | 4 |  |
 /// | `textbook-f32` | Textbook | F32 | Rk4 | 4 |  |
+///
+/// The order of the closed form, which has no steps, is 0. `rk4-f32-micromath` is `rk4-f32` with
+/// the sines of the `micromath` crate.
 ///
 /// Binary formats of `serde` store the position of the variant. A new method is therefore the last
 /// one.
@@ -143,7 +146,7 @@ pub enum Method {
     Rk4F32Lagrange,
 }
 
-/// A method that scenes are drawn by.
+/// A method that scenes are drawn by: the [`Method`] of the same name.
 ///
 /// A price list and a motion in progress match on it without a default, so that the compiler asks
 /// for both.
@@ -158,8 +161,9 @@ pub(crate) enum DrawnMethod {
     Rk4F32Lagrange,
 }
 
-/// The properties of a method.
+/// The properties of a method: its row of the table.
 struct Row {
+    /// The unique name, which users type.
     name: &'static str,
     equations: Equations,
     numbers: Numbers,
@@ -192,7 +196,8 @@ impl Method {
         Method::Rk4F32Lagrange,
     ];
 
-    /// The methods that draw scenes. A [plan](crate::plan) chooses from them.
+    /// The methods that draw scenes, in the order of the table. A [plan](crate::plan) chooses from
+    /// them.
     pub const DRAWN: &[Method] = &[
         Method::Rk4F32Direction,
         Method::Rk4F32DirectionPlain,
@@ -203,6 +208,7 @@ impl Method {
         Method::Rk4F32Lagrange,
     ];
 
+    /// Returns the row of the table.
     const fn row(self) -> Row {
         match self {
             Method::Rk4F64 => Row {
@@ -337,13 +343,14 @@ impl Method {
         }
     }
 
-    /// Returns the name: integrator, numbers, equations.
+    /// Returns the unique name, the first column of the table, such as `rk4-f32-direction`.
     #[must_use]
     pub const fn name(self) -> &'static str {
         self.row().name
     }
 
-    /// Returns the method of this name; `None` if there is no such method.
+    /// Returns the method of exactly this [`name`](Self::name), in lower case; `None` if there is
+    /// no such method.
     #[must_use]
     pub fn from_name(name: &str) -> Option<Self> {
         Self::ALL
@@ -376,7 +383,8 @@ impl Method {
         self.row().order
     }
 
-    /// Returns the method as one that scenes are drawn by; `None` if no scene is.
+    /// Returns the method as one that scenes are drawn by; `None` if it is not in
+    /// [`DRAWN`](Self::DRAWN).
     pub(crate) const fn drawn(self) -> Option<DrawnMethod> {
         self.row().drawn
     }
@@ -387,7 +395,7 @@ impl Method {
         matches!(self.numbers(), Numbers::F32 | Numbers::CompensatedF32)
     }
 
-    /// Returns true if the numbers are integers.
+    /// Returns true if the numbers are fixed point, which is computed by integers.
     #[must_use]
     pub const fn is_fixed_point(self) -> bool {
         matches!(self.numbers(), Numbers::Fixed32 | Numbers::Fixed64)

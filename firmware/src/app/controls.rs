@@ -28,9 +28,12 @@ pub struct Pressed {
 
 /// The buttons of a board.
 pub trait Buttons {
+    /// Returns the levels of the buttons now. The application reads them once a tick and debounces
+    /// them itself.
     fn read(&mut self) -> Pressed;
 }
 
+/// The buttons of a board without any: none is ever pressed.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct NoButtons;
 
@@ -48,7 +51,10 @@ const ARROWS: [[Command; 2]; 4] = [
     [Command::TurnRight, Command::NextScene],
 ];
 
-/// The state of the five buttons.
+/// The state of the five buttons, from readings of one tick to commands.
+///
+/// A level counts when [`DEBOUNCE_TICKS`] readings in a row show it. A button has no effect until
+/// it has been released once.
 ///
 /// | button | alone, repeating | with select held |
 /// |---|---|---|
@@ -58,8 +64,9 @@ const ARROWS: [[Command; 2]; 4] = [
 /// | right | start angle counter-clockwise | next scene |
 ///
 /// The select button alone can do the most important things. A tap restarts the scene. Holding it
-/// for [`HOLD_TICKS`] selects the next scene. Holding it after taps changes the mass ratio or the
-/// start angle.
+/// for [`HOLD_TICKS`] selects the next scene. Holding it that long after one, two, three or four
+/// taps is a heavier bob 2, a lighter one, a turn to the right or to the left, and repeats. After
+/// more taps it does nothing. Each of these taps has restarted the scene.
 #[derive(Clone, Debug, Default)]
 pub struct Controls {
     arrows: [Button; 4],
@@ -68,7 +75,8 @@ pub struct Controls {
 }
 
 impl Controls {
-    /// Takes the reading of one tick. Returns the commands of the buttons.
+    /// Takes the reading of one tick; call it once in every tick. Returns the commands of the
+    /// buttons, usually none: those of the arrows, then that of the select button alone.
     pub fn tick(
         &mut self,
         Pressed {
@@ -130,7 +138,8 @@ struct OneButton {
 }
 
 impl OneButton {
-    /// Takes the change of the button in this tick. Returns its command. A tap restarts the scene.
+    /// Takes the change of the button in this tick, and true if an arrow has caused a command in
+    /// it. Returns the command of the select button. A tap restarts the scene when it ends.
     fn tick(&mut self, change: Option<Change>, with_another: bool) -> Option<Command> {
         self.since = self.since.saturating_add(1);
 
@@ -179,6 +188,7 @@ impl OneButton {
     }
 }
 
+/// A change of a debounced button.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Change {
     Pressed,
@@ -213,7 +223,8 @@ impl Button {
         matches!(self.phase, Phase::Held { .. })
     }
 
-    /// Takes the reading of one tick. Returns the change of the debounced button.
+    /// Takes the reading of one tick. Returns the change of the debounced button; `None` if its
+    /// level stays and no repetition is due, or if it is released for the first time.
     fn tick(&mut self, pressed: bool) -> Option<Change> {
         let contradicts = if self.phase == Phase::Unproven {
             !pressed

@@ -17,27 +17,24 @@ pub enum Event<Panel, Link> {
     Restarted(Restarted, bool),
     /// A scene starts with these settings.
     Started(SceneName, Settings),
-    /// The command is impossible because of this field. Nothing changes.
+    /// The command of a button is impossible because of this field. Nothing changes. (A command
+    /// from the link gets an answer instead.)
     Refused(Command, Field),
-    /// Ticks have passed without a frame. It is logged at most once a second, so that logging does
-    /// not cause further delay.
-    Dropped {
-        ticks: u32,
-        total: u32,
-    },
-    /// Damaged messages came over the link. It is logged at most once a second.
+    /// This number of ticks has passed without a frame. It is logged at most once a second, so that
+    /// logging does not cause further delay.
+    Dropped { ticks: u32, total: u32 },
+    /// Damaged messages came over the link; `last` is the error of the latest. It is logged at most
+    /// once a second.
     Damaged {
         messages: u32,
         total: u32,
         last: LinkError,
     },
     /// The host has sent bytes faster than they were taken. It is logged at most once a second.
-    Lost {
-        bytes: u32,
-        total: u32,
-    },
+    Lost { bytes: u32, total: u32 },
     /// A frame did not reach the panel, but the previous one did.
     Panel(Panel),
+    /// The panel answers for the first time, or again.
     PanelFound(Found),
     /// A message did not reach the link, but the previous one did.
     Link(Link),
@@ -49,6 +46,7 @@ pub enum Event<Panel, Link> {
     /// The step of the requested motion is longer than this, s: the longest step that resolves
     /// every motion of its energy.
     StepTooLong(f64),
+    /// The planner has a result, or another method computes the motion that is shown.
     Motion(PlannerEvent),
 }
 
@@ -63,6 +61,7 @@ impl<Panel: Display, Link: ErrorType, F: FnMut(Event<Panel::Error, Link::Error>)
 /// A count that wraps, and whose growth is reported at most once a second.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct ThrottledCounter {
+    /// The count itself.
     pub(super) total: u32,
     /// The total at the last report, and the tick of that report.
     reported: u32,
@@ -79,11 +78,13 @@ impl ThrottledCounter {
         }
     }
 
+    /// Raises the count, without a report.
     pub(super) fn add(&mut self, count: u32) {
         self.total = self.total.wrapping_add(count);
     }
 
-    /// Returns the growth since the last report, if it is not zero and a second has passed.
+    /// Returns the growth since the last report, if it is not zero and a second has passed since
+    /// then; this is the next report. Otherwise returns `None`, and the growth is kept.
     pub(super) fn news(&mut self, tick: u32) -> Option<u32> {
         let grown = self.total.wrapping_sub(self.reported);
         let is_time = grown != 0 && tick.wrapping_sub(self.tick) >= TICK_RATE;

@@ -7,7 +7,7 @@ use crate::protocol::Identity;
 /// nothing.
 #[derive(Clone, Copy, Debug)]
 pub struct Instruments {
-    /// Returns the count of the processor clock; may wrap.
+    /// Returns the count of the processor clock, for differences; starts anywhere and wraps.
     pub stopwatch: fn() -> u32,
     /// Makes this number of steps with interrupts off. Their code is run from RAM (`true`) or from
     /// flash.
@@ -17,6 +17,7 @@ pub struct Instruments {
     pub timed: fn(&mut OnBoards, u32, bool) -> u32,
     /// Returns the program in flash.
     pub image: fn() -> &'static [u8],
+    /// The identity, without the checksum and the size of the image.
     pub identity: Identity,
 }
 
@@ -36,7 +37,8 @@ impl Default for Instruments {
 }
 
 impl Instruments {
-    /// Returns the answer to [`Command::Identify`](crate::protocol::Command::Identify).
+    /// Returns the answer to [`Command::Identify`](crate::protocol::Command::Identify): `identity`
+    /// with the CRC-32 and the size of the image, both 0 if there is none.
     pub fn identity(&self) -> Identity {
         let image = (self.image)();
         Identity {

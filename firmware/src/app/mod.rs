@@ -34,15 +34,18 @@ pub struct App<'a, Panel, Link, Keys> {
     /// The panel is borrowed, so that neither it nor the application is too large for the stack
     /// while it is created.
     panel: &'a mut Panel,
+    /// The sink of the messages to the host.
     pub link: Link,
     keys: Keys,
     controls: Controls,
+    /// The scene that is shown.
     pub player: Player<'a>,
     decoder: Decoder,
     /// The last requested motion, and the number of its command, which the answers repeat.
     work: Option<(u16, Job)>,
+    /// The last frame drawn.
     pub canvas: &'a mut Canvas,
-    /// The number of ticks completed since reset.
+    /// The last tick of the clock that is completed; wraps.
     ticks: u32,
     /// The number of frames drawn and sent since reset; wraps.
     pub frames: u32,
@@ -54,6 +57,7 @@ pub struct App<'a, Panel, Link, Keys> {
     last_damage: Option<LinkError>,
     panel_failing: FaultEdge,
     link_failing: FaultEdge,
+    /// The measuring functions and the identity of the board; the default measures nothing.
     pub instruments: Instruments,
     /// The last restart that the board made on its own, for hosts that ask.
     restarted: Option<Restarted>,
@@ -62,7 +66,8 @@ pub struct App<'a, Panel, Link, Keys> {
 }
 
 impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> {
-    /// Creates an application that does not play yet.
+    /// Creates an application that does not play yet: it shows an empty figure until a command, or
+    /// [`Player::play`], starts a scene.
     ///
     /// The start of a scene needs much stack. So it is better done when the application is at its
     /// final place.
@@ -97,8 +102,8 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
         }
     }
 
-    /// Sets the clock to `clock`, and the counts of frames and of ticks without a frame to
-    /// `frames`.
+    /// Sets the clock to tick `clock`, so that [`run_to`](Self::run_to) counts from there. Sets the
+    /// counts of frames and of ticks without a frame to `frames`. The scene is not changed.
     pub fn count_from(&mut self, clock: u32, frames: u32) {
         self.ticks = clock;
         self.frames = frames;
@@ -107,6 +112,9 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
 
     /// Plays again the scene from before a restart, and reports the restart to the host: to a host
     /// that is connected now at once, and to any other when it asks.
+    ///
+    /// The present scene continues instead if the restarts in a row are too many
+    /// ([`MOST_RESTARTS`]), or if the scene of the record cannot be played. The log event says so.
     pub fn resume(&mut self, restart: &Record, mut log: impl Log<Panel, Link>) {
         let resumed = !restart.is_given_up() && self.player.resume(&restart.played).is_ok();
         log(Event::Restarted(restart.end, resumed));
@@ -129,8 +137,9 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
         }
     }
 
-    /// Catches up with the clock, then draws and sends one frame. The clock counts ticks since
-    /// reset and may wrap.
+    /// Catches up with the clock, then draws and sends one frame. `clock` is the current tick of
+    /// the clock, which may wrap. If it is the tick of the last call, nothing is done. It must not
+    /// be an earlier one: that would count as a wrap.
     ///
     /// Every tick is integrated, however late it is. The state after n ticks does not depend on the
     /// number of calls.
@@ -177,7 +186,8 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
         self.panel.catch_up(self.canvas)
     }
 
-    /// Takes bytes received over the link, executes the commands and answers them.
+    /// Takes bytes received over the link, executes the commands and answers them. Damaged messages
+    /// get no answer; they are counted and logged.
     ///
     /// Stops after [`MOST_MESSAGES_PER_TICK`] messages or [`RECEIVE_QUEUE`] bytes, so that a flood
     /// of either does not delay the frame. The bytes left in `bytes` wait for the next call.
@@ -223,7 +233,8 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
         }
     }
 
-    /// Takes the number of received bytes that have been lost since reset; may wrap.
+    /// Takes the number of received bytes that have been lost since reset, in all; may wrap. Frames
+    /// report it, and its growth is logged at most once a second.
     pub fn note_lost(&mut self, total: u32, mut log: impl Log<Panel, Link>) {
         self.lost.total = total;
         if let Some(bytes) = self.lost.news(self.ticks) {
@@ -231,8 +242,8 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
         }
     }
 
-    /// Performs a bounded piece of the job of the host, at most one step. Returns true if more is
-    /// left.
+    /// Performs a bounded piece of the job of the host, at most one step, and sends the sample that
+    /// is then due. Returns true if more is left, and false without a job.
     ///
     /// An error ends the job: the motion has left the finite numbers, because the step is too long
     /// for it.
@@ -263,8 +274,8 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
         self.player.tick(|news| log(Event::Motion(news)));
     }
 
-    /// Executes a command, and logs the start of a scene. Returns the field that is wrong if the
-    /// command is impossible.
+    /// Executes a command for the player, and logs the start of a scene. Returns the field that is
+    /// wrong if the command is impossible. A command that does not concern the player does nothing.
     fn execute(&mut self, command: Command, log: &mut impl Log<Panel, Link>) -> Result<(), Field> {
         if self.player.execute(command)? {
             log(Event::Started(self.player.name, self.player.settings));

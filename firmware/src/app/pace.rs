@@ -6,8 +6,10 @@ use crate::protocol::Field;
 /// The number of parts of a tick. One part per tick is the smallest speed.
 const WHOLE_TICK: u32 = 100;
 
+/// The pace of a scene. The default is full speed, not paused.
 #[derive(Clone, Copy, Debug)]
 pub struct Pace {
+    /// True if the scene advances only by `steps`.
     pub paused: bool,
     /// The number of ticks left to advance while paused, one in each tick of the clock.
     pub steps: u32,
@@ -29,12 +31,13 @@ impl Default for Pace {
 }
 
 impl Pace {
-    /// Returns the speed; 1 is full speed.
+    /// Returns the speed, simulated time per real time, also while paused; 1 is full speed.
     pub fn speed(&self) -> f32 {
         self.speed as f32 / WHOLE_TICK as f32
     }
 
-    /// Returns the ticks of the scene that are due in this tick of the clock.
+    /// Returns the number of ticks of the scene that are due in this tick of the clock, and counts
+    /// them as done. Paused, it is 1 while `steps` are left, and then 0.
     pub fn tick(&mut self) -> u32 {
         if self.paused {
             let due = self.steps.min(1);
@@ -48,7 +51,10 @@ impl Pace {
         ticks
     }
 
-    /// Sets the speed, rounded to a part. Refuses a speed that is out of range.
+    /// Sets the speed, simulated time per real time, rounded to hundredths.
+    ///
+    /// Returns [`Field::Speed`], and keeps the old speed, if the rounded one is below 0.01 or above
+    /// [`GREATEST_SPEED`], or is NaN.
     pub fn set_speed(&mut self, speed: f64) -> Result<(), Field> {
         let parts = (speed * f64::from(WHOLE_TICK) + 0.5) as u32;
         self.speed = (1..=GREATEST_SPEED * WHOLE_TICK)

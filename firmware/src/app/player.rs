@@ -11,21 +11,23 @@ use crate::motion::{CatchingUp, Horizon, PlanResult, Planned, Planner, Resources
 use crate::protocol::{Command, Field, Frame, PlayState, Status};
 use crate::scenes::{AnyScene, Report, SceneName};
 
-/// An event of the planner or of the motion that is shown.
+/// An event of the planner, or of the motion that is shown.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PlannerEvent {
-    /// The planner has found a result.
+    /// The planner has found a result: a plan, or the reason why there is none.
     Found(PlanResult),
-    /// The motion is now computed by this method and step count, at this cost of a frame, cycles.
+    /// The motion is now computed by this method and step count, at this cost of a frame, cycles of
+    /// the price list.
     Shown(Stepping, f32),
 }
 
-/// The state of the scene that is shown.
+/// The state of the scene that is shown, and its pace.
 #[derive(Debug)]
 pub struct Player<'a> {
     /// The name of the scene. The public fields are for reading only; commands and ticks change
     /// them.
     pub name: SceneName,
+    /// The pendulum, and its initial angles and velocities.
     pub settings: Settings,
     scene: AnyScene,
     /// The requested method; `None` leaves the choice to the plan. It outlasts the scene.
@@ -34,6 +36,7 @@ pub struct Player<'a> {
     planner: Planner,
     ink: &'a mut FadeLayer,
     pace: Pace,
+    /// The report that is drawn and sent: of the start, or of the last [`check`](Self::check).
     pub report: Report,
 }
 
@@ -75,10 +78,12 @@ impl<'a> Player<'a> {
         }
     }
 
-    /// Plays a scene with `settings`. A scene that cannot use the requested method follows its
-    /// plan.
+    /// Plays a scene with `settings` from its start, at the present pace. A scene that cannot use
+    /// the requested method follows its plan. A motion that is too fast does not advance: the state
+    /// is then [`PlayState::Stopped`].
     ///
-    /// Returns the kernel's error if the settings describe no pendulum. Then nothing is changed.
+    /// Returns the kernel's error if the settings describe no pendulum, or one that the scene
+    /// cannot show. Then nothing is changed.
     pub fn play(&mut self, name: SceneName, settings: Settings) -> Result<(), Error> {
         match self.play_by(self.method, name, settings) {
             Err(_) if self.method.is_some() => self.play_by(None, name, settings),
@@ -123,7 +128,8 @@ impl<'a> Player<'a> {
         Ok(())
     }
 
-    /// Executes a command. Returns true if the scene was started again.
+    /// Executes a command. Returns true if a scene was started, the same or another one. A command
+    /// that does not concern the player, such as [`Command::Ask`], does nothing.
     ///
     /// If the command is impossible, returns the field that is wrong. Then nothing is changed.
     #[inline(never)] // Inlined, the start of a scene would be on the stack of every frame.
@@ -174,7 +180,8 @@ impl<'a> Player<'a> {
         Ok(false)
     }
 
-    /// Advances by one tick of the clock, which may be any number of ticks of the scene.
+    /// Advances by one tick of the clock, which may be any number of ticks of the scene: none while
+    /// it is paused or stopped.
     ///
     /// Calls `tell` with each result of the planner, and with each method that takes over.
     #[inline(never)]
@@ -233,18 +240,20 @@ impl<'a> Player<'a> {
     }
 
     /// Performs a piece of the next tick's planning in advance. Returns true if it did, so that
-    /// more may be left.
+    /// more may be left. Returns false, without work, if the budget of that tick is spent, if
+    /// nothing is left to plan, or if the scene is paused, stopped or switching its method.
     pub fn look_ahead(&mut self) -> bool {
         !self.is_still() && !self.is_switching() && self.planner.work_ahead()
     }
 
     /// Returns the last result of the planner, if there is one, and its problem; `None` if the
-    /// scene shows no planned motion.
+    /// scene shows no planned motion or is too fast from its start.
     pub fn plan(&self) -> Option<Planned> {
         self.planner.planned()
     }
 
-    /// Returns the cost of a frame by this method and step count, cycles.
+    /// Returns the cost of computing a frame by this method and step count, cycles of the price
+    /// list of the processor class. It is not measured.
     pub fn cost(&self, stepping: Stepping) -> f32 {
         self.planner.processor.costs.of_frame(stepping)
     }
@@ -275,8 +284,8 @@ impl<'a> Player<'a> {
         Report { horizon, ..report }
     }
 
-    /// Takes the scene's report if its numbers are finite. Otherwise stops the scene, and returns
-    /// true once; the report stays the last good one.
+    /// Takes the scene's report if its angles and momenta are finite, and returns false. Otherwise
+    /// stops the scene, and returns true once; the report stays the last good one.
     ///
     /// To be called before each frame.
     #[inline(never)]
@@ -293,8 +302,8 @@ impl<'a> Player<'a> {
         false
     }
 
-    /// Draws the scene, and a mark if it is paused. If the scene is stopped, writes the reason
-    /// instead.
+    /// Draws the scene in place of the last frame, and a mark if it is paused. If the scene is
+    /// stopped, writes the reason instead.
     #[inline(never)]
     pub fn draw(&self, canvas: &mut Canvas) {
         match self.state() {
@@ -326,7 +335,7 @@ impl<'a> Player<'a> {
         );
     }
 
-    /// Returns true if the scene does not advance.
+    /// Returns true if the scene does not advance on its own: it is paused or stopped.
     pub fn is_still(&self) -> bool {
         self.state() != PlayState::Playing
     }
@@ -339,6 +348,7 @@ impl<'a> Player<'a> {
         matches!(self.motion, MotionState::Switching(_))
     }
 
+    /// Returns the state of the scene's time. A stopped scene is `Stopped`, paused or not.
     pub fn state(&self) -> PlayState {
         if self.is_stopped() {
             PlayState::Stopped
@@ -349,8 +359,8 @@ impl<'a> Player<'a> {
         }
     }
 
-    /// Returns the frame message, without the numbers that only the clock and the link of the board
-    /// know.
+    /// Returns the frame message. The numbers that only the clock and the link of the board know
+    /// are 0: sequence, dropped frames, lost bytes and cycles.
     pub fn frame(&self) -> Frame {
         let [start_angle, _] = self.settings.angles();
         Frame {
@@ -363,7 +373,7 @@ impl<'a> Player<'a> {
         }
     }
 
-    /// Returns the state of the player, without the state of the panel.
+    /// Returns the state of the player. That of the panel is the default.
     pub fn status(&self) -> Status {
         let Self {
             name: scene,
@@ -383,8 +393,8 @@ impl<'a> Player<'a> {
         }
     }
 
-    /// Plays the scene of a status, from its start. If that is impossible, returns the field that
-    /// is wrong; then nothing is changed.
+    /// Plays the scene of a status from its start, with its method, speed and pause. If that is
+    /// impossible, returns the field that is wrong; then nothing is changed.
     pub fn resume(&mut self, status: &Status) -> Result<(), Field> {
         let Status {
             scene,

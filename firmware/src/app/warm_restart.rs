@@ -18,11 +18,15 @@ pub type Kept = [u8; MAX_WIRE];
 
 /// The largest number of restarts in a row that play the same scene again. After more the board
 /// starts with the first scene, because the scene may be the cause.
+///
+/// Restarts are in a row if fewer than [`SOUND_FRAMES`] frames are between them. They count even if
+/// the user has changed the scene in between.
 pub const MOST_RESTARTS: u8 = 3;
-/// The number of frames, a minute's worth, without a restart after which earlier restarts no longer
-/// count.
+/// The number of finished frames, a minute's worth on a board that is not late, without a restart
+/// after which earlier restarts no longer count.
 pub const SOUND_FRAMES: u32 = 60 * TICK_RATE;
 
+/// The retained record: what was played, and how the program ended.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Record {
     /// The state of the player.
@@ -32,7 +36,7 @@ pub struct Record {
 }
 
 impl Record {
-    /// Returns the bytes to keep.
+    /// Returns the bytes to keep: a message as on the wire, followed by zeros.
     pub fn write(&self) -> Kept {
         let mut kept = [0; MAX_WIRE];
         encode(self, &mut kept);
@@ -50,10 +54,10 @@ impl Record {
         None
     }
 
-    /// Returns the record of a restart, with the restart counted. Returns `None` after a reset from
-    /// outside.
+    /// Returns the record of a restart, with its cause and with the restart counted (at most 255).
     ///
-    /// If no cause is recorded, `by_watchdog` is the board's own information about the reset.
+    /// If no cause is recorded, `by_watchdog` is the board's own information about the reset. If
+    /// true, the cause is a hang. If false, the reset came from outside, and the result is `None`.
     pub fn restart(self, by_watchdog: bool) -> Option<Self> {
         let cause = Some(self.end.cause.or(by_watchdog.then_some(Cause::Hang))?);
         Some(Self {
@@ -66,7 +70,8 @@ impl Record {
         })
     }
 
-    /// Returns true if the scene has been tried often enough.
+    /// Returns true if the restarts in a row are more than [`MOST_RESTARTS`], so that the scene is
+    /// not to be played again.
     pub fn is_given_up(&self) -> bool {
         self.end.restarts > MOST_RESTARTS
     }
@@ -82,7 +87,8 @@ pub struct Journal {
 }
 
 impl Journal {
-    /// Creates the counters; `restart` is the restart that has just happened.
+    /// Creates the counters; `restart` is the record of the restart that has just happened, `None`
+    /// after a reset from outside or at power-on.
     pub fn new(restart: Option<&Record>) -> Self {
         Self {
             restarts: restart.map_or(0, |restart| restart.end.restarts),
@@ -90,8 +96,8 @@ impl Journal {
         }
     }
 
-    /// Returns the record to keep after a frame: the state of the player, and the tick that was
-    /// shown.
+    /// Counts a frame and returns the record to keep after it: the state of the player, and `step`,
+    /// the tick of the scene that was shown. The record has no cause.
     pub fn note(&mut self, played: Status, step: u64) -> Record {
         self.frames = self.frames.saturating_add(1);
         // After a minute without a restart, earlier restarts no longer count.

@@ -1,4 +1,4 @@
-//! Panics on purpose, for the test of the report.
+//! Logs a line and panics on purpose, for the test of the crash report.
 #![no_std]
 #![no_main]
 

@@ -10,7 +10,8 @@ use cortex_m_semihosting::{debug, hio};
 use firmware::board::cortex_m::command_line;
 use firmware::job::Request;
 
-/// SysTick counts down from here; a run must take fewer ticks.
+/// SysTick counts processor cycles down from here; a run must take fewer. These are the ticks that
+/// are printed.
 const FULL: u32 = 0x00ff_ffff;
 
 #[cortex_m_rt::entry]
@@ -21,6 +22,9 @@ fn main() -> ! {
     }
 }
 
+/// Computes the request and prints the line. Returns an error, after the kernel's reason if there
+/// is one, without a debugger, if the command line is no request, or if it cannot be computed. The
+/// command line must fit into `buffer`.
 fn run(buffer: &mut [u8]) -> Result<(), ()> {
     let mut output = hio::hstdout()?;
     let mut peripherals = Peripherals::take().ok_or(())?;

@@ -14,6 +14,7 @@ use rtt_target::{ChannelMode, UpChannel, rtt_init};
 use super::cortex_m::crash;
 use super::cortex_m::interrupt::Shared;
 
+/// The logger of defmt: each line is encoded and written with interrupts off.
 #[defmt::global_logger]
 struct Logger;
 
@@ -39,20 +40,23 @@ static PATH: Shared<Path> = Shared::new(Path {
     interrupts: false,
 });
 
-/// Opens the log of a chip. Earlier lines are lost.
+/// Opens the log of a chip, in memory. Earlier lines are lost, and so are parts of lines for which
+/// the 1024 bytes have no room because no probe reads them. From now on no debugger is assumed to
+/// be present (`crash::expect_no_debugger`).
 pub fn into_memory() {
     crash::expect_no_debugger();
     let channel = rtt_init! { up: { 0: { size: 1024, name: "defmt" } } }.up.0;
     PATH.with(|path| path.sink = Sink::Memory(channel));
 }
 
-/// Opens the log of an emulated chip.
+/// Opens the log of an emulated chip, on the standard output. Without one the log goes nowhere.
 #[cfg(feature = "stm32f405")]
 pub fn into_emulator() {
     PATH.with(|path| path.sink = hio::hstdout().map_or(Sink::Nowhere, Sink::Emulator));
 }
 
 impl Sink {
+    /// Writes bytes without waiting. Bytes that the destination does not take are lost.
     fn write(&mut self, bytes: &[u8]) {
         match self {
             Self::Nowhere => {}

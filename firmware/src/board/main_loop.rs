@@ -21,20 +21,27 @@ use crate::motion::Settings;
 use crate::protocol::{Cause, Field, Restarted};
 use crate::scenes::SceneName;
 
-/// The parts of a board.
+/// The parts of a board, set up and ready for the application.
 pub struct Board<Panel, Link, Keys, Dog> {
+    /// The driver of the panel.
     pub panel: Panel,
+    /// The sending direction of the serial link.
     pub link: Link,
+    /// The buttons.
     pub keys: Keys,
+    /// The measuring functions and the identity.
     pub instruments: Instruments,
+    /// The watchdog, which is running.
     pub watchdog: Dog,
     /// True if the board's own register indicates that the watchdog caused the last reset.
     pub reset_by_watchdog: bool,
 }
 
-/// The types of a board, for the statics of its program.
+/// The types of a board's panel and application, for the statics of its program.
 pub trait Plays {
+    /// The driver of the panel.
     type Panel;
+    /// The application with the panel, the link and the buttons of the board.
     type Application;
 }
 
@@ -43,8 +50,9 @@ impl<Panel: 'static, Link: 'static, Keys: 'static, Dog> Plays for Board<Panel, L
     type Application = App<'static, Panel, Link, Keys>;
 }
 
-/// Defines the program of a board. The arguments are the module of the board, its type there, and
-/// the class of its processor.
+/// Defines the program of a board, `main`, with the statics of its application. The arguments are
+/// the module of the board, its type there, and the class of its processor, a constant of
+/// [`config`](crate::config). The program panics if the module's `take` returns `None`.
 #[macro_export]
 macro_rules! program {
     ($module:ident::$board:ident on $processor:ident) => {
@@ -69,8 +77,9 @@ macro_rules! program {
 impl<Panel: Display<Error: fmt::Display> + 'static, Link: Write, Keys: Buttons, Dog: Watchdog>
     Board<Panel, Link, Keys, Dog>
 {
-    /// Runs the application for ever. The application, the driver of the panel and the frame
-    /// buffers are put at the given places.
+    /// Runs the application for ever. The application and the driver of the panel are put at the
+    /// given places, and draw in `buffers`. The scene is the first of the catalogue, or the one
+    /// from before a warm restart.
     pub fn play(
         self,
         place: &'static mut MaybeUninit<App<'static, Panel, Link, Keys>>,

@@ -40,6 +40,7 @@ const RECEIVED: u32 = 1 << 1;
 /// The interrupt of UART0's receiver.
 const INTERRUPT: Interrupt = Interrupt(0);
 
+/// The parts of this board.
 pub type Mps2An386 = Board<NoDisplay, Outward, NoButtons, TwoStage>;
 
 /// Sets the board up. Returns `None` the second time.

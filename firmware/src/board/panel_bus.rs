@@ -9,10 +9,12 @@ use crate::display::{Outbox, PanelBus, Sent};
 
 /// The device of a bus.
 pub trait PanelPort {
-    /// Begins a message to this address. The interrupt does the rest.
+    /// Begins a transfer to this address of seven bits. Returns at once; the interrupt does the
+    /// rest.
     fn begin(&mut self, address: u8);
 
-    /// Frees a bus that hangs, and resets the device. It does not interrupt any more.
+    /// Frees a bus that hangs, and resets the device, which ends a transfer in progress. The device
+    /// does not interrupt until the next [`begin`](Self::begin).
     fn reset(&mut self);
 }
 
@@ -24,8 +26,12 @@ pub struct Bus<P> {
     megahertz: u32,
 }
 
-/// The number of tries to wait for a start or stop. It takes 5 us, and these tries take at least 12
-/// us. After the last one the bus goes on without it; a transfer that hangs is then reset.
+/// The number of tries to wait for a start or a stop of the bus. It takes 5 us, and these tries
+/// take at least 12 us. The Pico also waits this long for the bus's block to leave its reset.
+///
+/// After the last try a transfer begins all the same; if it hangs, the driver of the panel aborts
+/// it. But if the STM32 waits in vain for the start before a further message or the answer, the
+/// transfer ends with [`ErrorKind::Other`], and the port is reset.
 pub const TRIES: u32 = 500;
 
 /// An outbox that is being sent, and the processor cycles of its begin and end.
@@ -41,7 +47,8 @@ static OUTGOING: Shared<Option<Outgoing>> = Shared::new(None);
 /// Handles the bus's interrupt.
 ///
 /// `advance` does the next part of the transfer, and returns the outcome of the messages when all
-/// is done. After that the bus must not interrupt until [`PanelPort::begin`].
+/// is done; `None` while the transfer continues. It is not called without an outbox to send. After
+/// that the bus must not interrupt until [`PanelPort::begin`].
 pub(in crate::board) fn serve(advance: impl FnOnce(&mut Outbox) -> Option<Sent>) {
     OUTGOING.with(|outgoing| {
         if let Some(Outgoing { outbox, ended, .. }) = outgoing
@@ -56,8 +63,8 @@ pub(in crate::board) fn serve(advance: impl FnOnce(&mut Outbox) -> Option<Sent>)
 }
 
 impl<P: PanelPort> Bus<P> {
-    /// Creates the bus of a port; `hertz` is the frequency of the processor. There is at most one
-    /// bus, because the interrupt knows no other. Returns `None` the second time.
+    /// Creates the bus of a port; `hertz` is the frequency of the processor, Hz. There is at most
+    /// one bus, because the interrupt knows no other. Returns `None` the second time.
     pub(in crate::board) fn new(mut port: P, hertz: u32) -> Option<Self> {
         port.reset();
         Some(Self {

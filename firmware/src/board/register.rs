@@ -27,6 +27,7 @@ impl Device {
 pub struct Register(usize);
 
 impl Register {
+    /// Returns the value of the register. Reading some registers has side effects.
     #[inline]
     pub fn read(self) -> u32 {
         // SAFETY: by the contract of [`Device::at`] this is a register; any 32-bit pattern is a
@@ -34,6 +35,7 @@ impl Register {
         unsafe { (self.0 as *const u32).read_volatile() }
     }
 
+    /// Writes all 32 bits of the register.
     #[inline]
     pub fn write(self, value: u32) {
         // SAFETY: by the contract of [`Device::at`] this is a register whose writes do not break
@@ -41,14 +43,15 @@ impl Register {
         unsafe { (self.0 as *mut u32).write_volatile(value) }
     }
 
-    /// Clears the bits of `clear`, then sets those of `set`.
+    /// Clears the bits of `clear`, then sets those of `set`, by one read and one write. It is not
+    /// atomic: an interrupt in between may also write.
     #[inline]
     pub fn modify(self, clear: u32, set: u32) {
         self.write((self.read() & !clear) | set);
     }
 
-    /// Reads until the bits of `mask` are `wanted`, at most `tries` times. Returns true if they
-    /// are.
+    /// Reads until the bits of `mask` are `wanted`, at most `tries` times. Returns true as soon as
+    /// they are, and false after the last try.
     #[inline]
     pub fn wait(self, mask: u32, wanted: u32, tries: u32) -> bool {
         (0..tries).any(|_| self.read() & mask == wanted)

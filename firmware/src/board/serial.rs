@@ -12,7 +12,9 @@ use crate::config::{BUS_TRIES, RECEIVE_QUEUE};
 /// The received bytes that are not taken yet, and the function that receives.
 pub(in crate::board) struct Inbox {
     receive: Option<fn(&mut Inbox)>,
+    /// The queue, the oldest byte first.
     pub received: Deque<u8, RECEIVE_QUEUE>,
+    /// The number of bytes that are lost; see [`lost`].
     lost: u32,
 }
 
@@ -23,6 +25,7 @@ static INBOX: Shared<Inbox> = Shared::new(Inbox {
 });
 
 impl Inbox {
+    /// Puts a received byte into the queue. If the queue is full, the byte is lost and counted.
     pub fn push(&mut self, byte: u8) {
         let is_refused = self.received.push_back(byte).is_err();
         self.note_overrun(is_refused);
@@ -40,12 +43,12 @@ pub(in crate::board) fn receive_by(receive: fn(&mut Inbox)) {
     INBOX.with(|inbox| inbox.receive = Some(receive));
 }
 
-/// Receives bytes; called by the receiver's interrupt.
+/// Receives bytes; called by the receiver's interrupt. Does nothing before [`receive_by`].
 pub(in crate::board) fn receive() {
     INBOX.with(|inbox| inbox.receive.map(|receive| receive(inbox)));
 }
 
-/// Returns the next received byte of the queue.
+/// Takes the oldest received byte from the queue; `None` if the queue is empty.
 pub fn received() -> Option<u8> {
     INBOX.with(|inbox| inbox.received.pop_front()).flatten()
 }
@@ -57,10 +60,14 @@ pub fn lost() -> u32 {
 }
 
 /// The sending direction of a port. The function sends bytes, and returns true if the port has
-/// taken them in time.
+/// taken all of them in time.
+///
+/// If not, [`Write::write`] returns [`ErrorKind::TimedOut`]; a part of the bytes may have been
+/// sent.
 pub struct Outward(pub(in crate::board) fn(&[u8]) -> bool);
 
-/// Sends bytes one by one. Each waits until the port `is_ready` for it. Returns true if all are
+/// Sends bytes one by one. Each waits until the port `is_ready` for it, at most [`BUS_TRIES`]
+/// polls. Returns true if all are sent. Otherwise the bytes from the first late one on are not
 /// sent.
 pub(in crate::board) fn send(bytes: &[u8], is_ready: impl Fn() -> bool, put: impl Fn(u8)) -> bool {
     bytes.iter().all(|&byte| {

@@ -14,10 +14,16 @@ use crate::graphics::{Canvas, HEIGHT, WIDTH};
 
 /// The panel of a driver, the position of the frame's upper left corner on it, and the colour of
 /// each grey. The colour can be the panel's own `from`, or any other function.
+///
+/// Each frame is sent whole, row by row. The error of a frame is the driver's own; the next frame
+/// is not affected.
 #[derive(Clone, Copy, Debug)]
 pub struct AnyPanel<Target, Color> {
+    /// The driver.
     pub target: Target,
+    /// The upper left corner of the frame on the panel, pixels.
     pub corner: Point,
+    /// The colour of each grey from 0, black, to 15.
     pub colour: fn(Gray4) -> Color,
 }
 

@@ -16,10 +16,10 @@ const CAPACITY: usize = PAGES * (5 + 2 + WIDTH) + 48;
 const ANSWER: usize = 2;
 
 /// Messages to one address, and the answer to them. Each message is stored as its length and its
-/// bytes.
+/// bytes. The default is empty, with the outcome `Ok`.
 #[derive(Debug)]
 pub struct Outbox {
-    /// The address of the panel, set by [`address_to`](Self::address_to).
+    /// The address of the panel, seven bits, set by [`address_to`](Self::address_to).
     pub address: u8,
     messages: Vec<u8, CAPACITY>,
     /// The index of the next byte to send.
@@ -33,21 +33,24 @@ pub struct Outbox {
     pub requested: usize,
     /// The bytes read.
     answer: Vec<u8, ANSWER>,
-    /// The outcome; `None` while the messages are being sent.
+    /// The outcome; `None` while the messages are being sent, `Ok` while nothing has been sent.
     pub sent: Option<Sent>,
     /// The time that the messages took, us; 0 if it is not known.
     pub took: u32,
 }
 
-/// The outcome of the messages in an outbox.
+/// The outcome of the messages in an outbox: `Ok` if all are sent and the answer is complete. If
+/// not, [`ErrorKind::NoAcknowledge`] means that the panel is silent, [`ErrorKind::ArbitrationLoss`]
+/// that another device drove the bus, and any other error that the transfer was aborted or hangs.
 pub type Sent = Result<(), ErrorKind>;
 
 /// The error of a panel that does not acknowledge.
 pub const SILENCE: ErrorKind = ErrorKind::NoAcknowledge(NoAcknowledgeSource::Unknown);
 
-/// A byte to send.
+/// A byte to send, after the address.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct OutByte {
+    /// The byte itself.
     pub value: u8,
     /// The byte is the last of its message: a stop follows, or the start of the next message.
     pub ends_message: bool,
@@ -83,8 +86,9 @@ impl Outbox {
         self.took = 0;
     }
 
-    /// Appends a message: a control byte, and up to 254 bytes. A message that does not fit is
-    /// dropped. The longest update of a panel fits (test `oled_i2c`).
+    /// Appends a message: the control byte `head`, and up to 254 bytes. A longer message, or one
+    /// that does not fit into the outbox, is dropped without notice. The longest update of a panel
+    /// fits (test `oled_i2c`).
     pub fn put(&mut self, head: u8, body: &[u8]) {
         let needed = 2 + body.len();
         if let Ok(length) = u8::try_from(needed - 1)
@@ -97,7 +101,8 @@ impl Outbox {
         }
     }
 
-    /// Reads this many bytes, at most 2, from the panel after the messages.
+    /// Requests that this many bytes are read from the panel after the messages. More than 2 count
+    /// as 2.
     pub fn ask(&mut self, bytes: u8) {
         self.asked = bytes.min(ANSWER as u8);
     }
@@ -107,14 +112,14 @@ impl Outbox {
         self.asked.into()
     }
 
-    /// Takes a byte that was read.
+    /// Takes a byte that was read; called by the bus.
     pub fn answer(&mut self, byte: u8) {
         // A byte that was not requested is dropped.
         let _ = self.answer.push(byte);
     }
 
-    /// Returns the bytes that were read. When the transfer is complete, they are as many as
-    /// requested.
+    /// Returns the bytes that were read. If the outcome is `Ok`, they are as many as requested;
+    /// before that, or after an error, they may be fewer.
     pub fn answered(&self) -> &[u8] {
         &self.answer
     }
@@ -126,12 +131,14 @@ impl Outbox {
         self.messages.len() + read
     }
 
-    /// Returns true when all messages are sent; an answer may be outstanding.
+    /// Returns true if [`next`](Iterator::next) has no byte left: all messages are sent, or none
+    /// was put in. An answer may be outstanding.
     pub fn is_empty(&self) -> bool {
         self.at == self.messages.len()
     }
 
-    /// Returns true if a message is being sent and its last byte is still to come.
+    /// Returns true if the first byte of a message has been taken and its last byte is still to
+    /// come.
     pub fn is_within_message(&self) -> bool {
         self.left != 0
     }
@@ -140,7 +147,8 @@ impl Outbox {
 impl Iterator for Outbox {
     type Item = OutByte;
 
-    /// Returns the next byte to send; messages follow each other in their order.
+    /// Takes the next byte to send; messages follow each other in their order. Returns `None` after
+    /// the last one.
     fn next(&mut self) -> Option<OutByte> {
         if self.left == 0 {
             self.left = *self.messages.get(self.at)?;
@@ -160,12 +168,15 @@ impl Iterator for Outbox {
 /// A bus that sends an outbox while the processor does other work.
 pub trait PanelBus {
     /// Returns the outbox, and the outcome of its last messages; `None` while they are being sent.
+    /// If nothing has been sent yet, the outcome is `Ok`.
     fn outbox(&mut self) -> Option<(&mut Outbox, Sent)>;
 
-    /// Sends the messages in the outbox. Returns at once.
+    /// Begins to send the messages in the outbox, and returns at once. Does nothing while a
+    /// transfer is in progress.
     fn send(&mut self);
 
-    /// Aborts the transfer, whose outcome is then an error, and frees a bus that hangs.
+    /// Aborts the transfer, and frees a bus that hangs. The outbox is then available, with the
+    /// outcome [`ErrorKind::Other`].
     fn abort(&mut self);
 }
 

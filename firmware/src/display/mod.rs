@@ -20,25 +20,31 @@ pub use bus::{OutByte, Outbox, PanelBus, SILENCE, Sent, free_bus};
 pub use oled_i2c::{OledError, OledI2c};
 pub use ssd0323::Ssd0323;
 
-/// A panel.
+/// The driver of a panel. It takes a frame in each tick.
 pub trait Display {
+    /// The reason why a frame does not reach the panel.
     type Error;
 
     /// Sends a frame to the panel, or prepares its transfer.
+    ///
+    /// Returns an error if this frame has failed, or if the panel does not show the frames at
+    /// present. The next frame may be sent all the same.
     fn flush(&mut self, canvas: &Canvas) -> Result<(), Self::Error>;
 
-    /// Sends the last frame if it is still waiting for the bus, in the time left until the next
-    /// one. Returns true while it waits.
+    /// Sends the last frame, which is the canvas, if it is still waiting for the bus. It is called
+    /// in the time left until the next frame. Returns true while the frame waits; false if none
+    /// does.
     fn catch_up(&mut self, _: &Canvas) -> bool {
         false
     }
 
-    /// Returns the panel that was found since the last call.
+    /// Returns the panel that was found since the last call; `None` if none was, or if the driver
+    /// does not search.
     fn found(&mut self) -> Option<Found> {
         None
     }
 
-    /// Returns the state of the panel for the host.
+    /// Returns the state of the panel for the host. The default is [`PanelState::Unknown`].
     fn report(&self) -> PanelReport {
         PanelReport::default()
     }
@@ -50,7 +56,7 @@ pub trait Display {
     }
 }
 
-/// The panel of a board without one.
+/// The panel of a board without one: it accepts every frame and shows nothing.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct NoDisplay;
 
@@ -93,9 +99,9 @@ choice! {
     BusFault {
         /// The panel acknowledges neither address.
         NoAnswer = "no answer at 0x3C and 0x3D";
-        /// Another device drove the data line.
+        /// Another device drove the data line, so that the bus lost its arbitration.
         Disturbed = "the data line was driven by another device";
-        /// A transfer did not end.
+        /// A transfer did not end, or failed in any other way.
         Stuck = "the bus hangs";
     }
 }
@@ -110,11 +116,13 @@ impl From<ErrorKind> for BusFault {
     }
 }
 
-/// A panel that answers.
+/// A panel that answers, and how its controller is known.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(target_os = "none", derive(defmt::Format))]
 pub struct Found {
+    /// The controller that the driver drives it as.
     pub controller: Controller,
+    /// The way in which the controller was identified.
     pub by: By,
     /// The status byte, read with the display off; `None` if the panel acknowledges no read.
     pub status: Option<u8>,
@@ -137,17 +145,20 @@ pub enum PanelState {
 /// The state of the panel for the host.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct PanelReport {
+    /// The state of the search.
     pub state: PanelState,
     /// The controller that the user chose; `None` identifies it.
     pub chosen: Option<Controller>,
-    /// The number of frames of the last whole second that were sent to the panel.
+    /// The number of frames of the last [`TICK_RATE`](crate::config::TICK_RATE) that were sent to
+    /// the panel, whole or in part; 0 until the panel has taken frames for a whole second.
     pub shown: u8,
-    /// The number of these frames that were sent whole. The others left a part to the next frame.
+    /// The number of these that were sent whole. The others left a part to the next frame.
     pub whole: u8,
 }
 
-/// The controller that the build variable `PANEL` names. A controller chosen by the host has
-/// precedence.
+/// The controller that the build variable `PANEL` names; `None` without the variable, and then the
+/// controller is identified. Another name is an error of the build. A controller chosen by the host
+/// has precedence.
 pub const BUILT_FOR: Option<Controller> = match option_env!("PANEL") {
     None => None,
     Some(name) => match name.as_bytes() {

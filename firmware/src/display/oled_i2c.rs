@@ -164,13 +164,16 @@ const CHECK: usize = 4;
 /// take as many bytes.
 const GAP: usize = NEXT_HEAD;
 
+/// The reason why the panel does not show the frames.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum OledError {
-    /// No panel answers at either address. Contains the error of the bus.
+    /// The search or the set-up has failed with this error of the bus; if that is silence, no panel
+    /// answers at either address. It is tried again after a second.
     Absent(ErrorKind),
-    /// The panel answered earlier but does not now, or it lost its power.
+    /// The panel showed frames earlier but does not answer now, or it lost its power. The search
+    /// begins again.
     Lost,
-    /// The bus is too slow for every frame.
+    /// The bus is too slow for every frame. The panel shows the others.
     Slow {
         /// The number of frames, of the last [`TICK_RATE`], that were sent to the panel.
         shown: u32,
@@ -194,9 +197,12 @@ impl fmt::Display for OledError {
 /// Driver for a panel that may be absent or plugged in later.
 ///
 /// The driver looks for an absent panel once a second, and returns an error for its frames at once.
-/// The result of a frame is returned with a later frame.
+/// The bus sends a frame after [`flush`](Display::flush) has returned, so that an error is returned
+/// with a later frame, and then with every frame until it is over. The result before the first
+/// search has ended is `Ok`.
 #[derive(Debug)]
 pub struct OledI2c<'a, Bus> {
+    /// The bus of the panel.
     pub bus: Bus,
     state: State,
     /// The address of the panel, or the address that is being tried.
@@ -223,6 +229,7 @@ pub struct OledI2c<'a, Bus> {
     counts: Count,
 }
 
+/// Counts of the frames since the panel shows them, and of those that were sent in part or whole.
 #[derive(Clone, Copy, Debug, Default)]
 struct Count {
     frames: u32,
@@ -230,11 +237,11 @@ struct Count {
     whole: u32,
 }
 
+/// The state of the search for the panel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum State {
-    Absent {
-        retry_in: u8,
-    },
+    /// The search begins after this number of frames.
+    Absent { retry_in: u8 },
     /// The display is being switched off at the current address.
     Looking,
     /// The status byte is being read.
@@ -247,6 +254,7 @@ enum State {
     },
     /// Settings and the first picture are being sent.
     Waking(Found),
+    /// The panel shows the frames.
     Awake(Found, Watch),
 }
 
@@ -270,6 +278,7 @@ enum Offer {
     Skipped,
     /// A part did not fit.
     InPart,
+    /// All changes were sent, or there was nothing to send.
     Whole,
 }
 
@@ -284,6 +293,7 @@ impl Room {
     /// The room of a bus that has not been measured yet. A byte takes 34 us with pull-ups of 10
     /// kOhm.
     const FIRST: Self = Self((Self::TIME / 34) as usize);
+    /// The limits of the room, bytes; the upper one is a whole picture.
     const LEAST: usize = 128;
     const MOST: usize = PAGES * (HEAD + WIDTH);
     /// The shortest transfer that is measured, bytes.
@@ -304,8 +314,9 @@ impl Room {
 }
 
 impl<'a, Bus: PanelBus> OledI2c<'a, Bus> {
-    /// Creates a driver with a place to remember the picture. The controller is identified unless
-    /// it is chosen. The search for the panel begins with the first frame.
+    /// Creates a driver with a place to remember the picture, whose contents do not matter. The
+    /// controller is identified if `chosen` is `None`. The search for the panel begins with the
+    /// first frame.
     pub fn new(bus: Bus, memory: &'a mut Bitmap, chosen: Option<Controller>) -> Self {
         Self {
             bus,
@@ -326,7 +337,8 @@ impl<'a, Bus: PanelBus> OledI2c<'a, Bus> {
         }
     }
 
-    /// Sends the frame, or a part of it. Returns `None` if the bus is busy.
+    /// Takes the outcome of the last messages, and sends the frame, a part of it, or the messages
+    /// of the search. Returns `None`, and does nothing, if the bus is busy.
     ///
     /// A frame that is late is sent in a shorter part, so that the next one is not late as well.
     fn offer(&mut self, canvas: &Canvas, is_late: bool) -> Option<Offer> {
@@ -404,7 +416,8 @@ impl<'a, Bus: PanelBus> OledI2c<'a, Bus> {
         Some(offer)
     }
 
-    /// Counts a frame that was shown or skipped. Once a second it reports if all were sent.
+    /// Counts a frame that was shown or skipped, if the panel shows the frames. After each
+    /// [`TICK_RATE`] of them, the result says if all were sent.
     fn count(&mut self, offer: Offer) {
         if !matches!(self.state, State::Awake(..)) {
             return;
@@ -427,7 +440,8 @@ impl<'a, Bus: PanelBus> OledI2c<'a, Bus> {
 }
 
 impl State {
-    /// Returns the next state, given the outcome of the last messages, and a change to report.
+    /// Returns the next state, given the outcome of the last messages, and the result to return for
+    /// the frames from now on; `None` if that stays. May change the address to try.
     fn after(
         self,
         address: &mut u8,
@@ -572,6 +586,8 @@ fn by_status(status: u8) -> Controller {
 impl<Bus: PanelBus> Display for OledI2c<'_, Bus> {
     type Error = OledError;
 
+    /// Sends the changes, or keeps the frame for [`catch_up`](Display::catch_up) if the bus is
+    /// busy, or continues the search. Returns the result of earlier frames.
     fn flush(&mut self, canvas: &Canvas) -> Result<(), OledError> {
         // A frame that still waits will never be sent.
         if core::mem::take(&mut self.is_owed) {
@@ -619,6 +635,7 @@ impl<Bus: PanelBus> Display for OledI2c<'_, Bus> {
         }
     }
 
+    /// Always returns true. The panel is searched for and set up again.
     fn choose(&mut self, chosen: Option<Controller>) -> bool {
         self.chosen = chosen;
         // The next frame begins the search and the set-up.
@@ -653,8 +670,10 @@ fn checks(watch: Watch, check_in: &mut u8) -> bool {
     }
 }
 
-/// Appends the columns that differ between the panel's memory and the frame, while there is room,
-/// and records them in the memory. Begins with page `first`. Returns the page that did not fit.
+/// Appends the columns that differ between the panel's memory and the frame, and records them in
+/// the memory, until the outbox has `room` bytes on the bus. Begins with page `first`, and
+/// continues with page 0 after the last. Returns the first page that did not fit; `None` if all
+/// did.
 fn draw(
     outbox: &mut Outbox,
     left: u8,

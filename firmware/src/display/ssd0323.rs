@@ -54,7 +54,10 @@ const WAKE: [&[u8]; 19] = [
     &[0xAF],                    // display on
 ];
 
-/// The panel: an SPI device, and the pin that is high for data and low for commands.
+/// The driver of a panel: an SPI device, and the pin that is high for data and low for commands.
+///
+/// [`Ssd0323::init`] must be called before the first frame. After an error of the SPI device, the
+/// next frame is sent whole.
 #[derive(Debug)]
 pub struct Ssd0323<'a, Spi, Pin> {
     spi: Spi,
@@ -76,7 +79,8 @@ impl<'a, Spi: SpiDevice, Pin: OutputPin<Error = Infallible>> Ssd0323<'a, Spi, Pi
         }
     }
 
-    /// Configures the controller, blanks its memory and switches the panel on.
+    /// Blanks the panel's memory, configures the controller and switches the panel on. Returns the
+    /// first error of the SPI device; the rest is then not sent, and the panel stays dark.
     pub fn init(&mut self) -> Result<(), Spi::Error> {
         self.command(&ALL_COLUMNS)?;
         self.command(&ALL_ROWS)?;
@@ -144,6 +148,8 @@ fn differing(Row(old): &Row, Row(new): &Row) -> Option<(usize, usize)> {
 impl<Spi: SpiDevice, Pin: OutputPin<Error = Infallible>> Display for Ssd0323<'_, Spi, Pin> {
     type Error = Spi::Error;
 
+    /// Sends the changes before it returns. Returns the first error of the SPI device; the rest of
+    /// the frame is then not sent.
     fn flush(&mut self, canvas: &Canvas) -> Result<(), Self::Error> {
         let sent = self.update(canvas);
         self.is_known = sent.is_ok();

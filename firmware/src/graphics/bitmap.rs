@@ -2,7 +2,9 @@
 
 use crate::graphics::canvas::{Canvas, HEIGHT, Row, WIDTH, carried};
 
+/// The number of rows in a page.
 const ROWS: usize = 8;
+/// The number of pages of a frame, 8.
 pub const PAGES: usize = HEIGHT / ROWS;
 
 /// The Bayer matrix: the lighting order of the pixels of a square of 4 x 4 as it becomes brighter.
@@ -48,15 +50,20 @@ const ROOM: [[[u32; 2]; 4]; 2] = [room(false), room(true)];
 /// left. The lowest bit of a byte is the top row.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Bitmap {
+    /// The pages from the top.
     pub pages: [[u8; WIDTH]; PAGES],
 }
 
 impl Bitmap {
+    /// The frame with all pixels off.
     pub const BLACK: Self = Self {
         pages: [[0; WIDTH]; PAGES],
     };
 }
 
+/// Converts the greys to dots. In a drawing, greys up to 2 are off, and greys from 8 on are on; in
+/// a picture ([`Canvas::all_greys`]) only 0 is always off and only 15 always on. The greys in
+/// between are patterns of 4 x 4 pixels.
 impl From<&Canvas> for Bitmap {
     fn from(canvas: &Canvas) -> Self {
         let mut bitmap = Self::BLACK;

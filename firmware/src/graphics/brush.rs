@@ -13,13 +13,17 @@ const HALF: i32 = SUBPIXELS / 2;
 /// A point on the canvas, in subpixels from its top left corner. Pixel i covers 64 i to 64 i + 63.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Spot {
+    /// To the right.
     pub x: i16,
+    /// Down.
     pub y: i16,
 }
 
 impl Spot {
-    /// Returns the spot at (x, y) pixels. It is limited to one canvas size around the canvas, so
-    /// that no sum in this module can overflow.
+    /// Returns the spot at (x, y) pixels, where (0, 0) is the top left corner of the canvas.
+    ///
+    /// Each coordinate is limited to one canvas size around the canvas, -128 to 256 and -64 to 128
+    /// pixels, so that no sum in this module can overflow. NaN becomes 0.
     pub fn at(x: f32, y: f32) -> Self {
         let subpixels = |pixels: f32, size: usize| {
             let size = size as i32 * SUBPIXELS;
@@ -33,17 +37,20 @@ impl Spot {
 }
 
 /// The points within `radius` subpixels of the line from `from` to `to`. If both ends are the same,
-/// it is a disc.
+/// it is a disc. The edge is soft: over one pixel, half of it outside, the grey falls to 0.
 #[derive(Clone, Copy, Debug)]
 pub struct Stroke {
+    /// One end of the line.
     pub from: Spot,
+    /// The other end.
     pub to: Spot,
+    /// Half the width of the stroke, subpixels.
     pub radius: u8,
 }
 
 impl Stroke {
-    /// Draws the stroke with a brightness of 0 to 255. Pixels that are brighter already keep their
-    /// grey.
+    /// Draws the stroke with a brightness of 0 (black) to 255 (grey 15). Pixels that are brighter
+    /// already keep their grey. The parts outside the canvas are not drawn.
     #[inline(never)] // Not inlined, to save flash.
     pub fn lighten(&self, canvas: &mut Canvas, brightness: u8) {
         let limit = i32::from(self.radius) + HALF;
@@ -78,16 +85,21 @@ impl Stroke {
 }
 
 /// A disc of `radius` subpixels, surrounded by a dark gap of `gap` subpixels that separates it from
-/// the background.
+/// the background. Edges are soft, one pixel wide.
 #[derive(Clone, Copy, Debug)]
 pub struct Disc {
+    /// The middle.
     pub centre: Spot,
+    /// The radius without the gap, subpixels.
     pub radius: u8,
+    /// The width of the gap, subpixels.
     pub gap: u8,
 }
 
 impl Disc {
-    /// Draws the disc and its gap. The brightness is 0 to 255.
+    /// Draws the disc and its gap over the canvas: the disc replaces brighter pixels, too, and the
+    /// gap is darkened. The brightness is 0 (black) to 255 (grey 15). The parts outside the canvas
+    /// are not drawn.
     pub fn draw(&self, canvas: &mut Canvas, brightness: u8) {
         let Spot {
             x: centre_x,
@@ -188,7 +200,8 @@ impl Band {
     /// The fraction bits of `middle` and `slope`.
     const PARTS: u32 = 10;
 
-    /// Returns the range of the current row, and moves on to the next row.
+    /// Returns the columns of the current row, and moves on to the next row. They may be outside
+    /// the canvas.
     fn next(&mut self) -> Range<i32> {
         let middle = (self.middle >> Self::PARTS) + HALF;
         self.middle = self.middle.wrapping_add(self.slope);

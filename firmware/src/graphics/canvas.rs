@@ -1,8 +1,11 @@
 //! The canvas, 128 x 64 pixels of 16 greys in the memory layout of the panel, and the fade layer,
 //! which holds the traces of earlier frames.
 
+/// The width of the canvas, pixels.
 pub const WIDTH: usize = 128;
+/// The height of the canvas, pixels.
 pub const HEIGHT: usize = 64;
+/// The size of a row, bytes.
 const ROW: usize = WIDTH / 2;
 
 /// A row of pixels from the left, two in a byte. The high nibble is the left pixel.
@@ -15,8 +18,10 @@ pub struct Row(pub [u8; ROW]);
 /// The rows of pixels from the top. Drawing cannot fail: pixels outside the canvas are ignored.
 #[derive(Debug, PartialEq, Eq)]
 pub struct Canvas {
+    /// The rows from the top.
     pub rows: [Row; HEIGHT],
     /// True if every grey matters, as in a picture. False for a drawing, which is bright on dark.
+    /// Only a panel of one colour shows the difference ([`Bitmap`](crate::graphics::Bitmap)).
     pub all_greys: bool,
 }
 
@@ -47,12 +52,14 @@ impl Clone for Canvas {
 }
 
 impl Canvas {
+    /// A canvas whose pixels are all 0, for a drawing.
     pub const BLACK: Self = Self {
         rows: [Row([0; ROW]); HEIGHT],
         all_greys: false,
     };
 
-    /// Returns the bytes in the order of the panel's memory.
+    /// Returns the bytes of the rows from the top, 4,096 in all: two pixels in each, the left one
+    /// in the high nibble.
     pub fn bytes(&self) -> impl Iterator<Item = u8> + Clone {
         self.rows.iter().flat_map(|Row(row)| *row)
     }
@@ -64,8 +71,11 @@ impl Canvas {
         self.rows.get_mut(y as usize)
     }
 
-    /// Moves all pixels from column `left` on to the left by one. The columns left of `left` stay
-    /// black, and the last column becomes black.
+    /// Moves all pixels to the left by one column. Column `left - 1` and the last column become
+    /// black.
+    ///
+    /// So the pixels from column `left` on scroll out at their left end, if the columns before
+    /// `left` are black, as they must be: they move, too.
     #[inline(never)]
     pub fn scroll(&mut self, left: i32) {
         for row in &mut self.rows {
@@ -79,7 +89,7 @@ impl Canvas {
         }
     }
 
-    /// Returns the grey of a pixel, 0 to 15; `None` outside the canvas.
+    /// Returns the grey of the pixel in column `x` and row `y`, 0 to 15; `None` outside the canvas.
     pub fn get(&self, x: i32, y: i32) -> Option<u8> {
         let Row(row) = self.rows.get(y as usize)?;
         Some((row.get((x >> 1) as usize)? >> shift(x)) & 0x0F)
@@ -94,6 +104,7 @@ impl Canvas {
         }
     }
 
+    /// Sets a pixel to a grey of 0 to 15. A pixel that is brighter already keeps its grey.
     #[inline]
     pub fn lighten(&mut self, x: i32, y: i32, grey: u8) {
         if let Some(row) = self.row_mut(y) {
@@ -101,8 +112,9 @@ impl Canvas {
         }
     }
 
-    /// Sets pixels to one grey: the pixels of the 8 x 8 from (x, y) whose bits are set. The first
-    /// row is in the highest byte, and the leftmost pixel of a row is in its highest bit.
+    /// Sets pixels to one grey, 0 to 15: the pixels whose bits are set, of the 8 x 8 to the right
+    /// of column `x` and below row `y`, both included. The others are unchanged. The first row is
+    /// in the highest byte, and the leftmost pixel of a row is in its highest bit.
     #[inline(never)]
     pub fn stamp(&mut self, x: i32, mut y: i32, mut bits: u64, grey: u8) {
         let word = (x >> 3) as usize;
@@ -134,6 +146,8 @@ impl Canvas {
 }
 
 impl Row {
+    /// Replaces the grey of the pixel in column `x` by a function of it. Only the low four bits of
+    /// the result count. Outside the row nothing is done.
     #[inline]
     pub fn update(&mut self, x: i32, new: impl FnOnce(u8) -> u8) {
         if let Some(pair) = self.0.get_mut((x >> 1) as usize) {
@@ -149,16 +163,17 @@ impl Row {
     }
 }
 
-/// The speed of fading: every row loses one grey in [`HEIGHT`]/`rows` ticks.
+/// The speed of fading. Every row loses one grey in [`HEIGHT`]/`rows` ticks of the scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Fading {
     /// The number of rows that lose a grey in a tick.
     pub rows: u8,
-    /// The final grey of the fading.
+    /// The grey at which the fading of a pixel ends, 0 to 15.
     pub last: u8,
 }
 
 impl Fading {
+    /// The traces stay as they are.
     pub const NEVER: Self = Self { rows: 0, last: 15 };
     /// The fading of a trace that remains visible. It loses a grey in about a second.
     pub const TRACE: Self = Self { rows: 1, last: 4 };
@@ -167,18 +182,21 @@ impl Fading {
 /// The traces of earlier frames. Each frame is drawn over them.
 #[derive(Clone, Debug)]
 pub struct FadeLayer {
+    /// The traces, to which each tick of the scene may add.
     pub frame: Canvas,
     /// The next row to fade.
     row: i32,
 }
 
 impl FadeLayer {
+    /// A layer without traces.
     pub const NONE: Self = Self {
         frame: Canvas::BLACK,
         row: 0,
     };
 
-    /// Fades the next rows by one grey each. Pixels at or below the last grey are unchanged.
+    /// Fades the next `rows` rows by one grey each, after the lowest row the top one again; to be
+    /// called once a tick of the scene. Pixels at or below the grey `last` are unchanged.
     #[inline(never)]
     pub fn fade(&mut self, Fading { rows, last }: Fading) {
         let room = u32::from(15_u8.saturating_sub(last)) * ONES;

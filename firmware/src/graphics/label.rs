@@ -1,11 +1,16 @@
 //! Numbers as text without floating-point formatting, which alone would take 14 KB of flash.
+//!
+//! A name is put in front as it is, with its own space, and a unit behind. A part of a label (a
+//! name, a digit, a unit) for which there is no room is left out, with all that follow. NaN is
+//! written as 0.
 
 use heapless::String;
 
 /// A label. Its capacity is the number of bytes that fit next to the motion.
 pub type Label = String<16>;
 
-/// Returns the mass ratio to three significant digits: `μ 100`, `μ 31.5`, `μ 2.75`, `μ 0.315`, `μ
+/// Returns the mass ratio m2/m1, which must not be negative, to three significant digits, from 100
+/// on to whole numbers, and below 0.1 to four decimals: `μ 100`, `μ 31.5`, `μ 2.75`, `μ 0.315`, `μ
 /// 0.0125`.
 pub fn mass_ratio(ratio: f32) -> Label {
     let decimals = [100.0, 10.0, 1.0, 0.1]
@@ -15,8 +20,8 @@ pub fn mass_ratio(ratio: f32) -> Label {
     label("μ ", ratio, decimals as u32, "")
 }
 
-/// Returns a start angle after its name: `α 120°`. It has one decimal if it is not a whole number
-/// of degrees.
+/// Returns a start angle, degrees, after its name: `α 120°`. It is rounded to one decimal if it is
+/// not a whole number of degrees.
 pub fn degrees(name: &str, degrees: f32) -> Label {
     let decimals = if degrees == (degrees as i32) as f32 {
         0
@@ -26,7 +31,8 @@ pub fn degrees(name: &str, degrees: f32) -> Label {
     label(name, degrees, decimals, "°")
 }
 
-/// Returns a number of an axis: `10`, `0.2 s`.
+/// Returns a number of an axis: `10`, `0.2 s`. It is rounded to one decimal from 0.1 to 1, to two
+/// from 0.01 to 0.1, and otherwise to a whole number.
 pub fn tick(value: f32, unit: &str) -> Label {
     let decimals = match value {
         0.1..1.0 => 1,
@@ -36,19 +42,21 @@ pub fn tick(value: f32, unit: &str) -> Label {
     label("", value, decimals, unit)
 }
 
-/// Returns a time after a name, rounded down to tenths of a second, or to seconds from 1,000 s on.
+/// Returns a time, s, after a name, rounded down to tenths of a second, or to seconds from 1,000 s
+/// on. A negative time is written as 0.
 pub fn rounded_down(name: &str, seconds: f32) -> Label {
     let parts = if seconds < 1e3 { 10 } else { 1 };
     written([name, ""], (seconds * parts as f32) as u32, parts, " s")
 }
 
-/// Returns the time since the start in tenths of a second, rounded down: `12.3 s`.
+/// Returns a time, s, rounded down to tenths of a second: `12.3 s`. A negative time is written as
+/// 0.
 pub fn time(seconds: f64) -> Label {
     written([""; 2], (seconds * 10.0) as u32, 10, " s")
 }
 
-/// Returns `value`, rounded to `decimals` places, after a name and before a unit: `±12°`, `ω₁
-/// 1.848`, `true -18.7 J`.
+/// Returns `value`, rounded to `decimals` places (0 to 9), after a name and before a unit. A
+/// negative value that is rounded to 0 keeps its sign: `±12°`, `ω₁ 1.848`, `true -18.7 J`.
 #[inline(never)]
 pub fn label(name: &str, value: f32, decimals: u32, unit: &str) -> Label {
     let one = 10_u32.saturating_pow(decimals);

@@ -21,11 +21,14 @@ pub use view::{Place, RodDirections, TRACE_HALF_WIDTH, View};
 /// on the stack nor copied when a scene is created.
 #[derive(Clone, Debug)]
 pub struct FrameBuffers {
+    /// The frame that is drawn and sent.
     pub canvas: Canvas,
+    /// The traces of earlier frames.
     pub ink: FadeLayer,
 }
 
 impl FrameBuffers {
+    /// Black buffers without traces.
     pub const BLANK: Self = Self {
         canvas: Canvas::BLACK,
         ink: FadeLayer::NONE,

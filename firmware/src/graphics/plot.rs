@@ -3,20 +3,23 @@
 
 use crate::graphics::{Canvas, HEIGHT, SUBPIXELS};
 
+/// Half the thickness of a curve, subpixels.
 const HALF_THICKNESS: i32 = 38;
 
 /// A height on the canvas: subpixels down from the top edge.
 pub type Height = i16;
 
-/// Returns the height of `value`, where zero is at row `zero` and a unit is `scale` pixels upwards.
-/// It is limited to twice the height of the canvas.
+/// Returns the height of `value`, where the value 0 is `zero` pixels below the top edge and a unit
+/// is `scale` pixels upwards. It is limited to twice the height of the canvas above and below the
+/// top edge. NaN is at the top edge.
 pub const fn height(value: f32, zero: f32, scale: f32) -> Height {
     let limit = (2 * HEIGHT as i32 * SUBPIXELS) as f32;
     ((zero - scale * value) * SUBPIXELS as f32).clamp(-limit, limit) as Height
 }
 
-/// Draws the part of a curve in column `x`, between two heights, with a brightness of 0 to 255.
-/// Pixels that are brighter already keep their grey.
+/// Draws the part of a curve in column `x`, between two heights in either order, with a brightness
+/// of 0 (black) to 255 (grey 15). Pixels that are brighter already keep their grey. Outside the
+/// canvas nothing is drawn.
 #[inline(never)]
 pub fn column(canvas: &mut Canvas, x: i32, from: Height, to: Height, brightness: u8) {
     /// The product of brightness and coverage that is one grey, as for a
@@ -34,10 +37,11 @@ pub fn column(canvas: &mut Canvas, x: i32, from: Height, to: Height, brightness:
     }
 }
 
-/// The grey of axes and scale lines. It is bright enough for a panel of one colour.
+/// The grey of axes and scale lines, of 15. It is bright enough for a panel of one colour.
 pub const AXIS_GREY: u8 = 8;
 
-/// Draws a dotted line in row `y`, from column `from` to column `to` (exclusive).
+/// Draws a dotted line in row `y`, every third pixel from column `from` to column `to` (exclusive),
+/// in [`AXIS_GREY`]. Brighter pixels keep their grey.
 #[inline(never)] // Not inlined, to save flash.
 pub fn axis(canvas: &mut Canvas, from: i32, to: i32, y: i32) {
     if let Some(row) = canvas.row_mut(y) {
@@ -47,12 +51,14 @@ pub fn axis(canvas: &mut Canvas, from: i32, to: i32, y: i32) {
     }
 }
 
-/// Draws a dotted line in column `x`, from row `from` to row `to` (exclusive).
+/// Draws a dotted line in column `x`, every third pixel from row `from` to row `to` (exclusive), in
+/// [`AXIS_GREY`]. Brighter pixels keep their grey.
 pub fn upright_axis(canvas: &mut Canvas, x: i32, from: i32, to: i32) {
     (from..to).step_by(3).for_each(|y| axis_dot(canvas, x, y));
 }
 
-/// Draws a scale bar, upright or level, with a foot at either end.
+/// Draws a scale bar, upright or level, from the pixel (x1, y1) to the pixel (x2, y2), which is to
+/// its right or below it. Either end has a foot of one pixel to both sides.
 #[inline(never)]
 pub fn bar(canvas: &mut Canvas, (x1, y1): (i32, i32), (x2, y2): (i32, i32)) {
     (x1..=x2).for_each(|x| (y1..=y2).for_each(|y| axis_dot(canvas, x, y)));
@@ -69,7 +75,8 @@ fn axis_dot(canvas: &mut Canvas, x: i32, y: i32) {
     canvas.lighten(x, y, AXIS_GREY);
 }
 
-/// Returns the smallest step of a scale that is at least `least`: 1, 2 or 5 times a power of ten.
+/// Returns the smallest step of a scale that is at least `least`: 1, 2 or 5 times a power of ten,
+/// from 0.01 to 100. Above 100, the result is 100.
 pub fn scale_step(least: f32) -> f32 {
     const STEPS: [f32; 12] = [
         0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0,

@@ -13,34 +13,39 @@ const GREY: u8 = 11;
 const MARGIN: i32 = 1;
 const RIGHT: i32 = WIDTH as i32 - 1 - MARGIN;
 
-/// The height of a line of text, and the top row of the lowest line.
+/// The height of a line of text, pixels.
 pub const LINE: i32 = 8;
+/// The top row of the lowest line.
 pub const LOWEST: i32 = HEIGHT as i32 - MARGIN - LINE;
 
 /// The position of a line of text. The last number is y, the row of its top; a number before it is
 /// the column x. Text beyond the edges is not drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Anchor {
-    /// The line is at the left edge, at the right edge, or in the middle.
+    /// The line begins at the left edge, after a margin of one pixel.
     Left(i32),
+    /// The line ends at the right edge, before a margin of one pixel.
     Right(i32),
+    /// The line is centred on the canvas.
     Middle(i32),
     /// The first character begins at column x.
     At(i32, i32),
-    /// The last character ends before column x.
+    /// The last character, with the gap after it, ends before column x.
     EndingAt(i32, i32),
 }
 
-/// Writes a line of text.
+/// Writes a line of text over the canvas, in grey 11. Characters have the glyphs of [`glyph`].
 pub fn write(canvas: &mut Canvas, text: &str, anchor: Anchor) {
     put(canvas, text, corner(anchor, text), GREY);
 }
 
-/// The greys of ink and background of a highlighted line, and of a line over a picture.
+/// The greys of ink and background of a highlighted line.
 pub const MARKED: [u8; 2] = [0, GREY];
+/// The greys of ink and background of a line over a picture.
 pub const WHITE_ON_BLACK: [u8; 2] = [15, 0];
 
-/// Writes a line of text on a background.
+/// Writes a line of text with the grey `ink` on a background of the grey `ground`, both 0 to 15.
+/// The background has the height of the line, and begins one column left of it.
 pub fn write_on(canvas: &mut Canvas, text: &str, anchor: Anchor, [ink, ground]: [u8; 2]) {
     let width = width(text);
     let (left, top) = corner(anchor, text);
@@ -85,13 +90,15 @@ fn put(canvas: &mut Canvas, text: &str, (mut left, top): (i32, i32), grey: u8) {
     }
 }
 
-/// Draws two upright bars below the top right corner, which mean that the scene is paused.
+/// Draws the mark of a paused scene: two upright bars on black, 8 x 7 pixels at the right edge,
+/// below the first line of text.
 pub fn pause_mark(canvas: &mut Canvas) {
     for (bits, grey) in [(0xFFFF_FFFF_FFFF_FF00, 0), (0x0033_3333_3333_3300, GREY)] {
         canvas.stamp(RIGHT - 7, LINE + 2, bits, grey);
     }
 }
 
+/// The picture of a character.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Glyph {
     /// The number of columns, with the gap after the character.

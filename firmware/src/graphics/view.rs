@@ -15,15 +15,17 @@ const GAP: u8 = SUBPIXELS as u8;
 /// Half the width of a trace that remains visible, subpixels.
 pub const TRACE_HALF_WIDTH: u8 = 30;
 
-/// The place of a pendulum on the frame: its pivot, in pixels right and down from the top left
-/// corner of the panel, and the length of both rods together.
+/// The place of a pendulum on the frame.
 #[derive(Clone, Copy, Debug)]
 pub struct Place {
+    /// The pivot, pixels right and down from the top left corner of the canvas.
     pub pivot: (f32, f32),
+    /// The length of both rods together, pixels.
     pub reach: f32,
 }
 
 impl Place {
+    /// The whole frame, with the pivot in the middle.
     pub const WHOLE: Self = Self {
         pivot: PIVOT,
         reach: REACH,
@@ -42,10 +44,11 @@ impl Place {
     ];
 }
 
-/// A pendulum on the frame.
+/// A pendulum on the frame: its sizes, and the present positions of its bobs.
 #[derive(Clone, Copy, Debug)]
 pub struct View {
     pivot: (f32, f32),
+    /// The lengths of rod 1 and rod 2, pixels.
     rods: [f32; 2],
     /// The radii of bob 1 and bob 2, subpixels.
     pub radii: [u8; 2],
@@ -54,7 +57,8 @@ pub struct View {
 }
 
 impl View {
-    /// Creates the view of a pendulum with these parameters and directions.
+    /// Creates the view of a pendulum with these parameters and directions. Both rods together are
+    /// `place.reach` long.
     ///
     /// The bobs are spheres of one material, so that their radii are proportional to the cube root
     /// of the mass. The heavier bob has the radius [`GREATEST_RADIUS`], which is reduced in
@@ -78,8 +82,8 @@ impl View {
         view
     }
 
-    /// Returns the centres of bob 1 and bob 2, in pixels right and down from the top left corner of
-    /// the panel.
+    /// Returns the centres that bob 1 and bob 2 have with these directions, in pixels right and
+    /// down from the top left corner of the canvas. The view is not turned.
     ///
     /// A rod with the direction (sin a, cos a) from the downward vertical extends that far right
     /// and down. Pixel i covers i to i + 1.
@@ -90,13 +94,19 @@ impl View {
         [(x1, y1), (x1 + rod2 * sin2, y1 + rod2 * cos2)]
     }
 
-    /// Turns the rods.
+    /// Turns the rods to these directions: the bobs move there at once, and leave no trace. A bob
+    /// whose position is NaN goes to the edge of the canvas ([`Spot::at`]).
     pub fn turn(&mut self, directions: RodDirections) {
         self.spots = self.bobs(directions).map(|(x, y)| Spot::at(x, y));
     }
 
-    /// Turns the rods. Bob 2 leaves a stroke that is `2 * half_width` subpixels wide, with a
-    /// brightness of 0 to 255.
+    /// Turns the rods to these directions. Bob 2 leaves a straight stroke in the ink, from its last
+    /// position to the new one, `2 * half_width` subpixels wide, with a brightness of 0 (black) to
+    /// 255 (grey 15). Pixels that are brighter already keep their grey.
+    ///
+    /// The last position is that of the last call of this function or of [`turn`](Self::turn).
+    /// Before the first call it is the position that the view was created with. The parts of a
+    /// stroke outside the canvas are not drawn.
     pub fn trace(
         &mut self,
         directions: RodDirections,
@@ -116,7 +126,9 @@ impl View {
         .lighten(&mut ink.frame, brightness);
     }
 
-    /// Draws the pivot, the rods and the bobs. The brightness of the bobs is 0 to 255.
+    /// Draws the pivot, the rods and the bobs over the canvas. The brightness of the bobs is 0
+    /// (black) to 255 (grey 15); the rods are no brighter than the bobs, and at most 190. Around
+    /// each bob the background is darkened.
     pub fn draw(&self, canvas: &mut Canvas, brightness: u8) {
         let (pivot, [bob1, bob2]) = (Spot::at(self.pivot.0, self.pivot.1), self.spots);
         let half_width = (ROD_HALF_WIDTH * SUBPIXELS as f32) as u8;

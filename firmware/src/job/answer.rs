@@ -18,7 +18,8 @@ pub struct Job<R = OnBoards> {
     turns: Option<[Turns; 2]>,
     /// The number of steps from one sample to the next.
     stride: u32,
-    /// The number of samples returned; wraps.
+    /// The number of samples returned so far, including the initial one; wraps. A reading that is
+    /// not finite counts, too.
     pub given: u32,
     /// The number of samples left, including the initial one.
     left: u32,
@@ -27,7 +28,14 @@ pub struct Job<R = OnBoards> {
 }
 
 impl<R: Run> Job<R> {
-    /// Creates the job of a request, where `run` is its motion at the start.
+    /// Creates the job of a request, where `run` is its motion at the start. Of the request it uses
+    /// the parameters, the method, the angles, `stride` and `samples`. If the stride is 0, every
+    /// reading is the initial one.
+    ///
+    /// # Errors
+    ///
+    /// Refuses parameters that [`Pendulum::new`] refuses, in the precision of the method, and
+    /// angles whose turns cannot be counted.
     pub fn new(run: R, request: &Request) -> Result<Self, Error> {
         let Request {
             method,
@@ -58,12 +66,16 @@ impl<R: Run> Job<R> {
         })
     }
 
-    /// Returns true if every sample has been returned.
+    /// Returns true if every sample has been returned, or if an error or a
+    /// [measurement](Self::measure) has ended the job.
     pub fn is_finished(&self) -> bool {
         self.left == 0
     }
 
-    /// Computes at most one step. Returns the reading if a sample is due.
+    /// Computes at most one step. Returns the reading if a sample is due, and `None` if none is or
+    /// if the job is finished. The first call returns the initial reading.
+    ///
+    /// # Errors
     ///
     /// Returns [`Error::Diverged`] instead of a reading that is not finite, and ends the job. All
     /// earlier readings are finite.
@@ -86,8 +98,8 @@ impl<R: Run> Job<R> {
         self.reading().map(Some).inspect_err(|_| self.left = 0)
     }
 
-    /// Runs `advance` on the motion, so that its time can be measured. The job ends, because its
-    /// later samples would be wrong.
+    /// Runs `advance` on the motion, so that its time can be measured, and returns its result. The
+    /// job ends, because its later samples would be wrong. It can be measured again.
     pub fn measure<T>(&mut self, advance: impl FnOnce(&mut R) -> T) -> T {
         self.left = 0;
         advance(&mut self.run)
@@ -129,7 +141,8 @@ impl<R: Run> Job<R> {
     }
 }
 
-/// Calls `each` with every reading of `request`, the initial one first.
+/// Calls `each` with every reading of `request`, the initial one first. Returns the first error: of
+/// `each`, or of the [`Job`].
 pub(super) fn readings<E: From<Error>>(
     run: impl Run,
     request: &Request,

@@ -10,7 +10,8 @@ use super::table::{GoldenBits, visit};
 /// Writes the contents of the kernel's file `golden/bits.csv`, computed on this machine: a heading,
 /// and a line for each method and motion.
 ///
-/// If a method refuses a motion, its error takes the place of the bits.
+/// If a method refuses a motion, its error takes the place of the bits. Only errors of `output` are
+/// returned.
 pub fn write_golden(output: &mut impl Write) -> fmt::Result {
     writeln!(output, "{HEADER}")?;
     for &method in Method::ALL {

@@ -30,18 +30,22 @@ pub use golden::write_golden;
 pub use run::Run;
 pub use table::{ON_BOARDS, OnBoards, visit};
 
-/// The reflected CRC-32 of zip and Ethernet.
+/// The CRC of requests, messages and images: CRC-32/ISO-HDLC, the reflected CRC-32 of zip and
+/// Ethernet.
 pub const CRC: Crc<u32, Table<1>> = Crc::<u32, Table<1>>::new(&CRC_32_ISO_HDLC);
 
 /// The largest size of a request in the postcard format, bytes.
 const MAX_BYTES: usize = 1 + 10 * 8 + 2 * 5;
 
-/// A motion to compute. The application of a board may lack the method.
+/// A motion to compute. Any values can be stored; the start of the motion checks them
+/// ([`OnBoards::start`], [`Request::readings`]). The application of a board may lack the method
+/// ([`ON_BOARDS`]).
 ///
 /// The text form of a request is also read by the C programs (`host-tests/peers/c/measure.c`).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(target_os = "none", derive(defmt::Format))]
 pub struct Request {
+    /// The method that computes the motion.
     pub method: Method,
     /// m1, m2 (kg), l1, l2 (m), g (m/s^2), in this order.
     pub parameters: Parameters<f64>,
@@ -59,11 +63,12 @@ pub struct Request {
 
 /// The numbers of a requested motion at one time.
 ///
-/// The state is widened to `f64` without loss. A fast form gives all digits that it carries. The
-/// other numbers are computed from the state in double precision.
+/// The state has all digits that the method carries; `f32` is widened to `f64` without loss. The
+/// other numbers are computed from the state in double precision. The numbers of a [`Job`] are
+/// finite.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Reading {
-    /// The state a1, a2 (rad), p1, p2 (kg m^2/s).
+    /// The state a1, a2 (rad, including whole turns), p1, p2 (kg m^2/s).
     pub state: [f64; 4],
     /// The angular velocities w1 and w2, rad/s.
     pub velocities: [f64; 2],
@@ -72,7 +77,9 @@ pub struct Reading {
 }
 
 impl Request {
-    /// Returns a request for 10 s of a chaotic motion, 2,560 steps, that every method can compute.
+    /// Returns a request for 10 s of a chaotic motion that every method can compute: equal rods and
+    /// bobs (1 m, 1 kg), both released at 2 rad; 2,560 steps of 1/256 s and 33 samples, one every
+    /// 80 steps.
     pub fn on_any_core(method: Method) -> Self {
         let parameters = Parameters {
             m1: 1.0,
@@ -113,7 +120,7 @@ impl Request {
     }
 
     /// Returns the request in `text`: its bytes in the postcard format, each as two hexadecimal
-    /// digits. Returns `None` if the text is anything else.
+    /// digits. Returns `None` if the bytes are not exactly one request. Its values are not checked.
     pub fn parse(text: &str) -> Option<Self> {
         let mut bytes = Vec::<u8, MAX_BYTES>::new();
         let byte = |digits: &[u8]| u8::from_str_radix(core::str::from_utf8(digits).ok()?, 16).ok();
@@ -138,7 +145,7 @@ impl fmt::Display for Request {
 }
 
 /// Returns the CRC-32 of all numbers that the method carries, at every sample except the initial
-/// one, and of the last state.
+/// one, and of the last state. A diverged motion has a CRC, too.
 fn crc<F: Form>(mut run: F, request: &Request) -> u32 {
     let mut digest = CRC.digest();
     for _ in 0..request.samples {
@@ -152,8 +159,8 @@ fn crc<F: Form>(mut run: F, request: &Request) -> u32 {
     digest.finalize()
 }
 
-/// Makes steps. The counter finds this function by its name, and counts from its first instruction
-/// to its return.
+/// Makes `steps` steps. The counter of cycles (`cargo count`) finds this function by its name, and
+/// counts from its first instruction to its return.
 #[inline(never)]
 fn counted_steps<R: Run>(run: &mut R, steps: u32) {
     let mut local = *run;

@@ -8,7 +8,8 @@ use super::Request;
 /// A motion in progress. The types of all methods implement this trait, and so does
 /// [`OnBoards`](super::OnBoards).
 pub trait Run: Copy {
-    /// Makes `steps` steps. `advance(a); advance(b)` is bit-identical to `advance(a + b)`.
+    /// Makes `steps` steps of the request's step size. `advance(a); advance(b)` is bit-identical to
+    /// `advance(a + b)`. A motion may diverge; the [`state`](Self::state) then is not finite.
     fn advance(&mut self, steps: u32);
 
     /// Returns the canonical state now, in SI units, with all digits that are carried.
@@ -16,7 +17,9 @@ pub trait Run: Copy {
     /// If [`sides`](Self::sides) returns a value, whole turns of the angles may be missing.
     fn state(&self) -> State<f64>;
 
-    /// Returns the signs of the rods' directions, if the caller must count whole turns by them.
+    /// Returns (sin, cos) of rod 1 and of rod 2 as words whose highest bit is the sign, if the
+    /// caller must count whole turns by these signs after each step. Returns `None` if the angles
+    /// of the state include the turns.
     fn sides(&self) -> Option<[[i32; 2]; 2]> {
         None
     }
@@ -30,7 +33,8 @@ pub(super) fn start<F: Form>(request: &Request) -> Result<F, Error> {
     Form::new(&parameters, &state, request.dt)
 }
 
-/// Returns the same by a method that scenes are drawn by.
+/// Returns the same by the request's method, which must be one that scenes are drawn by. Refuses
+/// others.
 #[inline(never)]
 pub(super) fn start_drawn(request: &Request) -> Result<DrawnMotion, Error> {
     let (parameters, state) = rounded(request)?;

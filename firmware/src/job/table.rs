@@ -11,7 +11,7 @@ use super::run::{start, start_drawn};
 use super::{Reading, Request, Run, answer, crc};
 
 /// Calls `visitor` with the type that computes `method`: a type of the kernel or, for a comparison
-/// with the kernel, of this module.
+/// with the kernel, of this module. Returns the visitor's result.
 ///
 /// This links every method. Hosts and the program `measure` use it; the application of a board does
 /// not.
@@ -47,7 +47,7 @@ pub const ON_BOARDS: &[Method] = &[
 /// A motion in progress, by a method of [`ON_BOARDS`].
 #[derive(Clone, Copy, Debug)]
 pub enum OnBoards {
-    /// The methods that scenes are drawn by.
+    /// A method that scenes are drawn by ([`Method::DRAWN`]).
     Drawn(DrawnMotion),
     /// [`Method::Rk4F64`].
     Rk4F64(HamiltonF64),
@@ -64,8 +64,13 @@ pub enum OnBoards {
 }
 
 impl OnBoards {
-    /// Returns the motion of a request at its start, or the kernel's error. Returns `None` if
-    /// boards do not have the method.
+    /// Returns the motion of a request at its start. Returns `None` if boards do not have the
+    /// method.
+    ///
+    /// # Errors
+    ///
+    /// The inner result is the kernel's error if it refuses the request: parameters that describe
+    /// no pendulum, a start that is not finite, or a step that the method cannot make.
     #[inline(never)] // Inlined, the compiler would move this large value word by word.
     pub fn start(request: &Request) -> Option<Result<Self, Error>> {
         Some(match request.method {
@@ -167,6 +172,11 @@ impl FormVisitor for CrcOf<'_> {
 
 impl Request {
     /// Calls `each` with every reading, the initial one first, until it returns an error.
+    ///
+    /// # Errors
+    ///
+    /// Returns the error of `each`, the kernel's error if it refuses the request, or
+    /// [`Error::Diverged`] in place of the first reading that is not finite.
     pub fn readings<E: From<Error>>(
         &self,
         each: impl FnMut(&Reading) -> Result<(), E>,
@@ -176,8 +186,12 @@ impl Request {
     }
 
     /// Returns the CRC-32 of all numbers that the method carries, at every sample except the
-    /// initial one, and of the last state. If those of two runs are equal, the runs are
-    /// bit-identical.
+    /// initial one, and of the last state. Bit-identical runs have the same CRC; different runs
+    /// have different ones, except by a chance of 1 in 2^32.
+    ///
+    /// # Errors
+    ///
+    /// Returns the kernel's error if it refuses the request. A motion that diverges is no error.
     pub fn crc(&self) -> Result<u32, Error> {
         visit(self.method, CrcOf(self))
     }

@@ -11,10 +11,11 @@ pub enum Horizon {
     Always,
     /// The horizon is unknown: planning is in progress, and has not verified the current frame.
     Undecided,
-    /// The horizon is at least this time, which is not past. Planning is in progress, and may raise
-    /// it.
+    /// The horizon is at least this time, s, which is not past. Planning is in progress, and may
+    /// raise it.
     AtLeast(f32),
-    /// The horizon is this time. Planning has ended.
+    /// The horizon is this time, s. Planning has ended. The time may be past; it is 0 if no frame
+    /// is accurate, and for a stopped scene.
     Until(f32),
 }
 
@@ -33,8 +34,8 @@ impl Horizon {
     /// still grow, `½px ?` means that nothing is known, and `½px ok` that frames are always
     /// accurate.
     ///
-    /// It is rounded down, so that no frame is claimed that is not verified. Below a second it is
-    /// rounded to hundredths, which are shorter than a frame.
+    /// It is rounded down, so that no frame is claimed that is not verified. A final result below a
+    /// second is rounded to the nearest hundredth, which is shorter than a frame.
     #[must_use]
     pub fn label(self) -> Label {
         match self {
@@ -52,7 +53,8 @@ impl Horizon {
         matches!(self, Self::Undecided | Self::AtLeast(_))
     }
 
-    /// Returns true if frames at `time`, s, are no longer predicted to be accurate.
+    /// Returns true if planning has ended and frames at `time`, s after the start, are later than
+    /// the horizon.
     #[must_use]
     pub fn is_past(self, time: f64) -> bool {
         matches!(self, Self::Until(end) if time > f64::from(end))

@@ -5,7 +5,7 @@ use double_pendulum::{Parameters, Real, State, rk4};
 use crate::config::{DT, STEPS_PER_TICK};
 use crate::graphics::RodDirections;
 
-/// A motion by the misprinted equations.
+/// A motion by the misprinted equations, in steps of RK4 in plain `f32`.
 ///
 /// The denominator of a2' lacks the factor mu = m2/m1, so that rod 2 turns mu times as fast as it
 /// should. Unless mu = 1, the equations are not Hamilton's equations of any system, and the energy
@@ -52,6 +52,9 @@ const MOST_BEND: f32 = 1.0;
 
 impl Misprinted {
     /// Creates the motion of equal rods from `start`.
+    ///
+    /// The parameters are not checked: l2 is ignored and taken to be l1. A motion whose numbers are
+    /// not finite is lost in its first tick.
     pub fn new(
         &Parameters {
             m1, m2, l1: l, g, ..
@@ -80,13 +83,14 @@ impl Misprinted {
         }
     }
 
-    /// Returns true if the motion has become too fast to be shown. It is then lost, and stays so.
+    /// Returns true if the motion has become too fast for the shortest step, 1/480 s. It is then
+    /// lost, and stays so.
     pub fn is_lost(&self) -> bool {
         self.is_lost
     }
 
-    /// Advances by one tick, in steps that resolve the motion at both of their ends. If no step
-    /// does, the motion is lost.
+    /// Advances by one tick of 1/60 s, in 2 to 8 steps that resolve the motion at both of their
+    /// ends. If no step does, the motion is lost, and the tick ends early.
     pub fn tick(&mut self) {
         let mut left = PARTS;
         let mut parts = PARTS / STEPS_PER_TICK;
@@ -113,7 +117,8 @@ impl Misprinted {
         self.z = [sin1, cos1, sin_d, cos_d, q1, q2];
     }
 
-    /// Returns the directions of both rods.
+    /// Returns the directions (sin, cos) of both rods. Those of a lost motion are the last ones
+    /// that a step reached.
     pub fn directions(&self) -> RodDirections {
         let [sin1, cos1, sin_d, cos_d, ..] = self.z;
         [
@@ -122,7 +127,8 @@ impl Misprinted {
         ]
     }
 
-    /// Returns the energy H, J, as [`Pendulum::energy`](double_pendulum::Pendulum::energy) does:
+    /// Returns the energy H, J, by the correct formula, as
+    /// [`Pendulum::energy`](double_pendulum::Pendulum::energy) does:
     /// ((q1 - q2 cos D)^2 r + q2^2/mu)/2 - (1 + mu) G cos a1 - mu G cos a2, times m1 l^2.
     pub fn energy(&self) -> f32 {
         let &Self {

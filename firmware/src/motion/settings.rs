@@ -10,11 +10,16 @@ use crate::config::{
 use crate::graphics::HEIGHT;
 
 /// A double pendulum, its initial angles and its initial angular velocities.
+///
+/// Any numbers can be stored, and the methods that change them check nothing.
+/// [`start`](Self::start) checks them.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 #[cfg_attr(target_os = "none", derive(defmt::Format))]
 pub struct Settings {
+    /// Masses (kg), lengths (m) and gravity (m/s^2).
     pub parameters: Parameters<f32>,
-    /// The start angles of rod 1 and rod 2, degrees from the downward vertical.
+    /// The start angles of rod 1 and rod 2, degrees from the downward vertical, positive
+    /// counter-clockwise.
     pub degrees: [f32; 2],
     /// The angular velocities of rod 1 and rod 2 at the start, rad/s.
     pub velocities: [f32; 2],
@@ -27,7 +32,8 @@ impl Default for Settings {
 }
 
 impl Settings {
-    /// Returns the page's pendulum: equal rods, released from rest with both rods at one angle.
+    /// Returns the page's pendulum: rods of [`ROD`], a first bob of 1 kg, [`GRAVITY`], and the mass
+    /// ratio m2/m1. Both rods are released from rest at the angle `degrees`.
     pub fn equal_rods(mass_ratio: f32, degrees: f32) -> Self {
         let parameters = Parameters::equal_rods(mass_ratio, ROD, GRAVITY as f32);
         Self {
@@ -42,7 +48,8 @@ impl Settings {
         self.parameters.mass_ratio()
     }
 
-    /// Returns the settings with the mass of bob 2 changed, so that the mass ratio is `mass_ratio`.
+    /// Returns the settings with the mass of bob 2 changed, so that the mass ratio m2/m1 is
+    /// `mass_ratio`.
     pub fn with_mass_ratio(self, mass_ratio: f32) -> Self {
         Self {
             parameters: Parameters {
@@ -74,8 +81,9 @@ impl Settings {
         next.map_or(self, |ratio| self.with_mass_ratio(ratio))
     }
 
-    /// Returns the settings with both rods turned by one [`ANGLE_STEP`], counter-clockwise if
-    /// `steps` is 1, clockwise if it is -1. Each rod stops at straight up.
+    /// Returns the settings with the start angles of both rods turned by `steps` times
+    /// [`ANGLE_STEP`], counter-clockwise if `steps` is positive. Each rod stops at straight up, 180
+    /// or -180 degrees.
     pub fn turned(self, steps: i8) -> Self {
         let turn = |degrees: f32| {
             (degrees + f32::from(steps) * ANGLE_STEP).clamp(-GREATEST_ANGLE, GREATEST_ANGLE)
@@ -91,14 +99,19 @@ impl Settings {
         self.degrees.map(f32::to_radians)
     }
 
-    /// Returns the angles and angular velocities at the start.
+    /// Returns the angles, rad, and the angular velocities, rad/s, at the start.
     pub fn motion(&self) -> Motion<f32> {
         let ([a1, a2], [w1, w2]) = (self.angles(), self.velocities);
         Motion { a1, a2, w1, w2 }
     }
 
-    /// Returns the pendulum and its initial state, in SI units. Returns the kernel's error if the
-    /// settings describe no pendulum, or no finite state.
+    /// Returns the pendulum and its initial canonical state, in SI units: the angles in rad, not in
+    /// degrees, and the momenta in kg m^2/s.
+    ///
+    /// # Errors
+    ///
+    /// Refuses masses, lengths and gravity that [`Pendulum::new`] refuses, and angles, velocities
+    /// or resulting momenta that are not finite. Angles beyond straight up are accepted.
     pub fn start(&self) -> Result<(Pendulum<f32>, State<f32>), Error> {
         let pendulum = Pendulum::new(&self.parameters)?;
         let motion = self.motion();
@@ -108,7 +121,9 @@ impl Settings {
         Ok((pendulum, state))
     }
 
-    /// Returns the problem to plan for a display `height` pixels high.
+    /// Returns the problem to plan for a display `height` pixels high, in whose half height both
+    /// rods fit: a tolerance of half a pixel, [`PLANNED`] seconds, and [`TICK_RATE`] frames per
+    /// second. Nothing is checked.
     pub fn problem(&self, height: f32) -> Problem {
         let pendulum = self.parameters.cast();
         Problem {
@@ -120,7 +135,13 @@ impl Settings {
         }
     }
 
-    /// Returns the motion by this method and step count, with rod 1 ahead by `apart` rad.
+    /// Returns the motion at its start, by this method and step count per frame of 1/60 s. Angle 1
+    /// starts `apart` rad larger than in the settings.
+    ///
+    /// # Errors
+    ///
+    /// Refuses settings that describe no pendulum or no finite start, a step that the method cannot
+    /// make, and a method that is not in [`Method::DRAWN`](double_pendulum::Method::DRAWN).
     pub fn run(&self, apart: f64, stepping: Stepping) -> Result<PlannedRun, Error> {
         let mut problem = self.problem(HEIGHT as f32);
         problem.start.a1 += apart;

@@ -16,7 +16,7 @@ pub struct Resources {
     pub method: Option<Method>,
 }
 
-/// A motion in progress.
+/// A motion in progress, of which a tick is 1/60 s.
 #[derive(Clone, Debug)]
 pub struct Simulation {
     /// The energy at the start.
@@ -24,7 +24,8 @@ pub struct Simulation {
     /// The motion. It is for reading only; [`tick`](Self::tick) advances it.
     pub motion: PlannedRun,
     /// True if no method that resolves the motion is within the budget of a frame. Then `motion` is
-    /// only a pose.
+    /// only the pose at the start, and must not be advanced. It is never true with a requested
+    /// method.
     pub is_too_fast: bool,
 }
 
@@ -34,7 +35,10 @@ impl Simulation {
     ///
     /// # Errors
     ///
-    /// Refuses settings that describe no pendulum, and a motion that the requested method refuses.
+    /// Refuses settings that describe no pendulum or no finite start, a motion that the method
+    /// refuses, and a step that is unstable for small oscillations ([`Pendulum::check_step`]).
+    /// Returns [`Error::TooLarge`] with [`Parameter::Cost`] if the requested method costs more than
+    /// the budget of a frame.
     pub fn new(
         settings: &Settings,
         &Resources {
@@ -61,7 +65,8 @@ impl Simulation {
         })
     }
 
-    /// Advances the motion by one tick.
+    /// Advances the motion by one tick. A motion that diverges is not reported here; its state is
+    /// then not finite, and stays so.
     #[inline(never)] // Not inlined, to save flash.
     pub fn tick(&mut self) {
         // A motion that has diverged is detected by its state.
@@ -86,7 +91,8 @@ fn affordable(stepping: Stepping, processor: &Processor) -> Result<Stepping, Err
 /// A motion by another method and step count that starts again and catches up with the motion that
 /// is shown.
 ///
-/// The number of ticks that it takes depends only on the cost of a frame.
+/// The number of ticks that it takes depends only on the cost of a frame and on the number of
+/// frames to catch up, so it is the same on every board of a processor class.
 #[derive(Clone, Debug)]
 pub struct CatchingUp {
     motion: PlannedRun,
@@ -95,6 +101,12 @@ pub struct CatchingUp {
 }
 
 impl CatchingUp {
+    /// Creates the motion of `settings` at its start, by `stepping`. In each tick it advances by as
+    /// many frames as [`Processor::look_ahead`] pays for, at least 2.
+    ///
+    /// # Errors
+    ///
+    /// Refuses what [`Settings::run`] refuses.
     pub fn new(
         settings: &Settings,
         stepping: Stepping,
@@ -110,8 +122,9 @@ impl CatchingUp {
         })
     }
 
-    /// Advances by the frames of a tick. Returns true if it has caught up with `simulation`. Then
-    /// `simulation` continues with this motion.
+    /// Advances by the frames of a tick, but not beyond `simulation`. Returns true if it has caught
+    /// up with `simulation`, which then continues with this motion. To be called after each
+    /// [`Simulation::tick`].
     pub fn tick(&mut self, simulation: &mut Simulation) -> bool {
         for _ in 0..self.most {
             if self.motion.frame() < simulation.motion.frame() {
@@ -140,25 +153,29 @@ pub struct Energy {
 }
 
 impl Energy {
-    /// Returns the energy of the start that `settings` describe, J. It is not finite if they are
-    /// not.
+    /// Computes the energy of the start that `settings` describe.
+    ///
+    /// Angles and velocities that are not finite are accepted. The energy at the start is then NaN,
+    /// for which [`error`](Self::error) returns 0, or infinite, for which it returns NaN.
     ///
     /// # Errors
     ///
-    /// Refuses masses, lengths and gravity that describe no pendulum.
+    /// Refuses masses, lengths and gravity that [`Pendulum::new`] refuses.
     pub fn new(settings: &Settings) -> Result<Self, Error> {
         let pendulum = Pendulum::new(&settings.parameters.cast())?;
         let start = pendulum.energy_above_rest(&pendulum.to_state(&settings.motion().cast()));
         Ok(Self { pendulum, start })
     }
 
-    /// Returns (E - E0)/(E0 - Emin) of the motion, from its own numbers, before they are rounded
-    /// for the report. Returns 0 if the start is hanging at rest, which a motion never leaves.
+    /// Returns the relative energy error (E - E0)/(E0 - Emin) of the motion now, from its own
+    /// numbers, before they are rounded for the report. E0 is the energy at the start. Returns 0 if
+    /// the start is hanging at rest, which a motion never leaves. The error of a diverged motion is
+    /// not finite.
     pub fn error(&self, motion: &PlannedRun) -> f32 {
         self.relative(motion.energy_above_rest(&self.pendulum))
     }
 
-    /// Returns the same of a motion that is in this state now.
+    /// Returns the same relative error of a motion that is in this state, in SI units, now.
     pub fn error_of_state(&self, state: &State<f32>) -> f32 {
         self.relative(self.pendulum.energy_above_rest(&state.cast()))
     }
@@ -172,7 +189,8 @@ impl Energy {
         }
     }
 
-    /// Returns the energy E, J, that has this [`error`](Self::error).
+    /// Returns the energy E, J, that has this relative [`error`](Self::error). The potential is
+    /// zero at the pivot.
     pub fn of_error(&self, error: f32) -> f32 {
         let above_rest = self.start + f64::from(error) * self.start;
         (self.pendulum.least_energy() + above_rest) as f32

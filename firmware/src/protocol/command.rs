@@ -17,13 +17,16 @@ pub enum Command {
     Heavier,
     /// Selects the next smaller mass ratio.
     Lighter,
-    /// Turns the start angles by one step clockwise.
+    /// Turns both start angles by one [`ANGLE_STEP`](crate::config::ANGLE_STEP) clockwise. A scene
+    /// without start angles ignores it.
     TurnLeft,
-    /// Turns the start angles by one step counter-clockwise.
+    /// Turns both start angles by one step counter-clockwise.
     TurnRight,
     /// Starts the scene again with the same settings.
     Restart,
+    /// Plays the next scene of the catalogue with its own initial settings.
     NextScene,
+    /// Plays the previous scene of the catalogue with its own initial settings.
     PreviousScene,
     /// Plays a scene with its own initial settings.
     Choose(SceneName),
@@ -31,13 +34,14 @@ pub enum Command {
     /// restart the scene.
     Set {
         field: Field,
-        /// The value, in SI units.
+        /// The value, in SI units; of an angle in rad.
         value: f64,
     },
     /// Starts the scene again by this method and no other; `None` leaves the choice to the plan.
     Method(Option<Method>),
-    /// Pauses the scene (`true`) or lets it continue.
+    /// Pauses the scene (`true`) or lets it continue. It ends a [`Step`](Self::Step).
     Pause(bool),
+    /// Pauses the scene, or lets it continue if it is paused.
     TogglePause,
     /// Advances the scene by this number of ticks, one in each tick of the clock, and then pauses
     /// it.
@@ -53,14 +57,15 @@ pub enum Command {
     Simulate(Request),
     /// Requests the time of this number of further steps of the last requested motion. They are
     /// made without a break and with interrupts off, at most
-    /// [`MOST_MEASURED_STEPS`](crate::config::MOST_MEASURED_STEPS).
+    /// [`MOST_MEASURED_STEPS`](crate::config::MOST_MEASURED_STEPS). No sample of that motion
+    /// follows. Refused with [`Field::Message`] if no motion was requested.
     Measure {
         steps: u32,
         /// True to run the code of the steps in RAM, false to run it in flash.
         in_ram: bool,
     },
     /// Drives the panel as this controller; `None` identifies it. The choice is kept across a
-    /// restart.
+    /// restart. Refused with [`Field::Panel`] if the panel has no choice of controllers.
     Panel(Option<Controller>),
     /// Plays a scene with these settings. They are set all at once, because a part of them alone
     /// may be impossible.
@@ -73,13 +78,16 @@ pub enum Command {
 /// its kind.
 const TO_CHIP: u8 = 0x80;
 
-/// Encodes a command for the wire. `request` is a number that every answer to it repeats.
+/// Encodes a command for the wire, with its delimiters. Returns the used part of `wire`. `request`
+/// is a number that every answer to it repeats.
 pub fn encode_command(request: u16, command: Command, wire: &mut [u8; MAX_WIRE]) -> &[u8] {
     encode(&(TO_CHIP, request, command), wire)
 }
 
-/// Returns the number of an intact command, and the command if it can be read. Returns `None` if
-/// the message is not a command.
+/// Returns the number of an intact command, and the command if it can be read. `message` is without
+/// version and CRC, as [`Decoder::push`](super::Decoder::push) returns it.
+///
+/// Returns `None` if the message is not a command. If not even the number can be read, it is 0.
 pub fn decode_command(message: &[u8]) -> Option<(u16, Option<Command>)> {
     let numbered = message.strip_prefix(&[TO_CHIP])?;
     Some(
@@ -91,6 +99,7 @@ pub fn decode_command(message: &[u8]) -> Option<(u16, Option<Command>)> {
 choice! {
     /// A field that a command sets, or that is wrong in a command.
     Field {
+        /// The requested method.
         Method = "method";
         M1 = "m1";
         M2 = "m2";
@@ -104,9 +113,9 @@ choice! {
         Dt = "step size";
         /// The mass ratio m2/m1; m2 is set.
         MassRatio = "mu";
-        /// The angle of both rods.
+        /// The start angle of both rods, rad.
         Angle = "angle";
-        /// The simulated time per real time.
+        /// The simulated time per real time, 0.01 to 4.
         Speed = "speed";
         /// A field that cannot be set.
         Field = "field";
@@ -118,6 +127,8 @@ choice! {
 }
 
 impl From<Error> for Field {
+    /// Returns the field that an error of the kernel is about. An error without such a field, and a
+    /// motion that diverged, count as a wrong step size.
     fn from(error: Error) -> Self {
         if let Error::Diverged { .. } = error {
             return Field::Dt;

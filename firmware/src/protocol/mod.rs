@@ -48,8 +48,9 @@ const MAX_BODY: usize = 1 + MAX_MESSAGE + 4;
 /// 254 bytes, and the delimiters add two.
 pub const MAX_WIRE: usize = MAX_BODY + 3;
 
-/// Encodes a message for the wire, with its delimiters. Returns the used part of `wire`. All
-/// messages fit (test `link`).
+/// Encodes a message for the wire, with version, CRC and delimiters. Returns the used part of
+/// `wire`. All messages fit (test `link`); one longer than [`MAX_MESSAGE`] would be sent as an
+/// empty one.
 pub fn encode<'wire>(message: &impl Serialize, wire: &'wire mut [u8; MAX_WIRE]) -> &'wire [u8] {
     frame(
         postcard::to_slice(message, &mut [0; MAX_MESSAGE]).unwrap_or_default(),
@@ -57,7 +58,8 @@ pub fn encode<'wire>(message: &impl Serialize, wire: &'wire mut [u8; MAX_WIRE]) 
     )
 }
 
-/// Returns the message in `bytes`; `None` unless they contain exactly one message.
+/// Returns the message in `bytes`, which are without version and CRC; `None` unless they contain
+/// exactly one message of type `M`.
 pub fn read<M: DeserializeOwned>(bytes: &[u8]) -> Option<M> {
     postcard::take_from_bytes(bytes)
         .ok()
@@ -65,7 +67,8 @@ pub fn read<M: DeserializeOwned>(bytes: &[u8]) -> Option<M> {
         .map(|(message, _)| message)
 }
 
-/// Frames a message of bytes for the wire. Returns nothing if it is longer than [`MAX_MESSAGE`].
+/// Frames a message of bytes for the wire: adds version, CRC, COBS and delimiters. Returns the used
+/// part of `wire`, which is empty if the message is longer than [`MAX_MESSAGE`].
 #[inline(never)] // One copy instead of one for each kind of message, to save flash.
 pub fn frame<'wire>(message: &[u8], wire: &'wire mut [u8; MAX_WIRE]) -> &'wire [u8] {
     if message.len() > MAX_MESSAGE {
@@ -90,17 +93,20 @@ pub fn frame<'wire>(message: &[u8], wire: &'wire mut [u8; MAX_WIRE]) -> &'wire [
     wire.get(..=end).unwrap_or_default()
 }
 
+/// The reason why received bytes are not an intact message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(target_os = "none", derive(defmt::Format))]
 pub enum LinkError {
     /// The bytes are not a COBS encoding, or are shorter or longer than any message.
     Malformed,
+    /// The CRC does not match.
     Checksum,
-    /// The sender uses another version of the protocol.
+    /// The message is intact, but its sender uses this other version of the protocol.
     Version(u8),
 }
 
 impl LinkError {
+    /// Returns the error in words.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Malformed => "malformed",
@@ -132,7 +138,8 @@ impl Default for Decoder {
 }
 
 impl Decoder {
-    /// Takes one byte. At the end of a message returns the message, or its error.
+    /// Takes one byte. At the end of a message returns the message without version and CRC, or its
+    /// error; otherwise `None`. Repeated delimiters are ignored.
     pub fn push(&mut self, byte: u8) -> Option<Result<&[u8], LinkError>> {
         match self.cobs.feed(byte) {
             Ok(DecodeResult::NoData | DecodeResult::DataStart) => None,

@@ -40,13 +40,15 @@ pub enum Answer {
     Planned(Option<Planned>),
     /// The identity of the board.
     Identity(Identity),
-    /// A sample of the requested motion. The first one, with index 0, is the start.
+    /// A sample of the requested motion. The first one, with index 0, is the start. The last one
+    /// has the index [`Request::samples`](crate::job::Request::samples).
     Sample { index: u32, reading: Reading },
     /// The longest step that resolves every motion of the energy of the requested one, s. The step
     /// of the request is longer. The samples follow all the same.
     StepTooLong(f64),
-    /// The time of the steps in processor cycles, including the call. It is 0 if there is no cycle
-    /// counter, as in QEMU, or if the code is not in that memory.
+    /// The time of all `steps` steps together in processor cycles, including the call. It is 0 if
+    /// there is no cycle counter, as in QEMU, or if the code is not in that memory. `steps` is the
+    /// number that was measured, which may be less than requested.
     Measured { steps: u32, cycles: u32 },
     /// The last restart that the board made on its own; `None` if it has made none since it was
     /// switched on or reset from outside.
@@ -110,16 +112,20 @@ impl ToHost {
 ///    Run the tests `firmware link:: golden::` with `BLESS=1`, and name the version in the README.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Frame {
-    /// The number of frames drawn since reset. A gap means that a frame was lost on the way, unless
-    /// the board has [`Restarted`].
+    /// The number of frames drawn since reset before this one; wraps. A gap means that a frame was
+    /// lost on the way, unless the board has [`Restarted`].
     pub sequence: u32,
-    /// The number of ticks since reset whose frame was not drawn.
+    /// The number of ticks of the clock since reset whose frame was not drawn, because the board
+    /// was late; wraps.
     pub dropped: u32,
     /// A lower bound of the number of bytes from the host that were lost since reset because they
     /// came faster than they were taken.
     pub lost: u32,
+    /// The scene that is shown.
     pub scene: SceneName,
+    /// The state of the scene's time.
     pub state: PlayState,
+    /// The mass ratio m2/m1.
     pub mass_ratio: f32,
     /// The start angle of rod 1, rad. In the page's settings both rods have it.
     pub start_angle: f32,
@@ -144,9 +150,9 @@ pub struct Status {
     /// The class of the processor, as an index in [`PROCESSORS`](crate::config::PROCESSORS).
     pub processor: u8,
     pub state: PlayState,
-    /// The number of ticks left of a command to advance step by step.
+    /// The number of ticks left of a [`Step`](super::Command::Step) command.
     pub steps: u32,
-    /// The simulated time per real time.
+    /// The simulated time per real time, 0.01 to 4, while the scene plays.
     pub speed: f32,
     /// The state of the panel.
     pub panel: PanelReport,
@@ -168,7 +174,8 @@ choice! {
 choice! {
     /// Why the board restarted.
     Cause {
-        /// The board finished no frame for too long.
+        /// The board finished no frame for
+        /// [`WATCHDOG_SECONDS`](crate::config::WATCHDOG_SECONDS).
         Hang = "hang";
         /// The program reached a state that should be impossible.
         Panic = "panic";
@@ -182,17 +189,18 @@ choice! {
 pub struct Restarted {
     /// The cause; `None` if it is unknown.
     pub cause: Option<Cause>,
-    /// The number of restarts in a row, including this one. After a minute without a restart the
-    /// board counts from 0.
+    /// The number of restarts in a row, including this one, at most 255. After a minute without a
+    /// restart the board counts from 0.
     pub restarts: u8,
-    /// The program counter; 0 if it is unknown.
+    /// The program counter when the cause came; 0 if it is unknown.
     pub pc: u32,
-    /// The return address; 0 if it is unknown.
+    /// The return address (link register) at that moment; 0 if it is unknown.
     pub lr: u32,
-    /// The processor's Configurable Fault Status Register.
+    /// The processor's Configurable Fault Status Register; 0 if it is unknown.
     pub cfsr: u32,
-    /// The scene and the tick of the last frame that was shown.
+    /// The scene of the last frame that was shown.
     pub scene: SceneName,
+    /// The tick of that frame: the number of ticks of the scene since its start.
     pub step: u64,
 }
 
@@ -204,6 +212,7 @@ impl fmt::Display for Restarted {
 }
 
 choice! {
+    /// The name of a board.
     BoardName {
         /// The Stellaris LM3S6965 evaluation board.
         Lm3s6965evb = "lm3s6965evb";
@@ -216,9 +225,11 @@ choice! {
     }
 }
 
+/// The identity of a board and of its program.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Identity {
     pub board: BoardName,
+    /// The frequency of the processor clock, Hz.
     pub hertz: u32,
     /// The CPUID register of the processor.
     pub processor: u32,

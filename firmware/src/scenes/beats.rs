@@ -21,8 +21,10 @@ const GAP: u8 = 12;
 /// The amplitude of angle 2 in each mode, degrees.
 const AMPLITUDE: f32 = 12.0;
 
-/// Returns equal rods with the slow mode at its turning point, and the fast mode on its way through
-/// rest. Both modes have the same amplitude of angle 2.
+/// Returns the settings of equal rods of mass ratio m2/m1, with the slow mode at its turning point,
+/// and the fast mode on its way through rest. Both modes have the same amplitude of angle 2, 12
+/// degrees. The figure closes only if the ratio of the frequencies is rational, as in the
+/// scenes of the catalogue.
 #[inline(never)] // Not inlined, to save flash.
 pub fn closing(mass_ratio: f32) -> Settings {
     let gravity = GRAVITY as f32;
@@ -38,8 +40,8 @@ pub fn closing(mass_ratio: f32) -> Settings {
     }
 }
 
-/// The part of angle 2 in the fast mode over the part in the slow mode: the linear motion on the
-/// left, the exact motion on the right.
+/// A plot of the part of angle 2 in the fast mode (upwards) against the part in the slow mode
+/// (across): the linear motion on the left, the exact motion on the right.
 ///
 /// The clock belongs to the exact motion. The linear motion is not accurate; its difference is the
 /// subject of the scene.

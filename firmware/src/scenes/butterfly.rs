@@ -40,7 +40,8 @@ const fn row(e_foldings: f32) -> i32 {
     plot::height(e_foldings, ZERO_ROW, SCALE) as i32 / SUBPIXELS
 }
 
-/// Two pendulums at one pivot, and the e-foldings of their separation over time.
+/// Two pendulums at one pivot, and the e-foldings of their separation over time: ln(separation/1e-6
+/// rad), 0 at the start.
 ///
 /// Both use the initial method, the most accurate one within half the budget of a frame, or the
 /// method that the user has selected. The plan does not change it: a method that is accurate to
@@ -57,7 +58,7 @@ pub struct Butterfly {
 
 impl Butterfly {
     /// Returns the distance of the two motions in the plane of the angles, rad. Whole turns are not
-    /// counted.
+    /// counted, so that it is at most sqrt(2) pi.
     fn separation(&self) -> f64 {
         let first = self.first.motion.state();
         let second = self.second.state();

@@ -19,9 +19,9 @@ use crate::scenes::{Report, Scene, Shows, time};
 
 /// The time that is searched for a flip, in units of sqrt(l1/g).
 const LIMIT: f32 = 100.0;
-/// The number of greys for the time of the flip. They are on a logarithmic scale from sqrt(l1/g) to
-/// the limit; 15 is the soonest. Grey 1 means no flip before the limit, and black means that no
-/// flip is possible.
+/// The number of greys for the time of the flip, 2 to 15. They are on a logarithmic scale from
+/// sqrt(l1/g) to the limit of 100 sqrt(l1/g); 15 is the soonest. Grey 1 means no flip before the
+/// limit, and black (0) means that no flip is possible.
 pub const GREYS: u8 = 14;
 const LATER: u8 = 1;
 
@@ -119,12 +119,16 @@ impl Block {
 }
 
 impl Flips {
-    /// Creates the map as [`Scene::new`] does, with the work per tick of any processor, in `f32` or
-    /// in fixed point.
+    /// Creates the map as [`Scene::new`] does, with the work per tick of any processor.
+    ///
+    /// On a host the map is computed in `f32` if `in_float`, and otherwise in fixed point. A board
+    /// links only the method of its own processor, and uses it whatever `in_float` says. Of the
+    /// settings only the parameters matter.
     ///
     /// # Errors
     ///
-    /// Refuses settings that describe no pendulum, or one out of the range of the numbers.
+    /// Refuses parameters that describe no pendulum, zero gravity, because nothing moves without
+    /// it, and a pendulum out of the range of the method's numbers.
     #[inline(never)] // Not inlined, to save flash.
     pub fn at_pace(settings: &Settings, pace: FlipsPace, in_float: bool) -> Result<Self, Error> {
         // The search lasts for a fixed number of units of time.
@@ -152,7 +156,7 @@ impl Flips {
         })
     }
 
-    /// Returns true if all pixels are done.
+    /// Returns true if all pixels are done. Further ticks change nothing.
     pub fn is_done(&self) -> bool {
         self.block.size == 0
     }

@@ -25,8 +25,9 @@ const COLUMNS_PER_TICK: u32 = 2;
 const MARK_RADIUS: u8 = 112;
 const CURVE: u8 = 200;
 
-/// The two frequencies in units of sqrt(g/l), so that they depend only on the mass ratio. The
-/// curves grow from the left.
+/// The two frequencies of equal rods in units of sqrt(g/l), so that they depend only on the mass
+/// ratio. The curves grow from the left, by two columns in a tick, and are complete in a second. Of
+/// the settings only the mass ratio matters.
 #[derive(Clone, Debug, Default)]
 pub struct Frequencies {
     /// The mass ratio at the right edge of the plot.
@@ -41,7 +42,8 @@ pub struct Frequencies {
     ends: Option<[Height; 2]>,
 }
 
-/// Returns the fast and the slow frequency of equal rods, in units of sqrt(g/l).
+/// Returns the fast and the slow frequency of equal rods, in units of sqrt(g/l). Refuses a mass
+/// ratio that is not positive and finite.
 fn frequencies(mass_ratio: f32) -> Result<[f32; 2], Error> {
     let modes = Modes::new(&Parameters::equal_rods(mass_ratio, 1.0, 1.0))?;
     Ok([modes.fast.frequency, modes.slow.frequency])

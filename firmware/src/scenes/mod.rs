@@ -28,11 +28,12 @@ pub enum Shows {
     Figure,
 }
 
-/// A figure that moves. It starts from settings, advances tick by tick, and is drawn when there is
-/// time.
+/// A figure that moves. It starts from settings, advances tick by tick (1/60 s of simulated time),
+/// and is drawn when there is time.
 pub trait Scene: Sized {
+    /// The subject of the scene.
     const SHOWS: Shows;
-    /// The fading of the ink.
+    /// The fading of the ink in a tick. By default it is that of a trace.
     const FADING: Fading = Fading::TRACE;
 
     /// Creates the scene at its start. Returns also the height of the display for the plan, pixels.
@@ -41,53 +42,63 @@ pub trait Scene: Sized {
     /// edge. If the scene shows angles as curves, it is the height of such a picture of the same
     /// accuracy. The height is `None` if there is nothing to plan.
     ///
+    /// # Errors
+    ///
     /// Returns the kernel's error if the settings describe no pendulum, or a pendulum that the
-    /// scene cannot show.
+    /// scene cannot show, such as unequal rods. A motion that is only too fast is no error
+    /// ([`is_too_fast`](Self::is_too_fast)), unless the user has requested its method.
     fn new(settings: &Settings, resources: &Resources) -> Result<(Self, Option<f32>), Error>;
 
     /// Advances by one tick, to `ticks` ticks after the start, and adds the lasting part of the
-    /// picture to the ink. The result is the same if earlier ticks were not drawn.
+    /// picture to the ink. The first call has `ticks` 1, and each further one 1 more. The result is
+    /// the same if earlier ticks were not drawn.
     fn tick(&mut self, ticks: u64, ink: &mut FadeLayer);
 
-    /// Draws the rest of the picture over the ink. `report` is the current report of the scene, so
-    /// that its numbers need not be computed again.
+    /// Draws the rest of the picture over the ink, which `canvas` already contains. `report` is the
+    /// current report of the scene, so that its numbers need not be computed again.
     fn draw(&self, report: &Report, canvas: &mut Canvas);
 
+    /// Returns the numbers of the scene now, `ticks` ticks after the start. By default there is no
+    /// moving pendulum. Of a planned motion the horizon is `Always` here; the player sets it.
     fn report(&self, ticks: u64) -> Report {
         Report::at(ticks)
     }
 
-    /// Returns the motion whose method and step count the plan may change.
+    /// Returns the motion whose method and step count the plan may change; `None` (the default) if
+    /// the scene keeps its method or has no motion.
     fn planned(&mut self) -> Option<&mut Simulation> {
         None
     }
 
     /// Returns true if no method resolves the motion at a cost that a frame can pay. Then the scene
-    /// must not advance.
+    /// must not advance. It is known at the start and does not change; by default it is false.
     fn is_too_fast(&self) -> bool {
         false
     }
 }
 
-/// The smallest energy error that `f64` can resolve. The energy is a sum of some 20 rounded
-/// numbers.
+/// The smallest relative energy error that `f64` can resolve. The energy is a sum of some 20
+/// rounded numbers.
 pub const LEAST_ENERGY_ERROR: f32 = 4e-15;
 
 /// The numbers of a scene at one tick.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Report {
-    /// The number of ticks of 1/60 s since the start.
+    /// The number of ticks of 1/60 s of simulated time since the start of the scene.
     pub step: u64,
     /// The simulated time since the start, s.
     pub time: f64,
-    /// The canonical state of the first pendulum shown, with all turns; zeros if no pendulum moves.
+    /// The canonical state of the first pendulum shown, in SI units (rad, kg m^2/s), with all
+    /// turns; zeros if no pendulum moves.
     pub state: State<f32>,
-    /// The energy error (E - E0)/(E0 - Emin) of that pendulum, computed before its numbers are
-    /// rounded for this report. An error smaller than [`LEAST_ENERGY_ERROR`] is rounding of the
-    /// energy itself.
+    /// The relative energy error (E - E0)/(E0 - Emin) of that pendulum, computed before its numbers
+    /// are rounded for this report; 0 for the linear motion. An error smaller than
+    /// [`LEAST_ENERGY_ERROR`] is rounding of the energy itself.
     pub energy_error: f32,
+    /// The accuracy horizon of the scene.
     pub horizon: Horizon,
-    /// The method and step count; `None` if no motion is computed.
+    /// The method and its step count per tick; `None` for a figure, for a stopped scene, and for
+    /// `upright`, which shows two fixed arithmetics.
     pub stepping: Option<Stepping>,
 }
 
@@ -101,7 +112,8 @@ impl Report {
         }
     }
 
-    /// Returns the report of a scene whose first pendulum is `simulation`.
+    /// Returns the report of a scene whose first pendulum is `simulation`. The horizon is `Always`
+    /// until the player sets it.
     #[inline(never)] // Not inlined, to save flash.
     pub fn of(simulation: &Simulation) -> Self {
         let motion = &simulation.motion;
@@ -136,6 +148,7 @@ fn draw_clock(canvas: &mut Canvas, report: &Report, time_at: Anchor, trust_at: A
 macro_rules! catalogue {
     ($($number:literal $row:ident = $name:literal, $scene:ty, $first:expr;)*) => {
         choice! {
+            /// The name of a scene of the catalogue.
             SceneName { $($row = $name;)* }
         }
 
@@ -158,12 +171,14 @@ macro_rules! catalogue {
             clippy::large_enum_variant,
             reason = "without a heap there is nowhere else to keep it"
         )]
+        /// A scene of the catalogue, with its state. The variant is its name.
         #[derive(Clone, Debug)]
         pub enum AnyScene { $($row($scene),)* }
 
         impl AnyScene {
-            /// Starts the scene `name` in place of this one, and returns its height for the plan.
-            /// If the scene cannot show `settings`, this one continues.
+            /// Starts the scene `name` in place of this one, and returns its height for the plan,
+            /// pixels, as [`Scene::new`] does. If that refuses `settings`, returns its error, and
+            /// this scene continues.
             pub fn start(
                 &mut self,
                 name: SceneName,
@@ -194,6 +209,7 @@ macro_rules! catalogue {
                 match self { $(Self::$row(scene) => scene.draw(report, canvas),)* }
             }
 
+            /// Returns [`Scene::planned`].
             pub fn planned(&mut self) -> Option<&mut Simulation> {
                 match self { $(Self::$row(scene) => scene.planned(),)* }
             }
@@ -203,6 +219,7 @@ macro_rules! catalogue {
                 match self { $(Self::$row(scene) => scene.is_too_fast(),)* }
             }
 
+            /// Returns [`Scene::report`].
             pub fn report(&self, ticks: u64) -> Report {
                 match self { $(Self::$row(scene) => scene.report(ticks),)* }
             }
@@ -232,6 +249,7 @@ impl AnyScene {
         Self::Frequencies(frequencies::Frequencies::default())
     }
 
+    /// Starts a scene of type `S`, wrapped by `one`, in place of this one.
     #[inline(never)] // Inlined, all scenes of the catalogue would be on the stack of the caller.
     fn become_one<S: Scene>(
         &mut self,

@@ -115,12 +115,14 @@ impl Scene for Page {
 struct Halves([View; 2]);
 
 impl Halves {
+    /// Creates both pendulums in their initial directions.
     fn new(settings: &Settings, [left, right]: [RodDirections; 2]) -> Self {
         let view = |place, directions| View::new(&settings.parameters, place, directions);
         let [left_half, right_half] = Place::HALVES;
         Self([view(left_half, left), view(right_half, right)])
     }
 
+    /// Turns both pendulums to these directions, and draws the traces of bob 2 on the way.
     fn trace(&mut self, directions: [RodDirections; 2], ink: &mut FadeLayer) {
         for (view, directions) in self.0.iter_mut().zip(directions) {
             view.trace(directions, ink, TRACE_HALF_WIDTH, u8::MAX);
@@ -146,7 +148,7 @@ impl Halves {
     }
 }
 
-/// Returns the settings of the figure: mass ratio 2.75, both rods at 171 degrees, released from
+/// Returns the settings of figure 7: mass ratio 2.75, both rods at 171 degrees, released from
 /// rest.
 ///
 /// The page gives no more. The gravity is from its worked example, and the rods are 1 m long.
@@ -159,8 +161,9 @@ pub fn figure_7() -> Settings {
     }
 }
 
-/// The correct motion on the left, the misprinted one on the right, and their energies. The clock
-/// belongs to the correct motion.
+/// The correct motion on the left, the misprinted one on the right, and their energies, J. The
+/// clock belongs to the correct motion. Unequal rods are refused, because the misprinted equations
+/// are for equal ones.
 #[derive(Clone, Debug)]
 pub struct Figure7 {
     right: Simulation,
@@ -284,7 +287,7 @@ impl Upright {
     }
 }
 
-/// Returns the directions of both rods.
+/// Returns the directions (sin, cos) of both rods.
 fn directions(state: &State<f32>) -> RodDirections {
     state.angles().map(|angle| angle.own_sin_cos().into())
 }

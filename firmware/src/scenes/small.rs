@@ -31,7 +31,7 @@ const CLOSED_FORM: Stepping = Stepping {
 };
 
 /// Returns the worked example of the page: equal rods of 0.25 m, g = 9.8 m/s^2, a1 = 0, a2 = 30
-/// degrees, released from rest.
+/// degrees, released from rest, with the mass ratio m2/m1.
 pub fn example(mass_ratio: f32) -> Settings {
     let parameters = Parameters::equal_rods(mass_ratio, 0.25, PAGE_GRAVITY as f32);
     Settings {
@@ -41,8 +41,8 @@ pub fn example(mass_ratio: f32) -> Settings {
     }
 }
 
-/// The two angles over time, by the linear model. The clock shows the horizon of the exact motion:
-/// until then it has the same angles.
+/// The two angles over time, by the linear model. The clock shows the time until which the exact
+/// motion has the same angles, to half a pixel of the curves.
 #[derive(Clone, Debug)]
 pub struct Small {
     pendulum: Pendulum<f32>,

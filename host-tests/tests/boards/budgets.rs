@@ -19,6 +19,7 @@ const COMPUTING: usize = 2;
 /// A function that sends bytes to a board and returns its messages up to the next frame.
 pub type Next<'a> = &'a mut dyn FnMut(&[u8]) -> anyhow::Result<Vec<ToHost>>;
 
+/// Returns the bytes of a command with the number 1.
 pub fn wire(command: Command) -> Vec<u8> {
     encode_command(1, command, &mut [0; MAX_WIRE]).to_vec()
 }

@@ -49,6 +49,8 @@ fn emulated(Core(_, target, emulator, double): &Core) -> anyhow::Result<Command>
     Ok(command)
 }
 
+/// Runs the program of a core and compares its output with the golden file. Skips a core whose
+/// tools are missing, unless it is one of the boards' own.
 fn computes_the_golden_bits(core: &Core, golden: &str) {
     let Core(name, target, _, double) = core;
     let image = (*target, *double);
@@ -96,6 +98,7 @@ const CORES: [Core; 11] = [
     Core("WebAssembly",                 "wasm32-unknown-unknown",       Node,   None),
 ];
 
+/// The output of every core equals `kernel/golden/bits.csv`, line by line.
 #[test]
 fn every_core_computes_the_golden_bits() {
     let file = toolchain::workspace().join("kernel/golden/bits.csv");

@@ -85,6 +85,7 @@ const FAILS: &str = "ldr r1, =0x020023";
 const WAITS: &str = "b wait";
 const NEEDS_FLOATS: &str = ".inst.w 0xee300a00 @ vadd.f32 s0, s0, s0";
 
+/// Runs `cargo count` for a function of a program on the first board.
 fn count(elf: &Path, function: &str, more: &[&str]) -> Output {
     let mut command = Command::new(env!("CARGO_BIN_EXE_host-tests"));
     command
@@ -101,6 +102,9 @@ fn count(elf: &Path, function: &str, more: &[&str]) -> Output {
     process::run(&mut command, LIMIT).unwrap_or_else(|error| panic!("{error}"))
 }
 
+/// A label and a function that are called three times are counted, with their mean number of
+/// instructions and cycles, by the name and by the mangled name. It is reported whether the program
+/// ended or was stopped after the time limit.
 #[test]
 fn functions_and_labels_are_counted_and_the_end_is_reported() -> anyhow::Result<()> {
     let folder = tempfile::tempdir()?;
@@ -157,6 +161,9 @@ fn functions_and_labels_are_counted_and_the_end_is_reported() -> anyhow::Result<
     Ok(())
 }
 
+/// A missing file, a file of another kind or machine, a function that is unknown, ambiguous, never
+/// called or never returns, and a program that fails or that the board cannot start: each has its
+/// own reason as the last line of stderr, its exit code, and no output.
 #[test]
 fn a_function_that_cannot_be_counted_is_an_error_of_one_line() -> anyhow::Result<()> {
     // The program reports why it refuses an empty request and ends with failure.

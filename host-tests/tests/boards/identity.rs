@@ -31,6 +31,8 @@ fn every_state(method: Method, scene: &Scene, steps: u32) -> Request {
     }
 }
 
+/// Every method, in a regular and a chaotic motion, has the same CRC of all states on the host and
+/// on every board, over [`STEPS`].
 #[test]
 #[ignore = "takes hours"]
 fn host_and_targets_agree_after_every_one_of_a_million_steps() -> Result<()> {
@@ -61,7 +63,9 @@ fn host_and_targets_agree_after_every_one_of_a_million_steps() -> Result<()> {
         })
 }
 
-/// The kernel and its dependencies are compiled without optimisation and with overflow checks.
+/// Every method has the same CRC of all states of a chaotic motion by optimised code and by a
+/// program in which the kernel and its dependencies are compiled without optimisation and with
+/// overflow checks.
 #[test]
 fn unoptimised_code_computes_the_same_bits() {
     let requests: Vec<Request> = Method::ALL
@@ -115,6 +119,8 @@ const CONTRACTED: [&str; 4] = ["vmla, vmls", "vnmla, vnmls", "vfma, vfms", "vfnm
 /// not see its code.
 const SEPARATE: [&str; 2] = ["vmul, vnmul", "vadd, vsub"];
 
+/// The programs for the Cortex-M4F contain no fused or chained multiply-add, which would change
+/// bits.
 #[test]
 fn nothing_is_contracted() {
     for target in targets()

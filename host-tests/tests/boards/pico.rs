@@ -36,13 +36,14 @@ const TICK: Duration = Duration::from_nanos(1_000_000_000 / TICK_RATE as u64);
 /// again.
 const RESTART: Duration = Duration::from_millis(2000 * WATCHDOG_SECONDS as u64 + 400);
 
-/// Returns a board with its port just opened by the host.
+/// Returns a board with its port just opened by the host, after its first frame.
 fn board() -> anyhow::Result<PicoMachine> {
     let mut board = switched_on()?;
     board.next_frame()?;
     Ok(board)
 }
 
+/// Returns a board that has just been switched on.
 fn switched_on() -> anyhow::Result<PicoMachine> {
     let emulator = toolchain::ready_for_pico().unwrap_or_else(|missing| panic!("{missing}"));
     PicoMachine::start(&emulator, &application(&PICO), LIMIT)
@@ -58,6 +59,7 @@ fn request(method: Method, samples: u32) -> Request {
     }
 }
 
+/// The image starts at the address of the flash, and its first 256 bytes end with their checksum.
 #[test]
 fn the_file_is_for_the_chips_flash_and_its_boot_rom() -> anyhow::Result<()> {
     let (start, image) = flash_image(&std::fs::read(application(&PICO))?)?;
@@ -73,6 +75,9 @@ fn the_file_is_for_the_chips_flash_and_its_boot_rom() -> anyhow::Result<()> {
     Ok(())
 }
 
+/// In 4 s every frame arrives over USB and over the UART, equal to the host's and on time, and
+/// neither link delays it. The identity, samples, and commands from both links are answered over
+/// both. A flood of bytes over USB loses nothing, because the host waits.
 #[test]
 fn usb_and_uart_carry_the_hosts_bits_and_every_command() -> anyhow::Result<()> {
     const FRAMES: u32 = 240;
@@ -185,6 +190,7 @@ fn usb_and_uart_carry_the_hosts_bits_and_every_command() -> anyhow::Result<()> {
     Ok(())
 }
 
+/// Returns the answers among messages, with the numbers of their commands.
 fn answers(messages: Vec<ToHost>) -> Vec<(u16, Answer)> {
     messages.into_iter().filter_map(ToHost::answer).collect()
 }
@@ -273,6 +279,9 @@ fn stand_still(board: &mut PicoMachine) -> anyhow::Result<Frame> {
     board.next_frame()
 }
 
+/// Panels of both controllers, with several status bytes, are plugged in one after the other.
+/// Within 2 s each is identified by its memory, reported in the log and over the link, and shows
+/// exactly the host's picture. An absent panel is reported as such.
 #[test]
 fn every_kind_of_panel_shows_the_hosts_picture_after_it_is_plugged_in() -> anyhow::Result<()> {
     let mut board = switched_on()?;
@@ -364,7 +373,8 @@ fn panel_report(board: &mut PicoMachine) -> anyhow::Result<PanelReport> {
     }
 }
 
-/// The scene with the most changes, at the usual speed of the bus and at the lowest.
+/// The report of the panel has 60 frames in every second after the first. The scene is the one with
+/// the most changes, at the usual speed of the bus and at the lowest.
 #[test]
 fn every_frame_reaches_a_panel_on_a_slow_bus() -> anyhow::Result<()> {
     for nanos in [26_000, 34_000] {
@@ -415,6 +425,8 @@ fn a_panel_that_holds_the_clock_low_shows_the_picture_when_it_lets_go() -> anyho
     Ok(())
 }
 
+/// A controller that was chosen by a command is still used after a restart by the watchdog and
+/// after a reset from outside, until the choice is withdrawn.
 #[test]
 fn chosen_controller_outlasts_a_restart() -> anyhow::Result<()> {
     let chosen = Some(Controller::Sh1106);
@@ -449,6 +461,8 @@ fn chosen_controller_outlasts_a_restart() -> anyhow::Result<()> {
     Ok(())
 }
 
+/// Each arrow changes the mass ratio and the start angle as its command does on the host, and
+/// select, held, plays the next scene.
 #[test]
 fn every_button_has_its_effect() -> anyhow::Result<()> {
     let mut board = board()?;
@@ -487,6 +501,9 @@ fn every_button_has_its_effect() -> anyhow::Result<()> {
     Ok(())
 }
 
+/// A hang restarts the board in the same scene with the same mass ratio, on time, and the message
+/// has the cause and the last frame. A reset from outside starts with the page, and reports no
+/// restart.
 #[test]
 fn the_watchdog_restarts_the_board_in_its_scene() -> anyhow::Result<()> {
     let mut board = board()?;
@@ -592,8 +609,9 @@ fn a_host_that_opens_the_port_late_receives_the_cause_of_the_restart() -> anyhow
     Ok(())
 }
 
-/// The host keeps the port open. It must notice that the board disconnects; otherwise it continues
-/// to use an address that the board has forgotten.
+/// After a fault, a hang, and both kinds of reset the host connects again, and the frames are
+/// counted from the start. The host keeps the port open. It must notice that the board disconnects;
+/// otherwise it continues to use an address that the board has forgotten.
 #[test]
 fn every_restart_disconnects_the_board() -> anyhow::Result<()> {
     for end in ["fault", "hang", "reset 0", "reset 1"] {
@@ -612,8 +630,9 @@ fn every_restart_disconnects_the_board() -> anyhow::Result<()> {
     Ok(())
 }
 
-/// The libraries do not read the first packet of a transfer that is too long for them, and the
-/// controller's interrupt is level-triggered.
+/// After a control transfer that the host breaks off, the frames continue on time, and the port can
+/// be closed and opened. The libraries do not read the first packet of a transfer that is too long
+/// for them, and the controller's interrupt is level-triggered.
 #[test]
 fn a_broken_off_control_transfer_does_not_stop_the_board() -> anyhow::Result<()> {
     let mut board = board()?;
@@ -634,12 +653,15 @@ fn a_broken_off_control_transfer_does_not_stop_the_board() -> anyhow::Result<()>
     board.next_frame().map(drop)
 }
 
+/// Byte 7 of the device descriptor is 64.
 #[test]
 fn the_control_endpoint_takes_packets_of_64_bytes() -> anyhow::Result<()> {
     assert_eq!(board()?.tell("descriptor")?[7], 64);
     Ok(())
 }
 
+/// The boot loader starts when the port is closed after it was opened at 1200 baud, and not at the
+/// usual speed.
 #[test]
 fn closing_the_port_starts_the_boot_loader_at_1200_baud_only() -> anyhow::Result<()> {
     let mut board = board()?;

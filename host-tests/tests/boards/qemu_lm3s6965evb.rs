@@ -8,6 +8,7 @@ use emulator::qemu::Machine;
 const LDOPCTL: u32 = 0x400f_e034;
 const LDO_2_75_V: u8 = 0x1b;
 
+/// The voltage regulator is set to 2.75 V when the application first reads the cycle counter.
 #[test]
 fn revision_a2_runs_at_2_75_volts_before_the_clock_is_read() -> anyhow::Result<()> {
     let board = &BOARDS[0];

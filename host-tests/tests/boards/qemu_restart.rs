@@ -116,6 +116,8 @@ fn last_words(board: &Board, machine: &mut Machine, parts: &[&str]) -> anyhow::R
     Ok(report)
 }
 
+/// An undefined instruction in a frame ends the program with a failure. Its report has the cause,
+/// the registers, and the scene and step of the last frame that was sent.
 #[test]
 fn a_fault_in_a_frame_reports_the_scene_and_the_step() -> anyhow::Result<()> {
     let registers = format!("pc {UNUSED:#010x}  lr 0x12345679");
@@ -137,6 +139,9 @@ fn a_fault_in_a_frame_reports_the_scene_and_the_step() -> anyhow::Result<()> {
     Ok(())
 }
 
+/// With the stack pointer at the guard the next function overflows the stack. The fault comes
+/// before any byte of the statics below has changed, and its report says that the registers are
+/// lost.
 #[test]
 fn a_stack_overflow_in_a_frame_meets_the_guard_and_damages_no_static() -> anyhow::Result<()> {
     for board in BOARDS.iter().filter(|board| board.is_guarded()) {
@@ -183,6 +188,8 @@ fn function_after(what: &str, report: &str, image: &Image) -> String {
         .map_or(String::new(), |function| function.name.clone())
 }
 
+/// A program with an injected panic ends with a failure. Its report has the file, the message, and
+/// the addresses of the panic and of its caller.
 #[test]
 fn a_panic_reports_its_place_and_reason_and_ends_with_failure() -> anyhow::Result<()> {
     let toolchain = toolchain();
@@ -216,6 +223,9 @@ fn a_panic_reports_its_place_and_reason_and_ends_with_failure() -> anyhow::Resul
     Ok(())
 }
 
+/// A board in an endless loop is restarted by its watchdog. The link and the log name the hang, its
+/// address, and the last frame. The same scene starts again with the mass ratio of the user, and no
+/// frame is lost.
 #[test]
 fn a_board_that_hangs_restarts_in_its_scene_and_reports_the_cause() -> anyhow::Result<()> {
     for board in watched() {
@@ -286,6 +296,9 @@ fn a_board_that_hangs_restarts_in_its_scene_and_reports_the_cause() -> anyhow::R
     Ok(())
 }
 
+/// Faults in a row, one of them while the scene is started, each restart the board, although one
+/// copy of the record is damaged. The message precedes the first frame and has the cause and the
+/// count. The scene is played again until more than [`MOST_RESTARTS`] restarts; then the page is.
 #[test]
 fn without_a_debugger_a_fault_restarts_the_board() -> anyhow::Result<()> {
     for board in watched() {

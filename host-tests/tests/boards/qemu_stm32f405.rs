@@ -8,6 +8,9 @@ use firmware::config::MOST_MEASURED_STEPS;
 use firmware::job::{ON_BOARDS, Request};
 use firmware::protocol::{Answer, Command};
 
+/// The image sets the address of its vectors. Without a panel no frame is late in 300, no button
+/// counts as pressed, and the log reports only the absent panel. Every method of the boards runs
+/// from flash and from its copy in memory, without ending the application.
 #[test]
 fn the_image_sets_its_vectors_runs_without_a_panel_and_steps_in_flash_and_in_memory()
 -> anyhow::Result<()> {

@@ -19,8 +19,9 @@ const POLL: Duration = Duration::from_millis(20);
 /// The number of frames read after the gap.
 const FRAMES: usize = 120;
 
-/// The board is the only one with an emulated port that reports when it is full. The other machines
-/// stop as a whole.
+/// After the board has logged that its port is full, the host reads again: the frames that follow
+/// equal the host's, and only those of the gap are missing. The board is the only one with an
+/// emulated port that reports when it is full. The other machines stop as a whole.
 #[test]
 fn a_host_that_stops_reading_loses_frames_and_nothing_else() -> anyhow::Result<()> {
     let mut machine = on(BOARD, Machine::start)?;

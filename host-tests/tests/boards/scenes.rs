@@ -57,11 +57,14 @@ fn short(board: &Board, name: SceneName) -> u32 {
     }
 }
 
+/// The short run of what the module describes: 75 frames of each scene, or 10 s of the most
+/// expensive one.
 #[test]
 fn every_board_plays_every_scene_as_the_host_does_within_its_budgets() -> anyhow::Result<()> {
     every_board_plays(LIMIT, short)
 }
 
+/// The same over an hour of each board's clock.
 #[test]
 #[ignore = "an hour of five boards"]
 fn every_board_plays_every_scene_for_an_hour() -> anyhow::Result<()> {
@@ -285,8 +288,9 @@ fn plays(
     Ok(too_much)
 }
 
-/// The Pico's emulator counts cycles by the processor's manual. It does not model wait states of
-/// the flash.
+/// In 25 frames of each scene every frame equals the host's and none is late. Memory, stack and the
+/// idle time of the most expensive frame are within the budgets. The Pico's emulator counts cycles
+/// by the processor's manual. It does not model wait states of the flash.
 #[test]
 fn the_pico_plays_every_scene_as_the_host_does_within_its_budgets() -> anyhow::Result<()> {
     let node = toolchain::ready_for_pico().unwrap_or_else(|missing| panic!("{missing}"));

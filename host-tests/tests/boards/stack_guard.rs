@@ -73,6 +73,9 @@ fn expanded(imm12: u32) -> u32 {
     }
 }
 
+/// [`taken`] returns the exact number of bytes by which an encoded instruction lowers the stack
+/// pointer, `u32::MAX` if it depends on an unknown register, and `None` for an instruction that
+/// releases stack or changes another register.
 #[test]
 fn instructions_that_take_stack_are_recognised() {
     // The encodings are the assembler's: sub sp, #412; sub.w sp, sp, #8896; subw sp, sp, #1420;
@@ -103,6 +106,8 @@ fn instructions_that_take_stack_are_recognised() {
     }
 }
 
+/// On every board, the largest frame of a function, with the registers that may be pushed after it
+/// and [`MARGIN`], is smaller than the guard between the stack and the statics.
 #[test]
 fn no_function_steps_over_the_guard() {
     let mut too_large = Vec::new();

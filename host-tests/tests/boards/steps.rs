@@ -18,6 +18,8 @@ const STEPS: [(&str, &str); 5] = [
     ("rows::Rows", "end_in"),
 ];
 
+/// All functions of [`STEPS`] are in the section that is copied to memory, and no branch in it
+/// leads outside, not even by a thunk of the linker.
 #[test]
 fn no_branch_leads_out_of_the_steps() -> anyhow::Result<()> {
     const RAM: u32 = 0x2000_0000;

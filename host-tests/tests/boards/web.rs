@@ -74,6 +74,7 @@ fn boards_on_the_page_send_the_hosts_bytes() -> anyhow::Result<()> {
     })
 }
 
+/// The script `browser.js` checks the page in Chromium. The file of the page is smaller than 1 MB.
 #[test]
 fn page_works_in_chromium_and_makes_no_request() -> anyhow::Result<()> {
     unless_missing(|| {

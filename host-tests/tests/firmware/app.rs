@@ -17,7 +17,8 @@ use host_tests::oracle::tolerances::ENERGY_SHOWN;
 
 use crate::bench::{Plain, app, frames, messages, of, starting_with, wire};
 
-/// Runs to each of the clock's readings in turn.
+/// Runs the application to each of the clock's readings (ticks) in turn, until it has caught up
+/// with each.
 fn run(clock: impl IntoIterator<Item = u32>) -> Plain {
     let mut app = app();
     for now in clock {
@@ -26,6 +27,8 @@ fn run(clock: impl IntoIterator<Item = u32>) -> Plain {
     app
 }
 
+/// After 600 ticks the report and the canvas are equal, bit by bit, whether each tick was drawn,
+/// every third, an uneven selection, or none but those that a late board must draw.
 #[test]
 fn the_state_and_the_picture_after_n_ticks_are_the_same_at_any_frame_rate() {
     // The clock advances by one tick, by three, unevenly, or by all ticks at once.
@@ -43,6 +46,8 @@ fn the_state_and_the_picture_after_n_ticks_are_the_same_at_any_frame_rate() {
     }
 }
 
+/// In 10 s of the page every frame is sent, numbered without a gap, with the state of the kernel's
+/// own motion by the initial method, and its energy error to within `ENERGY_SHOWN`.
 #[test]
 fn every_frame_carries_the_kernels_state_bit_identically() {
     let app = run(1..=600);
@@ -94,6 +99,10 @@ fn every_frame_carries_the_kernels_state_bit_identically() {
     }
 }
 
+/// The application is late twice: the clock has advanced by 31 ticks, and later to tick 90. A frame
+/// is then drawn after at most [`MOST_TICKS_PER_FRAME`] ticks; every tick is computed, and each
+/// frame has the exact count of the ticks that were not drawn. The log has at most one line a
+/// second about them, so here a single one.
 #[test]
 fn dropped_pictures_are_counted_and_no_tick_is_lost() {
     let mut app = app();
@@ -142,6 +151,8 @@ fn dropped_pictures_are_counted_and_no_tick_is_lost() {
     );
 }
 
+/// In each of 120 ticks one more received byte is lost and one message is damaged. The log has a
+/// line of each kind a second, with the growth and the total.
 #[test]
 fn losses_are_logged_once_a_second_and_sent_with_each_frame() {
     let mut app = app();
@@ -220,6 +231,7 @@ fn counts_wrap_unnoticed() {
     );
 }
 
+/// The energy error of a pendulum that hangs at rest, whose scale is zero, is 0 and not NaN.
 #[test]
 fn hanging_at_rest_has_no_energy_error() {
     let mut app = starting_with(Settings::equal_rods(1.0, 0.0));
@@ -248,6 +260,8 @@ impl Buttons for Script {
     }
 }
 
+/// The buttons of [`Script`] start the scene twice: up at the tick at which it counts as pressed,
+/// with the next larger mass ratio; select when it is released, with the same settings.
 #[test]
 fn buttons_restart_with_the_new_settings() {
     let mut app = of(NoDisplay, Vec::new(), Script::default());
@@ -321,6 +335,9 @@ impl Write for Faulty {
     }
 }
 
+/// Frames 1 and 10 to 19 fail on the panel, and writes 5 to 9 on the link, in the middle of a
+/// frame. Each failure is one event at its beginning. Only the five frames that were cut are
+/// missing on the link.
 #[test]
 fn a_failing_panel_or_link_is_reported_once_and_only_cut_frames_are_lost() {
     let mut app = of(BrokenPanel::default(), Faulty::default(), NoButtons);
@@ -360,6 +377,8 @@ fn view(app: &Plain) -> View {
     )
 }
 
+/// In 20 s of the page the pixel at the position of either bob, computed from the reported state,
+/// is white (grey 15) in every frame.
 #[test]
 fn bobs_are_drawn_where_the_state_puts_them() {
     let mut app = app();
@@ -372,6 +391,8 @@ fn bobs_are_drawn_where_the_state_puts_them() {
     }
 }
 
+/// In a minute of a motion with a light bob 2 that starts nearly straight up, neither bob comes to
+/// the boxes of the labels in the corners.
 #[test]
 fn the_motion_never_touches_the_labels() {
     let mut app = starting_with(Settings::equal_rods(0.0125, -179.0));

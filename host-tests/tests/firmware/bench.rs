@@ -12,9 +12,10 @@ use firmware::motion::Settings;
 use firmware::protocol::{Answer, Command, Frame, MAX_WIRE, ToHost, encode_command};
 use firmware::scenes::SceneName;
 
+/// The application without panel and buttons. Its link is a vector of the bytes that it has sent.
 pub type Plain = App<'static, NoDisplay, Vec<u8>, NoButtons>;
 
-/// Returns the application at its start with these devices.
+/// Returns the application with these devices, at the start of the page with its own settings.
 pub fn of<P: Display + 'static, L: Write, K: Buttons>(
     panel: P,
     link: L,
@@ -28,10 +29,12 @@ pub fn of<P: Display + 'static, L: Write, K: Buttons>(
     app
 }
 
+/// Returns the application without devices, at the start of the page.
 pub fn app() -> Plain {
     of(NoDisplay, Vec::new(), NoButtons)
 }
 
+/// Returns the same with these settings of the page.
 pub fn starting_with(settings: Settings) -> Plain {
     let mut app = app();
     app.player
@@ -40,11 +43,12 @@ pub fn starting_with(settings: Settings) -> Plain {
     app
 }
 
+/// Returns the bytes of a command on the link.
 pub fn wire(request: u16, command: Command) -> Vec<u8> {
     encode_command(request, command, &mut [0; MAX_WIRE]).to_vec()
 }
 
-/// Returns the messages in a stream without damage.
+/// Returns the messages in a stream. Panics if the stream is damaged.
 pub fn messages(bytes: &[u8]) -> Vec<ToHost> {
     let mut inbox = Inbox::default();
     let messages = bytes.iter().filter_map(|&byte| inbox.take(byte)).collect();
@@ -52,6 +56,7 @@ pub fn messages(bytes: &[u8]) -> Vec<ToHost> {
     messages
 }
 
+/// Returns the frame messages in a stream without damage.
 pub fn frames(bytes: &[u8]) -> Vec<Frame> {
     messages(bytes)
         .into_iter()
@@ -59,6 +64,7 @@ pub fn frames(bytes: &[u8]) -> Vec<Frame> {
         .collect()
 }
 
+/// Returns the answers in a stream without damage, with the numbers of their commands.
 pub fn answers(bytes: &[u8]) -> Vec<(u16, Answer)> {
     messages(bytes)
         .into_iter()

@@ -18,10 +18,12 @@ const CENTRE_TOLERANCE: f64 = 0.1;
 /// most by 2.3 of 15 greys, at the end of a narrow stroke.
 const GREY_TOLERANCE: f64 = 2.5;
 
+/// Returns the grey of a pixel, 0 to 15.
 fn grey(canvas: &Canvas, x: i32, y: i32) -> u8 {
     canvas.get(x, y).expect("inside")
 }
 
+/// Returns the sum of all greys.
 fn light(canvas: &Canvas) -> u32 {
     canvas
         .bytes()
@@ -43,6 +45,8 @@ fn the_left_pixel_is_the_high_nibble() {
     assert_eq!(set, [(65, 0xA5), (4095, 0x07)]);
 }
 
+/// Pixels and characters outside of the canvas, however far, change nothing and do not panic. A
+/// character across an edge is clipped.
 #[test]
 fn pixels_outside_are_not_drawn() {
     let mut canvas = Canvas::default();
@@ -66,6 +70,8 @@ fn pixels_outside_are_not_drawn() {
     );
 }
 
+/// Every printable ASCII character except the space and the dot, and three others, have the pixels
+/// of the 5 x 8 font of embedded-graphics.
 #[test]
 fn glyphs_equal_the_font_of_the_library() {
     for character in (' '..='~')
@@ -93,6 +99,7 @@ fn glyphs_equal_the_font_of_the_library() {
     }
 }
 
+/// Returns a disc at (x, y) with a radius of `pixels`, without a gap.
 fn disc(x: f32, y: f32, pixels: f32) -> Disc {
     Disc {
         centre: Spot::at(x, y),
@@ -101,6 +108,7 @@ fn disc(x: f32, y: f32, pixels: f32) -> Disc {
     }
 }
 
+/// The centre of light of 1,000 discs is at the place given, to [`CENTRE_TOLERANCE`].
 #[test]
 fn a_disc_is_where_it_was_put() {
     for number in 0..1000 {
@@ -132,6 +140,8 @@ fn a_disc_is_where_it_was_put() {
     }
 }
 
+/// Strokes and discs at infinite, huge and undefined places, with the largest and smallest sizes,
+/// do not panic.
 #[test]
 fn a_stroke_of_any_numbers_is_safe() {
     let numbers = [
@@ -178,8 +188,8 @@ fn a_stroke_of_any_numbers_is_safe() {
     }
 }
 
-/// Returns the distance of a pixel's middle from the straight line between two places, and the
-/// share of its area within `radius` of that line, by 16 x 16 points.
+/// Returns the share of a pixel's area, 0 to 1, that is within `radius` pixels of the straight line
+/// between two places, by 16 x 16 points.
 fn covered((x, y): (i32, i32), [from, to]: [(f64, f64); 2], radius: f64) -> f64 {
     let along = (to.0 - from.0, to.1 - from.1);
     let squared = along.0 * along.0 + along.1 * along.1;
@@ -253,6 +263,8 @@ fn a_pixel_is_as_bright_as_it_is_covered() {
     println!("off by {greatest} greys at most");
 }
 
+/// On a white canvas a disc of radius 3 is surrounded by a black ring of 2 pixels. Every pixel has
+/// the grey of its covered share, to [`GREY_TOLERANCE`].
 #[test]
 fn a_gap_sets_a_disc_off() {
     let mut canvas = Canvas::default();
@@ -278,6 +290,7 @@ fn a_gap_sets_a_disc_off() {
     }
 }
 
+/// The total light of a stroke is that of its area, to 3 %, at each of 360 degrees.
 #[test]
 fn a_line_is_as_bright_in_every_direction() {
     let length = 20.0;

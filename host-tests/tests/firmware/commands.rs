@@ -27,12 +27,14 @@ fn answer(app: &mut Plain, command: Command) -> Answer {
     last(app, 9)
 }
 
+/// Returns the last answer, which must be to this request.
 fn last(app: &Plain, request: u16) -> Answer {
     let (to, answer) = answers(&app.link).pop().expect("an answer");
     assert_eq!(to, request);
     answer
 }
 
+/// Returns the answer to [`Command::Ask`].
 fn status(app: &mut Plain) -> Status {
     let Answer::Status(status) = answer(app, Command::Ask) else {
         panic!("no status")
@@ -44,6 +46,8 @@ fn set(field: Field, value: f64) -> Command {
     Command::Set { field, value }
 }
 
+/// Each field is set by a command in SI units, angles in rad, and read from the status, where
+/// angles are in degrees.
 #[test]
 fn every_parameter_is_set_in_si_units() {
     // A field, its value in SI units, and the setting that it changes.
@@ -179,6 +183,9 @@ fn a_board_reports_its_identity_and_the_cycles_of_steps() {
     assert!(!app.work(|_| ()), "and no sample follows");
 }
 
+/// Values that are not finite, out of range, or impossible for a pendulum, fields that cannot be
+/// set, and a method that scenes are not drawn by: each is refused with its field, and afterwards
+/// status and report are as before.
 #[test]
 fn a_bad_command_is_answered_with_the_field_and_changes_nothing() {
     let mut app = app();
@@ -337,6 +344,8 @@ fn an_endless_message_takes_one_queue_at_most() {
     assert_eq!(taken, RECEIVE_QUEUE);
 }
 
+/// Each scene of the catalogue does not advance while it is paused, advances by two ticks with
+/// `Step(2)`, begins again at 0 with `Restart`, and then repeats its reports.
 #[test]
 fn every_scene_can_be_chosen_restarts_pauses_and_steps() {
     for &name in SceneName::ALL {
@@ -376,6 +385,10 @@ fn every_scene_can_be_chosen_restarts_pauses_and_steps() {
     }
 }
 
+/// The first plan of the page lasts for more than 19 s, is an event of the log, and its method is
+/// that of the frames. After a change to a small swing there is no plan until a cheaper one is
+/// found for the whole planned time; the motion takes it over, and its horizon grows. A scene
+/// without a motion has no plan.
 #[test]
 fn the_plan_is_found_reported_and_followed() {
     let mut app = app();
@@ -456,6 +469,7 @@ fn a_method_can_be_forced() {
 /// fast.
 const COSTLY: Method = Method::Rk4F32DirectionPlain;
 
+/// Returns settings of which [`COSTLY`] is too expensive for a frame.
 fn fast() -> Settings {
     let mut settings = Settings::equal_rods(1.0, 10.0);
     settings.parameters.l2 = 0.002;
@@ -552,7 +566,9 @@ fn a_scene_that_has_fallen_back_follows_its_plan() {
     );
 }
 
-/// Many steps of a slow method would delay the board's frames, and the watchdog would restart it.
+/// With a requested method the mass ratio is raised 20 times, to 100. The method that is shown is
+/// always within the budget of a frame; the requested one is replaced where it is not. Many steps
+/// of a slow method would delay the board's frames, and the watchdog would restart it.
 #[test]
 fn a_requested_method_that_a_frame_cannot_pay_for_is_not_used() {
     let mut app = app();
@@ -570,7 +586,9 @@ fn a_requested_method_that_a_frame_cannot_pay_for_is_not_used() {
     assert_eq!(app.player.settings.mass_ratio(), 100.0);
 }
 
-/// The settings are sent at once, because some of them alone may be impossible.
+/// All settings are sent at once, because some of them alone may be impossible. The status then has
+/// the scene and all of them. Impossible settings, and unequal rods for `figure-7`, are refused
+/// with their field, and the scene goes on unchanged.
 #[test]
 fn a_scene_is_played_with_settings_of_the_user() {
     let mut app = app();
@@ -651,6 +669,8 @@ fn a_scene_is_played_with_settings_of_the_user() {
     }
 }
 
+/// In 600 ticks of the clock the scene advances by exactly the speed times 600 ticks, at the
+/// smallest, the largest and some speeds between.
 #[test]
 fn speed_is_exact_in_the_long_run() {
     for (speed, ticks) in [
@@ -677,7 +697,8 @@ fn speed_is_exact_in_the_long_run() {
 const BYTES_PER_TICK: usize = 768;
 
 /// Feeds `bytes` as fast as the link can deliver them, one frame per tick. Checks that every tick
-/// has its intact frame and that the log stays short. Returns the application.
+/// has its intact frame and that the log has at most one line a second apart from those about
+/// executed commands. Returns the application.
 fn flood(mut bytes: impl Iterator<Item = u8>, seconds: u32) -> Plain {
     let mut app = app();
     let mut lines = 0;
@@ -707,6 +728,9 @@ fn flood(mut bytes: impl Iterator<Item = u8>, seconds: u32) -> Plain {
     app
 }
 
+/// A minute of random bytes, zeros, a message without an end, and halves of a command: no frame is
+/// late or damaged, no command is executed, and the motion is that of an undisturbed board. Of a
+/// flood of restarts at least half of the number that may be executed is answered.
 #[test]
 fn noise_half_commands_and_floods_do_not_disturb_the_stream() {
     let mut rng = Rng::with_seed(5);

@@ -15,7 +15,9 @@ const NONE: Pressed = Pressed {
     right: false,
     select: false,
 };
+/// The button up alone.
 const UP: Pressed = Pressed { up: true, ..NONE };
+/// The button select alone.
 const SELECT: Pressed = Pressed {
     select: true,
     ..NONE
@@ -42,6 +44,8 @@ fn proven() -> Controls {
     controls
 }
 
+/// Buttons that read as pressed from the first tick have no effect, for however long. After all are
+/// released, the arrows have their commands.
 #[test]
 fn a_button_held_since_reset_counts_only_once_released() {
     let mut controls = Controls::default();
@@ -74,6 +78,9 @@ fn a_button_held_since_reset_counts_only_once_released() {
     );
 }
 
+/// The readings of a button in successive ticks become commands in exact ticks: bounces do not
+/// count, a held arrow repeats after the delay and then at each period, select restarts when it is
+/// released, changes the scene when it is held, and with an arrow has another command, once.
 #[test]
 fn readings_become_commands() {
     // The readings of buttons that are held for some ticks each.
@@ -157,7 +164,9 @@ fn readings_become_commands() {
     }
 }
 
-/// A single button is tapped a number of times and then held.
+/// The select button is tapped one to four times and then held: the hold repeats the command of
+/// that number of taps. A hold that comes too late is a plain one, and five taps or a short hold
+/// have no command.
 #[test]
 fn taps_before_a_hold_select_its_command() {
     let tap = || [SELECT; 5].into_iter().chain([NONE; 5]);
@@ -206,6 +215,8 @@ fn taps_before_a_hold_select_its_command() {
     assert_eq!(after(3, 0, 20), [], "not held long enough");
 }
 
+/// `heavier` and `lighter` visit all of [`MASS_RATIOS`] upwards and downwards, and stay at the last
+/// one. A ratio that is not in the table moves to its neighbours.
 #[test]
 fn buttons_visit_every_mass_ratio_and_stop_at_the_ends() {
     let mut settings = Settings::equal_rods(MASS_RATIOS[0], 120.0);
@@ -232,6 +243,7 @@ fn buttons_visit_every_mass_ratio_and_stop_at_the_ends() {
     );
 }
 
+/// A start angle that is turned beyond straight up is exactly 180 or -180 degrees, and pi rad.
 #[test]
 fn angles_stop_at_straight_up() {
     let mut settings = Settings::equal_rods(1.0, 170.5);
@@ -248,6 +260,8 @@ fn angles_stop_at_straight_up() {
     assert_eq!(settings.degrees, [-180.0; 2]);
 }
 
+/// The texts of mass ratios, angles, times, horizons and scales, with their number of digits and
+/// their rounding.
 #[test]
 fn labels_show_the_settings() {
     let ratios = [
@@ -300,6 +314,7 @@ fn labels_show_the_settings() {
     );
 }
 
+/// Labels of infinite, undefined, huge and tiny numbers do not panic. Their text is not checked.
 #[test]
 fn labels_of_any_numbers_are_safe() {
     for number in [f32::NAN, f32::INFINITY, f32::MAX, -f32::MAX, 1e-30] {

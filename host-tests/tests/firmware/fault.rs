@@ -2,6 +2,7 @@
 
 use firmware::fault::{Fault, Stacked, call_size};
 
+/// Returns a fault with these status registers. Its saved registers and addresses are arbitrary.
 fn fault(cfsr: u32, hfsr: u32) -> Fault {
     let stacked = Some(Stacked {
         pc: 0x456,
@@ -19,6 +20,8 @@ fn fault(cfsr: u32, hfsr: u32) -> Fault {
     }
 }
 
+/// Each bit of the fault status registers has its cause in words. A refused access within the 128
+/// bytes below the stack pointer counts as a stack overflow, if its address is valid.
 #[test]
 fn names_the_cause() {
     let overflow = "stack overflow";
@@ -60,6 +63,8 @@ fn names_the_cause() {
     }
 }
 
+/// The whole text of a crash report, if all registers are known, if those on the stack are lost,
+/// with and without a last call, and on a processor without status registers.
 #[test]
 fn the_text_of_a_fault_has_its_cause_place_and_registers() {
     let lost = Fault {
@@ -123,6 +128,8 @@ fn the_text_of_a_fault_has_its_cause_place_and_registers() {
     );
 }
 
+/// The last call on the stack is found by its instruction: `bl` and `blx` have a size in bytes, all
+/// others `None`.
 #[test]
 fn calls_are_distinguished_from_other_instructions() {
     for (halfwords, size) in [
@@ -138,6 +145,8 @@ fn calls_are_distinguished_from_other_instructions() {
     }
 }
 
+/// An exception saves 32 bytes, or 104 if the return value says that the registers of the
+/// floating-point unit are saved, too.
 #[test]
 fn the_stacked_registers_include_the_floating_point_unit() {
     assert_eq!(

@@ -67,6 +67,7 @@ struct Horizon {
     is_changed: bool,
 }
 
+/// Plays a scene for [`FOLLOWED`] seconds and compares every second frame with the exact motion.
 fn horizon((processor, name, settings, reach): &Case) -> Horizon {
     let parameters = settings.parameters.cast::<f64>();
     let motion = settings.motion().cast();
@@ -109,6 +110,9 @@ fn horizon((processor, name, settings, reach): &Case) -> Horizon {
     }
 }
 
+/// No case has a frame that is off by more than half a pixel at a time at which the panel claims
+/// accuracy. The median of the predicted over the exact horizon, of the motions that become
+/// inaccurate within 25 s, is at least `PLAN_SHARE`.
 #[test]
 fn frames_are_accurate_until_the_predicted_time_and_not_much_longer() {
     let horizons: Vec<_> = cases()

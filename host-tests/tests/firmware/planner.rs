@@ -13,10 +13,12 @@ const LASTING: Stepping = Stepping {
     method: Method::Extrapolation10Fixed64,
     steps: 8,
 };
+/// The height of the planned display, pixels.
 const HEIGHT: f32 = 57.0;
 /// The number of ticks until all results here are found.
 const PATIENCE: u64 = 1200;
 
+/// Returns a planner that has just started with [`LASTING`].
 fn planner(processor: Processor, settings: &Settings) -> Planner {
     let mut planner = Planner::new(processor);
     planner.start(settings, Some(HEIGHT), Some(LASTING), false);
@@ -60,6 +62,8 @@ fn results_of_a_tick_do_not_depend_on_when_the_work_is_done() {
     }
 }
 
+/// A planner without a task plans nothing. After the last result is found, one tick reports it, and
+/// nothing more is done until a new motion starts, which has no result and no horizon yet.
 #[test]
 fn nothing_is_planned_without_a_motion_or_after_the_plan() {
     let mut still = Planner::new(CORTEX_M3);
@@ -168,6 +172,7 @@ fn a_calm_motion_is_verified_while_it_is_played() {
     }
 }
 
+/// Settings with a mass ratio of NaN have one result in all ticks: the error.
 #[test]
 fn a_refused_motion_is_reported_once() {
     let mut planner = planner(CORTEX_M3, &Settings::equal_rods(f32::NAN, 20.0));
@@ -201,8 +206,9 @@ fn planner_reports_that_no_method_fits() {
     );
 }
 
-/// The planner verifies only the requested method, even if it costs more than a frame allows.
-/// `cargo prove --scene page --method rk4-f32-direction --steps 4` proves it accurate until 10.5 s.
+/// The planner verifies only the requested method, even if it costs more than a frame allows, and
+/// finds a horizon of 9.5 to 10.5 s. `cargo prove --scene page --method rk4-f32-direction --steps
+/// 4` proves it accurate until 10.5 s.
 #[test]
 fn a_requested_stepping_is_kept() {
     let mut planner = Planner::new(STM32F405);
@@ -222,7 +228,7 @@ fn a_requested_stepping_is_kept() {
     assert!((9.5..=10.5).contains(&plan.horizon), "{plan:?}");
 }
 
-/// The code of a class of processors on the link.
+/// The code of a class of processors on the link is its index in [`PROCESSORS`].
 #[test]
 fn the_code_of_every_processor_is_its_place() {
     assert!(

@@ -28,22 +28,26 @@ const RESOURCES: Resources = Resources {
 /// and four.
 const PICTURED: [u32; 2] = [60, 240];
 
+/// Returns the scene at its start with its own initial settings.
 fn scene(name: SceneName) -> Show {
     Show::new(name, &name.first_settings())
         .unwrap_or_else(|error| panic!("{}: {error}", name.name()))
 }
 
+/// Returns the scene after some ticks.
 fn after(name: SceneName, ticks: u32) -> Show {
     let mut scene = scene(name);
     (0..ticks).for_each(|_| scene.tick());
     scene
 }
 
+/// Returns the picture as text.
 fn picture(canvas: &Canvas) -> String {
     snapshot::text(&Screenshot::from(canvas).greys, WIDTH)
 }
 
-/// Each scene's frame is drawn over the frame of another scene.
+/// After one and after four seconds, every pixel of each scene equals the stored picture. Each is
+/// drawn over the frame of another scene, of which nothing may remain.
 #[test]
 fn every_scene_equals_its_snapshot() {
     let before = after(SceneName::Page, 100).frame();
@@ -240,6 +244,7 @@ fn only_scenes_with_angles_restart_when_an_angle_is_turned() {
     }
 }
 
+/// Text in each corner leaves the outermost pixels of the frame black.
 #[test]
 fn text_keeps_off_the_edges() {
     for anchor in [
@@ -272,6 +277,8 @@ fn text_keeps_off_the_edges() {
     }
 }
 
+/// The step of a scale is the next larger one of 1, 2 and 5 times a power of ten, within 0.01 and
+/// 100.
 #[test]
 fn scales_have_round_steps() {
     let steps = [0.001, 0.3, 1.0, 1.1, 3.9, 30.0, 1e9].map(plot::scale_step);

@@ -10,6 +10,7 @@ use host_tests::oracle::tolerances;
 
 use crate::bench::{answers, app, wire};
 
+/// A valid request, with samples 0 to 5.
 const REQUEST: Request = Request {
     method: Method::Rk4F32,
     parameters: Parameters {
@@ -178,6 +179,8 @@ fn the_crc_covers_every_sample() -> Result<(), Error> {
     Ok(())
 }
 
+/// The text form of a request by each method is parsed to the same request. Incomplete and changed
+/// texts are refused.
 #[test]
 fn a_request_equals_its_parsed_text() {
     for &method in Method::ALL {
@@ -203,6 +206,8 @@ fn a_request_equals_its_parsed_text() {
     }
 }
 
+/// A step that is longer than the admissible one is computed, but a warning with the admissible
+/// step precedes the samples. The admissible step itself and the closed form have no warning.
 #[test]
 fn a_step_too_long_for_the_energy_is_computed_with_a_warning() {
     let coarse = Request {
@@ -233,6 +238,9 @@ fn a_step_too_long_for_the_energy_is_computed_with_a_warning() {
     }
 }
 
+/// A request of a method that boards lack, of impossible parameters, of a start that is not finite,
+/// or of a step of 0 or of 9 s is refused with its field, and all samples of the request before it
+/// follow.
 #[test]
 fn a_refusal_names_the_field_and_does_not_end_the_previous_request() {
     let pendulum = |m1, m2, l1, l2, g| Request {
@@ -277,6 +285,7 @@ fn a_refusal_names_the_field_and_does_not_end_the_previous_request() {
     }
 }
 
+/// Of two requests in a row only the second one has samples.
 #[test]
 fn a_new_request_replaces_the_one_under_way() {
     let answers = answers_to(&[REQUEST; 2]);

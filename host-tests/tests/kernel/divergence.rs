@@ -14,6 +14,7 @@ use host_tests::oracle::trials;
 
 /// A step below the stability limit of 0.49 s, but far too long for a motion of 300 rad/s.
 const TOO_LONG: f64 = 0.3;
+/// A start with rates of some 300 rad/s.
 const FAST: State<f64> = State {
     a1: 3.0,
     a2: 1.0,
@@ -25,6 +26,7 @@ const AGES: f64 = 1e307;
 /// A number of steps that is more than sufficient.
 const MANY: u32 = 100_000;
 
+/// Rods of 1 m and bobs of 1 kg.
 const EVEN: Parameters<f64> = Parameters {
     m1: 1.0,
     m2: 1.0,
@@ -33,7 +35,8 @@ const EVEN: Parameters<f64> = Parameters {
     g: 9.8,
 };
 
-/// A run that diverges keeps its last good state, by every method. Fixed point refuses such steps.
+/// In steps that are far too long every method must return [`Error::Diverged`], and keep its last
+/// state, which is finite. Fixed point may refuse such steps at the start instead.
 #[test]
 fn diverged_run_keeps_its_last_good_state_in_every_method() -> Result<(), Error> {
     for &method in Method::ALL {
@@ -66,8 +69,9 @@ fn diverged_run_keeps_its_last_good_state_in_every_method() -> Result<(), Error>
     Ok(())
 }
 
-/// A step that is too long for this motion, but within the limit of small motions. Only that limit
-/// can be checked before the start.
+/// A job with a step that is too long for its motion, but within the limit of small motions,
+/// starts, because only that limit can be checked before. Its first readings must be finite, and
+/// its last answer must be an error that names the step.
 #[test]
 fn job_reports_its_step_when_the_motion_has_diverged() {
     let parameters = Parameters { m2: 100.0, ..EVEN };
@@ -110,7 +114,8 @@ fn job_reports_its_step_when_the_motion_has_diverged() {
 }
 
 /// A motion that is too fast for any method is stopped from its start, also if the user has
-/// selected a method: nothing diverges, and the report stays finite.
+/// selected a method: for 600 ticks there is no event, the frame does not change, and the report
+/// stays finite. After that another scene plays.
 #[test]
 fn too_fast_motion_is_stopped_before_it_diverges() {
     let parameters = Parameters {

@@ -11,7 +11,8 @@ use rayon::prelude::*;
 use reference::taylor::Reference;
 use reference::twofloat::TwoFloat;
 
-/// Returns the distance of the directions from the interval of each row's value.
+/// Returns the largest distance of a sine or cosine from the interval of the row's value; infinite
+/// if one is NaN. It is 0 inside all intervals.
 fn distance(row: &KnownAnswer, directions: [TwoFloat; 4]) -> f64 {
     let off = |i: usize| f64::from(directions[i] - row.directions[i]).abs() - row.radius[i];
     (0..4)
@@ -34,6 +35,8 @@ static ROWS: LazyLock<Vec<(KnownAnswer, Reference)>> = LazyLock::new(|| {
         .collect()
 });
 
+/// The directions of the reference at the time of each row must be in the row's interval, or no
+/// farther from it than [`tolerances::REFERENCE`] times the row's growth of a small error.
 #[test]
 fn reference_reaches_the_tables_digits() {
     for (row, reference) in &*ROWS {
@@ -48,6 +51,11 @@ fn reference_reaches_the_tables_digits() {
     }
 }
 
+/// Asserts that `method` is within its budget ([`tolerances::known_answer`]) at each row, in steps
+/// of 1/4096 s or, for orders above 4, of 1/1024 s.
+///
+/// A budget above 1 asserts nothing. At least [`tolerances::KNOWN_ANSWERS_CLAIMED`] rows must have
+/// a budget below 1. Scenes whose steps are too long for fixed point are left out.
 fn keeps_its_budgets(rows: &[(KnownAnswer, Reference)], method: Method) {
     let steps_per_second = if method.order() == 4 { 4096 } else { 1024 };
     let mut tested = 0_u32;
@@ -95,6 +103,7 @@ fn keeps_its_budgets(rows: &[(KnownAnswer, Reference)], method: Method) {
     );
 }
 
+/// See [`keeps_its_budgets`]. The methods are all those whose errors depend on the step.
 #[test]
 fn every_method_keeps_its_tolerance_in_the_table() {
     // The rows are computed here first. A job that waited for them would block a thread of the jobs

@@ -11,8 +11,11 @@ use double_pendulum::{Error, Motion, Parameter, Parameters, Pendulum};
 use firmware::config::{CORTEX_M0PLUS, CORTEX_M3, CORTEX_M4F, STM32F405};
 use firmware::motion::half_pixel;
 
+/// Frames per second.
 const RATE: u16 = 60;
+/// The costs of a Cortex-M3, where fixed point costs less than `f32`, in cycles.
 const M3: Costs = CORTEX_M3.costs;
+/// The costs of an STM32F405, a Cortex-M4F, where `f32` costs less, in cycles.
 const M4F: Costs = STM32F405.costs;
 
 /// Returns a problem with both rods at rest at `degrees`, on a display of 64 pixels.
@@ -29,7 +32,8 @@ fn scene(mass_ratio: f64, degrees: f64, duration: f64) -> Problem {
     }
 }
 
-/// Returns the plan for a Cortex-M4F with this frame budget.
+/// Returns the plan for a Cortex-M4F with this frame budget, in cycles, and a large planning
+/// budget.
 fn within(scene: &Problem, frame: f32) -> Result<Plan, PlanError> {
     Plan::search(
         scene,
@@ -41,6 +45,7 @@ fn within(scene: &Problem, frame: f32) -> Result<Plan, PlanError> {
     )
 }
 
+/// Runs a search to its end, and returns its plan.
 fn finished(search: &mut Search) -> Plan {
     loop {
         if let Some(plan) = search.advance(f32::INFINITY).expect("a good scene") {
@@ -50,7 +55,7 @@ fn finished(search: &mut Search) -> Plan {
 }
 
 /// A case: the costs and the frame budget, the problem, and the expected method, step count, limit
-/// and horizon.
+/// and range of the horizon, s.
 type Row = (
     Costs,
     f32,
@@ -60,6 +65,8 @@ type Row = (
     RangeInclusive<f64>,
 );
 
+/// Each row must give exactly its method, step count and limit, a horizon in its range, and the
+/// cost of the price list. The planning budget is large.
 #[test]
 fn planner_chooses_the_cheapest_method_with_the_longest_horizon() {
     use Method::{
@@ -194,8 +201,9 @@ fn planner_chooses_the_cheapest_method_with_the_longest_horizon() {
     }
 }
 
-/// Methods beyond the frame budget are not tried. A method that costs more, and is accurate for
-/// less than a tenth longer, is chosen if it is accurate to the end.
+/// Methods beyond the frame budget are not tried: with small budgets the limit is the budget, and
+/// planning costs little. A method that costs more, and is accurate for less than a tenth longer,
+/// is chosen if it is accurate to the end.
 #[test]
 fn planner_keeps_to_the_frame_budget_and_pays_for_the_end() {
     let figure7 = scene(2.75, 171.0, 30.0);
@@ -221,6 +229,11 @@ fn planner_keeps_to_the_frame_budget_and_pays_for_the_end() {
     );
 }
 
+/// A search that has reached the end of a short scene is extended by 100 s. Its second plan must
+/// have the method, step count and horizon of a plan of the whole scene, and `Search::horizon` must
+/// report that horizon for the same steps and for finer ones in 64 bits, and 0 for coarser ones and
+/// for fixed point of 32 bits.
+///
 /// The extended horizon is less than a tenth longer than the first. This would not be worth a
 /// method that costs more, but it is the same method.
 #[test]
@@ -249,6 +262,11 @@ fn extended_search_returns_the_plan_again_with_its_longer_horizon() {
     assert_eq!(horizons, [second.horizon, second.horizon, 0.0, 0.0]);
 }
 
+/// For 64 pairs of budgets and scenes no plan costs more than its frame budget, none has a horizon
+/// of 0, and no search spends more than its planning budget. At least 20 plans are found, and not
+/// all.
+///
+/// A search that cannot pay for a reference must still find a method in 32 bits.
 #[test]
 fn plans_keep_to_both_budgets() {
     let mut found = 0;
@@ -334,6 +352,9 @@ fn initial(scene: &Problem, costs: &Costs, frame: f32) -> Option<Stepping> {
     Stepping::initial(scene, costs, frame).expect("a pendulum")
 }
 
+/// With a large frame budget the initial method must be that in 64 bits. With its exact cost as the
+/// budget it must be the same; with slightly less it must cost less; and with less than a step in
+/// 64 bits costs, it must be in 32 bits.
 #[test]
 fn initial_method_is_in_64_bits_if_a_frame_pays_for_it() {
     for degrees in [60.0, 120.0, 171.0] {
@@ -363,7 +384,9 @@ fn initial_method_is_in_64_bits_if_a_frame_pays_for_it() {
 /// up to 5e-3.
 const INITIAL_ENERGY: f64 = 2e-3;
 
-/// The mass ratio 100 is the largest that can be set by keys.
+/// On each processor the initial method must be within the frame budget, and keep the energy above
+/// rest for 20 s to [`INITIAL_ENERGY`], from rest at 90, 120 and 180 degrees. At least six of the
+/// twelve must be in 32 bits. The mass ratio 100 is the largest that can be set by keys.
 #[test]
 fn initial_method_resolves_the_energy_of_the_fastest_scenes() -> Result<(), Error> {
     let mut in_32_bits = 0;
@@ -392,6 +415,7 @@ fn initial_method_resolves_the_energy_of_the_fastest_scenes() -> Result<(), Erro
     Ok(())
 }
 
+/// The method must have exactly 128 steps per frame.
 #[test]
 fn initial_method_of_mass_ratio_100_on_a_cortex_m3_is_fixed_point() {
     let stepping = initial(&scene(100.0, 120.0, 20.0), &M3, CORTEX_M3.frame);
@@ -402,6 +426,8 @@ fn initial_method_of_mass_ratio_100_on_a_cortex_m3_is_fixed_point() {
     assert_eq!(stepping, Some(expected));
 }
 
+/// Steps that resolve 20,000 rad/s cost more than a frame of a Cortex-M3 can pay for. A larger
+/// budget pays for them.
 #[test]
 fn too_fast_motion_has_no_initial_method() {
     let mut scene = scene(1.0, 120.0, 20.0);
@@ -410,7 +436,8 @@ fn too_fast_motion_has_no_initial_method() {
     assert!(initial(&scene, &M3, 1e9).is_some(), "at any cost");
 }
 
-/// Fixed point refuses a mass ratio of 100,000.
+/// A budget below a step in 64 bits gives fixed point. A mass ratio of 100,000, which fixed point
+/// refuses, gives `f32`. A run by the initial method must be accepted in both cases.
 #[test]
 fn initial_method_can_be_run() {
     let poor = M3.fixed64.next_down();
@@ -425,7 +452,8 @@ fn initial_method_can_be_run() {
     }
 }
 
-/// Fixed point refuses the longest steps, which are tried first.
+/// Fixed point refuses the longest steps, which are tried first, of these fast scenes. The step
+/// count that is returned must be accepted, and half of it refused.
 #[test]
 fn requested_method_takes_steps_that_it_accepts() {
     for degrees in [60.0, 120.0, 180.0] {
@@ -440,7 +468,7 @@ fn requested_method_takes_steps_that_it_accepts() {
     }
 }
 
-/// A requested method has the longest steps that resolve the motion.
+/// A requested method has the longest steps that resolve the motion: exactly 7, 4 and 2 per frame.
 ///
 /// Steps in 64 bits have a high order, but are shorter than the first steps of other methods. Fixed
 /// point refuses 2 steps here.
@@ -459,6 +487,9 @@ fn requested_method_has_steps_that_resolve_the_motion() {
     );
 }
 
+/// Each method in its own steps must be accepted as a run, and its evaluation must find that all
+/// frames of a second are accurate. For the closed form this must hold at any step count.
+///
 /// Equal rods are close to the end of the range of fixed point. The runs that a motion is compared
 /// with must not be refused if the motion itself is not.
 #[test]
@@ -494,6 +525,9 @@ fn methods_that_can_be_run_can_be_evaluated() {
     }
 }
 
+/// A tolerance, duration, mass, price or budget that is NaN, infinite, zero or negative; a rate of
+/// 0; an infinite velocity; too many frames; and a pendulum out of the range of `f32` must be
+/// refused. Except for the last, the error must be exactly the expected one.
 #[test]
 fn errors_contain_the_parameter_and_its_value() {
     let good = scene(1.0, 90.0, 10.0);
@@ -634,6 +668,12 @@ fn errors_contain_the_parameter_and_its_value() {
 ///
 /// The example is a light elbow at 90 degrees. Steps that resolve it cost several times the frame
 /// budget of a Cortex-M3, and the closed form is accurate for two frames.
+///
+/// A search that can pay only for creating a trial, or not even for that, must report the planning
+/// budget if a frame can pay for the closed form, and the frame budget if not. Once the closed form
+/// has failed, it must report the frame budget. The evaluation of the closed form must give a plan
+/// with its horizon in any case, whatever its step count, also for a pendulum that fixed point
+/// refuses.
 #[test]
 fn limit_without_a_method_is_the_budget_to_raise() {
     let light = Problem {

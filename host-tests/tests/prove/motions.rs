@@ -31,7 +31,8 @@ fn random(rng: &mut Rng) -> (Parameters<f64>, Motion<f64>) {
 }
 
 /// Checks every five frames that the box contains the reference, within the reference's own error,
-/// and that it contains the energy of the start.
+/// that it contains the energy of the start, and that no direction is wider than
+/// [`tolerances::ENCLOSURE`] times the growth of a small error.
 fn is_inside(parameters: &Parameters<f64>, motion: &Motion<f64>, frames: u32) {
     let mut reference = Reference::new(parameters, motion);
     let mut set = Start::of(parameters, motion).enclose(RATE);
@@ -72,6 +73,7 @@ fn is_inside(parameters: &Parameters<f64>, motion: &Motion<f64>, frames: u32) {
     }
 }
 
+/// Checks 200 random motions for `frames` frames ([`is_inside`]).
 fn random_motions_are_inside(frames: u32) {
     let mut rng = Rng::with_seed(28);
     for (parameters, motion) in std::iter::repeat_with(|| random(&mut rng)).take(200) {
@@ -79,18 +81,21 @@ fn random_motions_are_inside(frames: u32) {
     }
 }
 
+/// See [`is_inside`]: 30 frames of 1/64 s.
 #[test]
 fn random_motions_are_inside_for_half_a_second() {
     random_motions_are_inside(30);
 }
 
+/// See [`is_inside`]: 300 frames, 4.7 s.
 #[test]
 #[ignore = "minutes"]
 fn random_motions_are_inside_for_long() {
     random_motions_are_inside(300);
 }
 
-/// The motions with the reference as their standard: the hard cases and the scenes.
+/// The motions with the reference as their standard, each as [`is_inside`] requires: the hard
+/// cases, a pendulum at rest without gravity, and the first five seconds of the moving scenes.
 #[test]
 fn the_reference_is_inside_where_it_is_used() {
     for case in hard_cases() {
@@ -131,7 +136,8 @@ fn the_reference_is_inside_where_it_is_used() {
     }
 }
 
-/// Two motions that differ only in one bit of g separate within a second.
+/// The boxes of two motions that differ only in one bit of g must have no common point after 60
+/// frames, about a second.
 #[test]
 fn one_bit_of_g_makes_a_difference() {
     let hull = |g: f64| after(60, equal_rods(g, RATE, Fixed::ZERO, Fineness::default())).hull();

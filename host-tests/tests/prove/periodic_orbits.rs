@@ -26,6 +26,7 @@ struct Orbit {
     time: [i64; 2],
 }
 
+/// The orbits of energy 0 and 1/2 J.
 const ORBITS: [Orbit; 2] = [
     Orbit {
         twice_energy: 0,
@@ -158,6 +159,10 @@ fn advanced(mut set: Enclosure, time: u64) -> Enclosure {
     set
 }
 
+/// For each orbit the box must contain all starts of the source, with the orbit's energy. Every
+/// motion of the box must pass a1 = 0 upwards within the source's interval of time, when rod 2 has
+/// made one turn backwards and rod 1 none. S and the momenta must then be those of the start within
+/// [`RETURN`].
 #[test]
 fn periodic_orbits_return_when_and_where_another_proof_says() {
     for orbit in ORBITS {

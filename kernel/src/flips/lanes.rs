@@ -10,7 +10,7 @@
 use crate::methods::DirectionF32Plain;
 use crate::numbers::Lanes;
 
-/// A number of `N` motions.
+/// A number for each of `N` motions.
 pub(super) type Numbers<const N: usize> = Lanes<f32, N>;
 
 /// The six quantities sin a1, cos a1, S, C, P1 and P2 of `N` motions, and r = 1/(m + S^2).
@@ -20,12 +20,16 @@ struct Point<const N: usize> {
     inverse: Numbers<N>,
 }
 
-/// The constants of the equations.
+/// The constants of the equations, the same in all lanes.
 #[derive(Clone, Copy, Debug)]
 struct Constants<const N: usize> {
+    /// The length nu of (S, C).
     norm: Numbers<N>,
+    /// m.
     inertia: Numbers<N>,
+    /// G1 and G2.
     gravity: [Numbers<N>; 2],
+    /// 1/(2 nu^2).
     half_inverse_square: Numbers<N>,
 }
 
@@ -80,7 +84,7 @@ impl<const N: usize, const ROWS: usize> DirectionLanes<N, ROWS> {
         }
     }
 
-    /// Resets a lane to its motion in `before`.
+    /// Resets a lane to its motion in `before`. Ignores a lane that does not exist.
     #[inline(always)]
     pub fn keep(&mut self, lane: usize, before: &mut Self) {
         for (place, number) in self.lane(lane).zip(before.lane(lane)) {
@@ -107,7 +111,7 @@ impl<const N: usize, const ROWS: usize> DirectionLanes<N, ROWS> {
         }
     }
 
-    /// Restores the lengths of all directions.
+    /// Restores the lengths of all directions, to first order in their errors.
     #[inline(always)]
     pub fn restore_lengths(&mut self) {
         for (start, _) in &mut self.rows {
@@ -116,6 +120,7 @@ impl<const N: usize, const ROWS: usize> DirectionLanes<N, ROWS> {
     }
 
     /// Returns (sin, cos) of both rods in the lanes of a row; those of rod 2 are nu times as long.
+    /// `row` must be less than `ROWS`.
     #[inline(always)]
     pub fn rods(&self, row: usize) -> [[Numbers<N>; 2]; 2] {
         let [sin1, cos1, s, c, ..] = self.rows[row].0.z;
@@ -136,6 +141,7 @@ impl<const N: usize, const ROWS: usize> DirectionLanes<N, ROWS> {
 }
 
 impl<const N: usize> Constants<N> {
+    /// Computes the first of the four stages of RK4 from `start`.
     #[inline(always)]
     fn first_stage(&self, start: &Point<N>) -> Stage<N> {
         let k1 = changes(&start.z, self.rates(start));
@@ -145,6 +151,7 @@ impl<const N: usize> Constants<N> {
         }
     }
 
+    /// Computes the second stage, and adds it to the sum.
     #[inline(always)]
     fn second_stage(&self, start: &Point<N>, stage: &mut Stage<N>) {
         let k2 = changes(&stage.at.z, self.rates(&stage.at));
@@ -155,6 +162,7 @@ impl<const N: usize> Constants<N> {
         stage.at = start.ahead(&k2, &stage.at);
     }
 
+    /// Computes the third stage, doubled, and adds it to the sum.
     #[inline(always)]
     fn third_stage(&self, start: &Point<N>, stage: &mut Stage<N>) {
         let [u, v, p1, p2] = self.rates(&stage.at);
@@ -166,6 +174,7 @@ impl<const N: usize> Constants<N> {
         stage.at = start.ahead(&twice_k3, &stage.at);
     }
 
+    /// Computes the last stage, and moves `start` to the end of the step.
     #[inline(always)]
     fn last_stage(&self, start: &mut Point<N>, stage: &Stage<N>) {
         let k4 = changes(&stage.at.z, self.rates(&stage.at));
@@ -182,7 +191,7 @@ impl<const N: usize> Constants<N> {
         start.inverse = r4 + r4 * ((one - self.inertia * r4) - (s * r4) * s);
     }
 
-    /// Returns u, v, P1' and P2'.
+    /// Returns u, v, P1' and P2', the rates of the [direction form](crate::methods::direction).
     #[inline(always)]
     fn rates(&self, at: &Point<N>) -> [Numbers<N>; 4] {
         let [sin1, cos1, s, c, p1, p2] = at.z;
@@ -195,6 +204,7 @@ impl<const N: usize> Constants<N> {
         [u, v, -(gravity1 * sin1) - force, force - gravity2 * nu_sin2]
     }
 
+    /// Restores the length 1 of direction 1 and the length nu of (S, C), to first order.
     #[inline(always)]
     fn restore_lengths(&self, point: &mut Point<N>) {
         let one = Lanes::splat(1.0);
@@ -211,7 +221,8 @@ impl<const N: usize> Constants<N> {
 }
 
 impl<const N: usize> Point<N> {
-    /// Returns the point that is further by `k`, the change that was computed at `from`.
+    /// Returns the point that is further than this one by `k`, the change that was computed at
+    /// `from`. Its reciprocal is linear in the change.
     #[inline(always)]
     fn ahead(&self, k: &[Numbers<N>; 6], from: &Self) -> Self {
         let mut z = self.z;

@@ -33,7 +33,7 @@ pub enum Flip<R> {
     Never,
     /// A rod flips at this time after the start, s.
     After(R),
-    /// The first flip is later than the computed time.
+    /// No rod flips within the computed steps.
     Later,
 }
 
@@ -43,6 +43,9 @@ pub enum Flip<R> {
 /// between two steps, linearly in the sine. This costs about 15 operations per step. With steps of
 /// [`step_size`], 99.9 % of the starts of equal rods and bobs are right within 10 sqrt(l/g), in any
 /// arithmetic; the tests of the repository assert it.
+///
+/// The motions are not checked: in steps that are far too long, a flip may be missed, or
+/// reported where there is none.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Flips<F: Form> {
     pendulum: Pendulum<F::Real>,
@@ -59,6 +62,7 @@ pub struct Falling<F: Form> {
     motion: F,
     /// The sides of the rods after the last step ([`Form::sides`]).
     sides: [[i32; 2]; 2],
+    /// The number of steps since the start.
     #[doc(hidden)]
     pub steps: u32,
 }
@@ -66,10 +70,13 @@ pub struct Falling<F: Form> {
 /// Returns the longest step, s, that resolves the motion of every start from rest.
 ///
 /// It is twice the [admissible step](Pendulum::admissible_step) from straight up. With a light bob
-/// 2 it is shorter, so that [`Fixed32`] accepts it.
+/// 2 it is shorter, so that [`Fixed32`] accepts it. Without gravity, where nothing moves, it is
+/// infinite, and [`Flips::new`] refuses it.
 ///
-/// Refuses the parameters that [`Pendulum::new`] refuses, and zero gravity, because nothing moves
-/// without it.
+/// # Errors
+///
+/// Refuses the parameters that [`Pendulum::new`] refuses, and those whose normal modes are out of
+/// the range of `R`.
 ///
 /// [`Fixed32`]: crate::Fixed32
 pub fn step_size<R: Real>(parameters: &Parameters<R>) -> Result<f64, Error> {
@@ -86,8 +93,11 @@ pub fn step_size<R: Real>(parameters: &Parameters<R>) -> Result<f64, Error> {
 impl<F: Form> Flips<F> {
     /// Creates a map with steps of `dt` s and at most `steps` steps for each start.
     ///
-    /// Refuses the parameters and steps that the method `F` refuses, and a pendulum whose highest
-    /// start has more energy than `F` allows.
+    /// # Errors
+    ///
+    /// Refuses the parameters and steps that the method `F` refuses, among them a step that is NaN,
+    /// infinite or zero, and a pendulum whose highest start has more energy than `F` allows. A step
+    /// beyond the limit of stability is refused in fixed point only.
     pub fn new(parameters: &Parameters<F::Real>, dt: f64, steps: u32) -> Result<Self, Error> {
         let highest = F::new(
             &parameters.cast(),
@@ -102,7 +112,10 @@ impl<F: Form> Flips<F> {
         })
     }
 
-    /// Returns the motion that is released at the angles `a1`, `a2`, rad; `None` if it never flips.
+    /// Returns the motion that is released at the angles `a1`, `a2`, rad; `None` if the energy is
+    /// too low for any flip.
+    ///
+    /// # Errors
     ///
     /// Refuses angles that are not finite.
     #[doc(hidden)]
@@ -120,7 +133,9 @@ impl<F: Form> Flips<F> {
         }))
     }
 
-    /// Computes at most `steps` steps. Returns the result once it is known.
+    /// Computes at most `steps` steps. Returns the result once it is known, and `None` until then:
+    /// [`Flip::After`], or [`Flip::Later`] after all steps of the map. It is not to be called again
+    /// after a result.
     #[inline]
     #[doc(hidden)]
     pub fn advance(&self, falling: &mut Falling<F>, steps: u32) -> Option<Flip<F::Real>> {
@@ -140,7 +155,9 @@ impl<F: Form> Flips<F> {
         None
     }
 
-    /// Returns the first flip of the motion that is released at the angles `a1`, `a2`, rad.
+    /// Returns the first flip of the motion that is released at rest at the angles `a1`, `a2`, rad.
+    ///
+    /// # Errors
     ///
     /// Refuses angles that are not finite.
     pub fn of(&self, a1: F::Real, a2: F::Real) -> Result<Flip<F::Real>, Error> {
@@ -172,7 +189,8 @@ impl<F: Form> Flips<F> {
     }
 }
 
-/// Returns a negative number if a rod has passed straight up between the two.
+/// Returns a negative number if a rod has passed straight up between the sides `before` and
+/// `after`, (sin, cos) of each rod.
 #[inline(always)]
 fn passes(before: &[[i32; 2]; 2], after: &[[i32; 2]; 2]) -> i32 {
     // A rod passes straight up if its sine changes its sign while its cosine is negative.

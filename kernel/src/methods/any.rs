@@ -19,7 +19,8 @@ pub trait FormVisitor {
     /// The result of the call.
     type Output;
 
-    /// Runs the code for the method that the type `F` computes.
+    /// Runs the code for the method that the type `F` computes. [`Method::visit`] calls it at most
+    /// once.
     fn visit<F: Form>(self) -> Self::Output;
 }
 
@@ -116,13 +117,17 @@ pub enum DrawnMotion {
 }
 
 impl DrawnMotion32 {
-    /// Creates the motion of a pendulum from its start, in steps of `dt` seconds.
+    /// Creates the motion of a pendulum from its start, in steps of `dt` seconds. A negative `dt`
+    /// runs backwards.
     ///
     /// # Errors
     ///
-    /// Refuses the inputs that [`Pendulum::run`](crate::Pendulum::run) refuses, for the closed form
-    /// a pendulum without normal modes, and methods that are not in [`Method::DRAWN`] or not in 32
-    /// bits.
+    /// Refuses:
+    ///
+    /// - the inputs that [`Pendulum::run`](crate::Pendulum::run) refuses, except a start of too
+    ///   many turns and, by a method in `f32`, a step beyond the limit of stability;
+    /// - for the closed form, a pendulum without normal modes;
+    /// - by [`Error::NotDrawn`], methods that are not in [`Method::DRAWN`] or not in 32 bits.
     #[inline(never)] // Inlined, the motions of all kinds would share a stack frame.
     pub fn new(
         method: Method,
@@ -149,7 +154,8 @@ impl DrawnMotion32 {
         })
     }
 
-    /// Advances the motion by `steps` steps.
+    /// Advances the motion by `steps` steps. A motion that diverges is not reported;
+    /// [`check`](Self::check) it afterwards.
     #[inline(never)] // Not inlined: each caller would contain every method.
     pub fn advance(&mut self, steps: u32) {
         match self {
@@ -162,7 +168,11 @@ impl DrawnMotion32 {
         }
     }
 
-    /// Refuses a motion that has left the finite numbers.
+    /// Refuses a motion that has diverged, by [`Error::Diverged`]: its numbers are not finite or,
+    /// in fixed point, were ever out of range.
+    ///
+    /// In `f32` this is no check of the energy: a motion whose numbers are finite but meaningless
+    /// is accepted.
     pub fn check(&self) -> Result<(), Error> {
         match self {
             Self::ClosedFormF32(motion) => motion.check(),
@@ -174,7 +184,8 @@ impl DrawnMotion32 {
         }
     }
 
-    /// Returns the sine and cosine of both rods as words whose highest bit is the sign.
+    /// Returns the sine and cosine of both rods as words whose highest bit is the sign
+    /// ([`DrawnMotion::sides`]).
     fn sides(&self) -> [[i32; 2]; 2] {
         match self {
             Self::ClosedFormF32(motion) => motion.sides(),
@@ -187,6 +198,9 @@ impl DrawnMotion32 {
     }
 
     /// Returns the directions of both rods, (sin, cos) each.
+    ///
+    /// They may be up to half a step ahead of the [`state`](Self::state). A diverged motion need
+    /// not show it: in fixed point its directions are finite. Ask [`check`](Self::check).
     #[inline(never)]
     pub fn directions(&self) -> [Direction<f32>; 2] {
         match self {
@@ -211,8 +225,10 @@ impl DrawnMotion32 {
         }
     }
 
-    /// Returns the canonical state in SI units. The angles may lack whole turns
-    /// ([`has_turns`](Self::has_turns)).
+    /// Returns the canonical state in SI units at the number of steps times dt. The angles are
+    /// within (-pi, pi], unless they include whole turns ([`has_turns`](Self::has_turns)).
+    ///
+    /// All its numbers are NaN if the motion has diverged in fixed point.
     #[inline(never)]
     pub fn state(&self) -> State<f64> {
         match self {
@@ -251,12 +267,17 @@ impl DrawnMotion32 {
 }
 
 impl DrawnMotion {
-    /// Creates the motion of a pendulum from its start, in steps of `dt` seconds.
+    /// Creates the motion of a pendulum from its start, in steps of `dt` seconds. A negative `dt`
+    /// runs backwards.
     ///
     /// # Errors
     ///
-    /// Refuses the inputs that [`Pendulum::run`](crate::Pendulum::run) refuses, for the closed form
-    /// a pendulum without normal modes, and methods that are not in [`Method::DRAWN`].
+    /// Refuses:
+    ///
+    /// - the inputs that [`Pendulum::run`](crate::Pendulum::run) refuses, except a start of too
+    ///   many turns and, by a method other than [`Fixed32`], a step beyond the limit of stability;
+    /// - for the closed form, a pendulum without normal modes;
+    /// - by [`Error::NotDrawn`], methods that are not in [`Method::DRAWN`].
     #[inline(never)] // Inlined, the motions of all kinds would share a stack frame.
     pub fn new(
         method: Method,
@@ -271,7 +292,8 @@ impl DrawnMotion {
         }
     }
 
-    /// Advances the motion by `steps` steps.
+    /// Advances the motion by `steps` steps. A motion that diverges is not reported;
+    /// [`check`](Self::check) it afterwards.
     #[inline(never)] // Not inlined: each caller would contain every method.
     pub fn advance(&mut self, steps: u32) {
         match self {
@@ -280,7 +302,11 @@ impl DrawnMotion {
         }
     }
 
-    /// Refuses a motion that has left the finite numbers.
+    /// Refuses a motion that has diverged, by [`Error::Diverged`]: its numbers are not finite or,
+    /// in fixed point, were ever out of range.
+    ///
+    /// In `f32` this is no check of the energy: a motion whose numbers are finite but meaningless
+    /// is accepted.
     pub fn check(&self) -> Result<(), Error> {
         match self {
             Self::In32Bits(motion) => motion.check(),
@@ -288,7 +314,8 @@ impl DrawnMotion {
         }
     }
 
-    /// Returns the sine and cosine of both rods as words whose highest bit is the sign.
+    /// Returns the sine and cosine of both rods, `[[sin a1, cos a1], [sin a2, cos a2]]`, as words
+    /// whose highest bit is the sign. The other bits are in the format of the method's numbers.
     #[must_use]
     #[inline(never)]
     pub fn sides(&self) -> [[i32; 2]; 2] {
@@ -299,6 +326,9 @@ impl DrawnMotion {
     }
 
     /// Returns the directions of both rods, (sin, cos) each.
+    ///
+    /// They may be up to half a step ahead of the [`state`](Self::state). A diverged motion need
+    /// not show it: in fixed point its directions are finite. Ask [`check`](Self::check).
     #[must_use]
     #[inline(never)]
     pub fn directions(&self) -> [Direction<f32>; 2] {
@@ -308,7 +338,8 @@ impl DrawnMotion {
         }
     }
 
-    /// Returns the momenta p1 and p2, kg m^2/s.
+    /// Returns the momenta p1 and p2, kg m^2/s, at the time of the
+    /// [`directions`](Self::directions). They are NaN if the motion has diverged in fixed point.
     #[must_use]
     pub fn momenta(&self) -> [f32; 2] {
         match self {
@@ -317,8 +348,10 @@ impl DrawnMotion {
         }
     }
 
-    /// Returns the canonical state in SI units. The angles may lack whole turns
-    /// ([`has_turns`](Self::has_turns)).
+    /// Returns the canonical state in SI units at the number of steps times dt. The angles are
+    /// within (-pi, pi], unless they include whole turns ([`has_turns`](Self::has_turns)).
+    ///
+    /// All its numbers are NaN if the motion has diverged in fixed point.
     #[must_use]
     #[inline(never)]
     pub fn state(&self) -> State<f64> {
@@ -328,7 +361,11 @@ impl DrawnMotion {
         }
     }
 
-    /// Returns the energy above rest, J, as the method carries it: nothing is rounded to `f32`.
+    /// Returns the energy above rest, J, as the method carries it: nothing is rounded to `f32`. It
+    /// is that at the time of the [`directions`](Self::directions).
+    ///
+    /// `pendulum` must be the pendulum of this motion; this is not checked. The energy is NaN if
+    /// the motion has diverged in fixed point.
     #[must_use]
     pub fn energy_above_rest(&self, pendulum: &Pendulum<f64>) -> f64 {
         match self {

@@ -13,9 +13,10 @@ use crate::pendulum::{Direction, Parameters, Pendulum, State};
 /// The equations of motion of a pendulum.
 #[doc(hidden)]
 pub trait Derivatives<R: Real>: Copy + Debug + PartialEq + 'static {
-    /// Prepares the equations. Refuses parameters out of their range.
+    /// Prepares the equations. Refuses the parameters that [`Pendulum::new`] refuses.
     fn prepare(parameters: &Parameters<R>) -> Result<Self, Error>;
-    /// Returns the time derivatives of (a1, a2, p1, p2).
+    /// Returns the time derivatives of z = (a1, a2, p1, p2), in rad/s and N m, where z is in rad
+    /// and kg m^2/s.
     fn derivatives(&self, z: &[R; 4]) -> [R; 4];
 }
 
@@ -36,17 +37,19 @@ impl<R: Real> Derivatives<R> for Pendulum<R> {
 /// `every_integrator_meets_its_order_conditions` names a weight that is wrong.
 #[doc(hidden)]
 pub trait RungeKutta: Copy + Debug + PartialEq + 'static {
-    /// The order of a step.
+    /// The order p: the error of a step is proportional to dt^(p + 1).
     const ORDER: u32;
 
     /// The largest phase w dt, rad, of a stable step, where w is the frequency of an oscillation.
     const STABLE: f64;
 
-    /// Computes one step for z' = f(z): returns the state a time `dt` after `z`.
+    /// Computes one step for z' = f(z): returns the state a time `dt` after `z`. A negative `dt`
+    /// steps backwards. The inputs are not checked.
     fn step<R: Real, const N: usize>(f: impl Fn(&[R; N]) -> [R; N], z: &[R; N], dt: R) -> [R; N];
 }
 
-/// A motion on the equations `E` by the integrator `I`. It carries the state (a1, a2, p1, p2) only.
+/// A motion on the equations `E` by the integrator `I`. It carries the state (a1, a2, p1, p2) only,
+/// in SI units.
 #[doc(hidden)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Canonical<R, E = Pendulum<R>, I = Rk4> {

@@ -49,8 +49,10 @@ pub struct SmallOscillations<R> {
     /// arbitrary after a day.
     turns: [f64; 2],
     modes: [Mode<R>; 2],
+    /// The share of the fast mode: C1 and S1.
     #[doc(hidden)]
     pub fast: Oscillation<R>,
+    /// The share of the slow mode: C2 and S2.
     #[doc(hidden)]
     pub slow: Oscillation<R>,
     /// True if an angle may exceed [`SMALL`].
@@ -65,6 +67,9 @@ impl<R: Real> SmallOscillations<R> {
     ///
     /// C1 = (r2 a1 - a2)/(r2 - r1) and C2 = (a2 - r1 a1)/(r2 - r1). w1 S1 and w2 S2 follow in the
     /// same way from the angular velocities.
+    ///
+    /// `modes` must be those of the pendulum. Nothing is checked: a start that is not finite gives
+    /// angles that are NaN or infinite.
     #[must_use]
     pub fn new(modes: Modes<f64>, start: &Motion<R>) -> Self {
         let turns = [modes.fast, modes.slow].map(|mode| mode.frequency / core::f64::consts::TAU);
@@ -118,7 +123,7 @@ impl<R: Real> SmallOscillations<R> {
     /// Returns the angles and angular velocities a time `t`, s, after the start.
     ///
     /// `t` may be negative. The phase w t is reduced to a turn in `f64`. Its error grows as the
-    /// rounding error of w t in `f64`, to 1e-9 rad in a day.
+    /// rounding error of w t in `f64`, to 1e-9 rad in a day. A `t` that is not finite gives NaN.
     #[must_use]
     pub fn at(&self, t: f64) -> Motion<R> {
         let phases = self.phases(t);
@@ -136,12 +141,13 @@ impl<R: Real> SmallOscillations<R> {
 
     /// Returns the directions of both rods, (sin, cos) each, a time `t`, s, after the start.
     ///
-    /// If the angles of the motion never exceed 0.6 rad, the first terms of the series are used:
-    /// sin a = a - a^3/6 and cos a = 1 - a^2/2 + a^4/24. The error is a^5/120, at most 7e-4. The
-    /// length is 1 to within 4e-4. Both errors are far less than the error of the linear motion.
-    /// This costs two sincos and no division.
+    /// If the sums of the amplitudes, which no angle exceeds, are at most 0.6 rad, the first terms
+    /// of the series are used: sin a = a - a^3/6 and cos a = 1 - a^2/2 + a^4/24. The error is
+    /// a^5/120, at most 7e-4. The length is 1 to within 4e-4. Both errors are far less than the
+    /// error of the linear motion. This costs two sincos and no division.
     ///
-    /// Otherwise the sines and cosines of the angles are computed, which costs two more sincos.
+    /// Otherwise the sines and cosines of the angles are computed, which costs two more sincos. A
+    /// `t` that is not finite gives NaN.
     #[must_use]
     pub fn directions(&self, t: f64) -> [Direction<R>; 2] {
         let angles = self.angles(self.phases(t));
@@ -187,12 +193,16 @@ pub struct ClosedForm<R> {
     /// The number of steps per second. If it is whole, the times of whole seconds are exact.
     rate: f64,
     pendulum: Pendulum<R>,
+    /// The linear motion in the numbers `R`.
     pub(crate) oscillations: SmallOscillations<R>,
+    /// The directions of both rods at the present time.
     directions: [Direction<R>; 2],
+    /// The number of steps since the start.
     steps: u64,
 }
 
 impl<R: Real> ClosedForm<R> {
+    /// Returns the time since the start, s.
     fn time(&self) -> f64 {
         self.steps as f64 / self.rate
     }

@@ -35,7 +35,8 @@ use crate::pendulum::{Direction, Parameters, State};
 
 /// Returns sin a1, cos a1, S, C, P1 and P2 of a state.
 ///
-/// nu is `norm`. The two units convert the momenta: P1 = p1 `unit1`, P2 = p2 `unit2`.
+/// nu is `norm`. The two units, s/(kg m^2), convert the momenta: P1 = p1 `unit1`, P2 = p2 `unit2`.
+/// A state that is not finite gives NaN or infinity.
 #[inline(never)] // Not inlined, to save flash.
 pub(crate) fn quantities(state: &State<f64>, norm: f64, [unit1, unit2]: [f64; 2]) -> [f64; 6] {
     let (sin1, cos1) = state.a1.own_sin_cos();
@@ -52,7 +53,8 @@ pub(crate) fn quantities(state: &State<f64>, norm: f64, [unit1, unit2]: [f64; 2]
 
 /// Returns the state of the six quantities, with angles in (-pi, pi].
 ///
-/// The inverse of [`quantities`], except for whole turns.
+/// The inverse of [`quantities`], except for whole turns. The lengths of the directions do not
+/// matter. NaN in `z` gives NaN.
 #[inline(never)] // Not inlined, to save flash.
 pub(crate) fn state_of(z: [f64; 6], [unit1, unit2]: [f64; 2]) -> State<f64> {
     let [sin1, cos1, s, c, p1, p2] = z;
@@ -66,7 +68,8 @@ pub(crate) fn state_of(z: [f64; 6], [unit1, unit2]: [f64; 2]) -> State<f64> {
     }
 }
 
-/// Returns the directions of both rods, each of length 1, where nu is `norm`.
+/// Returns the directions of both rods for the six quantities `z`, where nu is `norm`. Each has
+/// length 1 except for the errors of `z`; it is not restored.
 #[inline]
 pub(crate) fn directions<R: Real>(z: &[R; 6], norm: R) -> [Direction<R>; 2] {
     let [sin1, cos1, s, c, ..] = *z;
@@ -76,7 +79,7 @@ pub(crate) fn directions<R: Real>(z: &[R; 6], norm: R) -> [Direction<R>; 2] {
     [[sin1, cos1], [sin2 * inverse, cos2 * inverse]]
 }
 
-/// The constants of the equations.
+/// The constants of the equations of this module, which have no dimension.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Coefficients<R> {
     /// nu.
@@ -102,6 +105,11 @@ pub(crate) struct Scale {
 ///
 /// A negative `dt` runs backwards. The unit of time is chosen so that the products of the rounded
 /// constants are as exact as possible; it can be up to 32 ulp of G2 longer than dt/`step`.
+///
+/// # Errors
+///
+/// Refuses the parameters and steps that [`Parameters::check`] and [`check_step`] refuse, and, by
+/// [`Error::OutOfRange`], parameters whose constants or their reciprocals leave the range of `R`.
 pub(crate) fn prepare<R: Real>(
     parameters: &Parameters<R>,
     dt: f64,
@@ -178,7 +186,8 @@ fn factor_above<R: Real>(value: f64, factor: f64) -> R {
 }
 
 impl Scale {
-    /// Refuses momenta P1 and P2 that are too large for `R`.
+    /// Refuses momenta P1 and P2 that are NaN or too large for `R`. The error gives the momentum in
+    /// kg m^2/s.
     pub fn check<R: Real>(&self, momenta: [f64; 2]) -> Result<(), Error> {
         for (parameter, p) in [Parameter::P1, Parameter::P2].into_iter().zip(momenta) {
             if !R::from_f64(p).is_finite() {
@@ -255,7 +264,7 @@ impl Lead {
     }
 
     /// Returns the number of steps to compute for the next `steps` steps, after which the count is
-    /// `count`. They must not go beyond the end of a block.
+    /// `count`. They must not go beyond the end of a block. `steps` is at least 1.
     #[inline(always)]
     pub fn made(self, steps: u32, count: u64) -> u32 {
         if count as u32 % BLOCK == 0 {
@@ -287,7 +296,9 @@ impl Lead {
 mod tests {
     use super::*;
 
-    /// Compares the lead with sums over the steps that a method computes.
+    /// Adds up the steps that a method computes, for steps that are too long by up to 1 %, in calls
+    /// of 1 to 7 steps. The lead must be that sum less the time, at most half a step and the lead
+    /// of one block. Steps must be left out for the three largest excesses only.
     #[test]
     fn motion_is_at_most_half_a_step_ahead() {
         for longer in [-f64::EPSILON, 0.0, 1e-16, 1.9e-6, 3e-4, 0.01] {

@@ -37,7 +37,7 @@ pub(crate) const fn is_order(order: u32) -> bool {
 const STABLE: [f64; ROWS] = [0.95, 2.86, 2.51, 3.67, 5.28, 4.77, 6.37, 7.35];
 
 /// Returns the largest phase w dt, rad, of a step of this order that lets an oscillation of
-/// frequency w grow by less than a tenth.
+/// frequency w grow by less than a tenth. It is infinite for an order that is not 2, 4 .. 16.
 ///
 /// The orders 2, 6, 10 and 14 are stable in no step at all, but only just: an oscillation grows by
 /// less than 1e-4 in a step of up to 0.16, 0.94, 2.14 and 6.3 rad.
@@ -74,12 +74,13 @@ pub(super) fn rows(order: u32) -> Result<usize, Error> {
     }
 }
 
-/// Returns n/2 of a row.
+/// Returns n/2 of a row, where n is its number of substeps: `row` + 1, because rows are counted
+/// from 0.
 pub(super) fn half_substeps(row: usize) -> f64 {
     (row + 1) as f64
 }
 
-/// Returns the weight w(n) of one of `rows` rows.
+/// Returns the weight w(n) of the row `row`, counted from 0, of `rows` rows.
 #[inline(never)] // Not inlined, to save flash.
 pub(super) fn weight(row: usize, rows: usize) -> f64 {
     let square = half_substeps(row) * half_substeps(row);
@@ -91,7 +92,7 @@ pub(super) fn weight(row: usize, rows: usize) -> f64 {
 }
 
 impl<R: Real> Extrapolation<R> {
-    /// Prepares steps of `order` 2, 4 .. 16. Refuses any other order.
+    /// Prepares steps of `order` 2, 4 .. 16. Refuses any other order, by [`Error::OutOfRange`].
     #[inline(never)] // Not inlined, to save flash.
     pub fn new(order: u32) -> Result<Self, Error> {
         let rows = rows(order)?;
@@ -108,7 +109,8 @@ impl<R: Real> Extrapolation<R> {
 
     /// Computes one step for z' = f(z): returns the state a time `dt` after `z`.
     ///
-    /// A negative `dt` steps backwards.
+    /// A negative `dt` steps backwards. The inputs are not checked; NaN gives NaN. The unit of time
+    /// is that of f.
     ///
     /// ```
     /// use double_pendulum::Extrapolation;
@@ -167,12 +169,16 @@ impl<R: Real> Extrapolation<R> {
 mod tests {
     use super::*;
 
-    /// The growth of an oscillation in a step of `phase` rad.
+    /// Returns the growth of an oscillation in a step of `phase` rad: its amplitude after the step,
+    /// divided by that before.
     fn growth(method: &Extrapolation<f64>, phase: f64) -> f64 {
         let [x, y] = method.step(|&[x, y]| [y, -x], &[1.0, 0.0], phase);
         libm::hypot(x, y)
     }
 
+    /// Up to the phase of [`stable`], no step lets an oscillation grow by a tenth; 0.02 rad
+    /// further, one does. By the orders 2, 6, 10 and 14 it grows, but by less than 1e-4 up to the
+    /// phases in the comment of [`stable`].
     #[test]
     fn steps_are_stable_up_to_the_phase_in_the_table() -> Result<(), Error> {
         for order in (2..=16).step_by(2) {

@@ -30,13 +30,15 @@ use crate::pendulum::{Direction, Parameters, State};
 /// latency.
 const LANES: usize = 4;
 
+/// One number for each row that is computed.
 type Numbers = Lanes<f64, LANES>;
 
 /// A motion in the direction form, stepped by [`Extrapolation`] of order `ORDER`, 2, 4 .. 16, in
 /// `f64`. Another order does not compile.
 ///
-/// The sums of the state are compensated, as in [`DirectionF32`](crate::DirectionF32), and the
-/// lengths of the directions are restored after every step.
+/// The sums of the state are compensated: the rounding error of each is carried into the next. The
+/// lengths of the directions are restored after every step. Angles are within (-pi, pi];
+/// [`Run`](crate::Run) counts the turns.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ExtrapolationF64<const ORDER: u32> {
     coefficients: Coefficients<f64>,
@@ -65,7 +67,7 @@ enum Work {
 }
 
 impl Work {
-    /// Returns the number of slopes that the work takes.
+    /// Returns the number of slopes that the work takes; `usize::MAX` if there is none.
     fn slopes(self) -> usize {
         match self {
             Work::FirstSlope => 1,
@@ -75,7 +77,7 @@ impl Work {
     }
 }
 
-/// The constants of the equations for the rows that the lanes compute.
+/// The constants of the equations for the rows that the lanes compute, one row per lane.
 struct Pace {
     /// The share 2/n of the step in each lane.
     share: Numbers,

@@ -92,7 +92,7 @@ struct Fixed64State {
 
 /// The largest angular rate, in the unit of time of the motion.
 const RATE: f64 = 0.125;
-/// The largest torque of gravity.
+/// The largest torque of gravity, in the unit of time of the motion.
 const TORQUE: f64 = 1.0 / 256.0;
 /// The longest step, in units of time.
 const STEP: f64 = 15.0;
@@ -109,6 +109,9 @@ const HALF: Q64 = Q64(1 << 60);
 const LENGTH: u64 = 1 << 50;
 
 impl Fixed64State {
+    /// Prepares the motion from `start` in steps of `dt` s by `order`, which must be 2, 4 .. 16.
+    ///
+    /// The errors are those of the public type [`Fixed64`].
     #[inline(never)]
     fn new(
         parameters: &Parameters<f64>,
@@ -149,6 +152,8 @@ impl Fixed64State {
         Ok(motion.started(start))
     }
 
+    /// Returns the motion of the same pendulum from `start`, which must be finite and have no more
+    /// energy than the start of [`new`](Self::new).
     fn started(&self, start: &State<f64>) -> Self {
         let [sin1, cos1, s, c, p1, p2] = quantities(start, self.norm, self.momenta);
         let [sin1, cos1, s, c] = [sin1, cos1, s, c].map(|direction| direction * EIGHTH);
@@ -159,6 +164,7 @@ impl Fixed64State {
         }
     }
 
+    /// Advances the motion by `steps` steps. A lost motion goes on, without meaning.
     #[inline(never)]
     fn advance(&mut self, steps: u32) {
         for _ in 0..steps {
@@ -202,6 +208,7 @@ impl Fixed64State {
         [[sin1, cos1], [sin1 * c - cos1 * s, cos1 * c + sin1 * s]]
     }
 
+    /// Returns the state in SI units, with angles in (-pi, pi]; NaN if the motion is lost.
     #[inline(never)]
     fn state(&self) -> State<f64> {
         let z = if self.lost {

@@ -11,7 +11,8 @@ pub type LagrangeF32 = Canonical<f32, Lagrange<f32>>;
 /// The price of a step by this method on every processor, in cycles.
 pub const PRICE: f32 = 1e4;
 
-/// Lagrange's equations with the momenta as variables: a' = M^-1 p, p' = dL/da.
+/// Lagrange's equations with the momenta as variables: a' = M^-1 p, p' = dL/da. The exact motion is
+/// that of Hamilton's equations.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lagrange<R>(Pendulum<R>);
 
@@ -32,6 +33,7 @@ impl<R: Real> Derivatives<R> for Lagrange<R> {
     }
 }
 
+/// Returns (sin, cos) of an angle, rad.
 fn sin_cos<R: Real>(angle: R) -> [R; 2] {
     angle.own_sin_cos().into()
 }

@@ -35,21 +35,21 @@ use crate::pendulum::{Direction, Parameters, Pendulum, State};
 
 /// RK4 on Hamilton's equations in angles and momenta, in `f32`: `rk4-f32`.
 pub type HamiltonF32 = Canonical<f32>;
-/// The same in `f64`: `rk4-f64`.
+/// RK4 on Hamilton's equations in `f64`: `rk4-f64`.
 pub type HamiltonF64 = Canonical<f64>;
 /// RK4 in the direction form, in `f32` with compensated sums: `rk4-f32-direction`.
 ///
 /// A step takes 206 cycles on a Cortex-M4F. The error is within 4e-8 rad in 10 s of a regular
 /// motion (0.5 rad, 256 steps per second), as the root mean square over neighbouring starts.
 pub type DirectionF32 = Rk4Direction<f32, true>;
-/// The same with plain sums: `rk4-f32-direction-plain`. A step takes 161 cycles; the error is
-/// within 3e-6 rad.
+/// [`DirectionF32`] with plain sums: `rk4-f32-direction-plain`. A step takes 161 cycles; the error
+/// in the same motion is within 3e-6 rad.
 pub type DirectionF32Plain = Rk4Direction<f32, false>;
-/// The same in `f64`, with compensated sums.
+/// RK4 in the direction form, in `f64` with compensated sums. It is not in the table of methods.
 pub type DirectionF64 = Rk4Direction<f64, true>;
 /// Small oscillations in closed form, in `f32`: `closed-form-f32`.
 pub type ClosedFormF32 = ClosedForm<f32>;
-/// The same in `f64`.
+/// Small oscillations in closed form, in `f64`: `closed-form-f64`.
 pub type ClosedFormF64 = ClosedForm<f64>;
 
 /// A method: its equations, its numbers and its integrator. A value is a motion of a pendulum.
@@ -81,17 +81,28 @@ pub trait Form: Sealed + Copy + Debug + PartialEq + 'static {
     /// Checks the parameters and prepares the motion from `start`, in steps of `dt` seconds.
     ///
     /// A negative `dt` runs backwards.
+    ///
+    /// # Errors
+    ///
+    /// Refuses the inputs that [`Pendulum::run`](crate::Pendulum::run) refuses, except a step
+    /// beyond [`STABLE`](Self::STABLE) and a start of too many turns.
     #[doc(hidden)]
     fn new(parameters: &Parameters<f64>, start: &State<f64>, dt: f64) -> Result<Self, Error>;
 
-    /// Returns a motion of the same pendulum from another start, in the same units. Its energy must
-    /// be no greater.
+    /// Returns a motion of the same pendulum from another start, in the same units and steps. Its
+    /// energy must be no greater than that of the start in [`new`](Self::new). This is not checked;
+    /// in fixed point the numbers may then leave their range.
+    ///
+    /// # Errors
+    ///
+    /// Refuses a start that is not finite, or out of the range of the method's numbers.
     #[doc(hidden)]
     fn started(&self, start: &State<f64>) -> Result<Self, Error>;
 
     /// Advances the motion by `steps` steps.
     ///
-    /// `advance(a); advance(b)` is bit-identical to `advance(a + b)`.
+    /// `advance(a); advance(b)` is bit-identical to `advance(a + b)`. A motion that diverges is not
+    /// reported; [`check`](Self::check) it afterwards.
     #[doc(hidden)]
     fn advance(&mut self, steps: u32);
 
@@ -102,14 +113,19 @@ pub trait Form: Sealed + Copy + Debug + PartialEq + 'static {
         self.advance(1);
     }
 
-    /// Refuses a motion that has left the finite numbers. It costs a few comparisons.
+    /// Refuses a motion that has diverged, by [`Error::Diverged`]: its numbers are not finite or,
+    /// in fixed point, were ever out of range. It costs a few comparisons.
+    ///
+    /// Unless [`CHECKS_ENERGY`](Self::CHECKS_ENERGY), a motion whose numbers are finite but
+    /// meaningless is accepted.
     #[doc(hidden)]
     fn check(&self) -> Result<(), Error>;
 
     /// Returns the sine and cosine of both rods as words whose highest bit is the sign.
     ///
-    /// The signs show when a rod turns over. The other bits are in the format of the method's
-    /// numbers.
+    /// The order is `[[sin a1, cos a1], [sin a2, cos a2]]`. The signs show when a rod turns over.
+    /// The other bits are in the format of the method's numbers. A diverged motion has arbitrary
+    /// words.
     #[doc(hidden)]
     fn sides(&self) -> [[i32; 2]; 2];
 
@@ -119,11 +135,14 @@ pub trait Form: Sealed + Copy + Debug + PartialEq + 'static {
 
     /// Returns the directions of both rods in the numbers `Q`. In the direction form this needs no
     /// trigonometry.
+    ///
+    /// They may be up to half a step ahead of the [`state`](Self::state). A diverged motion need
+    /// not show it: in fixed point its directions are finite. Call [`check`](Self::check).
     #[doc(hidden)]
     fn directions<Q: Real>(&self) -> [Direction<Q>; 2];
 
     /// Returns the momenta p1 and p2, kg m^2/s, at the time of the
-    /// [`directions`](Self::directions).
+    /// [`directions`](Self::directions). They are NaN if the motion has diverged in fixed point.
     #[doc(hidden)]
     fn momenta<Q: Real>(&self) -> [Q; 2];
 
@@ -135,14 +154,15 @@ pub trait Form: Sealed + Copy + Debug + PartialEq + 'static {
     }
 
     /// Returns the canonical state in SI units at the number of steps times dt, with all digits
-    /// that the method carries.
+    /// that the method carries. All its numbers are NaN if the motion has diverged in fixed point.
     #[doc(hidden)]
     fn state(&self) -> State<f64>;
 
     /// Returns the energy above rest, J, with all digits that the method carries.
     ///
     /// `pendulum` is the pendulum of this motion. The energy follows from the directions and
-    /// momenta, which may be up to half a step ahead of the [`state`](Self::state).
+    /// momenta, which may be up to half a step ahead of the [`state`](Self::state). It is NaN if
+    /// the motion has diverged in fixed point.
     #[doc(hidden)]
     fn energy_above_rest(&self, pendulum: &Pendulum<f64>) -> f64 {
         let [upper, lower] = self.directions();
@@ -153,12 +173,13 @@ pub trait Form: Sealed + Copy + Debug + PartialEq + 'static {
     #[doc(hidden)]
     const HAS_TURNS: bool = false;
 
-    /// Passes all words of the motion and its number of steps to `feed`, to compare machines.
+    /// Passes the words that the motion carries from step to step to `feed`, one at a time and
+    /// always in the same order, to compare machines.
     #[doc(hidden)]
     fn bits(&self, feed: impl FnMut(u64));
 }
 
-/// Returns the direction with length 1.
+/// Returns the same direction with length 1; NaN if its length is 0.
 pub(crate) fn unit([sin, cos]: Direction<f64>) -> Direction<f64> {
     let inverse = 1.0 / libm::sqrt(sin * sin + cos * cos);
     [sin * inverse, cos * inverse]

@@ -17,7 +17,7 @@ use crate::pendulum::{Pendulum, State};
 /// ```
 ///
 /// The error is O(dt^5) after one step, and O(dt^4) after a fixed time. A negative `dt` steps
-/// backwards.
+/// backwards. The inputs are not checked; NaN gives NaN. The unit of time is that of f.
 #[must_use]
 #[inline]
 pub fn step<R: Real, const N: usize>(f: impl Fn(&[R; N]) -> [R; N], z: &[R; N], dt: R) -> [R; N] {

@@ -43,11 +43,14 @@ impl<R: Real> Pendulum<R> {
     ///
     /// Refuses:
     ///
-    /// - a step that is NaN, infinite, zero or subnormal;
+    /// - a step that is NaN, infinite, zero or subnormal, for [`DirectionF32`](crate::DirectionF32)
+    ///   in `f32`;
     /// - a start that is not finite;
-    /// - a start of more than 2^31 turns, if the method carries directions;
+    /// - a start of 2^31 - 1 turns or more, if the method carries directions or is the closed form;
     /// - a pendulum or a start out of the range of the method's numbers;
-    /// - a step beyond the limit of stability of the fast mode, of frequency w1.
+    /// - for the closed form, a pendulum without gravity;
+    /// - a step beyond the limit of stability of the fast mode, of frequency w1, or beyond that of
+    ///   [`Fixed32`] or [`Fixed64`](crate::Fixed64): [`Error::TooLarge`] contains the longest step.
     ///
     /// The limit of RK4 is w1 dt = 2.83 ([`check_step`](Self::check_step)). Extrapolation of the
     /// orders 2, 4 .. 16 is stable, or lets the mode grow by less than a tenth in a step, up to w1
@@ -85,7 +88,8 @@ impl<R: Real> Pendulum<R> {
     }
 }
 
-/// Prepares the motion. Refuses a step beyond the limit of stability or of the method's numbers.
+/// Prepares the motion. Refuses a step beyond the limit of stability or of the method's numbers;
+/// the error contains the smaller of both limits.
 fn start_within<F: Form>(
     parameters: &Parameters<f64>,
     start: &State<f64>,
@@ -164,13 +168,17 @@ impl<F: Form, const COUNTS_TURNS: bool> Run<F, COUNTS_TURNS> {
     ///
     /// Returns [`Error::Diverged`], and leaves the run unchanged, if the steps have led to:
     ///
-    /// - numbers that are not finite;
+    /// - numbers that are not finite or, in fixed point, out of range;
     /// - directions shorter than 1/2 or longer than 2;
     /// - an energy far above the initial one, because the step was too long for the motion.
     ///
     /// The limit on the energy above rest is 100 times its initial value, plus (m1 + m2) g l1 + m2
-    /// g l2. The limit of [`Fixed32`] is 9/8 of the initial value, plus an allowance for rounding.
-    /// Energy and lengths are checked once at the end of each call, not after every step.
+    /// g l2. There is none if it is too large for the method's numbers. The limit of [`Fixed32`] is
+    /// 9/8 of the initial value, plus an allowance for rounding. [`Fixed64`](crate::Fixed64) checks
+    /// the range of its numbers instead, and the closed form keeps its own energy.
+    ///
+    /// Energy and lengths are checked once at the end of each call, not after every step; in fixed
+    /// point, after every 32 steps and after every step.
     pub fn advance(&mut self, steps: u32) -> Result<(), Error> {
         let Self {
             mut motion,
@@ -223,7 +231,8 @@ impl<F: Form, const COUNTS_TURNS: bool> Run<F, COUNTS_TURNS> {
 
     /// Returns the directions of both rods, (sin, cos) each. A drawing needs no more.
     ///
-    /// They may be up to half a step ahead of the [`state`](Self::state).
+    /// They may be up to half a step ahead of the [`state`](Self::state). They are those of the
+    /// last call of [`advance`](Self::advance) without an error; before, those of the start.
     #[must_use]
     pub fn directions(&self) -> [Direction<F::Real>; 2] {
         self.motion.directions()
@@ -284,7 +293,8 @@ impl<F: Form, const COUNTS_TURNS: bool> Run<F, COUNTS_TURNS> {
         &self.motion
     }
 
-    /// Returns the time since the start, s.
+    /// Returns the time since the start, s: the number of steps times dt, negative if the motion
+    /// runs backwards.
     #[must_use]
     pub fn time(&self) -> f64 {
         self.steps as f64 * self.dt
@@ -303,7 +313,7 @@ impl<const COUNTS_TURNS: bool> Run<Fixed32, COUNTS_TURNS> {
 }
 
 /// Returns a negative number if the sine has changed its sign, from `from` to `to`, and `cos` is
-/// negative.
+/// negative; another number otherwise. Only the highest bit of each word counts.
 #[inline(always)]
 pub(crate) fn turns_over([from, to, cos]: [i32; 3]) -> i32 {
     (from ^ to) & cos
@@ -311,19 +321,24 @@ pub(crate) fn turns_over([from, to, cos]: [i32; 3]) -> i32 {
 
 /// Counts the whole turns of a direction, by the signs of its sine and cosine.
 ///
-/// A direction must be observed at least once per quarter turn.
+/// A direction must be observed at least once per quarter turn, otherwise turns are miscounted.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Turns {
+    /// The number of whole turns, positive counter-clockwise.
     whole: i32,
+    /// The sine and cosine that were observed last, as words whose highest bit is the sign.
     last: [i32; 2],
 }
 
 impl Turns {
-    /// Starts the count at the angles `start`, rad, whose directions have the signs `now`.
+    /// Starts the count at the finite angles `start`, rad, whose directions have the signs `now`.
+    ///
+    /// `now` is the sine and cosine of each rod as words whose highest bit is the sign
+    /// ([`Form::sides`]).
     ///
     /// # Errors
     ///
-    /// Refuses 2^31 - 1 turns or more.
+    /// Refuses 2^31 - 1 turns or more in either direction, by [`Error::OutOfRange`].
     #[inline(never)] // Not inlined, to save flash.
     pub fn of(start: [f64; 2], now: [[i32; 2]; 2]) -> Result<[Self; 2], Error> {
         let mut turns = start.map(|angle| {
@@ -352,8 +367,8 @@ impl Turns {
         now.map(|last| Self { whole: 0, last })
     }
 
-    /// Observes the signs that the directions have now, and counts a turn for each that has turned
-    /// over.
+    /// Observes the signs that the directions have `now` ([`Form::sides`]), and counts a turn for
+    /// each that has turned over. The count wraps after 2^31 turns.
     #[inline]
     pub fn observe(both: &mut [Self; 2], now: [[i32; 2]; 2]) {
         for (turns, now) in both.iter_mut().zip(now) {
@@ -364,7 +379,8 @@ impl Turns {
         }
     }
 
-    /// Returns the angle, rad, including whole turns, of the direction that was observed last.
+    /// Returns the angle, rad, including whole turns, of the direction that was observed last,
+    /// which is the argument.
     #[inline(never)] // Not inlined, to save flash.
     pub fn angle<R: Real>(&self, [s, c]: Direction<R>) -> R {
         R::from_f64(f64::from(self.whole) * core::f64::consts::TAU) + s.atan2(c)

@@ -9,7 +9,8 @@ use crate::pendulum::Parameters;
 /// The largest shift of a quantity. Scaled ratios of masses and rods above 4,000 are refused.
 const MOST: i32 = 12;
 
-/// The units of a motion, and the constants of the equations in these units.
+/// The units of a motion, and the constants of the equations in these units, which have no
+/// dimension.
 ///
 /// The constants and momenta are as in the [direction form](crate::methods::direction), with these
 /// changes of units:
@@ -30,7 +31,7 @@ pub(crate) struct Scaling {
     pub momenta: [f64; 2],
     /// nu/sigma.
     pub norm: f64,
-    /// m.
+    /// m, in the unit of the divided (S, C) and r.
     pub inertia: f64,
     /// G1 and G2.
     pub gravity: [f64; 2],
@@ -51,7 +52,8 @@ pub(crate) struct Shifts {
     pub lower: u32,
 }
 
-/// Returns the error of a motion in fixed point that `is_lost`.
+/// Returns [`Error::Diverged`] if a motion `is_lost`. The error names a1 = NaN, because the
+/// quantity that left its range is not recorded.
 pub(super) fn lost(is_lost: bool) -> Result<(), Error> {
     if is_lost {
         Err(Error::Diverged {
@@ -75,7 +77,10 @@ impl Scaling {
         }
     }
 
-    /// Returns the scaling with T = 1 s. Refuses ratios that need too large shifts.
+    /// Returns the scaling with T = 1 s. The parameters must be valid.
+    ///
+    /// Refuses ratios of masses or rods that need a shift of more than 12, by
+    /// [`Error::OutOfRange`]. It names the value that is farthest from 1.
     #[inline(never)]
     pub fn in_seconds(parameters: &Parameters<f64>) -> Result<Self, Error> {
         let &Parameters { m1, m2, l1, l2, g } = parameters;
@@ -115,7 +120,9 @@ impl Scaling {
 
     /// Returns the longest units of time T for a motion within `bounds`: the longest that keeps
     /// every rate within `rate`, and the longest that keeps every torque of gravity within
-    /// `torque`.
+    /// `torque`. They are in the present unit of time.
+    ///
+    /// The first is infinite if nothing can move, the second without gravity.
     pub fn longest(&self, bounds: &Bounds<f64>, [rate, torque]: [f64; 2]) -> [f64; 2] {
         let [momentum1, momentum2] = self.momenta;
         let rates = [

@@ -3,7 +3,8 @@
 use core::array::from_fn;
 use core::ops::{Add, Mul, Neg, Sub};
 
-/// `N` numbers. Every operation acts on each of them alone, with the same bits as on one number.
+/// `N` numbers, one in each *lane*. Every operation acts on each lane alone, with the same bits as
+/// on one number.
 ///
 /// On x86-64 an operation costs as much as one number for each 4 lanes of `f32` (8 with AVX2) or 2
 /// lanes of `f64` (4 with AVX2), as long as all numbers in use fit the registers.

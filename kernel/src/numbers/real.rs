@@ -23,32 +23,41 @@ pub trait Real:
     + Neg<Output = Self>
     + 'static
 {
+    /// The number 0.
     #[doc(hidden)]
     const ZERO: Self;
+    /// The number 1.
     #[doc(hidden)]
     const ONE: Self;
+    /// The number 2.
     #[doc(hidden)]
     const TWO: Self;
+    /// The number 1/2.
     #[doc(hidden)]
     const HALF: Self;
+    /// The number nearest to pi.
     #[doc(hidden)]
     const PI: Self;
     /// The distance from 1 to the next larger number.
     #[doc(hidden)]
     const EPSILON: Self;
 
-    /// Returns the number nearest to `value`.
+    /// Returns the number nearest to `value`; infinity beyond the largest number, NaN for NaN.
     #[doc(hidden)]
     fn from_f64(value: f64) -> Self;
+    /// Returns the same number as an `f64`, exactly.
     #[doc(hidden)]
     fn to_f64(self) -> f64;
+    /// Returns the number nearest to `value`.
     #[doc(hidden)]
     fn from_i64(value: i64) -> Self;
+    /// Returns the nearest number of the arithmetic `S`, as [`from_f64`](Self::from_f64) does.
     #[inline(always)]
     #[doc(hidden)]
     fn cast<S: Real>(self) -> S {
         S::from_f64(self.to_f64())
     }
+    /// Returns the magnitude.
     #[doc(hidden)]
     #[must_use]
     fn abs(self) -> Self;
@@ -62,14 +71,17 @@ pub trait Real:
     /// to 20 bits.
     #[doc(hidden)]
     fn side(self) -> i32;
+    /// Returns the number whose [`side`](Self::side) is the word `side`.
     #[doc(hidden)]
     fn from_side(side: i32) -> Self;
     /// Returns the square root, correctly rounded; NaN below 0.
     #[doc(hidden)]
     #[must_use]
     fn sqrt(self) -> Self;
+    /// Returns the bits of the IEEE 754 format; those of an `f32` are the lower 32.
     #[doc(hidden)]
     fn bits(self) -> u64;
+    /// Returns true if the number is neither infinite nor NaN.
     #[doc(hidden)]
     fn is_finite(self) -> bool;
     /// Returns true if the number has its full relative precision: it is finite, not zero and not
@@ -77,7 +89,7 @@ pub trait Real:
     #[doc(hidden)]
     fn is_normal(self) -> bool;
     /// Returns the angle of the point (`x`, `self`) from the positive x axis, rad, in [-pi, pi]. It
-    /// is computed by the `libm` crate.
+    /// is computed by the `libm` crate. NaN gives NaN; two zeros give 0 or pi with a sign, as in C.
     #[doc(hidden)]
     #[must_use]
     fn atan2(self, x: Self) -> Self;
@@ -88,6 +100,9 @@ pub trait Real:
     /// | `f32` | 9e-8 to pi, 1e-7 to 1e4 | 13 multiplies, 12 adds | about 40 cycles (estimate) |
     /// | `f64` | 2 ulp | 19 multiplies, 21 adds | 40 calls of soft float |
     ///
+    /// The errors of `f32` are absolute, for magnitudes of the angle up to pi and up to 1e4 rad.
+    /// The error of `f64` is in units in the last place of the result.
+    ///
     /// An `f32` beyond 12,867 is computed in double precision. An `f64` beyond 1,647,098 is
     /// computed by the `libm` crate, which is accurate but slow. For infinity and NaN both results
     /// are NaN. The kernel's tests assert the errors; a test of all floats in [-pi, pi] runs on
@@ -96,8 +111,8 @@ pub trait Real:
     fn own_sin_cos(self) -> (Self, Self);
 }
 
-/// Defines `x` + `x` with the same bits, by integers unless `x` is zero, subnormal, NaN or close to
-/// overflow.
+/// Defines a function that returns `x` + `x` with the same bits, computed by integers unless `x` is
+/// zero, subnormal, NaN or close to overflow.
 macro_rules! twice_by_bits {
     ($name:ident, $float:ident) => {
         #[inline(always)]
@@ -226,6 +241,7 @@ real!(
 mod tests {
     use super::*;
 
+    /// Compares `twice_single` and `twice_double` with `x` + `x`, bit for bit; NaN must give NaN.
     /// The numbers have every sign and exponent, and a spread of fractions that includes the ends.
     #[test]
     fn twice_by_bits_is_the_sum() {

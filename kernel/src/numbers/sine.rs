@@ -7,7 +7,8 @@ use core::ops::Neg;
 
 use super::Real;
 
-/// Returns (sin x, cos x) of an `f32`.
+/// Returns (sin x, cos x) of an `f32` in rad; NaN for infinity and NaN. [`Real::own_sin_cos`] gives
+/// the errors.
 #[inline]
 pub(super) fn single(x: f32) -> (f32, f32) {
     /// pi/2 in three parts. The first two have 11 bits each, so that their products with k are
@@ -41,7 +42,8 @@ pub(super) fn single(x: f32) -> (f32, f32) {
     }
 }
 
-/// Returns (sin x, cos x) of an `f64`.
+/// Returns (sin x, cos x) of an `f64` in rad; NaN for infinity and NaN. [`Real::own_sin_cos`] gives
+/// the errors.
 #[inline]
 pub(super) fn double(x: f64) -> (f64, f64) {
     /// pi/2 in three parts. The first two have 33 bits each, so that their products with k are

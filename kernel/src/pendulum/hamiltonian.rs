@@ -76,7 +76,8 @@ impl<R: Real> Pendulum<R> {
     /// and one division.
     ///
     /// The difference from the form of `[math24]` is at most 1e-13 (`f64`) or 2e-6 (`f32`) of the
-    /// largest term.
+    /// largest term. The state is not checked: one that is not finite gives
+    /// NaN or infinity.
     #[must_use]
     #[inline]
     pub fn derivatives(&self, z: &[R; 4]) -> [R; 4] {
@@ -84,7 +85,8 @@ impl<R: Real> Pendulum<R> {
         self.derivatives_at([a1.own_sin_cos(), a2.own_sin_cos()], [p1, p2])
     }
 
-    /// Returns the [`derivatives`](Self::derivatives) for known directions (sin, cos) of both rods.
+    /// Returns the [`derivatives`](Self::derivatives) for known directions (sin, cos) of both rods,
+    /// each of length 1, and momenta (p1, p2), kg m^2/s. It needs no trigonometry.
     #[doc(hidden)]
     #[inline]
     pub fn derivatives_at(
@@ -120,7 +122,7 @@ impl<R: Real> Pendulum<R> {
     /// with q1 = p1/l1, q2 = p2/l2 and the D and den of [`derivatives`](Self::derivatives). The
     /// kinetic energy is a sum of squares, so that it cannot be negative. The exact motion
     /// conserves H; its minimum is [`least_energy`](Self::least_energy). The cost is three sincos
-    /// and two divisions.
+    /// and two divisions. A state that is NaN gives NaN.
     #[must_use]
     pub fn energy(&self, state: &State<R>) -> R {
         let (_, cos1) = state.a1.own_sin_cos();
@@ -130,8 +132,10 @@ impl<R: Real> Pendulum<R> {
             - self.torque[1] * cos2
     }
 
-    /// Returns the [`energy`](Self::energy) for known directions (sin, cos) of both rods and
+    /// Returns the [`energy`](Self::energy) H, J, for known directions (sin, cos) of both rods and
     /// momenta (p1, p2), kg m^2/s. It needs no trigonometry.
+    ///
+    /// The directions must be of length 1; this is not checked.
     #[must_use]
     #[inline(never)] // Not inlined, to save flash.
     pub fn energy_at(&self, [[sin1, cos1], [sin2, cos2]]: [[R; 2]; 2], momenta: [R; 2]) -> R {
@@ -144,7 +148,7 @@ impl<R: Real> Pendulum<R> {
     /// K = T + (m1 + m2) g l1 (1 - cos a1) + m2 g l2 (1 - cos a2)
     ///
     /// No term is negative, so that K keeps its relative precision for the smallest motions. There
-    /// H and min V nearly cancel.
+    /// H and min V nearly cancel. A state that is NaN gives NaN.
     #[must_use]
     pub fn energy_above_rest(&self, state: &State<R>) -> R {
         let height1 = one_minus_cos(state.a1.own_sin_cos());
@@ -154,8 +158,8 @@ impl<R: Real> Pendulum<R> {
             + self.torque[1] * height2
     }
 
-    /// Returns the [energy above rest](Self::energy_above_rest) for known directions (sin, cos) of
-    /// both rods and momenta (p1, p2), kg m^2/s. It needs no trigonometry.
+    /// Returns the [energy above rest](Self::energy_above_rest), J, for known directions (sin, cos)
+    /// of both rods, each of length 1, and momenta (p1, p2), kg m^2/s. It needs no trigonometry.
     #[doc(hidden)]
     #[must_use]
     #[inline(never)] // Not inlined, to save flash.
@@ -177,7 +181,7 @@ impl<R: Real> Pendulum<R> {
         -(self.torque[0] + self.torque[1])
     }
 
-    /// Returns T from (sin D, cos D) and the momenta.
+    /// Returns the kinetic energy T, J, from (sin D, cos D) and the momenta, kg m^2/s.
     #[inline(never)] // Not inlined, to save flash.
     fn kinetic_energy_of(&self, (sin_d, cos_d): (R, R), [p1, p2]: [R; 2]) -> R {
         let Parameters { m1, m2, .. } = self.parameters;

@@ -7,7 +7,8 @@
 use crate::numbers::Real;
 use crate::pendulum::{Motion, Parameters, Pendulum, State};
 
-/// A vector in the plane of motion; the pivot is the origin, x points right, y up.
+/// A vector in the plane of motion: a position, m, or a velocity, m/s. The pivot is the origin, x
+/// points right, y up.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Vector<R> {
     /// The horizontal part, positive to the right.
@@ -17,6 +18,7 @@ pub struct Vector<R> {
 }
 
 impl<R: Real> Vector<R> {
+    /// Returns the sum of two vectors.
     fn plus(self, other: Self) -> Self {
         Self {
             x: self.x + other.x,
@@ -132,7 +134,7 @@ impl<R: Real> Pendulum<R> {
         [[(m1 + m2) * l1 * l1, coupling], [coupling, m2 * l2 * l2]]
     }
 
-    /// Converts velocities to momenta, p_i = dL/dw_i.
+    /// Converts angular velocities to momenta, p_i = dL/dw_i, kg m^2/s. The angles are kept.
     ///
     /// - p1 = (m1 + m2) l1^2 w1 + m2 l1 l2 w2 cos D
     /// - p2 = m2 l2^2 w2 + m2 l1 l2 w1 cos D
@@ -151,7 +153,8 @@ impl<R: Real> Pendulum<R> {
         }
     }
 
-    /// Converts momenta to velocities, w = M^-1 p: the first pair of Hamilton's equations.
+    /// Converts momenta to angular velocities, w = M^-1 p, rad/s: the first pair of Hamilton's
+    /// equations. The angles are kept.
     ///
     /// If m2 is much larger than m1 and the rods are parallel, p1 l2 and p2 l1 nearly cancel. The
     /// relative error of w1 is then up to m2/m1 roundings by any formula, because the momenta

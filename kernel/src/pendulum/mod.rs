@@ -10,5 +10,6 @@ pub use lagrangian::Vector;
 pub use parameters::Parameters;
 pub use state::{Motion, State};
 
-/// (sin, cos) of an angle from the downward vertical.
+/// `[sin, cos]` of an angle from the downward vertical. Its length is 1, except for the errors of
+/// the method that computed it.
 pub type Direction<R> = [R; 2];

@@ -25,6 +25,8 @@ impl<R: Real> Parameters<R> {
     ///
     /// If `l` and `g` are 1, the equations are the dimensionless equations of `[math24]` for equal
     /// rods. Then the unit of time is sqrt(l/g), of momenta m1 l^2 sqrt(g/l), and of energy m1 g l.
+    ///
+    /// The numbers are not checked; [`Pendulum::new`](crate::Pendulum::new) checks them.
     #[must_use]
     pub fn equal_rods(mu: R, l: R, g: R) -> Self {
         Self {
@@ -96,6 +98,7 @@ impl<R: Real> Parameters<R> {
         Error::OutOfRange { parameter, value }
     }
 
+    /// Returns the five numbers with their names.
     fn named(&self) -> [(Parameter, f64); 5] {
         [
             (Parameter::M1, self.m1.to_f64()),

@@ -40,13 +40,13 @@ impl<R: Real> State<R> {
     }
 
     /// Returns the same numbers in the arithmetic `S`, each rounded once. From `f32` to `f64` the
-    /// numbers are exact.
+    /// numbers are exact. A number out of the range of `S` becomes infinite or zero.
     #[must_use]
     pub fn cast<S: Real>(self) -> State<S> {
         <[R; 4]>::from(self).map(R::cast).into()
     }
 
-    /// Refuses NaN and infinite values.
+    /// Refuses NaN and infinite values: [`Error::NotFinite`] names the first of them.
     #[inline(never)] // Not inlined, to save flash.
     #[doc(hidden)]
     pub fn check(&self) -> Result<(), Error> {
@@ -59,14 +59,14 @@ impl<R: Real> State<R> {
     }
 }
 
-/// Converts from the order of `[math24]`, angles first.
+/// Converts from the order of `[math24]`: a1, a2, p1, p2.
 impl<R> From<[R; 4]> for State<R> {
     fn from([a1, a2, p1, p2]: [R; 4]) -> Self {
         Self { a1, a2, p1, p2 }
     }
 }
 
-/// Converts to the order of `[math24]`, angles first.
+/// Converts to the order of `[math24]`: a1, a2, p1, p2.
 impl<R> From<State<R>> for [R; 4] {
     fn from(point: State<R>) -> Self {
         [point.a1, point.a2, point.p1, point.p2]
@@ -135,13 +135,13 @@ impl<R: Real> Motion<R> {
     }
 
     /// Returns the same numbers in the arithmetic `S`, each rounded once. From `f32` to `f64` the
-    /// numbers are exact.
+    /// numbers are exact. A number out of the range of `S` becomes infinite or zero.
     #[must_use]
     pub fn cast<S: Real>(self) -> Motion<S> {
         <[R; 4]>::from(self).map(R::cast).into()
     }
 
-    /// Refuses NaN and infinite values.
+    /// Refuses NaN and infinite values: [`Error::NotFinite`] names the first of them.
     #[inline(never)] // Not inlined, to save flash.
     #[doc(hidden)]
     pub fn check(&self) -> Result<(), Error> {
@@ -154,14 +154,14 @@ impl<R: Real> Motion<R> {
     }
 }
 
-/// Converts from the order of `[math24]`, angles first.
+/// Converts from the order of `[math24]`: a1, a2, w1, w2.
 impl<R> From<[R; 4]> for Motion<R> {
     fn from([a1, a2, w1, w2]: [R; 4]) -> Self {
         Self { a1, a2, w1, w2 }
     }
 }
 
-/// Converts to the order of `[math24]`, angles first.
+/// Converts to the order of `[math24]`: a1, a2, w1, w2.
 impl<R> From<Motion<R>> for [R; 4] {
     fn from(point: Motion<R>) -> Self {
         [point.a1, point.a2, point.w1, point.w2]

@@ -13,6 +13,7 @@ const WORTH: f64 = 1.1;
 /// A method and step count with the accuracy that was measured for it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Candidate {
+    /// The method and its number of steps per frame.
     pub stepping: Stepping,
     /// The number of frames from the start that are within the tolerance.
     pub accurate_frames: u32,
@@ -35,6 +36,7 @@ enum CandidateState {
 }
 
 impl Candidate {
+    /// Creates a candidate that takes part in its trial, without a frame so far.
     pub fn new(stepping: Stepping) -> Self {
         Self {
             stepping,
@@ -50,13 +52,13 @@ impl Candidate {
         self.state == CandidateState::Accurate
     }
 
-    /// Excludes the candidate from the trial.
+    /// Excludes the candidate from the trial. Its accurate frames so far still count.
     pub fn exclude(&mut self) {
         self.state = CandidateState::Excluded;
     }
 
-    /// Returns true if the horizon is more than [`WORTH`] times as long as that of `other`, which
-    /// is worth a higher cost.
+    /// Returns true if the candidate has more than [`WORTH`] times as many accurate frames as
+    /// `other`, which is worth a higher cost.
     pub fn has_longer_horizon(&self, other: &Self) -> bool {
         f64::from(self.accurate_frames) > WORTH * f64::from(other.accurate_frames)
     }
@@ -64,8 +66,9 @@ impl Candidate {
     /// Records the next frame.
     ///
     /// `error` is an estimate of its error, and `bound` is an upper bound that is exceeded only in
-    /// rare cases. Both are in units of the tolerance. A NaN bound counts as inaccurate. After the
-    /// first inaccurate frame nothing more is recorded.
+    /// rare cases. Both are in units of the tolerance. The frame is accurate if the bound is at
+    /// most [`TOLERATED`]; a NaN bound counts as inaccurate. After the first inaccurate frame, or
+    /// if the candidate is excluded, nothing is recorded.
     #[inline(never)] // Not inlined, to save flash.
     pub fn note(&mut self, error: f32, bound: f32) {
         if !self.is_accurate() {

@@ -8,8 +8,9 @@ use crate::table::{DrawnMethod, Method};
 /// The price list of a processor: the cost of a step by each method of [`Method::DRAWN`], and of a
 /// frame by the closed form.
 ///
-/// The unit is arbitrary, usually cycles; the [`Budget`] has the same unit. The lists of some
-/// processors are [`CORTEX_M3`](Self::CORTEX_M3), [`CORTEX_M4F`](Self::CORTEX_M4F) and
+/// The unit is arbitrary, usually cycles; the [`Budget`] has the same unit. Every price must be
+/// finite and more than 0, otherwise a search is refused. The lists of some processors are
+/// [`CORTEX_M3`](Self::CORTEX_M3), [`CORTEX_M4F`](Self::CORTEX_M4F) and
 /// [`CORTEX_M0PLUS`](Self::CORTEX_M0PLUS).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Costs {
@@ -46,8 +47,9 @@ impl Costs {
         })
     }
 
-    /// Returns the cost of a frame by this method and step count. It is infinite for a method that
-    /// scenes are not drawn by.
+    /// Returns the cost of a frame by this method and step count, in the unit of the prices. It is
+    /// infinite for a method that is not in [`Method::DRAWN`], and 0 for a step count of 0, except
+    /// for the closed form, which has the cost of one frame at any step count.
     #[inline(never)] // Not inlined, to save flash.
     #[doc(hidden)]
     #[must_use]
@@ -64,12 +66,13 @@ impl Costs {
     }
 }
 
-/// The largest costs that are allowed, in the unit of the [`Costs`].
+/// The largest costs that are allowed, in the unit of the [`Costs`]. Both must be finite and more
+/// than 0, otherwise a search is refused.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Budget {
-    /// The largest cost of computing a frame.
+    /// The largest cost of computing a frame, without drawing it.
     pub frame: f32,
-    /// The largest cost of planning.
+    /// The largest cost of all pieces of a search together.
     pub planning: f32,
 }
 
@@ -78,6 +81,7 @@ pub struct Budget {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[doc(hidden)]
 pub struct Stepping {
+    /// The method. Only those in [`Method::DRAWN`] can be run or planned.
     pub method: Method,
     /// The number of steps per frame. The closed form has no steps and ignores it.
     pub steps: u32,
@@ -117,8 +121,8 @@ pub(super) const MOST_STEPS: u32 = 1 << 16;
 /// Returns the smallest number of steps per frame that makes steps of at most `longest` s, at
 /// `rate` frames per second.
 ///
-/// In 32 bits it is a power of two, because steps are refined by powers of two. The result is from
-/// 1 to [`MOST_STEPS`].
+/// Except in 64 bits it is a power of two, because steps are refined by powers of two. The result
+/// is from 1 to [`MOST_STEPS`]; at the largest number the steps may be longer than `longest`.
 #[inline(never)] // Not inlined, to save flash.
 pub(super) fn steps_to_frame(method: Method, rate: u16, longest: f64) -> u32 {
     let fewest = libm::ceil(1.0 / (longest * f64::from(rate)));
@@ -133,7 +137,9 @@ pub(super) fn steps_to_frame(method: Method, rate: u16, longest: f64) -> u32 {
 /// The reference of a trial: a coarse and a fine run in 64 bits. Both may also be candidates.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Pair {
+    /// The run in longer steps, usually by a third.
     pub coarse: Stepping,
+    /// The run that others are compared with. Both are by [`Method::Extrapolation10Fixed64`].
     pub fine: Stepping,
 }
 
@@ -145,6 +151,7 @@ const TRUST: f32 = 16.0;
 const LEAST_SHARE: f32 = 1.0 / 32.0;
 
 impl Pair {
+    /// Creates a pair from the steps per frame of its runs. `coarse` must be less than `fine`.
     fn new(coarse: u32, fine: u32) -> Self {
         let [coarse, fine] = [coarse, fine].map(|steps| Stepping {
             method: Method::Extrapolation10Fixed64,
@@ -155,7 +162,7 @@ impl Pair {
 
     /// Returns the pair whose coarse run makes `steps` steps per frame.
     ///
-    /// The fine run makes a third more steps, and at least `least`.
+    /// The fine run makes a third more steps, at least one more, and in all at least `least`.
     pub fn of_coarse(steps: u32, least: u32) -> Self {
         let more = (steps / 3).max(1);
         Self::new(steps, steps.saturating_add(more).max(least))
@@ -163,6 +170,7 @@ impl Pair {
 
     /// Returns a pair for each of the [`FINE`] steps of the fine run, the finest pair first.
     ///
+    /// `rate` is the number of frames per second, and `admissible` the admissible step, s.
     /// The coarse run makes at least `least` steps per frame and, unless `most` is less than
     /// `least`, at most `most`. If `most` is less than the usual number, the fine run makes a third
     /// more than `most`, and at least as many as the longest of the [`FINE`] steps.
@@ -188,7 +196,8 @@ impl Pair {
         })
     }
 
-    /// Returns the share of the distance between both runs that bounds the error of the fine run.
+    /// Returns the share of the distance between both runs that bounds the truncation error of the
+    /// fine run: [`TRUST`] times (coarse/fine)^10, but at least [`LEAST_SHARE`] and at most 1.
     ///
     /// If both runs resolve the motion, the order of the method gives (coarse/fine)^10.
     pub fn share_of_fine(&self) -> f32 {
@@ -205,7 +214,8 @@ pub(super) const JUDGING: usize = 4;
 ///
 /// # Errors
 ///
-/// Refuses the inputs that [`Pendulum::new`] and [`Pendulum::admissible_step`] refuse.
+/// Refuses the inputs that [`Pendulum::new`] and [`Pendulum::admissible_step`] refuse. The result
+/// is infinite if nothing can move, and NaN for a start that is NaN.
 #[inline(never)] // Not inlined, to save flash.
 pub(super) fn admissible_step(problem: &Problem) -> Result<f64, Error> {
     let pendulum = Pendulum::new(&problem.pendulum)?;
@@ -225,11 +235,14 @@ impl Stepping {
     /// 4. the same in twice as long steps. Longer ones gain or lose several percent of the energy
     ///    within seconds.
     ///
-    /// Returns `None` if a frame pays for none of these.
+    /// `frame` is the frame budget in the unit of `costs`. Returns `None` if a frame pays for none
+    /// of these, or if the methods refuse the motion.
     ///
     /// # Errors
     ///
-    /// Refuses what [`Pendulum::new`] and [`Pendulum::admissible_step`] refuse.
+    /// Refuses a pendulum that [`Pendulum::new`] or [`Pendulum::admissible_step`] refuses: with
+    /// masses or lengths that are not finite or not positive, with a gravity that is not finite or
+    /// negative, or with numbers out of range.
     #[doc(hidden)]
     pub fn initial(problem: &Problem, costs: &Costs, frame: f32) -> Result<Option<Self>, Error> {
         let admissible = admissible_step(problem)?;
@@ -256,7 +269,10 @@ impl Stepping {
     }
 
     /// Returns `method` in the longest steps that a search tries first or, if the method refuses
-    /// these as too long, in the longest that it accepts.
+    /// these as too long, in the longest that it accepts. The cost of a frame does not matter.
+    ///
+    /// If the method refuses the motion itself, or every step count below 65,536, the result has
+    /// the step count that was tried first, which [`PlannedRun::new`] refuses.
     ///
     /// # Errors
     ///
@@ -303,7 +319,8 @@ impl Stepping {
 
     /// Returns `method` with `steps` steps per frame, or with more if it refuses these as too long.
     ///
-    /// Returns `None` if the method refuses the motion, or if the step count is not `allowed`.
+    /// Returns `None` if the method refuses the motion for another reason, if the step count is not
+    /// `allowed`, or if it reaches [`MOST_STEPS`].
     #[inline(never)] // Not inlined, to save flash.
     fn accepted(
         method: Method,
@@ -334,7 +351,7 @@ impl Stepping {
         None
     }
 
-    /// Checks that the motion can be started by this method and step count.
+    /// Returns the error of a motion that cannot be started by this method and step count.
     #[inline(never)] // The motion is on the stack.
     fn check(self, problem: &Problem) -> Result<(), Error> {
         PlannedRun::new(problem, self).map(|_| ())
@@ -346,6 +363,10 @@ mod tests {
     use super::*;
 
     /// Pendulums that need different step counts, on chips that can pay for few or for many steps.
+    ///
+    /// Each pair has its coarse run between `least` and `most` steps and its fine run above that.
+    /// If `most` is below `least`, only `least` counts. No pair is finer than the one before, and
+    /// every fine run makes at least as many steps as the longest of the [`FINE`] steps needs.
     #[test]
     fn pairs_keep_their_step_limits_and_resolve_the_motion() {
         for admissible in [1e-4, 1e-3, 3e-3, 1e-2, 1.0] {
@@ -367,7 +388,9 @@ mod tests {
         }
     }
 
-    /// Twice the steps reduce an error of order 10 by 2^10. The assumed share is larger.
+    /// The share is [`LEAST_SHARE`] with twice the steps, 1 with one percent more, and
+    /// [`TRUST`] times 0.75^10 with a third more. Twice the steps reduce an error of order 10 by
+    /// 2^10; the assumed share is larger.
     #[test]
     fn share_of_the_fine_run_follows_from_its_order_within_limits() {
         assert_eq!(Pair::new(3, 6).share_of_fine(), LEAST_SHARE);

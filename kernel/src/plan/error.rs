@@ -16,7 +16,8 @@ pub enum Limit {
     Growth,
     /// The frame budget. Finer steps or 64 bits may be accurate for longer, but cost more.
     Budget,
-    /// The planning budget. It does not cover the next frame, or a trial in finer steps.
+    /// The planning budget. It does not cover the next motion or frame of a trial, or a trial in
+    /// finer steps.
     Planning,
     /// The method and step count, which the caller has fixed ([`Search::of`](super::Search::of)).
     /// Others may have a longer horizon.
@@ -47,13 +48,14 @@ pub enum PlanError {
     /// An input is refused; the error contains its value.
     ///
     /// The pendulum or its start is invalid or out of the range of `f32`, or a tolerance, duration,
-    /// rate, cost or budget is not positive.
+    /// rate, cost or budget is not finite or not positive, or there are 2^32 frames or more, or the
+    /// method fixed by the caller is not in [`Method::DRAWN`](crate::Method::DRAWN).
     Refused(Error),
     /// No method within the budgets has an accurate frame. All inputs are valid.
     NoMethod {
-        /// The limit that forbids finer steps.
+        /// The limit that forbids finer steps, usually the budget to raise.
         limit: Limit,
-        /// The cost of planning.
+        /// The cost of planning, in the unit of the [`Costs`](super::Costs).
         spent: f32,
     },
 }

@@ -105,19 +105,20 @@ pub struct Plan {
     pub steps: u32,
     /// The step size, s; 0 for the closed form.
     pub dt: f64,
-    /// The largest expected error until the horizon, divided by the tolerance.
+    /// The largest expected error until the horizon, divided by the tolerance: from 0 to 1.
     pub error: f32,
-    /// The cost of computing a frame, without drawing it. It is at most the frame budget, unless
-    /// the method was fixed by the caller ([`Search::of`]).
+    /// The cost of computing a frame, without drawing it, in the unit of the [`Costs`]. It is at
+    /// most the frame budget, unless the method was fixed by the caller ([`Search::of`]).
     pub cost: f32,
-    /// The accuracy horizon, s: all frames until this time are predicted to be accurate.
+    /// The accuracy horizon, s since the start: all frames until this time are predicted to be
+    /// accurate. It is the duration of the problem if all its frames are.
     ///
     /// The prediction is not a proof, because the bound on rounding errors is a measured one. A
     /// frame may be inaccurate a little earlier (the repository's test `plan_study`).
     pub horizon: f64,
     /// The reason why the horizon is not longer.
     pub limit: Limit,
-    /// The cost of planning; at most the planning budget.
+    /// The cost of planning, in the unit of the [`Costs`]; at most the planning budget.
     pub spent: f32,
 }
 
@@ -127,7 +128,7 @@ impl Plan {
     /// # Errors
     ///
     /// Refuses the inputs that [`Search::new`] and [`Search::advance`] refuse. Returns
-    /// [`PlanError::NoMethod`] if no method has an accurate frame.
+    /// [`PlanError::NoMethod`] if no method within the budgets has an accurate frame.
     pub fn search(problem: &Problem, costs: &Costs, budget: &Budget) -> Result<Self, PlanError> {
         let mut search = Search::new(problem, costs, budget)?;
         loop {
@@ -137,6 +138,7 @@ impl Plan {
         }
     }
 
+    /// Returns the method and step count; the count is 1 for the closed form.
     #[doc(hidden)]
     #[must_use]
     pub fn stepping(&self) -> Stepping {
@@ -148,9 +150,13 @@ impl Plan {
 
     /// Returns the motion of the planned `problem` at its start.
     ///
+    /// A motion of another problem starts, too, but nothing is known of its accuracy.
+    ///
     /// # Errors
     ///
-    /// Refuses the inputs that [`PlannedRun::new`] refuses.
+    /// Refuses a problem with a start that is not finite, with numbers out of the range of the
+    /// method or, in fixed point, with a step that is too long; for the closed form a pendulum
+    /// without normal modes; and a method that is not in [`Method::DRAWN`].
     pub fn run(&self, problem: &Problem) -> Result<PlannedRun, Error> {
         PlannedRun::new(problem, self.stepping())
     }

@@ -6,26 +6,29 @@ use crate::pendulum::{Motion, Parameters, State};
 use crate::table::{Method, Numbers};
 
 /// A pendulum and its start, the frames that show it, and the tolerance.
+///
+/// The fields are not checked until a [`Search`](super::Search) starts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Problem {
     /// The masses, lengths and gravity.
     pub pendulum: Parameters<f64>,
-    /// The angles and angular velocities at the start.
+    /// The angles, rad, and angular velocities, rad/s, at the start.
     pub start: Motion<f64>,
-    /// The largest allowed distance of a bob from its exact position, m. It applies to both bobs,
-    /// and to the position of bob 2 relative to bob 1.
+    /// The largest allowed distance of a bob from its exact position, m; more than 0. It applies to
+    /// both bobs, and to the position of bob 2 relative to bob 1.
     pub tolerance: f64,
-    /// The duration of the motion, s.
+    /// The duration of the motion, s; more than 0, and at most (2^32 - 1)/`rate`.
     pub duration: f64,
-    /// The number of frames per second.
+    /// The number of frames per second; at least 1.
     pub rate: u16,
 }
 
 impl Problem {
     /// Checks the problem, the costs and the budgets.
     ///
-    /// Refuses NaN and infinite values, values that are not positive, and more frames than a `u32`
-    /// can count. The pendulum is checked by the functions that use it.
+    /// Refuses a start that is not finite; a tolerance, duration, rate, price or budget that is
+    /// NaN, infinite, zero or negative; and more frames than a `u32` can count. The error names the
+    /// first of these. The pendulum is checked by the functions that use it.
     pub(super) fn check(&self, costs: &Costs, budget: &Budget) -> Result<(), Error> {
         self.start.check()?;
         let prices = Method::DRAWN
@@ -64,7 +67,8 @@ impl Problem {
         }
     }
 
-    /// Returns the number of frames after the one at the start, at least 1.
+    /// Returns the number of frames after the one at the start: the duration times the rate,
+    /// rounded to the nearest integer, at least 1.
     #[inline(never)] // Not inlined, to save flash.
     #[doc(hidden)]
     #[must_use]
@@ -73,15 +77,15 @@ impl Problem {
         if frames == 0 { 1 } else { frames }
     }
 
-    /// Returns the time of frame `frame`, s.
+    /// Returns the time of frame `frame` since the start, s. Frame 0 is the start.
     #[doc(hidden)]
     #[must_use]
     pub fn time(&self, frame: u32) -> f64 {
         f64::from(frame) / f64::from(self.rate)
     }
 
-    /// Returns the pendulum and `start` with some numbers changed by the rounding error of
-    /// `method`.
+    /// Returns the pendulum and `start` with their numbers changed by a perturbation, times the
+    /// rounding error of `method`. m1 and l1 are not changed.
     #[inline(never)]
     pub(super) fn perturbed(
         &self,
@@ -110,7 +114,8 @@ impl Problem {
     }
 }
 
-/// Returns the relative rounding error of an input of `method`.
+/// Returns the relative rounding error, epsilon, of an input of `method`: that of `f32` or `f64`,
+/// 2^-29 in 32 bits of fixed point, and that of `f64` in 64 bits of fixed point.
 fn epsilon(method: Method) -> f64 {
     match method.numbers() {
         Numbers::F32 | Numbers::CompensatedF32 => f32::EPSILON.into(),
@@ -146,6 +151,11 @@ pub(super) const PERTURBATIONS: [Perturbation; 3] = [
 mod tests {
     use super::*;
 
+    /// A start without a perturbation and the same start with each of the three perturbations are
+    /// rounded to the numbers of each drawn method. No two of the four may be equal in m2, g, both
+    /// angles and both momenta. No number may differ from the unperturbed one by more than two
+    /// epsilons of the method, relative to it, and all must be finite.
+    ///
     /// The size 0.7 makes numbers that need rounding in `f32` but not in `f64`. The size 1.0 makes
     /// rods and masses that are powers of two.
     #[test]

@@ -12,7 +12,8 @@ pub type Directions = [Direction<f32>; 2];
 
 /// A motion in progress, frame by frame, by the method of a plan.
 ///
-/// It is bit-identical to the motion that the search has measured.
+/// It is bit-identical to the motion that the search has measured. After [`advance`](Self::advance)
+/// has returned an error, directions, angles and states are meaningless, and may look valid.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlannedRun {
     stepping: Stepping,
@@ -24,12 +25,15 @@ pub struct PlannedRun {
 }
 
 impl PlannedRun {
-    /// Creates the motion of `problem` at its start. A step count of 0 counts as 1.
+    /// Creates the motion of `problem` at its start. A step count of 0 counts as 1, and so does any
+    /// step count of the closed form. The tolerance and the duration are not used.
     ///
     /// # Errors
     ///
-    /// Refuses the inputs that [`Pendulum::run`] refuses, for the closed form a pendulum without
-    /// normal modes, and methods that are not in [`Method::DRAWN`].
+    /// Refuses a start that is not finite, the inputs that [`Pendulum::run`] refuses, for the
+    /// closed form a pendulum without normal modes, and methods that are not in [`Method::DRAWN`].
+    /// A rate of 0 is refused as a step that is not finite. Unlike [`Pendulum::run`], it accepts
+    /// steps beyond the limit of stability in `f32`.
     #[inline(never)] // Not inlined, to save flash.
     #[doc(hidden)]
     pub fn new(
@@ -63,6 +67,7 @@ impl PlannedRun {
         })
     }
 
+    /// Returns the method and its number of steps per frame, at least 1.
     #[doc(hidden)]
     #[must_use]
     pub fn stepping(&self) -> Stepping {
@@ -73,8 +78,8 @@ impl PlannedRun {
     ///
     /// # Errors
     ///
-    /// Returns [`Error::Diverged`] if the motion has left the finite numbers. Every later call then
-    /// returns it, too.
+    /// Returns [`Error::Diverged`] if the motion has left the finite numbers, or the range of its
+    /// fixed point. Every later call then returns it, too. The frames are counted all the same.
     #[inline(never)] // Not inlined, to save flash.
     pub fn advance(&mut self, frames: u32) -> Result<(), Error> {
         for _ in 0..frames {
@@ -88,27 +93,31 @@ impl PlannedRun {
         self.motion.check()
     }
 
-    /// The number of frames since the start.
+    /// Returns the number of frames since the start.
     #[doc(hidden)]
     #[must_use]
     pub fn frame(&self) -> u64 {
         self.frame
     }
 
-    /// Returns the time since the start, s.
+    /// Returns the time since the start, s: the number of frames divided by the rate.
     #[must_use]
     pub fn time(&self) -> f64 {
         self.frame as f64 / f64::from(self.rate)
     }
 
-    /// Returns the directions of both rods, (sin, cos) each.
+    /// Returns the directions of both rods: `[[sin a1, cos a1], [sin a2, cos a2]]`. Their lengths
+    /// are 1 up to the errors of the method.
+    ///
+    /// Except by the closed form they may be up to half a step ahead of the [`time`](Self::time).
     #[must_use]
     pub fn directions(&self) -> Directions {
         self.motion.directions()
     }
 
     /// Returns both angles, rad, including whole turns, at the time of the
-    /// [`directions`](Self::directions).
+    /// [`directions`](Self::directions). A rod that turns by more than a quarter turn in a step may
+    /// be miscounted by whole turns.
     #[must_use]
     pub fn angles(&self) -> [f32; 2] {
         let ([turns1, turns2], [direction1, direction2]) = (&self.turns, self.directions());
@@ -129,7 +138,7 @@ impl PlannedRun {
     }
 
     /// Returns the energy above rest, J, of the motion as it is carried: nothing is rounded to
-    /// `f32`. `pendulum` is the pendulum of the problem.
+    /// `f32`. `pendulum` must be the pendulum of the problem; another one gives a wrong energy.
     #[inline(never)]
     #[doc(hidden)]
     #[must_use]
@@ -137,8 +146,8 @@ impl PlannedRun {
         self.motion.energy_above_rest(pendulum)
     }
 
-    /// Returns the canonical state in SI units, with all digits that the method carries. The angles
-    /// include whole turns.
+    /// Returns the canonical state in SI units at the [`time`](Self::time), with all digits that
+    /// the method carries. The angles include whole turns.
     #[must_use]
     #[inline(never)]
     pub fn state(&self) -> State<f64> {

@@ -38,8 +38,11 @@ use crate::table::Method;
 
 /// A motion that a trial advances.
 pub(super) trait Motion {
+    /// Advances the motion by `steps` steps.
     fn advance(&mut self, steps: u32);
+    /// Returns [`Error::Diverged`] if the motion has left the finite numbers or its range.
     fn check(&self) -> Result<(), Error>;
+    /// Returns the directions of both rods, (sin, cos) each.
     fn directions(&self) -> Directions;
 }
 
@@ -71,6 +74,7 @@ impl Motion for DrawnMotion64 {
 /// frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Run<M> {
+    /// The method and its number of steps per frame.
     pub stepping: Stepping,
     /// The number of steps since the last frame.
     made: u32,
@@ -79,6 +83,7 @@ pub(super) struct Run<M> {
 }
 
 impl<M: Motion> Run<M> {
+    /// Creates a run at a frame, whose motion is not prepared yet.
     pub fn new(stepping: Stepping) -> Self {
         Self {
             stepping,
@@ -90,7 +95,8 @@ impl<M: Motion> Run<M> {
     /// Makes steps towards the next frame: all remaining steps, or as many as `cost` pays for, but
     /// at least one.
     ///
-    /// Returns the cost of these steps; 0 if no step remained.
+    /// Returns the cost of these steps; 0 if no step remained. A run that is not prepared counts
+    /// the steps without making them.
     #[inline(never)]
     fn advance(&mut self, costs: &Costs, cost: f32) -> f32 {
         let paid = (cost
@@ -113,7 +119,8 @@ impl<M: Motion> Run<M> {
     /// Returns the directions at the frame, and begins the next frame. All steps towards the frame
     /// must have been made.
     ///
-    /// The result is NaN if the motion has diverged, because its directions need not show that.
+    /// The result is NaN if the motion has diverged, because its directions need not show that, or
+    /// if it is not prepared.
     #[inline(never)]
     pub fn frame(&mut self) -> Directions {
         self.made = 0;
@@ -155,7 +162,8 @@ fn tried(stepping: Stepping) -> [Stepping; 3] {
     })
 }
 
-/// The indices of candidates and runs.
+/// The indices in [`Trial::candidates`] of plain `f32`, which is that of its run, too; of the
+/// closed form; and of the coarse and the fine run of the reference.
 const PLAIN: usize = 3;
 const CLOSED: usize = 4;
 const COARSE: usize = 5;
@@ -174,9 +182,11 @@ pub(super) struct Trial {
     double: [Run<DrawnMotion64>; 2],
     /// The reference: the coarse and the fine run. Without one, the error bounds are rough.
     pub reference: Option<Pair>,
+    /// The shadows of the fine run. Unused while no candidate in 64 bits is accurate.
     shadows: Shadows,
     /// True if the trial began with a candidate in 64 bits.
     pub tries_64_bits: bool,
+    /// The closed form; `None` if the pendulum has no normal modes or the start is out of range.
     closed: Option<SmallOscillations<f32>>,
     /// The lengths of the rods divided by the tolerance. Distances in this unit may be up to 1.
     rods: [f32; 2],
@@ -192,7 +202,11 @@ impl Trial {
     /// Creates a trial of `stepping` that is compared with `reference`.
     ///
     /// If `stepping` is in 64 bits, a reference is required and the trial has no candidates in 32
-    /// bits. `shadow` is the method and step count of the shadows.
+    /// bits; the closed form is one in any case. Plain `f32` is a candidate if `stepping` is
+    /// compensated `f32`. `shadow` is the method and step count of the shadows.
+    ///
+    /// No motion is prepared yet. A pendulum that is refused is reported by
+    /// [`prepare`](Self::prepare).
     pub fn new(
         stepping: Stepping,
         problem: &Problem,
@@ -269,8 +283,8 @@ impl Trial {
         self.reference.is_some()
     }
 
-    /// Returns the cost of a frame of a trial of `stepping` that is compared with `reference`. The
-    /// shadows are not included.
+    /// Returns the cost of a frame of a trial of `stepping` that is compared with a reference, in
+    /// the unit of `costs`. The shadows, plain `f32` and the closed form are not included.
     pub fn cost_with_reference(
         costs: &Costs,
         stepping: Stepping,
@@ -291,7 +305,8 @@ impl Trial {
             .any(Candidate::is_accurate)
     }
 
-    /// Returns the largest number of accurate frames of a candidate in 32 bits.
+    /// Returns the largest number of accurate frames of a candidate in 32 bits or of the closed
+    /// form. It is 0 if none of them is part of the trial.
     pub fn frames_in_32_bits(&self) -> u32 {
         let frames = self.candidates[..=CLOSED]
             .iter()
@@ -329,14 +344,18 @@ impl Trial {
         self.shadows.runs().filter(move |_| are_needed)
     }
 
-    /// Prepares one motion. Returns false if all motions are prepared.
+    /// Prepares one motion, or draws back a shadow that is too far from the fine run. Returns true
+    /// if it has done either, and false if all motions are prepared and no shadow is too far.
+    ///
+    /// Runs that are no longer needed are not prepared.
     ///
     /// If a method refuses a perturbed start, the opposite perturbation is used. A start close to
     /// the end of the range of a method may have a neighbour outside that range on one side only.
     ///
     /// # Errors
     ///
-    /// Returns the error of a method that refuses the motion and, if it is perturbed, its opposite.
+    /// Refuses a pendulum that [`Pendulum::new`] refuses. Returns the error of a method that
+    /// refuses the motion and, if it is perturbed or a shadow, its opposite.
     #[inline(never)]
     pub fn prepare(&mut self, problem: &Problem) -> Result<bool, Error> {
         let has_reference = self.has_reference();
@@ -375,12 +394,13 @@ impl Trial {
         Ok(false)
     }
 
-    /// Returns true if a shadow must be drawn back before the next frame.
+    /// Returns true if a shadow must be drawn back by [`prepare`](Self::prepare) before the next
+    /// frame.
     pub fn must_prepare(&self) -> bool {
         self.has_candidate_in_64_bits() && self.shadows.must_prepare()
     }
 
-    /// Returns the state of the fine run, or `start` before its first step.
+    /// Returns the state of the fine run, or `start` before the first frame is compared.
     fn fine_state(&self, start: &State<f64>) -> State<f64> {
         let [_, fine] = &self.double;
         match &fine.motion {
@@ -390,9 +410,10 @@ impl Trial {
     }
 
     /// Makes steps of one motion towards the next frame: as many as `cost` pays for, but at least
-    /// one.
+    /// one. All motions must be prepared.
     ///
-    /// Returns the cost of these steps; 0 if every motion has reached the frame.
+    /// Returns the cost of these steps, in the unit of `costs`; 0 if every motion has reached the
+    /// frame.
     pub fn advance(&mut self, costs: &Costs, cost: f32) -> f32 {
         let mut spent = 0.0;
         for (_, run) in self.single() {
@@ -420,7 +441,8 @@ impl Trial {
 
     /// Compares the frames at time `t`, s. All steps towards them must have been made.
     ///
-    /// A candidate fails if its error may exceed the tolerance.
+    /// A candidate fails if its error may exceed the tolerance, or if it or a run that it is
+    /// compared with has diverged.
     pub fn compare(&mut self, t: f64) {
         let [own, second, third, plain, fourth] = self.single.each_mut().map(Run::frame);
         let closed = self
@@ -473,12 +495,15 @@ impl Trial {
         }
     }
 
-    /// Returns true if rounding errors limit the horizon. Finer steps do not reduce these.
+    /// Returns true if rounding was the larger error, in the last frame in which this was compared:
+    /// of the single candidate, of the fine run or, once that has failed, of the coarse run. Finer
+    /// steps do not reduce it. False before the first such frame.
     pub fn is_limited_by_rounding(&self) -> bool {
         self.by_rounding
     }
 
-    /// Excludes all candidates, because their rounding errors may be the same in all runs.
+    /// Excludes all candidates, because their rounding errors may be the same in all runs. Then
+    /// rounding limits the horizon ([`is_limited_by_rounding`](Self::is_limited_by_rounding)).
     pub fn exclude_for_rounding(&mut self) {
         self.retain(|_| false);
         self.by_rounding = true;
@@ -494,6 +519,9 @@ impl Trial {
 
     /// Returns the factor on the step count of the next trial, or `None` if finer steps do not help
     /// because rounding is the larger error.
+    ///
+    /// With a reference it is 8, if 4 times the steps had a longer horizon than twice the steps.
+    /// Without one it is 2.
     pub fn refinement(&self) -> Option<u32> {
         let [_, second, third, ..] = &self.candidates;
         let (helps, times) = if self.has_reference() {
@@ -504,7 +532,7 @@ impl Trial {
         helps.then_some(times)
     }
 
-    /// Returns the cost of one frame of all runs that are still needed.
+    /// Returns the cost of one frame of all runs that are still needed, in the unit of `costs`.
     pub fn frame_cost(&mut self, costs: &Costs) -> f32 {
         let closed = if self.candidates[CLOSED].is_accurate() {
             costs.of_frame(self.candidates[CLOSED].stepping)

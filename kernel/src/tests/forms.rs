@@ -13,6 +13,7 @@ use super::{EQUATIONS, assert_near};
 /// The number of steps. It is so small that an error in one equation has not spread to the others
 /// yet.
 const STEPS: u32 = 8;
+/// The step of the form, s.
 const DT: f64 = 1.0 / 256.0;
 /// The number of steps by `Pendulum::step` per step of the form.
 const FINER: u32 = 10;
@@ -61,6 +62,12 @@ pub const RK4: f64 = 3e-8;
 /// rounding to 53 and 61 bits. Measured: 4e-14.
 const ORDER_12: f64 = 2e-13;
 
+/// Asserts that the average rates of change of angles and momenta in 8 steps of `F` are those of
+/// Hamilton's equations, for each of the [`MOTIONS`].
+///
+/// The allowance is `tolerance` times the largest angular velocity that the energy allows or, for
+/// the rates of the momenta, times K - min V, J, where K is the energy above rest. The message
+/// names the worst of the four equations.
 #[track_caller]
 pub fn is_that_of_hamiltons_equations<F: Form>(tolerance: f64) {
     let form = core::any::type_name::<F>();
@@ -108,6 +115,8 @@ pub fn is_that_of_hamiltons_equations<F: Form>(tolerance: f64) {
     }
 }
 
+/// A wrong term in the equations of a form, or in `Pendulum::derivatives`, exceeds the tolerance:
+/// [`RK4`] for RK4, and [`ORDER_12`] for extrapolation.
 #[test]
 fn every_form_is_that_of_hamiltons_equations() {
     is_that_of_hamiltons_equations::<DirectionF32>(RK4);

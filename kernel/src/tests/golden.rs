@@ -35,6 +35,9 @@ fn read(file: &str) -> String {
     fs::read_to_string(&path).unwrap_or_else(|error| panic!("{path}: {error}"))
 }
 
+/// The line of each method and motion must equal that of the file to the last bit, and the file
+/// must have no other lines. The two methods whose types are in the firmware must have lines, too,
+/// but their bits are not compared here.
 #[test]
 fn every_method_computes_the_golden_bits() {
     let file = read("golden/bits.csv");
@@ -68,7 +71,8 @@ fn every_method_computes_the_golden_bits() {
     assert_eq!(golden.len(), methods * MOTIONS.len());
 }
 
-/// The change log has an entry that contains the checksum of the file.
+/// The change log must contain the checksum of the file, so that no change of the bits goes without
+/// an entry.
 #[test]
 fn golden_bits_have_an_entry_in_the_change_log() {
     let checksum = fnv_1a(FNV_OFFSET, read("golden/bits.csv").as_bytes());

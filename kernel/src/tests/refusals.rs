@@ -7,6 +7,7 @@ use double_pendulum::{
     ClosedFormF32, Error, Modes, Motion, Parameters, Pendulum, State, periodic_mass_ratio,
 };
 
+/// Parameters that are accepted. Each case changes one or two of them.
 const GOOD: Parameters<f64> = Parameters {
     m1: 1.0,
     m2: 2.0,
@@ -15,6 +16,7 @@ const GOOD: Parameters<f64> = Parameters {
     g: 9.8,
 };
 
+/// Creates a pendulum. Returns the error if it is refused.
 fn pendulum(parameters: Parameters<f64>) -> Result<(), Error> {
     Pendulum::new(&parameters).map(drop)
 }
@@ -26,10 +28,13 @@ fn linear(angle: f64) -> Result<(), Error> {
         .map(drop)
 }
 
+/// Computes the mass ratio for frequencies in the ratio `fast` to `slow`.
 fn periods(fast: u16, slow: u16, lengths: [f64; 2]) -> Result<(), Error> {
     periodic_mass_ratio(fast, slow, lengths).map(drop)
 }
 
+/// Each bad parameter, state, motion or ratio of frequencies must be refused with exactly the
+/// expected error. Zero gravity, and finite states and motions, must be accepted.
 #[test]
 fn errors_contain_the_parameter_and_its_value() {
     let infinite = f64::INFINITY;
@@ -137,6 +142,7 @@ fn errors_contain_the_parameter_and_its_value() {
     assert_eq!(good, [Ok(()); 3]);
 }
 
+/// Three errors must be printed exactly as these lines.
 #[test]
 fn errors_are_printed_in_one_line() {
     // A message names the parameter, its value, and the reason.

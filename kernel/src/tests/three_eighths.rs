@@ -6,6 +6,7 @@ use core::array::from_fn;
 use double_pendulum::Real;
 use double_pendulum::parts::RungeKutta;
 
+/// The 3/8 rule, of order 4.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ThreeEighths;
 

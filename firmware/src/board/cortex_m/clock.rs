@@ -25,7 +25,8 @@ fn SysTick() {
     TICKS.store(ticks().wrapping_add(1), Ordering::Relaxed);
 }
 
-/// Starts a clock of [`TICK_RATE`] ticks per second; `hertz` is the frequency of the processor.
+/// Starts a clock of [`TICK_RATE`] ticks per second; `hertz` is the frequency of the processor, at
+/// most 1 GHz, because SysTick has 24 bits.
 ///
 /// The period is rounded down to whole processor cycles: at 50 MHz it is 833,333 instead of
 /// 833,333.3, so that the clock is 0.4 parts per million fast.
@@ -39,8 +40,8 @@ pub fn start(mut systick: SYST, hertz: u32) {
     systick.enable_counter();
 }
 
-/// Sleeps until the tick after `last`, and returns the tick. Returns at once if that tick has
-/// passed already.
+/// Sleeps until the current tick is no longer `last`, and returns the current tick. It may be
+/// several ticks later if the caller was late; then the function returns at once.
 pub fn wait_after(last: u32) -> u32 {
     // Interrupts are masked between the test and the sleep, so that an interrupt in between stays
     // pending. A pending interrupt wakes `wfi` even while masked, so no tick is slept through.
@@ -57,12 +58,13 @@ pub fn wait_after(last: u32) -> u32 {
     }
 }
 
-/// Returns the number of the current tick. It starts at an arbitrary number, and wraps.
+/// Returns the number of the current tick of 1/60 s. It starts at an arbitrary number, and wraps.
 pub fn ticks() -> u32 {
     TICKS.load(Ordering::Relaxed)
 }
 
-/// Returns the processor cycles since the clock's start; wraps.
+/// Returns a count of processor cycles, for differences. It starts at an arbitrary number and
+/// wraps. Valid after [`start`].
 pub fn cycles() -> u32 {
     elapsed(&SysTickTimer, PERIOD.load(Ordering::Relaxed))
 }

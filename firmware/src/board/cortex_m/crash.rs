@@ -42,6 +42,7 @@ use crate::protocol::Cause;
 
 /// A call to the debugger, `bkpt 0xAB`, and its length, bytes.
 const DEBUGGER_CALL: (u16, u32) = (0xBEAB, 2);
+/// The size of the stack for fault reports, bytes.
 const STACK_SIZE: usize = 2048;
 
 /// True if no debugger is assumed to be present: a call was not answered, or the board is a chip.
@@ -185,7 +186,8 @@ pub(super) fn hang(interrupted: &ExceptionFrame) {
     }
 }
 
-/// Assumes that no debugger is present until the processor's debug mode is seen on.
+/// Assumes that no debugger is present until the processor's debug mode is seen on. An M0+ cannot
+/// see it, so that its crashes are recorded and never reported.
 ///
 /// On a chip a debugger can be recognised. A call to an absent one is better avoided, because
 /// within a fault handler it would be fatal.
@@ -215,7 +217,7 @@ fn crash((cause, pc, lr, cfsr): (Cause, u32, u32, u32), report: &dyn Display) ->
     SCB::sys_reset()
 }
 
-/// Writes a report and the last frame.
+/// Writes a report, and the scene and tick of the last frame, to the debugger's standard error.
 #[inline(never)]
 fn say(report: &dyn Display) {
     if let Ok(mut stderr) = hio::hstderr() {

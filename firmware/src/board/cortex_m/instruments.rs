@@ -16,7 +16,8 @@ unsafe extern "C" {
 }
 
 /// Starts the parts of the processor: the stack guard, the tick and the cycle counter. `hertz` is
-/// its frequency, and `chip` the identification of the chip.
+/// its frequency, and `chip` the identification of the chip, zeros without one. Returns the
+/// measuring functions and the identity.
 pub fn start(core: Peripherals, board: BoardName, hertz: u32, chip: [u32; 4]) -> Instruments {
     guard_stack(core.MPU);
     clock::start(core.SYST, hertz);
@@ -39,7 +40,8 @@ pub fn start(core: Peripherals, board: BoardName, hertz: u32, chip: [u32; 4]) ->
     }
 }
 
-/// Measures steps from flash; these boards have no copy of the code in RAM.
+/// Makes steps from flash and returns their processor cycles. These boards have no copy of the code
+/// in RAM: for that the result is 0, and no step is made.
 #[cfg(not(any(feature = "pico", feature = "stm32f405")))]
 fn timed(motion: &mut crate::job::OnBoards, steps: u32, in_ram: bool) -> u32 {
     if in_ram {
@@ -78,7 +80,8 @@ pub(in crate::board) fn cycles_of(work: impl FnOnce()) -> u32 {
 #[cfg(armv6m)]
 fn start_counter(_: DCB, _: DWT) {}
 
-/// Returns the cycles of `work`, with interrupts off, up to 2^24 cycles, 134 ms at 125 MHz.
+/// Returns the cycles of `work`, with interrupts off, up to 2^24 cycles, 134 ms at 125 MHz. A
+/// longer time is returned modulo 2^24.
 ///
 /// The only counter of a Cortex-M0+ is the tick's. The function uses it; the current tick begins
 /// again afterwards.

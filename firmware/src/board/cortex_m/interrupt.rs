@@ -15,6 +15,7 @@ use crate::board::serial;
 pub(in crate::board) struct Shared<T>(Mutex<RefCell<T>>);
 
 impl<T> Shared<T> {
+    /// Creates shared data that is `value` at first.
     pub const fn new(value: T) -> Self {
         Self(Mutex::new(RefCell::new(value)))
     }
@@ -51,7 +52,7 @@ unsafe extern "C" fn DefaultHandler() {
     )
 }
 
-/// Handles the interrupt with this number.
+/// Handles the interrupt with this number: a call of the watchdog, or received bytes.
 extern "C" fn interrupt(interrupted: &ExceptionFrame, number: u32) {
     if watchdog::is_call(number) {
         watchdog::silence();
@@ -72,6 +73,7 @@ unsafe impl InterruptNumber for Interrupt {
     }
 }
 
+/// Enables an interrupt of the chip in the processor.
 pub(in crate::board) fn unmask(interrupt: impl InterruptNumber) {
     // SAFETY: no critical section relies on a masked interrupt.
     unsafe { NVIC::unmask(interrupt) };

@@ -19,8 +19,8 @@ use cortex_m_semihosting::{nr, syscall1};
 
 pub(super) use instruments::start;
 
-/// Returns the command line that a debugger, or QEMU, has for the program; `None` if it does not
-/// fit into `buffer` or is not text.
+/// Returns the command line that a debugger, or QEMU, has for the program; `None` if none answers,
+/// or if it does not fit into `buffer` or is not UTF-8.
 pub fn command_line(buffer: &mut [u8]) -> Option<&str> {
     let mut block = [buffer.as_mut_ptr() as usize, buffer.len()];
     // SAFETY: SYS_GET_CMDLINE takes the address and length of a buffer. It writes a string of at

@@ -20,7 +20,7 @@ fn copies() -> &'static [[AtomicU8; MAX_WIRE]; 2] {
     black_box(&KEPT)
 }
 
-/// Writes the record, in case this frame is the last.
+/// Writes both copies of the record, in case this frame is the last.
 #[inline(never)]
 pub fn keep(record: &Record) {
     let bytes = record.write();
@@ -31,7 +31,7 @@ pub fn keep(record: &Record) {
     }
 }
 
-/// Returns the first copy that is intact.
+/// Returns the first copy that is intact; `None` if neither is, as when the board is switched on.
 #[inline(never)]
 fn kept() -> Option<Record> {
     copies()
@@ -39,22 +39,26 @@ fn kept() -> Option<Record> {
         .find_map(|copy| Record::read(&copy.each_ref().map(|byte| byte.load(Ordering::Relaxed))))
 }
 
-/// Returns the record that was kept across the last reset, if that was an unplanned one.
+/// Returns the record that was kept across the last reset, with this restart counted. Returns
+/// `None` if no record is intact, or after a reset from outside. `by_watchdog` is the board's own
+/// information about the reset ([`Record::restart`]).
 pub fn recall(by_watchdog: bool) -> Option<Record> {
     kept()?.restart(by_watchdog)
 }
 
-/// Returns the controller that was chosen for the panel, after any reset that left memory powered.
+/// Returns the controller that was chosen for the panel, after any reset that left memory powered;
+/// `None` if no record is intact, or none was chosen.
 pub fn chosen_panel() -> Option<Controller> {
     kept()?.played.panel.chosen
 }
 
-/// Returns the end of the last record.
+/// Returns the end of the record; `None` if no record is intact.
 pub fn last() -> Option<Restarted> {
     kept().map(|record| record.end)
 }
 
-/// Records why the program ends, unless it has shown nothing yet.
+/// Records why the program ends: the cause, the program counter, the link register and the fault
+/// status. Does nothing if no record is intact, as before the first scene after power-on.
 #[inline(never)]
 pub fn end(cause: Cause, pc: u32, lr: u32, cfsr: u32) {
     if let Some(Record { played, end }) = kept() {

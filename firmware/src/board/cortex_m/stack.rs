@@ -33,6 +33,7 @@ const REGION_0: u32 = 1 << 4;
 const NO_ACCESS: u32 = 1 << 28 | 1 << 18 | 1 << 17;
 /// A region has 2^(SIZE + 1) bytes.
 const SIZE: u32 = (REGION.ilog2() - 1) << 1;
+/// The region is in force.
 const REGION_ON: u32 = 1 << 0;
 /// The unit is on. Other memory is accessible as before. Faults are handled with the unit off.
 const UNIT_ON: u32 = 1 << 2 | 1 << 0;
@@ -76,8 +77,9 @@ pub fn guard_stack(unit: MPU) {
     cortex_m::asm::isb();
 }
 
-/// Returns the addresses of the calls found on the stack from `sp` upwards, the last call first.
-/// Some of them may have returned already, because the stack is not cleared.
+/// Returns the addresses of the calls found on the stack from `sp` upwards, the last call first. A
+/// stack pointer within the guard or below counts as the lowest address of the stack. Some of them
+/// may have returned already, because the stack is not cleared.
 pub fn calls(sp: u32) -> impl Iterator<Item = u32> {
     let bottom = sp.max(guard().end).next_multiple_of(4);
     let words = (bottom..&raw const _stack_start as u32).step_by(4);
@@ -85,7 +87,7 @@ pub fn calls(sp: u32) -> impl Iterator<Item = u32> {
     words.filter_map(|address| call_before(unsafe { (address as *const u32).read_volatile() }))
 }
 
-/// Returns the halfword at an address of the code; `None` outside the code.
+/// Returns the halfword at an address of the code; `None` outside the code and at odd addresses.
 pub fn instruction(address: u32) -> Option<u16> {
     let code = &raw const __stext as u32..&raw const __etext as u32;
     // SAFETY: any two bytes of the code are a `u16`.

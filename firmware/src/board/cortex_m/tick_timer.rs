@@ -7,13 +7,14 @@
 pub trait TickTimer {
     /// Returns the number of periods that the interrupt has counted; wraps.
     fn ticks(&self) -> u32;
-    /// Returns the counter.
+    /// Returns the counter, `period - 1` to 0.
     fn counter(&self) -> u32;
     /// Returns true while a period has ended and the interrupt has not yet run.
     fn is_pending(&self) -> bool;
 }
 
-/// Returns the time in counts of the timer since tick 0; wraps.
+/// Returns the time in counts of the timer since tick 0; wraps. `period` is the number of counts in
+/// a tick.
 ///
 /// The reading is right at any moment: also between the reload of the counter and the interrupt,
 /// and with interrupts masked for less than a period.

@@ -15,6 +15,8 @@ use crate::config::{TICK_RATE, WATCHDOG_SECONDS};
 
 /// A watchdog.
 pub trait Watchdog {
+    /// Restarts the watchdog's time, [`WATCHDOG_SECONDS`]. If it ends, a watchdog with an interrupt
+    /// reports a hang; after about twice the time every watchdog resets the board.
     fn feed(&mut self);
 }
 
@@ -42,8 +44,8 @@ pub(in crate::board) fn unlock(device: Device) {
 }
 
 impl TwoStage {
-    /// Starts the watchdog. It counts at `hertz`, and `call` is the number of its interrupt in the
-    /// processor.
+    /// Starts the watchdog, and feeds it. It counts at `hertz`, and `call` is the processor's
+    /// number of its interrupt: [`NMI`], or [`FIRST`] plus the number in the chip's data sheet.
     pub(in crate::board) fn start(device: Device, hertz: u32, call: u16) -> Self {
         CALL.store(call, Ordering::Relaxed);
         unlock(device);
@@ -72,9 +74,9 @@ impl Watchdog for TwoStage {
     }
 }
 
-/// The processor's numbers of the interrupt that cannot be masked, and of the first interrupt of
-/// the chip.
+/// The processor's number of the interrupt that cannot be masked.
 pub(in crate::board) const NMI: u16 = 2;
+/// The processor's number of the chip's interrupt 0.
 pub(in crate::board) const FIRST: u16 = 16;
 
 /// The processor's number of the watchdog's interrupt.
@@ -95,13 +97,15 @@ fn own() -> Option<Interrupt> {
 /// The tick of the last feeding.
 static FED: AtomicU32 = AtomicU32::new(0);
 
-/// Returns true if the clock has counted the watchdog's time as well. If not, the processor was
-/// stopped from outside, such as an emulator that is paused, or has its interrupts off.
+/// Returns true if the clock has also counted the watchdog's time, less one tick, since the last
+/// feeding. If not, the processor was stopped from outside, such as an emulator that is paused, or
+/// has its interrupts off.
 pub(super) fn has_ticked() -> bool {
     ticks().wrapping_sub(FED.load(Ordering::Relaxed)) >= WATCHDOG_SECONDS * TICK_RATE - 1
 }
 
-/// Stops the board's watchdog while a debugger halts the processor (`true`), or lets it run.
+/// A function that makes the watchdog stop while a debugger halts the processor (`true`), or lets
+/// it run on (`false`).
 type Stall = fn(bool);
 static STALL: Shared<Stall> = Shared::new(|_| ());
 
@@ -112,7 +116,7 @@ pub(in crate::board) fn stall_by(by: Stall) {
     by(true);
 }
 
-/// Calls the function of [`stall_by`].
+/// Calls the function of [`stall_by`]; without one does nothing.
 pub(super) fn stall(stalls: bool) {
     if let Some(stall) = STALL.with(|stall| *stall) {
         stall(stalls);

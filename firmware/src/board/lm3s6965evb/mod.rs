@@ -30,9 +30,11 @@ use crate::protocol::BoardName;
 
 use pins::{Output, Ssi};
 
+/// The parts of this board.
 pub type Lm3s6965evb = Board<Ssd0323<'static, Ssi, Output>, Outward, Keys, TwoStage>;
 
-/// Sets the board up. Returns `None` the second time.
+/// Sets the board up. Returns `None` the second time. A panel that does not take its settings is
+/// only logged.
 pub fn take() -> Option<Lm3s6965evb> {
     let core = Peripherals::take()?;
     let hertz = system::start();
@@ -102,7 +104,7 @@ const RECEIVED: u32 = 1 << 6 | 1 << 4;
 
 const INTERRUPT: Interrupt = Interrupt(5);
 
-/// Starts the serial port (PL011).
+/// Starts the serial port (PL011) at [`BAUD`]; `hertz` is the processor's clock.
 fn start_link(hertz: u32) -> Outward {
     pins::A.use_for_device(1 << 0 | 1 << 1);
     CONTROL.write(0);

@@ -9,15 +9,18 @@ use embedded_hal::spi::{self, ErrorKind, Operation, SpiDevice};
 use crate::board::register::{Device, Register};
 use crate::config::BUS_TRIES;
 
+/// A port of eight pins. In its functions, `pins` is a mask with a bit for each pin.
 #[derive(Clone, Copy, Debug)]
 pub struct Pins(Device);
 
+/// Port A; the next four are C, D, E and F.
 pub const A: Pins = port(0x4000_4000);
 pub const C: Pins = port(0x4000_6000);
 pub const D: Pins = port(0x4000_7000);
 pub const E: Pins = port(0x4002_4000);
 pub const F: Pins = port(0x4002_5000);
 
+/// Returns the port whose registers begin at this address.
 const fn port(base: usize) -> Pins {
     // SAFETY: the ports above are in the data sheet, chapter 8; pins cannot break memory safety.
     Pins(unsafe { Device::at(base) })
@@ -42,19 +45,20 @@ impl Pins {
         self.0.register(0x51C).modify(0, pins.into());
     }
 
-    /// Makes `pins` outputs.
+    /// Makes `pins` outputs. Returns them; they are set high or low together.
     pub fn use_for_output(self, pins: u8) -> Output {
         self.0.register(0x400).modify(0, pins.into());
         self.0.register(0x51C).modify(0, pins.into());
         Output(self.data(pins))
     }
 
-    /// Returns true if all of `pins` are low.
+    /// Returns true if all of `pins` are low now.
     pub fn are_low(self, pins: u8) -> bool {
         self.data(pins).read() == 0
     }
 }
 
+/// Output pins, all set to the same level.
 #[derive(Debug)]
 pub struct Output(Register);
 
@@ -92,10 +96,13 @@ const BUSY: u32 = 1 << 4;
 /// Eight bits. The clock is high when idle, and data are taken on its first, falling edge.
 const MODE_2_BYTES: u32 = 1 << 6 | 7;
 
+/// The panel's SPI bus, which can only write. A transaction that reads returns
+/// [`ErrorKind::Other`], and so does a bus that is busy for more than [`BUS_TRIES`] polls.
 #[derive(Debug)]
 pub struct Ssi(());
 
 impl Ssi {
+    /// Starts the bus at the largest clock up to [`FASTEST`]; `hertz` is the processor's clock.
     pub(super) fn start(hertz: u32) -> Self {
         A.use_for_device(1 << 2 | 1 << 3 | 1 << 5);
         CONTROL1.write(0);
@@ -107,8 +114,8 @@ impl Ssi {
     }
 }
 
-/// Sends up to [`QUEUE`] bytes. The received bytes are noise, but must be read, because a full
-/// receive queue stops the bus.
+/// Sends up to [`QUEUE`] bytes and waits until they are sent. The received bytes are noise, but
+/// must be read, because a full receive queue stops the bus.
 #[inline(always)]
 fn send(bytes: &[u8]) -> Result<(), ErrorKind> {
     for &byte in bytes {

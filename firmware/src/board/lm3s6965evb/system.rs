@@ -92,7 +92,7 @@ fn start_crystal() {
     }
 }
 
-/// Returns the two identification registers of the chip. It has no unique number.
+/// Returns the two identification registers of the chip and two zeros. It has no unique number.
 pub fn chip() -> [u32; 4] {
     [DID0.read(), DID1.read(), 0, 0]
 }
@@ -112,6 +112,7 @@ const TEST: Register = WATCHDOG_TIMER.register(0x418);
 const STALL: u32 = 1 << 8;
 const CALL: u16 = FIRST + 18;
 
+/// Starts the watchdog, which counts at `hertz`, the processor's clock.
 pub fn start_watchdog(hertz: u32) -> TwoStage {
     // The registers stay unlocked until the next feeding.
     watchdog::stall_by(|stalls| {

@@ -67,6 +67,7 @@ const LOST: u32 = 1 << 12;
 const DATA: usize = 4;
 const CLOCK: usize = 5;
 
+/// The I2C block 0 as the port of the panel's bus.
 pub struct I2c0(());
 
 /// The pins 4 and 5 of the bus.
@@ -75,7 +76,8 @@ pub(super) type Pins = (
     Pin<Gpio5, FunctionI2C, PullUp>,
 );
 
-/// Starts the bus. `clock` is the processor's clock. Returns `None` the second time.
+/// Starts the bus and its interrupt. `clock` is the processor's clock; the timing of the bus
+/// assumes 125 MHz. Returns `None` the second time.
 pub(super) fn start(_port: I2C0, _pins: Pins, clock: HertzU32) -> Option<Bus<I2c0>> {
     let bus = Bus::new(I2c0(()), clock.to_Hz())?; // it resets the block, and sets it up
     unmask(Interrupt::I2C0_IRQ);
@@ -168,6 +170,7 @@ fn I2C0_IRQ() {
     panel_bus::serve(|outbox| advance(registers(), outbox));
 }
 
+/// Returns the registers of the block.
 fn registers() -> &'static RegisterBlock {
     // SAFETY: no other code uses them. While the outbox is not empty, only the interrupt uses the
     // bus.
@@ -175,7 +178,7 @@ fn registers() -> &'static RegisterBlock {
 }
 
 /// Makes the next part of the transfer: supplies more bytes, or ends it. The last byte of each
-/// message is followed by a stop. Returns the outcome at the end.
+/// message is followed by a stop. Returns the outcome at the end, and `None` before it.
 fn advance(port: &RegisterBlock, outbox: &mut Outbox) -> Option<Sent> {
     let status = port.ic_raw_intr_stat().read();
 

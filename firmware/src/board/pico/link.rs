@@ -17,6 +17,7 @@ use crate::board::cortex_m::interrupt::{Shared, unmask};
 use crate::board::serial::{self, Inbox, Outward};
 use crate::config::{BAUD, BUS_TRIES, UART_QUEUE};
 
+/// The pins 0 (out) and 1 (in) of the UART.
 pub(super) type SerialPins = (
     Pin<Gpio0, FunctionUart, PullNone>,
     Pin<Gpio1, FunctionUart, PullUp>,
@@ -45,7 +46,9 @@ pub(super) fn start(
     Some(Outward(send))
 }
 
-/// Sends a message over USB and the UART. Returns true if the UART's queue had room for it.
+/// Sends a message over USB and the UART. Waits for room in the UART's queue, [`TRIES`] polls at
+/// most. Returns true if there was room; if not, the UART sends no part of it. The result does not
+/// depend on USB.
 fn send(bytes: &[u8]) -> bool {
     usb::send(bytes);
     let has_room = (0..TRIES).any(|_| QUEUE.with(|queue| usb::put(queue, bytes)) == Some(true));

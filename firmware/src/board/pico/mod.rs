@@ -43,9 +43,11 @@ static BOOT: [u8; 256] = rp2040_boot2::BOOT_LOADER_W25Q080;
 /// The Pico's crystal, Hz.
 const CRYSTAL: u32 = 12_000_000;
 
+/// The parts of this board.
 pub type Pico = Board<OledI2c<'static, Bus<I2c0>>, Outward, PinKeys, Watchdog>;
 
-/// Sets the board up. Returns `None` the second time, or if its clock does not start.
+/// Sets the board up. Returns `None` the second time, or if its clocks, the UART or USB do not
+/// start. The panel and the buttons may be absent.
 pub fn take() -> Option<Pico> {
     let core = cortex_m::Peripherals::take()?;
     let mut chip = pac::Peripherals::take()?;
@@ -150,8 +152,9 @@ fn reset_by_watchdog(unit: &pac::WATCHDOG, resets: &pac::RESETS) -> bool {
         && resets.reset().read().i2c0().bit_is_set()
 }
 
-/// Starts the watchdog, which has no interrupt. The set-up of the clocks uses it before, because it
-/// also generates the chip's microseconds.
+/// Starts the watchdog, which has no interrupt: it resets the board after twice
+/// [`WATCHDOG_SECONDS`] without a feeding. The set-up of the clocks uses it before, because it also
+/// generates the chip's microseconds.
 fn start_watchdog(mut unit: Watchdog) -> Watchdog {
     unit.write_scratch(ScratchRegister::Scratch4, STARTED);
     unit.start((2 * WATCHDOG_SECONDS).secs());

@@ -58,7 +58,7 @@ struct Usb {
 
 static USB: Shared<Option<&'static mut Usb>> = Shared::new(None);
 
-/// Connects the board to a host. Returns `None` the second time.
+/// Connects the board to a host, after 12 ms without the pull-up. Returns `None` the second time.
 pub(super) fn start(
     registers: USBCTRL_REGS,
     memory: USBCTRL_DPRAM,
@@ -101,6 +101,8 @@ fn with<T>(act: impl FnOnce(&mut Usb) -> T) -> Option<T> {
 }
 
 /// Sends a message if a program has the port open and the queue has room for the whole message.
+/// Otherwise the message is dropped; while the port is closed, so are the bytes in the queue. Never
+/// waits.
 #[inline(never)] // The libraries may panic; the main loop must not (test `no_panic`).
 pub(super) fn send(message: &[u8]) {
     with(|usb| {
@@ -192,12 +194,13 @@ impl Usb {
     }
 }
 
-/// Returns the number of bytes that a queue has room for.
+/// Returns the number of further bytes that a queue has room for.
 fn room<const N: usize>(queue: &Deque<u8, N>) -> usize {
     queue.capacity().saturating_sub(queue.len())
 }
 
-/// Puts a message into a queue if it has room for the whole message. Returns true if it had.
+/// Puts a message into a queue if it has room for the whole message. Returns true if it had; if
+/// not, the queue is unchanged.
 pub(super) fn put<const N: usize>(queue: &mut Deque<u8, N>, message: &[u8]) -> bool {
     room(queue) >= message.len() && message.iter().all(|byte| queue.push_back(*byte).is_ok())
 }

@@ -29,9 +29,10 @@ const ALL_SENT: u16 = 1 << 2;
 const BYTE_READ: u16 = 1 << 6;
 const READY_FOR_BYTE: u16 = 1 << 7;
 
+/// The I2C block 1, with its pins, as the port of the panel's bus.
 pub struct I2c1((Scl, Sda));
 
-/// Starts the bus. Returns `None` the second time.
+/// Starts the bus at 400 kHz, and its interrupts. Returns `None` the second time.
 pub(super) fn start(port: I2C1, clock: PB6, data: PB7, rcc: &mut Rcc) -> Option<Bus<I2c1>> {
     // The library does not set the pull-ups (RM0090, 8.4.4). At 40 kOhm they are too weak for the
     // bus. But without them and without a panel, the lines would float, which looks like the action
@@ -104,13 +105,15 @@ fn I2C1_ER() {
     panel_bus::serve(|_| fail(registers()));
 }
 
+/// Returns the registers of the block.
 fn registers() -> &'static RegisterBlock {
     // SAFETY: while the outbox is not empty, only the interrupts use the bus.
     unsafe { &*I2C1::ptr() }
 }
 
 /// Makes the next part of the transfer. Two messages are separated by a start, without a stop.
-/// Returns the outcome at the end.
+/// Returns the outcome at the end, and `None` before it. If the start between two messages does not
+/// come within [`TRIES`], the outcome is [`ErrorKind::Other`].
 fn advance(port: &RegisterBlock, outbox: &mut Outbox) -> Option<Sent> {
     let status = port.sr1().read().bits();
 

@@ -44,6 +44,7 @@ const HERTZ: u32 = 168_000_000;
 /// The address of the chip's unique number (RM0090, 39.1), in its system memory.
 const UNIQUE_NUMBER: *const [u32; 3] = core::ptr::without_provenance(0x1fff_7a10);
 
+/// The parts of this board.
 pub type Stm32f405 = Board<OledI2c<'static, Bus<I2c1>>, Outward, OneKey, IndependentWatchdog>;
 
 /// Sets the board up. Returns `None` the second time.
@@ -104,7 +105,7 @@ fn keep_log_readable() {
         .modify(|_, w| w.dbg_sleep().set_bit().dbg_stop().set_bit());
 }
 
-/// Returns the identification of the chip and its unique number.
+/// Returns the identification of the chip, and the three words of its unique number.
 fn chip_number() -> [u32; 4] {
     // SAFETY: both are only read, and no other code uses them.
     let (debug, unique) = unsafe { (&*DBGMCU::ptr(), &*UNIQUE_NUMBER) };
@@ -112,7 +113,8 @@ fn chip_number() -> [u32; 4] {
     [debug.idcode().read().bits(), a, b, c]
 }
 
-/// Starts the clock. Returns true as well if the chip is emulated.
+/// Starts the clock, at 168 MHz on a chip. Returns the clock control, and true if the chip is
+/// emulated.
 ///
 /// The source is the chip's own oscillator. It is accurate to 1 % at room temperature, which is
 /// sufficient for the eye and for the serial port. So the image fits boards with any crystal (8, 12
@@ -145,10 +147,12 @@ fn start_link(port: USART3, pins: (PB10, PB11), rcc: &mut Rcc) -> Option<Outward
     }))
 }
 
+/// Writes a byte to the transmitter, which must be ready for it.
 fn put(byte: u8) {
     uart().dr().write(|w| w.dr().set(byte.into()));
 }
 
+/// Returns the registers of the serial port.
 fn uart() -> &'static RegisterBlock {
     // SAFETY: the two directions use different bits of these registers, and reading does not change
     // the bits of the other one.
@@ -173,8 +177,9 @@ fn receive(inbox: &mut Inbox) {
     }
 }
 
-/// Starts the independent watchdog, which has no interrupt. Its own oscillator is accurate to a
-/// factor of 2 (17 to 47 kHz instead of 32). The emulator has no such watchdog.
+/// Starts the independent watchdog, which has no interrupt: it resets the board after twice
+/// [`WATCHDOG_SECONDS`] without a feeding. Its own oscillator is accurate to a factor of 2 (17 to
+/// 47 kHz instead of 32). The emulator has no such watchdog.
 fn start_watchdog(unit: IWDG) -> IndependentWatchdog {
     let mut unit = IndependentWatchdog::new(unit);
     watchdog::stall_by(|stalls| {

@@ -32,10 +32,12 @@ pub struct Line {
 }
 
 impl Line {
+    /// Returns an idle bus of the usual speed with this panel.
     pub fn to(panel: Controller) -> Self {
         Self::at(USUAL, panel)
     }
 
+    /// Returns an idle bus on which a byte takes `byte_nanos` ns, with this panel.
     pub fn at(byte_nanos: u32, panel: Controller) -> Self {
         Self {
             panel,
@@ -108,6 +110,7 @@ impl Line {
         self.time = 0;
     }
 
+    /// Returns true if the last transfer has ended, with success or with an error.
     pub fn is_idle(&self) -> bool {
         self.outbox.sent.is_some()
     }
@@ -175,6 +178,7 @@ pub const SSD1306: Kind = Kind {
     needed: &[&[0x20, 2], &[0x2E], &[0x8D, 0x14], &[0xDA, 0x12]],
     for_lit: &[],
 };
+/// A controller with more columns than are visible, whose memory can be read.
 pub const SH1106: Kind = Kind {
     says: Says::Off(0x08),
     returns_memory: true,
@@ -201,12 +205,14 @@ pub const BLIND: Kind = Kind {
     ],
     ..SSD1306
 };
+/// An SSD1306 that acknowledges no read.
 pub const SILENT: Kind = Kind {
     says: Says::Nothing,
     ..BLIND
 };
 
 impl Kind {
+    /// Returns the same kind with another status byte.
     pub fn says(self, says: Says) -> Self {
         Self { says, ..self }
     }
@@ -263,6 +269,7 @@ impl Controller {
         }
     }
 
+    /// Returns the controller, plugged in or not.
     pub fn plugged(self, plugged_in: bool) -> Self {
         Self { plugged_in, ..self }
     }
@@ -272,6 +279,7 @@ impl Controller {
         *self = Self::new(self.kind, self.address);
     }
 
+    /// Returns the status byte, and notes that it was read; `None` if reads are not acknowledged.
     fn status(&mut self) -> Option<u8> {
         let off = u8::from(!self.on) << 6;
         let was_read = std::mem::replace(&mut self.was_read, true);
@@ -310,6 +318,7 @@ impl Controller {
         )
     }
 
+    /// Returns true if exactly this command was given since power came.
     fn is_given(&self, needed: &[u8]) -> bool {
         self.given.iter().any(|given| given == needed)
     }
@@ -401,6 +410,7 @@ impl Controller {
         self.on && self.late_pages(frames).is_empty()
     }
 
+    /// Returns true if the picture is exactly this frame, and the display is on.
     pub fn shows(&self, frame: &Bitmap) -> bool {
         self.shows_any_of(&[frame])
     }

@@ -37,6 +37,8 @@ fn panel(controller: Controller) -> Panel {
     on(Line::to(controller), None)
 }
 
+/// Returns a driver of the panel on this bus, with the controller that the build has chosen, if
+/// any.
 fn on(line: Line, chosen: Option<Name>) -> Panel {
     OledI2c::new(line, Box::leak(Box::new(Bitmap::BLACK)), chosen)
 }
@@ -55,10 +57,12 @@ fn tick(panel: &mut Panel, frame: &Canvas) -> Result<(), OledError> {
     result
 }
 
+/// Returns true if the memory of the panel has exactly the picture of the frame.
 fn shows(panel: &Panel, frame: &Canvas) -> bool {
     panel.bus.panel.shows(&Bitmap::from(frame))
 }
 
+/// Returns the scene with its own initial settings, on the fastest class of processors.
 fn shown(name: SceneName) -> Show {
     Show::on(STM32F405, name, &name.first_settings()).expect("a scene of the catalogue")
 }
@@ -70,6 +74,8 @@ fn scene(ticks: u32) -> Canvas {
     show.frame()
 }
 
+/// A canvas of one grey has a fixed share of lit pixels for each grey, in sixteenths. In a scene
+/// with all greys the share grows evenly.
 #[test]
 fn greys_become_patterns_of_pixels() {
     // The number of lit pixels out of 16 for each grey. A scene with all greys spreads them evenly.
@@ -104,6 +110,7 @@ fn greys_become_patterns_of_pixels() {
     }
 }
 
+/// Pixels in the corners and elsewhere have the same place in the bitmap's pages as on the canvas.
 #[test]
 fn every_pixel_is_in_its_place() {
     for (x, y) in [(0, 0), (127, 0), (0, 63), (127, 63), (5, 9), (64, 32)] {
@@ -125,6 +132,8 @@ fn pixels(mut is_lit: impl FnMut() -> bool) -> Canvas {
     canvas
 }
 
+/// Each kind of controller, at both addresses, shows every frame completely: scenes, and noise of
+/// any density.
 #[test]
 fn the_panel_shows_each_picture_at_either_address() {
     let mut rng = Rng::with_seed(1);
@@ -186,6 +195,11 @@ const MODULES: [(Kind, Says, Name, By); 21] = {
     ]
 };
 
+/// The modules of [`MODULES`] are at the same address 0x3C. They differ in the controller, in the
+/// status bytes, and in whether their memory can be read. The panel is plugged in after the driver
+/// has begun to look for it. Within two seconds it must be identified, once, as the expected
+/// controller by the expected property, and be switched on once. From then on it shows every frame
+/// completely.
 #[test]
 fn every_module_in_the_field_shows_the_picture() {
     for (kind, says, controller, by) in MODULES {
@@ -214,6 +228,8 @@ fn every_module_in_the_field_shows_the_picture() {
     }
 }
 
+/// The panel answers the read of its status, and then nothing more, so its memory cannot be read.
+/// It is identified by its status byte.
 #[test]
 fn status_byte_decides_only_if_reading_memory_fails() {
     for (kind, status, controller) in [
@@ -298,6 +314,9 @@ const fn bits(columns: u32) -> u32 {
     (1 + 5 * BYTE) + (1 + (2 + columns) * BYTE)
 }
 
+/// The number of bits on the bus for a frame: without a change only the part of 16 columns that is
+/// always sent again, and in addition one column, or two columns of the same page with a single
+/// address.
 #[test]
 fn only_changes_are_sent_and_one_part_again() {
     let mut panel = panel(Controller::new(SSD1306, 0x3C));
@@ -373,6 +392,9 @@ const MOMENTS: usize = 15;
 /// The number of last frames that may be visible: the first picture takes two ticks.
 const RECENT: usize = 3;
 
+/// A panel that shows a scene, playing or paused, is pulled for 0 to 100 ticks and plugged in
+/// again, 15 times. Within 2 s it shows one of the last three frames, and then does so in every
+/// tick. No frame disturbs the transfer of the one before.
 #[test]
 fn panel_plugged_in_again_shows_every_scene_within_two_seconds() {
     let runs = [SSD1306, SH1106]
@@ -540,6 +562,8 @@ fn no_frame_is_skipped_when_frames_are_not_equally_far_apart() {
     }
 }
 
+/// If the bus transfers only every other frame, the driver returns the error `Slow` with 30 frames,
+/// and none before and after.
 #[test]
 fn a_bus_that_is_held_up_is_reported_once_a_second() {
     let mut panel = panel(Controller::new(SSD1306, 0x3C));
@@ -561,6 +585,7 @@ fn a_bus_that_is_held_up_is_reported_once_a_second() {
     assert_eq!(second(false), (Ok(()), 60));
 }
 
+/// The texts of the errors, of which the log has a line.
 #[test]
 fn errors_of_the_panel_are_printed_in_words() {
     let text = |error: OledError| error.to_string();
@@ -579,6 +604,9 @@ fn errors_of_the_panel_are_printed_in_words() {
     );
 }
 
+/// Without a panel both addresses are tried, and then one try follows in each second. A panel that
+/// is plugged in shows the frame within about a second, also for the second time; a pulled one is
+/// reported as lost.
 #[test]
 fn an_absent_panel_is_searched_once_a_second_and_may_come_and_go() {
     let plug = |panel: &mut Panel, plugged_in| {
@@ -630,6 +658,8 @@ fn an_absent_panel_is_searched_once_a_second_and_may_come_and_go() {
     }
 }
 
+/// A bus on which no transfer ends is reported as lost within 10 ticks, and freed once, then once a
+/// second. After it lets go, the panel shows the frame within about a second.
 #[test]
 fn a_bus_that_hangs_delays_nothing_and_is_freed() {
     let flush = |panel: &mut Panel, ticks| tick(panel, &scene(ticks));

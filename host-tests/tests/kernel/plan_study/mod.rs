@@ -48,6 +48,7 @@ struct Exact {
     frames: Vec<Directions>,
 }
 
+/// Returns the sine and cosine of both angles.
 fn directions([a1, a2]: [f64; 2]) -> Directions {
     [libm::sin(a1), libm::cos(a1), libm::sin(a2), libm::cos(a2)]
 }
@@ -72,8 +73,9 @@ impl Exact {
         self.frames[frame as usize - 1]
     }
 
-    /// Returns the number of accurate frames of a run, and its largest error in the first `until`
-    /// frames, half pixels.
+    /// Returns the number of frames of a run before the first inaccurate one, and its largest error
+    /// in the first `until` frames, half pixels. A run that is refused has no accurate frame and an
+    /// infinite error; so has a frame after the motion has diverged.
     fn judge(&mut self, stepping: Stepping, until: u32) -> (u32, f64) {
         let Ok(mut run) = PlannedRun::new(&self.scene, stepping) else {
             return (0, f64::INFINITY);
@@ -162,6 +164,7 @@ struct Case {
 }
 
 impl Case {
+    /// Plans a scene within the budgets of a chip, and judges the plan.
     fn new(scene: &Problem, chip: &Chip, exact: &mut Exact) -> Self {
         let budget = chip.processor.budget(scene);
         let mut case = Self {
@@ -187,6 +190,7 @@ impl Case {
         case
     }
 
+    /// Returns true if there is a plan whose predicted horizon is before the end of the scene.
     fn ends_early(&self) -> bool {
         let frames = |plan: Plan| (plan.horizon * f64::from(self.scene.rate)).round() as u32;
         self.plan
@@ -243,12 +247,14 @@ fn judged(scene: &Problem, by_force: bool, is_checked: bool) -> Vec<Case> {
 
 /// The results of a chip.
 struct Results {
+    /// The number of plans that end early.
     ending: usize,
     /// The shares, ascending.
     shares: Vec<f64>,
 }
 
 impl Results {
+    /// Returns the share at a quantile from 0, the smallest, to 1; 1 if no plan ends early.
     fn share(&self, quantile: f64) -> f64 {
         let place = (quantile * self.shares.len() as f64) as usize;
         self.shares.get(place).copied().unwrap_or(1.0)
@@ -303,7 +309,10 @@ fn study(
     CHIPS.iter().enumerate().map(of_chip).collect()
 }
 
-/// The scenes of every class, and the scenes that were once wrong.
+/// A scene of every class, two with a long horizon, and the scenes that were once wrong are planned
+/// for each processor. No frame until the predicted horizon may be wrong by more than half a pixel.
+/// At least ten plans of each processor must end early, and the median of their predicted horizons
+/// must be [`PLAN_SHARE`] of the plan's true one.
 #[test]
 fn half_a_pixel_is_kept_until_the_predicted_horizon() {
     let sample = Class::ALL
@@ -319,7 +328,11 @@ fn half_a_pixel_is_kept_until_the_predicted_horizon() {
     }
 }
 
-/// Studies a whole class. `cargo test -p host-tests --test kernel plan_study::thousands --
+/// Studies a whole class. At most [`VIOLATIONS`] plans for each processor and seed may have an
+/// inaccurate frame before the predicted horizon, of at most [`LARGEST`] half pixels, and the
+/// shares of the horizons must be at least [`SHARE`] if [`LEAST_ENDING`] plans or more end early.
+///
+/// `cargo test -p host-tests --test kernel plan_study::thousands --
 /// --ignored --nocapture` prints the README's table.
 ///
 /// The environment variables `SCENES=200 SEED=1` select fewer scenes.

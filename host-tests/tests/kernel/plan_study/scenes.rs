@@ -58,6 +58,7 @@ pub enum Class {
 const MOST_FRAMES: f64 = 3_000.0;
 
 impl Class {
+    /// All classes.
     pub const ALL: [Self; 7] = [
         Self::Broad,
         Self::High,
@@ -74,6 +75,7 @@ impl Class {
         std::iter::repeat_with(move || self.scene(&mut rng))
     }
 
+    /// Returns the next random scene of this class.
     fn scene(self, rng: &mut Rng) -> Problem {
         // The ranges of the class.
         let [least_mass, greatest_mass] = match self {
@@ -155,7 +157,7 @@ fn size(rng: &mut Rng, most: f64) -> f64 {
     }
 }
 
-/// Returns a start at rest.
+/// Returns a start at rest, whose larger angle is from [`LEAST`] to pi rad.
 fn swing(rng: &mut Rng) -> Motion<f64> {
     let amplitude = size(rng, PI);
     let other = amplitude * symmetric(rng);
@@ -205,6 +207,7 @@ pub fn long() -> impl Iterator<Item = Problem> {
     })
 }
 
+/// Returns a pendulum with a bob 1 of 1 kg and a rod 1 of 1 m.
 fn pendulum(m2: f64, l2: f64) -> Parameters<f64> {
     Parameters {
         m1: 1.0,

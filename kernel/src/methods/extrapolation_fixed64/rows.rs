@@ -20,8 +20,8 @@ const SHARE: f64 = (1 << 27) as f64;
 /// Rows with a smaller weight than this do not compensate for the roundings of other rows.
 const LEAST: f64 = 0.01;
 
-/// Returns the longest unit of time up to `longest` that has a whole number of parts in a step of
-/// `dt` s. It has the sign of `dt`.
+/// Returns the longest unit of time, s, up to `longest` s, for which a step of `dt` s is a whole
+/// number of [`PARTS`] in the format [`SHARE`]. It has the sign of `dt`.
 pub(super) fn unit_of_time(longest: f64, dt: f64) -> f64 {
     let unit = dt * SHARE / PARTS as f64;
     unit / libm::ceil(libm::fabs(unit) / longest)
@@ -39,7 +39,7 @@ pub(super) struct Rows {
     shifts: Shifts,
     /// An eighth of nu.
     norm: Q64,
-    /// A 64th of m.
+    /// A 64th of m, divided by 2^[`Shifts::inverse`].
     inertia: Q64,
     rows: [Row; ROWS],
 }
@@ -65,11 +65,13 @@ struct Factor {
 }
 
 impl Factor {
+    /// The factor 0.
     const ZERO: Self = Self {
         whole: 0,
         rest: Q64(0),
     };
 
+    /// Returns the factor nearest to `value`, whose magnitude must be below 2^31.
     fn new(value: f64) -> Self {
         let whole = libm::floor(value + 0.5); // The rest may be -1/2, but not 1/2.
         Self {
@@ -78,6 +80,7 @@ impl Factor {
         }
     }
 
+    /// Returns the product with `number`, rounded down. It wraps if it does not fit.
     #[inline(always)]
     fn times(&self, number: Q64) -> Q64 {
         let product = number * self.rest;
@@ -90,7 +93,8 @@ impl Factor {
 }
 
 impl Rows {
-    /// Prepares steps of `dt` s of the order `order`. Refuses an order that is not 2, 4 .. 16.
+    /// Prepares steps of `dt` s of the order `order`. The unit of time of `scaling` is one of
+    /// [`unit_of_time`]. Refuses an order that is not 2, 4 .. 16.
     pub fn new(order: u32, scaling: &Scaling, dt: f64) -> Result<Self, Error> {
         let count = rows(order)?;
         let mut shares = [Factor::ZERO; ROWS];
@@ -159,7 +163,8 @@ impl Rows {
         [differences - nearest(slopes) as i16, differences]
     }
 
-    /// Returns the end of a step from `z`. Sets bits of `reach` if a quantity left its range.
+    /// Returns the end of a step from `z`: an eighth of sin a1, cos a1, S and C, and P1 and P2.
+    /// Sets bits of `reach` if a quantity left its range; the end is then meaningless.
     ///
     /// Compiled for three kinds of pendulum, because shifts by constants are cheaper: equal rods
     /// with a bob 2 that is at most as heavy as bob 1, a heavier bob 2, and all others.
@@ -176,6 +181,8 @@ impl Rows {
         }
     }
 
+    /// Returns the [`end`](Self::end) of a step from `origin`, for one kind of pendulum
+    /// ([`Equations`]).
     #[inline(never)]
     fn end_in<const UNLIKE: bool, const INVERSE: bool>(
         &self,
@@ -308,13 +315,13 @@ impl<const UNLIKE: bool, const INVERSE: bool> Equations<'_, UNLIKE, INVERSE> {
         }
     }
 
-    /// Records whether `number` is 2^-`places` or more.
+    /// Records in `reach` whether the magnitude of `number` is 2^-`places` or more.
     #[inline(always)]
     fn guard(&self, number: Q64, places: u32) {
         self.reach.set(self.reach.get() | number.reach(places));
     }
 
-    /// Returns `number` times 2^-`by`.
+    /// Returns `number` times 2^-`by` if `UNLIKE`, otherwise `number`, because `by` is 0.
     #[inline(always)]
     fn down(&self, number: Q64, by: u32) -> Q64 {
         if UNLIKE { number.down(by) } else { number }
@@ -335,7 +342,8 @@ mod tests {
     use crate::methods::Fixed64;
     use crate::pendulum::{Motion, Parameters, Pendulum};
 
-    /// Returns true if a step from `z` reports that a quantity left its range.
+    /// Returns true if a step from `z`, in the format of [`Rows::end`], reports that a quantity
+    /// left its range. Rods and masses are equal.
     fn leaves(z: [f64; 6]) -> Result<bool, Error> {
         let parameters = Parameters::equal_rods(1.0, 1.0, 9.81);
         let dt = 1.0 / 64.0;
@@ -348,6 +356,8 @@ mod tests {
         Ok(reach.get() != 0)
     }
 
+    /// A state in range is not reported. Each of the six quantities alone beyond 1/4, and u and C
+    /// P2 beyond their limits, is.
     #[test]
     fn each_quantity_out_of_range_is_reported() -> Result<(), Error> {
         assert!(!leaves([0.0, 0.125, 0.0, 0.125, 0.1, 0.1])?);
@@ -370,7 +380,8 @@ mod tests {
         Ok(())
     }
 
-    /// The number of v is 32 times its value here, so that only its change over a step is in range.
+    /// A swing of 2 s does not diverge. The stored number of v is 32 times the rate of a2 here, so
+    /// that only its change over a step is in range.
     #[test]
     fn light_bob_on_long_rod_stays_in_range() -> Result<(), Error> {
         let parameters = Parameters {

@@ -60,11 +60,17 @@ pub struct Units {
     /// The energy above which the motion is lost, in the format of
     /// [`Fixed32::energy`](super::Fixed32).
     pub most_energy: i64,
+    /// The units of momenta and time, and the unrounded constants.
     pub scaling: Scaling,
 }
 
 impl Units {
     /// Chooses the units for a motion with `energy` joules above rest and steps of `dt` seconds.
+    ///
+    /// # Errors
+    ///
+    /// Refuses ratios of masses or rods that [`Scaling::in_seconds`] refuses, and a step that is
+    /// too long: [`Error::TooLarge`] contains the longest possible one, s.
     #[inline(never)]
     pub fn new(parameters: &Parameters<f64>, energy: f64, dt: f64) -> Result<Self, Error> {
         let &Parameters { m1, m2, .. } = parameters;

@@ -4,14 +4,21 @@ use core::ops::{Add, Sub};
 
 use crate::numbers::fixed::{Q30, Slope, Torque};
 
-/// One number for each of the six quantities: `D` for those of directions, `M` for momenta.
+/// One number for each of the six quantities sin a1, cos a1, S, C, P1 and P2: `D` for those of
+/// directions, `M` for momenta.
 #[derive(Clone, Copy)]
 pub struct Quantities<D, M> {
+    /// sin a1.
     pub sin1: D,
+    /// cos a1.
     pub cos1: D,
+    /// S = nu sin (a1 - a2).
     pub s: D,
+    /// C = nu cos (a1 - a2).
     pub c: D,
+    /// P1.
     pub p1: M,
+    /// P2.
     pub p2: M,
 }
 

@@ -1,7 +1,7 @@
 //! Fixed-point numbers of 32 and 64 bits.
 
 /// Defines a number with the sums of its word. `$narrowed` converts a sum, which is twice as wide,
-/// back to a word.
+/// back to a word: it decides what happens to a sum that does not fit.
 macro_rules! fixed_point {
     ($(#[$doc:meta])* $type:ident($word:ident), $narrowed:ident($wide:ident)) => {
         $(#[$doc])*
@@ -40,13 +40,14 @@ pub(crate) use q30::watch;
 pub(crate) use q30::{Gravity, Q30, Slope, Torque, word};
 pub(crate) use q64::Q64;
 
-/// Returns `value` times 2^`exponent`.
+/// Returns `value` times 2^`exponent`; infinity beyond the range of `f64`.
 #[inline(never)] // Not inlined, to save flash.
 pub(crate) fn scaled(value: f64, exponent: i32) -> f64 {
     libm::scalbn(value, exponent)
 }
 
-/// Returns the whole number nearest to `value`.
+/// Returns the whole number nearest to `value`, the even one of two. NaN and infinity are
+/// unchanged.
 #[inline(never)] // Not inlined, to save flash.
 pub(crate) fn nearest(value: f64) -> f64 {
     libm::rint(value)
@@ -61,13 +62,13 @@ pub(crate) const IN_HALVES: bool = cfg!(all(
     not(target_has_atomic = "32")
 ));
 
-/// Returns the upper word of a product, rounded down.
+/// Returns the upper word of the product of two words: `a` `b` 2^-32, rounded down.
 #[inline(always)]
 pub(crate) fn upper(a: i32, b: i32) -> i32 {
     (product(a, b) >> 32) as i32
 }
 
-/// Returns the product of two words.
+/// Returns the product of two words, which always fits.
 #[inline(always)]
 pub(crate) fn product(a: i32, b: i32) -> i64 {
     if IN_HALVES {
@@ -101,6 +102,8 @@ fn product_of_halves(a: i32, b: i32) -> i64 {
 mod tests {
     use super::*;
 
+    /// Compares [`product_of_halves`] with the 64-bit product, for all pairs of the words at the
+    /// ends of a range and of 64 random ones.
     #[test]
     fn product_of_halves_is_the_product() {
         let ends = [
