@@ -23,12 +23,14 @@ const ROUNDS: usize = 30;
 /// The number of starts that a thread takes at once.
 const PORTION: usize = 1024;
 
+/// The flip of each start, in order.
 type Found = Result<Vec<Flip<f32>>, Error>;
 /// A way to find flips: its name, the function, and its goal on one thread, as a multiple of the
 /// speed of C. The goals are 280 million steps a second in vectors of 8 numbers, and 130 million in
 /// vectors of 4, where plain C made 11 million.
 type Way = (&'static str, fn(&Search, &[[f32; 2]]) -> Found, Option<f64>);
 
+/// The ways that are compared with C. All must find the same flips.
 const WAYS: [Way; 4] = [
     ("this kernel: one start after the other", one_by_one, None),
     (
@@ -44,10 +46,12 @@ const WAYS: [Way; 4] = [
     ("the same on all threads", threads, None),
 ];
 
+/// Finds the flips by the search for one start.
 fn one_by_one(search: &Search, starts: &[[f32; 2]]) -> Found {
     starts.iter().map(|&[a1, a2]| search.of(a1, a2)).collect()
 }
 
+/// Finds the flips in vectors, on all threads.
 fn threads(search: &Search, starts: &[[f32; 2]]) -> Found {
     let portions = starts
         .par_chunks(PORTION)

@@ -16,6 +16,7 @@ use ode_solvers::dop_shared::OutputType;
 use ode_solvers::{Dop853, Rk4, System, Vector4};
 use reference::taylor;
 
+/// The pendulum of all scenes, in SI units.
 const PARAMETERS: Parameters<f64> = Parameters {
     m1: 1.0,
     m2: 1.0,
@@ -96,10 +97,13 @@ const TIGHT: &[Contestant] = &[
     ),
 ];
 
+/// Returns the pendulum of all scenes.
 fn pendulum() -> double_pendulum::Pendulum<f64> {
     double_pendulum::Pendulum::new(&PARAMETERS).unwrap_or_else(|error| panic!("{error}"))
 }
 
+/// Returns the state after some parts of the scene by a form of the kernel, in `steps` steps per
+/// part.
 fn form<F: Form>(scene: Scene, parts: u32, steps: u32) -> [f64; 4] {
     let dt = scene.part / f64::from(steps);
     let motion = F::new(&PARAMETERS, &scene.start.into(), dt);
@@ -146,6 +150,7 @@ impl<E: Fn(&[f64; 4]) -> [f64; 4]> System<f64, Vector4<f64>> for Problem<E> {
 /// resolution of f64.
 const ENDED_EARLY: [f64; 4] = [f64::NAN; 4];
 
+/// Returns the state by the library's RK4, in `steps` steps per part.
 fn library_rk4(
     equations: impl Fn(&[f64; 4]) -> [f64; 4],
     scene: Scene,
@@ -162,6 +167,7 @@ fn library_rk4(
     stepper.y_out().last().map_or(ENDED_EARLY, |&z| z.into())
 }
 
+/// Returns the state by the library's DOP853, with the tolerance of this effort.
 fn dop853(
     equations: impl Fn(&[f64; 4]) -> [f64; 4],
     scene: Scene,

@@ -10,13 +10,16 @@ use object::{
 
 use crate::instruction::{Instruction, is_long};
 
+/// A program for an ARM processor, read from its ELF file.
 #[derive(Debug)]
 pub struct Image {
     path: PathBuf,
     /// The start address and bytes of everything that is loaded, including functions that run in
     /// RAM.
     loaded: Vec<(u32, Vec<u8>)>,
+    /// The start address and bytes of every section with code.
     code: Vec<(u32, Vec<u8>)>,
+    /// All functions and labels, sorted by address.
     functions: Vec<Function>,
     /// The beginnings of code (`true`) and of data between code (`false`), by address, from the
     /// mapping symbols `$t` and `$d`.
@@ -27,15 +30,19 @@ pub struct Image {
 /// label in assembly code that is not declared as a function.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Function {
+    /// The address of its first instruction, without the Thumb bit.
     pub address: u32,
     /// The size in bytes, or 0 if the assembly code does not declare it.
     pub size: u32,
+    /// The demangled name, without a hash.
     pub name: String,
     /// The mangled name, which the linker uses.
     pub symbol: String,
 }
 
 impl Image {
+    /// Reads an ELF file. An error, which names the file, means that it is unreadable or no program
+    /// for ARM.
     pub fn read(path: &Path) -> Result<Self> {
         Self::parse(path).with_context(|| path.display().to_string())
     }
@@ -97,6 +104,7 @@ impl Image {
         })
     }
 
+    /// Returns all functions and labels whose demangled names contain `part`, by address.
     pub fn functions_named(&self, part: &str) -> impl Iterator<Item = &Function> {
         self.functions
             .iter()
@@ -104,7 +112,8 @@ impl Image {
     }
 
     /// Returns the function or label with this name, mangled or demangled. If no name is equal,
-    /// returns the only function whose demangled name contains `name`.
+    /// returns the only function whose demangled name contains `name`. It is an error if there is
+    /// none, or if several functions are possible. Names of the same address count as one.
     pub fn function(&self, name: &str) -> Result<&Function> {
         let is_it = |function: &&Function| function.name == name || function.symbol == name;
         let mut found: Vec<_> = self.functions.iter().filter(is_it).collect();
@@ -125,13 +134,14 @@ impl Image {
         }
     }
 
+    /// Returns true if something is loaded at this address.
     pub fn holds(&self, address: u32) -> bool {
         self.loaded
             .iter()
             .any(|(start, bytes)| address.wrapping_sub(*start) < bytes.len() as u32)
     }
 
-    /// Returns the word at an address within the loaded bytes.
+    /// Returns the word of four bytes at an address, or `None` if not all of them are loaded.
     pub fn word(&self, address: u32) -> Option<u32> {
         self.loaded.iter().find_map(|(start, bytes)| {
             let at = address.checked_sub(*start)? as usize;
@@ -140,10 +150,13 @@ impl Image {
         })
     }
 
+    /// Returns the error that the program has no such function.
     pub fn lacks(&self, function: &str) -> anyhow::Error {
         anyhow!("{}: no function {function}", self.path.display())
     }
 
+    /// Returns the function that contains this address, or `None`. A label without a size contains
+    /// no address.
     pub fn function_at(&self, address: u32) -> Option<&Function> {
         let before = self
             .functions
@@ -155,7 +168,7 @@ impl Image {
     }
 
     /// Returns every instruction as its address, its first halfword, and its second halfword if it
-    /// has one.
+    /// has one. They are in the order of the sections. Data between code is left out.
     pub fn words(&self) -> Vec<(u32, u16, Option<u16>)> {
         let mut words = Vec::new();
         for (start, bytes) in &self.code {
@@ -185,6 +198,8 @@ impl Image {
         words
     }
 
+    /// Returns the instruction at this address. It is an error if no code is loaded there, or if
+    /// the table of timings does not have the instruction.
     pub fn instruction_at(&self, address: u32) -> Result<Instruction> {
         let halfword = |address: u32| {
             self.loaded.iter().find_map(|(start, bytes)| {

@@ -7,6 +7,7 @@ use crate::row::{Class, Field, Float, Row};
 use crate::stream::Registers;
 use crate::timing::TIMINGS;
 
+/// Returns true if this halfword begins an instruction of 32 bits.
 pub fn is_long(first: u16) -> bool {
     first >= 0xe800
 }
@@ -22,9 +23,12 @@ static ROWS: LazyLock<Vec<Vec<&Row>>> = LazyLock::new(|| {
     (0..=0xff).map(|byte| begin(byte).collect()).collect()
 });
 
+/// An instruction with its row of the timing table.
 #[derive(Clone, Copy, Debug)]
 pub struct Instruction {
+    /// The first halfword in the upper half, the second one or 0 in the lower half.
     word: u32,
+    /// The row with its name and timing.
     pub row: &'static Row,
 }
 
@@ -39,6 +43,7 @@ impl Instruction {
         Some(Self { word, row })
     }
 
+    /// Returns its size in bytes: 2 or 4.
     pub fn size(&self) -> u32 {
         if is_long((self.word >> 16) as u16) {
             4
@@ -48,7 +53,9 @@ impl Instruction {
     }
 
     /// Returns the cycles of the instruction alone, without a branch, for these contents of the
-    /// registers.
+    /// registers. The effects of the neighbouring instructions are not included
+    /// ([`Pipeline`](crate::Pipeline)). The registers, before the instruction, affect a division
+    /// only.
     pub fn cycles(&self, core: Core, registers: &Registers) -> u64 {
         let more = match self.row.class {
             Class::LoadList | Class::StoreList => {
@@ -61,6 +68,7 @@ impl Instruction {
         self.row.cycles(core) + more
     }
 
+    /// Returns true if it reads memory.
     pub fn loads(&self) -> bool {
         match self.row.class {
             Class::Load | Class::LoadPair | Class::LoadList => true,
@@ -69,6 +77,7 @@ impl Instruction {
         }
     }
 
+    /// Returns true if it uses the floating-point unit.
     pub fn is_float(&self) -> bool {
         self.word >> 26 == 0b11_1011
     }
@@ -79,6 +88,7 @@ impl Instruction {
         self.row.cycles(core) == 0 && (self.row.class != Class::Divide || core == Core::M0Plus)
     }
 
+    /// Returns true if its address depends on a core register that the instruction `before` writes.
     pub fn is_addressed_by(&self, before: &Self) -> bool {
         let registers =
             |fields: &'static [Field], word| fields.iter().map(move |field| field.register(word));
@@ -90,7 +100,8 @@ impl Instruction {
         registers(self.row.address, self.word).any(written)
     }
 
-    /// Returns the floating-point register with a late result, or `None`.
+    /// Returns the floating-point register with a late result, or `None`. A late result stalls an
+    /// instruction that follows at once and consumes it.
     pub fn late_result(&self) -> Option<u32> {
         matches!(self.row.class, Class::Arithmetic(_) | Class::Aside(_))
             .then(|| Float::D.register(self.word))

@@ -67,6 +67,7 @@ pub const ERROR_BAR: &str = "\
 pub struct Cost {
     /// The number of executed instructions. An instruction whose condition fails counts as well.
     pub instructions: u64,
+    /// The estimated number of cycles, including the stalls.
     pub cycles: u64,
     /// The part of the cycles that waits for a floating-point result or for the floating-point
     /// unit.
@@ -85,15 +86,20 @@ impl AddAssign for Cost {
 #[derive(Clone, Copy, Debug)]
 pub struct Pipeline {
     core: Core,
+    /// The instruction before; `None` at the start.
     previous: Option<Instruction>,
+    /// True if a branch led to the next instruction.
     branched: bool,
+    /// The number of cycles so far.
     now: u64,
+    /// The first cycle in which the floating-point unit is free.
     unit_free: u64,
     /// The register with the last floating-point result, and the first cycle that can consume it.
     result: Option<(u32, u64)>,
 }
 
 impl Pipeline {
+    /// Returns a processor that has executed nothing yet.
     pub fn new(core: Core) -> Self {
         Self {
             core,

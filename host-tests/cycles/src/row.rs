@@ -5,6 +5,7 @@ use crate::Core;
 /// The additional effect on the time of an instruction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Class {
+    /// No effect.
     Fixed,
     /// A branch to an address in the instruction. It refills the pipeline sooner than a branch to
     /// an address in a register.
@@ -57,6 +58,8 @@ pub enum Float {
 }
 
 impl Float {
+    /// Returns the number of the floating-point register, 0 to 31 for s0 to s31, in the word of an
+    /// instruction ([`Row`]).
     pub fn register(self, word: u32) -> u32 {
         match self {
             Self::D => (word >> 12 & 0xf) << 1 | word >> 22 & 1,
@@ -67,14 +70,18 @@ impl Float {
     }
 }
 
-/// The position of a core register in an encoding.
+/// The position of a core register in the word of an instruction ([`Row`]). `Low0` to `Low8` are
+/// three bits of its first halfword, from that bit on. `Wide0` to `Wide16` are four bits of the
+/// word, from that bit on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Field {
     Low0,
     Low3,
     Low6,
     Low8,
+    /// A register of r0 to r15 whose highest bit is apart from the others.
     Any,
+    /// The stack pointer, which has no bits in the encoding.
     Sp,
     Wide0,
     Wide8,
@@ -83,6 +90,7 @@ pub enum Field {
 }
 
 impl Field {
+    /// Returns the number of the core register, 0 to 15, in the word of an instruction.
     pub fn register(self, word: u32) -> u32 {
         match self {
             Self::Low0 => word >> 16 & 7,
@@ -105,12 +113,17 @@ impl Field {
 /// `word` has the first halfword in its upper half, and the second halfword or 0 in its lower half.
 #[derive(Clone, Copy, Debug)]
 pub struct Row {
+    /// The mnemonics.
     pub name: &'static str,
+    /// The bits of the word that identify these instructions.
     pub(super) mask: u32,
+    /// The values of those bits.
     pub(super) value: u32,
     /// The cycles on the M3, the M4 and the M0+.
     pub(super) cycles: [u64; 3],
+    /// The additional effect.
     pub class: Class,
+    /// The core registers that it writes.
     pub(super) writes: &'static [Field],
     /// The registers that form the address of a load or store.
     pub(super) address: &'static [Field],
@@ -130,6 +143,7 @@ impl Row {
     }
 }
 
+/// Returns a row with these fields.
 pub(super) const fn row(
     name: &'static str,
     mask: u32,

@@ -14,6 +14,7 @@ use crate::image::Image;
 use crate::instruction::Instruction;
 use crate::pipeline::{Cost, Pipeline};
 
+/// The contents of the core registers before an instruction.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Registers {
     /// r0 to r15.
@@ -21,14 +22,17 @@ pub struct Registers {
 }
 
 impl Registers {
+    /// Returns the stack pointer.
     pub fn sp(&self) -> u32 {
         self.general[13]
     }
 
+    /// Returns the link register, which has the return address and its Thumb bit.
     pub fn lr(&self) -> u32 {
         self.general[14]
     }
 
+    /// Returns the address of the instruction that is about to be executed.
     pub fn pc(&self) -> u32 {
         self.general[15]
     }
@@ -80,7 +84,8 @@ pub fn for_each_instruction(
     Ok(())
 }
 
-/// The calls of the functions that begin at some addresses.
+/// The calls of the functions that begin at some addresses. A call within another counted call is a
+/// part of it.
 #[derive(Debug)]
 pub struct Calls<'a> {
     image: &'a Image,
@@ -96,7 +101,8 @@ pub struct Calls<'a> {
     pub stack_bytes: u32,
 }
 
-/// The instructions that a core executes, one after the other.
+/// The instructions that a core executes, one after the other. Costs are estimated as if the first
+/// one followed nothing.
 #[derive(Debug)]
 pub struct Stream<'a> {
     image: &'a Image,
@@ -106,6 +112,7 @@ pub struct Stream<'a> {
 }
 
 impl<'a> Stream<'a> {
+    /// Returns a stream that begins with the next instruction.
     pub fn of(image: &'a Image, core: Core) -> Self {
         Self {
             image,
@@ -115,7 +122,8 @@ impl<'a> Stream<'a> {
     }
 
     /// Takes the registers before the next instruction. Returns the address, the instruction and
-    /// the cost of the previous instruction, or `None` at the first call.
+    /// the cost of the previous instruction, or `None` at the first call. It is an error if the
+    /// previous instruction is not in the program or has no known timing.
     pub fn see(&mut self, next: Registers) -> Result<Option<(u32, Instruction, Cost)>> {
         let Some(before) = self.before.replace(next) else {
             return Ok(None);
@@ -131,6 +139,8 @@ impl<'a> Stream<'a> {
 }
 
 impl<'a> Calls<'a> {
+    /// Returns the calls of the functions that begin at these addresses, without the Thumb bit;
+    /// none so far.
     pub fn of(image: &'a Image, core: Core, entries: BTreeSet<u32>) -> Self {
         let ended = Vec::new();
         let spots = BTreeMap::new();
@@ -145,7 +155,8 @@ impl<'a> Calls<'a> {
         }
     }
 
-    // A call begins at an entry, unless another call is running.
+    /// Takes the registers before the next instruction. A call begins at an entry, unless another
+    /// call is running. Errors are as in [`Stream::see`].
     pub fn see(&mut self, registers: Registers) -> Result<()> {
         if self.running.is_none() && self.entries.contains(&registers.pc()) {
             self.running = Some((
@@ -179,14 +190,15 @@ impl<'a> Calls<'a> {
         Ok(())
     }
 
-    /// Returns the total cost of all calls that have returned.
+    /// Returns the total cost of all calls that have returned. It is zero if none has.
     pub fn cost(&self) -> Cost {
         let mut all = Cost::default();
         self.ended.iter().for_each(|call| all += *call);
         all
     }
 
-    /// Returns the size of all distinct executed instructions, in bytes.
+    /// Returns the size of all distinct executed instructions, in bytes. A running call is
+    /// included.
     pub fn hot_bytes(&self) -> u32 {
         self.spots
             .values()
@@ -194,7 +206,8 @@ impl<'a> Calls<'a> {
             .sum()
     }
 
-    /// Returns the size of all entered functions, in bytes.
+    /// Returns the size of all entered functions, in bytes. Code outside of any function with a
+    /// known size does not count.
     pub fn code_bytes(&self) -> u32 {
         let functions: BTreeSet<_> = self
             .spots

@@ -3,14 +3,18 @@
 use cycles::Core;
 use firmware::config::{self, Processor};
 
+/// A board that the firmware is built for, and its emulation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Board {
+    /// The name on the command line and in tables.
     pub name: &'static str,
     /// QEMU's `-machine`.
     pub machine: &'static str,
     /// QEMU's `-cpu`.
     pub cpu: &'static str,
+    /// The compiler's target.
     pub target: &'static str,
+    /// The binary of the firmware that is its application.
     pub binary: &'static str,
     /// The cargo feature that this binary needs; empty if none.
     pub feature: &'static str,
@@ -46,11 +50,12 @@ impl Board {
         }
     }
 
-    /// Returns the duration of an instruction in seconds.
+    /// Returns the duration of an instruction, s, when the clock counts instructions.
     pub fn instruction(&self) -> f64 {
         f64::from(1 << self.instruction_shift()) * 1e-9
     }
 
+    /// Returns the class of the processor, with its price list and budgets.
     pub fn processor(&self) -> Processor {
         match (self.binary, self.core()) {
             ("stm32f405", _) => config::STM32F405,
@@ -67,6 +72,7 @@ impl Board {
         self.core() != Core::M0Plus
     }
 
+    /// Returns the first address of the flash, where the processor reads its vectors.
     pub fn flash(&self) -> u32 {
         match self.machine {
             "netduinoplus2" => 0x0800_0000,
@@ -74,6 +80,7 @@ impl Board {
         }
     }
 
+    /// Returns the kind of core, which determines the timings of instructions.
     pub fn core(&self) -> Core {
         match self.cpu {
             "cortex-m3" => Core::M3,
@@ -109,6 +116,7 @@ pub const MPS2_AN386: Board = Board {
     ..LM3S6965EVB
 };
 
+/// The boards of QEMU. The first one is the default of most commands.
 pub const BOARDS: [Board; 5] = [
     LM3S6965EVB,
     Board {

@@ -25,6 +25,7 @@ pub struct Memory {
     pub data: u32,
     /// The statics that start as zeros or are not initialised.
     pub bss: u32,
+    /// The largest depth of the stack in memory.
     pub stack: u32,
 }
 
@@ -43,7 +44,7 @@ pub struct Memory {
 ///   of a crash.
 ///
 /// The Pico has 2 MiB of flash and more memory than the others. Its limits are higher because an
-/// M0+ takes more instructions and because of USB.
+/// M0+ takes more instructions and because of USB. Each has the name of its board.
 pub const MEMORY: [(&str, Memory); 6] = [
     (
         "lm3s6965evb",
@@ -101,4 +102,5 @@ pub const MEMORY: [(&str, Memory); 6] = [
     ),
 ];
 
+/// The number of bytes in a KiB.
 const KIB: u32 = 1024;

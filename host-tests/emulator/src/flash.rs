@@ -14,7 +14,9 @@ use object::read::elf::{FileHeader, ProgramHeader};
 const RP2040: u32 = 0xe48b_ff56;
 /// The flag of a block that contains a family ID.
 const HAS_FAMILY: u32 = 0x2000;
+/// The marks at the start of a block.
 const MAGIC: [u32; 2] = [0x0a32_4655, 0x9e5d_5157];
+/// The mark at its end.
 const MAGIC_END: u32 = 0x0ab1_6f30;
 /// The number of data bytes that a block carries, out of the `ROOM` bytes it has for them.
 const BROUGHT: usize = 256;
@@ -25,13 +27,16 @@ pub const ERASED: u8 = 0xff;
 /// error.
 const MOST: usize = 1 << 21;
 
-/// Returns the program as it is stored in flash: its first address and its bytes from there.
+/// Returns the program as it is stored in flash: its first address and its bytes from there, with
+/// 0xff between its parts. Errors are as in [`flash_image_over`].
 pub fn flash_image(elf: &[u8]) -> Result<(u32, Vec<u8>)> {
     flash_image_over(elf, ERASED)
 }
 
 /// Returns the program as it is stored in flash, with `unused` between its parts: erased flash, or
-/// zeros as QEMU's loader leaves.
+/// zeros as QEMU's loader leaves. The first element is the address of the first byte. An error
+/// means that the file is no 32-bit ELF file, is cut short, has nothing to load, or would fill more
+/// than 2 MiB.
 pub fn flash_image_over(elf: &[u8], unused: u8) -> Result<(u32, Vec<u8>)> {
     let header = FileHeader32::<Endianness>::parse(elf)?;
     let endian = header.endian()?;
@@ -71,7 +76,8 @@ pub fn flash_image_over(elf: &[u8], unused: u8) -> Result<(u32, Vec<u8>)> {
     Ok((start, image))
 }
 
-/// Returns the UF2 file that writes `image` to an RP2040's flash at `start`.
+/// Returns the UF2 file that writes `image` to an RP2040's flash at `start`. Each block brings 256
+/// bytes; the rest of the last one is zeros.
 pub fn uf2(start: u32, image: &[u8]) -> Vec<u8> {
     let parts = image.chunks(BROUGHT);
     let count = parts.len() as u32;

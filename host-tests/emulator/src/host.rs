@@ -8,20 +8,25 @@ use firmware::motion::Settings;
 use firmware::protocol::Frame;
 use firmware::scenes::{Report, SceneName};
 
+/// A scene that is played and drawn on the host by the code of the board.
 #[derive(Debug)]
 pub struct Show {
+    /// The player with the scene.
     pub player: Player<'static>,
-    /// The events of the planner, each with its tick.
+    /// The events of the planner, each with its tick. They are in ascending order and never
+    /// removed.
     pub news: Vec<(u64, PlannerEvent)>,
 }
 
 impl Show {
-    /// Starts a scene. Returns an error if the scene cannot show `settings`.
+    /// Starts a scene as on a board with the default processor. Errors are as in [`Show::on`].
     pub fn new(name: SceneName, settings: &Settings) -> Result<Self, Error> {
         Self::on(PROCESSOR, name, settings)
     }
 
-    /// Starts a scene as on a board with this `processor`.
+    /// Starts a scene as on a board with this `processor`. An error means that the scene cannot
+    /// show `settings` on it, such as a pendulum that the kernel refuses. The memory of the scene
+    /// is never freed.
     pub fn on(processor: Processor, name: SceneName, settings: &Settings) -> Result<Self, Error> {
         let ink = Box::leak(Box::new(FadeLayer::NONE));
         let mut player = Player::new(processor, ink);
@@ -32,6 +37,8 @@ impl Show {
         })
     }
 
+    /// Advances the player by one tick of 1/60 s. If the motion is no longer finite, the scene
+    /// stops and the report stays the last good one.
     pub fn tick(&mut self) {
         let Self { player, news } = self;
         let step = player.report.step + 1;
@@ -41,6 +48,7 @@ impl Show {
         let _ = player.check();
     }
 
+    /// Returns the picture of the current state.
     pub fn frame(&self) -> Canvas {
         let mut canvas = Canvas::default();
         self.player.draw(&mut canvas);
@@ -48,7 +56,8 @@ impl Show {
     }
 
     /// Advances to the tick of a board's `frame` and returns the frame that the board should have
-    /// sent. The fields that only the board can know are copied from `frame`.
+    /// sent. The fields that only the board can know are copied from `frame`. A scene that has
+    /// stopped or is paused must have reached that tick; else this never returns.
     pub fn expected(&mut self, frame: &Frame) -> Frame {
         while self.report().step < frame.report.step {
             self.tick();
@@ -71,12 +80,14 @@ impl Show {
         }
     }
 
+    /// Returns the numbers of the scene at the current tick.
     pub fn report(&self) -> Report {
         self.player.report
     }
 }
 
-/// Returns frame buffers that live for the rest of the program, as on a board.
+/// Returns blank frame buffers that live for the rest of the program, as on a board. Their memory
+/// is never freed.
 pub fn frame_buffers() -> &'static mut FrameBuffers {
     Box::leak(Box::new(FrameBuffers::BLANK))
 }

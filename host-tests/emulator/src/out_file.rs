@@ -18,6 +18,7 @@ use console::cli::{Refused, unwritable};
 /// unchanged.
 #[derive(Debug)]
 pub struct OutFile {
+    /// The option in errors.
     option: &'static str,
     path: PathBuf,
     content: Content,
@@ -32,7 +33,9 @@ enum Content {
 }
 
 impl OutFile {
-    /// Begins the file that `option` names. Returns an error if it cannot be written.
+    /// Begins the file that `option` names. An existing file must be writable, and a new file's
+    /// folder must exist and be writable; else this is refused. A device or a pipe is opened and
+    /// written directly.
     pub fn create(option: &'static str, path: &Path) -> Result<Self, Refused> {
         let content = Content::create(path).map_err(|error| unwritable(option, path, &error))?;
         Ok(Self {
@@ -42,7 +45,8 @@ impl OutFile {
         })
     }
 
-    /// Gives the file its name.
+    /// Gives the file its name and replaces an existing file. If that is not possible, the written
+    /// file is removed and the error names the option.
     pub fn finish(self) -> anyhow::Result<()> {
         let Self {
             option,
@@ -62,19 +66,21 @@ impl OutFile {
         }
     }
 
-    /// Writes the complete file.
+    /// Writes the complete file. An error leaves an existing file unchanged.
     pub fn write_whole(mut self, bytes: &[u8]) -> anyhow::Result<()> {
         self.write_all(bytes).map_err(|error| self.failed(&error))?;
         self.finish()
     }
 
-    /// Returns the error of a command whose file could not be written to the end.
+    /// Returns the error of a command whose file could not be written to the end. It names the
+    /// option and the file.
     pub fn failed(&self, error: &io::Error) -> anyhow::Error {
         anyhow!(unwritable(self.option, &self.path, error).to_string())
     }
 }
 
 impl Content {
+    /// Opens a device or makes the temporary file.
     fn create(path: &Path) -> io::Result<Self> {
         const ANYONE: u32 = 0o666; // reduced by the umask
         let mut mode = ANYONE;
@@ -127,12 +133,13 @@ impl Write for OutFile {
 }
 
 /// Returns an error if a file cannot be written, before the work for it begins. An existing file
-/// remains unchanged.
+/// remains unchanged. The refusal names the option and the file.
 pub fn check_writable(option: &'static str, path: &Path) -> Result<(), Refused> {
     OutFile::create(option, path).map(drop)
 }
 
-/// Writes a file of the folder that `--out` names, and creates the folder.
+/// Writes a file of the folder that `--out` names, and creates the folder. An error names the
+/// option and the file.
 pub fn write(path: &Path, bytes: impl AsRef<[u8]>) -> anyhow::Result<()> {
     let made = path.parent().map_or(Ok(()), fs::create_dir_all);
     made.map_err(|error| unwritable("--out", path, &error))?;

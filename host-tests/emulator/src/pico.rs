@@ -21,6 +21,7 @@ use crate::scratch::Scratch;
 use crate::toolchain::workspace;
 use crate::up_to_frame;
 
+/// The time that the board is run at once while a frame is awaited.
 const SLICE: Duration = Duration::from_millis(1);
 /// The number of slices without a frame after which the board counts as silent.
 const PATIENCE: u32 = 5000;
@@ -35,10 +36,13 @@ pub struct PicoMachine {
     _process: Running,
     /// The folder of the program's file. It is removed after the emulator has ended.
     _folder: Scratch,
+    /// The decoders of the two links.
     usb: Inbox,
     uart: Inbox,
     log: LogDecoder,
+    /// The lines of the log that have not been fetched.
     lines: Vec<LogLine>,
+    /// The messages of either link that have not been fetched.
     heard_by_usb: Vec<ToHost>,
     heard_by_uart: Vec<ToHost>,
     is_in_boot_loader: bool,
@@ -46,14 +50,15 @@ pub struct PicoMachine {
 
 impl PicoMachine {
     /// Starts a board with this firmware in its flash, exactly as `cargo pico` copies it. Node.js
-    /// runs the emulator.
+    /// runs the emulator. `limit` is a time of the host, after which the emulator is killed. An
+    /// error means that the ELF file is unusable or that Node.js cannot be started.
     pub fn start(node: &Path, elf: &Path, limit: Duration) -> anyhow::Result<Self> {
         let (start, image) = flash_image(&std::fs::read(elf)?)?;
         Self::flashed(node, &uf2(start, &image), elf, limit)
     }
 
     /// Starts a board whose flash has been written by this UF2 file. The ELF file is used to decode
-    /// the log.
+    /// the log. `limit` and errors are as in [`Self::start`].
     pub fn flashed(
         node: &Path,
         blocks: &[u8],
@@ -98,17 +103,21 @@ impl PicoMachine {
         })
     }
 
-    /// Advances the board's time and returns the messages that it has sent over USB.
+    /// Advances the board's time by `time`, in whole microseconds, and returns the messages that it
+    /// has sent over USB since they were last fetched. An error means that the emulator has ended.
     pub fn run(&mut self, time: Duration) -> anyhow::Result<Vec<ToHost>> {
         self.tell(&format!("run {}", time.as_micros()))?;
         Ok(std::mem::take(&mut self.heard_by_usb))
     }
 
-    /// Runs to the next frame and returns all messages up to it.
+    /// Runs to the next frame and returns all messages up to it. It is an error if 5 s of the board
+    /// bring none, or if the emulator has ended.
     pub fn run_to_frame(&mut self) -> anyhow::Result<Vec<ToHost>> {
         up_to_frame(PATIENCE, || self.run(SLICE))
     }
 
+    /// Runs to the next frame and returns it; other messages are dropped. Errors are as in
+    /// [`Self::run_to_frame`].
     pub fn next_frame(&mut self) -> anyhow::Result<Frame> {
         self.run_to_frame()?
             .into_iter()
@@ -117,14 +126,18 @@ impl PicoMachine {
             .context("it ends with one")
     }
 
+    /// Sends bytes over USB. The board takes them when it runs. Only an emulator that has ended is
+    /// an error, here and in all methods below.
     pub fn send_bytes(&mut self, bytes: &[u8]) -> anyhow::Result<()> {
         self.tell(&format!("usb {}", digits(bytes))).map(drop)
     }
 
+    /// Sends a command over USB with this request number.
     pub fn send(&mut self, request: u16, command: protocol::Command) -> anyhow::Result<()> {
         self.send_bytes(encode_command(request, command, &mut [0; MAX_WIRE]))
     }
 
+    /// Sends a command to the UART with this request number.
     pub fn send_through_uart(
         &mut self,
         request: u16,
@@ -148,10 +161,12 @@ impl PicoMachine {
         self.is_in_boot_loader
     }
 
+    /// Returns the messages that the board has sent by the UART since the last call.
     pub fn heard_by_uart(&mut self) -> Vec<ToHost> {
         std::mem::take(&mut self.heard_by_uart)
     }
 
+    /// Returns the lines of the log since the last call.
     pub fn lines(&mut self) -> Vec<LogLine> {
         std::mem::take(&mut self.lines)
     }
@@ -161,10 +176,12 @@ impl PicoMachine {
         [self.usb.counts, self.uart.counts]
     }
 
+    /// Returns the picture in the memory of the panel.
     pub fn screenshot(&mut self) -> anyhow::Result<Screenshot> {
         Ok(Screenshot::from_pages(&self.tell("panel")?))
     }
 
+    /// Presses or releases a button.
     pub fn set_key(&mut self, key: Key, down: bool) -> anyhow::Result<()> {
         let pin = match key {
             Key::Up => 10,
@@ -178,7 +195,8 @@ impl PicoMachine {
     }
 
     /// Sends a command to the emulator. Returns the bytes that it requests, if any, such as the
-    /// panel's memory.
+    /// panel's memory. The messages and log lines that arrive meanwhile are kept. An error means
+    /// that the emulator has ended, or has printed something else than hexadecimal digits.
     pub fn tell(&mut self, command: &str) -> anyhow::Result<Vec<u8>> {
         const GONE: &str = "the emulator of the Pico no longer answers";
         writeln!(self.input, "{command}")

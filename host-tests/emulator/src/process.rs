@@ -31,9 +31,11 @@ const WARDEN: &str = "(sleep $0; kill -KILL 0) & read -r _; kill -KILL 0";
 /// A running child. Dropping it kills its whole process group.
 #[derive(Debug)]
 pub struct Running {
+    /// The child itself, whose pipes the caller may take.
     pub child: Child,
     /// Waiting for the warden closes its input, and the warden then kills the rest of the group.
     warden: Child,
+    /// The name of the program, for errors.
     program: String,
     started: Instant,
     limit: Duration,
@@ -43,7 +45,8 @@ pub struct Running {
 /// if nothing waits for it.
 ///
 /// A child in the background must not read the terminal, so give it `Stdio::null()` or a pipe as
-/// its standard input.
+/// its standard input. An error means that the program or the shell cannot be started; it names the
+/// program.
 pub fn spawn(command: &mut Command, limit: Duration) -> io::Result<Running> {
     let program = command.get_program().to_string_lossy().into_owned();
     let failed = |error: io::Error| io::Error::other(format!("cannot run {program}: {error}"));
@@ -89,13 +92,15 @@ impl Running {
         }
     }
 
-    /// Returns the child's exit status if it has ended, without waiting.
+    /// Returns the child's exit status if it has ended, without waiting. Returns `None` while it
+    /// runs. Errors are as in [`Self::wait`].
     pub fn try_wait(&mut self) -> io::Result<Option<ExitStatus>> {
         self.child.try_wait()?.map(|_| self.wait()).transpose()
     }
 
     /// Returns the child's exit status if it has ended. If all of these [`streams`](Self::streams)
-    /// have ended, the child is about to end, and this waits for it.
+    /// have ended, the child is about to end, and this waits for it. Errors are as in
+    /// [`Self::wait`].
     pub fn ended(&mut self, streams: &[Stream]) -> io::Result<Option<ExitStatus>> {
         if streams.iter().any(|stream| stream.is_open) {
             self.try_wait()
@@ -104,7 +109,8 @@ impl Running {
         }
     }
 
-    /// Returns the two outputs of the child, which must be pipes.
+    /// Returns the standard output and the standard error of the child. Both must be pipes and can
+    /// be taken only once; else this is an error.
     pub fn streams(&mut self) -> io::Result<[Stream; 2]> {
         let pipes = self.child.stdout.take().zip(self.child.stderr.take());
         let (stdout, stderr) = pipes.ok_or_else(|| io::Error::other("a child without pipes"))?;
@@ -123,6 +129,7 @@ impl Drop for Running {
 }
 
 /// Returns a child's exit status as an exit code; failure if the child was ended by a signal.
+/// Numbers above 255 are failures, too.
 pub fn exit_code(status: ExitStatus) -> ExitCode {
     status
         .code()
@@ -130,15 +137,20 @@ pub fn exit_code(status: ExitStatus) -> ExitCode {
         .map_or(ExitCode::FAILURE, ExitCode::from)
 }
 
+/// The outcome of a program that has ended.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Output {
+    /// Its exit status, which may be a failure.
     pub status: ExitStatus,
+    /// Its standard output; bytes that are not UTF-8 are replaced.
     pub stdout: String,
+    /// Its standard error, likewise.
     pub stderr: String,
 }
 
 /// Runs `command` to its end without input and captures its output. The command is killed after
-/// `limit` at the latest.
+/// `limit` at the latest. A failure of the program is not an error, but its time limit is
+/// (`TimedOut`), and so is a program that cannot be started.
 pub fn run(command: &mut Command, limit: Duration) -> io::Result<Output> {
     run_watched(command, limit, |_| {})
 }
@@ -199,8 +211,8 @@ pub fn interrupted_by(signal: usize) -> ExitCode {
     ExitCode::from(if signal == 0 { 0 } else { 128 + signal as u8 })
 }
 
-/// Returns a variable for the signal that interrupts this process; it is 0 until then. The process
-/// then continues instead of ending.
+/// Returns a variable for the number of the signal that interrupts this process (Ctrl-C, Ctrl-\,
+/// SIGTERM, SIGHUP); it is 0 until then. The process then continues instead of ending.
 pub fn interrupted() -> io::Result<Arc<AtomicUsize>> {
     let signal = Arc::default();
     for each in INTERRUPTS {
@@ -210,7 +222,8 @@ pub fn interrupted() -> io::Result<Arc<AtomicUsize>> {
 }
 
 /// Runs `hook` when this process is interrupted, before it exits. It is for things that must be
-/// restored, such as the terminal's mode.
+/// restored, such as the terminal's mode. The exit code is 128 plus the number of the signal. Hooks
+/// run in the order in which they were added, and are never removed.
 pub fn on_interrupt(hook: impl FnOnce() + Send + 'static) {
     type Hook = Box<dyn FnOnce() + Send>;
     static HOOKS: Mutex<Vec<Hook>> = Mutex::new(Vec::new());
@@ -235,7 +248,7 @@ pub fn on_interrupt(hook: impl FnOnce() + Send + 'static) {
 }
 
 /// Removes this file or folder when this process is interrupted, because values are not dropped
-/// then.
+/// then. It may be gone already.
 pub fn remove_on_interrupt(path: &Path) {
     let path = path.to_owned();
 

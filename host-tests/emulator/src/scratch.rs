@@ -17,7 +17,11 @@ const PREFIX: &str = "double-pendulum-run-";
 /// abandoned.
 const LOCKED_BY_THEN: Duration = Duration::from_secs(60);
 
-/// A temporary folder of this process. Dropping it removes it.
+/// A temporary folder of this process. It is removed when this is dropped and when the process is
+/// interrupted.
+///
+/// A folder that a killed process has left is removed by the next process that makes a `Scratch` in
+/// the same directory, if the folder is at least 60 s old.
 #[derive(Debug)]
 pub struct Scratch {
     folder: TempDir,
@@ -26,7 +30,8 @@ pub struct Scratch {
 }
 
 impl Scratch {
-    /// Makes a folder, and removes folders of killed processes from the same directory.
+    /// Makes a folder in the system's directory for temporary files, and removes old folders of
+    /// killed processes there. An error means that the folder cannot be made or locked.
     pub fn new() -> io::Result<Self> {
         let folder = tempfile::Builder::new().prefix(PREFIX).tempdir()?;
         remove_on_interrupt(folder.path());
@@ -46,6 +51,7 @@ impl Scratch {
         })
     }
 
+    /// Returns the path of the folder.
     pub fn path(&self) -> &Path {
         self.folder.path()
     }
@@ -67,6 +73,7 @@ fn abandoned(parent: Option<&Path>) -> Vec<PathBuf> {
         .collect()
 }
 
+/// Returns true if this is a folder that is old enough and that nobody has locked.
 fn is_abandoned(path: &Path) -> io::Result<bool> {
     let folder = File::open(path)?;
     let metadata = folder.metadata()?;
@@ -93,6 +100,9 @@ mod tests {
         path
     }
 
+    /// Of four folders, an old one that nobody has locked is abandoned. An old one with a lock, a
+    /// new one, and one with another name are not. The locked one is abandoned once its lock is
+    /// released.
     #[test]
     fn only_old_folders_without_an_owner_are_abandoned() {
         let parent = tempfile::tempdir().expect("a folder");

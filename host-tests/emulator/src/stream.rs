@@ -25,6 +25,7 @@ pub struct Stream {
 }
 
 impl Stream {
+    /// Takes the end of a pipe. An error means that it cannot be read without waiting.
     pub fn of(pipe: impl Into<OwnedFd>) -> io::Result<Self> {
         let pipe = File::from(pipe.into());
         fcntl(&pipe, FcntlArg::F_SETFL(OFlag::O_NONBLOCK))?;
@@ -35,7 +36,8 @@ impl Stream {
         })
     }
 
-    /// Reads everything that is available and returns the new bytes.
+    /// Reads everything that is available, without waiting, and returns the new bytes. They are
+    /// also appended to `bytes`. An error of the pipe counts as its end.
     pub fn take_in(&mut self) -> &[u8] {
         let before = self.bytes.len();
         let read = self.pipe.read_to_end(&mut self.bytes);
@@ -43,7 +45,9 @@ impl Stream {
         &self.bytes[before..]
     }
 
-    /// Returns the next complete line, or the last line if the stream has ended.
+    /// Removes the next complete line from `bytes` and returns it without the white space at its
+    /// end. At the end of the stream the last line need not be complete. Returns `None` if there is
+    /// no line.
     pub fn line(&mut self) -> Option<String> {
         // The end of a stream also ends its last line.
         let last = (!self.is_open && !self.bytes.is_empty()).then_some(self.bytes.len());
@@ -58,7 +62,8 @@ impl Stream {
     }
 }
 
-/// Waits until a stream has new bytes or has ended, for at most `TICK` milliseconds.
+/// Waits until a stream has new bytes or has ended, for at most `TICK` milliseconds. It returns at
+/// once if a stream has unread bytes, and after that time if none of them is open.
 pub fn wait<'a>(streams: impl Iterator<Item = &'a Stream>) {
     let open = streams.filter(|stream| stream.is_open);
     let mut polled: Vec<_> = open
@@ -75,13 +80,15 @@ pub fn wait<'a>(streams: impl Iterator<Item = &'a Stream>) {
 /// frames. Not every emulated board waits while its bytes are not read.
 #[derive(Debug)]
 pub struct Channel {
+    /// The pipe to QEMU. A write that does not fit is an error of kind `WouldBlock`.
     pub sender: File,
+    /// The pipe from QEMU.
     pub stream: Stream,
 }
 
 impl Channel {
     /// Makes the pipes for QEMU's `-chardev pipe` with this path: QEMU reads `path.in` and writes
-    /// `path.out`.
+    /// `path.out`. An error means that they exist already or cannot be made.
     pub fn make(path: &Path) -> io::Result<Self> {
         let pipe = |end| {
             let path = path.with_extension(end);

@@ -37,6 +37,7 @@ pub const TARGETS: [&str; 3] = [
 /// The compiler's target for the page in a browser.
 pub const WASM: &str = "wasm32-unknown-unknown";
 
+/// The tools that build and run programs for a target.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Toolchain {
     /// Debian's compiler. It is used if rustup has no ready-made core library.
@@ -56,14 +57,16 @@ fn missing(is_tried: bool, what: &str, why: &str, setup: &str, by_hand: &str) ->
     Refused::because(format_args!("{what} is missing: {why}; {setup}{by_hand}"))
 }
 
-/// Returns the tools if all are present. Installs nothing, and searches once per process.
+/// Returns the tools if all are present. Installs nothing, and searches once per process. The
+/// refusal has a line for each missing tool, with the remedy.
 pub fn ready() -> Result<Toolchain, Refused> {
     static READY: OnceLock<Result<Toolchain, Refused>> = OnceLock::new();
     READY.get_or_init(|| both(false, &TARGETS, arm)).clone()
 }
 
 /// Returns the tools and provides the missing ones, with a report of each. Two set-ups at the same
-/// time take turns.
+/// time take turns. Refused if the folder for temporary files is not writable, or if a tool is
+/// missing and cannot be provided; the refusal has a line for each, with the remedy.
 pub fn set_up() -> Result<Toolchain, Refused> {
     check_temporary_folder()?;
     ready().or_else(|_| {
@@ -74,8 +77,9 @@ pub fn set_up() -> Result<Toolchain, Refused> {
 
 /// Returns the tools and the application of a board, and provides what is missing.
 ///
-/// QEMU is fetched while the application is built, because the former waits for the network and
-/// the latter for the processor.
+/// QEMU is fetched while the application is built, because the former waits for the network and the
+/// latter for the processor. The second element is the ELF file. Errors are refusals as in
+/// [`set_up`], and a build that fails.
 pub fn set_up_and_build(board: &Board) -> anyhow::Result<(Toolchain, PathBuf)> {
     check_temporary_folder()?;
     if let Ok(toolchain) = ready() {
@@ -100,6 +104,7 @@ pub fn set_up_and_build(board: &Board) -> anyhow::Result<(Toolchain, PathBuf)> {
     Ok((joined(core, qemu)?, elf??))
 }
 
+/// Refuses a folder for temporary files that does not exist or is not writable.
 fn check_temporary_folder() -> Result<(), Refused> {
     let refused = |_| {
         Refused::because(format_args!(
@@ -113,7 +118,7 @@ fn check_temporary_folder() -> Result<(), Refused> {
 /// Returns the core library and the emulator for another target, and provides them if necessary.
 ///
 /// QEMU emulates a board for an ARM microcontroller, and Linux for RISC-V and aarch64. Node.js runs
-/// WebAssembly.
+/// WebAssembly. Any other target counts as an ARM microcontroller. Refusals are as in [`set_up`].
 pub fn set_up_for(target: &str) -> Result<Toolchain, Refused> {
     let emulator = match target.split('-').next() {
         Some("wasm32") => |installs: bool| tools::node(installs.then_some(Consent::Ask)),
@@ -126,13 +131,14 @@ pub fn set_up_for(target: &str) -> Result<Toolchain, Refused> {
 }
 
 /// Returns the core library for the page in a browser, and provides it if necessary. The page needs
-/// no emulator.
+/// no emulator. The field `qemu` is empty. Refusals are as in [`set_up`].
 pub fn set_up_web() -> Result<Toolchain, Refused> {
     let _turn = turn()?;
     both(true, &[WASM], |_| Ok(PathBuf::new()))
 }
 
 /// Returns a Chromium, and provides it if necessary: Debian's is unpacked into the target folder.
+/// The result is the program.
 pub fn set_up_chromium() -> Result<PathBuf, Refused> {
     let _turn = turn()?;
     let by_hand = "install this system's package chromium";
@@ -159,6 +165,7 @@ fn core(installs: bool, targets: &[&str]) -> Result<Option<FromSource>, Refused>
         .map_err(|why| missing(installs, "Rust's core library", &why, SETUP, &packages))
 }
 
+/// Returns both, or the lines of what is missing.
 fn joined(
     core: Result<Option<FromSource>, Refused>,
     emulator: Result<PathBuf, Refused>,
@@ -170,6 +177,7 @@ fn joined(
     }
 }
 
+/// The command that provides the tools.
 const SETUP: &str = "cargo setup";
 
 /// Finds or provides QEMU for the boards.
@@ -177,6 +185,7 @@ fn arm(installs: bool) -> Result<PathBuf, Refused> {
     qemu(installs, &QEMU)
 }
 
+/// Finds or provides an emulator of the QEMU project.
 fn qemu(installs: bool, emulator: &Emulator) -> Result<PathBuf, Refused> {
     let by_hand = format!(
         "install this system's package {} (Homebrew: qemu)",
@@ -186,19 +195,20 @@ fn qemu(installs: bool, emulator: &Emulator) -> Result<PathBuf, Refused> {
         .map_err(|why| missing(installs, emulator.program, &why, SETUP, &by_hand))
 }
 
-/// Returns Node.js with the emulator of the Raspberry Pi Pico if it is present. Installs nothing.
+/// Returns the program Node.js if it and the emulator of the Raspberry Pi Pico are present.
+/// Installs nothing. A missing tool is refused.
 pub fn ready_for_pico() -> Result<PathBuf, Refused> {
     tools::rp2040js(None)
 }
 
-/// Returns Node.js with the emulator of the Pico and provides them if necessary. Asks the user
-/// before anything is installed on the system.
+/// Returns the program Node.js and provides it and the emulator of the Pico if necessary. Asks the
+/// user before anything is installed on the system.
 pub fn set_up_pico() -> Result<PathBuf, Refused> {
     set_up_pico_with(Consent::Ask)
 }
 
-/// Returns Node.js with the emulator of the Pico and provides them if necessary, with this consent
-/// of the user.
+/// Returns the program Node.js and provides it and the emulator of the Pico if necessary, with this
+/// consent of the user. A tool that cannot be provided is refused.
 pub fn set_up_pico_with(consent: Consent) -> Result<PathBuf, Refused> {
     ready_for_pico().or_else(|_| {
         let _turn = turn()?;

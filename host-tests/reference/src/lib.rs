@@ -15,13 +15,14 @@ use double_pendulum::{Error, Run};
 
 /// Advances RK4 in compensated `f64`, with a count of turns. Tests compare RK4 in fewer bits with
 /// it for as long as a day. This function is in this package because the package is optimised in
-/// every profile.
+/// every profile. An error means that the motion has diverged.
 pub fn advance(run: &mut Run<DirectionF64, true>, steps: u32) -> Result<(), Error> {
     run.advance(steps)
 }
 
 /// Returns the time when a rod first turns over, by RK4 in compensated `f64`. The map of flips is
-/// compared with it.
+/// compared with it. The start is at rest at `a1` and `a2`, rad; the time is in s. Angles that are
+/// not finite are an error.
 pub fn flip(search: &Flips<DirectionF64>, a1: f64, a2: f64) -> Result<Flip<f64>, Error> {
     search.of(a1, a2)
 }

@@ -40,7 +40,8 @@ pub struct Reference {
 }
 
 impl Reference {
-    /// Starts at time 0 from `motion`. Every `f64` is taken as exact.
+    /// Starts at time 0 from `motion`. Every `f64` is taken as exact. Masses, lengths and gravity
+    /// must be positive, all numbers in SI units.
     pub fn new(parameters: &Parameters<f64>, motion: &Motion<f64>) -> Self {
         let &Parameters { m1, m2, l1, l2, g } = parameters;
         let &Motion { a1, a2, w1, w2 } = motion;
@@ -73,7 +74,7 @@ impl Reference {
         Self { order, ..self }
     }
 
-    /// Advances to time `t`, s. An earlier time changes nothing.
+    /// Advances to time `t`, s. An earlier time changes nothing. The time must be finite.
     pub fn advance_to(&mut self, t: f64) {
         // The series are computed anew when they have ended.
         let t = TwoFloat::from(t);
@@ -99,13 +100,15 @@ impl Reference {
         }
     }
 
-    /// Returns the angles and velocities at the current time.
+    /// Returns the angles and velocities at the current time. They are in rad, with all turns, and
+    /// in rad/s, each rounded to `f64`.
     pub fn motion(&self) -> Motion<f64> {
         let [a1, a2, w1, w2] = self.motion.map(f64::from);
         Motion { a1, a2, w1, w2 }
     }
 
-    /// Returns the angles and canonical momenta at the current time.
+    /// Returns the angles and canonical momenta at the current time. They are in rad, with all
+    /// turns, and in kg m^2/s, each rounded to `f64`.
     pub fn state(&self) -> State<f64> {
         self.exact_state().map(f64::from).into()
     }
@@ -117,7 +120,8 @@ impl Reference {
         [sin1, cos1, sin2, cos2]
     }
 
-    /// Returns (a1, a2, p1, p2) at the current time, in full precision: p_i = dL/dw_i.
+    /// Returns (a1, a2, p1, p2) at the current time, in full precision: p_i = dL/dw_i. Units are as
+    /// in [`Reference::state`].
     pub fn exact_state(&self) -> [TwoFloat; 4] {
         let Parameters { m1, m2, l1, l2, .. } = self.parameters;
         let [a1, a2, w1, w2] = self.motion;
@@ -226,13 +230,14 @@ fn sin_cos(angle: TwoFloat) -> [TwoFloat; 2] {
 }
 
 /// Returns a/b to full precision. The quotient of twofloat 0.8.4 is accurate to 1e-16 only, so its
-/// remainder is divided as well.
+/// remainder is divided as well. `b` must not be 0.
 pub fn divide(a: TwoFloat, b: TwoFloat) -> TwoFloat {
     let quotient = a / b;
     quotient + (a - quotient * b) / b
 }
 
-/// Returns the states at `times` (s, ascending) of the motion that begins at `start`.
+/// Returns the states at `times` (s, ascending) of the motion that begins at `start`. A time before
+/// its predecessor gives the state of the predecessor.
 pub fn states(
     parameters: &Parameters<f64>,
     start: &Motion<f64>,

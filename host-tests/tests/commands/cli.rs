@@ -52,6 +52,8 @@ fn played(line: &str, folder: &Path) -> String {
     text + &code.map_or(String::from("killed\n"), |code| format!("exit {code}\n"))
 }
 
+/// Every command line of the snapshots has its committed output and exit code, and writes no file.
+/// Those in `refused.txt` have one line on stderr, that of the error, and exit code 2.
 #[test]
 fn output_of_every_command_equals_its_snapshot() {
     let empty = tempfile::tempdir().expect("a folder");
@@ -133,6 +135,8 @@ fn closed() -> io::Result<Stdio> {
     Ok(writer.into())
 }
 
+/// With nobody to read stdout, every command of [`COMMANDS`] ends with exit code 0 and without an
+/// error. A refused option still has exit code 2.
 #[test]
 fn a_closed_output_ends_every_command_quietly() -> io::Result<()> {
     // The tools are set up first, so that no command needs to do it.

@@ -109,6 +109,8 @@ fn a_recording_shows_a_swinging_pendulum_and_is_the_same_every_time() {
     }
 }
 
+/// With `--method plan` and with a method, the summary of two seconds names the method, its steps
+/// and its horizon.
 #[test]
 fn the_method_can_be_chosen_and_is_named() {
     toolchain();
@@ -261,6 +263,8 @@ fn half_speed_simulates_half_the_time() {
     );
 }
 
+/// Without a terminal, `cargo demo` runs with success and prints the reason and the options that
+/// save pictures, on stderr. With `--headless` it does not print them.
 #[test]
 fn without_a_terminal_the_reason_and_the_options_are_printed() {
     toolchain();
@@ -279,7 +283,8 @@ fn without_a_terminal_the_reason_and_the_options_are_printed() {
     assert!(!headless.contains("no terminal"), "{headless}");
 }
 
-/// The folder contains the pipes to QEMU.
+/// The pipes to QEMU are in the folder `TMPDIR`. If that is no folder, the command has exit code 2,
+/// prints nothing on stdout, and one line on stderr that names the variable and its value.
 #[test]
 fn an_unusable_folder_for_pipes_is_named() {
     let output = output(

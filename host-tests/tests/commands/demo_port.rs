@@ -31,6 +31,8 @@ fn demo(code: i32, arguments: &str, play: impl FnMut(&mut Bench)) -> [String; 2]
     [output.stdout, output.stderr]
 }
 
+/// One of eight seconds of frames has a wrong bit on the wire. The others are identical to the
+/// host's, and the summary counts one CRC error and one lost frame. The command succeeds.
 #[test]
 fn every_frame_of_a_board_at_a_port_is_compared_and_a_damaged_one_counted() {
     let damaged = |message: ToHost| {
@@ -53,6 +55,7 @@ fn every_frame_of_a_board_at_a_port_is_compared_and_a_damaged_one_counted() {
     );
 }
 
+/// A motion by options is played by the board, and all frames are identical to the host's.
 #[test]
 fn a_motion_of_the_user_is_played_at_a_port() {
     let arguments = "--scene butterfly --angles 90,45 --degrees --masses 1,3 --seconds 2";
@@ -75,6 +78,8 @@ fn a_method_that_the_board_refuses_is_named() {
     );
 }
 
+/// A bit of p1 in frame 300 is flipped before the checksum is made. The command fails and names the
+/// frame and the number.
 #[test]
 fn one_flipped_bit_is_named_and_fails() {
     let flipped = |mut message: ToHost| {
@@ -99,6 +104,8 @@ fn with_panel(mut message: ToHost, report: PanelReport) -> ToHost {
     message
 }
 
+/// The board reports an absent panel, and a panel from frame 200 on. Each state is reported once,
+/// the first with its remedy, and the summary has the last one.
 #[test]
 fn state_of_the_panel_is_reported_with_the_remedy_when_it_changes() {
     let absent = PanelReport {
@@ -136,6 +143,7 @@ fn state_of_the_panel_is_reported_with_the_remedy_when_it_changes() {
     );
 }
 
+/// `--panel` with a board that has no such panel has exit code 2 and the reason.
 #[test]
 fn board_without_a_choice_of_controllers_refuses_one() {
     let [_, messages] = demo(2, "--panel sh1106", |bench| bench.carry(wire));
@@ -166,6 +174,9 @@ fn a_board_that_never_plays_the_requested_scene_is_an_error() {
     assert!(messages.contains("no frame for 10 s"), "{messages}");
 }
 
+/// The cable is pulled for 0.7 s; later another board takes the place of the first. The loss and
+/// the return are reported once each, the restart is reported, and all compared frames are
+/// identical to the host's.
 #[test]
 fn a_pulled_cable_is_reported_and_a_restarted_board_is_compared_again() {
     let mut pulled = None;
@@ -246,6 +257,8 @@ fn a_board_that_comes_back_after_a_hang_is_reported_as_restarted() {
     assert!(restarts[0].ends_with(line), "{messages}");
 }
 
+/// A device sends foreign bytes for 4 s, then a board is at the port. The foreign device and the
+/// recovery are reported once each, and the command succeeds.
 #[test]
 fn a_foreign_device_is_reported_and_a_board_in_its_place_is_accepted() {
     let mut foreign = None;
@@ -321,6 +334,8 @@ fn the_terminal_shows_no_number_of_a_silent_or_foreign_device() {
     }
 }
 
+/// At a port without any data the command fails after 10 s, reports the silence and prints no
+/// summary.
 #[test]
 fn a_silent_port_is_an_error() {
     let [summary, messages] = demo(1, "", |_| sleep(WAIT));

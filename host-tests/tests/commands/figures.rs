@@ -26,6 +26,7 @@ const SMALL: [[f64; 4]; 3] = [
 /// The angle 2 at the start, degrees, which is also the largest.
 const START: f64 = 30.0;
 
+/// Each committed SVG file is equal, byte by byte, to the one that the kernel draws now.
 #[test]
 fn the_committed_figures_equal_the_kernels() {
     for (name, svg) in figures().expect("the figures can be drawn") {
@@ -112,6 +113,9 @@ fn assert_close(value: f64, expected: f64, relative: f64, what: &str) {
     );
 }
 
+/// The plotted points have the frequencies, the period of the envelopes and the largest angles of
+/// [`SMALL`], within the tolerances `PLOTTED_FREQUENCY` and `PLOTTED_AMPLITUDE`. The angles touch
+/// their envelopes and never leave them.
 #[test]
 fn figures_3_to_5_show_the_frequencies_envelopes_and_amplitudes_of_the_table() {
     for (mu, [w1, w2, envelope, largest_a1]) in MASS_RATIOS.into_iter().zip(SMALL) {
@@ -215,6 +219,8 @@ fn flips(arguments: &[&str], name: &str) -> Vec<u8> {
     fs::read(out).expect("a file")
 }
 
+/// The committed picture of the flips is equal, byte by byte, to the one that the command of the
+/// README writes now.
 #[test]
 fn the_committed_map_equals_a_new_one() {
     let committed = fs::read(folder().join("figures/flips.png")).expect("a picture");
@@ -224,6 +230,9 @@ fn the_committed_map_equals_a_new_one() {
     );
 }
 
+/// A table of 12 x 6 starts has 72 rows, the same times in reverse order, some starts that cannot
+/// flip and some that do not within the limit. All cells are numbers or empty, and the heading has
+/// the units.
 #[test]
 fn a_table_has_every_start_and_is_its_own_mirror_image() {
     let table =

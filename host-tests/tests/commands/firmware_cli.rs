@@ -22,10 +22,13 @@ use nix::unistd::Pid;
 use super::cli::{output, program};
 use crate::support::LIMIT;
 
+/// Runs `cargo fw` with these arguments.
 fn fw(arguments: &[&str]) -> Output {
     output(program("fw").args(arguments))
 }
 
+/// `cargo fw --seconds 2` stops the application with exit code 0 and says so. A program that fails
+/// before its time has exit code 1.
 #[test]
 fn a_program_without_end_is_stopped_with_success_on_request() {
     let output = fw(&["mps2-an386", "--seconds", "2"]);
@@ -106,6 +109,7 @@ fn left(folder: &Path) -> Vec<PathBuf> {
         .collect()
 }
 
+/// `cargo fw` with a running board is ended by SIGTERM: exit code 143, and its folder is gone.
 #[test]
 fn an_interrupted_command_leaves_no_temporary_folder() {
     let temporary = tempfile::tempdir().expect("there is room for it");
@@ -113,6 +117,8 @@ fn an_interrupted_command_leaves_no_temporary_folder() {
     assert_eq!(left(temporary.path()), [""; 0].map(PathBuf::from));
 }
 
+/// A command that is killed leaves its folder. Once the folder is an hour old, the next `cargo fw`
+/// removes it and leaves none of its own.
 #[test]
 fn the_folder_of_a_killed_command_is_removed_by_the_next_command() {
     const LONG_AGO: Duration = Duration::from_secs(3600);
@@ -181,6 +187,7 @@ fn a_command_uses_the_project_that_it_is_run_in() {
     );
 }
 
+/// Runs `cargo flash-f4` with these arguments and this search path.
 fn flash(arguments: &[&str], path: impl IntoIterator<Item = PathBuf>) -> Output {
     output(program("flash-f4").args(arguments).env(
         "PATH",
@@ -188,6 +195,8 @@ fn flash(arguments: &[&str], path: impl IntoIterator<Item = PathBuf>) -> Output 
     ))
 }
 
+/// With an empty search path, `cargo flash-f4` has exit code 2 and one line that names probe-rs and
+/// how to install it.
 #[test]
 fn without_probe_rs_the_error_names_it() -> io::Result<()> {
     let nothing = tempfile::tempdir()?;
@@ -231,6 +240,8 @@ fn handed(
     Ok(line.split_whitespace().last().unwrap_or_default().into())
 }
 
+/// A fake probe-rs is called with the chip and the ELF file of the F405, and its exit code is that
+/// of the command.
 #[test]
 fn probe_rs_receives_the_image() -> io::Result<()> {
     let image = handed(
@@ -285,6 +296,8 @@ fn dfu_util_receives_the_bytes_of_the_flash() -> io::Result<()> {
     Ok(())
 }
 
+/// A fake `dfu-util` that ends with exit code 0, but does not report that the file is downloaded,
+/// makes the command fail.
 #[test]
 fn a_download_that_is_not_reported_as_complete_fails_with_any_exit_code() -> io::Result<()> {
     let said = "-d 0483:df11 -a 0 -s 0x08000000 -D /";
@@ -294,6 +307,7 @@ fn a_download_that_is_not_reported_as_complete_fails_with_any_exit_code() -> io:
 /// The label on an RP2040's drive.
 const LABEL: &str = "UF2 Bootloader v3.0\nModel: Raspberry Pi RP2\nBoard-ID: RPI-RP2\n";
 
+/// Runs `cargo pico` with this drive.
 fn pico(drive: &Path) -> Output {
     output(program("pico").arg("--drive").arg(drive))
 }
@@ -347,6 +361,8 @@ fn the_copied_file_has_the_program_as_in_flash() {
     assert!(flashed.starts_with(&image));
 }
 
+/// `cargo pico` with the drive of an RP2350 has exit code 2 and one line, and prints nothing on
+/// stdout.
 #[test]
 fn the_drive_of_another_board_is_refused() {
     let drive = tempfile::tempdir().expect("a folder");

@@ -37,6 +37,8 @@ pub fn read(file: impl AsRef<Path>) -> String {
     fs::read_to_string(&file).unwrap_or_else(|error| panic!("{}: {error}", file.display()))
 }
 
+/// The table in `.ci/dependencies.md` names exactly the crates of a registry that the workspace
+/// depends on directly.
 #[test]
 fn every_dependency_has_its_reason() {
     let mut cargo = Command::new(env!("CARGO"));
@@ -91,6 +93,8 @@ fn the_minimal_programs_have_the_versions_of_the_workspace() {
 const LINES: usize = 50;
 const NAMES: usize = 6;
 
+/// There are at least five examples. Each has at most [`LINES`] lines and imports 1 to [`NAMES`]
+/// names from the kernel.
 #[test]
 fn the_kernels_examples_are_short() {
     let examples = sources("kernel/examples");

@@ -23,6 +23,7 @@ fn on_a_full_disk(line: &str, folder: &Path) -> Output {
     )
 }
 
+/// Returns the names of the entries of a folder.
 fn names(folder: &Path) -> Vec<String> {
     let files = fs::read_dir(folder).expect("a folder");
     files
@@ -33,6 +34,8 @@ fn names(folder: &Path) -> Vec<String> {
         .collect()
 }
 
+/// Three commands write to a full disk. Each has exit code 1, one line that names the file and the
+/// reason, and leaves neither a part of the file nor a temporary one.
 #[test]
 fn a_full_disk_is_an_error_and_leaves_no_part_of_a_file() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -58,6 +61,7 @@ fn a_full_disk_is_an_error_and_leaves_no_part_of_a_file() {
     assert!(names(&folder.path().join("figures")).is_empty());
 }
 
+/// Four commands at once write one file. All succeed, and the folder contains that file only.
 #[test]
 fn two_commands_that_write_one_file_both_succeed() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -79,6 +83,8 @@ fn two_commands_that_write_one_file_both_succeed() {
     assert_eq!(names(folder.path()), ["map.png"]);
 }
 
+/// A command that fails on a full disk leaves the old file unchanged. A link to a file remains a
+/// link and its target is replaced, and a device remains a device.
 #[test]
 fn an_existing_file_remains_until_the_new_one_is_complete() {
     let folder = tempfile::tempdir().expect("a folder");

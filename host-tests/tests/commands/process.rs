@@ -20,6 +20,7 @@ const FAMILY: &str = "trap '' TERM; (sleep 20; echo late) & echo ready; sleep 20
 /// to interrupt.
 const HELPER: &str = "PROCESS_TEST_HELPER";
 
+/// Returns a command that runs this script, with its output in a pipe.
 fn shell(script: &str) -> Command {
     let mut command = Command::new("sh");
     command
@@ -29,10 +30,12 @@ fn shell(script: &str) -> Command {
     command
 }
 
+/// Takes the output of a child.
 fn output(child: &mut Running) -> BufReader<ChildStdout> {
     BufReader::new(child.child.stdout.take().expect("piped"))
 }
 
+/// Returns everything up to the end of the pipe.
 fn rest(mut pipe: BufReader<ChildStdout>) -> String {
     let mut text = String::new();
     pipe.read_to_string(&mut text)
@@ -40,6 +43,9 @@ fn rest(mut pipe: BufReader<ChildStdout>) -> String {
     text
 }
 
+/// A child writes 220,000 bytes to each output, is silent for a second and ends with code 7. All of
+/// that is captured, and the watcher was called with lines and, more than five times, without. A
+/// program that does not exist is an error with its name.
 #[test]
 fn output_and_exit_code_are_captured_while_a_watcher_sees_lines_and_silence() {
     let script = "i=0; while [ $i -lt 20000 ]; do echo 0123456789; echo 0123456789 >&2; \
@@ -72,6 +78,8 @@ fn output_and_exit_code_are_captured_while_a_watcher_sees_lines_and_silence() {
     );
 }
 
+/// A process and its child, which ignore requests to end, end before they write "late": at the time
+/// limit, which is an error; when their owner is dropped; and when the first process ends.
 #[test]
 fn the_whole_group_ends_with_its_time_its_owner_or_its_leader() {
     // The time limit ends the group.
@@ -97,6 +105,9 @@ fn the_whole_group_ends_with_its_time_its_owner_or_its_leader() {
     );
 }
 
+/// A process with a child, a hook and a folder is ended by each of five signals. Its child ends
+/// too. After an interrupt the hook has run, the folder is gone, and the exit code is 128 plus the
+/// signal; after SIGKILL none of these.
 #[test]
 fn children_end_with_an_interrupted_or_killed_process() {
     for (signal, code, said) in [

@@ -65,6 +65,7 @@ fn number() -> impl Strategy<Value = f64> {
     ]
 }
 
+/// Returns parameters of any numbers, possible or not.
 fn parameters() -> impl Strategy<Value = Parameters<f64>> {
     uniform5(number()).prop_map(|[m1, m2, l1, l2, g]| Parameters { m1, m2, l1, l2, g })
 }
@@ -78,6 +79,7 @@ fn intact(bytes: &[u8]) -> Vec<Vec<u8>> {
         .collect()
 }
 
+/// Returns the bytes of a message on the link.
 fn wire(message: &[u8]) -> Vec<u8> {
     frame(message, &mut [0; MAX_WIRE]).to_vec()
 }
@@ -134,6 +136,7 @@ fn stepped(
     Ok(())
 }
 
+/// Calls all functions of a pendulum with these numbers. An error is a refusal by the kernel.
 fn constructed<R: Real>(
     parameters: Parameters<f64>,
     dt: f64,
@@ -190,7 +193,9 @@ proptest! {
         prop_assert_eq!(intact(&bytes.concat()), messages);
     }
 
-    /// Each intact command has one answer, a refused one changes nothing, and the scene continues.
+    /// Each intact command has exactly one answer at once, except a request, which may be answered
+    /// later, and a message that is no command, which has no answer. A refused command changes
+    /// nothing in the status, and the state of the scene stays finite.
     #[test]
     fn every_command_is_answered(commands in vec(command(), 1..3)) {
         let mut buffers = FrameBuffers::BLANK;

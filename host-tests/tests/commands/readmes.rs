@@ -84,6 +84,7 @@ fn built_in() -> BTreeSet<String> {
         .collect()
 }
 
+/// No command of the project has the name of one of cargo's own commands.
 #[test]
 fn no_command_is_shadowed() {
     let built_in = built_in();
@@ -107,6 +108,8 @@ fn named(page: &str) -> BTreeSet<String> {
     words.filter_map(name).collect()
 }
 
+/// Every command of the project is in at least one README. Every command in a README is one of the
+/// project, of cargo, or of [`INSTALLED`].
 #[test]
 fn the_readmes_name_every_command_and_no_other() {
     let named: BTreeSet<_> = README.iter().flat_map(|file| named(&read(file))).collect();
@@ -154,6 +157,8 @@ fn anchors(page: &str) -> BTreeSet<String> {
     headings.map(anchor).collect()
 }
 
+/// Every link to a section, within a README or in another file, names an existing heading. There
+/// are more than 20.
 #[test]
 fn readme_links_to_a_section_name_one_of_its_headings() {
     let mut checked = 0;
@@ -181,6 +186,7 @@ fn readme_links_to_a_section_name_one_of_its_headings() {
     assert!(checked > 20, "{checked} links to sections");
 }
 
+/// It has at most 120 lines.
 #[test]
 fn the_first_readme_is_short() {
     assert!(read(README[0]).lines().count() <= 120);
@@ -299,6 +305,8 @@ fn block<'a>(page: &'a str, kind: &str) -> &'a str {
     blocks.unwrap_or_else(|| panic!("no block of {kind}")).0
 }
 
+/// The kernel is packaged and compiled from its package. The first example of its README, in a
+/// crate with the README's lines of the manifest, compiles and runs with success.
 #[test]
 fn the_readmes_example_runs_in_an_empty_crate() {
     let folder = tempfile::tempdir().expect("a temporary folder");

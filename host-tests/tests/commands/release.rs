@@ -27,6 +27,7 @@ const SMALL: (&str, &str) = ("inject-panic", "thumbv7m-none-eabi");
 /// minutes of real time.
 const LONG: Duration = Duration::from_secs(3600);
 
+/// Returns cargo's home folder.
 fn cargo_home() -> PathBuf {
     let home = || Path::new(&env::var_os("HOME").expect("a home")).join(".cargo");
     env::var_os("CARGO_HOME").map_or_else(home, PathBuf::from)
@@ -36,6 +37,7 @@ fn cargo_home() -> PathBuf {
 struct Elsewhere(tempfile::TempDir);
 
 impl Elsewhere {
+    /// Copies the checkout, and shares the downloaded crates and the unpacked QEMU by links.
     fn new(history: History) -> io::Result<Self> {
         let folder = tempfile::tempdir()?;
         let left_out: &[&str] = match history {
@@ -60,10 +62,12 @@ impl Elsewhere {
         Ok(elsewhere)
     }
 
+    /// Returns the folder of the copy.
     fn checkout(&self) -> PathBuf {
         self.0.path().join("checkout")
     }
 
+    /// Returns the target folder of the copy.
     fn target(&self) -> PathBuf {
         self.checkout().join("target")
     }
@@ -85,7 +89,9 @@ const LEFT_OUT: [&str; 2] = ["target", "node_modules"];
 
 /// The commits of a checkout. The packaged kernel contains the last one.
 enum History {
+    /// The commits are copied.
     Copied,
+    /// The copy has no commits.
     LeftOut,
 }
 
@@ -107,6 +113,8 @@ fn copy(from: &Path, to: &Path, left_out: &[&str]) -> io::Result<()> {
     Ok(())
 }
 
+/// The ELF file of no board's application contains the path of the workspace, the target folder,
+/// cargo's home or the compiler.
 #[test]
 fn no_folder_of_the_builder_is_in_an_image() {
     let sysroot = output(Command::new("rustc").args(["--print", "sysroot"])).stdout;
@@ -128,6 +136,8 @@ fn no_folder_of_the_builder_is_in_an_image() {
     }
 }
 
+/// A small program is built here and in a copy of the checkout. Both ELF files are equal as a
+/// whole, and so are the bytes that are loaded. The copy's program runs.
 #[test]
 fn an_image_built_elsewhere_has_the_same_bytes() -> anyhow::Result<()> {
     let (binary, chip) = SMALL;

@@ -88,6 +88,8 @@ fn name(text: &str) -> &str {
         .unwrap_or_default()
 }
 
+/// The rooms in the sources are exactly those of [`ROOMS`], at most [`MOST`] in a folder, and no
+/// `crate::` path names a room above the one it is in.
 #[test]
 fn a_room_imports_only_from_those_below_it() {
     for (folder, rooms) in ROOMS {
@@ -117,6 +119,7 @@ fn a_room_imports_only_from_those_below_it() {
     }
 }
 
+/// No two public types of a group of [`NAMESPACES`] have the same name.
 #[test]
 fn a_public_type_has_a_name_of_its_own() {
     for folders in NAMESPACES {

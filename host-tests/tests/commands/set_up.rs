@@ -42,6 +42,7 @@ struct System {
 }
 
 impl System {
+    /// Makes a system with these scripts as QEMU and Node.js.
     fn new(qemu: &str, node: &str) -> Self {
         let system = Self {
             folder: tempfile::tempdir().expect("a folder"),
@@ -64,10 +65,12 @@ impl System {
         system
     }
 
+    /// Returns the path of a file or folder of the system.
     fn path(&self, name: &str) -> PathBuf {
         self.folder.path().join(name)
     }
 
+    /// Returns a set-up on the system.
     fn setup(&self, arguments: &[&str]) -> Command {
         let rest = std::env::var_os("PATH").unwrap_or_default();
         let path = std::iter::once(self.path("bin")).chain(std::env::split_paths(&rest));
@@ -88,6 +91,9 @@ impl System {
     }
 }
 
+/// The system's QEMU is too old, does not run or prints no version. The set-up reports that,
+/// unpacks another one into the target folder and installs nothing on the system. The next set-up
+/// finds everything ready.
 #[test]
 fn a_qemu_that_is_old_or_broken_is_replaced_by_an_unpacked_one() {
     for (qemu, reason) in [
@@ -113,6 +119,7 @@ fn a_qemu_that_is_old_or_broken_is_replaced_by_an_unpacked_one() {
     }
 }
 
+/// A QEMU of the system that is new enough is used, and apt-get is not called.
 #[test]
 fn a_good_qemu_of_the_system_is_used() {
     let system = System::new(GOOD_QEMU, GOOD_NODE);
@@ -122,6 +129,8 @@ fn a_good_qemu_of_the_system_is_used() {
     assert!(!system.path("log").exists(), "apt-get was called");
 }
 
+/// Node.js is too old. Without a terminal the set-up has exit code 2, one error with the remedy,
+/// and installs nothing. With `--yes` root installs nodejs and npm.
 #[test]
 fn without_a_terminal_packages_are_installed_by_yes_only() {
     let system = System::new(GOOD_QEMU, OLD_NODE);
@@ -197,6 +206,9 @@ fn typed(system: &System, text: &str) -> (Output, String) {
     (output, shown)
 }
 
+/// Node.js is too old, and root runs the set-up on a terminal. It asks; packages are installed
+/// after "y", and after "n" or an empty line they are not and the exit code is 2. For other users
+/// this test does nothing.
 #[test]
 fn on_a_terminal_the_user_is_asked() {
     // Other users are not asked, because only root may install packages.

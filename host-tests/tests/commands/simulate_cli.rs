@@ -11,6 +11,7 @@ use reference::taylor;
 
 use super::cli::{output, program};
 
+/// Returns the output of a `cargo simulate` that succeeds.
 fn simulate(arguments: &str) -> String {
     let output = output(program("simulate").args(arguments.split_whitespace()));
     assert!(output.status.success(), "{arguments}: {}", output.stderr);
@@ -32,6 +33,7 @@ fn unequal_rods_with_velocities_have_the_same_bits_on_every_board() {
     }
 }
 
+/// Returns the plan that `--tolerance` chooses and its largest error, rad, or the refusal.
 fn chosen(arguments: &str) -> Result<(Plan, f64), String> {
     let words = std::iter::once("simulate").chain(arguments.split_whitespace());
     let options = SimulateOptions::try_parse_from(words).map_err(|error| error.to_string())?;
@@ -63,6 +65,7 @@ fn error(request: &Request) -> Result<f64, double_pendulum::Error> {
 /// and of the time between rows in the other.
 const ROUNDING: f64 = 1.01;
 
+/// The motions to choose a method for.
 const MOTIONS: [&str; 6] = [
     "--angles 0.5,0.5 --until 10 --every 1/4",
     "--angles 2,2 --until 5 --every 1/2",
@@ -71,12 +74,16 @@ const MOTIONS: [&str; 6] = [
     "--masses 1,100 --lengths 0.3,1.1 --angles 2,1 --velocities 3,-4 --until 2 --every 1/2",
     "--angles 1e-3,-1e-3 --until 5 --every 1",
 ];
+/// The places, each with the tolerances to keep, rad.
 const PLACES: [(&str, &[f64]); 3] = [
     ("host", &[1e-3, 1e-6, 1e-9, 1e-11]),
     ("lm3s6965evb", &[1e-2, 1e-4, 1e-9]),
     ("stm32f405", &[1e-2, 1e-4, 1e-9]),
 ];
 
+/// For each motion, place and tolerance, the chosen method keeps the tolerance in every row, and
+/// the reported error is the true one or larger ([`ROUNDING`] is allowed). The same method in the
+/// next smaller number of steps does not keep it.
 #[test]
 fn every_row_is_within_the_tolerance_and_longer_steps_are_not()
 -> Result<(), Box<dyn std::error::Error>> {
@@ -117,11 +124,14 @@ fn every_row_is_within_the_tolerance_and_longer_steps_are_not()
     Ok(())
 }
 
+/// Returns the plan of a command line without `--tolerance`.
 fn planned(arguments: &str) -> Result<Plan, Box<dyn std::error::Error>> {
     let words = std::iter::once("simulate").chain(arguments.split_whitespace());
     Ok(plan(&SimulateOptions::try_parse_from(words)?)?)
 }
 
+/// Without `--step`, the step divides the time between rows and is the longest that is at most
+/// 1/1024 s and admissible. A step twice as long would exceed one of these. There is no warning.
 #[test]
 fn the_default_step_is_the_longest_that_divides_the_rows() -> Result<(), Box<dyn std::error::Error>>
 {
@@ -187,6 +197,10 @@ const SAFE_STEP_ERROR: f64 = 7.2e-6;
 /// The roundings of an angle in one step, rad.
 const ROUNDINGS: f64 = 1e-13;
 
+/// For five fast motions and five methods, the longest step 1/N s that is admissible causes no
+/// warning, and the next longer one does. Without a warning, RK4's error in a step is at most
+/// [`SAFE_STEP_ERROR`], and that of the other methods at most RK4's. The steps of a tolerance cause
+/// no warning.
 #[test]
 fn the_warning_of_a_long_step_depends_on_the_order_of_the_method()
 -> Result<(), Box<dyn std::error::Error>> {

@@ -21,6 +21,9 @@ use firmware::scenes::SceneName;
 /// The cells of a method without a cycle count.
 const UNCOUNTED: &str = "| no cycle counter | no cycle counter | - |";
 
+/// An emulated board with an absent panel is verified without questions. The exit code is 0, and
+/// the report has the board's data, the panel's fault, all motions and scenes as identical, no
+/// cycles, and the check list.
 #[test]
 fn a_board_with_the_hosts_bits_is_verified_and_reported() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -144,6 +147,10 @@ fn counting(mut message: ToHost, measurements: &mut u32) -> Vec<u8> {
     wire(message)
 }
 
+/// The messages of an emulated board are changed as [`counting`] says, and the questions are
+/// answered as [`person`] says. The exit code is 1, and there are five problems: two flipped bits,
+/// a frame that is too long, the panel and a button. The report has the answers, and the counted
+/// cycles next to the estimate.
 #[test]
 fn the_report_has_differences_answers_of_the_person_and_counted_cycles() {
     let folder = tempfile::tempdir().expect("a folder");

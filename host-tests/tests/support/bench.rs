@@ -26,6 +26,7 @@ pub const BOARD: &Board = &MPS2_AN386;
 pub const WAIT: Duration = Duration::from_millis(1);
 /// An emulated board that receives bytes and sends messages.
 pub trait Linked {
+    /// Takes bytes from the host. An error means that the emulator has ended.
     fn take(&mut self, bytes: &[u8]) -> anyhow::Result<()>;
 
     /// Returns the messages that have arrived since the last call.
@@ -58,27 +59,33 @@ const SLICE: Duration = Duration::from_millis(4);
 
 /// A board at a port whose name stays the same when the cable is pulled.
 pub struct Bench<M = Machine> {
+    /// The board.
     pub machine: M,
+    /// The board's end of the cable; `None` while it is pulled.
     pub cable: Option<PtyMaster>,
     /// True if the host has sent something.
     pub heard: bool,
     /// The sequence number of the last frame that was transferred.
     pub frame: u32,
     _folder: tempfile::TempDir,
+    /// The path of the port.
     pub name: PathBuf,
 }
 
 impl Bench {
+    /// Returns a bench with a new [`BOARD`], plugged in.
     pub fn new() -> Self {
         Self::of(BOARD)
     }
 
+    /// Returns a bench with a new emulated board in QEMU, plugged in.
     pub fn of(board: &Board) -> Self {
         Self::with(machine(board))
     }
 }
 
 impl<M: Linked> Bench<M> {
+    /// Returns a bench with this board, plugged in.
     pub fn with(machine: M) -> Self {
         let folder = tempfile::tempdir().expect("a folder");
         let name = folder.path().join("ttyACM0");
@@ -95,6 +102,7 @@ impl<M: Linked> Bench<M> {
         bench
     }
 
+    /// Plugs the cable in; it must be pulled.
     pub fn plug(&mut self) {
         let flags = OFlag::O_RDWR | OFlag::O_NOCTTY | OFlag::O_NONBLOCK | OFlag::O_CLOEXEC;
         let cable = posix_openpt(flags).expect("a pseudo-terminal");
@@ -105,6 +113,7 @@ impl<M: Linked> Bench<M> {
         self.cable = Some(cable);
     }
 
+    /// Pulls the cable; the port no longer exists.
     pub fn unplug(&mut self) {
         self.cable = None;
         fs::remove_file(&self.name).expect("the link");
@@ -162,10 +171,12 @@ impl<M: Linked> Bench<M> {
     }
 }
 
+/// Starts a [`BOARD`] with its application.
 pub fn board() -> Machine {
     machine(BOARD)
 }
 
+/// Starts a board with its application, by the host's clock.
 fn machine(board: &Board) -> Machine {
     // The board runs as fast as a real one, so that the host's messages reach it in time.
     let start = |settings: &Settings| {
@@ -183,7 +194,7 @@ pub fn wire(message: ToHost) -> Vec<u8> {
 }
 
 /// Runs a command at the bench's port while `play` is called repeatedly until the command has
-/// ended.
+/// ended. Panics if the command exceeds [`LIMIT`].
 pub fn at_port<M: Linked>(
     bench: &mut Bench<M>,
     command: &mut Command,
@@ -192,7 +203,8 @@ pub fn at_port<M: Linked>(
     at_port_for(LIMIT, bench, command, play)
 }
 
-/// Runs a command that takes up to `limit` at the bench's port, like [`at_port`].
+/// Runs a command that takes up to `limit` at the bench's port, like [`at_port`]. Panics if it
+/// takes longer.
 pub fn at_port_for<M: Linked>(
     limit: Duration,
     bench: &mut Bench<M>,

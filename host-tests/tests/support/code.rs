@@ -18,6 +18,7 @@ pub struct Code {
 }
 
 impl Code {
+    /// Reads an ELF file. It is an error if the file is no program for ARM or has no relocations.
     pub fn read(path: &Path) -> anyhow::Result<Self> {
         let image = Image::read(path)?;
         let bytes = std::fs::read(path)?;
@@ -52,7 +53,8 @@ impl Code {
         Ok(Self { image, names })
     }
 
-    /// Returns the functions whose name satisfies `is_wanted`, by address.
+    /// Returns the functions whose name satisfies `is_wanted`, by address. The results are their
+    /// addresses; labels without a size are left out.
     pub fn functions_named(&self, is_wanted: impl Fn(&str) -> bool) -> impl Iterator<Item = u32> {
         // Labels have no size.
         let functions = self
@@ -64,14 +66,16 @@ impl Code {
             .map(|function| function.address)
     }
 
-    /// Returns the address and the name of the function that contains `address`.
+    /// Returns the address and the name of the function that contains `address`. `None` means that
+    /// no function with a size does.
     pub fn function_at(&self, address: u32) -> Option<(u32, &str)> {
         self.image
             .function_at(address)
             .map(|Function { address, name, .. }| (*address, &**name))
     }
 
-    /// Returns the places between these addresses that refer to a function elsewhere.
+    /// Returns the places between these addresses that refer to a function elsewhere. Each result
+    /// is the place and the address of the function.
     pub fn leads_out_of<'a>(
         &'a self,
         addresses: &'a Range<u32>,
@@ -82,7 +86,8 @@ impl Code {
             .filter(|(at, to)| addresses.contains(at) && !addresses.contains(to))
     }
 
-    /// Returns the places outside of `function` that refer to it.
+    /// Returns the places outside of `function` that refer to it. Functions are given by their
+    /// addresses.
     pub fn names_of(&self, function: u32) -> impl Iterator<Item = u32> {
         let is_other = move |at| {
             self.function_at(at)
@@ -94,7 +99,8 @@ impl Code {
             .map(|(at, _)| *at)
     }
 
-    /// Returns the functions that `function` refers to.
+    /// Returns the functions that `function` refers to. The results are addresses, one for each
+    /// place, so a function may be there several times.
     pub fn named_by(&self, function: u32) -> impl Iterator<Item = u32> {
         let is_own = move |at| {
             self.function_at(at)

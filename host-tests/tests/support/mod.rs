@@ -25,19 +25,21 @@ pub fn toolchain() -> Toolchain {
     toolchain::ready().unwrap_or_else(|missing| panic!("{missing}"))
 }
 
-/// Returns the program that measures, on a board for each kind of core.
+/// Returns the program that measures, on a board for each kind of core. Panics if it does not
+/// build.
 pub fn targets() -> Vec<Target> {
     Target::build_all(&toolchain()).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// Builds a board's application.
+/// Builds a board's application and returns the ELF file. Panics if it does not build.
 pub fn application(board: &Board) -> PathBuf {
     toolchain()
         .build_for(board)
         .unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// Returns settings for runs with bit-identical results.
+/// Returns settings for runs with bit-identical results. The clock counts instructions, the log is
+/// received, and the time limit is [`LIMIT`].
 pub fn settings<'a>(toolchain: &'a Toolchain, board: &'a Board, elf: &'a Path) -> Settings<'a> {
     Settings {
         qemu: &toolchain.qemu,
@@ -72,7 +74,8 @@ pub fn stack(elf: &Path) -> Range<u32> {
 }
 
 /// Returns the largest number of bytes that a stack has contained since it was painted, from its
-/// memory.
+/// memory. `memory` is the content of [`stack`], painted with [`PAINT`]; an unused stack has the
+/// depth 0.
 pub fn depth(memory: &[u8]) -> u32 {
     STACK - memory.iter().take_while(|byte| **byte == PAINT).count() as u32
 }
@@ -84,7 +87,8 @@ pub fn show(board: &Board, name: SceneName) -> Show {
 
 /// Returns the address of a symbol by its name without the path before it. For example,
 /// `Player::execute` is `firmware::app::player::Player::execute` in one version of the compiler and
-/// `<firmware::app::player::Player>::execute` in another.
+/// `<firmware::app::player::Player>::execute` in another. The Thumb bit is removed. Panics if the
+/// file has no such symbol.
 pub fn address(elf: &Path, name: &str) -> u32 {
     let bytes = std::fs::read(elf).unwrap_or_else(|error| panic!("{}: {error}", elf.display()));
     let file =

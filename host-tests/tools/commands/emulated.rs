@@ -34,10 +34,12 @@ pub struct SetupOptions {
     yes: bool,
 }
 
+/// Returns the consent to install system packages: given by `--yes`, or asked for.
 fn consent(yes: bool) -> Consent {
     if yes { Consent::Given } else { Consent::Ask }
 }
 
+/// Installs everything that is missing and prints where it is.
 pub fn setup(options: &SetupOptions) -> anyhow::Result<()> {
     let is_ready = toolchain::ready().is_ok() && toolchain::ready_for_pico().is_ok();
     say(toolchain::set_up()?)?;
@@ -79,7 +81,9 @@ pub struct FwOptions {
     check: bool,
 }
 
-/// Runs a firmware. Cargo also uses this command as the runner for the ARM targets.
+/// Runs a firmware. Cargo also uses this command as the runner for the ARM targets. Returns the
+/// exit code of the firmware, or success if `--seconds` ended it. An unknown binary is [`Refused`].
+/// Without `--seconds`, it is an error if the firmware runs for an hour.
 pub fn fw(options: &FwOptions) -> anyhow::Result<ExitCode> {
     let Some(binary) = &options.binary else {
         toolchain::set_up()?.check()?;
@@ -156,6 +160,7 @@ fn board_for(binary: &Path) -> &'static Board {
     boards.iter().find(runs_it).unwrap_or(&boards[0])
 }
 
+/// Returns the end of the help: an example, all binaries of the firmware, and all boards.
 fn runnable() -> String {
     let boards = BOARDS.map(|board| {
         format!(
@@ -172,6 +177,7 @@ fn runnable() -> String {
     )
 }
 
+/// Returns the names of the binaries of the firmware, sorted; none if the sources are not there.
 fn binaries() -> Vec<String> {
     let Ok(files) = fs::read_dir(toolchain::workspace().join("firmware/src/bin")) else {
         return Vec::new();
@@ -203,7 +209,7 @@ const LIMITS: [Duration; 2] = [Duration::from_secs(3600), Duration::from_secs(12
 const THREADS: [&str; 2] = ["RUST_TEST_THREADS", "RAYON_NUM_THREADS"];
 
 /// Runs the set-up, builds the firmware, then runs exactly `cargo test`, with its own output and
-/// exit code.
+/// exit code. An error means that the set-up or a build fails, or that the time limit is exceeded.
 pub fn verify(options: &TestOptions) -> anyhow::Result<ExitCode> {
     let limit = LIMITS[usize::from(options.long)];
     // Returns a running `cargo test` with these arguments.
@@ -249,6 +255,8 @@ pub fn verify(options: &TestOptions) -> anyhow::Result<ExitCode> {
     Ok(process::exit_code(status))
 }
 
+/// `cargo fw` without `--board` takes the first board whose application the binary is, or else the
+/// first board; of a path that contains a target, only boards with that target.
 #[test]
 fn the_board_follows_from_the_binary() {
     for (binary, name) in [

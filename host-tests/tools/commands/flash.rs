@@ -29,6 +29,7 @@ const DRIVE_TYPE: &str = "vfat";
 /// The time that the drive may take to appear after the board was sent to its boot loader. The
 /// enumeration takes a second, and the desktop's mounting another.
 const MOUNTING: Duration = Duration::from_secs(10);
+/// The time between two searches for the drive.
 const LOOK: Duration = Duration::from_millis(250);
 
 /// Builds the firmware of the Raspberry Pi Pico as target/pico.uf2, and copies it onto the board if
@@ -46,7 +47,8 @@ pub struct PicoOptions {
 }
 
 /// Builds the firmware of the Raspberry Pi Pico and writes it to the target folder as UF2. Returns
-/// the number of bytes in the flash, and the file.
+/// the number of bytes in the flash, and the file. The number does not include the overhead of the
+/// format.
 pub fn uf2_file(toolchain: &Toolchain) -> anyhow::Result<(usize, PathBuf)> {
     let (start, image) = flash_image(&fs::read(toolchain.build_for(&PICO)?)?)?;
     let file = target().join(FILE);
@@ -54,6 +56,9 @@ pub fn uf2_file(toolchain: &Toolchain) -> anyhow::Result<(usize, PathBuf)> {
     Ok((image.len(), file))
 }
 
+/// Builds the UF2 file and copies it to a board: to the drive of the options, else to a mounted
+/// drive, else to a board that runs this firmware and is restarted. Without any of these it prints
+/// how to copy the file by hand, which is a success.
 pub fn pico(options: &PicoOptions) -> anyhow::Result<()> {
     let (bytes, file) = uf2_file(&toolchain::set_up()?)?;
     say(format_args!("{}: {bytes} bytes of flash", file.display()))?;
@@ -85,7 +90,8 @@ pub fn pico(options: &PicoOptions) -> anyhow::Result<()> {
     ))?)
 }
 
-/// Restarts the board at this port in its boot loader and waits for its drive.
+/// Restarts the board at this port in its boot loader and waits for its drive. It is refused if the
+/// port cannot be opened, or if no drive appears in time.
 fn restart_in_boot_loader(port: &str) -> anyhow::Result<PathBuf> {
     say(format_args!(
         "{port}: the board restarts in its boot loader"
@@ -104,10 +110,12 @@ fn restart_in_boot_loader(port: &str) -> anyhow::Result<PathBuf> {
     ))
 }
 
+/// Returns the mounted drive of an RP2040, if there is one.
 fn find_drive() -> Option<PathBuf> {
     mounted(&fs::read_to_string("/proc/mounts").ok()?)
 }
 
+/// Accepts a folder that is the drive of an RP2040 by its label.
 fn drive(folder: &str) -> Result<PathBuf, String> {
     match fs::read_to_string(Path::new(folder).join(LABEL)) {
         Ok(label) if label.contains(OURS) => Ok(folder.into()),
@@ -156,6 +164,7 @@ pub struct FlashOptions {
     dfu: bool,
 }
 
+/// Accepts the name of a chip that begins like one of [`CHIPS`], in either case.
 fn chip(name: &str) -> Result<String, String> {
     let is_it = CHIPS
         .iter()
@@ -167,6 +176,9 @@ fn chip(name: &str) -> Result<String, String> {
     }
 }
 
+/// Builds the firmware of the STM32F405 and flashes it. With `--dfu` returns when `dfu-util`
+/// reports success. Otherwise probe-rs replaces this process, so this function only returns if
+/// probe-rs cannot be started. A missing program is [`Refused`].
 pub fn stm32f405(options: &FlashOptions) -> anyhow::Result<()> {
     let (program, source) = if options.dfu {
         (
@@ -272,6 +284,8 @@ fn copy_until_written(mut output: impl BufRead, to: &mut impl Write) -> std::io:
 mod tests {
     use super::*;
 
+    /// A folder with the label of an RP2040 is found if it is mounted as vfat, and ignored if it is
+    /// mounted as any other type.
     #[test]
     fn only_a_drive_of_the_boot_roms_type_is_looked_into() {
         let folder = tempfile::tempdir().expect("a folder");
@@ -285,6 +299,8 @@ mod tests {
         }
     }
 
+    /// A download by `dfu-util` is a success only if its output has the line that the file is
+    /// downloaded. The output is shown unchanged in either case.
     #[test]
     fn a_download_is_judged_by_the_tools_own_line() {
         let judged = |text: &str| {

@@ -21,6 +21,7 @@ const FOLDER: &str = "release-files";
 const SUMS: &str = "SHA256SUMS";
 /// The time limit to package the kernel, including a download of the registry's index.
 const PACKAGE: Duration = Duration::from_secs(300);
+/// The name of the kernel's package.
 const KERNEL: &str = "double-pendulum-kernel";
 /// The programs that print checksums in that format, with their arguments.
 const HASHERS: [(&str, &[&str]); 2] = [("sha256sum", &[]), ("shasum", &["-a", "256"])];
@@ -33,6 +34,8 @@ const HASHERS: [(&str, &[&str]); 2] = [("sha256sum", &[]), ("shasum", &["-a", "2
 #[command(name = "cargo release-files")]
 pub struct ReleaseOptions {}
 
+/// Makes the folder anew and prints the checksums. A machine without a program for checksums is
+/// [`Refused`].
 pub fn run(_: &ReleaseOptions) -> anyhow::Result<()> {
     let hasher = HASHERS
         .iter()
@@ -84,6 +87,7 @@ pub fn run(_: &ReleaseOptions) -> anyhow::Result<()> {
     Ok(say(folder.display())?)
 }
 
+/// Copies a file. The error names `from`.
 fn copy(from: &Path, to: &Path) -> anyhow::Result<()> {
     fs::copy(from, to).with_context(|| from.display().to_string())?;
     Ok(())

@@ -3,7 +3,9 @@
 /// The headings of the columns, with units, and rows with a cell for each column.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Table {
+    /// The headings.
     pub columns: Vec<&'static str>,
+    /// The rows, each with as many cells as there are columns.
     pub rows: Vec<Vec<String>>,
 }
 
@@ -15,6 +17,7 @@ impl Table {
         lines.map(|line| line + "\n").collect()
     }
 
+    /// Returns the table in Markdown. No cell may contain a vertical bar.
     pub fn markdown(&self) -> String {
         let heads = [
             self.columns.join(" | "),
@@ -27,7 +30,8 @@ impl Table {
     }
 }
 
-/// Returns `page` with `text` between its two marks, or `None` if it lacks them.
+/// Returns `page` with `text` between the first mark `start` and the next mark `end`, which remain,
+/// or `None` if these are missing.
 pub fn between(page: &str, [start, end]: [&str; 2], text: &str) -> Option<String> {
     let (head, rest) = page.split_once(start)?;
     let (_, tail) = rest.split_once(end)?;
@@ -43,7 +47,8 @@ pub fn small(value: f64) -> String {
     }
 }
 
-/// Returns a bound of two digits, in exponent form, that is no less than `value`.
+/// Returns a bound of two digits, in exponent form, that is no less than `value`. Zero, infinity
+/// and NaN are printed as they are.
 pub fn at_most(value: f64) -> String {
     let rounded = format!("{value:.1e}");
 
@@ -63,6 +68,7 @@ pub fn at_most(value: f64) -> String {
         .unwrap_or_else(|| format!("{:.1e}", 2.0 * value))
 }
 
+/// Each bound has two digits and is no less than the number.
 #[test]
 fn bounds_are_rounded_up() {
     for (value, text) in [
@@ -79,6 +85,7 @@ fn bounds_are_rounded_up() {
     }
 }
 
+/// The marks and the text around them remain. Without the marks in their order there is no result.
 #[test]
 fn text_between_the_marks_is_replaced() {
     let [old, new] = ["old", "new"].map(|text| format!("before [{text}] after"));

@@ -23,6 +23,7 @@ use emulator::toolchain::{self, find, target};
 
 /// The name of the file in the target folder.
 pub const FILE: &str = "double-pendulum.html";
+/// The page without its facts and its module.
 const TEMPLATE: &str = include_str!("../../../firmware/web/page.html");
 
 /// The processors that the page offers, each with its name in links and a description.
@@ -37,6 +38,7 @@ pub const HEADLESS: &str = "--headless --no-sandbox --disable-gpu --disable-quic
     --disable-background-networking --disable-component-update --disable-sync --hide-scrollbars";
 /// The options of a picture. The virtual time passes in a moment.
 const PICTURE: &str = "--window-size=1000,850 --virtual-time-budget=60000";
+/// The time limit to make a picture.
 const PICTURE_LIMIT: Duration = Duration::from_secs(120);
 /// A clock for the picture: 8.5 s in frames of 1/60 s, whatever the speed of the machine.
 const CLOCK: &str = "<script>let frames = 0; window.requestAnimationFrame = (frame) =>
@@ -55,6 +57,8 @@ pub struct WebOptions {
     picture: Option<PathBuf>,
 }
 
+/// Writes the page, and makes the picture and opens the page if the options demand it. A picture
+/// that cannot be written and a missing program are [`Refused`] before the build.
 pub fn run(options: &WebOptions) -> anyhow::Result<()> {
     // Refuse before the build.
     let picture = options.picture.as_deref();
@@ -88,7 +92,8 @@ fn opener() -> Result<PathBuf, Refused> {
     found.ok_or(Refused::because(NONE))
 }
 
-/// Builds the application and writes the page. Returns its path.
+/// Builds the application and writes the page. Returns its path. An error means that the build
+/// fails or the file cannot be written.
 pub fn write_page() -> anyhow::Result<PathBuf> {
     let module = fs::read(toolchain::set_up_web()?.build_web()?)?;
     let digits: String = module.iter().map(|byte| format!("{byte:02x}")).collect();
@@ -138,6 +143,7 @@ fn facts() -> Value {
     })
 }
 
+/// Returns the names of all values.
 fn names<T: Copy>(all: &[T], name: fn(T) -> &'static str) -> Vec<&'static str> {
     all.iter().copied().map(name).collect()
 }

@@ -43,7 +43,7 @@ pub struct HardCase {
     pub reason: &'static str,
 }
 
-/// Returns every line, in the file's order.
+/// Returns every line, in the file's order. Panics with the first line that cannot be read.
 pub fn hard_cases() -> Vec<HardCase> {
     let lines = include_str!("../../reference/hard_cases.csv")
         .lines()

@@ -25,7 +25,7 @@ pub fn text(greys: &[u8], width: usize) -> String {
 }
 
 /// Compares a picture with the committed one called `name`. The error lists the differences and the
-/// command that accepts them.
+/// command that accepts them. A file that cannot be read or written is an error, too.
 pub fn check(name: &str, picture: &str) -> Result<(), String> {
     let path = workspace()
         .join("host-tests/golden/scenes")

@@ -22,10 +22,15 @@ pub fn exact_methods() -> impl Iterator<Item = Method> {
 /// A [`Run`] that counts turns, whose method is chosen at run time. Its numbers are widened to
 /// `f64`.
 pub trait AnyRun: Debug {
+    /// Advances by `steps` steps. An error means that the motion has diverged.
     fn advance(&mut self, steps: u32) -> Result<(), Error>;
+    /// Returns the angles, rad, with all turns, and the canonical momenta, kg m^2/s.
     fn state(&self) -> State<f64>;
+    /// Returns (sin, cos) of both angles.
     fn directions(&self) -> [Direction<f64>; 2];
+    /// Returns the angles, rad, with all turns.
     fn angles(&self) -> [f64; 2];
+    /// Returns the energy, J.
     fn energy(&self) -> f64;
 }
 
@@ -67,7 +72,8 @@ impl FormVisitor for Start<'_> {
     }
 }
 
-/// Returns the motion of a pendulum from its start by `method`, in steps of `dt` s.
+/// Returns the motion of a pendulum from its start by `method`, in steps of `dt` s. An error means
+/// that the kernel refuses the pendulum, the start or the step.
 pub fn run(
     method: Method,
     parameters: &Parameters<f64>,
@@ -97,7 +103,8 @@ pub struct Trial {
     pub seconds: f64,
 }
 
-/// The number of moments of a comparison, evenly spread over the motion.
+/// The number of moments of a comparison, evenly spread over the motion. The last one is its end;
+/// the start is none.
 pub const MOMENTS: u32 = 16;
 
 impl Trial {
@@ -142,7 +149,8 @@ impl Trial {
         }
     }
 
-    /// Returns the trial with its numbers rounded once to those of `method`.
+    /// Returns the trial with its numbers rounded once to `f32`, if `method` computes in single
+    /// precision, or else unchanged.
     pub fn held_by(&self, method: Method) -> Self {
         if !method.is_single() {
             return *self;
@@ -161,8 +169,9 @@ impl Trial {
         (self.seconds / dt / f64::from(moments)).round() as u32
     }
 
-    /// Returns the states by `method` at the moments, in steps of `dt`, s. They are NaN after the
-    /// motion has diverged.
+    /// Returns the states by `method` at the [`MOMENTS`] moments, in steps of `dt`, s. They are NaN
+    /// after the motion has diverged. An error means that the method does not accept the trial or
+    /// the step. The moments are exact only if they fall on whole steps.
     pub fn states(&self, method: Method, dt: f64) -> Result<Vec<State<f64>>, Error> {
         let mut run = run(method, &self.parameters, &self.start, dt)?;
         let steps = self.steps(dt, MOMENTS);
@@ -174,7 +183,8 @@ impl Trial {
     }
 
     /// Returns the states at `moments` moments by RK4 in compensated `f64`, which is not in the
-    /// table.
+    /// table, in steps of `dt`, s. An error means that the kernel refuses the trial or that the
+    /// motion diverges.
     pub fn states_in_f64(&self, dt: f64, moments: u32) -> Result<Vec<State<f64>>, Error> {
         let mut run = Pendulum::new(&self.parameters)?
             .run::<DirectionF64>(&self.start, dt)?
@@ -185,7 +195,8 @@ impl Trial {
             .collect()
     }
 
-    /// Returns the exact states at the moments.
+    /// Returns the exact states at the [`MOMENTS`] moments, by the reference. The start is not
+    /// among them. An error means that the kernel refuses the parameters.
     pub fn exact(&self) -> Result<Vec<State<f64>>, Error> {
         let pendulum = Pendulum::new(&self.parameters)?;
         let at = |moment: u32| self.seconds * f64::from(moment) / f64::from(MOMENTS);
@@ -196,8 +207,9 @@ impl Trial {
         ))
     }
 
-    /// Returns the largest error of an angle, rad, by `method` with steps of `dt`, s. The reference
-    /// is the exact motion of the rounded numbers.
+    /// Returns the largest error of an angle at the moments, rad and at most pi, by `method` with
+    /// steps of `dt`, s; infinite if the motion has diverged. The reference is the exact motion of
+    /// the rounded numbers. An error is one of [`Trial::states`].
     pub fn error(&self, method: Method, dt: f64) -> Result<f64, Error> {
         Ok(largest_difference(
             &self.states(method, dt)?,
@@ -218,7 +230,8 @@ pub fn apart(a: f64, b: f64) -> f64 {
     }
 }
 
-/// Returns the largest difference of the angles, rad, without whole turns.
+/// Returns the largest difference of the angles, rad, without whole turns. The shorter list decides
+/// the number of states. It is infinite if an angle is not a number.
 pub fn largest_difference(states: &[State<f64>], others: &[State<f64>]) -> f64 {
     let pairs = states.iter().zip(others);
     pairs

@@ -2,17 +2,22 @@
 
 use firmware::protocol::{Decoder, Field, Frame, LinkError, ToHost, read};
 
+/// The counts of a link since it was first opened.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counts {
+    /// The intact messages.
     pub messages: u64,
     /// The messages damaged in transmission: wrong CRC, framing, length, version or fields.
     pub damaged: u64,
+    /// The frames that are missing in the sequence numbers: sent by the board and not received.
+    /// Frames before a connection do not count.
     pub lost: u64,
     /// The number of times that the board began to count its frames from 0 again.
     pub restarts: u64,
 }
 
-/// Returns the name of a field that a board refuses, in words.
+/// Returns the name of a field that a board refuses, in words. For a message or a panel it includes
+/// the cause.
 pub fn refusal(field: Field) -> &'static str {
     match field {
         // A board of this version can read every message of this host, unless the two have
@@ -26,20 +31,25 @@ pub fn refusal(field: Field) -> &'static str {
 /// A decoder of received bytes into messages.
 #[derive(Debug, Default)]
 pub struct Inbox {
+    /// The decoder, with the message that is incomplete.
     pub decoder: Decoder,
+    /// The counts since this was made.
     pub counts: Counts,
     /// The expected sequence number of the next frame.
     expected: Option<u32>,
     /// True if the next frame is the first of a connection. Frames before it were not sent to this
     /// host, so they are not lost.
     is_joining: bool,
+    /// The last damage since the connection began, if there was any.
     pub damage: Option<LinkError>,
     /// True if the next bytes may begin in the middle of a message.
     joins: bool,
 }
 
 impl Inbox {
-    /// Takes a byte and returns the message that it completes.
+    /// Takes a byte and returns the message that it completes. `None` means that a message is not
+    /// complete, or that it was damaged and is counted. The first damaged message of a connection
+    /// is not counted, because the connection may have begun within it.
     pub fn take(&mut self, byte: u8) -> Option<ToHost> {
         // A message is complete, damaged, or not complete yet.
         let message = match self
@@ -116,6 +126,8 @@ mod tests {
         inbox.counts
     }
 
+    /// Missing sequence numbers count as lost frames, also where the numbers pass from 2^32 - 1 to
+    /// 0. Numbers that begin again at 0 count as one restart and no loss.
     #[test]
     fn missing_frames_are_counted_over_the_wrap_but_not_over_a_restart_from_0() {
         let sequences = [u32::MAX - 2, u32::MAX - 1, 1, 2, 5];
@@ -137,6 +149,8 @@ mod tests {
         );
     }
 
+    /// Every frame begins a connection. Missing numbers are not lost frames, and a smaller number
+    /// counts as a restart.
     #[test]
     fn frames_between_two_connections_are_not_lost_and_a_restart_between_them_is_counted() {
         let mut inbox = Inbox::default();
@@ -153,6 +167,8 @@ mod tests {
         }
     }
 
+    /// A connection begins in the middle of a message. That rest is not counted as damaged, the
+    /// whole message after it is received, and a later one with a wrong bit is counted as damaged.
     #[test]
     fn a_message_that_is_joined_in_its_middle_is_not_damaged() {
         let mut inbox = Inbox::default();

@@ -24,7 +24,8 @@ const PRODUCT: &str = "Double pendulum";
 /// Returns the port of the only board that runs this firmware and has its own USB port.
 ///
 /// The board is recognised by its names, because its USB ids are shared with every device that
-/// distinguishes itself by names (rule 7 of V-USB's `USB-IDs-for-free.txt`).
+/// distinguishes itself by names (rule 7 of V-USB's `USB-IDs-for-free.txt`). Returns `None` if
+/// there is no such board or more than one.
 pub fn running_board(ports: &[SerialPortInfo]) -> Option<&str> {
     let is_it = |port: &&SerialPortInfo| {
         usb(port).is_some_and(|usb| {
@@ -38,6 +39,7 @@ pub fn running_board(ports: &[SerialPortInfo]) -> Option<&str> {
     }
 }
 
+/// Returns the USB description of a port, if it has one.
 fn usb(port: &SerialPortInfo) -> Option<&UsbPortInfo> {
     match &port.port_type {
         SerialPortType::UsbPort(usb) => Some(usb),
@@ -83,6 +85,8 @@ impl Device {
     }
 }
 
+/// Returns the name of the only port over USB, or the reason in one line if there is none or more
+/// than one.
 fn choose(ports: &[SerialPortInfo]) -> Result<String, String> {
     let over_usb = |port: &SerialPortInfo| {
         Some((
@@ -134,6 +138,8 @@ mod tests {
         }
     }
 
+    /// `auto` takes the only port over USB and ignores built-in ports. With none it is an error,
+    /// and with two it is an error that names both.
     #[test]
     fn the_one_adapter_that_is_plugged_in_is_taken() {
         let built_in = SerialPortInfo {
@@ -156,6 +162,8 @@ mod tests {
         assert_eq!(choose(&[pico, other]), Err(several));
     }
 
+    /// A device is gone and returns, with its old or a new name. A twin that was there meanwhile,
+    /// and a device with another name in its descriptor, are not taken for it.
     #[test]
     fn a_device_that_comes_back_is_found_under_its_new_name_and_no_other_is_taken_for_it() {
         let [old, new] = ["/dev/ttyACM0", "/dev/ttyACM1"].map(|name| usb(name, Some("Pico")));
@@ -175,6 +183,8 @@ mod tests {
         }
     }
 
+    /// A port is a running board only if both its manufacturer and its product are right. With two
+    /// such ports there is no result.
     #[test]
     fn a_running_board_is_known_by_its_names() {
         let mut board = usb("/dev/ttyACM0", Some(PRODUCT));

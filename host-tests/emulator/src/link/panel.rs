@@ -57,7 +57,8 @@ fn remedy(fault: BusFault) -> &'static str {
     }
 }
 
-/// Returns true if the panel works, or does not report its state.
+/// Returns true if the panel works, or does not report its state. It works if it is found and shows
+/// all 60 frames of a second, or if their number is not known yet.
 pub fn is_well(report: &PanelReport) -> bool {
     let all = u32::from(report.shown) == TICK_RATE || report.shown == 0;
     match report.state {
@@ -82,6 +83,8 @@ mod tests {
         panel(&report).unwrap_or_default()
     }
 
+    /// An absent panel is reported with its fault and the remedy, a found one with its controller,
+    /// status and frame rate, a slow one with the cause. A panel that reports nothing has no line.
     #[test]
     fn panel_is_reported_with_its_remedy() {
         assert_eq!(line(PanelState::Unknown, 0), "");

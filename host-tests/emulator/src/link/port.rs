@@ -18,6 +18,7 @@ use super::{AUTO, Device, Inbox, Restarts, choose};
 const WAIT: Duration = Duration::from_millis(1);
 /// The time limit for the port to accept a message. The board takes it within a tick.
 const ACCEPTANCE: Duration = Duration::from_millis(500);
+/// The time between two attempts to open a port.
 const RETRY: Duration = Duration::from_millis(250);
 /// The time that `auto` waits for a port. A board that was just flashed enumerates within a second,
 /// and its device node gets its group a little later.
@@ -33,24 +34,34 @@ const QUESTION: u16 = u16::MAX - 1;
 /// boards. The Pico obeys when the port is closed at this speed.
 pub const BAUD_OF_BOOT_LOADER: u32 = 1200;
 
+/// A serial port that is opened again whenever it is back. Problems of a port that was once open
+/// are no errors but [`notices`](Port::notices).
 pub struct Port {
+    /// The path of the port, which changes if a USB device returns under another name.
     pub name: String,
+    /// The open port; `None` while it is gone.
     open: Option<Box<dyn SerialPort>>,
     /// The USB device at the port. By it, the device is found under another name.
     device: Option<Device>,
+    /// The decoder of the received bytes, with the counts of the link.
     pub inbox: Inbox,
+    /// The restarts of the board.
     pub restarts: Restarts,
     /// Reports of problems and recoveries, one line each, reported once. The caller drains them.
     pub notices: Vec<String>,
     /// The time of the last intact message, of the opening of the port, or of the last attempt to
     /// open it.
     since: Instant,
+    /// The number of bytes since the last intact message or the opening of the port.
     bytes: usize,
+    /// True if the present silence has been reported.
     complained: bool,
 }
 
 impl Port {
-    /// Opens the port of this name, or the only one over USB. Returns an error as one line.
+    /// Opens the port of this name; `auto` means the only one over USB and waits up to 3 s for it.
+    /// Returns the reason as one line if the port is missing, in use, not accessible or, with
+    /// `auto`, ambiguous.
     pub fn open(name: &str) -> Result<Self, String> {
         // A port without a name may take a moment to appear.
         let (name, open) = if name == AUTO {
@@ -83,7 +94,8 @@ impl Port {
     }
 
     /// Returns the messages that have arrived since the last call. A port that has gone is opened
-    /// again when it is back.
+    /// again when it is back. It is empty while the port is gone. This waits for at most a
+    /// millisecond after the last byte.
     pub fn messages(&mut self) -> Vec<ToHost> {
         if self.open.is_none() {
             self.reopen();
@@ -107,11 +119,15 @@ impl Port {
         messages
     }
 
-    /// Sends a command. While the port is gone, the command is dropped.
+    /// Sends a command. While the port is gone, the command is dropped. `request` is the number
+    /// that the answer will have. A port that does not take the command within 0.5 s counts as
+    /// gone.
     pub fn send(&mut self, request: u16, command: Command) {
         self.send_bytes(encode_command(request, command, &mut [0; MAX_WIRE]));
     }
 
+    /// Sends bytes. Without a port they are dropped; a port that does not take them within 0.5 s
+    /// counts as gone.
     pub fn send_bytes(&mut self, bytes: &[u8]) {
         let Some(port) = &mut self.open else { return };
         let sent = port
@@ -123,6 +139,7 @@ impl Port {
         }
     }
 
+    /// Returns the bytes that have arrived, at most about 64 KiB.
     fn read(&mut self) -> Vec<u8> {
         let mut bytes = Vec::new();
         let mut buffer = [0; 4096];
@@ -146,6 +163,7 @@ impl Port {
         bytes
     }
 
+    /// Notes that the port is gone, for this reason.
     fn gone(&mut self, why: &str) {
         self.open = None;
         self.since = Instant::now();
@@ -155,6 +173,7 @@ impl Port {
         self.notices.push(gone(&self.name, why));
     }
 
+    /// Opens the port again if it is back, not more often than [`RETRY`] allows.
     fn reopen(&mut self) {
         if self.since.elapsed() < RETRY {
             return;
@@ -202,6 +221,7 @@ impl Port {
         }
     }
 
+    /// Returns the likely reason why no message arrives.
     fn silence(&self) -> String {
         let Self { name, bytes, .. } = self;
         match self.inbox.damage {
@@ -231,10 +251,12 @@ fn gone(name: &str, why: &str) -> String {
     format!("{name} is gone ({why}): the cable is unplugged, or the board restarts; waiting for it")
 }
 
+/// Opens a port at the speed of the link.
 fn open(name: &str) -> serialport::Result<Box<dyn SerialPort>> {
     serialport::new(name, BAUD).timeout(WAIT).open()
 }
 
+/// Returns all serial ports; none if the system does not list them.
 fn ports() -> Vec<SerialPortInfo> {
     serialport::available_ports().unwrap_or_default()
 }
@@ -325,6 +347,7 @@ fn denied(name: &str, group: Option<&str>) -> String {
     format!("{name}: permission denied; {remedy}")
 }
 
+/// Returns the names of all ports, as the end of an error.
 fn present() -> String {
     let names: Vec<_> = ports().into_iter().map(|port| port.port_name).collect();
     if names.is_empty() {
@@ -338,6 +361,8 @@ fn present() -> String {
 mod tests {
     use super::*;
 
+    /// A denied port, one in use, a missing one and a file that is no port each have their own
+    /// reason; that of a denied port has the remedy.
     #[test]
     fn a_port_that_does_not_open_is_reported_with_the_remedy() {
         let refused = |kind| {
@@ -366,6 +391,8 @@ mod tests {
         );
     }
 
+    /// The remedy for a denied port names the group that may open it. A missing port and one of the
+    /// group root have no such group.
     #[test]
     fn the_remedy_names_the_group_of_the_port() {
         assert!(denied("/dev/ttyX", Some("uucp")).contains("usermod -aG uucp USER"));
@@ -416,6 +443,8 @@ mod tests {
         assert_eq!((found, waits), (Ok(("/dev/ttyACM0".to_owned(), 7)), 4));
     }
 
+    /// Without a port `auto` waits until its time is over and then fails. It fails without waiting
+    /// if the first port found is denied, or if two ports are there.
     #[test]
     fn auto_does_not_wait_for_ever_nor_after_a_final_error() {
         // No port appears until the time is over.
@@ -439,6 +468,7 @@ mod tests {
         }
     }
 
+    /// The notice of a port that is gone names a restart of the board as a possible cause.
     #[test]
     fn a_port_that_ends_may_be_a_cable_or_a_restart() {
         let notice = gone("/dev/ttyACM0", "Broken pipe");

@@ -18,6 +18,7 @@ pub struct Restarts {
     /// The number of restarts since the host first opened the port, including those by the power
     /// switch.
     pub count: u32,
+    /// The question of the present connection.
     question: Question,
     /// True if the frames are counted from 0 again and the board has not yet reported the cause.
     recounted: bool,
@@ -25,6 +26,7 @@ pub struct Restarts {
     is_known: bool,
 }
 
+/// The state of the question about the last restart.
 #[derive(Debug, Default, PartialEq)]
 enum Question {
     /// The question is sent after the next message.
@@ -32,17 +34,19 @@ enum Question {
     Due,
     /// The question was sent, and this number of messages has arrived without an answer.
     Asked(u32),
+    /// The board has reported its last restart.
     Answered,
 }
 
 impl Restarts {
-    /// Begins a connection.
+    /// Begins a connection. The question about the last restart is due.
     pub fn join(&mut self) {
         self.question = Question::Due;
     }
 
     /// Takes a message. `recounted` is true if the message shows that the frames are counted from 0
-    /// again. Returns a line for the user if there is something new.
+    /// again. Returns a line for the user if there is something new. `None` means that the message
+    /// tells nothing new about restarts.
     pub fn take(&mut self, message: &ToHost, recounted: bool) -> Option<String> {
         match *message {
             ToHost::Restarted(end) => {
@@ -66,7 +70,8 @@ impl Restarts {
     }
 
     /// Returns true if the question must be sent now. It is called after each message, so that
-    /// nothing is sent to a device that is not a board.
+    /// nothing is sent to a device that is not a board. An unanswered question is due again after
+    /// 60 messages.
     pub fn is_question_due(&mut self) -> bool {
         let (is_due, next) = match self.question {
             Question::Due | Question::Asked(PATIENCE..) => (true, Question::Asked(0)),
@@ -129,6 +134,8 @@ mod tests {
         ToHost::Answer(0, Answer::Restart(end))
     }
 
+    /// The first question is due after the first message, and again after 60 messages without an
+    /// answer. After an answer none is due until the next connection.
     #[test]
     fn no_question_precedes_a_message_and_an_unanswered_one_is_repeated() {
         let mut restarts = Restarts::default();
@@ -145,6 +152,9 @@ mod tests {
         assert!(restarts.is_question_due());
     }
 
+    /// A restart before the first connection is reported with its cause, place and number, but not
+    /// counted. The same report after a new connection is no news. A different one is reported and
+    /// counted.
     #[test]
     fn an_earlier_restart_is_reported_at_the_first_connection_only() {
         let mut restarts = Restarts::default();
@@ -168,6 +178,8 @@ mod tests {
         assert_eq!((restarts.count, restarts.last), (1, Some(end(2))));
     }
 
+    /// The board reports the same restart as before, but its frames are counted from 0 again. The
+    /// question is due, the restart is reported, and it is counted once.
     #[test]
     fn a_restart_like_the_last_one_is_recognised_by_the_frames() {
         let mut restarts = Restarts::default();
@@ -179,6 +191,8 @@ mod tests {
         assert_eq!(restarts.count, 1);
     }
 
+    /// After a crash, the frames are counted from 0 again and the board reports no restart. The
+    /// line says that it was switched on or reset, and it counts as one restart.
     #[test]
     fn a_board_that_was_switched_off_is_not_reported_as_crashed() {
         let mut restarts = Restarts::default();

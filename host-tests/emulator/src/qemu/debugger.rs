@@ -28,6 +28,7 @@ const WFI: u16 = 0xBF30;
 const SIZE: u32 = 2;
 /// The number of sleeps without a frame after which the board counts as silent.
 const PATIENCE: u32 = 1000;
+/// The number of bytes that are written to memory by one packet.
 const PIECE: u32 = 512;
 /// The request for the description of the registers. QEMU gives no access to registers before it.
 pub(super) const DESCRIBE: &str = "qXfer:features:read:target.xml:0,10";
@@ -35,8 +36,11 @@ pub(super) const DESCRIBE: &str = "qXfer:features:read:target.xml:0,10";
 /// A register of the processor, with its number in GDB's protocol.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Register {
+    /// The stack pointer.
     Sp = 13,
+    /// The link register, which has the return address.
     Lr = 14,
+    /// The program counter.
     Pc = 15,
 }
 
@@ -45,6 +49,7 @@ pub enum Register {
 pub(super) struct Places {
     /// The address of every `wfi`.
     sleeps: Vec<u32>,
+    /// The addresses of the breakpoints that are set in QEMU.
     breakpoints: Vec<u32>,
     /// The breakpoint of the current stop.
     here: Option<u32>,
@@ -52,7 +57,8 @@ pub(super) struct Places {
 
 impl Machine {
     /// Starts a board that is stopped at its first instruction. Its clock counts instructions, even
-    /// if `settings` have another clock.
+    /// if `settings` have another clock. An error means that the ELF file is unusable or that QEMU
+    /// cannot be started.
     pub fn halted(settings: &Settings) -> anyhow::Result<Self> {
         let mut machine = Self::boot(&Settings {
             clock: Clock::Counted,
@@ -67,7 +73,9 @@ impl Machine {
         Ok(machine)
     }
 
-    /// Runs to the next frame and returns all messages up to it.
+    /// Runs to the next frame and returns all messages up to it. The machine must be stopped, and
+    /// is stopped again when the frame is on the panel. It is an error if the board sleeps 1000
+    /// times without a frame, or if QEMU ends.
     pub fn run_to_frame(&mut self) -> anyhow::Result<Vec<ToHost>> {
         let sleeps = self.places.sleeps.clone();
         up_to_frame(PATIENCE, || {
@@ -77,7 +85,9 @@ impl Machine {
     }
 
     /// Runs to the next frame while `read` reads QEMU's log. The log contains the processor's
-    /// registers before every instruction, hundreds of bytes each time.
+    /// registers before every instruction, hundreds of bytes each time. Returns the result of
+    /// `read`. Errors are those of `read`, and as in [`Self::run_to_frame`]. The messages up to the
+    /// frame are dropped.
     pub fn next_frame_logged<T: Send>(
         &mut self,
         read: impl FnOnce(File) -> anyhow::Result<T> + Send,
@@ -109,6 +119,7 @@ impl Machine {
         })
     }
 
+    /// Sets the file and the items of QEMU's log, and switches single steps on or off.
     fn log(&mut self, file: &Path, what: &str, single_step: &str) -> anyhow::Result<()> {
         self.console(&format!("logfile {}", file.display()))?;
         self.console(&format!("log {what}"))?;
@@ -116,19 +127,21 @@ impl Machine {
     }
 
     /// Runs until the instruction at this address is about to be executed. If the machine is
-    /// stopped there, runs until the next time.
+    /// stopped there, runs until the next time. If the program never comes there, this ends with an
+    /// error at the time limit of the machine.
     pub fn run_to(&mut self, address: u32) -> anyhow::Result<()> {
         self.run_until(&[address])
     }
 
     /// Lets the machine run freely. This is twenty times as fast as from frame to frame, because
-    /// QEMU discards its translated code whenever it is stopped at a breakpoint.
+    /// QEMU discards its translated code whenever it is stopped at a breakpoint. The machine must
+    /// be stopped; [`Self::stop`] stops it again.
     pub fn run(&mut self) -> anyhow::Result<&mut Self> {
         self.leave(&[])?;
         self.say("c").map(|()| self)
     }
 
-    /// Stops the machine at any place.
+    /// Stops the running machine at any place. The machine must be running ([`Self::run`]).
     pub fn stop(&mut self) -> anyhow::Result<()> {
         self.debugger.sender.write_all(b"\x03")?;
         let reply = self.hear()?;
@@ -140,6 +153,7 @@ impl Machine {
     }
 
     /// Sets some registers, which may include the program counter, before the machine continues.
+    /// The machine must be stopped.
     pub fn divert(&mut self, registers: &[(Register, u32)]) -> anyhow::Result<()> {
         self.places.here = None;
         registers
@@ -147,6 +161,7 @@ impl Machine {
             .try_for_each(|(register, value)| self.set(*register, *value))
     }
 
+    /// Writes bytes to memory from this address on. The machine must be stopped.
     pub fn write(&mut self, address: u32, bytes: &[u8]) -> anyhow::Result<()> {
         for (start, piece) in (address..)
             // A packet has a limited size.
@@ -196,6 +211,7 @@ impl Machine {
         }
     }
 
+    /// Sets a register.
     fn set(&mut self, register: Register, value: u32) -> anyhow::Result<()> {
         self.expect(
             &format!("P{:x}={:08x}", register as u32, value.swap_bytes()),
@@ -213,16 +229,19 @@ impl Machine {
         }
     }
 
+    /// Sends a packet and returns the text of the reply.
     pub(super) fn ask(&mut self, packet: &str) -> anyhow::Result<String> {
         self.say(packet)?;
         self.hear()
     }
 
+    /// Sends a packet.
     fn say(&mut self, packet: &str) -> anyhow::Result<()> {
         let checksum = packet.bytes().fold(0, u8::wrapping_add);
         Ok(write!(self.debugger.sender, "${packet}#{checksum:02x}")?)
     }
 
+    /// Waits for a reply, acknowledges it and returns its text.
     fn hear(&mut self) -> anyhow::Result<String> {
         let reply = self.wait_until(|machine| {
             // A reply is complete if its checksum of two digits has arrived.
@@ -238,6 +257,7 @@ impl Machine {
     }
 }
 
+/// Returns the error of a reply that was not expected.
 fn unexpected(packet: &str, reply: &str) -> anyhow::Error {
     anyhow!("QEMU refuses the debugger: {packet} was answered with {reply:?}")
 }

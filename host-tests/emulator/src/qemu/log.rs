@@ -7,17 +7,20 @@ use std::path::Path;
 use anyhow::Context;
 use defmt_decoder::{DecodeError, Frame, Locations, StreamDecoder, Table};
 
+/// A line of the output of the firmware or of QEMU.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct LogLine {
     /// The defmt level in lower case. It is `None` for plain text, which comes from QEMU or from a
     /// crash report of the firmware.
     pub level: Option<String>,
+    /// The message.
     pub text: String,
     /// The file name and line number of the statement, ` [file:line]`, where they are known.
     pub place: String,
 }
 
 impl LogLine {
+    /// Returns a line of plain text.
     pub(super) fn plain(text: &str) -> Self {
         Self {
             level: None,
@@ -48,6 +51,7 @@ pub struct LogDecoder {
     /// The stream decoder. It is `None` if the program has no log, or once the stream is damaged
     /// beyond recovery.
     stream: Option<Box<dyn StreamDecoder>>,
+    /// True if the decoding continues after damaged bytes.
     can_recover: bool,
     /// The location of each log statement in the source.
     locations: Locations,
@@ -55,7 +59,8 @@ pub struct LogDecoder {
 
 impl LogDecoder {
     /// Makes a decoder for the firmware in the file `elf`. Its format strings stay in memory for
-    /// the rest of the program.
+    /// the rest of the program. A program without a log is no error; its decoder returns no lines.
+    /// An error means that the file is unreadable or that its log is of another version of defmt.
     pub fn new(elf: &Path) -> anyhow::Result<Self> {
         let program = std::fs::read(elf).with_context(|| elf.display().to_string())?;
         let Some(table) = Table::parse(&program)?.map(Box::new) else {
@@ -75,7 +80,8 @@ impl LogDecoder {
         })
     }
 
-    /// Takes the next bytes and returns the lines that they complete.
+    /// Takes the next bytes and returns the lines that they complete. If the stream is damaged, one
+    /// line says so.
     pub fn take(&mut self, bytes: &[u8]) -> Vec<LogLine> {
         let mut lines = Vec::new();
         let Some(stream) = &mut self.stream else {

@@ -18,6 +18,7 @@ use crate::process::{self, Running};
 use crate::scratch::Scratch;
 use crate::stream::{self, Channel, Stream};
 
+/// The clock of an emulated board.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Clock {
     /// The host's clock. The board is as fast as a real one if the host can keep up.
@@ -29,11 +30,16 @@ pub enum Clock {
     Counted,
 }
 
+/// Everything that a machine needs at its start.
 #[derive(Clone, Copy, Debug)]
 pub struct Settings<'a> {
+    /// The program QEMU.
     pub qemu: &'a Path,
+    /// The board to emulate.
     pub board: &'a Board,
+    /// The program of the board.
     pub elf: &'a Path,
+    /// The clock of the board.
     pub clock: Clock,
     /// True if a debugger is attached. It answers the firmware's semihosting calls and so receives
     /// its log.
@@ -48,20 +54,26 @@ const CHATTER: [&str; 2] = ["Timer with period zero, disabling", "has no peer"];
 /// An emulated board.
 ///
 /// Every method that waits also reads all output of the board, because QEMU stops while its output
-/// is not read. Dropping the machine ends QEMU.
+/// is not read. Dropping the machine ends QEMU. All methods that wait return an error, with QEMU's
+/// last lines, if QEMU ends first, such as at its time limit.
 pub struct Machine {
     /// True if the link is read. If not, the board's output fills the pipe and then its serial
     /// port.
     pub listens: bool,
+    /// QEMU's control channel.
     pub(super) monitor: Channel,
+    /// QEMU's port for a debugger.
     pub(super) debugger: Channel,
     serial: Channel,
     /// The firmware's log, and the plain text of QEMU and of the firmware's crash reports.
     log: [Stream; 2],
     decoder: LogDecoder,
     inbox: Inbox,
+    /// The messages that have not been fetched, oldest first.
     messages: VecDeque<ToHost>,
+    /// The lines of the log that have not been fetched, oldest first.
     lines: Vec<LogLine>,
+    /// The places where the machine can be stopped.
     pub(super) places: Places,
     process: Running,
     /// The folder is removed after QEMU has ended.
@@ -69,7 +81,8 @@ pub struct Machine {
 }
 
 impl Machine {
-    /// Starts a board. The host is attached before the first instruction is executed.
+    /// Starts a board and lets it run. The host is attached before the first instruction is
+    /// executed. An error means that the ELF file is unusable or that QEMU cannot be started.
     pub fn start(settings: &Settings) -> anyhow::Result<Self> {
         let mut machine = Self::boot(settings)?;
         machine.run()?;
@@ -228,36 +241,43 @@ impl Machine {
         }
     }
 
+    /// Waits for the next message and returns it.
     pub fn receive(&mut self) -> anyhow::Result<ToHost> {
         self.wait_until(|machine| machine.messages.pop_front())
     }
 
-    /// Returns the next message of one kind and drops the messages before it.
+    /// Waits for the next message for which `kind` returns `Some`, and returns that value. The
+    /// messages before it are dropped.
     pub fn wait_for<M>(&mut self, kind: impl Fn(ToHost) -> Option<M>) -> anyhow::Result<M> {
         self.wait_until(|machine| {
             std::iter::from_fn(|| machine.messages.pop_front()).find_map(&kind)
         })
     }
 
+    /// Waits for the next frame. Other messages before it are dropped.
     pub fn next_frame(&mut self) -> anyhow::Result<Frame> {
         self.wait_for(ToHost::frame)
     }
 
+    /// Waits for the next answer and returns it with the number of its request. Other messages
+    /// before it are dropped.
     pub fn next_answer(&mut self) -> anyhow::Result<(u16, Answer)> {
         self.wait_for(ToHost::answer)
     }
 
-    /// Returns the messages that have arrived. Returns an error if QEMU has ended.
+    /// Returns the messages that have arrived since the last call, without waiting. Returns an
+    /// error if QEMU has ended.
     pub fn messages(&mut self) -> anyhow::Result<Vec<ToHost>> {
         self.take_in()?;
         Ok(self.messages.drain(..).collect())
     }
 
+    /// Sends a command with this request number, as [`Self::send_bytes`] does.
     pub fn send(&mut self, request: u16, command: protocol::Command) -> anyhow::Result<()> {
         self.send_bytes(encode_command(request, command, &mut [0; MAX_WIRE]))
     }
 
-    /// Sends all bytes. Blocks until everything is written or QEMU exits.
+    /// Sends all bytes. Blocks until everything is written or QEMU exits. QEMU's end is an error.
     pub fn send_bytes(&mut self, mut bytes: &[u8]) -> anyhow::Result<()> {
         self.wait_until(|machine| {
             bytes = &bytes[machine.serial.sender.write(bytes).unwrap_or(0)..];
@@ -265,18 +285,20 @@ impl Machine {
         })
     }
 
-    /// Returns the counts of messages, damage and restarts on the link.
+    /// Returns the counts of messages, damage and restarts on the link since the start.
     pub fn counts(&self) -> Counts {
         self.inbox.counts
     }
 
-    /// Returns the lines of the log that have arrived.
+    /// Returns the lines of the log that have arrived since the last call, without waiting. They
+    /// can be fetched after QEMU has ended, too.
     pub fn lines(&mut self) -> Vec<LogLine> {
         // The lines of a machine that has ended are returned, too.
         let _ = self.take_in();
         std::mem::take(&mut self.lines)
     }
 
+    /// Returns the same lines as [`Self::lines`] as one text.
     pub fn log_text(&mut self) -> String {
         self.lines()
             .iter()
@@ -284,11 +306,14 @@ impl Machine {
             .collect()
     }
 
+    /// Returns the process ID of QEMU.
     pub fn id(&self) -> u32 {
         self.process.child.id()
     }
 
     /// Waits until QEMU ends, passes every log line to `each`, and returns the exit status.
+    /// Messages of the link are dropped. An error of kind `TimedOut` means that the time limit
+    /// ended QEMU.
     pub fn wait(&mut self, mut each: impl FnMut(LogLine)) -> anyhow::Result<ExitStatus> {
         // The closure never returns a value, so the wait ends with the error that QEMU has ended.
         let _: anyhow::Result<()> = self.wait_until(|machine| {

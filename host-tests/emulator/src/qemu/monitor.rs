@@ -17,13 +17,15 @@ use super::{Machine, Screenshot};
 const SINGLE_STEP: [&str; 2] = ["one-insn-per-tb", "singlestep"];
 
 impl Machine {
-    /// Returns the panel's picture. While the board runs, it may be a mixture of two frames.
+    /// Returns the panel's picture. While the board runs, it may be a mixture of two frames. An
+    /// error means that QEMU has ended, or that the machine has no panel.
     pub fn screenshot(&mut self) -> anyhow::Result<Screenshot> {
         self.execute("screendump", json!({ "filename": "panel.ppm" }))?;
         Screenshot::from_ppm(&std::fs::read(self.folder.path().join("panel.ppm"))?)
     }
 
-    /// Returns the contents of memory.
+    /// Returns the bytes of memory at these addresses, as the processor sees them. An error means
+    /// that QEMU has ended or that there is no memory.
     pub fn read(&mut self, addresses: Range<u32>) -> anyhow::Result<Vec<u8>> {
         let range =
             json!({ "val": addresses.start, "size": addresses.len(), "filename": "memory" });
@@ -56,7 +58,7 @@ impl Machine {
         })
     }
 
-    /// Switches QEMU's mode of one instruction per translation block `on` or `off`.
+    /// Switches QEMU's mode of one instruction per translation block; `switch` is `on` or `off`.
     pub(super) fn single_step(&mut self, switch: &str) -> anyhow::Result<()> {
         let [name, name_before] = SINGLE_STEP.map(|name| format!("{name} {switch}"));
         // An old QEMU refuses the new name.
@@ -74,6 +76,7 @@ impl Machine {
         }
     }
 
+    /// Executes a command of QMP and returns its result. A refusal by QEMU is an error.
     pub(super) fn execute(&mut self, command: &str, arguments: Value) -> anyhow::Result<Value> {
         writeln!(
             self.monitor.sender,

@@ -14,6 +14,7 @@ const GREY_UNIT: u8 = 17;
 /// The picture on the panel: 4-bit greys, row by row from the top left.
 #[derive(Clone, PartialEq, Eq)]
 pub struct Screenshot {
+    /// The grey of each pixel: 0 is black, 15 is white. There are [`WIDTH`] x [`HEIGHT`] of them.
     pub greys: Vec<u8>,
 }
 
@@ -40,6 +41,7 @@ impl Screenshot {
         }
     }
 
+    /// Reads QEMU's dump. It is an error if the dump has another size or is cut short.
     pub(super) fn from_ppm(file: &[u8]) -> anyhow::Result<Self> {
         let pixels = file
             .strip_prefix(HEADER)
@@ -55,7 +57,8 @@ impl Screenshot {
     }
 
     /// Makes a screenshot from the memory of a one-colour panel. The memory contains pages of eight
-    /// rows from the top, with a byte for every column. Pixels beyond the memory are black.
+    /// rows from the top, with a byte for every column. Pixels beyond the memory are black. The top
+    /// row is bit 0; a set bit is white.
     pub fn from_pages(memory: &[u8]) -> Self {
         let is_lit = |x: usize, y: usize| {
             memory
@@ -73,6 +76,8 @@ impl From<&Canvas> for Screenshot {
     }
 }
 
+/// A white dump of the right size has white pixels only. A dump without the last row of the panel,
+/// or with another size in its header, is an error.
 #[test]
 fn a_dump_of_another_size_or_cut_short_is_refused() {
     let whole = [HEADER, &[0xFF; 3 * 512 * 256]].concat();

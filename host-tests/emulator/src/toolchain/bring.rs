@@ -35,7 +35,8 @@ pub(super) fn turn() -> Result<Flock<File>, Refused> {
 pub(super) type Way<'a> = (String, &'a dyn Fn() -> Result<(), String>);
 
 /// Returns the result of `find`. If `find` fails and `installs` is true, tries the `ways` in order
-/// until `find` succeeds. Returns the reasons of all failures if none succeeds.
+/// until `find` succeeds. Returns the reasons of all failures if none succeeds. Each success of a
+/// way is reported on stderr.
 pub(super) fn bring<T>(
     installs: bool,
     find: impl Fn() -> Result<T, String>,

@@ -93,6 +93,7 @@ impl Toolchain {
         target().join("firmware")
     }
 
+    /// Builds the application of a board and returns the ELF file, as [`Self::build`] does.
     pub fn build_for(&self, board: &Board) -> anyhow::Result<PathBuf> {
         self.build(board.binary, board.target)
     }
@@ -100,7 +101,7 @@ impl Toolchain {
     /// Builds a binary of the firmware with all optimisations, once per process, and returns the
     /// ELF file.
     ///
-    /// Concurrent builds take turns.
+    /// Concurrent builds take turns. An error contains the output of the compiler.
     pub fn build(&self, binary: &str, target: &str) -> anyhow::Result<PathBuf> {
         let elf = Self::folder().join(target).join("release").join(binary);
         let this = (binary.to_owned(), target.to_owned());
@@ -121,7 +122,8 @@ impl Toolchain {
     }
 
     /// Builds the image of the golden bits for a target. If `double` names a processor, the image
-    /// is built for that processor, which computes `f64` in hardware.
+    /// is built for that processor, which computes `f64` in hardware. Returns the image: an ELF
+    /// file or, for WebAssembly, a module. Concurrent builds take turns.
     pub fn build_cores(&self, target: &str, double: Option<&str>) -> anyhow::Result<PathBuf> {
         // Cargo gives both kinds of image the same name. Each is copied before the next build
         // replaces it.
@@ -159,7 +161,7 @@ impl Toolchain {
     }
 
     /// Builds the images of the golden bits up to the first target that is not available: without a
-    /// network, each further one would wait for it.
+    /// network, each further one would wait for it. An error is a build that fails.
     pub fn build_cores_ahead(&self) -> anyhow::Result<()> {
         let is_ready = |target: &str| {
             set_up_for(target).is_ok_and(|other| other.from_source == self.from_source)
@@ -182,7 +184,7 @@ impl Toolchain {
     /// returns the folder of their ELF files.
     ///
     /// Cargo runs in an empty folder, so that the settings of this repository do not apply. The
-    /// crate's own settings are passed to it.
+    /// crate's own settings are passed to it. An error contains the output of the compiler.
     pub fn build_minimal(&self, target: &str) -> anyhow::Result<PathBuf> {
         let nowhere = tempfile::tempdir()?;
         let package = workspace().join("kernel/minimal");
@@ -218,7 +220,8 @@ impl Toolchain {
         Ok(folder.join(target).join("release"))
     }
 
-    /// Builds the application as a WebAssembly module, without names and debug information.
+    /// Builds the application as a WebAssembly module, without names and debug information. Returns
+    /// its file.
     pub fn build_web(&self) -> anyhow::Result<PathBuf> {
         let mut command = self.for_targets("build", &[WASM])?;
         command
@@ -230,6 +233,7 @@ impl Toolchain {
     }
 
     /// Builds the binaries that run on every target, concurrently, and every board's application.
+    /// An error contains the output of the compiler.
     pub fn build_ahead(&self) -> anyhow::Result<()> {
         let mut command = self.for_targets("build", &TARGETS)?;
         command.args(AHEAD.iter().flat_map(|binary| ["--bin", binary]));
@@ -238,7 +242,8 @@ impl Toolchain {
     }
 
     /// Checks the firmware's binaries and its examples for microcontrollers, for every target. A
-    /// warning is an error, including clippy's warnings if the compiler has clippy.
+    /// warning is an error, including clippy's warnings if the compiler has clippy. The error
+    /// contains the warnings.
     pub fn check(&self) -> anyhow::Result<()> {
         for target in TARGETS {
             // All boards of a target are checked at once, with the features of all.
@@ -281,6 +286,7 @@ impl Toolchain {
         Ok(command)
     }
 
+    /// Runs a build and shows progress. An error contains the output of the compiler.
     fn finish(&self, mut command: Command, doing: &str) -> anyhow::Result<()> {
         let output = run_shown(&mut command, LIMIT, doing)?;
         ensure!(
@@ -292,11 +298,13 @@ impl Toolchain {
     }
 }
 
+/// Returns true if the variable must not reach the firmware's build.
 fn is_foreign(name: &OsString) -> bool {
     let begins = |with: &&str| name.as_encoded_bytes().starts_with(with.as_bytes());
     FOREIGN.iter().any(begins) && !OURS.iter().any(begins)
 }
 
+/// Returns the search path with this folder in front.
 fn path_with(folder: PathBuf) -> OsString {
     let rest = env::var_os("PATH").unwrap_or_default();
     env::join_paths([folder].into_iter().chain(env::split_paths(&rest))).unwrap_or(rest)

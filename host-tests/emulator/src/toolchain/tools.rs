@@ -17,17 +17,21 @@ fn debian_folders() -> [PathBuf; 2] {
     [PathBuf::from("/usr/bin"), target().join(RUST_FOLDER)]
 }
 
+/// The folder in the target folder into which Debian's compiler is unpacked.
 const RUST_FOLDER: &str = "rust";
 /// The Debian packages that build the ARM core library.
 pub(super) const CORE_PACKAGES: [&str; 3] = ["rustc-web", "cargo-web", "rust-web-src"];
 /// The time limit of `rustup target add`, which loads 40 MB. If it hangs, this time is lost once.
 const RUSTUP: Duration = Duration::from_secs(60);
+/// The script that downloads and unpacks Debian's packages.
 const UNPACK: &str = "host-tests/emulator/src/toolchain/unpack.sh";
 
 /// Debian's compiler, which builds the ARM core library from its sources.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct FromSource {
+    /// The compiler.
     pub rustc: PathBuf,
+    /// Its cargo.
     pub cargo: PathBuf,
     /// The folder of rustup's `rust-lld`, which Debian's packages do not have.
     pub linker: PathBuf,
@@ -35,9 +39,11 @@ pub(super) struct FromSource {
 
 /// An emulator of the QEMU project.
 pub(super) struct Emulator {
+    /// The program that is run.
     pub program: &'static str,
     /// All programs of the package that are used.
     programs: &'static [&'static str],
+    /// The Debian package that contains it.
     pub package: &'static str,
     /// The folder in the target folder into which the set-up unpacks it for this project.
     folder: &'static str,
@@ -47,19 +53,23 @@ pub(super) struct Emulator {
 /// 6.0.
 const LEAST_QEMU: u32 = 6;
 
+/// The emulator of the boards.
 pub(super) const QEMU: Emulator = Emulator {
     program: "qemu-system-arm",
     programs: &["qemu-system-arm"],
     package: "qemu-system-arm",
     folder: "qemu",
 };
+/// The programs that emulate Linux for other processors.
 const USER_PROGRAMS: [&str; 2] = ["qemu-riscv32", "qemu-aarch64"];
+/// The emulator of Linux on RISC-V.
 pub(super) const QEMU_RISCV: Emulator = Emulator {
     program: "qemu-riscv32",
     programs: &USER_PROGRAMS,
     package: "qemu-user",
     folder: "qemu-user",
 };
+/// The emulator of Linux on aarch64.
 pub(super) const QEMU_AARCH64: Emulator = Emulator {
     program: "qemu-aarch64",
     programs: &USER_PROGRAMS,
@@ -134,6 +144,8 @@ fn shown(path: &Path) -> String {
     within.display().to_string()
 }
 
+/// Finds the core library for all of these targets, as [`core`] returns it. The error is the reason
+/// why there is none.
 fn find_core(targets: &[&str]) -> Result<Option<FromSource>, String> {
     // The library of the compiler in use, if rustup has installed it for all targets.
     let (in_use, _) = libraries("rustc".as_ref())?;
@@ -286,11 +298,13 @@ fn judged_once(path: &Path) -> Result<(), String> {
     verdict
 }
 
-/// Returns the program that the shell would run for this name.
+/// Returns the program that the shell would run for this name, or `None` if no folder of `PATH` has
+/// it.
 pub fn find(program: &str) -> Option<PathBuf> {
     env::split_paths(&env::var_os("PATH")?).find_map(|folder| executable(folder.join(program)))
 }
 
+/// Returns the path if it is a file that may be executed.
 fn executable(path: PathBuf) -> Option<PathBuf> {
     fs::metadata(&path)
         .is_ok_and(|file| file.is_file() && file.permissions().mode() & 0o111 != 0)
@@ -317,7 +331,9 @@ pub(super) fn chromium() -> Result<PathBuf, String> {
     bring(true, look, &[(unpacked(&folder, &packages), &way)])
 }
 
+/// The time limit of npm.
 const NPM: Duration = Duration::from_secs(120);
+/// The oldest major version of Node.js that is used.
 const LEAST_NODE: u32 = 18;
 /// A script that fails if the installed version of the Pico's emulator differs from the required
 /// one.

@@ -15,16 +15,22 @@ use super::Fixed;
 /// - k = m1/M, l = m2/M, n = l1/l2, c = l/n, G1 = 2^e g T^2/l1, G2 = g T^2/l2, in this order
 #[derive(Clone, Copy, Debug)]
 pub struct Equations {
+    /// k.
     pub(super) upper: Fixed,
+    /// l.
     pub(super) lower: Fixed,
+    /// n.
     pub(super) rods: Fixed,
+    /// c.
     pub(super) coupling: Fixed,
+    /// G1, G2.
     pub(super) gravity: [Fixed; 2],
 }
 
 impl Equations {
     /// Returns the coefficients 0 to `order` of the power series of the six numbers (sin a1, cos
-    /// a1, S, C, P1, P2) from `start`. The time of the series is in units of `step` T.
+    /// a1, S, C, P1, P2) from `start`. The time of the series is in units of `step` T. The first
+    /// index is the number, the second the power.
     pub fn series(&self, start: &[Fixed; 6], order: usize, step: Fixed) -> [Vec<Fixed>; 6] {
         let &Self {
             upper,
@@ -71,7 +77,8 @@ impl Equations {
         z
     }
 
-    /// Returns the energy of the six numbers `z`, divided by M l1^2/T^2.
+    /// Returns the energy of the six numbers `z`, divided by M l1^2/T^2. The potential energy is 0
+    /// where both bobs are level with the pivot.
     pub fn energy(&self, &[sin1, cos1, s, c, p1, p2]: &[Fixed; 6]) -> Fixed {
         let &Self {
             upper,
@@ -103,9 +110,10 @@ const TRIES: usize = 12;
 /// The shortest usable time, in steps. With it, a power series of 48 terms ends at 2^-116.
 const SHORTEST: f64 = 6.0;
 
-/// Returns the longest time found, in steps, and the radii of discs about `middle`. No solution
-/// that starts within [`STARTS`] of the discs leaves them in complex times up to that time. Returns
-/// `None` if the time is too short.
+/// Returns the longest time found, in steps of `step` T, and the radii of discs about `middle`. No
+/// solution that starts within [`STARTS`] of the discs leaves them in complex times up to that
+/// time. Returns `None` if the time is shorter than 6 steps. `extent` is the size of the set of
+/// starts about `middle`; the discs are large enough for it.
 ///
 /// Theorem (Picard and Lindeloef for analytic equations; Hille, Ordinary Differential Equations in
 /// the Complex Domain, 2.3): if z0 + t f(B) is in the product of discs B for |t| <= T, one solution

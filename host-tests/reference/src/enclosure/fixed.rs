@@ -22,7 +22,8 @@ pub fn up(value: f64) -> f64 {
 }
 
 /// A ball: all numbers within `radius` units of the last place of `middle`, which is in the same
-/// units.
+/// units. Numbers are between -256 and 256. A result that leaves this range, or whose radius
+/// overflows, is unknown: its radius is infinite, and so are the radii of all results from it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fixed {
     middle: i128,
@@ -63,7 +64,8 @@ impl Fixed {
         }
     }
 
-    /// Makes a ball of an `f64` number, with all its bits down to 2^-116.
+    /// Makes a ball of an `f64` number, with all its bits down to 2^-116. A number outside the
+    /// range or NaN gives an unknown ball.
     pub fn of(number: f64) -> Self {
         let scaled = number / ULP;
         let middle = if scaled.abs() < LIMIT as f64 {
@@ -74,7 +76,8 @@ impl Fixed {
         Self::new(middle, if scaled.fract() == 0.0 { 0.0 } else { 1.0 })
     }
 
-    /// Makes a ball of a fraction times 2^`exponent`, computed bit by bit.
+    /// Makes a ball of a fraction times 2^`exponent`, computed bit by bit. The denominator must not
+    /// be 0. A value outside the range gives an unknown ball.
     pub fn fraction(numerator: i64, denominator: u64, exponent: i32) -> Self {
         let above = u128::from(numerator.unsigned_abs());
         let below = u128::from(denominator);
@@ -96,7 +99,7 @@ impl Fixed {
         )
     }
 
-    /// Returns the midpoint without a radius.
+    /// Returns the midpoint without a radius. It is 0 for an unknown ball.
     pub fn middle(self) -> Self {
         Self {
             radius: 0.0,
@@ -104,17 +107,19 @@ impl Fixed {
         }
     }
 
-    /// Returns the `f64` next to the midpoint.
+    /// Returns the `f64` nearest to the midpoint.
     pub fn about(self) -> f64 {
         self.middle as f64 * ULP
     }
 
-    /// Returns the largest distance of the true number from the midpoint.
+    /// Returns the largest distance of the true number from the midpoint. It is infinite if the
+    /// number is unknown.
     pub fn radius(self) -> f64 {
         up(self.radius * ULP)
     }
 
-    /// Returns an upper bound of the absolute value of the numbers in the ball.
+    /// Returns an upper bound of the absolute value of the numbers in the ball. It is infinite if
+    /// the number is unknown.
     pub fn size(self) -> f64 {
         up(self.about().abs() + self.radius())
     }
@@ -125,13 +130,16 @@ impl Fixed {
     }
 
     /// Returns true if every number in the ball is above zero, and false if every number is below
-    /// zero. Returns `None` if the ball may contain 0. The `f64` of the midpoint is accurate to
-    /// 2^-53.
+    /// zero. Returns `None` if the ball may contain 0 or is unknown.
+    ///
+    /// The midpoint is compared as an `f64`, which may exceed it by 2^-53 of itself. [`up`]
+    /// enlarges the radius by more than that, so the result is proved.
     pub fn is_positive(self) -> Option<bool> {
         (up(self.radius) < (self.middle as f64).abs()).then_some(self.middle > 0)
     }
 
-    /// Returns all known digits, but no more than `most`. The last digit is accurate to two units.
+    /// Returns the decimal with all known digits, but no more than `most` significant ones. The
+    /// last digit is accurate to two units. The ball must not be unknown.
     pub fn decimal(self, most: f64) -> String {
         // Decimals down to the radius, but not more than `most` significant digits.
         let places = (-self.radius().log10())
@@ -150,7 +158,7 @@ impl Fixed {
         )
     }
 
-    /// Divides by a whole number.
+    /// Divides by a whole number. It must not be 0.
     pub fn over(self, whole: u32) -> Self {
         Self::new(
             self.middle / i128::from(whole),
@@ -180,7 +188,7 @@ impl Fixed {
     }
 
     /// Returns coefficient k of the product of two power series; `a` and `b` are their coefficients
-    /// 0 to k.
+    /// 0 to k. It is unknown if there are more than 48.
     ///
     /// |a b - a0 b0| <= |a0| rb + ra (|b0| + rb). With a = a1 2^64 + a0 the sum of a1 b1 is exact:
     /// 48 terms up to 2^120. The terms a1 b0, a0 b1 and a0 b0 2^-64 are up to 2^124. Each of them

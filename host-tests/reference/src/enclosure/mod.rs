@@ -79,7 +79,8 @@ pub struct Enclosure {
 
 impl Enclosure {
     /// Makes an enclosure of all motions that begin in `start`, with 2^`frame.0` units of time and
-    /// `frame.1` frames in a second.
+    /// `frame.1` frames in a second. `start` has the six numbers of the struct. Numbers that are
+    /// unknown or out of range make the first [`advance`](Self::advance) fail.
     pub fn new(
         equations: Equations,
         frame: (i32, u16),
@@ -104,7 +105,8 @@ impl Enclosure {
         set
     }
 
-    /// Returns the smallest box that contains the set: (sin a1, cos a1, S, C, P1, P2).
+    /// Returns the smallest box that contains the set: (sin a1, cos a1, S, C, P1, P2). P1 and P2
+    /// are the scaled momenta of [`Equations`].
     pub fn hull(&self) -> [Fixed; 6] {
         let extent = self.extent(0);
         from_fn(|i| self.middle[i].wider(extent[i]))
@@ -120,7 +122,8 @@ impl Enclosure {
             .map(up)
     }
 
-    /// Returns about the growth of a small error of the start, as a factor.
+    /// Returns about the factor by which a small error of the start has grown: the largest of the
+    /// six numbers. It is 1 at the start.
     pub fn growth(&self) -> f64 {
         let of = |i: usize| {
             self.segments
@@ -132,14 +135,16 @@ impl Enclosure {
         (0..6).map(of).fold(0.0, f64::max)
     }
 
-    /// Returns the directions of the rods, (sin, cos) each.
+    /// Returns the directions of the rods, (sin, cos) each. The second one is computed from the
+    /// sine and cosine of a1 - a2. They have no unit.
     pub fn directions(&self) -> [[Fixed; 2]; 2] {
         let [sin1, cos1, s, c, ..] = self.hull();
         [[sin1, cos1], [sin1 * c - cos1 * s, cos1 * c + sin1 * s]]
     }
 
     /// Advances by a frame. Returns `None` if the set has become too large to be followed, or its
-    /// numbers too large for the arithmetic.
+    /// numbers too large for the arithmetic. The set is then somewhere within the frame and must
+    /// not be used any more.
     pub fn advance(&mut self) -> Option<()> {
         self.advance_unless(&AtomicUsize::new(0))
     }

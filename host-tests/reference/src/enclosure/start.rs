@@ -9,7 +9,7 @@ use super::fixed::Fixed;
 use super::{Enclosure, Fineness};
 
 /// Returns the fastest rate in a motion, 1/s: the fast normal frequency or the largest angular
-/// velocity that its energy allows.
+/// velocity that its energy allows. It is 1 if the kernel refuses the parameters.
 pub fn fastest_rate(parameters: &Parameters<f64>, motion: &Motion<f64>) -> f64 {
     Pendulum::new(parameters).map_or(1.0, |pendulum| {
         let Bounds { w1, w2, .. } = pendulum.bounds(&pendulum.to_state(motion));
@@ -47,7 +47,8 @@ impl Start {
     ///
     /// The unit of time is so short that no rod turns by more than 4 rad in it, and 2^e is near the
     /// root of (m1 + m2)/m1. The numbers of the equations are then neither large nor small, for
-    /// masses within a factor of 1000 and lengths within a factor of 30 of each other.
+    /// masses within a factor of 1000 and lengths within a factor of 30 of each other. Outside of
+    /// these, or if the motion is too fast, its first [`advance`](Enclosure::advance) may fail.
     pub fn enclose(&self, rate: u16) -> Enclosure {
         let (parameters @ Parameters { m1, m2, l1, l2, g }, motion @ Motion { a1, a2, w1, w2 }) =
             self.about;
@@ -163,7 +164,7 @@ fn without_turns(angle: impl Fn(i32) -> Fixed, about: f64) -> Fixed {
     rest
 }
 
-/// Returns the sine and the cosine.
+/// Returns balls that contain the sine and the cosine of every angle, rad, in the ball.
 ///
 /// Theorem (Leibniz): the remainder of an alternating series with decreasing terms is smaller than
 /// the last term added. The terms decrease from the fifth on, because |x| is below 4 without whole

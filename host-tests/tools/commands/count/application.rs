@@ -31,16 +31,19 @@ const SHOWING: [(&str, &str); 7] = [
     ("firmware::board::cortex_m::retained::", "keep"),
 ];
 
-/// The cost of a frame.
+/// The cost of one frame of an application: executed instructions (exact) and cycles (estimated).
 #[derive(Clone, Copy, Debug, Default)]
 pub struct FrameProfile {
+    /// The cost of everything that the board executes until the frame is complete.
     pub whole: Cost,
     /// The cost of the functions that show the frame, with all functions that they call.
     pub showing: Cost,
 }
 
 impl FrameProfile {
-    /// Runs `board` to its next frame and profiles everything that it executes.
+    /// Runs `board` to its next frame and profiles everything that it executes. The machine must be
+    /// stopped. An error means that a function that shows a frame is missing, that an instruction
+    /// has no known timing, or that QEMU ends.
     pub fn of_next(board: &mut Machine, image: &Image, core: Core) -> Result<Self> {
         let showing = SHOWING
             .into_iter()
@@ -94,7 +97,8 @@ const PRICES_FILE: &str = "kernel/src/plan/prices.rs";
 const MARKS: [&str; 2] = ["// made by cargo count --write-prices\n", "// so far\n"];
 
 /// Returns the price list of every method that a plan chooses from, on one board for each kind of
-/// core.
+/// core. The costs are in cycles (estimated); `preparation` is per motion, all others are per step.
+/// An error means that a program cannot be built, or that QEMU fails.
 pub fn prices(toolchain: &Toolchain) -> Result<Vec<(&'static Board, Costs)>> {
     let targets = Target::build_all(toolchain)?;
     targets
@@ -103,6 +107,7 @@ pub fn prices(toolchain: &Toolchain) -> Result<Vec<(&'static Board, Costs)>> {
         .collect()
 }
 
+/// Returns the price list of the core of this target, in cycles.
 fn on(target: &Target, toolchain: &Toolchain) -> Result<Costs> {
     let step = |method| {
         let request = Request {
@@ -169,7 +174,8 @@ fn in_application(board: &'static Board, toolchain: &Toolchain) -> Result<(f32, 
     Ok((step, prepared))
 }
 
-/// Writes the price lists into the kernel's source and returns the path of the file.
+/// Writes the price lists into the kernel's source and returns the path of the file. An error means
+/// that the file cannot be read or written, or that it has lost the lines around the lists.
 pub fn write_prices(prices: &[(&Board, Costs)]) -> Result<PathBuf> {
     let path = workspace().join(PRICES_FILE);
     let old = std::fs::read_to_string(&path)?;

@@ -119,6 +119,8 @@ pub struct CountOptions {
     write_prices: bool,
 }
 
+/// Counts as the options demand and prints a row for each method and board, a listing, or the cost
+/// of a call. Options that cannot be served are [`Refused`] before anything is built.
 pub fn run(options: &CountOptions) -> anyhow::Result<()> {
     if let (Some(elf), Some(function)) = (&options.elf, &options.function) {
         return count_calls(&toolchain::set_up()?, options, elf, function);
@@ -263,12 +265,14 @@ fn option_of(error: &Error) -> &'static str {
     }
 }
 
+/// The titles of the columns of [`line`].
 #[rustfmt::skip]
 const TITLES: [&str; 9] = [
     "method", "board", "steps", "instructions", "cycles (estimate)", "stalls",
     "hot bytes", "code bytes", "stack bytes",
 ];
 
+/// Returns a row of the table of steps, with its cells right-aligned below [`TITLES`].
 fn line(
     [
         method,
@@ -286,6 +290,7 @@ fn line(
     format!("{method:>29} {board:>16} {counts} {hot:>9} {code:>10} {stack:>11}")
 }
 
+/// Returns the row of a method on a board. Instructions, cycles and stalls are per step.
 fn row(method: Method, board: &Board, cost: &StepCost) -> String {
     let StepCost {
         steps,
@@ -477,6 +482,8 @@ fn count_calls(
     Ok(())
 }
 
+/// The full name of a method selects it alone, although it is a part of another name. A part of a
+/// name selects all methods that contain it, and no name selects all.
 #[test]
 fn a_full_name_counts_that_method_alone() {
     for (name, methods) in [

@@ -30,7 +30,9 @@ const START_UP: &str = "start_up";
 pub struct Program {
     /// The type that it passes to `Pendulum::run`.
     pub form: &'static str,
+    /// The name of its binary.
     pub binary: &'static str,
+    /// The method that the type implements.
     pub method: Method,
     /// True if it counts whole turns.
     pub counts_turns: bool,
@@ -103,12 +105,14 @@ pub const PROGRAMS: [Program; 8] = [
 /// The price of a program's calls of `Run::advance`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Minimal {
+    /// The program.
     pub program: &'static Program,
     /// The number of steps over which `step` is averaged, all after the first.
     pub steps: u32,
     /// The number of cycles (estimated) of a step.
     pub step: f64,
-    /// The number of cycles (estimated) of a call on top of its steps: the checks.
+    /// The number of cycles (estimated) of a call on top of its steps: the checks. It is the cost
+    /// of a call with no step.
     pub call: u64,
     /// The size of the program in flash beyond that of a program without a motion, bytes.
     pub flash: usize,
@@ -117,6 +121,7 @@ pub struct Minimal {
 /// The prices on a board.
 #[derive(Clone, Debug)]
 pub struct MinimalPrices {
+    /// The board, for the kind of its core.
     pub board: &'static Board,
     /// The prices of [`PROGRAMS`], in that order.
     pub prices: Vec<Minimal>,
@@ -125,7 +130,9 @@ pub struct MinimalPrices {
 }
 
 impl MinimalPrices {
-    /// Builds all programs for `board` and counts them.
+    /// Builds all programs for `board` and counts them. An error means that a program cannot be
+    /// built, fails in QEMU, or does not make its three calls: with no step, with one step, and
+    /// with more.
     pub fn count(toolchain: &Toolchain, board: &'static Board) -> Result<Self> {
         let folder = toolchain.build_minimal(board.target)?;
         let target = |binary| Target::of(toolchain, board, folder.join(binary));
@@ -142,7 +149,8 @@ impl MinimalPrices {
         })
     }
 
-    /// Counts all programs on one board for each kind of core.
+    /// Counts all programs on one board for each kind of core. An error is one of
+    /// [`MinimalPrices::count`].
     pub fn count_all(toolchain: &Toolchain) -> Result<Vec<Self>> {
         one_of_each_core()
             .map(|board| Self::count(toolchain, board))
@@ -159,7 +167,8 @@ const MARKS: [&str; 2] = [
 /// The kernel's README.
 const README: &str = "kernel/README.md";
 
-/// Returns the table of prices as the kernel's README shows it now.
+/// Returns the table of prices as the kernel's README shows it now. An error means that the file or
+/// the lines around the table are missing.
 pub fn table_in_readme() -> Result<String> {
     let page = std::fs::read_to_string(workspace().join(README))?;
     let [start, end] = MARKS;
@@ -171,7 +180,8 @@ pub fn table_in_readme() -> Result<String> {
 
 const NO_PLACE: &str = "kernel/README.md has no place for the prices";
 
-/// Writes the table of prices into the kernel's README.
+/// Writes the table of prices into the kernel's README. An error means that the file cannot be read
+/// or written, or that the lines around the table are missing.
 pub fn write_table(boards: &[MinimalPrices]) -> Result<()> {
     let path = workspace().join(README);
     let page = std::fs::read_to_string(&path)?;
@@ -179,7 +189,9 @@ pub fn write_table(boards: &[MinimalPrices]) -> Result<()> {
     Ok(std::fs::write(path, page)?)
 }
 
-/// Returns the table of prices for the kernel's README: a row for each program.
+/// Returns the table of prices for the kernel's README: a row for each program. A cell of a core
+/// has the cycles of a step and of a call, as in "1,234 + 56". The last column has the flash on
+/// each board, in bytes.
 pub fn table(boards: &[MinimalPrices]) -> String {
     let cores: Vec<_> = boards
         .iter()

@@ -27,15 +27,20 @@ const REGULAR: u64 = 32;
 /// The smallest number of steps. Fewer would show mainly the start, where momenta are zero and
 /// soft-float arithmetic takes shortcuts.
 const LEAST_STEPS: u64 = 4;
+/// The number of instructions that QEMU logs in a few seconds.
 const AFFORDABLE_INSTRUCTIONS: u64 = 300_000;
 
+/// The cost of one step of a method on a target. Instructions, cycles and stalls are averages over
+/// `steps` steps; the sizes are of the whole run.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct StepCost {
+    /// The number of steps that the averages are over, all after the first step.
     pub steps: u32,
+    /// Executed instructions per step (exact).
     pub instructions: f64,
+    /// Cycles per step (estimated), including the stalls.
     pub cycles: f64,
-    /// The part of the cycles that waits for a floating-point result or for the floating-point
-    /// unit.
+    /// The cycles per step that wait for a floating-point result or for the floating-point unit.
     pub stalls: f64,
     /// The size of the distinct executed instructions, without literal pools, in bytes.
     pub hot_bytes: u32,
@@ -47,7 +52,11 @@ pub struct StepCost {
 }
 
 /// Returns the number of steps that can be counted in a few seconds: [`FULL_CYCLE`] for a cheap
-/// method, fewer for an expensive one.
+/// method, fewer for an expensive one, at least 4. From 32 on it is a multiple of 32.
+///
+/// The method, the pendulum and the step size are those of `request`; its numbers of steps and
+/// samples are ignored. An error means that QEMU fails, that the program refuses the request, or
+/// that it has no counted function.
 pub fn affordable_steps(target: &Target, request: &Request) -> Result<u32> {
     let one = counted(
         target,
@@ -69,7 +78,7 @@ pub fn affordable_steps(target: &Target, request: &Request) -> Result<u32> {
 }
 
 /// Returns the cost of one step of `request` on `target`, averaged over the number of steps that
-/// can be counted in a few seconds.
+/// can be counted in a few seconds. `request` and errors are as in [`affordable_steps`].
 pub fn affordable_cost(target: &Target, request: &Request) -> Result<StepCost> {
     step_cost(
         target,
@@ -80,8 +89,9 @@ pub fn affordable_cost(target: &Target, request: &Request) -> Result<StepCost> {
     )
 }
 
-/// Returns the cost of one step of `request` on `target`, averaged over the steps after the first,
-/// as many as to its first sample.
+/// Returns the cost of one step of `request` on `target`, averaged over `request.stride` steps
+/// after the first; `stride` must be at least 1, and `samples` is ignored. Errors are as in
+/// [`affordable_steps`].
 ///
 /// It is the difference between a run with one step more and a run of one step, so that the costs
 /// of the call and the return cancel.

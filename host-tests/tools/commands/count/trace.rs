@@ -24,21 +24,26 @@ use emulator::flash::flash_image;
 use emulator::process;
 use emulator::toolchain::{QUICK, Toolchain};
 
+/// The time limit of a run in QEMU, after which QEMU is killed.
 pub(super) const LIMIT: Duration = Duration::from_secs(1800);
 
+/// The end of a program that was traced.
 #[derive(Debug)]
 pub struct Ended {
     /// The exit status of QEMU, or an error if its time was up.
     pub status: io::Result<ExitStatus>,
+    /// Everything that the program printed.
     pub output: String,
 }
 
 /// An emulated board with a program. The default program runs one request and prints its result.
 #[derive(Debug)]
 pub struct Target {
+    /// The emulated board.
     pub board: &'static Board,
     qemu: PathBuf,
     elf: PathBuf,
+    /// The code and symbols of the program.
     pub image: Image,
 }
 
@@ -48,12 +53,14 @@ pub fn one_of_each_core() -> impl Iterator<Item = &'static Board> {
 }
 
 impl Target {
+    /// Builds the default program, `measure`, for this board.
     pub fn build(toolchain: &Toolchain, board: &'static Board) -> Result<Self> {
         Self::of(toolchain, board, toolchain.build("measure", board.target)?)
     }
 
     /// Returns a target with another program. A program that takes the same requests must make its
-    /// steps in a function called `counted_steps`.
+    /// steps in a function called `counted_steps`. An error means that the file is unreadable or no
+    /// program for ARM.
     pub fn of(toolchain: &Toolchain, board: &'static Board, elf: PathBuf) -> Result<Self> {
         let image = Image::read(&elf)?;
         Ok(Self {
@@ -64,13 +71,13 @@ impl Target {
         })
     }
 
-    /// Returns the largest number of bytes that the program takes of the flash.
+    /// Returns the size of the program in the flash, bytes: code, constants and initial values.
     pub fn flash_bytes(&self) -> Result<usize> {
         Ok(flash_image(&std::fs::read(&self.elf)?)?.1.len())
     }
 
-    /// Returns one board for each kind of core: the same machine with a Cortex-M3, a Cortex-M4F and
-    /// a Cortex-M0+.
+    /// Builds the default program for one board of each kind of core: the same machine with a
+    /// Cortex-M3, a Cortex-M4F and a Cortex-M0+.
     pub fn build_all(toolchain: &Toolchain) -> Result<Vec<Self>> {
         one_of_each_core()
             .map(|board| Self::build(toolchain, board))
@@ -78,7 +85,8 @@ impl Target {
     }
 
     /// Runs `request` at full speed. Returns its CRC and the ticks of the board's clock under
-    /// `-icount`, where an instruction takes 1 ns.
+    /// `-icount`, where an instruction takes 1 ns. A program that prints anything else has failed,
+    /// and the error contains its output.
     pub fn run(&self, request: &Request) -> Result<(u32, u64)> {
         // The program prints the CRC in hexadecimal digits and then the ticks.
         let output = self.output(request)?;
@@ -89,7 +97,8 @@ impl Target {
         numbers.with_context(|| format!("{}: {}", request.method, output.trim()))
     }
 
-    /// Runs `request` at full speed and returns its output.
+    /// Runs `request` at full speed and returns everything that the program prints, even if it
+    /// fails. An error means that QEMU cannot be started or exceeds its time limit.
     pub fn output(&self, request: &Request) -> Result<String> {
         Ok(process::run(
             self.emulator(&request.to_string())
@@ -100,7 +109,8 @@ impl Target {
     }
 
     /// Runs the program with `argument` on its semihosting command line and calls `each` before
-    /// every instruction, in order.
+    /// every instruction, in order. `argument` may be empty. An error of `each` ends the program
+    /// and is returned.
     pub(super) fn trace(
         &self,
         argument: &str,
@@ -167,7 +177,9 @@ impl Target {
     }
 }
 
-/// Runs `request` on `target` and returns all calls of the counted function.
+/// Runs `request` on `target` and returns all calls of the counted function. An error means that
+/// the program fails, that it never calls the function, or that it executes an instruction without
+/// a known timing.
 pub fn counted<'a>(target: &'a Target, request: &Request) -> Result<Calls<'a>> {
     // The compiler makes one copy of the function for each method.
     let entries = target
@@ -190,10 +202,11 @@ pub fn counted<'a>(target: &'a Target, request: &Request) -> Result<Calls<'a>> {
     Ok(calls)
 }
 
-/// Counts the calls of `function` until the program on `target` ends or the time is up.
+/// Counts the calls of `function` until the program on `target` ends, or until `limit` has passed.
 ///
-/// Returns the function, the cost of each call that returned, and the end of the program. Without
-/// any such call, this is an error unless the program failed.
+/// Returns the function, the cost of each call that returned, and the end of the program. It is an
+/// error if the program has no such function or no vectors for this board, and if no call has
+/// returned, unless the program failed.
 pub fn calls_of<'a>(
     target: &'a Target,
     function: &str,

@@ -21,17 +21,21 @@ const STEPS_PER_POINT: u32 = 32;
 /// The length of the axes in each direction, m.
 const REACH: f64 = 2.1;
 
+/// The path of bob 2 during [`DURATION`], from its start.
 pub struct Path {
-    /// The points, in m right of the pivot and above it.
+    /// 256 points per second, the start and the end included, in m right of the pivot and above it.
     pub points: Vec<(f64, f64)>,
-    /// The smallest and the largest energy, J.
+    /// The smallest and the largest energy, J. They are by the right equations, for bob 1 of 1 kg,
+    /// at the points.
     pub energies: [f64; 2],
 }
 
+/// Returns the pendulum of the figure, with bob 1 of 1 kg.
 pub fn pendulum() -> Result<Pendulum<f64>, Error> {
     Pendulum::new(&Parameters::equal_rods(MASS_RATIO, ROD, PAGE_GRAVITY))
 }
 
+/// Returns the start of the figure: both rods at rest at 171 degrees.
 pub fn start() -> State<f64> {
     State::at_rest(START.to_radians(), START.to_radians())
 }
@@ -47,6 +51,7 @@ pub fn paths(refinement: u32) -> Result<[Path; 2], Error> {
     Ok([right, printed])
 }
 
+/// Returns the path by RK4 with these equations, at the points of the figure.
 fn path(pendulum: &Pendulum<f64>, refinement: u32, rhs: impl Fn(&[f64; 4]) -> [f64; 4]) -> Path {
     let mut state = start();
     let dt = 1.0 / f64::from(STEPS * refinement);
@@ -69,6 +74,7 @@ fn path(pendulum: &Pendulum<f64>, refinement: u32, rhs: impl Fn(&[f64; 4]) -> [f
     }
 }
 
+/// Returns figure 7 as an SVG file.
 pub fn figure() -> Result<String> {
     let paths = paths(1)?;
     let title = format!("Figure 7: path of bob 2 in the first {DURATION} s");

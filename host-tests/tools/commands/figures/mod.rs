@@ -33,6 +33,7 @@ pub struct FiguresOptions {
     out: Option<PathBuf>,
 }
 
+/// Returns the folder of the pictures that the READMEs show.
 pub fn folder() -> PathBuf {
     workspace().join("host-tests/pictures")
 }
@@ -53,6 +54,8 @@ pub fn figures() -> Result<Vec<(String, String)>> {
         .collect())
 }
 
+/// Writes the figures and, on request, the animations into the folder of the options. An error
+/// means that a file cannot be written or that a recording had problems.
 pub fn run(options: &FiguresOptions) -> Result<()> {
     let folder = options.out.clone().unwrap_or_else(folder);
     for (name, svg) in figures()? {
@@ -71,6 +74,7 @@ pub fn run(options: &FiguresOptions) -> Result<()> {
     Ok(say(format_args!("wrote {}", folder.display()))?)
 }
 
+/// Returns the file of the animation of a scene, if the pictures are in `folder`.
 pub fn animation(scene: SceneName, folder: &Path) -> PathBuf {
     folder.join(format!("panel/{}.gif", scene.name()))
 }

@@ -14,34 +14,41 @@ const TYPEFACE: &str = "sans-serif";
 
 /// The colour of text, softer than black on white.
 pub const TEXT: RGBColor = RGBColor(34, 34, 34);
+/// The colour of the lines of a grid, a light grey.
 pub const GRID: RGBColor = RGBColor(225, 225, 225);
 /// Two colours that can be distinguished without colour vision.
 pub const BLUE: RGBColor = RGBColor(0, 95, 175);
 pub const ORANGE: RGBColor = RGBColor(205, 85, 15);
 
+/// A rectangle of a figure that is drawn on.
 pub type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
+/// A chart with two linear axes.
 pub type Axes<'a> = ChartContext<'a, SVGBackend<'a>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
 
+/// Returns a length in dots; `length` is in units ([`DOTS`]).
 pub const fn units(length: u32) -> u32 {
     length * DOTS
 }
 
+/// Returns the style of a line. Its width is in tenths of a unit.
 pub fn line(colour: RGBColor, width: u32) -> ShapeStyle {
     colour.stroke_width(units(width).div_ceil(10))
 }
 
-/// Returns a colour with a strength of less than 1, as it looks on white.
+/// Returns a colour with a strength from 0 to 1, as it looks on white. With 0 it is white.
 pub fn pale(RGBColor(red, green, blue): RGBColor, strength: f64) -> RGBColor {
     let [red, green, blue] =
         [red, green, blue].map(|channel| (255.0 - strength * (255.0 - f64::from(channel))) as u8);
     RGBColor(red, green, blue)
 }
 
+/// Returns the style of text in the colour [`TEXT`]. The height of its letters is in units.
 pub fn text(height: u32) -> TextStyle<'static> {
     (TYPEFACE, units(height)).into_font().color(&TEXT)
 }
 
-/// Writes a line in `style` at the top of the area and returns the rest of the area.
+/// Writes a line in `style`, centred, into the top 23 units of the area and returns the rest of the
+/// area.
 pub fn headed<'a>(area: &Area<'a>, line: &str, style: TextStyle<'_>) -> Result<Area<'a>> {
     let (head, rest) = area.split_vertically(units(23));
     let (width, height) = head.dim_in_pixel();
@@ -85,6 +92,7 @@ pub fn axes<'a>(
     Ok(chart)
 }
 
+/// Returns the label of a tick, without trailing zeros and with a typographic minus.
 fn plain(number: &f64) -> String {
     // The ticks are multiples of a round number, except for rounding. The sum with 0 turns -0 into
     // 0.
@@ -93,7 +101,7 @@ fn plain(number: &f64) -> String {
 }
 
 /// Returns a figure as an SVG file. It has this width and height in units, and is drawn on white
-/// below its title and other lines.
+/// below its title and other lines. `draw` receives the area below them.
 pub fn svg<const N: usize>(
     [width, height]: [u32; 2],
     lines: [&str; N],

@@ -16,8 +16,10 @@ const ROD: f64 = 0.25;
 const DURATION: f64 = 5.0;
 const POINTS: u32 = 1500;
 
+/// The angles of the linear motion and their envelopes at one time.
 #[derive(Clone, Copy, Debug)]
 pub struct CurvePoint {
+    /// The time since the start, s.
     pub time: f64,
     /// The angles of the rods, degrees.
     pub angles: [f64; 2],
@@ -25,6 +27,8 @@ pub struct CurvePoint {
     pub envelopes: [f64; 2],
 }
 
+/// Returns the normal modes of the figures: equal rods of 0.25 m in the gravity of the page. An
+/// error means that the mass ratio is not a positive number.
 pub fn modes(mass_ratio: f64) -> Result<Modes<f64>, Error> {
     Modes::new(&Parameters::equal_rods(mass_ratio, ROD, PAGE_GRAVITY))
 }
@@ -32,7 +36,7 @@ pub fn modes(mass_ratio: f64) -> Result<Modes<f64>, Error> {
 /// Returns the motion from a1 = 0, a2 = 30 degrees, let go from rest.
 ///
 /// The amplitude of C1 cos w1 t + C2 cos w2 t in each angle is sqrt(C1^2 + C2^2 + 2 C1 C2 cos (w1 -
-/// w2) t), rad.
+/// w2) t), rad. There are 1501 points in 5 s, the start and the end included.
 pub fn points(modes: Modes<f64>) -> Vec<CurvePoint> {
     let motion = SmallOscillations::new(modes, &Motion::at_rest(0.0, FRAC_PI_6));
     let [fast, slow] = [motion.fast.cosine, motion.slow.cosine];
@@ -55,6 +59,7 @@ pub fn points(modes: Modes<f64>) -> Vec<CurvePoint> {
     (0..=POINTS).map(point).collect()
 }
 
+/// Returns figure `number`, both angles over time for a mass ratio, as an SVG file.
 pub fn figure(number: u32, mass_ratio: f64) -> Result<String> {
     let modes = modes(mass_ratio)?;
     let points = points(modes);
@@ -109,7 +114,7 @@ fn at_ratio(mass_ratio: f64) -> Result<[f64; 3], Error> {
     Ok([mass_ratio, modes.fast.frequency, modes.slow.frequency])
 }
 
-/// Returns figure 2: both frequencies over the mass ratio.
+/// Returns figure 2: both frequencies over the mass ratio. It is an SVG file.
 pub fn frequencies() -> Result<String> {
     // The points are denser towards 0, where the curves are steep.
     let [.., greatest] = MASS_RATIOS;

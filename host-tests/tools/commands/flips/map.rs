@@ -22,11 +22,12 @@ pub struct Map {
     pub centre: [f64; 2],
     /// The distance from the middle to each side, rad.
     pub half: f64,
-    /// The searches with the step and with half of it.
+    /// The searches with the step and with half of it. Both end at the limit.
     pub searches: [Search; 2],
 }
 
 /// A start's flip with the step, which is shown, and with half of it, which is used for comparison.
+/// Times are in sqrt(l1/g).
 pub type FlipPair = [Flip<f32>; 2];
 
 /// The number of starts that a thread computes together. With a larger number, fewer lanes are idle
@@ -39,7 +40,8 @@ const PORTION_STEPS: f64 = 1e9;
 
 impl Map {
     /// Returns the map of all starts, with the step that suits the pendulum, up to the time
-    /// `limit`, sqrt(l1/g). The gravity of the pendulum must equal its l1.
+    /// `limit`, sqrt(l1/g). The gravity of the pendulum must equal its l1. An error means that
+    /// `f32` cannot represent the pendulum or the step.
     pub fn new(parameters: Parameters<f32>, limit: f32, size: [usize; 2]) -> Result<Self, Error> {
         let dt = step_size(&parameters)?;
         let search = |dt: f64| Search::new(&parameters, dt, (f64::from(limit) / dt).ceil() as u32);
@@ -56,6 +58,7 @@ impl Map {
     }
 
     /// Returns the largest number of steps of a start, with the step and with half of it together.
+    /// It is three times the limit over the step.
     pub fn steps(&self) -> f64 {
         3.0 * f64::from(self.limit) / self.dt
     }
@@ -77,7 +80,8 @@ impl Map {
         (0..rows).flat_map(move |row| (0..width).map(move |column| [column, row]))
     }
 
-    /// Returns the start at the middle of a pixel.
+    /// Returns the start at the middle of a pixel. `[0, 0]` is the top left pixel; the result is
+    /// a1, a2 in rad.
     pub fn start(&self, [column, row]: [usize; 2]) -> [f32; 2] {
         let Self {
             size: [width, height],
@@ -97,15 +101,16 @@ impl Map {
         ]
     }
 
-    /// Returns the starts to compute.
+    /// Returns the starts to compute, those of the first [`Map::rows`] rows, row by row.
     pub fn starts(&self) -> Vec<[f32; 2]> {
         self.pixels(self.rows())
             .map(|pixel| self.start(pixel))
             .collect()
     }
 
-    /// Returns the flips of all starts to compute. `tick` receives the number of starts that were
-    /// completed since its last call.
+    /// Returns the flips of [`Map::starts`], in that order. `tick` is called by several threads.
+    /// Each call receives the number of starts that were completed by that thread since its last
+    /// call.
     pub fn points(&self, tick: impl Fn(usize) + Sync) -> Result<Vec<FlipPair>, Error> {
         let starts = self.starts();
 
@@ -124,7 +129,8 @@ impl Map {
         Ok(portions.collect::<Result<Vec<_>, Error>>()?.concat())
     }
 
-    /// Returns all pixels with the flips of their starts.
+    /// Returns all pixels with the flips of their starts. `points` must come from [`Map::points`]
+    /// of this map. The pixels are row by row from the top left.
     pub fn shown(&self, points: &[FlipPair]) -> impl Iterator<Item = ([usize; 2], FlipPair)> {
         let rows = self.rows();
         let [width, height] = self.size;

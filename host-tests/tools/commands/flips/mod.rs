@@ -89,7 +89,8 @@ pub struct FlipsOptions {
 /// minute or more.
 const ANNOUNCED_STEPS: f64 = 1e6;
 
-/// Computes the map and writes the file. Reports how much of it is uncertain.
+/// Computes the map, writes the file and prints how much of the map is uncertain. Options that
+/// cannot be used, and a file that cannot be written, are [`Refused`] before the computation.
 pub fn run(options: &FlipsOptions) -> Result<()> {
     let map = options
         .map()
@@ -149,6 +150,7 @@ fn size(text: &str) -> Result<[usize; 2], String> {
     Ok([number(width)?, number(height)?])
 }
 
+/// Accepts a name that ends in `.png` or `.csv`.
 fn picture_or_table(file: &str) -> Result<PathBuf, &'static str> {
     let is_it = [".png", ".csv"].into_iter().any(|end| file.ends_with(end));
     if is_it {

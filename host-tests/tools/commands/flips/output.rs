@@ -9,8 +9,9 @@ use firmware::graphics::glyph;
 
 use super::map::{FlipPair, Map};
 
-/// Returns the content of a file with this name. With `doubt`, points of a picture whose time is
-/// uncertain have their own colour.
+/// Returns the content of a file with this name: a table if it ends in `.csv`, or else a PNG.
+/// `points` must come from `map`. With `doubt`, points of a picture whose time is uncertain
+/// ([`Map::differ`]) have their own colour.
 pub fn file(name: &Path, map: &Map, points: &[FlipPair], doubt: bool) -> Result<Vec<u8>> {
     let pixels = map.shown(points);
     if name.extension().is_some_and(|end| end == "csv") {
@@ -49,6 +50,7 @@ fn scale(share: f32) -> Colour {
         .as_array()
 }
 
+/// Returns the colour of a point by its first flip, or [`DOUBT`] if doubts are marked.
 fn colour(map: &Map, point: FlipPair, doubt: bool) -> Colour {
     match point[0] {
         _ if doubt && map.differ(point) => DOUBT,
@@ -168,6 +170,7 @@ fn short(number: f64) -> f64 {
 }
 
 impl Legend {
+    /// Fills a rectangle: left, top, width and height, in units. Parts outside are left out.
     fn fill(&mut self, place: [usize; 4], colour: Colour) {
         let [x, y, width, height] = place.map(|units| units * self.unit);
         for row in self.pixels.chunks_mut(self.width).skip(y).take(height) {
@@ -178,6 +181,7 @@ impl Legend {
         }
     }
 
+    /// Writes words with their top left corner at this place, in units. Returns their right end.
     fn text(&mut self, [mut x, y]: [usize; 2], words: &str) -> usize {
         for glyph in words.chars().map(glyph) {
             for bit in (0..64).filter(|bit| glyph.rows << bit >> 63 == 1) {

@@ -28,6 +28,8 @@ pub struct PlanOptions {
     scene: SceneOptions,
 }
 
+/// Prints the plan of the scene, or the reason why there is none. Only options that cannot be used
+/// are an error ([`Refused`]).
 pub fn run(PlanOptions { scene }: &PlanOptions) -> anyhow::Result<()> {
     let (problem, plan) = scene.plan().map_err(Refused::because)?;
     scene.start.advice().iter().for_each(complain);
@@ -94,6 +96,7 @@ fn linear_words(plan: &Plan) -> [String; 3] {
     ]
 }
 
+/// Returns an error, pixels, in words. It is rounded up.
 fn pixels(error: f32) -> String {
     if error < 1e-3 {
         String::from("a thousandth of a pixel")
@@ -102,6 +105,7 @@ fn pixels(error: f32) -> String {
     }
 }
 
+/// Returns the step size of the plan in words.
 fn step(scene: &Problem, plan: &Plan) -> String {
     match plan.steps {
         0 => String::from("none: the closed form computes each frame directly"),
@@ -113,6 +117,7 @@ fn step(scene: &Problem, plan: &Plan) -> String {
     }
 }
 
+/// Returns the reason why this method was chosen.
 fn method(method: Method) -> String {
     let directions = |why| format!("drawing needs only directions, no angles; {why}");
     match method {
@@ -129,6 +134,8 @@ fn method(method: Method) -> String {
     }
 }
 
+/// Returns the reason why the plan ends, or why nothing cheaper was chosen. `frame` is the budget
+/// of a frame, cycles.
 fn limit(plan: &Plan, frame: f32) -> String {
     match plan.limit {
         Limit::End if plan.steps > 1 => {
@@ -148,6 +155,7 @@ fn limit(plan: &Plan, frame: f32) -> String {
     }
 }
 
+/// Returns the reason why there is no plan. `frame` is the budget of a frame, cycles.
 fn forbidden(limit: Limit, frame: f32) -> String {
     match limit {
         Limit::Budget => {
@@ -158,6 +166,7 @@ fn forbidden(limit: Limit, frame: f32) -> String {
     }
 }
 
+/// Returns a line about the energy of the scene, or `None` if the kernel refuses the scene.
 fn energy(scene: &Problem) -> Option<String> {
     let pendulum = Pendulum::new(&scene.pendulum).ok()?;
     let state = pendulum.to_state(&scene.start);

@@ -133,6 +133,7 @@ impl SceneOptions {
         Ok(settings.problem(planned.height))
     }
 
+    /// Returns the problem of the options, without a built-in scene.
     fn given(&self) -> anyhow::Result<Problem> {
         let height = &self.height;
         ensure!(
@@ -156,9 +157,11 @@ impl SceneOptions {
 /// A chip, with the data that a plan needs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Chip {
+    /// The name on the command line.
     pub name: &'static str,
+    /// The core and its clock, for people.
     pub title: &'static str,
-    /// Hz.
+    /// The frequency of its clock, Hz.
     pub clock: f32,
     /// The costs of its steps and its budgets.
     pub processor: Processor,

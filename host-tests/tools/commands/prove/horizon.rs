@@ -14,13 +14,21 @@ use crate::commands::table::at_most;
 pub struct Verdict {
     /// The directions of the rods, (sin, cos) each.
     exact: [[Fixed; 2]; 2],
-    /// The largest distance of a true direction from the middle of the box.
+    /// The largest distance of a true direction from the middle of the box. It has no unit, as the
+    /// directions.
     width: f64,
+    /// True if the drawn frame is proved to be within the tolerance, false if it is proved not to
+    /// be, `None` if the enclosure is too wide to decide.
     is_right: Option<bool>,
 }
 
-/// Returns the frames one by one. The sequence ends after a frame that is proved wrong, when the
-/// motion can no longer be enclosed, or when `stopped` is not zero.
+/// Returns the frames after the start one by one, at most `scene.frames()` of them. The sequence
+/// ends after a frame that is proved wrong, when the motion can no longer be enclosed, or when
+/// `stopped` is not zero. A drawn motion that diverges counts as proved wrong.
+///
+/// The drawn motion is that of `scene`, by the method and steps per frame of `stepping`; the exact
+/// motion begins at `start`. An error means that the method does not accept the scene or the step,
+/// so that nothing is drawn.
 pub fn frames<'a>(
     scene: &Problem,
     start: &Start,
@@ -92,8 +100,8 @@ fn are_apart(
         .map(|[x, y]| (x * x + y * y - distance * distance).is_positive())
 }
 
-/// Returns the number of frames that are proved right from the start, and the number of undecided
-/// frames.
+/// Returns the number of frames that are proved right before the first other one, and the number of
+/// undecided frames among all.
 pub fn counts(frames: &[Verdict]) -> (u32, usize) {
     let right = frames
         .iter()
@@ -113,7 +121,8 @@ impl Verdict {
     /// motion, the box's radius, and the verdict.
     ///
     /// The box refers to the printed numbers, read as decimals or as `f64`: its radius includes the
-    /// rounding of the middles and is rounded up.
+    /// rounding of the middles and is rounded up. A frame that is not decided has the verdict
+    /// "open".
     pub fn row(&self, time: f64) -> String {
         let middles = self
             .exact
@@ -149,7 +158,8 @@ fn printed_radius(x: Fixed) -> f64 {
 ///
 /// This is the time of the first frame with two motions more than the longer rod apart, although
 /// their starts look the same on the panel (the mass ratio to three digits, angles to a degree).
-/// Only the first `frames` frames are searched, until `stopped`.
+/// Only the first `frames` frames are searched, until `stopped`. `None` means that no such frame
+/// was found.
 fn ambiguity_time(scene: &Problem, frames: u32, stopped: &AtomicUsize) -> Option<f64> {
     let Parameters { m1, m2, l1, l2, .. } = scene.pendulum;
     // One unit of the third digit of the mass ratio.
@@ -210,7 +220,8 @@ const WIDE: f64 = 1e-12;
 const LENGTHS: f64 = 30.0;
 const MASSES: f64 = 1000.0;
 
-/// Returns the results of the proof, one line each.
+/// Returns the results of the proof, one line each. `frames` are all frames of [`frames`], and
+/// `stopped` is its argument. Times are in s since the start.
 pub fn words(
     scene: &Problem,
     plan: &Result<Plan, Limit>,
@@ -293,6 +304,8 @@ mod tests {
         angles.map(|a| [a.sin(), a.cos()].map(Fixed::of))
     }
 
+    /// A frame is wrong if bob 1, bob 2, or bob 2 as seen from bob 1 is too far off, even if the
+    /// other two are near. It is undecided if the boxes allow both results.
     #[test]
     fn bob_2_is_judged_as_seen_from_bob_1_as_well() {
         // Rod 1 has moved by 0.4 m, rod 2 back by 0.6 m. Only as seen from bob 1 is bob 2 too far
@@ -307,10 +320,10 @@ mod tests {
             are_near(&scene, &one, &other)
         };
 
-        // Both rods have moved the same way. Each error is near, but bob 2 has both.
         assert_eq!(near(0.5), Some(false));
         assert_eq!(near(0.61), Some(true));
 
+        // Both rods have moved the same way. Each error is near, but bob 2 has both.
         let [one, other] = [[0.0, 0.0], [0.4, 0.4]].map(rods);
         assert_eq!(are_near(&scene(), &one, &other), Some(false), "bob 2");
 
@@ -348,6 +361,9 @@ mod tests {
         }
     }
 
+    /// After a signal, the proof has no frame, and the search for motions that look the same on the
+    /// panel finds nothing. Without a signal, the latter finds a time, and only within the given
+    /// number of frames.
     #[test]
     fn an_interruption_ends_every_search_at_once() {
         let scene = scene();

@@ -66,6 +66,8 @@ pub struct ProveOptions {
     known_answers: bool,
 }
 
+/// Prints the proof or the table. The exit code is a success whatever is proved, and that of the
+/// signal if Ctrl-C ended the proof. Options that cannot be used are [`Refused`].
 pub fn run(options: &ProveOptions) -> anyhow::Result<ExitCode> {
     // Tables of many scenes, without a scene of the user.
     if options.table {

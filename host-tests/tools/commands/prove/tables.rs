@@ -12,7 +12,7 @@ use crate::commands::plan::SceneOptions;
 use crate::oracle::known_answers::KnownAnswer;
 use console::number::Number;
 
-/// Returns the scenes that move, at least at the end.
+/// Returns the scenes that move, at least at the end: all with angles except the upright one.
 pub fn moving() -> impl Iterator<Item = &'static SceneName> {
     SceneName::ALL
         .iter()
@@ -24,7 +24,9 @@ pub const HEADING: &str = "\
 | scene | M3: plan | proved | M4F: plan | proved | M0+: plan | proved | open |
 | --- | --- | --- | --- | --- | --- | --- | --- |";
 
-/// Returns the table's line of one scene, with its predicted and proved horizons.
+/// Returns the table's line of one scene, with its predicted and proved horizons. Times are in s;
+/// "none" means that no method is fast enough for the chip. The last cell is the number of
+/// undecided frames on all chips.
 pub fn horizons(name: SceneName) -> Result<String> {
     // Each chip adds the predicted and the proved horizon.
     let mut cells = vec![name.name().to_owned()];
@@ -55,6 +57,9 @@ const DIGITS: f64 = 33.0;
 /// Returns the known answers of one scene, one line each, computed from the given numbers. Each
 /// number has an error of at most two units of its last digit, except the growth of a small error,
 /// which is approximate.
+///
+/// `scene` has at least one row; its rows have the same start and ascending times, s. An error
+/// means that a number has too many digits, or that the enclosure becomes too wide.
 pub fn known_answers(scene: &[KnownAnswer]) -> Result<Vec<String>> {
     // The nine numbers after the name of the scene: the start and the pendulum.
     let exact = |text: &str| text.parse::<Number>().ok()?.exact();

@@ -12,6 +12,7 @@ use reference::taylor;
 /// arithmetics compute the same pendulum.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scene {
+    /// The name in tables and files.
     pub name: &'static str,
     /// The angle of both rods at the start, rad.
     pub angle: f64,
@@ -42,11 +43,12 @@ pub const LONG: Scene = Scene {
     duration: 100,
 };
 
+/// The largest errors of a motion at the compared moments. Both are infinite if it has diverged.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Error {
     /// The error of an angle, rad, without whole turns.
     pub angle: f64,
-    /// The error of a bob's position on the panel, pixels.
+    /// The distance of a bob from its exact position on the panel, pixels.
     pub pixels: f64,
 }
 
@@ -57,7 +59,7 @@ const LOST: Error = Error {
 };
 
 /// Returns the angles a1 and a2 of the exact motion after each of `steps` equal steps through a
-/// scene.
+/// scene. Angles are in rad, with their whole turns.
 pub fn exact(scene: &Scene, steps: u32) -> Vec<[f64; 2]> {
     let Request {
         parameters,
@@ -80,7 +82,8 @@ fn samples(rate: u32) -> u32 {
         .unwrap_or(1)
 }
 
-/// Returns the request for `method` through `scene` with `rate` steps a second.
+/// Returns the request for `method` through `scene` with `rate` steps a second. It asks for
+/// [`SAMPLES`] states per second, or for fewer if these do not fall on whole steps.
 pub fn request(method: Method, scene: &Scene, rate: u32) -> Request {
     Request {
         method,
@@ -93,8 +96,8 @@ pub fn request(method: Method, scene: &Scene, rate: u32) -> Request {
     }
 }
 
-/// Returns a typical number of steps a second, for counts and displays: many for a low order, few
-/// for a high one.
+/// Returns a typical number of steps per simulated second, for counts and displays: 16 for an order
+/// above 4, 256 for others.
 pub fn usual_rate(method: Method) -> u32 {
     if method.order() > 4 { 16 } else { 256 }
 }
@@ -106,7 +109,8 @@ const HIGH: [u32; 21] = [
 const LOW: [u32; 3] = [16, 32, 64];
 
 /// Returns the numbers of steps a second to try with `method` in a scene: some small ones and all
-/// larger powers of two. The long scene is tried with the typical number only.
+/// larger powers of two. The long scene is tried with the typical number only. The powers of two
+/// are from 2^7 to 2^`finest`.
 pub fn rates(method: Method, scene: &Scene, finest: u32) -> impl Iterator<Item = u32> {
     let few: &[u32] = if method.order() > 4 { &HIGH } else { &LOW };
     let all = few
@@ -117,7 +121,7 @@ pub fn rates(method: Method, scene: &Scene, finest: u32) -> impl Iterator<Item =
 }
 
 /// Returns the error of `method` in `steps` equal steps through the scene, compared after each
-/// step. A second need not be a whole number of steps.
+/// step, or `None` as in [`error`]. A second need not be a whole number of steps.
 pub fn error_after(method: Method, scene: &Scene, steps: u32) -> Option<Error> {
     let dt = f64::from(scene.duration) / f64::from(steps);
     let request = Request {
@@ -130,7 +134,7 @@ pub fn error_after(method: Method, scene: &Scene, steps: u32) -> Option<Error> {
 }
 
 /// Returns the error of a request, or `None` if its method does not support the scene or the step.
-/// A motion that has diverged has an infinite error.
+/// A motion that has diverged has an infinite error. `exact` is as in [`worst`].
 pub fn error(request: &Request, exact: &[[f64; 2]]) -> Option<Error> {
     let mut angles = Vec::new();
     let run = request.readings::<double_pendulum::Error>(|reading| {
@@ -145,8 +149,9 @@ pub fn error(request: &Request, exact: &[[f64; 2]]) -> Option<Error> {
     }
 }
 
-/// Returns the largest errors of the angles a1, a2 at all moments of `angles`. `exact` has the
-/// angles of these moments and possibly of moments between them.
+/// Returns the largest error of both angles and of both bobs at all moments of `angles` (a1, a2 in
+/// rad). `exact` has the angles of these moments and possibly, equally often, of moments between
+/// them. The errors are infinite if an angle is not finite or if the kernel refuses the parameters.
 pub fn worst(parameters: &Parameters<f64>, angles: &[[f64; 2]], exact: &[[f64; 2]]) -> Error {
     let Ok(pendulum) = Pendulum::new(parameters) else {
         return LOST;

@@ -13,6 +13,7 @@ use super::c_peers::PROGRAMS;
 use super::join::Point;
 use emulator::boards::Board;
 
+/// The width and height of the chart, pixels.
 const SIZE: (u32, u32) = (860, 460);
 /// The range of errors. Points outside are not drawn, and errors decrease to the right.
 const ERRORS: Range<f64> = 1e-15..0.1;
@@ -87,7 +88,8 @@ fn lines<'a>(
     lines
 }
 
-/// Returns a chart of the estimated cycles per simulated second against the error, as SVG.
+/// Returns a chart of the estimated cycles per simulated second against the error, as SVG. Only the
+/// points of this scene and board with an error from 1e-15 to 0.1 rad are drawn.
 pub fn speed_against_error(points: &[Point], scene: &Scene, board: &Board) -> Result<String> {
     let lines = lines(points, scene, board);
     let best = lines.iter().take_while(|(best, ..)| *best > 0).count();
@@ -207,6 +209,9 @@ mod tests {
     use super::*;
     use emulator::boards::BOARDS;
 
+    /// A chart of eight methods and both programs in C, none dominated by another, names seven of
+    /// them, with both programs. A method that is dominated has no name. The marked errors are
+    /// labelled.
     #[test]
     fn seven_lines_at_most_have_names_and_the_programs_in_c_do() -> Result<()> {
         let names = [

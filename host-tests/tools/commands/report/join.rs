@@ -20,24 +20,27 @@ const FINEST: u32 = 13;
 pub struct Point {
     /// A method of the kernel, or a program in C.
     pub name: &'static str,
+    /// The motion that was computed.
     pub scene: &'static Scene,
+    /// The board with the core that the cost was counted on.
     pub board: &'static Board,
-    /// Steps per second.
+    /// The number of steps per simulated second.
     pub rate: u32,
-    /// The cost of a step.
+    /// The cost of a step: instructions, cycles (estimated), bytes.
     pub step: StepCost,
     /// The largest errors in the scene.
     pub error: Error,
 }
 
 impl Point {
-    /// Returns the estimated cycles per simulated second.
+    /// Returns the estimated cycles per simulated second: those of a step times the steps.
     pub fn cycles(&self) -> f64 {
         f64::from(self.rate) * self.step.cycles
     }
 
-    /// Returns true if another point of the scene and board has neither more cycles nor a larger
-    /// error, and is better in at least one of them.
+    /// Returns true if another of `points` has, in the same scene and on the same board, neither
+    /// more cycles per simulated second nor a larger error of an angle, and is better in at least
+    /// one of them.
     pub fn is_dominated(&self, points: &[Self]) -> bool {
         let error = self.error.angle;
         let cycles = self.cycles();
@@ -105,6 +108,9 @@ pub fn join(toolchain: &Toolchain, targets: &[Target]) -> Result<(Vec<Point>, Ve
     Ok((points, absent))
 }
 
+/// Returns the table of the report, a row for each point. Its titles name the units. A step is
+/// "resolved" if it is at most the admissible step of the motion. The verdict is "dominated"
+/// ([`Point::is_dominated`]) or "best".
 pub fn table(points: &[Point]) -> Table {
     let row = |point: &Point| {
         let Point {
@@ -174,6 +180,8 @@ pub(super) mod tests {
         }
     }
 
+    /// A point is dominated by another one of its board that is no worse in cycles and error and
+    /// better in one. Equal points and points of other boards do not dominate.
     #[test]
     fn a_point_is_dominated_by_one_at_least_as_good_in_both() {
         let one = |cycles, angle| point("rk4-f32", cycles, angle);

@@ -47,6 +47,8 @@ pub struct ReportOptions {
     out: Option<PathBuf>,
 }
 
+/// Writes the table and the charts, and prints the advice. With `--readme` it is an error if a
+/// program in C could not be built; the READMEs are then not changed.
 pub fn run(options: &ReportOptions) -> Result<()> {
     let toolchain = toolchain::set_up()?;
     let folder = options
@@ -123,6 +125,7 @@ const ROWS: [&str; 8] = [
 /// A purpose of computing a motion: a phrase before the cycles, and the condition of a point that
 /// fulfils it.
 type Purpose = (&'static str, fn(&Point) -> bool);
+/// The purposes that the advice names a method for.
 const PURPOSES: [Purpose; 3] = [
     ("draws at 60 fps", |point| {
         point.rate >= 60 && point.error.pixels <= f64::from(HALF_PIXEL)
@@ -243,6 +246,8 @@ mod tests {
     use super::join::tests::point;
     use super::*;
 
+    /// The advice has at most 25 words a sentence. For each purpose it names the cheapest of three
+    /// methods that fulfils it, with its cycles.
     #[test]
     fn a_sentence_has_25_words_at_most_and_names_the_cheapest() {
         let points = [

@@ -26,6 +26,9 @@ use emulator::out_file::OutFile;
 use emulator::qemu::{Clock, Machine, Settings};
 use emulator::toolchain;
 
+/// Prints the table of methods or the motion, or writes it to the file of the options. Options that
+/// cannot be used are [`Refused`] before the first row. A motion that diverges later is an error
+/// after the rows before it; these are kept.
 pub fn run(options: &SimulateOptions) -> anyhow::Result<()> {
     if options.list {
         return Ok(say(list())?);
@@ -58,6 +61,7 @@ pub fn run(options: &SimulateOptions) -> anyhow::Result<()> {
     done.with_context(|| after(rows))
 }
 
+/// Returns the context of an error: the number of rows before it.
 fn after(rows: u64) -> String {
     format!("after {rows} rows")
 }
@@ -105,7 +109,8 @@ const OVERHEAD: Duration = Duration::from_secs(120);
 /// `cargo count`), and a busy host executes 10 million a second.
 const PER_STEP: Duration = Duration::from_millis(20);
 
-/// Sends the request to the firmware on `board` and passes each reading to `row`.
+/// Sends the request to the firmware on `board` and passes each reading to `row`. An error means
+/// that the board cannot be built or started, refuses the request, or loses a row.
 fn on_board(
     request: &Request,
     board: &'static Board,
@@ -162,6 +167,7 @@ const UNITS: [&str; 12] = [
     "s", "rad", "rad", "kg m^2/s", "kg m^2/s", "rad/s", "rad/s", "J", "m", "m", "m", "m",
 ];
 
+/// Returns the first line: the columns of the options, with units if they demand it.
 fn header(options: &SimulateOptions) -> String {
     let name = |&column: &usize| match options.units {
         true => format!("{} [{}]", NAMES[column], UNITS[column]),
@@ -180,6 +186,7 @@ fn header(options: &SimulateOptions) -> String {
         .join(",")
 }
 
+/// Returns the line of a reading: the columns of the options. `number` counts the rows from 0.
 fn row(plan: &Plan, options: &SimulateOptions, number: u64, reading: &Reading) -> String {
     let Reading {
         state: [a1, a2, p1, p2],

@@ -16,8 +16,10 @@ use emulator::boards::{BOARDS, Board};
 /// The place where the motion is computed: the firmware on an emulated board, or this program.
 pub type Place = Option<&'static Board>;
 
+/// The name of this program as a place.
 const HOST: &str = "host";
 
+/// Returns the name of a place on the command line.
 pub(super) fn name(place: Place) -> &'static str {
     place.map_or(HOST, |board| board.name)
 }
@@ -145,6 +147,7 @@ pub struct StartOptions {
 }
 
 impl StartOptions {
+    /// Returns the pendulum: kg, m, m/s^2.
     pub fn parameters(&self) -> Parameters<f64> {
         let [[m1, m2], [l1, l2]] = [&self.masses, &self.lengths].map(Pair::values);
         Parameters {
@@ -156,6 +159,7 @@ impl StartOptions {
         }
     }
 
+    /// Returns the start: rad, rad/s, whatever the units of the options.
     pub fn motion(&self) -> Motion<f64> {
         let radians = |angle: f64| {
             if self.degrees {
@@ -230,7 +234,8 @@ impl StartOptions {
         })
     }
 
-    /// Returns the first option whose number has too many digits for [`Self::exact`].
+    /// Returns the first option whose number has too many digits for [`Self::exact`]. It is empty
+    /// if there is none and no gravity is given.
     pub fn too_long(&self) -> String {
         let pairs = [
             ("--masses", Some(&self.masses)),
@@ -248,7 +253,8 @@ impl StartOptions {
     }
 
     /// Returns the pendulum and its start with all given digits, or `None` if a number has too
-    /// many.
+    /// many. That is a number that needs more than 18 digits when it is written without an
+    /// exponent.
     pub fn exact(&self) -> Option<Exact> {
         let [gravity, first] =
             // The values of options that were not given.

@@ -13,6 +13,7 @@ use console::number::Number;
 /// A checked request and the time between rows.
 #[derive(Debug)]
 pub struct Plan {
+    /// The motion, accepted by the kernel in its first step.
     pub request: Request,
     /// The time between rows: row n is at n times this.
     pub every: Number,
@@ -36,7 +37,7 @@ struct Timing {
 }
 
 /// Checks all options before the first row. An error is one line that names the option and the
-/// value.
+/// value. It uses the step of the options, or else chooses one; the tolerance is not considered.
 pub fn plan(options: &SimulateOptions) -> anyhow::Result<Plan> {
     let until = &options.until;
     ensure!(
@@ -217,7 +218,8 @@ fn check_first_step(options: &SimulateOptions, request: &Request) -> anyhow::Res
     }
 }
 
-/// Returns a short number that is at most `limit`, s, as text.
+/// Returns a short number that is at most `limit`, s, as text. From 1e-6 on it is a decimal or a
+/// fraction.
 pub(super) fn at_most(limit: f64) -> String {
     const LONG: f64 = 0.1;
     const SHORT: f64 = 1e-6;
@@ -232,7 +234,8 @@ pub(super) fn at_most(limit: f64) -> String {
     format!("{digits}e{power} s")
 }
 
-/// Returns how many times one option's time divides another's.
+/// Returns how many times one option's time divides another's. An error, which names both options,
+/// means that the quotient is not a whole number from 0 to 2^32 - 1.
 pub(super) fn count(
     (option, time): (&str, &Number),
     (unit_option, unit): (&str, &Number),
@@ -257,7 +260,8 @@ pub(super) fn count(
     })
 }
 
-/// Returns a request for the motion that the options describe, by `method` in steps of `step`.
+/// Returns a request for the motion that the options describe, by `method` in steps of `step`. A
+/// row is `stride` steps after the one before; `samples` rows follow the first.
 pub(super) fn request(
     options: &SimulateOptions,
     method: Method,
@@ -337,7 +341,8 @@ pub(super) fn accepted(options: &SimulateOptions, request: &Request) -> anyhow::
     })
 }
 
-/// Returns the requested method, or the first of the table, if the requested place can compute it.
+/// Returns the method of the options, or the first of the table (`rk4-f64`) without one. It is an
+/// error if the place of the options cannot compute it.
 pub(super) fn method(options: &SimulateOptions) -> anyhow::Result<Method> {
     let method = options.method.unwrap_or(Method::ALL[0]);
     // A board has fewer methods than the host.

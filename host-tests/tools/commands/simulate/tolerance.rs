@@ -24,7 +24,8 @@ const MOST_ROWS: u32 = 10_000;
 const ROWS: u32 = 100;
 
 /// Returns the cheapest method and step that the options allow, and the largest error of an angle
-/// in any row, rad. An error is one line that names the option and the value.
+/// in any row, rad. An error is one line that names the option and the value. It is an error if no
+/// method and step that is tried stays within the tolerance (rad) in every row.
 pub fn choose(options: &SimulateOptions, tolerance: &Number) -> anyhow::Result<(Plan, f64)> {
     // The times of the rows.
     let SimulateOptions { until, every, .. } = options;
@@ -184,6 +185,7 @@ fn candidates(options: &SimulateOptions) -> (&'static str, Vec<(Method, f64)>) {
     }
 }
 
+/// Returns the methods that the place can compute.
 pub(super) fn methods(place: Place) -> &'static [Method] {
     if place.is_none() {
         Method::ALL
@@ -216,7 +218,7 @@ fn on_board(method: Method, Processor { costs, .. }: &Processor) -> Option<f64> 
 }
 
 /// Returns the number of evaluations of the equations in a step. Extrapolation of order 2 K takes
-/// K^2 + 1 ([`Extrapolation`](double_pendulum::extrapolation::Extrapolation)).
+/// K^2 + 1 ([`Extrapolation`](double_pendulum::Extrapolation)).
 fn evaluations(method: Method) -> f64 {
     match method.integrator() {
         Integrator::ClosedForm => 0.0,

@@ -7,16 +7,20 @@ use emulator::link::{Port, describe_restart};
 
 /// A manual check that the firmware's README describes.
 pub struct Check {
+    /// The name in the README and in the report.
     pub name: &'static str,
     /// The boards that need the check; all boards if the list is empty.
     boards: &'static [&'static str],
 }
 
+/// Returns a check for these boards.
 const fn check(name: &'static str, boards: &'static [&'static str]) -> Check {
     Check { name, boards }
 }
 
+/// The boards with a panel on an I2C bus.
 const WITH_I2C: &[&str] = &["pico", "stm32f405"];
+/// The boards with a USB port of their own.
 const WITH_USB: &[&str] = &["pico"];
 
 /// The checks, in the order of a new board's first use.
@@ -59,6 +63,7 @@ pub fn section(port: &Port, name: &str) -> Section {
     section
 }
 
+/// Returns the rows about the restarts that the board has reported at its port.
 fn restarts(count: u32, last: Option<&Restarted>) -> [(&'static str, String); 2] {
     [
         ("restarts during this verification", count.to_string()),
@@ -74,6 +79,7 @@ mod tests {
     use super::*;
     use emulator::toolchain::workspace;
 
+    /// The name of every check is in the README of the firmware.
     #[test]
     fn the_readme_describes_every_check() {
         let page = std::fs::read_to_string(workspace().join("firmware/README.md")).expect("a page");
@@ -85,6 +91,7 @@ mod tests {
         }
     }
 
+    /// The two rows have the number of restarts, and the last one in words.
     #[test]
     fn restarts_are_counted_and_named() {
         let end = Restarted::default();

@@ -44,7 +44,8 @@ fn request(method: Method, (_, m2, angle): (&str, f64, f64)) -> Request {
     }
 }
 
-/// Compares every method of the boards in both motions.
+/// Compares every method of the boards in both motions. A difference is a fault of the section. An
+/// error means that the board does not answer, refuses a request, or loses a sample.
 pub fn methods(talk: &mut Talk) -> anyhow::Result<Section> {
     let note = "Motions from rest in steps of 1/256 s, computed by the board on request.";
     let mut section = Section::new("Bits", note, &["method", "motion", "steps", "bits"]);
@@ -71,7 +72,8 @@ pub fn methods(talk: &mut Talk) -> anyhow::Result<Section> {
     Ok(section)
 }
 
-/// Returns the first number that differs between the board and the host.
+/// Returns the first number that differs between the board and the host. `None` means that all bits
+/// are equal.
 fn difference(talk: &mut Talk, request: &Request, number: u16) -> anyhow::Result<Option<String>> {
     const NAMES: [&str; 7] = ["a1", "a2", "p1", "p2", "w1", "w2", "energy"];
     let bits = |&Reading {
@@ -118,10 +120,12 @@ fn sample(talk: &mut Talk, number: u16) -> anyhow::Result<(u32, Reading)> {
     })
 }
 
+/// The number of the requests whose steps are measured.
 const REQUEST: u16 = u16::MAX;
 
-/// Returns the average cycles of a step of every method over the first second from rest: from flash
-/// and from RAM.
+/// Returns for every method of the boards, in the order of [`ON_BOARDS`], the average cycles of a
+/// step over the first second from rest: from flash and from RAM. `None` means that the board has
+/// no cycle counter or no copy of the method in RAM.
 pub fn measured(talk: &mut Talk) -> anyhow::Result<Vec<[Option<f64>; 2]>> {
     ON_BOARDS
         .iter()
@@ -129,8 +133,9 @@ pub fn measured(talk: &mut Talk) -> anyhow::Result<Vec<[Option<f64>; 2]>> {
         .collect()
 }
 
-/// Returns the measured cycles with the estimate of `cargo count`. Instructions are counted in
-/// QEMU, on a board with the same processor.
+/// Returns the section of the measured cycles ([`measured`]) with the estimate of `cargo count`.
+/// Instructions are counted in QEMU, on a board with the same processor; without such a board, or
+/// without a cycle counter, the estimates are left out. There are no faults.
 pub fn cycles(measured: &[[Option<f64>; 2]], board: Option<&Board>) -> anyhow::Result<Section> {
     let note = "Measured with the processor's cycle counter, interrupts off, over 256 steps of the \
                 regular motion: once with the code in flash and, if there is one, once with its \
@@ -214,11 +219,15 @@ fn step(talk: &mut Talk, method: Method, in_ram: bool) -> anyhow::Result<Option<
     Ok(Some(cycles / f64::from(steps)))
 }
 
+/// The number of frames of each scene that are compared: a second.
 const FRAMES: u32 = TICK_RATE;
 /// The number of frames within which the board must have reported its scene.
 const PATIENCE: usize = 10 * FRAMES as usize;
 
-/// Plays every scene on the board, whose processor has a clock of `hertz`.
+/// Plays every scene on the board, whose processor has a clock of `hertz` Hz, and compares a second
+/// of each. Faults are differences, and times that the clock cannot have measured. Dropped frames
+/// are no fault. An error means that the board is silent, or that too few of its frames can be
+/// compared.
 pub fn scenes(talk: &mut Talk, hertz: u32) -> anyhow::Result<Section> {
     let columns = &[
         "scene",
@@ -239,6 +248,7 @@ pub fn scenes(talk: &mut Talk, hertz: u32) -> anyhow::Result<Section> {
     Ok(section)
 }
 
+/// Plays a scene and adds its row to the section.
 fn play(talk: &mut Talk, name: SceneName, hertz: u32, section: &mut Section) -> anyhow::Result<()> {
     talk.port.send(0, Command::Choose(name));
     let mut comparison = Comparison::default();

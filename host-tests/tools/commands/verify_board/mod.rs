@@ -55,6 +55,7 @@ struct Section {
 }
 
 impl Section {
+    /// Returns a section without rows and faults.
     fn new(title: &'static str, note: &'static str, columns: &'static [&'static str]) -> Self {
         Self {
             head: [title, note],
@@ -66,6 +67,7 @@ impl Section {
         }
     }
 
+    /// Adds a row, and its fault if it has one.
     fn add(&mut self, row: Vec<String>, fault: Option<String>) {
         self.table.rows.push(row);
         self.faults.extend(fault);
@@ -77,6 +79,8 @@ fn verdict(difference: Option<String>) -> String {
     difference.unwrap_or_else(|| "identical".to_owned())
 }
 
+/// Verifies the board and writes the report. Returns true if there was no fault. An error means
+/// that the board does not answer, a build fails, or the report cannot be written.
 pub fn run(options: &VerifyOptions) -> anyhow::Result<bool> {
     let mut talk = Talk::new(demo::port(&options.port)?)?;
     let identity = talk.ask(protocol::Command::Identify, |answer| {
@@ -205,7 +209,8 @@ fn program(board: Option<&Board>, identity: &Identity) -> anyhow::Result<String>
 }
 
 /// Returns true if the program that is built here for `board` equals the program that the board
-/// reports, from its vectors to its constants.
+/// reports, from its vectors to its constants. An error means that the program cannot be built or
+/// read.
 fn is_built(board: &Board, identity: &Identity) -> anyhow::Result<bool> {
     let elf = fs::read(toolchain::ready()?.build_for(board)?)?;
     let file = object::File::parse(&*elf)?;

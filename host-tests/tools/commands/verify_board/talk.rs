@@ -18,14 +18,20 @@ use emulator::link::{Port, refusal};
 /// The time limit of an answer. A board answers a command within a tick, and the slowest requested
 /// motion has a sample every second.
 const PATIENCE: Duration = Duration::from_secs(20);
+/// The time between two reads of the port.
 const LOOK: Duration = Duration::from_millis(1);
 
+/// A conversation with the board at a port.
 pub struct Talk {
+    /// The port, with its counts and the restarts of the board.
     pub port: Port,
+    /// The messages that have arrived and are not yet examined.
     arrived: std::vec::IntoIter<ToHost>,
 }
 
 impl Talk {
+    /// Begins the conversation when the board has sent a frame. The error is that of
+    /// [`Talk::next`].
     pub fn new(port: Port) -> anyhow::Result<Self> {
         let mut talk = Self {
             port,
@@ -35,7 +41,9 @@ impl Talk {
         Ok(talk)
     }
 
-    /// Returns the next message of one kind and drops the others. A refusal is an error.
+    /// Returns the next message for which `kind` returns `Some`, as that value, and drops the
+    /// others. A refusal by the board is an error, and so is a wait of 20 s; that error contains
+    /// the latest notice of the port.
     pub fn next<M>(&mut self, kind: impl Fn(ToHost) -> Option<M>) -> anyhow::Result<M> {
         let since = Instant::now();
         let mut notice = None;
@@ -68,11 +76,13 @@ impl Talk {
         bail!(notice.unwrap_or(silence))
     }
 
+    /// Returns the next frame. Errors are as in [`Talk::next`].
     pub fn next_frame(&mut self) -> anyhow::Result<Frame> {
         self.next(ToHost::frame)
     }
 
-    /// Returns the next answer of one kind to the request of this number.
+    /// Returns the next answer to the request of this number for which `kind` returns `Some`, as
+    /// that value. Errors are as in [`Talk::next`].
     pub fn answer<A>(
         &mut self,
         request: u16,
@@ -86,6 +96,7 @@ impl Talk {
         })
     }
 
+    /// Sends a command and returns its answer of this kind. Errors are as in [`Talk::next`].
     pub fn ask<A>(
         &mut self,
         command: Command,
@@ -99,7 +110,8 @@ impl Talk {
 /// The number of frames that may still be in transmission when the person answers.
 const UNDER_WAY: u32 = 12;
 
-/// Asks the person about the panel and the buttons of the board `name`.
+/// Asks the person about the panel and the buttons of the board `name`. An answer "no" is a fault;
+/// a question that is not answered is none.
 pub fn ask_person(talk: &mut Talk, name: &str) -> anyhow::Result<Section> {
     // The panel and the keys that each board has.
     let (has_panel, keys): (_, &[Key]) = match name {

@@ -87,6 +87,7 @@ pub fn unwritable(option: &str, path: &Path, error: &io::Error) -> Refused {
     ))
 }
 
+/// Returns a parser that accepts the names of these choices. The names must differ.
 pub fn choice<Choice>(
     choices: impl IntoIterator<Item = Choice>,
     name: impl Fn(Choice) -> &'static str,
@@ -171,7 +172,7 @@ fn one_line(report: &str) -> String {
 }
 
 /// Returns the option that sets the refused parameter of the pendulum or its display, or else
-/// `otherwise`.
+/// `otherwise`. A diverged motion is no error of an option.
 pub fn option_of(error: &Error, otherwise: &'static str) -> &'static str {
     match error.parameter() {
         _ if matches!(error, Error::Diverged { .. }) => otherwise,

@@ -22,6 +22,7 @@ const NOT_FINITE: &str = "must be a finite number";
 const ZERO_DENOMINATOR: &str = "the denominator is zero";
 
 impl Number {
+    /// Returns the number 1.
     pub fn one() -> Self {
         Self {
             text: "1".to_owned(),
@@ -35,22 +36,28 @@ impl Number {
         self.value
     }
 
-    /// Returns the exact value if its numerator fits in 63 bits and its denominator in 64 bits.
+    /// Returns the exact value, in lowest terms. It is always known if the numerator and the
+    /// denominator, written without exponents, have at most 18 digits. `None` means that only
+    /// [`Number::value`] is known.
     pub fn exact(&self) -> Option<Fraction> {
         self.fraction
     }
 
+    /// Returns true if the nearest `f64` is greater than zero.
     pub fn is_positive(&self) -> bool {
         self.value > 0.0
     }
 
-    /// Returns how many times `step` divides the number, if that is a whole number.
+    /// Returns how many times `step` divides the number, computed exactly. Returns `None` if that
+    /// is not a whole number from 0 on, if `step` is zero, or if one of the exact values is
+    /// unknown.
     pub fn whole_multiple_of(&self, step: &Number) -> Option<u64> {
         let (count, parts) = quotient(self.fraction?, step.fraction?)?;
         count.try_into().ok().filter(|_| parts == 1)
     }
 
-    /// Returns the number divided by `parts`.
+    /// Returns the number divided by `parts`, which must not be 0. The exact value stays known
+    /// unless it becomes too long.
     pub fn divided_by(&self, parts: u32) -> Number {
         let fraction = self
             .fraction
@@ -68,7 +75,8 @@ impl Number {
         }
     }
 
-    /// Returns the `f64` nearest to `count` times the number.
+    /// Returns `count` times the number. It is the nearest `f64` if the exact value is known and
+    /// its numerator times `count` and its denominator have at most 53 bits each.
     pub fn times(&self, count: u64) -> f64 {
         let count = count as f64;
         self.fraction.map_or(self.value * count, |(above, below)| {
@@ -199,6 +207,8 @@ impl FromStr for Pair {
 mod tests {
     use super::*;
 
+    /// A decimal or a fraction is read as the `f64` nearest to its exact value. Other texts,
+    /// numbers that are not finite and a denominator of zero are refused with their reason.
     #[test]
     fn decimals_and_fractions_round_once_and_other_text_is_refused() {
         for (text, value) in [
@@ -225,6 +235,8 @@ mod tests {
         }
     }
 
+    /// Whole multiples are recognised by the exact fractions, such as 10 as 100 times 0.1. A part
+    /// of a number is the exact fraction, unless that is too long, and a multiple is rounded once.
     #[test]
     fn multiples_and_parts_are_exact() -> Result<(), &'static str> {
         for (time, step, count) in [

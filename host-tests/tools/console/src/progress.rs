@@ -11,6 +11,7 @@ use super::cli::complain;
 
 /// The seconds between two lines.
 const REMINDER: u64 = 15;
+/// The time between two pictures of the spinner.
 const TURN: Duration = Duration::from_millis(120);
 /// The number of characters of a child's last line that the spinner shows.
 const SHOWN: usize = 60;
@@ -19,6 +20,7 @@ const SHOWN: usize = 60;
 #[derive(Debug)]
 pub struct Progress {
     bar: ProgressBar,
+    /// The number of lines that were due so far.
     reminders: AtomicU64,
 }
 
@@ -38,7 +40,8 @@ impl Progress {
         progress
     }
 
-    /// Begins work with a known number of pieces and announces it.
+    /// Begins work with a known number of pieces and announces it. Without a terminal, the first
+    /// line appears after 15 s.
     pub fn of(doing: &str, length: u64) -> Self {
         let style = "{prefix} {elapsed} {wide_bar} {pos}/{len}, {per_sec}, {eta} left";
         Self::new(doing, ProgressBar::new(length), style)
@@ -56,6 +59,8 @@ impl Progress {
         }
     }
 
+    /// Reports that this number of pieces was completed since the last call. It may be called by
+    /// several threads.
     pub fn advance(&self, pieces: u64) {
         self.bar.inc(pieces);
         self.remind();
@@ -71,6 +76,7 @@ impl Progress {
         self.remind();
     }
 
+    /// Prints a line, if there is no terminal and the last line is 15 s old.
     fn remind(&self) {
         let bar = &self.bar;
         let seconds = bar.elapsed().as_secs();

@@ -24,6 +24,10 @@ const PATIENCE: u32 = TICK_RATE;
 /// a long time, and the terminal must remain responsive while the host catches up.
 const MOST_TICKS: u32 = 2000;
 
+/// The comparison of a board with the host. The board's frames and reports of its scene go in, and
+/// frames come out in the same order once they are compared.
+///
+/// The counts and the first difference are of all scenes together, since the comparison was made.
 #[derive(Debug, Default)]
 pub struct Comparison {
     /// The board's scene from its start, and the same scene on the host; `None` until the board has
@@ -39,15 +43,21 @@ pub struct Comparison {
     doubt: Option<String>,
     /// Counts the frames while the board's scene is unknown or in doubt.
     unknown: u32,
+    /// The frame that arrived last.
     last: Option<Frame>,
+    /// The number of frames that were identical.
     compared: u64,
+    /// The number of frames that did not count: their scene had ended, or may have, or they differ
+    /// after the first difference.
     skipped: u64,
+    /// The first difference that was confirmed, in words.
     first: Option<String>,
 }
 
 impl Comparison {
     /// Takes a frame that has just arrived. Returns true if the host must send a request for the
-    /// board's scene.
+    /// board's scene. A frame of another scene, or with a smaller step number than the one before,
+    /// discards the frames that still wait. The answer goes to [`Comparison::status`].
     pub fn frame(&mut self, frame: &Frame) -> bool {
         // Another scene or a smaller step number means that the board has started anew.
         let starts =
@@ -70,6 +80,9 @@ impl Comparison {
         self.unknown % PATIENCE == 1
     }
 
+    /// Takes the board's report of its scene. If no scene is known, or if a difference is in doubt
+    /// and the report is of another scene, the host starts the reported one. If a difference is in
+    /// doubt and the report is of the same scene, the difference is real.
     pub fn status(&mut self, status: &Status) {
         // Only the start of the scene is compared. Its pause and speed do not matter.
         let start = Status {
@@ -95,8 +108,10 @@ impl Comparison {
         }
     }
 
-    /// Compares the next waiting frame. Returns `None` if no frame waits, or if the host has not
-    /// reached it yet.
+    /// Compares the oldest waiting frame and returns it; its numbers may differ from the host's.
+    /// Returns `None` if no frame waits, if the board has not reported its scene, if a difference
+    /// is in doubt, or if the host's scene has not reached the frame yet; then it continues in the
+    /// next call.
     pub fn follow(&mut self) -> Option<Frame> {
         let (_, show) = self.playing.as_mut().filter(|_| self.doubt.is_none())?;
         let frame = self
@@ -123,8 +138,10 @@ impl Comparison {
         Some(frame)
     }
 
-    /// Returns the panel's picture of `frame`, redrawn on the host from the scene that was compared
-    /// last.
+    /// Returns the panel's picture, drawn from the current state of the host's scene. `frame` only
+    /// decides if there is a pause mark, so it must be the frame that [`Comparison::follow`]
+    /// returned last. The picture is blank if no scene plays on the host: before the board has
+    /// reported its scene, at first and after each new start.
     pub fn panel(&self, frame: &Frame) -> Screenshot {
         let mut canvas = self
             .playing
@@ -136,11 +153,13 @@ impl Comparison {
         Screenshot::from(&canvas)
     }
 
+    /// Returns true if no frame waits to be compared.
     pub fn is_settled(&self) -> bool {
         self.waiting.is_empty()
     }
 
-    /// Returns the first number whose bits differ between board and host.
+    /// Returns the first number whose bits differ between board and host, in words, or `None` if no
+    /// difference is confirmed.
     pub fn difference(&self) -> Option<&str> {
         self.first.as_deref()
     }

@@ -51,6 +51,7 @@ pub fn draw(frame: &mut Frame, page: Help) {
     );
 }
 
+/// Returns the keys with their effects, and the keys of the scenes.
 fn keys() -> Text<'static> {
     let mut text = entries(&KEYS);
     let scenes = SceneName::ALL
@@ -64,6 +65,7 @@ fn keys() -> Text<'static> {
     text
 }
 
+/// Returns a line for each entry: its name, in bold, and its meaning.
 fn entries(entries: &[(&'static str, &'static str)]) -> Text<'static> {
     entries
         .iter()

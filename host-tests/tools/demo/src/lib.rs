@@ -54,6 +54,9 @@ const NO_TERMINAL: &str = "no terminal: running headless; --record FILE.gif or -
 /// time.
 const LIMIT: [f64; 2] = [60.0, 20.0];
 
+/// Shows the board in the terminal, or runs it without one and prints a summary. Returns true if no
+/// bit differs from the host's and if, on an emulated board that is run frame by frame, nothing
+/// else went wrong. Options that cannot be served are [`Refused`].
 pub fn run(options: &DemoOptions) -> anyhow::Result<bool> {
     let is_live = !options.headless && stdout().is_terminal() && stdin().is_terminal();
     // All options are checked before anything is built.
@@ -86,10 +89,14 @@ pub fn run(options: &DemoOptions) -> anyhow::Result<bool> {
     finish(options, session)
 }
 
+/// Opens a serial port by its path, or the only one over USB for `auto`. The refusal is for
+/// `--port`.
 pub fn port(name: &str) -> Result<Port, Refused> {
     Port::open(name).map_err(|reason| Refused::because(format_args!("--port {reason}")))
 }
 
+/// Builds the application and starts an emulated board. `seconds` of its time must be possible
+/// within the time limit.
 fn emulated(board: &'static Board, seconds: f64, is_live: bool) -> anyhow::Result<Source> {
     let (toolchain, elf) = toolchain::set_up_and_build(board)?;
     let limit = Duration::from_secs_f64(LIMIT[0] + LIMIT[1] * seconds.min(MOST_SECONDS));
@@ -116,6 +123,7 @@ fn emulated(board: &'static Board, seconds: f64, is_live: bool) -> anyhow::Resul
     }
 }
 
+/// The time between two reads of a port.
 const LOOK: Duration = Duration::from_millis(4);
 /// The time after which a port without a frame of the requested scene is given up.
 const PATIENCE: Duration = Duration::from_secs(10);

@@ -20,7 +20,8 @@ use emulator::process;
 /// frame is no faster than a real one.
 const LOOK: Duration = Duration::from_nanos(1_000_000_000 / TICK_RATE as u64);
 
-/// Shows the board for this number of seconds, or until the user quits.
+/// Shows the board for this number of seconds of its clock, or until the user quits. An error means
+/// that the terminal or the board fails; the terminal is restored.
 pub fn watch(session: &mut Session, seconds: f64) -> anyhow::Result<()> {
     // Ctrl-C must leave a usable terminal.
     process::on_interrupt(|| {
@@ -35,6 +36,7 @@ pub fn watch(session: &mut Session, seconds: f64) -> anyhow::Result<()> {
     outcome
 }
 
+/// Draws and reads keys in a loop, until the time is over or the user quits.
 fn show(session: &mut Session, seconds: f64, mut terminal: DefaultTerminal) -> anyhow::Result<()> {
     let colours = !Colored::ansi_color_disabled();
     let mut is_due = false;
@@ -81,12 +83,17 @@ fn show(session: &mut Session, seconds: f64, mut terminal: DefaultTerminal) -> a
 /// The effect of a key.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Action {
+    /// The key has no effect.
     Nothing,
+    /// Ends the demo.
     Quit,
     /// Shows this page of the help, or none.
     Help(Help),
+    /// Sends this command to the board.
     Send(Command),
+    /// Selects the next smaller speed.
     Slower,
+    /// Selects the next larger speed.
     Faster,
 }
 
@@ -142,6 +149,8 @@ mod tests {
         KeyEvent::new(code, KeyModifiers::NONE)
     }
 
+    /// With a page of the help, any key but `?` and Ctrl-C closes it and does nothing else. Without
+    /// one, q quits and Esc does nothing. Ctrl-C quits always.
     #[test]
     fn any_key_closes_the_help_and_escape_never_quits() {
         for code in [KeyCode::Esc, KeyCode::Char('q'), KeyCode::Up] {
@@ -159,6 +168,7 @@ mod tests {
         assert_eq!(action(interrupt, Help::Keys), Action::Quit);
     }
 
+    /// The key `?` shows the first page, then the second, then none.
     #[test]
     fn the_help_is_turned_over_page_by_page() {
         let mut pages = vec![Help::Hidden];
@@ -170,6 +180,8 @@ mod tests {
         assert_eq!(pages, [Help::Hidden, Help::Keys, Help::Numbers]);
     }
 
+    /// The keys 1 to 9 and a to d choose the scenes in the order of the catalogue. The keys next to
+    /// these do nothing.
     #[test]
     fn every_scene_has_a_key_of_its_own() {
         let chosen = |key| action(pressed(KeyCode::Char(key)), Help::Hidden);

@@ -81,7 +81,7 @@ impl OwnMotion {
     /// Returns the settings to play `scene` with, or `None` if no option is given.
     ///
     /// Returns an error if the scene does not use an option, or if it cannot show the motion on
-    /// `processor`.
+    /// `processor`. The numbers are rounded to `f32`.
     pub fn settings(
         &self,
         scene: SceneName,
@@ -156,6 +156,7 @@ impl OwnMotion {
         settings
     }
 
+    /// Refuses angles beyond half a turn, if the user has given them.
     fn check_angles(&self, settings: &Settings) -> Result<(), Refused> {
         // Only an angle that the user has given can be too large.
         let is_beyond = settings
@@ -205,6 +206,7 @@ fn all(given: &[(&'static str, String)]) -> String {
     words.collect::<Vec<_>>().join(" ")
 }
 
+/// Returns the refusal of a motion whose steps are too long on this processor.
 fn too_fast(blamed: &str) -> Refused {
     Refused::because(format_args!(
         "{blamed}: too fast a motion for this chip; take masses more alike, longer rods, less \

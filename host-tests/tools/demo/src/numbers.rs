@@ -22,6 +22,8 @@ pub const ROWS: u16 = 13;
 /// The smallest scale of the bars. Smaller errors are mainly the rounding of the energy.
 const LEAST_SCALE: f32 = 1e-14;
 
+/// Draws the latest numbers in the area, and the bars below them if frames with angles have
+/// arrived.
 pub fn draw(frame: &mut Frame, area: Rect, readings: &Readings) {
     let area = Rect {
         width: area.width.min(WIDEST),
@@ -40,6 +42,7 @@ pub fn draw(frame: &mut Frame, area: Rect, readings: &Readings) {
     }
 }
 
+/// Returns the names and values; a value that is unknown or does not exist in this scene is a dash.
 fn rows(readings: &Readings) -> [(&'static str, String); 9] {
     let is_shown = readings.frame.is_some();
     let moves = readings.frame.is_some_and(|now| now.scene.has_angles());
@@ -167,6 +170,7 @@ fn within_half_a_turn(degrees: f64) -> f64 {
     degrees - 2.0 * HALF_TURN * ((degrees - HALF_TURN - ROUNDING) / (2.0 * HALF_TURN)).ceil()
 }
 
+/// Draws the chart of both angles, degrees, over the last 5 s of simulated time.
 pub fn draw_angles(frame: &mut Frame, area: Rect, past: &[Report]) {
     // The chart shows the last `SPAN` seconds, and from the start before that time.
     let end = past.last().map_or(0.0, |last| last.time).max(SPAN);
@@ -236,6 +240,8 @@ fn strands(past: &[Report], rod: usize) -> Vec<Vec<(f64, f64)>> {
 mod tests {
     use super::*;
 
+    /// A rod makes two turns in steps of 36 degrees. Its curve has three pieces, each within half a
+    /// turn. The curve of a rod that hangs has one piece.
     #[test]
     fn a_turning_rod_is_cut_where_it_passes_straight_up() {
         let turned = |tenth: u8| State {
@@ -261,6 +267,8 @@ mod tests {
         assert_eq!(strands(&past, 1).len(), 1, "the other rod hangs");
     }
 
+    /// Angles that are straight up to a tenth of a degree, in any turn, are shown as 180.0 degrees.
+    /// Other angles are within half a turn.
     #[test]
     fn straight_up_is_180_and_never_its_negative() {
         for up in [

@@ -103,7 +103,8 @@ pub const KEYS: [(&str, &str); 10] = [
     ("q, ctrl-C", "quit"),
 ];
 
-/// Returns the key of the scene at `place` in the catalogue: its number from 1, in base 14 or more.
+/// Returns the key of the scene at `place` in the catalogue, counted from 0: 1 to 9, then a, b, c
+/// and so on. Beyond z it is a space.
 pub fn scene_key(place: usize) -> char {
     u32::try_from(place + 1)
         .ok()
@@ -111,7 +112,7 @@ pub fn scene_key(place: usize) -> char {
         .unwrap_or(' ')
 }
 
-/// Returns the scene with this key.
+/// Returns the scene with this key, or `None` if no scene has it.
 pub fn scene_of_key(key: char) -> Option<SceneName> {
     let place = (0..SceneName::ALL.len()).find(|place| scene_key(*place) == key)?;
     SceneName::ALL.get(place).copied()
@@ -165,7 +166,8 @@ impl DemoOptions {
         }
     }
 
-    /// Returns the requested speed, simulated time per real time.
+    /// Returns the requested speed, simulated time per real time. `None` means that no speed is
+    /// requested. A speed outside 0.01 to 4 is refused.
     pub fn speed(&self) -> Result<Option<f64>, Refused> {
         let Some(speed) = &self.speed else {
             return Ok(None);
@@ -210,7 +212,8 @@ impl DemoOptions {
     }
 }
 
-/// Returns an error with the reason if a scene with these settings does not use a method.
+/// Returns an error, the reason in words, if a scene with these settings does not use a method on
+/// this processor: it always uses another one, has no choice, is too slow with it, or refuses it.
 pub fn usable(
     method: Method,
     scene: SceneName,
@@ -261,6 +264,7 @@ fn ends_in(kind: &str, file: &str) -> Result<PathBuf, String> {
 /// The longest run, in seconds of the board's time.
 pub const MOST_SECONDS: f64 = 86_400.0;
 
+/// Accepts a number of seconds greater than 0, at most [`MOST_SECONDS`].
 fn seconds(text: &str) -> Result<f64, String> {
     let wrong = || format!("write a number of seconds greater than 0, at most {MOST_SECONDS}");
     text.parse()

@@ -21,6 +21,8 @@ use emulator::qemu::{HEIGHT, Screenshot, WIDTH};
 /// The smallest grey that is shown as a dot. Only the end of a fading trail is darker.
 const SET: u8 = 3;
 
+/// Draws the screenshot over the area: with a pixel in half a character if the area is wide enough,
+/// or else in Braille.
 pub fn draw(frame: &mut Frame, area: Rect, screenshot: &Screenshot) {
     // A terminal that is wide enough shows every pixel in its grey.
     let in_greys = usize::from(area.width) >= WIDTH;
@@ -52,6 +54,7 @@ pub fn draw(frame: &mut Frame, area: Rect, screenshot: &Screenshot) {
     frame.render_widget(canvas, area);
 }
 
+/// The brightest grey of a screenshot; 0 is black.
 const BRIGHTEST_GREY: u8 = 15;
 /// The red, green and blue of the brightest grey and of black, because the panel's glass is not
 /// quite dark.
@@ -64,11 +67,13 @@ const TERMINAL: [u8; 16] = [
     16, 233, 234, 235, 237, 239, 94, 94, 130, 136, 136, 172, 178, 214, 214, 221,
 ];
 
+/// Returns the colour of a grey in a terminal.
 fn in_terminal(grey: u8) -> Color {
     Color::Indexed(TERMINAL[usize::from(grey.min(BRIGHTEST_GREY))])
 }
 
-/// Returns the colours of all greys, red, green, blue, in the format of image files.
+/// Returns the colours of all 16 greys from black on, as bytes for red, green and blue, in the
+/// format of image files.
 pub fn palette() -> Vec<u8> {
     let most = u32::from(BRIGHTEST_GREY);
     let mix = |grey: u32| {
@@ -83,7 +88,8 @@ pub fn palette() -> Vec<u8> {
         .collect()
 }
 
-/// The width and height of the square that shows a pixel of the panel.
+/// The width and height of the square that shows a pixel of the panel. They are in pixels of the
+/// file.
 const SCALE: usize = 3;
 const SIZE: [u16; 2] = [(WIDTH * SCALE) as u16, (HEIGHT * SCALE) as u16];
 /// The number of board ticks between two screenshots: 60/2 = 30 frames per second.
@@ -100,12 +106,14 @@ pub struct Recording {
     encoder: Encoder<BufWriter<File>>,
     /// The number of its pictures.
     pictures: usize,
+    /// The greys of the latest picture, in pixels of the file; empty before the first.
     shown: Vec<u8>,
     /// The tick of the next screenshot. The last one is shown until then.
     due: Option<i64>,
 }
 
 impl Recording {
+    /// Creates the file, or empties an existing one. An error means that it cannot be written.
     pub fn create(path: &Path) -> anyhow::Result<Self> {
         let file =
             File::create(path).with_context(|| format!("cannot write {}", path.display()))?;
@@ -123,12 +131,15 @@ impl Recording {
         })
     }
 
+    /// Returns true if a picture is to be added at this tick of the board's clock; always true
+    /// before the first picture.
     pub fn is_due(&self, tick: i64) -> bool {
         self.due.is_none_or(|due| tick >= due)
     }
 
     /// Adds the panel's picture from `tick` on, unless it comes too soon. The previous picture is
-    /// shown longer if this one is late.
+    /// shown longer if this one is late. Ticks are of 1/60 s and ascend. An error means that the
+    /// file cannot be written; it is then removed.
     pub fn add(&mut self, screenshot: &Screenshot, tick: i64) -> anyhow::Result<()> {
         if !self.is_due(tick) {
             return Ok(());
@@ -174,7 +185,8 @@ impl Recording {
             .map_err(|error| unwritten(&self.path, &cause(error)))
     }
 
-    /// Writes the rest of the file. Returns the file and the number of its pictures.
+    /// Writes the rest of the file. Returns the file and the number of its pictures. If that is not
+    /// possible, removes the file and returns an error.
     pub fn finish(self) -> anyhow::Result<(PathBuf, usize)> {
         let Self {
             path,
@@ -193,6 +205,7 @@ impl Recording {
     }
 }
 
+/// Returns the error of the file within an error of the encoder.
 fn cause(error: EncodingError) -> io::Error {
     match error {
         EncodingError::Io(error) => error,
@@ -209,6 +222,7 @@ fn unwritten(path: &Path, error: &io::Error) -> anyhow::Error {
     anyhow!("--record: cannot write {}: {error}", path.display())
 }
 
+/// Returns the greys of the picture in pixels of the file, row by row.
 fn magnified(screenshot: &Screenshot) -> Vec<u8> {
     let at = |index: usize| {
         screenshot.greys[index / (WIDTH * SCALE) / SCALE * WIDTH + index % (WIDTH * SCALE) / SCALE]
@@ -216,8 +230,8 @@ fn magnified(screenshot: &Screenshot) -> Vec<u8> {
     (0..WIDTH * SCALE * HEIGHT * SCALE).map(at).collect()
 }
 
-/// Reads an animation for tests. Returns the greys of each picture and its duration in hundredths
-/// of a second.
+/// Reads an animation for tests. Returns the greys of each picture, one for each pixel of the
+/// panel, row by row, and its duration in hundredths of a second.
 pub fn played(path: &Path) -> anyhow::Result<Vec<(Vec<u8>, u16)>> {
     let mut options = DecodeOptions::new();
     options.set_color_output(ColorOutput::Indexed);
@@ -241,6 +255,7 @@ pub fn played(path: &Path) -> anyhow::Result<Vec<(Vec<u8>, u16)>> {
     Ok(played)
 }
 
+/// Returns the screenshot as a PNG file, each pixel as a square of 3 by 3.
 pub fn png(screenshot: &Screenshot) -> anyhow::Result<Vec<u8>> {
     let [width, height] = SIZE.map(u32::from);
     let mut file = Vec::new();
@@ -284,6 +299,8 @@ mod tests {
             .collect()
     }
 
+    /// Three lit pixels are drawn at their places and in the colours of their greys: as dots in 64
+    /// columns, as half characters in 128.
     #[test]
     fn a_lit_pixel_is_a_dot_or_half_a_character_in_its_colour() {
         let dots = [("⠁", 15), ("⠠", 15), ("⢀", 6)];
@@ -297,6 +314,8 @@ mod tests {
             pixels.map(|[above, below]| ("▀".to_owned(), above, below))
         );
     }
+    /// A recording on a disk that becomes full fails with one reason that names the file, and the
+    /// file is removed.
     #[test]
     fn half_an_animation_is_removed_and_the_reason_is_given_once() {
         let folder = tempfile::tempdir().expect("a folder");

@@ -24,9 +24,12 @@ const RATE_SPAN: Duration = Duration::from_secs(1);
 /// The page of the help that is shown.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Help {
+    /// No page.
     #[default]
     Hidden,
+    /// The keys and the scenes.
     Keys,
+    /// The meanings of the numbers.
     Numbers,
 }
 
@@ -50,35 +53,46 @@ pub fn warning(text: String) -> LogLine {
     }
 }
 
+/// The data that a board has sent since the start of the session.
 #[derive(Debug, Default)]
 pub struct Readings {
+    /// The latest frame; `None` before the first.
     pub frame: Option<Frame>,
     /// The angles at the start of the motion, degrees; `None` until the board has reported them.
     pub start: Option<[f32; 2]>,
+    /// The counts of the link.
     pub counts: Counts,
     /// The state of the panel when the board was last asked.
     pub panel: Option<PanelReport>,
     /// The reports since the start of the motion, oldest first. It is empty in scenes without
-    /// angles.
+    /// angles. At most 12 s of frames are kept.
     pub past: Vec<Report>,
+    /// All lines of the log, with the warnings of the host, oldest first.
     pub lines: Vec<LogLine>,
+    /// The comparison of the frames with the host's.
     pub comparison: Comparison,
     /// The page of the help that is shown instead of the readings.
     pub help: Help,
-    /// The simulated time per real time, as last reported by the board or set by the user.
+    /// The simulated time per real time, as last reported by the board or set by the user. `None`
+    /// before either.
     pub speed: Option<f32>,
     /// The last scene and method of a warning that the scene does not use the requested method.
     unusable: Option<(SceneName, Method)>,
+    /// The times when the frames of the last second arrived.
     pub(super) arrivals: Vec<Instant>,
+    /// The number of all frames.
     frames: u64,
+    /// The size of the largest energy error of all scenes together, relative to the energy above
+    /// rest.
     greatest_energy_error: f32,
     /// The simulated time of all scenes and restarts together, s.
     simulated: f64,
 }
 
 impl Readings {
-    /// Takes a frame that has just arrived. Returns true if the host must send a request for the
-    /// board's scene.
+    /// Takes a frame that has just arrived. A frame of another scene, or of an earlier time, begins
+    /// a new motion. Returns true if the host must send a request for the board's scene
+    /// ([`Comparison::frame`]).
     pub fn frame(&mut self, frame: Frame) -> bool {
         let last = self.frame.replace(frame);
         let report = frame.report;
@@ -116,7 +130,8 @@ impl Readings {
         self.comparison.status(status);
     }
 
-    /// Takes the state of the panel. A change is written to the log.
+    /// Takes the state of the panel. A change is written to the log. A change is a panel that is
+    /// found or lost, or begins or ceases to work well ([`link::is_well`]).
     pub fn panel(&mut self, report: &PanelReport) {
         let before = self.panel.replace(*report);
         // The panel has changed if it is found or lost, or begins or ceases to work well.
@@ -162,6 +177,7 @@ impl Readings {
         }
     }
 
+    /// Returns the number of frames that have arrived in the last second.
     pub fn rate(&self) -> usize {
         self.arrivals
             .iter()
@@ -169,7 +185,9 @@ impl Readings {
             .count()
     }
 
-    /// Returns the faults of an emulated board; empty if all is well.
+    /// Returns the faults of an emulated board; empty if all is well. Faults are damaged messages,
+    /// lost and dropped frames, errors in the log, and plain text in the log, which is a crash
+    /// report or a complaint of QEMU. A difference of bits is not among them.
     pub fn faults(&self) -> Vec<String> {
         // Everything that goes wrong between an emulated board and the host is a fault of the
         // program.
@@ -180,7 +198,7 @@ impl Readings {
             (lost > 0, format!("{lost} frames were lost on the way")),
             (dropped > 0, format!("{dropped} frames were dropped")),
         ];
-        // Errors and warnings in the log are faults as well.
+        // Errors in the log are faults as well, and so is plain text ([`LogLine::is_bad`]).
         let findings = findings
             .into_iter()
             .filter_map(|(found, text)| found.then_some(text));
@@ -194,6 +212,8 @@ impl Readings {
             .collect()
     }
 
+    /// Returns the summary, a line for each number, of all scenes and restarts together. The
+    /// dropped frames, the method and the horizon are those of the latest frame.
     pub fn report(&self) -> String {
         let Self {
             frames,
@@ -235,7 +255,8 @@ impl Readings {
     }
 }
 
-/// Returns the method of a frame and the accuracy horizon, in one line.
+/// Returns the method of a frame and the accuracy horizon, in one line. The horizon is in s of
+/// simulated time since the motion began.
 pub fn stepping(frame: &Frame) -> String {
     if frame.state == PlayState::Stopped {
         return "this motion is too fast for this chip: change the masses or the angle, or choose \
@@ -271,7 +292,8 @@ fn computed(frame: &Frame) -> String {
     }
 }
 
-/// Returns an energy error as text, or that it is smaller than `f64` can show.
+/// Returns a relative energy error as text, formatted by `write`, or that it is smaller than `f64`
+/// can show.
 pub fn energy_error(error: f32, write: impl Fn(f32) -> String) -> String {
     if error.abs() < LEAST_ENERGY_ERROR {
         format!("< {LEAST_ENERGY_ERROR:.0e}")
@@ -287,6 +309,9 @@ mod tests {
 
     use super::*;
 
+    /// A warning appears once per visit of a scene that does not use the requested method: not
+    /// again at a restart, but again after another scene in between. A scene that uses the method
+    /// causes none.
     #[test]
     fn a_method_that_a_scene_does_not_use_is_reported_once() {
         let mut readings = Readings::default();
@@ -319,6 +344,8 @@ mod tests {
         assert_eq!(said, [small, flips, flips]);
     }
 
+    /// Each kind of horizon, a linear scene and a motion that is too fast have their own words,
+    /// next to the method and its steps.
     #[test]
     fn horizon_and_stop_are_shown_in_words() {
         let words = |scene, state, horizon| {
@@ -374,6 +401,8 @@ mod tests {
         })
     }
 
+    /// An error of 2.4e-14 is shown with its digits. An error below 4e-15 in size, or zero, is
+    /// shown as "< 4e-15".
     #[test]
     fn energy_error_below_the_resolution_of_f64_is_shown_as_a_limit() {
         let written = |error| energy_error(error, |error| format!("{error:+.1e}"));
@@ -382,6 +411,8 @@ mod tests {
         assert_eq!(written(0.0), "< 4e-15");
     }
 
+    /// After a frame with an energy error of 0, the summary has a dash in a scene without a motion,
+    /// and the limit of `f64` in a scene with one.
     #[test]
     fn scene_without_a_motion_reports_no_energy_error() {
         for (scene, line) in [
@@ -397,6 +428,8 @@ mod tests {
         }
     }
 
+    /// Two scenes are shown, the first with a restart. The simulated time of the summary is the sum
+    /// of the three motions, and a repeated frame adds nothing.
     #[test]
     fn simulated_time_adds_up_all_restarts_and_scenes() {
         let mut readings = Readings::default();

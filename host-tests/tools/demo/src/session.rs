@@ -14,13 +14,15 @@ use emulator::link::{Counts, Port, refusal};
 use emulator::pico::PicoMachine;
 use emulator::qemu::{LogLine, Machine, Screenshot};
 
-/// The source of the messages.
+/// The board of a session, emulated or real, from which the messages come.
 pub enum Source {
     /// A board in QEMU with the host's clock.
     Live(Machine),
     /// A board in QEMU that is run from frame to frame.
     Lockstep(Machine),
+    /// A Raspberry Pi Pico in its emulator, run from frame to frame.
     Pico(Box<PicoMachine>),
+    /// A board at a serial port.
     Port(Port),
 }
 
@@ -36,6 +38,8 @@ impl Source {
         }
     }
 
+    /// Sends a command with this request number. A port never fails here; it reports by its
+    /// notices.
     fn send(&mut self, request: u16, command: Command) -> anyhow::Result<()> {
         match self {
             Self::Live(machine) | Self::Lockstep(machine) => machine.send(request, command)?,
@@ -58,6 +62,7 @@ impl Source {
         }
     }
 
+    /// Returns true if the board is real.
     pub fn is_port(&self) -> bool {
         matches!(self, Self::Port(_))
     }
@@ -73,21 +78,29 @@ const SETUP: u16 = 1;
 /// possible one.
 pub const SPEEDS: [f32; 9] = [0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 4.0];
 
-/// Returns the next larger speed, or `None` at the largest.
+/// Returns the smallest of [`SPEEDS`] that is larger than this speed, or `None` at the largest.
 pub fn faster(now: f32) -> Option<f32> {
     SPEEDS.into_iter().find(|speed| *speed > now)
 }
 
-/// Returns the next smaller speed, or `None` at the smallest.
+/// Returns the largest of [`SPEEDS`] that is smaller than this speed, or `None` at the smallest.
 pub fn slower(now: f32) -> Option<f32> {
     SPEEDS.into_iter().rev().find(|speed| *speed < now)
 }
 
+/// A session with one board: its messages are received, the user's options are sent to it with its
+/// first frame, and its panel is recorded from the first frame of the requested scene on.
+///
+/// The caller calls [`Session::hear`] again and again, and [`Session::look`] for a picture.
 pub struct Session<'a> {
     options: &'a DemoOptions,
+    /// The board.
     pub source: Source,
+    /// The data that the board has sent.
     pub readings: Readings,
+    /// The latest picture of the panel; black before the first.
     pub screenshot: Screenshot,
+    /// The animation, if one is requested.
     recording: Option<Recording>,
     /// The latest tick, and the tick of the first frame of the requested scene.
     now: Option<i64>,
@@ -101,6 +114,7 @@ pub struct Session<'a> {
 }
 
 impl<'a> Session<'a> {
+    /// Returns a session before the first message.
     pub fn new(options: &'a DemoOptions, source: Source, recording: Option<Recording>) -> Self {
         let readings = Readings::default();
         let screenshot = Screenshot::from_pages(&[]);
@@ -118,6 +132,7 @@ impl<'a> Session<'a> {
         }
     }
 
+    /// Returns the name of the emulated board, or the path of the port.
     pub fn name(&self) -> &str {
         if let Source::Port(port) = &self.source {
             &port.name
@@ -126,8 +141,12 @@ impl<'a> Session<'a> {
         }
     }
 
-    /// Receives the board's messages. Asks the board for its scene whenever the comparison needs
-    /// it.
+    /// Receives the board's messages; a board that is run frame by frame runs to its next frame.
+    /// Asks the board for its scene whenever the comparison needs it. Draws and records the panel
+    /// of a board whose panel cannot be read.
+    ///
+    /// An error means that the board refuses the user's options, that an emulator has ended, or
+    /// that the recording cannot be written. The refusal of a key is a line of the log.
     pub fn hear(&mut self) -> anyhow::Result<()> {
         for message in self.source.messages()? {
             match message {
@@ -155,6 +174,7 @@ impl<'a> Session<'a> {
         Ok(())
     }
 
+    /// Takes a frame: sends the options with the first one, and counts the time.
     fn frame(&mut self, frame: &Frame) -> anyhow::Result<()> {
         match self.now {
             None => self.begin(frame)?,
@@ -180,6 +200,7 @@ impl<'a> Session<'a> {
         }
     }
 
+    /// Asks the board for its status.
     fn ask(&mut self) -> anyhow::Result<()> {
         self.source.send(self.question, Command::Ask)
     }
@@ -219,13 +240,13 @@ impl<'a> Session<'a> {
         ))
     }
 
-    /// Sends the command of a key.
+    /// Sends the command of a key. Only an emulator that has ended is an error.
     pub fn command(&mut self, command: Command) -> anyhow::Result<()> {
         self.source.send(KEY, command)
     }
 
     /// Sets the speed that `next` returns for the current one. Does nothing until the board has
-    /// reported the current speed.
+    /// reported the current speed. At the last speed, `next` returns `None` and nothing changes.
     pub fn change_speed(&mut self, next: fn(f32) -> Option<f32>) -> anyhow::Result<()> {
         let Some(speed) = self.readings.speed.and_then(next) else {
             return Ok(());
@@ -267,6 +288,9 @@ impl<'a> Session<'a> {
         self.options.board.has_panel && !self.source.is_port()
     }
 
+    /// Takes a screenshot of an emulated panel and adds it to the recording if it is due. Does
+    /// nothing if the panel cannot be read. An error means that the emulator has ended or the
+    /// recording cannot be written.
     pub fn look(&mut self) -> anyhow::Result<()> {
         if self.has_panel() {
             self.screenshot = match &mut self.source {
@@ -279,7 +303,8 @@ impl<'a> Session<'a> {
         Ok(())
     }
 
-    /// Returns true if the animation needs a screenshot of the latest tick.
+    /// Returns true if the animation needs a screenshot of the latest tick; false without an
+    /// animation and before the requested scene.
     pub fn is_recording_due(&self) -> bool {
         self.begun
             .and(self.now)
@@ -287,6 +312,7 @@ impl<'a> Session<'a> {
             .is_some_and(|(now, recording)| recording.is_due(now))
     }
 
+    /// Adds the screenshot to the recording, if there is one and the requested scene has begun.
     fn record(&mut self, tick: i64) -> anyhow::Result<()> {
         let recording = self
             .recording
@@ -295,7 +321,8 @@ impl<'a> Session<'a> {
         recording.map_or(Ok(()), |recording| recording.add(&self.screenshot, tick))
     }
 
-    /// Returns the complete animation.
+    /// Returns the animation so far, to be finished; `None` if none was requested or it was taken
+    /// before.
     pub fn take_recording(&mut self) -> Option<Recording> {
         self.recording.take()
     }
@@ -320,6 +347,8 @@ mod tests {
 
     use super::*;
 
+    /// The keys pass through all of [`SPEEDS`], upwards to the greatest speed of the firmware and
+    /// downwards. From a speed in between they go to its neighbours.
     #[test]
     fn the_speed_keys_step_from_the_least_to_the_greatest_and_back() {
         let steps = |from, next: fn(f32) -> Option<f32>| {

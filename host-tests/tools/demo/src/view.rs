@@ -48,6 +48,9 @@ const LEAST_USED: [usize; 2] = [4, 6];
 /// A space at which a row must not break.
 const JOINT: &str = "\u{a0}";
 
+/// Draws the whole terminal: a page of the help, the readings, or a note that the terminal is too
+/// small. `board` is the name in the title. Without `colours` the panel is drawn in Braille, and no
+/// cell has a colour.
 pub fn draw(
     frame: &mut Frame,
     board: &str,
@@ -319,6 +322,9 @@ mod tests {
             .collect()
     }
 
+    /// The terminal at six sizes, one of them too small, in scenes with and without a motion,
+    /// before the first frame, and with both pages of the help equals the committed snapshots.
+    /// Without colours, no cell has a colour.
     #[test]
     fn common_terminals_look_as_they_did() {
         let butterfly = readings(SceneName::Butterfly);

@@ -14,13 +14,15 @@ pub type Search = Flips<DirectionF32Plain>;
 /// without.
 const LANES: usize = 8;
 
-/// Returns the flips of some starts, computed with the widest vectors of this processor.
+/// Returns the flips of the starts (a1, a2 in rad), in their order, computed with the widest
+/// vectors of this processor. Times are in s. An error is one of the kernel's [`Flips`]: a start
+/// that it refuses.
 #[multiversion(targets("x86_64+avx2+bmi1+bmi2+fma+lzcnt+popcnt"))]
 pub fn flips(search: &Search, starts: &[[f32; 2]]) -> Result<Vec<Flip<f32>>, Error> {
     each(search, starts)
 }
 
-/// Returns the flips of some starts, computed with instructions that every processor of this
+/// Returns the same as [`flips`], computed with instructions that every processor of this
 /// architecture has.
 pub fn baseline(search: &Search, starts: &[[f32; 2]]) -> Result<Vec<Flip<f32>>, Error> {
     each(search, starts)
