@@ -151,25 +151,23 @@ impl<R: Real> Pendulum<R> {
 /// which follows from (w1/w2 + w2/w1)^2 = (1 + mu)(l1 + l2)^2/(l1 l2). For equal rods it is
 /// mu = ((r^2 - 1)/(2r))^2 with r = p/q. The common period is 2 pi p/w1 = 2 pi q/w2.
 ///
-/// The result is not checked: lengths whose squares, times p^4, leave the range of `R` give a
-/// meaningless ratio or NaN.
-///
 /// # Errors
 ///
-/// Refuses lengths that are not positive and finite, and a `slow` of 0. Also refuses a ratio p/q
+/// Refuses lengths that are not positive and finite, lengths whose squares leave the range of `R`,
+/// and a `slow` of 0. Also refuses a ratio p/q
 /// that no masses can give, by [`Error::TooSmall`]: it must exceed the square root of the longer
 /// rod over the shorter rod.
 pub fn periodic_mass_ratio<R: Real>(fast: u16, slow: u16, lengths: [R; 2]) -> Result<R, Error> {
     // Only the lengths can be wrong here.
     let [l1, l2] = lengths;
-    Parameters {
+    let parameters = Parameters {
         m1: R::ONE,
         m2: R::ONE,
         l1,
         l2,
         g: R::ONE,
-    }
-    .check()?;
+    };
+    parameters.check()?;
     if slow == 0 {
         return Err(Error::NotFinite {
             parameter: Parameter::FrequencyRatio,
@@ -186,7 +184,12 @@ pub fn periodic_mass_ratio<R: Real>(fast: u16, slow: u16, lengths: [R; 2]) -> Re
 
     // At the limit bob 2 would have no mass.
     if numerator1 > R::ZERO && numerator2 > R::ZERO {
-        Ok(numerator1 * numerator2 / (denominator * denominator))
+        let mass_ratio = numerator1 * numerator2 / (denominator * denominator);
+        if mass_ratio.is_normal() {
+            Ok(mass_ratio)
+        } else {
+            Err(parameters.out_of_range())
+        }
     } else {
         let ratio = if l1 > l2 { l1 / l2 } else { l2 / l1 };
         Err(Error::TooSmall {

@@ -68,7 +68,7 @@ impl<R: Real, E: Derivatives<R>, I: RungeKutta> Form for Canonical<R, E, I> {
     const HAS_TURNS: bool = true;
 
     fn new(parameters: &Parameters<f64>, start: &State<f64>, dt: f64) -> Result<Self, Error> {
-        check_step::<f64>(dt)?;
+        check_step::<R>(dt)?;
         let equations = E::prepare(&parameters.cast())?;
         Self {
             equations,

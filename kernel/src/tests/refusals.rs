@@ -4,7 +4,8 @@ use std::string::ToString;
 
 use double_pendulum::Parameter::{A1, A2, Dt, FrequencyRatio, G, L1, M1, M2};
 use double_pendulum::{
-    ClosedFormF32, Error, Modes, Motion, Parameters, Pendulum, State, periodic_mass_ratio,
+    ClosedFormF32, Error, HamiltonF32, Modes, Motion, Parameters, Pendulum, State,
+    periodic_mass_ratio,
 };
 
 /// Parameters that are accepted. Each case changes one or two of them.
@@ -25,6 +26,13 @@ fn pendulum(parameters: Parameters<f64>) -> Result<(), Error> {
 fn linear(angle: f64) -> Result<(), Error> {
     Pendulum::new(&GOOD)?
         .run::<ClosedFormF32>(&State::at_rest(angle, 0.0), 0.01)
+        .map(drop)
+}
+
+/// Runs a motion in `f32` with this step, s.
+fn single_step(dt: f64) -> Result<(), Error> {
+    Pendulum::new(&GOOD)?
+        .run::<HamiltonF32>(&State::default(), dt)
         .map(drop)
 }
 
@@ -62,6 +70,20 @@ fn errors_contain_the_parameter_and_its_value() {
                 ..GOOD
             }),
             not_finite(L1, infinite),
+        ),
+        (
+            periods(3, 2, [1e-170, 1.5e-170]),
+            Error::OutOfRange {
+                parameter: L1,
+                value: 1e-170,
+            },
+        ),
+        (
+            single_step(1e-50),
+            Error::OutOfRange {
+                parameter: Dt,
+                value: 1e-50,
+            },
         ),
         (
             pendulum(Parameters { g: -9.8, ..GOOD }),

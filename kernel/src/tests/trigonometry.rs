@@ -88,7 +88,7 @@ fn own_f64_is_within_two_units_of_the_last_place() {
     let uniform = (-2_000_000..=2_000_000).map(|i| f64::from(i) * 8.1e-7);
     let huge = (0..200_000).map(|i| f64::from(i) * 8.235_490_1);
     let every_size =
-        (0..4_000_000).map(|i| f64::from_bits(0x3c00_0000_0000_0000 + i * 0x2_4000_0000));
+        (0..4_000_000).map(|i| f64::from_bits(0x3c00_0000_0000_0000 + i * 0x12_4000_0000));
     let cancelling = (1..1_000_000).map(|k| f64::from(k) * core::f64::consts::FRAC_PI_2);
     for x in uniform.chain(huge).chain(every_size).chain(cancelling) {
         let (sine, cosine) = x.own_sin_cos();
