@@ -32,8 +32,8 @@ impl Default for Settings {
 }
 
 impl Settings {
-    /// Returns the page's pendulum: rods of [`ROD`], a first bob of 1 kg, [`GRAVITY`], and the mass
-    /// ratio m2/m1. Both rods are released from rest at the angle `degrees`.
+    /// Returns a pendulum with equal rods: rods of [`ROD`], a first bob of 1 kg, [`GRAVITY`], and
+    /// the mass ratio m2/m1. Both rods are released from rest at the angle `degrees`.
     pub fn equal_rods(mass_ratio: f32, degrees: f32) -> Self {
         let parameters = Parameters::equal_rods(mass_ratio, ROD, GRAVITY as f32);
         Self {

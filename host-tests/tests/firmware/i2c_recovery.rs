@@ -39,8 +39,9 @@ impl Wires {
 }
 
 /// A panel that holds the data line for one to nine more bits receives as many clocks and one stop.
-/// A free bus receives none. A panel that never lets go receives ten clocks and no stop, and the
-/// bus counts as not free. Both lines are high at the end, and no start is sent.
+/// A free bus receives none. The stop takes a clock of its own. A panel that never lets go receives
+/// ten clocks and no stop, and the bus counts as not free. Both lines are high at the end, and no
+/// start is sent.
 #[test]
 fn a_panel_is_clocked_until_it_releases_the_line_or_nine_bits_have_passed() {
     // The stop takes a clock of its own. A free bus is left alone.
