@@ -238,7 +238,7 @@ pub const ROD_HALF_WIDTH: f32 = 0.6;
 pub const TRAIL_HALF_WIDTH: f32 = 0.8;
 /// The brightness of the trail at the bob, of 255. Its grey is 11 of 15.
 pub const TRAIL_BRIGHTNESS: u8 = 184;
-/// The number of rows of the frame, of 64, in which the trail loses a grey in a tick. The last of
+/// The number of the frame's 64 rows whose trail loses a grey in a tick. The last of
 /// 11 greys is gone after 11 x 64/5 = 141 ticks, 2.3 s of motion.
 pub const TRAIL_FADING: u8 = 5;
 

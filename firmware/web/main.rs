@@ -124,7 +124,7 @@ fn with(act: impl FnOnce(&mut Board) -> usize) -> usize {
     board.as_mut().map_or(0, act)
 }
 
-/// Lets the application act, asks for its settings, and reads the messages. Returns the number of
+/// Lets the application act, requests its settings, and reads the messages. Returns the number of
 /// bytes that it has sent.
 fn run(act: impl FnOnce(&mut Application)) -> usize {
     with(|board| {
@@ -191,7 +191,7 @@ exports! {
     /// of the call before; if it is the same, nothing is done.
     run_to(tick: u32) => run(|app| _ = app.run_to(tick, |_| ()));
 
-    // The buttons. Their effects are those of the commands.
+    // The buttons. They have the effects of the commands.
     heavier() => send(Command::Heavier);
     lighter() => send(Command::Lighter);
     turn_left() => send(Command::TurnLeft);

@@ -35,6 +35,8 @@ impl<R: Real> Bounds<R> {
     pub(crate) fn new(parameters: &Parameters<R>, energy_above_rest: R) -> Self {
         let &Parameters { m1, m2, l1, l2, .. } = parameters;
         let twice = R::TWO * energy_above_rest;
+
+        // A bob is fastest if it has the whole energy as kinetic energy.
         let v1 = (twice / m1).sqrt();
         let v2 = (twice / m2).sqrt();
         Self {
@@ -106,7 +108,7 @@ impl<R: Real> Pendulum<R> {
         self.energy_above_rest(state) * margin < self.turnover_energy()
     }
 
-    /// Refuses the steps `dt` (s) that [`Modes::check_step`] refuses: those that are not positive
+    /// Refuses the steps `dt` (s) that [`Modes::check_step`] refuses: steps that are not positive
     /// and finite, out of the range of `R`, or longer than [`Modes::step_limit`].
     ///
     /// Without gravity, where no modes exist, there is no limit. Also refuses parameters whose
@@ -168,7 +170,7 @@ impl<R: Real> Pendulum<R> {
     /// # Errors
     ///
     /// Refuses parameters whose modes are out of range ([`Error::OutOfRange`]). The state is not
-    /// checked: one that is NaN gives NaN.
+    /// checked; NaN gives NaN.
     pub fn admissible_step(&self, state: &State<R>) -> Result<R, Error> {
         Ok(R::from_f64(RESOLVED) / self.fastest_rate(state)?)
     }

@@ -52,8 +52,8 @@ impl<R: Real> Modes<R> {
     /// Refuses:
     ///
     /// - NaN, infinite, zero or negative masses and lengths, and gravity that is not positive;
-    /// - by [`Error::OutOfRange`], parameters for which a frequency, a shape or the exchange
-    ///   frequency overflows, underflows or is subnormal in `R`.
+    /// - by [`Error::OutOfRange`], parameters whose frequencies, shapes or exchange frequency
+    ///   overflow, underflow or are subnormal in `R`.
     pub fn new(parameters: &Parameters<R>) -> Result<Self, Error> {
         parameters.check()?;
         let &Parameters { m1, m2, l1, l2, g } = parameters;

@@ -1,8 +1,8 @@
 //! The table of methods: one row of plain data per method.
 //!
 //! To add a method, add a variant to [`Method`], its row and its place in [`Method::ALL`]. The
-//! compiler then asks for the type that computes it. For a method that scenes are drawn by, add a
-//! variant to [`DrawnMethod`], too. The compiler then asks for a price and a motion.
+//! compiler then reports the missing type that computes it. For a method that scenes are drawn by,
+//! add a variant to [`DrawnMethod`], too. The compiler then reports the missing price and motion.
 
 use core::fmt;
 
@@ -383,7 +383,7 @@ impl Method {
         self.row().order
     }
 
-    /// Returns the method as one that scenes are drawn by; `None` if it is not in
+    /// Returns the method as a method for drawing; `None` if it is not in
     /// [`DRAWN`](Self::DRAWN).
     pub(crate) const fn drawn(self) -> Option<DrawnMethod> {
         self.row().drawn
@@ -408,8 +408,8 @@ impl fmt::Display for Method {
     }
 }
 
-// The order of `Method::ALL` is that of the variants, and the order of `Method::DRAWN` is that of
-// the variants of `DrawnMethod`. Each row of a drawn method has the variant of its own.
+// `Method::ALL` has the order of the variants, and `Method::DRAWN` has the order of the variants
+// of `DrawnMethod`. Each row of a drawn method has the variant of its own.
 const _: () = {
     let mut i = 0;
     let mut drawn = 0;

@@ -76,7 +76,7 @@ pub struct Controls {
 
 impl Controls {
     /// Takes the reading of one tick; call it once in every tick. Returns the commands of the
-    /// buttons, usually none: those of the arrows, then that of the select button alone.
+    /// buttons, usually none: first the arrows' commands, then the select button's own command.
     pub fn tick(
         &mut self,
         Pressed {

@@ -38,7 +38,7 @@ impl Default for Instruments {
 
 impl Instruments {
     /// Returns the answer to [`Command::Identify`](crate::protocol::Command::Identify): `identity`
-    /// with the CRC-32 and the size of the image, both 0 if there is none.
+    /// with the CRC-32 and the size of the image. Both are 0 without an image.
     pub fn identity(&self) -> Identity {
         let image = (self.image)();
         Identity {

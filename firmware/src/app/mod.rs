@@ -114,7 +114,8 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
     /// that is connected now at once, and to any other when it asks.
     ///
     /// The present scene continues instead if the restarts in a row are too many
-    /// ([`MOST_RESTARTS`]), or if the scene of the record cannot be played. The log event says so.
+    /// ([`MOST_RESTARTS`]), or if the scene of the record cannot be played. The log event
+    /// records this.
     pub fn resume(&mut self, restart: &Record, mut log: impl Log<Panel, Link>) {
         let resumed = !restart.is_given_up() && self.player.resume(&restart.played).is_ok();
         log(Event::Restarted(restart.end, resumed));

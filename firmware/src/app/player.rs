@@ -14,7 +14,7 @@ use crate::scenes::{AnyScene, Report, SceneName};
 /// An event of the planner, or of the motion that is shown.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PlannerEvent {
-    /// The planner has found a result: a plan, or the reason why there is none.
+    /// The planner has found a result: a plan, or the reason why no method fits.
     Found(PlanResult),
     /// The motion is now computed by this method and step count, at this cost of a frame, cycles of
     /// the price list.
@@ -82,8 +82,8 @@ impl<'a> Player<'a> {
     /// the requested method follows its plan. A motion that is too fast does not advance: the state
     /// is then [`PlayState::Stopped`].
     ///
-    /// Returns the kernel's error if the settings describe no pendulum, or one that the scene
-    /// cannot show. Then nothing is changed.
+    /// Returns the kernel's error if the settings describe no pendulum, or a pendulum that the
+    /// scene cannot show. Then nothing is changed.
     pub fn play(&mut self, name: SceneName, settings: Settings) -> Result<(), Error> {
         match self.play_by(self.method, name, settings) {
             Err(_) if self.method.is_some() => self.play_by(None, name, settings),
@@ -246,7 +246,7 @@ impl<'a> Player<'a> {
         !self.is_still() && !self.is_switching() && self.planner.work_ahead()
     }
 
-    /// Returns the last result of the planner, if there is one, and its problem; `None` if the
+    /// Returns the last result of the planner, if any, and its problem; `None` if the
     /// scene shows no planned motion or is too fast from its start.
     pub fn plan(&self) -> Option<Planned> {
         self.planner.planned()
@@ -373,7 +373,7 @@ impl<'a> Player<'a> {
         }
     }
 
-    /// Returns the state of the player. That of the panel is the default.
+    /// Returns the state of the player. The state of the panel is the default.
     pub fn status(&self) -> Status {
         let Self {
             name: scene,

@@ -40,8 +40,8 @@ static PATH: Shared<Path> = Shared::new(Path {
     interrupts: false,
 });
 
-/// Opens the log of a chip, in memory. Earlier lines are lost, and so are parts of lines for which
-/// the 1024 bytes have no room because no probe reads them. From now on no debugger is assumed to
+/// Opens the log of a chip, in memory. Earlier lines are lost. Parts of lines are also
+/// lost if no probe reads them and the 1024 bytes are full. From now on no debugger is assumed to
 /// be present (`crash::expect_no_debugger`).
 pub fn into_memory() {
     crash::expect_no_debugger();

@@ -229,7 +229,7 @@ pub struct OledI2c<'a, Bus> {
     counts: Count,
 }
 
-/// Counts of the frames since the panel shows them, and of those that were sent in part or whole.
+/// Counts of the frames since the panel shows them, and of the frames sent in part or whole.
 #[derive(Clone, Copy, Debug, Default)]
 struct Count {
     frames: u32,

@@ -168,7 +168,7 @@ impl Row {
 pub struct Fading {
     /// The number of rows that lose a grey in a tick.
     pub rows: u8,
-    /// The grey at which the fading of a pixel ends, 0 to 15.
+    /// The final grey of a faded pixel, 0 to 15.
     pub last: u8,
 }
 
@@ -182,7 +182,7 @@ impl Fading {
 /// The traces of earlier frames. Each frame is drawn over them.
 #[derive(Clone, Debug)]
 pub struct FadeLayer {
-    /// The traces, to which each tick of the scene may add.
+    /// The traces. Each tick of the scene may add to them.
     pub frame: Canvas,
     /// The next row to fade.
     row: i32,

@@ -1,8 +1,7 @@
 //! Numbers as text without floating-point formatting, which alone would take 14 KB of flash.
 //!
-//! A name is put in front as it is, with its own space, and a unit behind. A part of a label (a
-//! name, a digit, a unit) for which there is no room is left out, with all that follow. NaN is
-//! written as 0.
+//! A name is put in front as it is, with its own space, and a unit behind. If a part of a label (a
+//! name, a digit, a unit) does not fit, it and the later parts are left out. NaN is written as 0.
 
 use heapless::String;
 

@@ -104,9 +104,9 @@ impl View {
     /// position to the new one, `2 * half_width` subpixels wide, with a brightness of 0 (black) to
     /// 255 (grey 15). Pixels that are brighter already keep their grey.
     ///
-    /// The last position is that of the last call of this function or of [`turn`](Self::turn).
-    /// Before the first call it is the position that the view was created with. The parts of a
-    /// stroke outside the canvas are not drawn.
+    /// The last position is the result of the last call of this function or of
+    /// [`turn`](Self::turn). Before the first call it is the position that the view was created
+    /// with. The parts of a stroke outside the canvas are not drawn.
     pub fn trace(
         &mut self,
         directions: RodDirections,

@@ -18,7 +18,7 @@ pub struct Job<R = OnBoards> {
     turns: Option<[Turns; 2]>,
     /// The number of steps from one sample to the next.
     stride: u32,
-    /// The number of samples returned so far, including the initial one; wraps. A reading that is
+    /// The number of samples returned, including the initial one; wraps. A reading that is
     /// not finite counts, too.
     pub given: u32,
     /// The number of samples left, including the initial one.

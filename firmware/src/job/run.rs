@@ -33,8 +33,7 @@ pub(super) fn start<F: Form>(request: &Request) -> Result<F, Error> {
     Form::new(&parameters, &state, request.dt)
 }
 
-/// Returns the same by the request's method, which must be one that scenes are drawn by. Refuses
-/// others.
+/// Returns the same by the request's method. Refuses methods that scenes are not drawn by.
 #[inline(never)]
 pub(super) fn start_drawn(request: &Request) -> Result<DrawnMotion, Error> {
     let (parameters, state) = rounded(request)?;

@@ -117,7 +117,7 @@ impl Misprinted {
         self.z = [sin1, cos1, sin_d, cos_d, q1, q2];
     }
 
-    /// Returns the directions (sin, cos) of both rods. Those of a lost motion are the last ones
+    /// Returns the directions (sin, cos) of both rods. A lost motion keeps the last directions
     /// that a step reached.
     pub fn directions(&self) -> RodDirections {
         let [sin1, cos1, sin_d, cos_d, ..] = self.z;

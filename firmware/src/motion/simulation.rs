@@ -16,7 +16,7 @@ pub struct Resources {
     pub method: Option<Method>,
 }
 
-/// A motion in progress, of which a tick is 1/60 s.
+/// A motion in progress. A tick is 1/60 s of it.
 #[derive(Clone, Debug)]
 pub struct Simulation {
     /// The energy at the start.
@@ -155,8 +155,8 @@ pub struct Energy {
 impl Energy {
     /// Computes the energy of the start that `settings` describe.
     ///
-    /// Angles and velocities that are not finite are accepted. The energy at the start is then NaN,
-    /// for which [`error`](Self::error) returns 0, or infinite, for which it returns NaN.
+    /// Angles and velocities that are not finite are accepted. The energy at the start is then NaN
+    /// or infinite, and [`error`](Self::error) returns 0 or NaN, respectively.
     ///
     /// # Errors
     ///

@@ -33,7 +33,7 @@ pub enum Shows {
 pub trait Scene: Sized {
     /// The subject of the scene.
     const SHOWS: Shows;
-    /// The fading of the ink in a tick. By default it is that of a trace.
+    /// The fading of the ink in a tick. By default it is the fading of a trace.
     const FADING: Fading = Fading::TRACE;
 
     /// Creates the scene at its start. Returns also the height of the display for the plan, pixels.

@@ -106,8 +106,8 @@ impl Small {
     }
 }
 
-/// Returns the height, pixels, of the picture for which the scene is planned: the picture of both
-/// rods in which a bob is half a pixel off if the curve of its angle is.
+/// Returns the height, pixels, of the picture that the scene is planned for. In this picture of
+/// both rods, a bob is half a pixel off if the curve of its angle is half a pixel off.
 ///
 /// The curve is off by half a pixel if the angle is off by 1/(2 `scale`). The bob of a rod of
 /// length l is then off by the chord 2 l sin(1/(4 `scale`)). A picture of this height shows 2 l in

@@ -123,6 +123,7 @@ impl Instruction {
     /// on a Cortex-M4 (compendium.i-0.nl, "Division timing"). Both manuals say 2 to 12 cycles,
     /// "based on the number of leading ones and zeroes".
     fn division(&self, registers: &Registers) -> u64 {
+        // The signed and the unsigned instruction differ in one bit.
         let is_signed = self.word & 1 << 21 == 0;
         let bits = |register: u32| {
             let value = registers.general[register as usize & 0xf];
@@ -133,6 +134,8 @@ impl Instruction {
             };
             u32::BITS - size.leading_zeros()
         };
+
+        // A quotient of 0 takes the fewest cycles; others cost a cycle per 4 bits of length.
         let dividend = bits(self.word >> 16);
         let divisor = bits(self.word);
         if dividend == 0 || divisor == 0 {

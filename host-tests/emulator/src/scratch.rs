@@ -65,6 +65,7 @@ fn abandoned(parent: Option<&Path>) -> Vec<PathBuf> {
         name.as_encoded_bytes().starts_with(PREFIX.as_bytes())
     };
 
+    // A folder that cannot be inspected counts as in use.
     let paths = entries.into_iter().flatten().flatten();
     paths
         .map(|entry| entry.path())
@@ -112,6 +113,7 @@ mod tests {
         old(parent, "another");
         fs::create_dir(parent.join("double-pendulum-run-new")).expect("a folder");
 
+        // Hold the lock of one folder as its owner does, and release it later.
         let opened = File::open(owned).expect("a folder");
         let lock = Flock::lock(opened, FlockArg::LockExclusiveNonblock).expect("a lock");
         assert_eq!(abandoned(Some(parent)), [left]);

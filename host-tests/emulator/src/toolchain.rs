@@ -87,6 +87,7 @@ pub fn set_up_and_build(board: &Board) -> anyhow::Result<(Toolchain, PathBuf)> {
         return Ok((toolchain, elf));
     }
 
+    // QEMU is fetched in a thread of its own; its result is needed only after the build.
     let _turn = turn()?;
     let (core, elf, qemu) = thread::scope(|scope| {
         let qemu = scope.spawn(|| arm(true));

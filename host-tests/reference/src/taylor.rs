@@ -263,6 +263,8 @@ fn longest_step(motion: &[Vec<TwoFloat>; 4], order: usize) -> f64 {
     let rate = magnitude(motion[2][0])
         .max(magnitude(motion[3][0]))
         .max(1.0);
+
+    // Each of the last four coefficients of each series limits the step.
     let limits = motion
         .iter()
         .zip([1.0, 1.0, rate, rate])

@@ -31,6 +31,7 @@ struct Core(&'static str, &'static str, Emulator, Option<&'static str>);
 fn emulated(Core(_, target, emulator, double): &Core) -> anyhow::Result<Command> {
     let toolchain = toolchain::set_up_for(target)?;
     let mut command = Command::new(&toolchain.qemu);
+    // Machines without an operating system print by semihosting.
     match emulator {
         Machine(machine, processor) => {
             command.args(["-machine", machine, "-cpu", processor]);
@@ -42,6 +43,7 @@ fn emulated(Core(_, target, emulator, double): &Core) -> anyhow::Result<Command>
             command.arg(toolchain::workspace().join("host-tests/emulator/wasm.js"));
         }
     }
+    // A failed build fails the test here; only a missing tool is returned as an error.
     let image = toolchain
         .build_cores(target, *double)
         .unwrap_or_else(|error| panic!("{error}"));
@@ -50,7 +52,7 @@ fn emulated(Core(_, target, emulator, double): &Core) -> anyhow::Result<Command>
 }
 
 /// Runs the program of a core and compares its output with the golden file. Skips a core whose
-/// tools are missing, unless it is one of the boards' own.
+/// tools are missing, unless a board has this core.
 fn computes_the_golden_bits(core: &Core, golden: &str) {
     let Core(name, target, _, double) = core;
     let image = (*target, *double);

@@ -176,7 +176,7 @@ fn a_simulated_second_costs_no_more_than_its_goal() -> Result<()> {
 /// of the compiler.
 const PRICED: RangeInclusive<f32> = 0.97..=1.03;
 
-/// Each price of each processor class, including that of the preparation, is within 3 % of the
+/// Each price of each processor class, including the price of the preparation, is within 3 % of the
 /// cycles that are counted now.
 #[test]
 fn price_lists_equal_the_counted_costs() -> Result<()> {
@@ -242,6 +242,7 @@ fn a_crate_outside_pays_what_the_hidden_function_costs() -> Result<()> {
             .iter()
             .filter(|price| !price.program.counts_turns)
         {
+            // The same motion and the same number of steps, without `Run::advance`.
             let hidden = step_cost(target, &request(program.method, 0.5, steps))?.cycles;
             println!(
                 "{program} on {}: {step:.1}, hidden {hidden:.1}",

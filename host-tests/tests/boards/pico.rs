@@ -413,6 +413,7 @@ fn a_panel_that_holds_the_clock_low_shows_the_picture_when_it_lets_go() -> anyho
     let while_held = board.tell("i2c")?[2];
     assert!(while_held > resets);
 
+    // After the clock is released, the panel must show the paused frame again.
     board.tell("hold 0")?;
     board.run(Duration::from_secs(2))?;
     let frame = stand_still(&mut board)?;

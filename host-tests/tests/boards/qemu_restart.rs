@@ -140,7 +140,7 @@ fn a_fault_in_a_frame_reports_the_scene_and_the_step() -> anyhow::Result<()> {
 }
 
 /// With the stack pointer at the guard the next function overflows the stack. The fault comes
-/// before any byte of the statics below has changed, and its report says that the registers are
+/// before any byte of the statics below has changed, and its report states that the registers are
 /// lost.
 #[test]
 fn a_stack_overflow_in_a_frame_meets_the_guard_and_damages_no_static() -> anyhow::Result<()> {

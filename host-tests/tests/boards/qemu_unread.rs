@@ -20,7 +20,7 @@ const POLL: Duration = Duration::from_millis(20);
 const FRAMES: usize = 120;
 
 /// After the board has logged that its port is full, the host reads again: the frames that follow
-/// equal the host's, and only those of the gap are missing. The board is the only one with an
+/// equal the host's, and only the frames of the gap are missing. The board is the only one with an
 /// emulated port that reports when it is full. The other machines stop as a whole.
 #[test]
 fn a_host_that_stops_reading_loses_frames_and_nothing_else() -> anyhow::Result<()> {

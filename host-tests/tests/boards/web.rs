@@ -1,5 +1,6 @@
 //! The page of `cargo web`: its boards send the host's bytes; in Chromium it shows the pictures of
-//! the scenes, and its keys, sliders, bobs and links work. A test whose tools are missing says so.
+//! the scenes, and its keys, sliders, bobs and links work. A test whose tools are missing reports
+//! them.
 
 use std::fs;
 use std::io::{Write, stderr};
@@ -48,6 +49,7 @@ fn boards_on_the_page_send_the_hosts_bytes() -> anyhow::Result<()> {
         let output = run(node.arg(page).args(codes))?;
         let mut sent = output.as_str();
 
+        // The page prints its boards in this order: every processor for each scene.
         let scenes = SceneName::ALL.iter().copied();
         let scenes = scenes.flat_map(|scene| PROCESSORS.map(|chip| (scene, chip)));
         for (scene, (chip, _, processor)) in scenes {

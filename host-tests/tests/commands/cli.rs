@@ -53,7 +53,7 @@ fn played(line: &str, folder: &Path) -> String {
 }
 
 /// Every command line of the snapshots has its committed output and exit code, and writes no file.
-/// Those in `refused.txt` have one line on stderr, that of the error, and exit code 2.
+/// Command lines in `refused.txt` print only the error on stderr, in one line, with exit code 2.
 #[test]
 fn output_of_every_command_equals_its_snapshot() {
     let empty = tempfile::tempdir().expect("a folder");
@@ -135,7 +135,7 @@ fn closed() -> io::Result<Stdio> {
     Ok(writer.into())
 }
 
-/// With nobody to read stdout, every command of [`COMMANDS`] ends with exit code 0 and without an
+/// If stdout has no reader, every command of [`COMMANDS`] ends with exit code 0 and without an
 /// error. A refused option still has exit code 2.
 #[test]
 fn a_closed_output_ends_every_command_quietly() -> io::Result<()> {
@@ -176,12 +176,14 @@ fn a_scene_is_planned_as_the_boards_start_it() {
     for (target, processor) in [("m3", CORTEX_M3), ("m4f", STM32F405)] {
         let mut show =
             Show::on(processor, name, &name.first_settings()).expect("a scene of the catalogue");
+        // A simulated board plans the scene and gives the expected horizon.
         let horizon = loop {
             show.tick();
             if let [.., (_, PlannerEvent::Found(Ok(plan)))] = show.news[..] {
                 break plan.horizon;
             }
         };
+        // The command must print the same horizon.
         let text = output(program("plan").args(["--scene", "page", "--target", target])).stdout;
         assert!(
             text.contains(&format!("until {horizon:.2} s of 30 s")),

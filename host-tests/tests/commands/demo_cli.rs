@@ -246,6 +246,7 @@ fn half_speed_simulates_half_the_time() {
         "2",
     ]));
     assert_eq!(output.status.code(), Some(0), "{output:?}");
+    // The summary must have about 1 s: 2 s at half the speed.
     let summary = &output.stdout;
     let time = summary
         .lines()

@@ -158,6 +158,7 @@ fn board_without_a_choice_of_controllers_refuses_one() {
 fn a_board_that_never_plays_the_requested_scene_is_an_error() {
     let mut sequence = 0;
     let [_, messages] = demo(1, "--scene butterfly", |bench| {
+        // Send another frame of the default scene every 16 ms.
         sequence += 1;
         let report = Report {
             step: sequence.into(),
@@ -263,6 +264,7 @@ fn a_board_that_comes_back_after_a_hang_is_reported_as_restarted() {
 fn a_foreign_device_is_reported_and_a_board_in_its_place_is_accepted() {
     let mut foreign = None;
     let [_, messages] = demo(0, "--seconds 2", |bench| {
+        // The foreign bytes start once the host listens; afterwards the board takes over.
         if bench.is_heard() && foreign.get_or_insert_with(Instant::now).elapsed() < FOREIGN {
             bench.say(FOREIGNER);
             sleep(Duration::from_millis(20));

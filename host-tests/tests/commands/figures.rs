@@ -26,7 +26,7 @@ const SMALL: [[f64; 4]; 3] = [
 /// The angle 2 at the start, degrees, which is also the largest.
 const START: f64 = 30.0;
 
-/// Each committed SVG file is equal, byte by byte, to the one that the kernel draws now.
+/// Each committed SVG file is equal, byte by byte, to the drawing that the kernel makes now.
 #[test]
 fn the_committed_figures_equal_the_kernels() {
     for (name, svg) in figures().expect("the figures can be drawn") {
@@ -79,8 +79,10 @@ fn is_shown(name: SceneName) -> bool {
                 0
             };
 
+            // Advance to the first tick at which this picture may be shown.
             (0..to_its_time).for_each(|_| scene.tick());
 
+            // Any tick from here to `LATE` ticks later may be the recorded one.
             let mut is_shown = Screenshot::from(&scene.frame()).greys == *greys;
             for _ in 0..LATE {
                 scene.tick();
@@ -219,8 +221,8 @@ fn flips(arguments: &[&str], name: &str) -> Vec<u8> {
     fs::read(out).expect("a file")
 }
 
-/// The committed picture of the flips is equal, byte by byte, to the one that the command of the
-/// README writes now.
+/// The committed picture of the flips is equal, byte by byte, to the picture that the command of
+/// the README writes now.
 #[test]
 fn the_committed_map_equals_a_new_one() {
     let committed = fs::read(folder().join("figures/flips.png")).expect("a picture");

@@ -27,8 +27,8 @@ fn fw(arguments: &[&str]) -> Output {
     output(program("fw").args(arguments))
 }
 
-/// `cargo fw --seconds 2` stops the application with exit code 0 and says so. A program that fails
-/// before its time has exit code 1.
+/// `cargo fw --seconds 2` stops the application with exit code 0 and reports it. A program that
+/// fails before its time has exit code 1.
 #[test]
 fn a_program_without_end_is_stopped_with_success_on_request() {
     let output = fw(&["mps2-an386", "--seconds", "2"]);
@@ -118,7 +118,7 @@ fn an_interrupted_command_leaves_no_temporary_folder() {
 }
 
 /// A command that is killed leaves its folder. Once the folder is an hour old, the next `cargo fw`
-/// removes it and leaves none of its own.
+/// removes it and leaves no folder of its own.
 #[test]
 fn the_folder_of_a_killed_command_is_removed_by_the_next_command() {
     const LONG_AGO: Duration = Duration::from_secs(3600);
@@ -225,6 +225,7 @@ fn handed(
     let fake = folder.path().join(name);
     fs::write(&fake, format!("#!/bin/sh\necho \"$@\"\n{ends}\n"))?;
     fs::set_permissions(&fake, Permissions::from_mode(0o755))?;
+    // The fake comes first on the PATH, before a real program of the same name.
     let rest = env::var_os("PATH").unwrap_or_default();
     let output = flash(
         arguments,

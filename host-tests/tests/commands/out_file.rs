@@ -73,6 +73,7 @@ fn two_commands_that_write_one_file_both_succeed() {
             .expect("it runs")
     };
     std::thread::scope(|scope| {
+        // All are started before the first is awaited, so that their writes can overlap.
         let runs = [(); 4].map(|()| scope.spawn(start));
         for run in runs {
             let said = run.join().expect("it ends");

@@ -244,6 +244,7 @@ proptest! {
             samples,
         };
         let run = OnBoards::start(&request).expect("a method of the boards");
+        // A request that is refused at the start is a valid outcome.
         let Ok(mut job) = run.and_then(|run| Job::new(run, &request)) else { return Ok(()) };
         for _ in 0..24 {
             let Ok(reading) = job.advance() else {

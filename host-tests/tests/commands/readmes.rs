@@ -108,8 +108,8 @@ fn named(page: &str) -> BTreeSet<String> {
     words.filter_map(name).collect()
 }
 
-/// Every command of the project is in at least one README. Every command in a README is one of the
-/// project, of cargo, or of [`INSTALLED`].
+/// Every command of the project is in at least one README. Every command in a README belongs to the
+/// project, to cargo, or to [`INSTALLED`].
 #[test]
 fn the_readmes_name_every_command_and_no_other() {
     let named: BTreeSet<_> = README.iter().flat_map(|file| named(&read(file))).collect();
@@ -171,6 +171,7 @@ fn readme_links_to_a_section_name_one_of_its_headings() {
             .filter_map(|rest| rest.split_once(')')?.0.split_once('#'))
             .filter(|(target, _)| !target.starts_with("http"));
 
+        // A target without a file is a heading of the same page.
         for (target, anchor) in targets {
             let linked = match target {
                 "" => page.clone(),
@@ -242,6 +243,7 @@ fn cargo(arguments: &[&str], folder: &Path) {
                 .current_dir(folder),
         )
     };
+    // The registry is needed only if a package is not on this machine yet.
     if !run(&["--offline"]).status.success() {
         let output = run(&[]);
         assert!(
@@ -260,8 +262,8 @@ fn settings(text: &str) -> impl Iterator<Item = &str> {
         .filter(|line| !line.is_empty() && !line.starts_with(['#', '[']))
 }
 
-/// The settings with which the kernel's README gives its prices are those that the counted programs
-/// are compiled with, and those of this repository. There are no others.
+/// The kernel's README gives its prices with the settings with which the counted programs are
+/// compiled, which are also the settings of this repository. There are no others.
 #[test]
 fn the_kernels_readme_shows_the_settings_of_its_prices() {
     let readme = read("kernel/README.md");

@@ -62,6 +62,7 @@ fn lines(folder: &str) -> Vec<(String, String)> {
     let source = workspace().join(folder);
     let mut lines = Vec::new();
     for path in sources(folder) {
+        // A room is the first component of the path: a file or a folder.
         let room = path
             .strip_prefix(&source)
             .expect("within")

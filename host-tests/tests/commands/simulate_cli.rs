@@ -50,6 +50,7 @@ fn error(request: &Request) -> Result<f64, double_pendulum::Error> {
     })?;
     let every = f64::from(request.stride) * request.dt;
 
+    // Evaluate the reference at the times of the rows.
     let times = (0..rows.len()).map(|row| row as f64 * every);
     let [a1, a2] = request.angles;
     let [w1, w2] = request.velocities;
@@ -199,8 +200,8 @@ const ROUNDINGS: f64 = 1e-13;
 
 /// For five fast motions and five methods, the longest step 1/N s that is admissible causes no
 /// warning, and the next longer one does. Without a warning, RK4's error in a step is at most
-/// [`SAFE_STEP_ERROR`], and that of the other methods at most RK4's. The steps of a tolerance cause
-/// no warning.
+/// [`SAFE_STEP_ERROR`], and the error of the other methods is at most RK4's. The steps of a
+/// tolerance cause no warning.
 #[test]
 fn the_warning_of_a_long_step_depends_on_the_order_of_the_method()
 -> Result<(), Box<dyn std::error::Error>> {

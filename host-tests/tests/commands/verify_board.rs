@@ -113,8 +113,8 @@ fn person(question: &str) -> Option<(Option<Key>, Option<&'static str>)> {
 /// 50 MHz.
 const OVERLONG: u32 = 0_u32.wrapping_sub(750_000);
 
-/// Changes the messages of an emulated board into those that a chip with a cycle counter sends. No
-/// emulated board has one.
+/// Changes the messages of an emulated board into the messages of a chip with a cycle counter. No
+/// emulated board has such a counter.
 ///
 /// The chip counts 100 cycles for a step of the second arithmetic from flash, 50 from RAM, and none
 /// for the others. An arithmetic without a count is measured once for each place, and the others
@@ -123,6 +123,7 @@ const OVERLONG: u32 = 0_u32.wrapping_sub(750_000);
 fn counting(mut message: ToHost, measurements: &mut u32) -> Vec<u8> {
     match &mut message {
         ToHost::Answer(_, Answer::Measured { steps, cycles }) => {
+            // The second arithmetic is measured 16 times from flash, then 16 times from RAM.
             let each = match *measurements {
                 2..18 => 100,
                 18..34 => 50,

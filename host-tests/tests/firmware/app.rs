@@ -28,7 +28,7 @@ fn run(clock: impl IntoIterator<Item = u32>) -> Plain {
 }
 
 /// After 600 ticks the report and the canvas are equal, bit by bit, whether each tick was drawn,
-/// every third, an uneven selection, or none but those that a late board must draw.
+/// every third, an uneven selection, or only the ticks that a late board must draw.
 #[test]
 fn the_state_and_the_picture_after_n_ticks_are_the_same_at_any_frame_rate() {
     // The clock advances by one tick, by three, unevenly, or by all ticks at once.
@@ -208,7 +208,7 @@ fn counts_wrap_unnoticed() {
     let begin = 0_u32.wrapping_sub(AHEAD / 3);
     let plain = run(0);
     let wrapped = run(begin);
-    // Pictures and frames are equal, apart from the counts themselves.
+    // Pictures and frames are equal except for the counts.
     assert_eq!((&plain.1, plain.0.len()), (&wrapped.1, wrapped.0.len()));
     for (mut plain, wrapped) in plain.0.into_iter().zip(wrapped.0) {
         plain.sequence = plain.sequence.wrapping_add(begin);

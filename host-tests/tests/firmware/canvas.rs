@@ -290,7 +290,7 @@ fn a_gap_sets_a_disc_off() {
     }
 }
 
-/// The total light of a stroke is that of its area, to 3 %, at each of 360 degrees.
+/// The total light of a stroke equals its area, to 3 %, at each of 360 degrees.
 #[test]
 fn a_line_is_as_bright_in_every_direction() {
     let length = 20.0;

@@ -104,6 +104,7 @@ fn no_tap_is_lost_at_any_speed() {
         right,
         right,
     ];
+    // The application may take only some of the bytes, so offer the rest until none are left.
     let mut bytes = taps
         .iter()
         .flat_map(|&tap| wire(1, tap))
@@ -112,6 +113,7 @@ fn no_tap_is_lost_at_any_speed() {
     while !bytes.as_slice().is_empty() {
         app.receive(bytes.by_ref(), |_| ());
     }
+    // Five turns right and one left are four; heavier and lighter cancel.
     assert_eq!(
         app.player.settings,
         before.turned(1).turned(1).turned(1).turned(1)
@@ -324,6 +326,7 @@ fn a_message_that_is_no_command_is_not_answered() {
         );
     }
 
+    // A message of any kind but the one of commands (0x80) is ignored, too.
     for kind in (0..=u8::MAX).filter(|kind| *kind != 0x80) {
         app.receive(
             frame(&[kind, 7, 0, 1], &mut [0; MAX_WIRE]).iter().copied(),
@@ -385,10 +388,10 @@ fn every_scene_can_be_chosen_restarts_pauses_and_steps() {
     }
 }
 
-/// The first plan of the page lasts for more than 19 s, is an event of the log, and its method is
-/// that of the frames. After a change to a small swing there is no plan until a cheaper one is
-/// found for the whole planned time; the motion takes it over, and its horizon grows. A scene
-/// without a motion has no plan.
+/// The first plan of the page lasts for more than 19 s, is an event of the log, and the frames name
+/// its method. After a change to a small swing there is no plan until a cheaper one is found for
+/// the whole planned time; the motion takes it over, and its horizon grows. A scene without a
+/// motion has no plan.
 #[test]
 fn the_plan_is_found_reported_and_followed() {
     let mut app = app();
@@ -469,7 +472,7 @@ fn a_method_can_be_forced() {
 /// fast.
 const COSTLY: Method = Method::Rk4F32DirectionPlain;
 
-/// Returns settings of which [`COSTLY`] is too expensive for a frame.
+/// Returns settings with which [`COSTLY`] is too expensive for a frame.
 fn fast() -> Settings {
     let mut settings = Settings::equal_rods(1.0, 10.0);
     settings.parameters.l2 = 0.002;
@@ -551,6 +554,7 @@ fn a_scene_that_has_fallen_back_follows_its_plan() {
     let initial = app.player.report.stepping;
     let mut found = None;
 
+    // The last plan found in these 30 s must be the one in use.
     for clock in 1..=30 * TICK_RATE {
         app.run_to(clock, |event| {
             if let Event::Motion(PlannerEvent::Found(Ok(plan))) = event {
@@ -697,7 +701,7 @@ fn speed_is_exact_in_the_long_run() {
 const BYTES_PER_TICK: usize = 768;
 
 /// Feeds `bytes` as fast as the link can deliver them, one frame per tick. Checks that every tick
-/// has its intact frame and that the log has at most one line a second apart from those about
+/// has its intact frame and that the log has at most one line a second, not counting lines about
 /// executed commands. Returns the application.
 fn flood(mut bytes: impl Iterator<Item = u8>, seconds: u32) -> Plain {
     let mut app = app();
@@ -729,8 +733,8 @@ fn flood(mut bytes: impl Iterator<Item = u8>, seconds: u32) -> Plain {
 }
 
 /// A minute of random bytes, zeros, a message without an end, and halves of a command: no frame is
-/// late or damaged, no command is executed, and the motion is that of an undisturbed board. Of a
-/// flood of restarts at least half of the number that may be executed is answered.
+/// late or damaged, no command is executed, and the motion equals the motion of an undisturbed
+/// board. Of a flood of restarts at least half of the number that may be executed is answered.
 #[test]
 fn noise_half_commands_and_floods_do_not_disturb_the_stream() {
     let mut rng = Rng::with_seed(5);

@@ -285,16 +285,19 @@ fn labels_show_the_settings() {
         expected.map(|text| format!("μ {text}"))
     );
 
+    // Angles keep half degrees and the sign of -0.5.
     let angles = [0.0, 120.0, -7.0, 171.5, -0.5].map(|degrees| label::degrees("α ", degrees));
     let expected = ["α 0°", "α 120°", "α -7°", "α 171.5°", "α -0.5°"];
     assert_eq!(angles.map(|label| label.to_string()), expected);
 
+    // Times are rounded down to tenths.
     let times = [0.0, 0.099, 59.96, 3600.0].map(label::time);
     assert_eq!(
         times.map(|label| label.to_string()),
         ["0.0 s", "0.0 s", "59.9 s", "3600.0 s"]
     );
 
+    // The text depends on the kind of horizon, and the number of digits on its size.
     let horizons = [
         (Horizon::Until(8.46), "½px 8.4 s"),
         (Horizon::Until(9370.2), "½px 9370 s"),
@@ -307,6 +310,7 @@ fn labels_show_the_settings() {
         assert_eq!(horizon.label().to_string(), text, "{horizon:?}");
     }
 
+    // Ticks of a scale have no trailing zeros.
     let ticks = [0.0, 0.05, 0.2, 1.0, 50.0].map(|time| label::tick(time, " s"));
     assert_eq!(
         ticks.map(|label| label.to_string()),

@@ -145,7 +145,7 @@ fn calls_are_distinguished_from_other_instructions() {
     }
 }
 
-/// An exception saves 32 bytes, or 104 if the return value says that the registers of the
+/// An exception saves 32 bytes, or 104 if the return value shows that the registers of the
 /// floating-point unit are saved, too.
 #[test]
 fn the_stacked_registers_include_the_floating_point_unit() {

@@ -314,6 +314,7 @@ fn a_frame_has_the_documented_bytes() {
     let mut wire = [0; MAX_WIRE];
     let bytes = decoded(encode(&ToHost::Frame(frame), &mut wire));
 
+    // The expected bytes are written field by field, independently of the encoder.
     let mut expected = vec![0, 0xAC, 0x02, 0, 0, 12, 0];
     expected.extend(2.5_f32.to_le_bytes());
     expected.extend(0.0_f32.to_le_bytes());

@@ -34,7 +34,7 @@ fn run(rhs: impl Fn(&[f64; 4]) -> [f64; 4]) -> [f64; 3] {
     let mut error = 0.0_f64;
     let mut above = 0.0;
     for run in 0..RUNS {
-        // Each run starts a little farther from the first.
+        // Each run starts at a slightly larger distance from the first.
         let angle = figure_7.a1 + 1e-6 * run as f64;
         let start = State::at_rest(angle, angle);
         let start_energy = pendulum.energy(&start);

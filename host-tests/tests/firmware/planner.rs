@@ -71,6 +71,7 @@ fn nothing_is_planned_without_a_motion_or_after_the_plan() {
     still.start(&Settings::default(), None, None, false);
     assert!(still.tick().is_none() && !still.work_ahead() && !still.is_searching());
 
+    // Plan a motion until its last result is found.
     let mut planner = planner(STM32F405, &Settings::default());
     while planner.is_searching() {
         planner.tick();
@@ -86,6 +87,7 @@ fn nothing_is_planned_without_a_motion_or_after_the_plan() {
     );
     assert!(!planner.work_ahead() && planner.tick().is_none());
 
+    // A new motion must not inherit the result of the one before.
     planner.start(
         &Settings::equal_rods(1.0, 30.0),
         Some(HEIGHT),
@@ -198,6 +200,7 @@ fn planner_reports_that_no_method_fits() {
         matches!(found, Some(Err(PlanError::NoMethod { .. }))),
         "{found:?}"
     );
+    // The failure is kept, with the budget for which it was found.
     let answer = planner.planned().expect("a motion");
     assert_eq!(answer.found, found);
     assert_eq!(

@@ -47,7 +47,7 @@ fn picture(canvas: &Canvas) -> String {
 }
 
 /// After one and after four seconds, every pixel of each scene equals the stored picture. Each is
-/// drawn over the frame of another scene, of which nothing may remain.
+/// drawn over the frame of another scene, and nothing of that frame may remain.
 #[test]
 fn every_scene_equals_its_snapshot() {
     let before = after(SceneName::Page, 100).frame();
@@ -139,6 +139,7 @@ fn a_pause_is_marked_and_only_a_pause() -> Result<(), String> {
         app.run_to(clock, |_| ());
         app.canvas.clone()
     };
+    // The expected picture without a mark is of a scene that was never paused.
     let plain = |ticks| after(SceneName::Page, ticks).frame();
     assert!(pause(false, 1) == plain(1), "a moving scene has no mark");
     snapshot::check("page-paused", &picture(&pause(true, 2)))?;
@@ -290,6 +291,7 @@ fn scales_have_round_steps() {
 fn the_butterfly_is_planned_while_it_is_played() {
     let mut show = Show::new(SceneName::Butterfly, &Settings::equal_rods(1.0, 20.0))
         .expect("a scene of the catalogue");
+    // The first plan that is found within a minute.
     let found = (0..60 * TICK_RATE).find_map(|_| {
         show.tick();
         show.news.iter().find_map(|(_, news)| {

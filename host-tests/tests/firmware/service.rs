@@ -87,6 +87,7 @@ fn every_method_of_the_boards_answers_with_the_hosts_readings() {
             ..request
         };
 
+        // The service must send the host's readings, numbered from 0.
         for request in [request, turning] {
             let readings = readings(&request).expect("a pendulum");
             assert_eq!(readings.len(), 6);
@@ -218,6 +219,7 @@ fn a_step_too_long_for_the_energy_is_computed_with_a_warning() {
         ..REQUEST
     };
 
+    // The heavy bob 2 makes the step of the request more than ten times too long.
     let admissible_step = coarse.admissible_step().expect("a pendulum");
     assert!(admissible_step < coarse.dt / 10.0);
     let fine = Request {

@@ -61,6 +61,7 @@ impl Controller {
                         panic!("a window has two ends")
                     };
                     assert!(first <= last && last <= 63);
+                    // A window also moves the write position to its first column or row.
                     let is_column = *command == 0x15;
                     *(if is_column {
                         &mut self.columns

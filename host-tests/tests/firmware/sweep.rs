@@ -300,7 +300,8 @@ const OTHERS: [SceneName; 10] = [
 ///
 /// No scene may stop, except `upright` at once. No frame may be off by more than half a pixel
 /// before the horizon that was claimed, and no energy by more than 1 % until the horizon or 10 %
-/// until the end. With so few settings no violation is allowed ([`SCENES_TO_A_VIOLATION`]).
+/// until the end. With this small number of settings no violation is allowed
+/// ([`SCENES_TO_A_VIOLATION`]).
 #[test]
 fn settings_of_all_kinds_are_shown_as_claimed() {
     let mut cases = Vec::new();

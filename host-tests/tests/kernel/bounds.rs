@@ -27,6 +27,7 @@ fn shares<R: Real>(pendulum: &Pendulum<R>, bounds: &Bounds<R>, state: &State<R>)
         v2,
     ];
 
+    // The bounds, in the order of the reached values.
     let Bounds {
         w1,
         w2,
@@ -44,13 +45,13 @@ fn shares<R: Real>(pendulum: &Pendulum<R>, bounds: &Bounds<R>, state: &State<R>)
 /// Asserts that bounds are never exceeded, and that the admissible step is the same in either
 /// precision.
 ///
-/// 10,000 random motions are computed by 100 steps of RK4, in which no rod turns by more than
-/// 0.05 rad. No quantity may exceed its bound by more than a millionth. The admissible step must be
+/// 10,000 random motions are computed by 100 steps of RK4, in which no rod turns by more than 0.05
+/// rad. No quantity may exceed its bound by more than a millionth. The admissible step must equal
 /// that of `f64` within [`tolerances::FORMULAS`].
 ///
 /// Without gravity the admissible step is infinite for a pendulum at rest, and half as long for
-/// twice the momentum. With gravity, that of a hanging pendulum is shorter than the limit of
-/// stability.
+/// twice the momentum. With gravity, the admissible step of a hanging pendulum is shorter than the
+/// limit of stability.
 fn hold<R: Real>() -> Result<(), Error> {
     let in_f64 = random::pendulums::<f64>(1, 10_000);
     // The same pendulums in both precisions.
@@ -246,6 +247,7 @@ fn fast_motion(rng: &mut Rng, &Parameters { m1, m2, l1, l2, .. }: &Parameters<f6
         PI
     };
 
+    // Speeds span four decades around the pendulum's own scale, sqrt(g (l1 + l2)).
     let speed = random::log_uniform(rng, 0.01, 100.0) * (9.81 * (l1 + l2)).sqrt();
     let w1 = speed / l1 * random::symmetric(rng);
     let w2 = if rng.bool() {

@@ -62,6 +62,7 @@ fn small_oscillation_scenes_follow_the_formulas_for_an_hour() {
             let slow = (w2 * t).cos();
             let fast = (w1 * t).cos();
 
+            // Compare both angles with the formulas; the larger difference counts.
             let a1 = FRAC_PI_6 / 2.0 * (mass_ratio / (1.0 + mass_ratio)).sqrt() * (slow - fast);
             let a2 = FRAC_PI_6 / 2.0 * (fast + slow);
             let error = (f64::from(report.state.a1) - a1)

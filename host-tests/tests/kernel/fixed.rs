@@ -151,6 +151,7 @@ fn chaotic_motion_is_as_accurate_as_in_f64() -> Result<(), Error> {
             ))
         };
 
+        // Where the truncation errors are small, roundings dominate and the floor applies.
         let [double, fixed] = [
             error(Method::Extrapolation12F64)?,
             error(Method::Extrapolation12Fixed64)?,
@@ -411,6 +412,7 @@ fn fixed64_motion_is_accurate_or_reported_as_diverged() -> Result<(), Error> {
         let mut double = pendulum
             .run::<ExtrapolationF64<ORDER>>(&start, dt)?
             .counting_turns();
+        // A motion that diverges in fixed point is ignored; any other must not fail in `f64`.
         let is_right = fixed.advance(3).is_ok();
         let is_right_in_f64 = double.advance(3);
         if is_right {

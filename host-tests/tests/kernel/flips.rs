@@ -106,6 +106,7 @@ fn points_are_accurate_to_a_grey_level() -> Result<(), Error> {
         "{wrong} of {points}"
     );
 
+    // The reference is slow, so only a sample is compared with it.
     let mut sample = turning(&short)?;
     Rng::with_seed(1).shuffle(&mut sample);
     for (start, point) in &sample[..JUDGED] {
@@ -119,8 +120,9 @@ fn points_are_accurate_to_a_grey_level() -> Result<(), Error> {
 }
 
 /// A map with a limit ten times as long is partly noise, because of chaos. Some points must be
-/// wrong, but fewer than [`tolerances::FLIPS_WRONG`] of those that may turn over, and some must be
-/// in doubt. At most [`tolerances::FLIPS_UNSUSPECTED`] may be wrong without being in doubt.
+/// wrong, but fewer than the share [`tolerances::FLIPS_WRONG`] of the points that may turn over,
+/// and some must be in doubt. At most [`tolerances::FLIPS_UNSUSPECTED`] may be wrong without being
+/// in doubt.
 #[test]
 fn most_wrong_points_are_in_doubt() -> Result<(), Error> {
     let [wrong, unsuspected, doubtful, points] = judge(&map(100.0, 32))?;

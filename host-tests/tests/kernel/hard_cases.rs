@@ -37,6 +37,7 @@ fn budget(
         } else {
             in_angles
         };
+    // Errors in `f64` are smaller by the ratio of the epsilons, down to the method's own error.
     let double = own.max(plain * f64::EPSILON / f64::from(f32::EPSILON));
     match method.numbers() {
         Numbers::CompensatedF32 => [growth, growth * own * f64::from(f32::EPSILON), floor],

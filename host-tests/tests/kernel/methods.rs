@@ -33,8 +33,8 @@ fn steps(method: Method) -> [u32; 2] {
     }
 }
 
-/// The order that follows from the errors with two step sizes must be that of the table: to a share
-/// of 0.1 for each method, and to 0.025 for RK4 in `f64` in finer steps of three motions.
+/// The order that follows from the errors with two step sizes must equal the order in the table: to
+/// a share of 0.1 for each method, and to 0.025 for RK4 in `f64` in finer steps of three motions.
 ///
 /// The motions are regular, so that errors grow no faster than the time. Single precision
 /// represents their numbers exactly.

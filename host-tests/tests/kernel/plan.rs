@@ -168,7 +168,7 @@ fn planner_chooses_the_cheapest_method_with_the_longest_horizon() {
         ),
     ];
 
-    // Each plan equals its row, and its cost is that of the price list.
+    // Each plan equals its row, and its cost agrees with the price list.
     for (costs, frame, scene, (method, steps), limit, horizon) in rows {
         let plan = Plan::search(
             &scene,
@@ -365,6 +365,7 @@ fn initial_method_is_in_64_bits_if_a_frame_pays_for_it() {
             assert_eq!(lavish.method, Method::Extrapolation10Fixed64);
             assert_eq!(within(costs.of_frame(lavish)), lavish);
 
+            // A budget just below the exact cost forces a cheaper method.
             let frugal = within(costs.of_frame(lavish).next_down());
             assert!(
                 costs.of_frame(frugal) < costs.of_frame(lavish),

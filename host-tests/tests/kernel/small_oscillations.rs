@@ -20,6 +20,7 @@ fn exact_modes(&Parameters { m1, m2, l1, l2, g }: &Parameters<f64>) -> [TwoFloat
     let fast = square(1.0);
     let slow = square(-1.0);
 
+    // In double-double the difference of close frequencies keeps enough digits.
     [
         fast.sqrt(),
         slow.sqrt(),

@@ -283,6 +283,7 @@ fn the_series_of_the_midpoint_is_bounded_to_its_last_term() {
         ..coarse
     };
 
+    // The coarse set is wider but valid; without the allowance it misses the exact motion.
     let hull = |fineness| after(10, equal_rods(9.81, RATE, Fixed::ZERO, fineness)).hull();
     let exact = hull(Fineness::default());
     assert!(meet(&exact, &hull(coarse), 0.0) && !meet(&exact, &hull(without), 0.0));

@@ -108,6 +108,7 @@ fn the_reference_is_inside_where_it_is_used() {
         );
     }
 
+    // At rest without gravity the exact motion never leaves its start.
     let weightless = Parameters {
         m1: 1.0,
         m2: 1.0,
@@ -126,6 +127,7 @@ fn the_reference_is_inside_where_it_is_used() {
         60,
     );
 
+    // The scenes start from the boards' settings, converted to `f64`.
     for name in moving() {
         let settings = name.first_settings();
         is_inside(

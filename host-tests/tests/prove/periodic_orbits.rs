@@ -161,8 +161,8 @@ fn advanced(mut set: Enclosure, time: u64) -> Enclosure {
 
 /// For each orbit the box must contain all starts of the source, with the orbit's energy. Every
 /// motion of the box must pass a1 = 0 upwards within the source's interval of time, when rod 2 has
-/// made one turn backwards and rod 1 none. S and the momenta must then be those of the start within
-/// [`RETURN`].
+/// made one turn backwards and rod 1 none. S and the momenta must then equal those at the start
+/// within [`RETURN`].
 #[test]
 fn periodic_orbits_return_when_and_where_another_proof_says() {
     for orbit in ORBITS {

@@ -97,6 +97,7 @@ fn restart_in_boot_loader(port: &str) -> anyhow::Result<PathBuf> {
         "{port}: the board restarts in its boot loader"
     ))?;
     touch(port).map_err(Refused::because)?;
+    // The system mounts the drive some time after the restart.
     let since = Instant::now();
     while since.elapsed() < MOUNTING {
         if let Some(drive) = find_drive() {
@@ -110,7 +111,7 @@ fn restart_in_boot_loader(port: &str) -> anyhow::Result<PathBuf> {
     ))
 }
 
-/// Returns the mounted drive of an RP2040, if there is one.
+/// Returns the mounted drive of an RP2040, or `None`.
 fn find_drive() -> Option<PathBuf> {
     mounted(&fs::read_to_string("/proc/mounts").ok()?)
 }

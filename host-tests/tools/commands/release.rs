@@ -34,7 +34,7 @@ const HASHERS: [(&str, &[&str]); 2] = [("sha256sum", &[]), ("shasum", &["-a", "2
 #[command(name = "cargo release-files")]
 pub struct ReleaseOptions {}
 
-/// Makes the folder anew and prints the checksums. A machine without a program for checksums is
+/// Replaces the folder and prints the checksums. A machine without a program for checksums is
 /// [`Refused`].
 pub fn run(_: &ReleaseOptions) -> anyhow::Result<()> {
     let hasher = HASHERS

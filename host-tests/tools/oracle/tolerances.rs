@@ -244,8 +244,8 @@ pub const TURNING: [f64; 3] = [5e-7, 5e-3, 1.0];
 pub const SMALL_MOTION: [f64; 2] = [3e-13, 2e-11];
 
 /// The difference of the relative energy errors of a frame by the directions in 64 bits and by the
-/// angles: some roundings of `f64`, of numbers that are three times as large as the energy above
-/// rest, to which they are relative.
+/// angles: some roundings of `f64`. The rounded numbers are three times as large as the energy
+/// above rest, and the difference is relative to that energy.
 pub const ENERGY_SHOWN: f64 = 1e-14;
 
 /// The energy of the misprinted motion in its first second or until it has diverged, relative to

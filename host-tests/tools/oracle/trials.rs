@@ -104,7 +104,7 @@ pub struct Trial {
 }
 
 /// The number of moments of a comparison, evenly spread over the motion. The last one is its end;
-/// the start is none.
+/// the start is not included.
 pub const MOMENTS: u32 = 16;
 
 impl Trial {

@@ -50,7 +50,7 @@ fn advance<F: Form, const TURNS: bool>(run: &mut Run<F, TURNS>, steps: u32) -> R
     run.advance(steps)
 }
 
-/// Reads the directions of both rods, which is all that a picture needs.
+/// Reads the directions of both rods. A picture needs no other data.
 pub fn draw<F: Form, const TURNS: bool>(run: &Run<F, TURNS>) {
     black_box(run.directions());
 }

@@ -45,7 +45,7 @@ pub enum Flip<R> {
 /// arithmetic; the tests of the repository assert it.
 ///
 /// The motions are not checked: in steps that are far too long, a flip may be missed, or
-/// reported where there is none.
+/// reported where no rod turns over.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Flips<F: Form> {
     pendulum: Pendulum<F::Real>,
@@ -99,6 +99,7 @@ impl<F: Form> Flips<F> {
     /// infinite or zero, and a pendulum whose highest start has more energy than `F` allows. A step
     /// beyond the limit of stability is refused in fixed point only.
     pub fn new(parameters: &Parameters<F::Real>, dt: f64, steps: u32) -> Result<Self, Error> {
+        // The units must fit the start with the most energy: both rods upright.
         let highest = F::new(
             &parameters.cast(),
             &State::at_rest(F::Real::PI, F::Real::PI).cast(),
@@ -122,6 +123,8 @@ impl<F: Form> Flips<F> {
     pub fn start(&self, a1: F::Real, a2: F::Real) -> Result<Option<Falling<F>>, Error> {
         let state = State::at_rest(a1, a2);
         state.check()?;
+
+        // With too little energy for a flip, no motion has to be computed.
         if self.pendulum.cannot_turn_over(&state) {
             return Ok(None);
         }

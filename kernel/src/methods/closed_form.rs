@@ -68,8 +68,8 @@ impl<R: Real> SmallOscillations<R> {
     /// C1 = (r2 a1 - a2)/(r2 - r1) and C2 = (a2 - r1 a1)/(r2 - r1). w1 S1 and w2 S2 follow in the
     /// same way from the angular velocities.
     ///
-    /// `modes` must be those of the pendulum. Nothing is checked: a start that is not finite gives
-    /// angles that are NaN or infinite.
+    /// `modes` must be the modes of the pendulum. Nothing is checked: a start that is not finite
+    /// gives angles that are NaN or infinite.
     #[must_use]
     pub fn new(modes: Modes<f64>, start: &Motion<R>) -> Self {
         let turns = [modes.fast, modes.slow].map(|mode| mode.frequency / core::f64::consts::TAU);
@@ -129,6 +129,8 @@ impl<R: Real> SmallOscillations<R> {
         let phases = self.phases(t);
         let [a1, a2] = self.angles(phases);
         let ([fast, slow], [(sin_fast, cos_fast), (sin_slow, cos_slow)]) = (&self.modes, phases);
+
+        // The derivatives of the two modes add up to the angular velocities.
         let w_fast = fast.frequency * (self.fast.sine * cos_fast - self.fast.cosine * sin_fast);
         let w_slow = slow.frequency * (self.slow.sine * cos_slow - self.slow.cosine * sin_slow);
         Motion {
@@ -154,6 +156,8 @@ impl<R: Real> SmallOscillations<R> {
         if self.is_wide {
             return angles.map(|a| a.own_sin_cos().into());
         }
+
+        // Small angles need only the first terms of the series of sine and cosine.
         angles.map(|a| {
             let square = a * a;
             let [sixth, twelfth] = [R::from_f64(1.0 / 6.0), R::from_f64(1.0 / 12.0)];
@@ -221,9 +225,11 @@ impl<R: Real> Form for ClosedForm<R> {
         check_step::<f64>(dt)?;
         let oscillations = SmallOscillations::new(Modes::new(parameters)?, &Motion::default());
 
+        // If the rate is a whole number, the times of whole seconds are exact.
         let whole = libm::rint(1.0 / dt);
         let rate = if 1.0 / whole == dt { whole } else { 1.0 / dt };
 
+        // `started` replaces the parts that depend on the start.
         let pendulum = Pendulum::new(&parameters.cast())?;
         let directions = oscillations.directions(0.0);
         Self {
@@ -248,6 +254,7 @@ impl<R: Real> Form for ClosedForm<R> {
             ..*self
         };
 
+        // The angles must stay below 2^31 - 1 turns in the whole motion.
         let most_turns = R::from_f64(f64::from(i32::MAX) * core::f64::consts::TAU);
         let has_turns = oscillations.reach().map(|most| most <= most_turns) == [true; 2];
         if has_turns && started.check().is_ok() {

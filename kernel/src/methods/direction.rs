@@ -160,11 +160,13 @@ pub(crate) fn prepare<R: Real>(
 /// ratio G1/G2 must be exact: where bob 1 is light, the frequency of the fast oscillation depends
 /// on the small difference G1 - nu^2 G2.
 fn factor_above<R: Real>(value: f64, factor: f64) -> R {
+    // The rounding error of the product of a candidate and the factor.
     let lost = |candidate: R| {
         let exact = candidate.to_f64() * factor;
         (R::from_f64(exact).to_f64() - exact).abs()
     };
 
+    // The first candidate is `value`, rounded up.
     let nearest = R::from_f64(value);
     let ulp = nearest * R::EPSILON;
     let least = if nearest.to_f64() < value {
@@ -173,6 +175,7 @@ fn factor_above<R: Real>(value: f64, factor: f64) -> R {
         nearest
     };
 
+    // Of candidates that lose equally little, the smallest is taken.
     let mut best = least;
     let mut least_lost = f64::INFINITY;
     for i in 0..32_i32 {
@@ -307,9 +310,12 @@ mod tests {
             let mut count = 0_u64;
             let mut made = 0_u64;
             for call in 0..200_000_u32 {
+                // A call must not cross the end of a block.
                 let steps = (call % 7 + 1).min(BLOCK - count as u32 % BLOCK);
                 count += u64::from(steps);
                 made += u64::from(lead.made(steps, count));
+
+                // Compare the lead with its definition, in steps.
                 let ahead = (made as f64 * step - count as f64) / step;
                 assert!(
                     (ahead - lead.ahead(count)).abs() < 1e-9,
@@ -320,6 +326,8 @@ mod tests {
                     "{longer} after {count}: {ahead}"
                 );
             }
+
+            // In this time only the three largest excesses add up to half a step.
             assert_eq!(made < count, longer > 1e-6, "{longer}");
         }
     }

@@ -67,7 +67,7 @@ enum Work {
 }
 
 impl Work {
-    /// Returns the number of slopes that the work takes; `usize::MAX` if there is none.
+    /// Returns the number of slopes that the work takes; `usize::MAX` if all work is done.
     fn slopes(self) -> usize {
         match self {
             Work::FirstSlope => 1,
@@ -234,10 +234,14 @@ impl<const ORDER: u32> ExtrapolationF64<ORDER> {
     fn rates(&self, z: &[f64; 6]) -> [f64; 6] {
         let [sin1, cos1, s, c, p1, p2] = *z;
         let [gravity1, gravity2] = self.coefficients.gravity;
+
+        // The angular velocities follow from the momenta.
         let u = (p1 - c * p2) * self.inverse_at(s);
         let v = p2 - c * u;
         let force = u * v * s;
         let w = u - v;
+
+        // The sine of rod 2 follows from rod 1 and the elbow.
         let nu_sin2 = sin1 * c - cos1 * s;
         [
             cos1 * u,
@@ -325,6 +329,8 @@ impl<const ORDER: u32> Form for ExtrapolationF64<ORDER> {
         let [sin1, cos1, s, c, p1, p2] = self.z;
         let [_, [sin2, cos2]] = self.directions::<f64>();
         let unit = self.scale.momentum;
+
+        // An error names the coordinate that the quantity belongs to.
         let numbers = [
             (Parameter::A1, sin1),
             (Parameter::A1, cos1),

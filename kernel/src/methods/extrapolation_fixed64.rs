@@ -111,7 +111,7 @@ const LENGTH: u64 = 1 << 50;
 impl Fixed64State {
     /// Prepares the motion from `start` in steps of `dt` s by `order`, which must be 2, 4 .. 16.
     ///
-    /// The errors are those of the public type [`Fixed64`].
+    /// The errors are the same as for the public type [`Fixed64`].
     #[inline(never)]
     fn new(
         parameters: &Parameters<f64>,

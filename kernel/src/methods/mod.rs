@@ -90,7 +90,7 @@ pub trait Form: Sealed + Copy + Debug + PartialEq + 'static {
     fn new(parameters: &Parameters<f64>, start: &State<f64>, dt: f64) -> Result<Self, Error>;
 
     /// Returns a motion of the same pendulum from another start, in the same units and steps. Its
-    /// energy must be no greater than that of the start in [`new`](Self::new). This is not checked;
+    /// energy must not exceed the energy of the start in [`new`](Self::new). This is not checked;
     /// in fixed point the numbers may then leave their range.
     ///
     /// # Errors

@@ -101,6 +101,8 @@ fn start_within<F: Form>(
         value: dt,
         limit: libm::fmin(limit, stable),
     };
+
+    // The smaller of the two limits is reported, whichever refuses the step.
     match F::new(parameters, start, dt) {
         Ok(_) if libm::fabs(dt) > stable => Err(too_large(stable)),
         Err(Error::TooLarge {
@@ -140,6 +142,7 @@ impl<F: Form> Run<F> {
     /// ```
     #[must_use]
     pub fn counting_turns(self) -> Run<F, true> {
+        // The whole turns are known only at the start; later only the directions are.
         let turns = if self.steps == 0 {
             self.turns
         } else {
@@ -173,9 +176,9 @@ impl<F: Form, const COUNTS_TURNS: bool> Run<F, COUNTS_TURNS> {
     /// - an energy far above the initial one, because the step was too long for the motion.
     ///
     /// The limit on the energy above rest is 100 times its initial value, plus (m1 + m2) g l1 + m2
-    /// g l2. There is none if it is too large for the method's numbers. The limit of [`Fixed32`] is
-    /// 9/8 of the initial value, plus an allowance for rounding. [`Fixed64`](crate::Fixed64) checks
-    /// the range of its numbers instead, and the closed form keeps its own energy.
+    /// g l2. No limit applies if it is too large for the method's numbers. The limit of [`Fixed32`]
+    /// is 9/8 of the initial value, plus an allowance for rounding. [`Fixed64`](crate::Fixed64)
+    /// checks the range of its numbers instead, and the closed form keeps its own energy.
     ///
     /// Energy and lengths are checked once at the end of each call, not after every step; in fixed
     /// point, after every 32 steps and after every step.
@@ -231,8 +234,8 @@ impl<F: Form, const COUNTS_TURNS: bool> Run<F, COUNTS_TURNS> {
 
     /// Returns the directions of both rods, (sin, cos) each. A drawing needs no more.
     ///
-    /// They may be up to half a step ahead of the [`state`](Self::state). They are those of the
-    /// last call of [`advance`](Self::advance) without an error; before, those of the start.
+    /// They may be up to half a step ahead of the [`state`](Self::state). They belong to
+    /// the last call of [`advance`](Self::advance) without an error; before, to the start.
     #[must_use]
     pub fn directions(&self) -> [Direction<F::Real>; 2] {
         self.motion.directions()
@@ -247,6 +250,8 @@ impl<F: Form, const COUNTS_TURNS: bool> Run<F, COUNTS_TURNS> {
         if F::HAS_TURNS {
             return self.state().cast().angles();
         }
+
+        // Without a count of turns the angles are within half a turn.
         let directions = self.directions();
         if Self::OBSERVES {
             let [direction1, direction2] = directions;
@@ -341,6 +346,7 @@ impl Turns {
     /// Refuses 2^31 - 1 turns or more in either direction, by [`Error::OutOfRange`].
     #[inline(never)] // Not inlined, to save flash.
     pub fn of(start: [f64; 2], now: [[i32; 2]; 2]) -> Result<[Self; 2], Error> {
+        // Count from the nearest whole turn; the rest is at most half a turn.
         let mut turns = start.map(|angle| {
             let whole = libm::rint(angle / core::f64::consts::TAU);
             let rest = angle - whole * core::f64::consts::TAU;
@@ -349,6 +355,8 @@ impl Turns {
                 last: [-i32::from(rest < 0.0), -1],
             }
         });
+
+        // The conversion to `i32` saturates, so a count out of range is seen by its size.
         for ((parameter, value), turns) in [Parameter::A1, Parameter::A2]
             .into_iter()
             .zip(start)
@@ -358,6 +366,8 @@ impl Turns {
                 return Err(Error::OutOfRange { parameter, value });
             }
         }
+
+        // The rounded directions may be on the other side of upright than the angles.
         Self::observe(&mut turns, now);
         Ok(turns)
     }
@@ -401,6 +411,8 @@ impl Turns {
             } else {
                 FRAC_PI_2
             };
+
+            // Choose the turn that is nearest to the middle of the side seen last.
             let near = f64::from(turns.whole) * TAU + side;
             angle + TAU * libm::rint((near - angle) / TAU)
         };

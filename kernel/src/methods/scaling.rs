@@ -133,6 +133,8 @@ impl Scaling {
             bounds.p2 * momentum2,
         ];
         let fastest = rates.into_iter().fold(0.0, f64::max);
+
+        // The rates grow with the unit of time, the torques with its square.
         let [gravity1, gravity2] = self.gravity;
         [
             rate / fastest,

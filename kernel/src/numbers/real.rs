@@ -78,7 +78,7 @@ pub trait Real:
     #[doc(hidden)]
     #[must_use]
     fn sqrt(self) -> Self;
-    /// Returns the bits of the IEEE 754 format; those of an `f32` are the lower 32.
+    /// Returns the bits of the IEEE 754 format. The bits of an `f32` are the lower 32.
     #[doc(hidden)]
     fn bits(self) -> u64;
     /// Returns true if the number is neither infinite nor NaN.
@@ -247,12 +247,15 @@ mod tests {
     fn twice_by_bits_is_the_sum() {
         for high in 0..=u16::MAX {
             for low in [0, 1, 0x1234, 0x7fff, 0x8000, 0xffff_u32] {
+                // Single precision, with every upper half of the word.
                 let x = f32::from_bits(u32::from(high) << 16 | low);
                 let twice = twice_single(x);
                 assert!(
                     twice.to_bits() == (x + x).to_bits() || x.is_nan() && twice.is_nan(),
                     "{x:e}"
                 );
+
+                // Double precision, with every upper quarter of the word.
                 let x =
                     f64::from_bits(u64::from(high) << 48 | u64::from(low) << 32 | u64::from(low));
                 let twice = twice_double(x);

@@ -76,8 +76,7 @@ impl<R: Real> Pendulum<R> {
     /// and one division.
     ///
     /// The difference from the form of `[math24]` is at most 1e-13 (`f64`) or 2e-6 (`f32`) of the
-    /// largest term. The state is not checked: one that is not finite gives
-    /// NaN or infinity.
+    /// largest term. The state is not checked; if it is not finite, the result is NaN or infinity.
     #[must_use]
     #[inline]
     pub fn derivatives(&self, z: &[R; 4]) -> [R; 4] {

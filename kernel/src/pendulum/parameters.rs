@@ -63,6 +63,8 @@ impl<R: Real> Parameters<R> {
             if !value.is_finite() {
                 return Err(Error::NotFinite { parameter, value });
             }
+
+            // Gravity may be 0; the masses and lengths must be positive.
             if value < 0.0 && parameter == Parameter::G {
                 return Err(Error::TooSmall {
                     parameter,

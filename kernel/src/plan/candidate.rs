@@ -27,7 +27,7 @@ pub(super) struct Candidate {
 /// The state of a candidate in its trial.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum CandidateState {
-    /// Every frame so far was accurate.
+    /// Every compared frame was accurate.
     Accurate,
     /// A frame was inaccurate. The frames before it still count.
     Failed,
@@ -36,7 +36,7 @@ enum CandidateState {
 }
 
 impl Candidate {
-    /// Creates a candidate that takes part in its trial, without a frame so far.
+    /// Creates a candidate that takes part in its trial and has no frames yet.
     pub fn new(stepping: Stepping) -> Self {
         Self {
             stepping,
@@ -47,12 +47,12 @@ impl Candidate {
         }
     }
 
-    /// Returns true if the candidate is part of the trial and every frame so far was accurate.
+    /// Returns true if the candidate is part of the trial and every compared frame was accurate.
     pub fn is_accurate(&self) -> bool {
         self.state == CandidateState::Accurate
     }
 
-    /// Excludes the candidate from the trial. Its accurate frames so far still count.
+    /// Excludes the candidate from the trial. Its accurate frames still count.
     pub fn exclude(&mut self) {
         self.state = CandidateState::Excluded;
     }
@@ -74,6 +74,8 @@ impl Candidate {
         if !self.is_accurate() {
             return;
         }
+
+        // The first frame beyond the bound ends the horizon of the candidate.
         if bound <= TOLERATED {
             self.error = if error > self.error {
                 error

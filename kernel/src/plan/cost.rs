@@ -246,20 +246,26 @@ impl Stepping {
     #[doc(hidden)]
     pub fn initial(problem: &Problem, costs: &Costs, frame: f32) -> Result<Option<Self>, Error> {
         let admissible = admissible_step(problem)?;
+
+        // In 32 bits the method whose step costs less comes first.
         let in_32_bits = if costs.fixed32 < costs.direction {
             [Method::Rk4Fixed32, Method::Rk4F32Direction]
         } else {
             [Method::Rk4F32Direction, Method::Rk4Fixed32]
         };
 
+        // Try a method in steps of at most `longest` admissible steps.
         let of = |(method, longest): (Method, f64)| {
             Self::affordable(method, problem, longest * admissible, costs, frame)
         };
 
+        // Items 1 and 2 of the order of preference.
         let in_64_bits = INITIAL
             .map(|longest| (Method::Extrapolation10Fixed64, longest))
             .into_iter()
             .find_map(of);
+
+        // Items 3 and 4, if 64 bits are refused or too expensive.
         Ok(in_64_bits.or_else(|| {
             RESOLVING_RK4
                 .into_iter()
@@ -338,6 +344,8 @@ impl Stepping {
                     ..
                 }) => {
                     let enough = steps_to_frame(method, problem.rate, limit);
+
+                    // The step count grows with every refusal, so that the loop ends.
                     let more = if method == Method::Extrapolation10Fixed64 {
                         stepping.steps + 1
                     } else {

@@ -31,6 +31,8 @@ impl Problem {
     /// first of these. The pendulum is checked by the functions that use it.
     pub(super) fn check(&self, costs: &Costs, budget: &Budget) -> Result<(), Error> {
         self.start.check()?;
+
+        // The prices and budgets, each with the parameter that an error names.
         let prices = Method::DRAWN
             .iter()
             .filter_map(|method| costs.step(*method));
@@ -38,6 +40,7 @@ impl Problem {
         let costs = prices.chain([costs.preparation]).map(of(Parameter::Cost));
         let budgets = [budget.frame, budget.planning].map(of(Parameter::Budget));
 
+        // Check in this order; the error names the first value that is refused.
         let shown = [
             (Parameter::Tolerance, self.tolerance),
             (Parameter::Duration, self.duration),
@@ -53,6 +56,7 @@ impl Problem {
             }
         }
 
+        // The number of frames must fit a `u32`.
         let parameter = Parameter::Duration;
         let value = self.duration;
         let limit = f64::from(u32::MAX) / f64::from(self.rate);
@@ -93,9 +97,12 @@ impl Problem {
         [by_g, by_l2, by_m2, by_a1]: Perturbation,
         method: Method,
     ) -> (Parameters<f64>, State<f64>) {
+        // Changes are relative to the number, in rounding errors of the method.
         let epsilon = epsilon(method);
         let off = |value: f64, by: f64| value + value * (by * epsilon);
         let (Parameters { m2, l2, g, .. }, &State { a1, a2, p1, p2 }) = (self.pendulum, start);
+
+        // Three factors change a parameter and a coordinate each; `by_a1` changes only a1.
         let parameters = Parameters {
             m2: off(m2, by_m2),
             l2: off(l2, by_l2),
@@ -172,6 +179,7 @@ mod tests {
                 rate: 60,
             };
 
+            // The numbers to compare, as the method rounds them.
             let numbers = |perturbation| {
                 let start = State {
                     a1: 2.0 * one,
@@ -180,6 +188,7 @@ mod tests {
                     p2: 0.3,
                 };
 
+                // Methods in single precision see the numbers as `f32`.
                 let (Parameters { m2, g, .. }, state) =
                     problem.perturbed(&start, perturbation, method);
                 let [a1, a2, p1, p2] = <[f64; 4]>::from(state);
@@ -192,6 +201,7 @@ mod tests {
                 })
             };
 
+            // No two may be equal, and none may be far from the unperturbed number.
             let all = [NONE, PERTURBATIONS[0], PERTURBATIONS[1], PERTURBATIONS[2]].map(numbers);
             for (i, other) in all.iter().enumerate() {
                 assert!(!all[..i].contains(other), "{method}: {all:?}");

@@ -46,6 +46,8 @@ impl PlannedRun {
         stepping: Stepping,
     ) -> Result<Self, Error> {
         start.check()?;
+
+        // A frame has at least one step; the closed form computes it in exactly one.
         let is_closed = stepping.method == Method::ClosedFormF32;
         let steps = if stepping.steps == 0 || is_closed {
             1
@@ -53,10 +55,12 @@ impl PlannedRun {
             stepping.steps
         };
 
+        // The steps divide the time of a frame equally.
         let state = Pendulum::new(&pendulum)?.to_state(&start);
         let dt = 1.0 / (f64::from(rate) * f64::from(steps));
         let motion = DrawnMotion::new(stepping.method, &pendulum, &state, dt)?;
 
+        // The directions carry no whole turns, so these are counted from the start.
         let turns = Turns::of(state.angles(), motion.sides())?;
         Ok(Self {
             stepping: Stepping { steps, ..stepping },

@@ -104,6 +104,8 @@ impl<M: Motion> Run<M> {
                 steps: 1,
                 ..self.stepping
             })) as u32;
+
+        // Stop at the frame, but make at least one step before it.
         let left = self.stepping.steps.saturating_sub(self.made);
         let steps = left.min(if paid > 0 { paid } else { 1 });
         if let Some(motion) = &mut self.motion {
@@ -162,8 +164,8 @@ fn tried(stepping: Stepping) -> [Stepping; 3] {
     })
 }
 
-/// The indices in [`Trial::candidates`] of plain `f32`, which is that of its run, too; of the
-/// closed form; and of the coarse and the fine run of the reference.
+/// The indices in [`Trial::candidates`] of plain `f32`, of the closed form, and of the coarse and
+/// the fine run of the reference. The run of plain `f32` has the same index.
 const PLAIN: usize = 3;
 const CLOSED: usize = 4;
 const COARSE: usize = 5;
@@ -298,7 +300,7 @@ impl Trial {
         own + second + third + costs.of_frame(coarse) + costs.of_frame(fine)
     }
 
-    /// Returns true if a candidate in 32 bits, or the closed form, is accurate so far.
+    /// Returns true if a candidate in 32 bits, or the closed form, is still accurate.
     pub fn has_candidate_in_32_bits(&self) -> bool {
         self.candidates[..=CLOSED]
             .iter()
@@ -314,7 +316,7 @@ impl Trial {
         frames.max().unwrap_or(0)
     }
 
-    /// Returns true if a candidate in 64 bits is accurate so far.
+    /// Returns true if a candidate in 64 bits is still accurate.
     pub fn has_candidate_in_64_bits(&self) -> bool {
         self.candidates[COARSE..].iter().any(Candidate::is_accurate)
     }
@@ -416,6 +418,8 @@ impl Trial {
     /// frame.
     pub fn advance(&mut self, costs: &Costs, cost: f32) -> f32 {
         let mut spent = 0.0;
+
+        // The runs in 32 bits advance first.
         for (_, run) in self.single() {
             spent = run.advance(costs, cost);
             if spent > 0.0 {
@@ -423,6 +427,7 @@ impl Trial {
             }
         }
 
+        // Then the coarse and the fine run of the reference.
         for run in self.double() {
             spent = run.advance(costs, cost);
             if spent > 0.0 {
@@ -430,6 +435,7 @@ impl Trial {
             }
         }
 
+        // Last the shadows, which only candidates in 64 bits need.
         for run in self.shadows() {
             spent = run.advance(costs, cost);
             if spent > 0.0 {
@@ -495,7 +501,7 @@ impl Trial {
         }
     }
 
-    /// Returns true if rounding was the larger error, in the last frame in which this was compared:
+    /// Returns true if rounding was the larger error, in the last frame where this was compared:
     /// of the single candidate, of the fine run or, once that has failed, of the coarse run. Finer
     /// steps do not reduce it. False before the first such frame.
     pub fn is_limited_by_rounding(&self) -> bool {
@@ -540,6 +546,7 @@ impl Trial {
             0.0
         };
 
+        // Only the runs that are still needed cost anything.
         let single = self.single().map(|(_, run)| costs.of_frame(run.stepping));
         let single: f32 = single.sum();
         let double = self.double().iter().map(|run| costs.of_frame(run.stepping));

@@ -35,7 +35,7 @@ fn read(file: &str) -> String {
     fs::read_to_string(&path).unwrap_or_else(|error| panic!("{path}: {error}"))
 }
 
-/// The line of each method and motion must equal that of the file to the last bit, and the file
+/// The line of each method and motion must equal the line of the file to the last bit, and the file
 /// must have no other lines. The two methods whose types are in the firmware must have lines, too,
 /// but their bits are not compared here.
 #[test]

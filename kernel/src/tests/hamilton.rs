@@ -142,8 +142,8 @@ fn derivatives_are_the_gradient_of_h() {
     }
 }
 
-/// The energy above rest at angles of 1e-10 rad in `f32` must be that of the linear motion, to a
-/// relative 4e-6. A difference of cosines would give 0.
+/// The energy above rest at angles of 1e-10 rad in `f32` must equal the energy of the linear
+/// motion, to a relative 4e-6. A difference of cosines would give 0.
 #[test]
 fn energy_above_rest_is_accurate_in_a_tiny_motion() {
     let pendulum = Pendulum::new(&Parameters {

@@ -20,7 +20,7 @@ use super::three_eighths::ThreeEighths;
 /// The number of equations: more than the 65 stages of extrapolation of order 16.
 const N: usize = 72;
 
-/// The length of the step from which the weights are read.
+/// The length of the step that reveals the weights.
 const DT: f64 = 0.5;
 
 /// The largest rounding error of a condition. The weights of extrapolation are as large as 6, and
@@ -81,17 +81,22 @@ impl Tableau {
     /// Returns the name, the sum and the required value of each condition up to `order`: all of
     /// order 4 or less, and those of quadrature above.
     fn conditions(&self, order: u32) -> Vec<(String, f64, f64)> {
+        // The nodes c are the row sums of A.
         let one = std::vec![1.0; self.b.len()];
         let c = self.times(&one);
         let product = |x: &[f64], y: &[f64]| zip(x, y).map(|(x, y)| x * y).collect::<Vec<_>>();
         let square = product(&c, &c);
         let ac = self.times(&c);
+
+        // The other conditions of orders 3 and 4: order, name, product, and divisor of 1.
         let of_trees = [
             (3, "sum b A c", ac.clone(), 6.0),
             (4, "sum b c A c", product(&c, &ac), 8.0),
             (4, "sum b A c^2", self.times(&square), 12.0),
             (4, "sum b A A c", self.times(&ac), 24.0),
         ];
+
+        // The conditions of quadrature: the sum of b c^(k - 1) is 1/k.
         let of_quadrature = (1..=order).map(|order| {
             let power: Vec<_> = c.iter().map(|c| c.powi(order as i32 - 1)).collect();
             let name = format!("sum b c^{}", order - 1);
@@ -138,11 +143,13 @@ impl Tableau {
         }
     }
 
-    /// Returns the value of a weight with which all conditions hold, if there is one: the least
-    /// squares of their errors, by the method of Gauss and Newton from several values.
+    /// Returns the value of a weight that meets all conditions, or `None`. It minimises the squares
+    /// of their errors by the method of Gauss and Newton, from several values.
     fn repaired(&self, weight: Weight, order: u32) -> Option<f64> {
         let mut trial = self.clone();
         let now = *trial.weight(weight);
+
+        // Start from the present value, then from others, until one converges.
         [now, 0.0, 0.5, 1.0, -1.0].into_iter().find_map(|start| {
             *trial.weight(weight) = start;
             for _ in 0..30 {
@@ -152,6 +159,8 @@ impl Tableau {
                 let slopes =
                     zip(trial.errors(order), &errors).map(|(next, now)| (next - now) / STEP);
                 let slopes: Vec<_> = slopes.collect();
+
+                // The step of Gauss and Newton; a weight without influence is only restored.
                 let square: f64 = slopes.iter().map(|slope| slope * slope).sum();
                 let descent: f64 = zip(&slopes, &errors)
                     .map(|(slope, error)| slope * error)
@@ -169,6 +178,8 @@ impl Tableau {
         let Some((name, sum, value)) = conditions.find(fails) else {
             return Ok(());
         };
+
+        // Look for single weights whose correction would meet all conditions.
         let mut message = format!("not of order {order}: {name} = {sum}, not {value}");
         for weight in self.weights() {
             if let Some(value) = self.repaired(weight, order) {
@@ -179,7 +190,7 @@ impl Tableau {
         Err(message)
     }
 
-    /// Returns the factor by which a step of phase w dt changes an oscillation of frequency w.
+    /// Returns the growth factor of an oscillation of frequency w in a step of phase w dt.
     fn growth(&self, phase: f64) -> f64 {
         // The slopes of z' = i w z at the stages, real and imaginary parts, with z = 1.
         let mut slopes: Vec<[f64; 2]> = Vec::new();
@@ -215,6 +226,7 @@ fn check<I: RungeKutta>(order: u32) {
         .check(order)
         .unwrap_or_else(|error| panic!("{integrator}: {error}"));
 
+    // The limit of stability must be safe, and not lower than it could be.
     for i in 1..=100 {
         let phase = I::STABLE * f64::from(i) / 100.0;
         let growth = tableau.growth(phase);
@@ -281,6 +293,8 @@ fn a_single_wrong_weight_is_named() {
                 let error = wrong.check(4).expect_err("one weight is wrong");
                 let now = *wrong.weight(weight);
                 let value = *right.clone().weight(weight);
+
+                // The message must end with the right value of this weight and name no other.
                 let named = format!("; {weight:?} = {now} should be {value:.9}");
                 assert!(
                     error

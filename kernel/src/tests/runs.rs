@@ -98,12 +98,14 @@ fn fixed_point_accepts_the_limit_that_run_reports() -> Result<(), Error> {
 
 /// The step of a motion at rest without gravity is limited only by its unit of time. The longest
 /// unit is 1e150 s, so that its square is a finite `f64`, and a step has at most 15 units. So a
-/// step of 1e150 s is accepted, and a step of 1e152 s is refused. After three steps the angle is
-/// that of the start to 1e-15 rad.
+/// step of 1e150 s is accepted, and a step of 1e152 s is refused. After three steps the angle
+/// equals the initial angle to 1e-15 rad.
 #[test]
 fn fixed64_at_rest_without_gravity_stays_at_rest_or_is_refused() -> Result<(), Error> {
     let free = Pendulum::new(&Parameters { g: 0.0, ..EVEN })?;
     let start = State::at_rest(1.0, 2.0);
+
+    // Steps below the limit are accepted, and the motion stays at rest.
     for dt in [1e-300, 1.0, 1e150] {
         let mut run = free.run::<Fixed64<8>>(&start, dt)?;
         run.advance(3)?;
@@ -114,6 +116,7 @@ fn fixed64_at_rest_without_gravity_stays_at_rest_or_is_refused() -> Result<(), E
         );
     }
 
+    // Longer steps are refused, up to the largest `f64`.
     for dt in [1e152, 1e303, f64::MAX] {
         let refused = free.run::<Fixed64<8>>(&start, dt);
         assert!(
@@ -212,7 +215,7 @@ fn counts_turns_on_request<F: Form>() -> Result<(), Error> {
         // A count that begins now begins within half a turn.
         assert_eq!(plain.counting_turns().angles(), plain.angles());
 
-        // The momenta for the check of the energy are nearly those of the state.
+        // The momenta for the check of the energy nearly equal the momenta of the state.
         let motion = plain.motion();
         for (nearly, exact) in motion
             .momenta_nearly()
@@ -248,7 +251,7 @@ fn counts_turns_on_request<F: Form>() -> Result<(), Error> {
     Ok(())
 }
 
-/// This holds for methods that carry directions and for one that carries angles
+/// This holds for methods that carry directions and for a method that carries angles
 /// ([`counts_turns_on_request`]).
 #[test]
 fn turns_are_counted_on_request() -> Result<(), Error> {

@@ -27,7 +27,7 @@ const FIGURES: [[f64; 5]; 3] = [
 ///
 /// The figures must agree to half of their last digit, and the motion for 10 s to 8e-15 rad in
 /// `f64`. In `f32` the angles must be within 3.1e-7 rad, also after 12 and 24 hours. The directions
-/// must be those of the angles.
+/// must agree with the angles.
 #[test]
 fn figures_3_to_5_are_those_of_the_book() {
     for [mu, w1, w2, envelope, largest_a1] in FIGURES {

@@ -80,7 +80,7 @@ fn symmetries_hold_in_either_precision() {
 }
 
 /// 200 random motions in `f64` run for 256 steps, and again with reversed momenta. The angles must
-/// then be those of the start within [`tolerances::RETURN`] rad, and the momenta within the same
+/// then equal the initial ones within [`tolerances::RETURN`] rad, and the momenta within the same
 /// share of their bounds.
 #[test]
 fn reversed_momenta_return_to_the_start() {

@@ -1,5 +1,6 @@
-//! An example of an added integrator: Kutta's 3/8 rule (`[Hairer I]`, II.1). A file like this, one
-//! line in the test of the order conditions and a row of the table are all that it takes.
+//! An example of an added integrator: Kutta's 3/8 rule (`[Hairer I]`, II.1). A new
+//! integrator needs a file like this, a line in the test of the order conditions and a row of the
+//! table.
 
 use core::array::from_fn;
 

@@ -5,9 +5,9 @@
 //! bottom of the lower 32 KB. The memory protection unit blocks all access to the rest of these, in
 //! eighths of 4 KB. `memory.x` ensures that the rest is at least 8 KB.
 //!
-//! The guard is that large because a function with kilobytes of local variables, such as one that
-//! creates a scene, could step over a thinner one. No function of the firmware takes as much as the
-//! guard, with a margin of 512 bytes and the registers that the next call pushes (test
+//! The guard is that large because a function with kilobytes of local variables, such as a
+//! constructor of a scene, could step over a thinner one. No function of the firmware takes as
+//! much as the guard, with a margin of 512 bytes and the registers that the next call pushes (test
 //! `stack_guard`). So the stack pointer cannot pass the guard. If it stops within the guard, the
 //! next call or interrupt is refused.
 //!

@@ -85,8 +85,8 @@ impl Device {
     }
 }
 
-/// Returns the name of the only port over USB, or the reason in one line if there is none or more
-/// than one.
+/// Returns the name of the only port over USB, or the reason in one line if it finds no port or
+/// several.
 fn choose(ports: &[SerialPortInfo]) -> Result<String, String> {
     let over_usb = |port: &SerialPortInfo| {
         Some((
@@ -98,6 +98,7 @@ fn choose(ports: &[SerialPortInfo]) -> Result<String, String> {
         ))
     };
 
+    // Several ports are an error, because a guess could open another device.
     match &ports.iter().filter_map(over_usb).collect::<Vec<_>>()[..] {
         [] => Err(format!(
             "{AUTO}: no board and no serial adapter found on USB; name the port, as in --port \
@@ -150,6 +151,7 @@ mod tests {
             usb("/dev/ttyACM0", Some("Double pendulum")),
             usb("/dev/ttyUSB0", None),
         ];
+        // A built-in port is not taken, even if it is the only one.
         assert!(choose(std::slice::from_ref(&built_in)).is_err());
         assert_eq!(
             choose(&[built_in, pico.clone()]),

@@ -102,6 +102,7 @@ mod tests {
             line(PanelState::Shown(found), 60),
             "sh1106 by reading its memory back (status 0x48), 60 frames/s"
         );
+        // A frame rate below 60 names the bus as the cause.
         let slow = line(PanelState::Shown(found), 30);
         assert!(
             slow.contains("30 of 60 frames/s: the bus is slow"),

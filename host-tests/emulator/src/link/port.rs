@@ -275,7 +275,7 @@ fn only_one<P>(
 ) -> Result<(String, P), String> {
     let mut has_waited = false;
     loop {
-        // The only port, opened; or the reason why there is none yet.
+        // The only port, opened; or the reason why it is not open yet.
         let found = ports();
         let missing = match choose(&found) {
             Ok(name) => match open(&name) {
@@ -362,7 +362,7 @@ mod tests {
     use super::*;
 
     /// A denied port, one in use, a missing one and a file that is no port each have their own
-    /// reason; that of a denied port has the remedy.
+    /// reason. The reason of a denied port includes the remedy.
     #[test]
     fn a_port_that_does_not_open_is_reported_with_the_remedy() {
         let refused = |kind| {
@@ -428,6 +428,7 @@ mod tests {
         let mut looks = 0;
         let mut tries = 0;
         let mut waits = 0;
+        // No port is found in the first two searches, and the first two attempts to open it fail.
         let ports = || {
             looks += 1;
             Vec::from_iter((looks > 2).then(|| usb_port("/dev/ttyACM0")))

@@ -46,7 +46,7 @@ impl Restarts {
 
     /// Takes a message. `recounted` is true if the message shows that the frames are counted from 0
     /// again. Returns a line for the user if there is something new. `None` means that the message
-    /// tells nothing new about restarts.
+    /// adds no information about restarts.
     pub fn take(&mut self, message: &ToHost, recounted: bool) -> Option<String> {
         match *message {
             ToHost::Restarted(end) => {
@@ -146,6 +146,7 @@ mod tests {
         }
         assert_eq!(asked, 2);
 
+        // An answer ends the questions until the link connects again.
         restarts.take(&answer(None), false);
         assert!((0..1000).all(|_| !restarts.is_question_due()));
         restarts.join();
@@ -192,7 +193,7 @@ mod tests {
     }
 
     /// After a crash, the frames are counted from 0 again and the board reports no restart. The
-    /// line says that it was switched on or reset, and it counts as one restart.
+    /// line reports that it was switched on or reset, and it counts as one restart.
     #[test]
     fn a_board_that_was_switched_off_is_not_reported_as_crashed() {
         let mut restarts = Restarts::default();

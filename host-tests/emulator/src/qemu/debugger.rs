@@ -179,7 +179,7 @@ impl Machine {
         self.leave(places)?;
         self.expect("c", "T05")?;
 
-        // The program counter tells which of the places was reached. GDB sends it in the target's
+        // The program counter identifies the place that was reached. GDB sends it in the target's
         // byte order.
         let answer = self.ask(&format!("p{:x}", Register::Pc as u32))?;
         let here = u32::from_str_radix(&answer, 16).map_err(|_| unexpected("p", &answer))?;

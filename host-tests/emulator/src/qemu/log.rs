@@ -71,6 +71,7 @@ impl LogDecoder {
             });
         };
         let locations = table.get_locations(&program)?;
+        // The decoder borrows the table, so the table must never be freed.
         let table: &'static Table = Box::leak(table);
         let can_recover = table.encoding().can_recover();
         Ok(Self {
@@ -81,7 +82,7 @@ impl LogDecoder {
     }
 
     /// Takes the next bytes and returns the lines that they complete. If the stream is damaged, one
-    /// line says so.
+    /// line reports it.
     pub fn take(&mut self, bytes: &[u8]) -> Vec<LogLine> {
         let mut lines = Vec::new();
         let Some(stream) = &mut self.stream else {

@@ -39,7 +39,7 @@ const OURS: [&str; 5] = [
 /// `f64` in hardware, the compiler's name of that processor.
 pub type CoreImage = (&'static str, Option<&'static str>);
 
-/// The images of the golden bits, those that need no further tools first.
+/// The images of the golden bits. The images that need no further tools come first.
 pub const CORE_IMAGES: [CoreImage; 9] = [
     ("thumbv6m-none-eabi", None),
     ("thumbv7m-none-eabi", None),
@@ -87,8 +87,8 @@ impl Toolchain {
             .map_or("rustc".as_ref(), |own| own.rustc.as_path())
     }
 
-    /// Returns the folder in which the firmware is built. It is separate from that of the host's
-    /// programs, so that neither build waits for the other.
+    /// Returns the folder in which the firmware is built. It is separate from the folder of the
+    /// host's programs, so that neither build waits for the other.
     fn folder() -> PathBuf {
         target().join("firmware")
     }
@@ -151,7 +151,7 @@ impl Toolchain {
             command.env("RUSTFLAGS", format!("-Ctarget-cpu={cpu} -Cdebuginfo=0"));
         }
         for target in targets.iter().filter(|target| !TARGETS.contains(target)) {
-            // Nobody debugs these images. Those of the boards' targets share the crates of the
+            // Nobody debugs these images. Images for the boards' targets share the crates of the
             // boards' images.
             let flags = format!("target.'{target}'.rustflags=['-Cdebuginfo=0']");
             command.args(["--config", &flags]);
@@ -171,6 +171,7 @@ impl Toolchain {
             .take_while(|(target, _)| is_ready(target))
             .partition(|(_, double)| double.is_some());
 
+        // Images for no particular processor are built together, the others one at a time.
         let targets: Vec<_> = any.into_iter().map(|(target, _)| target).collect();
         if !targets.is_empty() {
             self.build_core_images(&targets, None)?;
@@ -278,8 +279,8 @@ impl Toolchain {
             .args([what, "--release", "--package", "firmware"])
             .env("CARGO_TARGET_DIR", Self::folder());
         for target in targets {
-            // These flags are added to those of the configuration. A TOML string has the same
-            // escapes as a Rust string. The name of a target may contain a dot, so it is quoted.
+            // These flags are added to the configured flags. A TOML string has the same escapes as
+            // a Rust string. The name of a target may contain a dot, so it is quoted.
             let flags = format!("target.'{target}'.rustflags={flags:?}");
             command.args(["--target", target, "--config", &flags]);
         }

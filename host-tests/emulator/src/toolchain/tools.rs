@@ -145,7 +145,7 @@ fn shown(path: &Path) -> String {
 }
 
 /// Finds the core library for all of these targets, as [`core`] returns it. The error is the reason
-/// why there is none.
+/// why the library is not available.
 fn find_core(targets: &[&str]) -> Result<Option<FromSource>, String> {
     // The library of the compiler in use, if rustup has installed it for all targets.
     let (in_use, _) = libraries("rustc".as_ref())?;

@@ -51,6 +51,8 @@ impl Fixed {
     /// unknown.
     fn new(middle: i128, radius: f64) -> Self {
         let is_known = middle.abs() < LIMIT && radius < f64::INFINITY;
+
+        // A value out of range becomes the interval that contains every number.
         if is_known {
             Self {
                 middle,

@@ -154,10 +154,14 @@ fn without_turns(angle: impl Fn(i32) -> Fixed, about: f64) -> Fixed {
     if about.abs() <= LARGEST_ANGLE {
         return angle(0);
     }
+
+    // Scale the angle into the range of `Fixed` before subtracting the turns.
     let places = (about.abs() / LARGEST_ANGLE).log2().ceil() as i32;
     let turns = (about / std::f64::consts::TAU).round();
     let share = Fixed::of(turns * f64::from(-places).exp2());
     let mut rest = angle(-places) - share * (Fixed::PI + Fixed::PI);
+
+    // Undo the scaling, now that the rest is small.
     for _ in 0..places {
         rest = rest + rest;
     }

@@ -295,7 +295,7 @@ impl Controller {
 
     /// Returns the bytes that are read, or `None` if the read is not acknowledged.
     pub fn read(&mut self, count: usize) -> Option<Vec<u8>> {
-        // A status is read unless nothing is asked.
+        // A read of no bytes does not read the status.
         let status = (count > 0 && self.kind.says != Says::Nothing)
             .then(|| self.status())
             .flatten();
@@ -326,7 +326,7 @@ impl Controller {
     /// Executes commands. The arguments of a command must be in the same message.
     fn commands(&mut self, mut bytes: &[u8]) {
         while let [command, rest @ ..] = bytes {
-            // A command of this controller, or one that all have.
+            // A command of this controller, or a command that all controllers have.
             let own = || {
                 self.kind
                     .own

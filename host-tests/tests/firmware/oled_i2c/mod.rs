@@ -585,7 +585,7 @@ fn a_bus_that_is_held_up_is_reported_once_a_second() {
     assert_eq!(second(false), (Ok(()), 60));
 }
 
-/// The texts of the errors, of which the log has a line.
+/// The texts of the errors, as the log prints them.
 #[test]
 fn errors_of_the_panel_are_printed_in_words() {
     let text = |error: OledError| error.to_string();

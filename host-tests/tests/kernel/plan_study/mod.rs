@@ -342,6 +342,7 @@ fn thousands(class: Class) {
             .ok()
             .and_then(|text| text.parse::<u64>().ok())
     };
+    // The environment may select fewer scenes or a single seed.
     let count = number("SCENES").map_or(SCENES, |count| count as usize);
     let seeds = number("SEED").map_or(1..=SEEDS, |seed| seed..=seed);
     println!(
@@ -352,6 +353,7 @@ fn thousands(class: Class) {
         let scenes: Vec<_> = class.scenes(seed).take(count).collect();
         let name = format!("{class:?}, {seed}");
         for results in study(&name, &scenes, true, (VIOLATIONS, LARGEST)) {
+            // The median and the 5 % quantile of the shares must be large enough.
             let shares = [0.5, 0.05].map(|quantile| results.share(quantile));
             let is_long = shares
                 .iter()

@@ -224,6 +224,7 @@ fn pendulum(m2: f64, l2: f64) -> Parameters<f64> {
 /// truncation of its steps and along the same unstable direction. The last three start so close to
 /// upright that torques are some 100 units of 32-bit fixed point.
 pub fn hard() -> impl Iterator<Item = Problem> {
+    // A row has the mass of bob 2, the length of rod 2, both angles, and the duration.
     let at_rest = [
         (
             1.4826889256467146,
@@ -276,6 +277,7 @@ pub fn hard() -> impl Iterator<Item = Problem> {
         ),
     ]
     .map(|(m2, l2, [a1, a2], duration)| shown(pendulum(m2, l2), Motion::at_rest(a1, a2), duration));
+    // Only this scene starts with velocities.
     let moving = Problem {
         rate: 11,
         ..shown(

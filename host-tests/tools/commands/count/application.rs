@@ -116,6 +116,7 @@ fn on(target: &Target, toolchain: &Toolchain) -> Result<Costs> {
         };
         anyhow::Ok(affordable_cost(target, &request)?.cycles as f32)
     };
+    // Only the application has code for these two prices.
     let (fixed64, preparation) = in_application(target.board, toolchain)?;
     Ok(Costs {
         closed_form: step(Method::ClosedFormF32)?,

@@ -369,6 +369,7 @@ fn count_minimal(toolchain: &Toolchain, options: &CountOptions) -> anyhow::Resul
         options.on.clone()
     };
 
+    // The titles come with the first board's rows, once its programs have been counted.
     let mut all = Vec::new();
     for (place, board) in boards.into_iter().enumerate() {
         let counted = MinimalPrices::count(toolchain, board)?;
@@ -408,6 +409,7 @@ fn count_minimal(toolchain: &Toolchain, options: &CountOptions) -> anyhow::Resul
         all.push(counted);
     }
 
+    // The README changes only after every board has been counted.
     if options.readme {
         write_table(&all)?;
         say("wrote kernel/README.md")?;

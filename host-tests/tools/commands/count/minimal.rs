@@ -114,7 +114,7 @@ pub struct Minimal {
     /// The number of cycles (estimated) of a call on top of its steps: the checks. It is the cost
     /// of a call with no step.
     pub call: u64,
-    /// The size of the program in flash beyond that of a program without a motion, bytes.
+    /// The size of the program in flash minus the size of a program without a motion, bytes.
     pub flash: usize,
 }
 
@@ -136,6 +136,7 @@ impl MinimalPrices {
     pub fn count(toolchain: &Toolchain, board: &'static Board) -> Result<Self> {
         let folder = toolchain.build_minimal(board.target)?;
         let target = |binary| Target::of(toolchain, board, folder.join(binary));
+        // Sizes are relative to this program, which has no motion.
         let start_up = target(START_UP)?.flash_bytes()?;
         let prices = PROGRAMS.par_iter().map(|program| {
             let target = target(program.binary)?;
@@ -200,6 +201,7 @@ pub fn table(boards: &[MinimalPrices]) -> String {
     let mut table = format!("| type | {} | flash, bytes |\n", cores.join(" | "));
     table += &format!("|---|{}---|\n", "---|".repeat(cores.len()));
 
+    // Joins a size on every board into one cell.
     let all = |size: &dyn Fn(&MinimalPrices) -> usize| {
         let sizes: Vec<_> = boards
             .iter()
@@ -219,6 +221,7 @@ pub fn table(boards: &[MinimalPrices]) -> String {
         table += &format!("| {program} | {} | {flash} |\n", costs.join(" | "));
     }
 
+    // The last row has only a size in flash, because this program makes no steps.
     let flash = all(&|board| board.start_up);
     table + &format!("| no motion |{} {flash} |\n", " |".repeat(cores.len()))
 }

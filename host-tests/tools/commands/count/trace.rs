@@ -152,6 +152,7 @@ impl Target {
         let mut command = Command::new(&self.qemu);
         command.args(["-machine", self.board.machine, "-cpu", self.board.cpu]);
         command.args(["-display", "none", "-monitor", "none", "-serial", "null"]);
+        // Semihosting passes the argument to the program.
         let argument = if argument.is_empty() {
             String::new()
         } else {

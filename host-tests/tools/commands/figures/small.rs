@@ -42,6 +42,7 @@ pub fn points(modes: Modes<f64>) -> Vec<CurvePoint> {
     let [fast, slow] = [motion.fast.cosine, motion.slow.cosine];
     let point = |i: u32| {
         let time = DURATION * f64::from(i) / f64::from(POINTS);
+        // The envelopes follow the beat of the two modes.
         let cos = libm::cos(modes.exchange() * time);
         let amplitude =
             |c1: f64, c2: f64| (c1 * c1 + c2 * c2 + 2.0 * c1 * c2 * cos).max(0.0).sqrt();

@@ -101,7 +101,7 @@ impl Map {
         ]
     }
 
-    /// Returns the starts to compute, those of the first [`Map::rows`] rows, row by row.
+    /// Returns the starts to compute: the first [`Map::rows`] rows, row by row.
     pub fn starts(&self) -> Vec<[f32; 2]> {
         self.pixels(self.rows())
             .map(|pixel| self.start(pixel))

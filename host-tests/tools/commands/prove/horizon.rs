@@ -131,6 +131,7 @@ impl Verdict {
             .map(|x| x.about().to_string())
             .collect::<Vec<_>>()
             .join(",");
+        // The largest radius of the box, including the rounding of the printed middles.
         let radius = self
             .exact
             .as_flattened()

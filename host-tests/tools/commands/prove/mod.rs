@@ -66,8 +66,8 @@ pub struct ProveOptions {
     known_answers: bool,
 }
 
-/// Prints the proof or the table. The exit code is a success whatever is proved, and that of the
-/// signal if Ctrl-C ended the proof. Options that cannot be used are [`Refused`].
+/// Prints the proof or the table. The exit code is a success for any result of the proof. If Ctrl-C
+/// ended the proof, it is the code of the signal. Options that cannot be used are [`Refused`].
 pub fn run(options: &ProveOptions) -> anyhow::Result<ExitCode> {
     // Tables of many scenes, without a scene of the user.
     if options.table {
@@ -115,7 +115,7 @@ pub fn run(options: &ProveOptions) -> anyhow::Result<ExitCode> {
         return Ok(ExitCode::SUCCESS);
     };
 
-    // Ctrl-C ends the proof, and the frames proved so far are reported.
+    // Ctrl-C ends the proof, and the frames that are already proved are reported.
     let stopped = interrupted()?;
     if options.csv {
         say("t,sin_a1,cos_a1,sin_a2,cos_a2,radius,verdict")?;

@@ -82,7 +82,7 @@ fn samples(rate: u32) -> u32 {
         .unwrap_or(1)
 }
 
-/// Returns the request for `method` through `scene` with `rate` steps a second. It asks for
+/// Returns the request for `method` through `scene` with `rate` steps a second. It requests
 /// [`SAMPLES`] states per second, or for fewer if these do not fall on whole steps.
 pub fn request(method: Method, scene: &Scene, rate: u32) -> Request {
     Request {

@@ -33,7 +33,7 @@ pub struct Point {
 }
 
 impl Point {
-    /// Returns the estimated cycles per simulated second: those of a step times the steps.
+    /// Returns the estimated cycles per simulated second: the cycles of a step times the steps.
     pub fn cycles(&self) -> f64 {
         f64::from(self.rate) * self.step.cycles
     }
@@ -58,7 +58,7 @@ impl Point {
 }
 
 /// Returns the points of every method and of every program in C, through the scenes on all targets.
-/// The closed forms are left out, because their error is that of the linear equations. The long
+/// The closed forms are left out, because their error comes from the linear equations. The long
 /// scene has the typical number of steps. Also returns a line for each missing program.
 pub fn join(toolchain: &Toolchain, targets: &[Target]) -> Result<(Vec<Point>, Vec<String>)> {
     let scenes = [&SCENES[0], &SCENES[1], &LONG]
@@ -180,7 +180,7 @@ pub(super) mod tests {
         }
     }
 
-    /// A point is dominated by another one of its board that is no worse in cycles and error and
+    /// A point is dominated by another point of its board that is no worse in cycles and error and
     /// better in one. Equal points and points of other boards do not dominate.
     #[test]
     fn a_point_is_dominated_by_one_at_least_as_good_in_both() {

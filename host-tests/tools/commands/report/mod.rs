@@ -141,6 +141,7 @@ fn pages(advice: &[String], points: &[Point]) -> Result<Vec<(PathBuf, [String; 2
         .iter()
         .map(|sentence| format!("- {sentence}\n"))
         .collect();
+    // Replace the block between the marks of each page, and keep the current text, too.
     let page = |(file, rows): (&str, usize)| {
         let path = workspace().join(file);
         let page = fs::read_to_string(&path).with_context(|| format!("no {file}"))?;

@@ -252,6 +252,7 @@ fn list() -> String {
         let equations = method.equations().to_string();
         let numbers = method.numbers().to_string();
         let integrator = method.integrator().to_string();
+        // Only some methods are available on the boards or usable for drawing.
         let boards = if ON_BOARDS.contains(method) {
             ", boards"
         } else {

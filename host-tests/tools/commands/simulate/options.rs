@@ -159,7 +159,7 @@ impl StartOptions {
         }
     }
 
-    /// Returns the start: rad, rad/s, whatever the units of the options.
+    /// Returns the start in rad and rad/s, converted from the units of the options.
     pub fn motion(&self) -> Motion<f64> {
         let radians = |angle: f64| {
             if self.degrees {
@@ -235,7 +235,7 @@ impl StartOptions {
     }
 
     /// Returns the first option whose number has too many digits for [`Self::exact`]. It is empty
-    /// if there is none and no gravity is given.
+    /// if all are short enough and no gravity is given.
     pub fn too_long(&self) -> String {
         let pairs = [
             ("--masses", Some(&self.masses)),

@@ -154,8 +154,8 @@ fn agreement(request: &Request, exact: &[State<f64>], limit: f64) -> (usize, f64
     (rows, largest)
 }
 
-/// Returns the unit of the prices, and the methods that the options allow with their prices. They
-/// are the prices of the place. If the place has no price for any of the methods, a price is the
+/// Returns the unit of the prices, and the methods that the options allow with their prices. The
+/// prices depend on the place. If the place has no price for any of the methods, a price is the
 /// number of evaluations of the equations.
 fn candidates(options: &SimulateOptions) -> (&'static str, Vec<(Method, f64)>) {
     const EVALUATIONS: &str = "evaluations of the equations";

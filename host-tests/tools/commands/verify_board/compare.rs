@@ -52,6 +52,7 @@ pub fn methods(talk: &mut Talk) -> anyhow::Result<Section> {
     let all = ON_BOARDS
         .iter()
         .flat_map(|&method| MOTIONS.map(|motion| (method, motion)));
+    // Each request has a number of its own, by which its answers are recognised.
     for (number, (method, motion)) in (0..).zip(all) {
         let request = request(method, motion);
         let difference = difference(talk, &request, number)?;

@@ -20,7 +20,7 @@ const SHOWN: usize = 60;
 #[derive(Debug)]
 pub struct Progress {
     bar: ProgressBar,
-    /// The number of lines that were due so far.
+    /// The number of lines that were already due.
     reminders: AtomicU64,
 }
 

@@ -59,7 +59,7 @@ impl Comparison {
     /// board's scene. A frame of another scene, or with a smaller step number than the one before,
     /// discards the frames that still wait. The answer goes to [`Comparison::status`].
     pub fn frame(&mut self, frame: &Frame) -> bool {
-        // Another scene or a smaller step number means that the board has started anew.
+        // Another scene or a smaller step number means that a new motion has begun on the board.
         let starts =
             |last: &Frame| frame.scene != last.scene || frame.report.step < last.report.step;
         if self.last.as_ref().is_none_or(starts) {

@@ -194,6 +194,7 @@ impl Recording {
             pictures,
             ..
         } = self;
+        // Finish the animation first, then write the buffered rest of the file.
         let finished = encoder
             .into_inner()
             .map_err(cause)

@@ -213,7 +213,7 @@ impl Readings {
     }
 
     /// Returns the summary, a line for each number, of all scenes and restarts together. The
-    /// dropped frames, the method and the horizon are those of the latest frame.
+    /// dropped frames, the method and the horizon are taken from the latest frame.
     pub fn report(&self) -> String {
         let Self {
             frames,
@@ -264,6 +264,7 @@ pub fn stepping(frame: &Frame) -> String {
             .to_owned();
     }
     let computed = computed(frame);
+    // The wording also depends on whether the horizon has passed.
     let accuracy = match frame.report.horizon {
         Horizon::Always => return computed,
         Horizon::Undecided => "accuracy not known yet".to_owned(),
@@ -369,6 +370,7 @@ mod tests {
             page(Horizon::Until(2.5)),
             format!("{head} accurate to half a pixel until 2.5 s")
         );
+        // A linear scene departs from the exact motion by design, so it is not called inaccurate.
         assert_eq!(
             words(
                 SceneName::SmallHeavy,
@@ -377,6 +379,7 @@ mod tests {
             ),
             "the linear motion on purpose · leaves the exact motion by half a pixel at 0.02 s"
         );
+        // A motion that has stopped has a remedy instead of a horizon.
         assert!(
             words(SceneName::Page, PlayState::Stopped, Horizon::Until(0.0))
                 .starts_with("this motion is too fast for this chip: change the masses")
@@ -434,6 +437,7 @@ mod tests {
     fn simulated_time_adds_up_all_restarts_and_scenes() {
         let mut readings = Readings::default();
         let [page, butterfly] = [SceneName::Page, SceneName::Butterfly];
+        // In the first scene the time falls from 0.5 s to 0.125 s: a restart.
         for (scene, times) in [
             (page, &[0.25, 0.5, 0.5, 0.125, 0.75][..]),
             (butterfly, &[0.875, 1.0]),

@@ -262,7 +262,7 @@ impl<'a> Session<'a> {
 
     /// Sends the user's options to the board.
     fn begin(&mut self, first: &Frame) -> anyhow::Result<()> {
-        // The board starts its scene anew only if the user's options require it.
+        // The board restarts its scene only if the user's options require it.
         let scene = self.options.scene.unwrap_or(first.scene);
         self.awaited = self.options.start(scene)?;
         let play = match self.awaited {
@@ -312,7 +312,8 @@ impl<'a> Session<'a> {
             .is_some_and(|(now, recording)| recording.is_due(now))
     }
 
-    /// Adds the screenshot to the recording, if there is one and the requested scene has begun.
+    /// Adds the screenshot to the recording, if one was requested and the requested scene has
+    /// begun.
     fn record(&mut self, tick: i64) -> anyhow::Result<()> {
         let recording = self
             .recording

@@ -335,6 +335,7 @@ mod tests {
         };
         let mut slow = readings(SceneName::Page);
         slow.speed = Some(0.1);
+        // A snapshot is named after the size of the terminal or after its special content.
         let shown = [
             ("150x45", rows(&butterfly, true, (150, 45))),
             ("100x30", rows(&butterfly, false, (100, 30))),
@@ -350,6 +351,7 @@ mod tests {
             ("help-keys", rows(&help(Help::Keys), false, (48, 20))),
             ("help", rows(&help(Help::Numbers), false, (48, 20))),
         ];
+        // Report all differences at once instead of stopping at the first.
         let check =
             |(name, rows): (_, String)| snapshot::check(&format!("terminal-{name}"), &rows).err();
         let differences: Vec<_> = shown.into_iter().filter_map(check).collect();

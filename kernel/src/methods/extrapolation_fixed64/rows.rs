@@ -20,7 +20,7 @@ const SHARE: f64 = (1 << 27) as f64;
 /// Rows with a smaller weight than this do not compensate for the roundings of other rows.
 const LEAST: f64 = 0.01;
 
-/// Returns the longest unit of time, s, up to `longest` s, for which a step of `dt` s is a whole
+/// Returns the longest unit of time, s, up to `longest` s, such that a step of `dt` s is a whole
 /// number of [`PARTS`] in the format [`SHARE`]. It has the sign of `dt`.
 pub(super) fn unit_of_time(longest: f64, dt: f64) -> f64 {
     let unit = dt * SHARE / PARTS as f64;

@@ -62,8 +62,8 @@ impl Fixed32 {
     /// Returns the energy above rest, ((P1 - C P2)^2 r + P2^2)/2 + G1 (1 - cos a1) +
     /// G2 nu (1 - cos a2).
     ///
-    /// It has 60 fractional bits, less the number of bits by which the units of momenta and rates
-    /// differ.
+    /// It has 60 fractional bits, less the difference in bits between the units of momenta and
+    /// rates.
     pub(super) fn energy(&self) -> i64 {
         let z = self.words();
         let shifts = self.units.scaling.shifts;

@@ -31,8 +31,8 @@ const ENERGY_ROOM: f64 = 1.0 / 64.0;
 /// The longest step, relative to the longest unit of time that keeps every quantity in range.
 const LONGEST_STEP: f64 = 0.5;
 
-/// The longest step, relative to the time in which the elbow of a light bob 1 swings through the
-/// peak of r.
+/// The longest step, relative to the time that the elbow of a light bob 1 needs to swing through
+/// the peak of r.
 const LONGEST_STEP_AT_ELBOW: f64 = 0.5;
 
 /// The largest value of [`Units::halvings`].
@@ -49,7 +49,7 @@ pub struct Units {
     pub gravity: [Gravity; 2],
     /// -G1 and -G2, for the stages that run backwards in time.
     pub reversed_gravity: [Gravity; 2],
-    /// The number n for which half a step is 3 2^-n T.
+    /// The number n such that half a step is 3 2^-n T.
     pub halvings: u32,
     /// The torque that rounding removed from G1 and G2, times 32 steps, with 60 fractional bits.
     pub missed: [i32; 2],
@@ -108,7 +108,7 @@ impl Units {
             });
         }
 
-        // The unit of time of which a sixth of a step is 2^-halvings.
+        // In this unit of time a sixth of a step is 2^-halvings.
         let halvings = libm::fmin(fit, f64::from(MOST_HALVINGS)) as u32;
         let scaling = seconds.in_unit(scaled(sixth, halvings as i32));
         let gravity = scaling.gravity.map(Gravity::from_f64);

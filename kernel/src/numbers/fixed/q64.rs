@@ -144,7 +144,7 @@ mod tests {
 
     /// Compares products of numbers of all sizes with products of 128 bits. A product of two
     /// numbers may be 1.25 too small or 0.25 too large, in the last digit; a product with a word is
-    /// exactly the one that is rounded down.
+    /// exactly the true product, rounded down.
     #[test]
     fn products_are_exact_to_the_last_digit() {
         // Numbers of every size, with either sign.
