@@ -13,25 +13,32 @@ use crate::scenes::SceneName;
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(target_os = "none", derive(defmt::Format))]
 pub enum Command {
-    /// Selects the next larger mass ratio.
+    /// Selects the next larger mass ratio of [`MASS_RATIOS`](crate::config::MASS_RATIOS), and
+    /// starts the scene again. The largest one stays.
     Heavier,
-    /// Selects the next smaller mass ratio.
+    /// Selects the next smaller mass ratio, and starts the scene again. The smallest one stays.
     Lighter,
-    /// Turns both start angles by one [`ANGLE_STEP`](crate::config::ANGLE_STEP) clockwise. A scene
-    /// without start angles ignores it.
+    /// Turns both start angles by one [`ANGLE_STEP`](crate::config::ANGLE_STEP) clockwise, to -180
+    /// degrees at most, and starts the scene again. A scene without start angles ignores it.
     TurnLeft,
-    /// Turns both start angles by one step counter-clockwise.
+    /// Turns both start angles by one step counter-clockwise, to 180 degrees at most.
     TurnRight,
     /// Starts the scene again with the same settings.
     Restart,
-    /// Plays the next scene of the catalogue with its own initial settings.
+    /// Plays the next scene of the catalogue with its own initial settings; after the last the
+    /// first.
     NextScene,
-    /// Plays the previous scene of the catalogue with its own initial settings.
+    /// Plays the previous scene of the catalogue with its own initial settings; before the first
+    /// the last.
     PreviousScene,
     /// Plays a scene with its own initial settings.
     Choose(SceneName),
     /// Sets one parameter and starts the scene again with it. A change of the speed does not
     /// restart the scene.
+    ///
+    /// It accepts `M1` to `W2`, `MassRatio`, `Angle` and `Speed`. Another field is refused with
+    /// [`Field::Field`], and a value with which the scene cannot start with its own field. Nothing
+    /// has changed then.
     Set {
         field: Field,
         /// The value, in SI units; of an angle in rad.
@@ -44,7 +51,7 @@ pub enum Command {
     /// Pauses the scene, or lets it continue if it is paused.
     TogglePause,
     /// Advances the scene by this number of ticks, one in each tick of the clock, and then pauses
-    /// it.
+    /// it; 0 pauses it at once.
     Step(u32),
     /// Requests the scene, its settings and its state. Changes nothing.
     Ask,

@@ -189,8 +189,8 @@ choice! {
 pub struct Restarted {
     /// The cause; `None` if it is unknown.
     pub cause: Option<Cause>,
-    /// The number of restarts in a row, including this one, at most 255. After a minute without a
-    /// restart the board counts from 0.
+    /// The number of restarts in a row, including this one, at most 255. After a minute of frames
+    /// without a restart the board counts from 0.
     pub restarts: u8,
     /// The program counter when the cause came; 0 if it is unknown.
     pub pc: u32,

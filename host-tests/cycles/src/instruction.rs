@@ -88,7 +88,11 @@ impl Instruction {
         self.row.cycles(core) == 0 && (self.row.class != Class::Divide || core == Core::M0Plus)
     }
 
-    /// Returns true if its address depends on a core register that the instruction `before` writes.
+    /// Returns true if its address, as a load, a store or a table branch, depends on a core
+    /// register that the instruction `before` writes. The updated base of a single access counts.
+    ///
+    /// It is false for an instruction without an address, and after loads and stores of pairs and
+    /// lists, whose written registers are not in the table.
     pub fn is_addressed_by(&self, before: &Self) -> bool {
         let registers =
             |fields: &'static [Field], word| fields.iter().map(move |field| field.register(word));

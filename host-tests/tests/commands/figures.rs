@@ -168,8 +168,9 @@ fn figures_3_to_5_show_the_frequencies_envelopes_and_amplitudes_of_the_table() {
     }
 }
 
-/// The misprinted equations have no known exact solution, so their path is compared with a path in
-/// half the step.
+/// The exact path must follow the reference and keep its energy. The misprinted equations have no
+/// known exact solution: their path must equal a path in half the step, and must not keep the
+/// energy. Another test compares the stored file.
 #[test]
 fn figure_7_shows_the_exact_path_and_a_converged_misprinted_path() {
     let pendulum = chaos::pendulum().expect("a pendulum");

@@ -59,6 +59,9 @@ pub fn uf2_file(toolchain: &Toolchain) -> anyhow::Result<(usize, PathBuf)> {
 /// Builds the UF2 file and copies it to a board: to the drive of the options, else to a mounted
 /// drive, else to a board that runs this firmware and is restarted. Without any of these it prints
 /// how to copy the file by hand, which is a success.
+///
+/// It is an error if the build or the copy fails, if the port of the running board cannot be
+/// opened, or if its drive is not mounted in time after the restart.
 pub fn pico(options: &PicoOptions) -> anyhow::Result<()> {
     let (bytes, file) = uf2_file(&toolchain::set_up()?)?;
     say(format_args!("{}: {bytes} bytes of flash", file.display()))?;

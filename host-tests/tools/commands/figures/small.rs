@@ -115,7 +115,8 @@ fn at_ratio(mass_ratio: f64) -> Result<[f64; 3], Error> {
     Ok([mass_ratio, modes.fast.frequency, modes.slow.frequency])
 }
 
-/// Returns figure 2: both frequencies over the mass ratio. It is an SVG file.
+/// Returns figure 2 as the text of an SVG file: both frequencies of small oscillations of equal
+/// rods, in sqrt(g/l), over mass ratios from 0 to 5. It is an error if the figure cannot be drawn.
 pub fn frequencies() -> Result<String> {
     // The points are denser towards 0, where the curves are steep.
     let [.., greatest] = MASS_RATIOS;
