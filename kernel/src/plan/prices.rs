@@ -17,12 +17,12 @@ use super::Costs;
 impl Costs {
     /// The counted price list of a Cortex-M3, in cycles.
     pub const CORTEX_M3: Costs = Costs {
-        closed_form: 10908.2,
+        closed_form: 10928.2,
         direction_plain: 13012.0,
-        direction: 14831.3,
+        direction: 14828.2,
         fixed32: 662.2,
-        fixed64: 20067.0,
-        preparation: 156120.0,
+        fixed64: 20060.0,
+        preparation: 156107.0,
     };
 
     /// The counted price list of a Cortex-M4F, in cycles.
@@ -32,7 +32,7 @@ impl Costs {
         direction: 206.1,
         fixed32: 622.3,
         fixed64: 13444.0,
-        preparation: 153595.0,
+        preparation: 153270.0,
     };
 
     /// The counted price list of a Cortex-M0+, in cycles.
@@ -42,7 +42,7 @@ impl Costs {
         direction: 25551.9,
         fixed32: 2128.6,
         fixed64: 75407.0,
-        preparation: 387315.0,
+        preparation: 387363.0,
     };
 }
 // so far
