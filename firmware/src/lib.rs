@@ -105,7 +105,7 @@ macro_rules! choice {
         pub enum $name { $($(#[$row_doc])* #[doc = concat!("`", $text, "`")] $row,)* }
 
         impl $name {
-            /// All choices in the order of their table.
+            /// Contains all choices, in the order of their table.
             pub const ALL: &[$name] = &[$($name::$row,)*];
 
             /// Returns the name for people, as in the documentation of the variant.

@@ -33,7 +33,8 @@ impl Derivatives<f32> for Textbook {
     fn derivatives(&self, &[a1, a2, p1, p2]: &[f32; 4]) -> [f32; 4] {
         let Parameters { m1, m2, l1, l2, g } = self.0;
         let d = a1 - a2;
-        let (sin_d, cos_d) = (sinf(d), cosf(d));
+        let sin_d = sinf(d);
+        let cos_d = cosf(d);
         let m = m1 + m2;
         let den = m1 + m2 * sin_d * sin_d;
         let brackets =

@@ -74,7 +74,7 @@ fn abandoned(parent: Option<&Path>) -> Vec<PathBuf> {
         .collect()
 }
 
-/// Returns true if this is a folder that is old enough and that nobody has locked.
+/// Returns true if this is a folder that is old enough and not locked.
 fn is_abandoned(path: &Path) -> io::Result<bool> {
     let folder = File::open(path)?;
     let metadata = folder.metadata()?;
@@ -101,7 +101,7 @@ mod tests {
         path
     }
 
-    /// Of four folders, an old one that nobody has locked is abandoned. An old one with a lock, a
+    /// An old folder that is not locked is abandoned. An old one with a lock, a
     /// new one, and one with another name are not. The locked one is abandoned once its lock is
     /// released.
     #[test]

@@ -15,7 +15,7 @@ const SETTLING: usize = 60;
 /// The largest number of frames before a press has its effect.
 const PATIENCE: usize = 2000;
 
-/// On each board with buttons: each arrow restarts the scene with the next mass ratio, or with the
+/// Each arrow of each board with buttons restarts the scene with the next mass ratio, or with the
 /// start angle turned by one step, and select, held, plays the next scene.
 #[test]
 fn buttons_choose_and_restart() -> anyhow::Result<()> {

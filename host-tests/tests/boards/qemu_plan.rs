@@ -23,8 +23,8 @@ const SCENES: [SceneName; 4] = [
 /// The number of ticks until all plans are found.
 const FOLLOWED: u64 = 18 * TICK_RATE as u64;
 
-/// In 18 s of two scenes every frame of every board has the host's method and horizon, and none is
-/// dropped. The answer to `AskPlan` and the log have the host's plan and its changes of method.
+/// Every frame of every board has, in 18 s of two scenes, the host's method and horizon, and none
+/// is dropped. The answer to `AskPlan` and the log have the host's plan and its changes of method.
 #[test]
 fn every_board_finds_the_hosts_plan_and_follows_it_from_the_same_tick() -> anyhow::Result<()> {
     every_board_plans(&SCENES[..2])

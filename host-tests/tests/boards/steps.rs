@@ -18,7 +18,7 @@ const STEPS: [(&str, &str); 5] = [
     ("rows::Rows", "end_in"),
 ];
 
-/// All functions of [`STEPS`] are in the section that is copied to memory, and no branch in it
+/// The functions of [`STEPS`] are all in the section that is copied to memory, and no branch in it
 /// leads outside, not even by a thunk of the linker.
 #[test]
 fn no_branch_leads_out_of_the_steps() -> anyhow::Result<()> {

@@ -40,7 +40,7 @@ fn unless_missing(test: fn() -> anyhow::Result<()>) -> anyhow::Result<()> {
     })
 }
 
-/// All messages of 18 s of every scene have the host's bytes. So do plans, which they contain.
+/// The messages of 18 s of every scene have the host's bytes. So do plans, which they contain.
 #[test]
 fn boards_on_the_page_send_the_hosts_bytes() -> anyhow::Result<()> {
     unless_missing(|| {

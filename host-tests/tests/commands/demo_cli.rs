@@ -264,7 +264,7 @@ fn half_speed_simulates_half_the_time() {
     );
 }
 
-/// Without a terminal, `cargo demo` runs with success and prints the reason and the options that
+/// `cargo demo` without a terminal runs with success and prints the reason and the options that
 /// save pictures, on stderr. With `--headless` it does not print them.
 #[test]
 fn without_a_terminal_the_reason_and_the_options_are_printed() {

@@ -131,7 +131,7 @@ fn planned(arguments: &str) -> Result<Plan, Box<dyn std::error::Error>> {
     Ok(plan(&SimulateOptions::try_parse_from(words)?)?)
 }
 
-/// Without `--step`, the step divides the time between rows and is the longest that is at most
+/// The step, without `--step`, divides the time between rows and is the longest that is at most
 /// 1/1024 s and admissible. A step twice as long would exceed one of these. There is no warning.
 #[test]
 fn the_default_step_is_the_longest_that_divides_the_rows() -> Result<(), Box<dyn std::error::Error>>

@@ -15,8 +15,8 @@ const CORNER: Point = Point::new(11, 9);
 /// The number of frames of each scene.
 const FRAMES: usize = 30;
 
-/// In 30 frames of each scene, every pixel of a larger colour panel has the colour of the canvas's
-/// grey at its place, and is black outside of the frame.
+/// The test draws 30 frames of each scene. Every pixel of a larger colour panel has the colour of
+/// the canvas's grey at its place, and is black outside of the frame.
 #[test]
 fn every_scene_is_the_canvas_through_the_map_of_colours() {
     type Target =

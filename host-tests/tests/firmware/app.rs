@@ -27,7 +27,7 @@ fn run(clock: impl IntoIterator<Item = u32>) -> Plain {
     app
 }
 
-/// After 600 ticks the report and the canvas are equal, bit by bit, whether each tick was drawn,
+/// The report and the canvas after 600 ticks are equal, bit by bit, whether each tick was drawn,
 /// every third, an uneven selection, or only the ticks that a late board must draw.
 #[test]
 fn the_state_and_the_picture_after_n_ticks_are_the_same_at_any_frame_rate() {
@@ -46,7 +46,7 @@ fn the_state_and_the_picture_after_n_ticks_are_the_same_at_any_frame_rate() {
     }
 }
 
-/// In 10 s of the page every frame is sent, numbered without a gap, with the state of the kernel's
+/// Every frame in 10 s of the page is sent, numbered without a gap, with the state of the kernel's
 /// own motion by the initial method, and its energy error to within `ENERGY_SHOWN`.
 #[test]
 fn every_frame_carries_the_kernels_state_bit_identically() {
@@ -151,7 +151,7 @@ fn dropped_pictures_are_counted_and_no_tick_is_lost() {
     );
 }
 
-/// In each of 120 ticks one more received byte is lost and one message is damaged. The log has a
+/// One more received byte is lost in each of 120 ticks, and one message is damaged. The log has a
 /// line of each kind a second, with the growth and the total.
 #[test]
 fn losses_are_logged_once_a_second_and_sent_with_each_frame() {
@@ -377,8 +377,8 @@ fn view(app: &Plain) -> View {
     )
 }
 
-/// In 20 s of the page the pixel at the position of either bob, computed from the reported state,
-/// is white (grey 15) in every frame.
+/// The pixel at the position of either bob, computed from the reported state, is white (grey 15) in
+/// every frame of 20 s of the page.
 #[test]
 fn bobs_are_drawn_where_the_state_puts_them() {
     let mut app = app();

@@ -37,7 +37,7 @@ fn line((class, processor): (&str, Processor), scene: SceneName) -> String {
     format!("{class},{},{pictures:016x},{messages:016x}\n", scene.name())
 }
 
-/// One changed grey of any picture, or one changed bit of any report, fails. A wanted change is
+/// A changed grey of any picture, or a changed bit of any report, fails. A wanted change is
 /// accepted with `BLESS=1`.
 #[test]
 fn every_scene_shows_the_golden_frames() -> Result<(), String> {

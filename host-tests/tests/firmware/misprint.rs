@@ -54,7 +54,7 @@ fn run(rhs: impl Fn(&[f64; 4]) -> [f64; 4]) -> [f64; 3] {
     [energy / samples, error, above / samples]
 }
 
-/// By the misprinted equations, over all runs, the mean energy is -18.7 J, although the start has
+/// The mean energy over all runs by the misprinted equations is -18.7 J, although the start has
 /// 62.9 J, and bob 2 is rarely above the pivot. The allowances are in `tolerances`.
 #[test]
 fn printed_form_does_not_keep_the_energy_and_hangs_below_the_pivot_on_average() {
@@ -69,7 +69,7 @@ fn printed_form_does_not_keep_the_energy_and_hangs_below_the_pivot_on_average() 
     );
 }
 
-/// By the kernel's equations the energy of every run stays at 62.9 J, and bob 2 is above the pivot
+/// The energy of every run by the kernel's equations stays at 62.9 J, and bob 2 is above the pivot
 /// for 50.7 % of the time, to the allowances in `tolerances`.
 #[test]
 fn right_form_keeps_the_energy_and_spends_half_its_time_above_the_pivot() {

@@ -287,7 +287,7 @@ fn a_refusal_names_the_field_and_does_not_end_the_previous_request() {
     }
 }
 
-/// Of two requests in a row only the second one has samples.
+/// The second of two requests in a row has samples, and the first has none.
 #[test]
 fn a_new_request_replaces_the_one_under_way() {
     let answers = answers_to(&[REQUEST; 2]);

@@ -1,4 +1,4 @@
-//! The price lists of the processors on which the methods have been counted.
+//! The price lists of three processors.
 //!
 //! The numbers are estimated cycles. The repository's `cargo count` runs the methods in an emulator
 //! and adds the published timings of the executed instructions, for memory without wait states. The
@@ -45,4 +45,4 @@ impl Costs {
         preparation: 387363.0,
     };
 }
-// so far
+// end of the generated part

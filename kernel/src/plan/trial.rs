@@ -203,6 +203,10 @@ pub(super) struct Trial {
 impl Trial {
     /// Creates a trial of `stepping` that is compared with `reference`.
     ///
+    /// With a `reference`, the candidates are the method of `stepping` with 1, 2 and 4 times its
+    /// steps, and both runs of the reference. Without one, `stepping` is the only one of these, and
+    /// is compared with three finer runs of its own.
+    ///
     /// If `stepping` is in 64 bits, a reference is required and the trial has no candidates in 32
     /// bits; the closed form is one in any case. Plain `f32` is a candidate if `stepping` is
     /// compensated `f32`. `shadow` is the method and step count of the shadows.

@@ -181,8 +181,8 @@ fn energy_stays_within_its_bound<F: Form>() -> Result<(), Error> {
     Ok(())
 }
 
-/// This holds for all forms in floating point with steps
-/// ([`energy_stays_within_its_bound`]). Fixed point checks its own range.
+/// Every form in floating point with steps does ([`energy_stays_within_its_bound`]). Fixed point
+/// checks its own range.
 #[test]
 fn advance_refuses_an_energy_far_above_that_of_the_start() -> Result<(), Error> {
     energy_stays_within_its_bound::<HamiltonF32>()?;
@@ -251,8 +251,7 @@ fn counts_turns_on_request<F: Form>() -> Result<(), Error> {
     Ok(())
 }
 
-/// This holds for methods that carry directions and for a method that carries angles
-/// ([`counts_turns_on_request`]).
+/// Methods that carry directions and a method that carries angles do ([`counts_turns_on_request`]).
 #[test]
 fn turns_are_counted_on_request() -> Result<(), Error> {
     counts_turns_on_request::<DirectionF32>()?;

@@ -162,7 +162,7 @@ impl MinimalPrices {
 /// The lines before and after the table of prices in the kernel's README.
 const MARKS: [&str; 2] = [
     "<!-- made by cargo count --minimal --readme -->\n",
-    "<!-- so far -->\n",
+    "<!-- end of the generated part -->\n",
 ];
 
 /// The kernel's README.

@@ -105,7 +105,7 @@ const CHARTS: &str = "host-tests/pictures/report";
 /// The lines before and after the generated block of a README.
 const MARKS: [&str; 2] = [
     "<!-- made by cargo write-report --readme -->\n",
-    "<!-- so far -->\n",
+    "<!-- end of the generated part -->\n",
 ];
 /// The READMEs, with the number of rows that each shows.
 const READMES: [(&str, usize); 2] = [("README.md", 5), ("host-tests/README.md", 8)];

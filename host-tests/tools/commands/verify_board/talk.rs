@@ -41,9 +41,9 @@ impl Talk {
         Ok(talk)
     }
 
-    /// Returns the next message for which `kind` returns `Some`, as that value, and drops the
-    /// others. A refusal by the board is an error, and so is a wait of 20 s; that error contains
-    /// the latest notice of the port.
+    /// Returns the value of `kind` for the next message that it accepts, and drops the others. A
+    /// refusal by the board is an error, and so is a wait of 20 s; that error contains the latest
+    /// notice of the port.
     pub fn next<M>(&mut self, kind: impl Fn(ToHost) -> Option<M>) -> anyhow::Result<M> {
         let since = Instant::now();
         let mut notice = None;
@@ -110,8 +110,12 @@ impl Talk {
 /// The number of frames that may still be in transmission when the person answers.
 const UNDER_WAY: u32 = 12;
 
-/// Asks the person about the panel and the buttons of the board `name`. An answer "no" is a fault;
-/// a question that is not answered is none.
+/// Asks the person about the panel and the buttons of the board `name`, in the scene `Page`, and
+/// waits for each answer without limit.
+///
+/// A wrong panel is a fault, and so is a button whose tap does not start the motion again. A
+/// question without an answer, or a button that the board does not have, is no fault. Errors are as
+/// in [`Talk::next`].
 pub fn ask_person(talk: &mut Talk, name: &str) -> anyhow::Result<Section> {
     // The panel and the keys that each board has.
     let (has_panel, keys): (_, &[Key]) = match name {
