@@ -94,7 +94,10 @@ fn next_frame<'a>(
 /// The file of the price lists.
 const PRICES_FILE: &str = "kernel/src/plan/prices.rs";
 /// The lines before and after the price lists in their file.
-const MARKS: [&str; 2] = ["// made by cargo count --write-prices\n", "// end of the generated part\n"];
+const MARKS: [&str; 2] = [
+    "// made by cargo count --write-prices\n",
+    "// end of the generated part\n",
+];
 
 /// Returns the price list of every method that a plan chooses from, on one board for each kind of
 /// core. The costs are in cycles (estimated); `preparation` is per motion, all others are per step.
