@@ -296,6 +296,27 @@ impl Stepping {
         Ok(Self::accepted(method, problem, steps, |_| true).unwrap_or(Self { method, steps }))
     }
 
+    /// Returns true if the steps resolve every motion of the problem's energy: those of RK4 are at
+    /// most two [admissible steps](Pendulum::admissible_step) long. In longer ones it gains or loses
+    /// several percent of the energy within seconds, or diverges. The other methods always do.
+    ///
+    /// # Errors
+    ///
+    /// Refuses what [`initial`](Self::initial) refuses.
+    #[doc(hidden)]
+    pub fn resolves(self, problem: &Problem) -> Result<bool, Error> {
+        let [.., longest] = RESOLVING_RK4;
+        let enough = steps_to_frame(
+            self.method,
+            problem.rate,
+            longest * admissible_step(problem)?,
+        );
+        Ok(match self.method {
+            Method::ClosedFormF32 | Method::Extrapolation10Fixed64 => true,
+            _ => self.steps >= enough,
+        })
+    }
+
     /// Returns [`Method::Extrapolation10Fixed64`] in steps of `longest` s or less, as
     /// [`affordable`](Self::affordable).
     pub(super) fn fixed64(
