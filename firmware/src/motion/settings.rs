@@ -66,8 +66,9 @@ impl Settings {
         let next = MASS_RATIOS
             .iter()
             .copied()
-            .find(|&ratio| ratio > self.mass_ratio());
-        next.map_or(self, |ratio| self.with_mass_ratio(ratio))
+            .map(|ratio| self.with_mass_ratio(ratio))
+            .find(|next| next.mass_ratio() > self.mass_ratio());
+        next.unwrap_or(self)
     }
 
     /// Returns the settings with the next smaller mass ratio of [`MASS_RATIOS`]. The smallest one
@@ -77,8 +78,9 @@ impl Settings {
             .iter()
             .copied()
             .rev()
-            .find(|&ratio| ratio < self.mass_ratio());
-        next.map_or(self, |ratio| self.with_mass_ratio(ratio))
+            .map(|ratio| self.with_mass_ratio(ratio))
+            .find(|next| next.mass_ratio() < self.mass_ratio());
+        next.unwrap_or(self)
     }
 
     /// Returns the settings with the start angles of both rods turned by `steps` times

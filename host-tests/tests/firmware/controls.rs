@@ -243,6 +243,29 @@ fn buttons_visit_every_mass_ratio_and_stop_at_the_ends() {
     );
 }
 
+/// With a mass of bob 1 other than 1 kg, m2/m1 is rounded. All ratios of [`MASS_RATIOS`] are
+/// visited nevertheless, upwards and downwards.
+#[test]
+fn buttons_visit_every_mass_ratio_whatever_the_mass_of_bob_1() {
+    for m1 in [0.1, 0.7, 1.3, 3.0] {
+        let mut settings = Settings::equal_rods(1.0, 120.0);
+        settings.parameters.m1 = m1;
+        settings = settings.with_mass_ratio(MASS_RATIOS[0]);
+        let is_at = |settings: Settings, ratio: f32| {
+            (settings.mass_ratio() / ratio - 1.0).abs() <= f32::EPSILON
+        };
+
+        for ratio in MASS_RATIOS {
+            assert!(is_at(settings, ratio), "{m1}, up to {ratio}");
+            settings = settings.heavier();
+        }
+        for ratio in MASS_RATIOS.into_iter().rev() {
+            assert!(is_at(settings, ratio), "{m1}, down to {ratio}");
+            settings = settings.lighter();
+        }
+    }
+}
+
 /// A start angle that is turned beyond straight up is exactly 180 or -180 degrees, and pi rad.
 #[test]
 fn angles_stop_at_straight_up() {
