@@ -13,7 +13,7 @@ use super::cortex_m::clock::{ticks, wait_after};
 use super::cortex_m::retained;
 use super::cortex_m::watchdog::Watchdog;
 use super::serial;
-use crate::app::{App, Buttons, Event, Instruments, Journal, PlannerEvent, Record};
+use crate::app::{App, Buttons, Event, Instruments, Journal, MOST_RESTARTS, PlannerEvent, Record};
 use crate::config::{HALF_PIXEL, Processor};
 use crate::display::{Display, Found};
 use crate::graphics::FrameBuffers;
@@ -209,7 +209,12 @@ fn log<Panel: fmt::Display, Link: Error>(event: Event<Panel, Link>) {
                 end.lr
             );
             if !resumed {
-                defmt::warn!("too many restarts in a row: the first scene starts instead");
+                let reason = if end.restarts > MOST_RESTARTS {
+                    "too many restarts in a row"
+                } else {
+                    "the scene cannot be played"
+                };
+                defmt::warn!("{}: the first scene starts instead", reason);
             }
         }
         Event::Started(

@@ -94,7 +94,8 @@ impl Scene for Frequencies {
 
         // The scale.
         let step = plot::scale_step(RISE / self.scale / NUMBERS);
-        for frequency in (0..).map(|number| number as f32 * step) {
+        // An empty figure has no scale, and all numbers would be in the same row.
+        for frequency in (0..=RISE as u16).map(|number| f32::from(number) * step) {
             let row = (ZERO_ROW - self.scale * frequency) as i32;
             if row < zero - RISE as i32 {
                 break;

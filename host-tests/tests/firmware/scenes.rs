@@ -278,6 +278,15 @@ fn text_keeps_off_the_edges() {
     }
 }
 
+/// The figure of a player that has not played anything: axes without a curve.
+#[test]
+fn the_empty_figure_can_be_drawn() {
+    let scene = AnyScene::empty();
+    let mut canvas = Canvas::BLACK;
+    scene.draw(&scene.report(0), &FadeLayer::NONE, &mut canvas);
+    assert_ne!(canvas, Canvas::BLACK);
+}
+
 /// The step of a scale is the next larger one of 1, 2 and 5 times a power of ten, within 0.01 and
 /// 100.
 #[test]
