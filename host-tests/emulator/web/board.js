@@ -1,19 +1,23 @@
-// Prints what the boards of a page send in every scene: the answers to the choice of the scene, then
-// the messages of 18 s. The command line names the page, and the processors by their codes.
+// Prints the bytes that the boards of a page send in every scene: a line for the choice of the
+// scene, then one for each tick of 18 s. The command line names the page, and the codes of the
+// processors.
 'use strict';
 
 const { readFileSync, writeSync } = require('node:fs');
 
 const [page, ...processors] = process.argv.slice(2);
-const text = (id) => readFileSync(page, 'utf8').match(new RegExp(`id="${id}">([^<]*)<`))[1];
-const { scenes, rate } = JSON.parse(text('facts'));
-const wasm = new WebAssembly.Module(Buffer.from(text('module'), 'hex'));
-for (const scene of scenes.keys()) {
+const part = (id) => readFileSync(page, 'utf8').match(new RegExp(`id="${id}">([^<]*)<`))[1];
+const { scenes, rate } = JSON.parse(part('facts'));
+const wasm = new WebAssembly.Module(Buffer.from(part('module'), 'hex'));
+for (const { id } of scenes) {
   for (const processor of processors) {
     const board = new WebAssembly.Instance(wasm).exports;
-    const print = (count) => writeSync(1, Buffer.from(board.memory.buffer, board.sent(), count).toString('hex'));
     board.start(Number(processor));
-    print(board.choose(scene));
-    for (let tick = 1; tick <= 18 * rate; tick++) print(board.run_to(tick));
+    const bytes = (at, length) => Buffer.from(board.memory.buffer, at, length);
+    board.command(bytes(board.text()).write(JSON.stringify({ Choose: id })));
+    for (let tick = 1; tick <= 18 * rate + 1; tick++) {
+      writeSync(1, `${bytes(board.sent(), board.sent_length()).toString('hex')}\n`);
+      board.run_to(tick);
+    }
   }
 }

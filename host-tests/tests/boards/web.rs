@@ -4,7 +4,6 @@
 
 use std::fs;
 use std::io::{Write, stderr};
-use std::path::PathBuf;
 use std::process::Command;
 
 use console::cli::Refused;
@@ -14,20 +13,16 @@ use emulator::toolchain::{WASM, set_up_chromium, set_up_for, workspace};
 use firmware::config::TICK_RATE;
 use firmware::protocol::{Answer, Frame, MAX_WIRE, ToHost, encode};
 use firmware::scenes::SceneName;
-use host_tests::commands::web::{HEADLESS, PROCESSORS, write_page};
+use host_tests::commands::web::{HEADLESS, PROCESSORS, digits, write_page};
 
 use crate::support::LIMIT;
 
-/// Returns Node.js with a script, and the page.
-fn set_up(script: &str) -> anyhow::Result<(Command, PathBuf)> {
+/// Runs a script in Node.js with the arguments that `add` adds, and returns its output.
+fn run(script: &str, add: impl FnOnce(&mut Command)) -> anyhow::Result<String> {
     let mut node = Command::new(set_up_for(WASM)?.qemu);
     node.arg(workspace().join("host-tests/emulator/web").join(script));
-    Ok((node, write_page()?))
-}
-
-/// Runs a script to its end, and returns its output.
-fn run(node: &mut Command) -> anyhow::Result<String> {
-    let output = process::run(node, LIMIT)?;
+    add(&mut node);
+    let output = process::run(&mut node, LIMIT)?;
     anyhow::ensure!(output.status.success(), output.stderr);
     Ok(output.stdout)
 }
@@ -44,34 +39,34 @@ fn unless_missing(test: fn() -> anyhow::Result<()>) -> anyhow::Result<()> {
 #[test]
 fn boards_on_the_page_send_the_hosts_bytes() -> anyhow::Result<()> {
     unless_missing(|| {
-        let (mut node, page) = set_up("board.js")?;
+        let page = write_page()?;
         let codes = PROCESSORS.map(|(_, _, processor)| processor.code.to_string());
-        let output = run(node.arg(page).args(codes))?;
-        let mut sent = output.as_str();
+        let output = run("board.js", |node| _ = node.arg(page).args(codes))?;
+        let mut sent = output.lines();
 
-        // The page prints its boards in this order: every processor for each scene.
-        let scenes = SceneName::ALL.iter().copied();
-        let scenes = scenes.flat_map(|scene| PROCESSORS.map(|chip| (scene, chip)));
-        for (scene, (chip, _, processor)) in scenes {
-            let mut show = Show::on(processor, scene, &scene.first_settings())?;
-            let mut expect = |message: ToHost| {
-                for byte in encode(&message, &mut [0; MAX_WIRE]) {
-                    let rest = sent.strip_prefix(&format!("{byte:02x}"));
-                    sent = rest.unwrap_or_else(|| panic!("{chip}, {}: {message:?}", scene.name()));
+        // The script prints its boards in this order: every processor for each scene.
+        for scene in SceneName::ALL {
+            for (chip, _, processor) in PROCESSORS {
+                let mut show = Show::on(processor, *scene, &scene.first_settings())?;
+                let mut first = ToHost::Answer(0, Answer::Done);
+                for sequence in 0..=18 * TICK_RATE {
+                    let status = ToHost::Answer(0, Answer::Status(show.player.status()));
+                    let both = [first, status];
+                    let both = both.map(|one| digits(encode(&one, &mut [0; MAX_WIRE])));
+                    assert_eq!(
+                        sent.next(),
+                        Some(&*both.concat()),
+                        "{chip}, {scene:?}: {first:?}"
+                    );
+                    show.tick();
+                    first = ToHost::Frame(Frame {
+                        sequence,
+                        ..show.player.frame()
+                    });
                 }
-            };
-            expect(ToHost::Answer(0, Answer::Done));
-            for sequence in 0..18 * TICK_RATE {
-                expect(ToHost::Answer(0, Answer::Status(show.player.status())));
-                show.tick();
-                expect(ToHost::Frame(Frame {
-                    sequence,
-                    ..show.player.frame()
-                }));
             }
-            expect(ToHost::Answer(0, Answer::Status(show.player.status())));
         }
-        assert_eq!(sent, "");
+        assert_eq!(sent.next(), None);
         Ok(())
     })
 }
@@ -80,16 +75,16 @@ fn boards_on_the_page_send_the_hosts_bytes() -> anyhow::Result<()> {
 #[test]
 fn page_works_in_chromium_and_makes_no_request() -> anyhow::Result<()> {
     unless_missing(|| {
-        let (mut node, page) = set_up("browser.js")?;
+        let page = write_page()?;
         assert!(fs::metadata(&page)?.len() < 1_000_000, "too large");
         let profile = tempfile::tempdir()?;
         let folder = profile.path().display();
         let options = format!("{HEADLESS} --remote-debugging-pipe --user-data-dir={folder}");
         let pictures = workspace().join("host-tests/golden/scenes");
-        run(node
-            .arg(set_up_chromium()?)
-            .arg(options)
-            .args([page, pictures]))
+        let chromium = set_up_chromium()?;
+        run("browser.js", |node| {
+            node.arg(chromium).arg(options).args([page, pictures]);
+        })
         .map(drop)
     })
 }

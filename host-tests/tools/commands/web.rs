@@ -7,16 +7,13 @@ use std::time::Duration;
 
 use anyhow::ensure;
 use clap::Parser;
-use double_pendulum::{Method, Parameters};
+use double_pendulum::Method;
 use firmware::config::{CORTEX_M0PLUS, CORTEX_M3, CORTEX_M4F, MASS_RATIOS, Processor, TICK_RATE};
-use firmware::graphics::Place;
-use firmware::protocol::{Field, PlayState};
 use firmware::scenes::{LEAST_ENERGY_ERROR, SceneName};
 use serde_json::{Value, json};
 
 use console::cli::{Refused, say};
 use demo::{KEYS, SPEEDS, palette, scene_key, shows};
-use emulator::link::refusal;
 use emulator::out_file::{OutFile, check_writable};
 use emulator::process;
 use emulator::toolchain::{self, find, target};
@@ -84,85 +81,65 @@ pub fn run(options: &WebOptions) -> anyhow::Result<()> {
 
 /// Returns the desktop's program that opens files.
 fn opener() -> Result<PathBuf, Refused> {
-    const NONE: &str = "--open: neither xdg-open nor open is installed; leave --open out, and open \
-                        the page in a browser";
-    let found = ["xdg-open", "open"]
-        .iter()
-        .find_map(|program| find(program));
-    found.ok_or(Refused::because(NONE))
+    find("xdg-open").or_else(|| find("open")).ok_or_else(|| {
+        Refused::because(
+            "--open: neither xdg-open nor open is installed; leave --open out, and open the page \
+             in a browser",
+        )
+    })
 }
 
 /// Builds the application and writes the page. Returns its path. An error means that the build
 /// fails or the file cannot be written.
 pub fn write_page() -> anyhow::Result<PathBuf> {
     let module = fs::read(toolchain::set_up_web()?.build_web()?)?;
-    let digits: String = module.iter().map(|byte| format!("{byte:02x}")).collect();
     let page = TEMPLATE
         .replace("{facts}", &facts().to_string())
-        .replace("{module}", &digits);
+        .replace("{module}", &digits(&module));
     let file = target().join(FILE);
     OutFile::create("the page", &file)?.write_whole(page.as_bytes())?;
     Ok(file)
 }
 
-/// Returns the tables of the firmware and of the terminal that the page uses.
+/// Returns bytes in hexadecimal digits.
+pub fn digits(bytes: &[u8]) -> String {
+    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+/// Returns the tables of the firmware and of the terminal that the page uses. An `id` is a name in
+/// the messages of the page's module.
 fn facts() -> Value {
-    let scenes = SceneName::ALL.iter().enumerate().map(|(index, scene)| {
-        let settings = scene.first_settings();
-        let Parameters { m1, m2, l1, l2, g } = settings.parameters;
-        let [[a1, a2], [w1, w2]] = [settings.degrees, settings.velocities];
+    let scenes = SceneName::ALL.iter().enumerate().map(|(index, &scene)| {
         json!({
+            "id": scene,
             "name": scene.name(),
             "key": scene_key(index).to_string(),
-            "shows": shows(*scene),
+            "shows": shows(scene),
+            "first": scene.first_settings(),
             "hasAngles": scene.has_angles(),
             "isLinear": scene.is_linear(),
-            "place": place(*scene).map(|place| [place.pivot.0, place.pivot.1, place.reach]),
-            "first": [m1, m2, l1, l2, g, a1, a2, w1, w2],
         })
     });
+    let named = |method: &Method| json!({"id": method, "name": method.name()});
 
     // In a browser, Tab moves the focus, the help is one page, and the user closes the page.
     let keys = KEYS
         .iter()
-        .filter(|(key, _)| !["?", "q, ctrl-C"].contains(key));
-    let keys = keys.map(|(key, text)| [key.replace("tab, ", ""), text.replace("shift-tab, ", "")]);
+        .filter(|(key, _)| !["?", "q, ctrl-C"].contains(key))
+        .map(|(key, text)| [key.replace("tab, ", ""), text.replace("shift-tab, ", "")]);
     json!({
         "rate": TICK_RATE,
         "palette": palette().chunks(3).collect::<Vec<_>>(),
         "scenes": scenes.collect::<Vec<_>>(),
-        "processors": PROCESSORS.map(|(name, text, chip)| json!([name, text, chip.code])),
-        "methods": names(Method::ALL, Method::name),
-        "drawn": names(Method::DRAWN, Method::name),
-        "states": names(PlayState::ALL, PlayState::name),
-        "fields": names(Field::ALL, refusal),
+        "processors": PROCESSORS
+            .map(|(name, text, chip)| json!({"name": name, "text": text, "code": chip.code})),
+        "methods": Method::ALL.iter().map(named).collect::<Vec<_>>(),
+        "drawn": Method::DRAWN.iter().map(named).collect::<Vec<_>>(),
         "massRatios": MASS_RATIOS.to_vec(),
         "speeds": SPEEDS,
         "leastEnergyError": LEAST_ENERGY_ERROR,
         "keys": keys.collect::<Vec<_>>(),
     })
-}
-
-/// Returns the names of all values.
-fn names<T: Copy>(all: &[T], name: fn(T) -> &'static str) -> Vec<&'static str> {
-    all.iter().copied().map(name).collect()
-}
-
-/// Returns the place of the first pendulum of a scene, if it shows one.
-fn place(scene: SceneName) -> Option<Place> {
-    match scene {
-        SceneName::Page => Some(Place::WHOLE),
-        SceneName::Figure7 | SceneName::Butterfly | SceneName::Upright => Some(Place::HALVES[0]),
-        SceneName::SmallLight
-        | SceneName::SmallEqual
-        | SceneName::SmallHeavy
-        | SceneName::Frequencies
-        | SceneName::Beats3To2
-        | SceneName::Beats2To1
-        | SceneName::Beats5To2
-        | SceneName::Beats3To1
-        | SceneName::Flips => None,
-    }
 }
 
 /// Saves a picture of the page some seconds after its start.
