@@ -6,10 +6,10 @@ use double_pendulum::plan::{Budget, Costs, Problem};
 
 /// The number of ticks per second. In a tick the pendulum moves by one frame's time.
 pub const TICK_RATE: u32 = 60;
-/// The number of RK4 steps per tick, of 1/120 s each, of a motion that is shown next to the planned
-/// one.
+/// The smallest number of RK4 steps per tick of a motion that is shown for comparison and follows
+/// no plan (scenes `figure-7` and `upright`). With this number a step is [`DT`] long.
 pub const STEPS_PER_TICK: u32 = 2;
-/// The length of such a step, s: 1/120.
+/// The length of a step at [`STEPS_PER_TICK`] steps per tick, s: 1/120.
 pub const DT: f64 = 1.0 / (TICK_RATE * STEPS_PER_TICK) as f64;
 /// The largest number of ticks that are integrated before a frame is drawn. So a board that is too
 /// slow for every frame still shows 60/15 = 4 frames per second. The other ticks are integrated
@@ -19,7 +19,8 @@ pub const MOST_TICKS_PER_FRAME: u32 = 15;
 /// The time without a finished frame after which the watchdog acts, s. It is four times the time of
 /// the slowest frame allowed, 15/60 s.
 ///
-/// The watchdog reports a hang after this time, and resets the board after the same time again.
+/// A watchdog of two stages reports a hang after this time. Every watchdog resets the board after
+/// about twice this time.
 pub const WATCHDOG_SECONDS: u32 = 1;
 
 /// The largest speed of a scene, simulated time per real time. At 4 ticks of the scene per tick
@@ -140,7 +141,9 @@ pub const STM32F405: Processor = Processor {
 };
 /// The processor classes, indexed by their code on the link.
 pub const PROCESSORS: [Processor; 4] = [CORTEX_M3, CORTEX_M4F, STM32F405, CORTEX_M0PLUS];
-/// The class of the processor that the program is compiled for, unless a board names another.
+/// The class of the processor that the program is compiled for, unless a board names another:
+/// [`CORTEX_M4F`] with the hard-float ABI, [`CORTEX_M0PLUS`] for ARMv6-M, and otherwise, as on a
+/// host, [`CORTEX_M3`].
 pub const PROCESSOR: Processor = if cfg!(target_abi = "eabihf") {
     CORTEX_M4F
 } else if cfg!(armv6m) {
@@ -182,9 +185,11 @@ const FLOAT: FlipsPace = FlipsPace {
 /// The length of either rod at power-on, m. It gives a period of about 2 s, which is pleasant to
 /// watch.
 pub const ROD: f32 = 1.0;
-/// The gravity, m/s^2.
+/// The gravity in the initial settings of all scenes except those of [`PAGE_GRAVITY`], m/s^2. A
+/// command can change it.
 pub const GRAVITY: f64 = 9.81;
-/// The gravity of the source page, m/s^2. It is used for the page's own figures.
+/// The gravity of the source page, m/s^2. It is in the initial settings of the scenes that repeat
+/// the page's own figures: `small-0.2`, `small-1`, `small-5` and `figure-7`.
 pub const PAGE_GRAVITY: f64 = 9.8;
 /// The mass ratio mu = m2/m1 at power-on.
 pub const FIRST_MASS_RATIO: f32 = 1.0;
@@ -215,9 +220,11 @@ pub const REPEAT_DELAY_TICKS: u8 = 24;
 /// The time after which a held button repeats again, ticks: 4/60 s, or 15 repetitions per second.
 pub const REPEAT_PERIOD_TICKS: u8 = 4;
 
-/// The time after which the select button, held alone, changes the scene, ticks: 48/60 = 0.8 s.
+/// The time after which the select button, held alone, acts, ticks: 48/60 = 0.8 s. It changes the
+/// scene, or has the effect that the taps before it select (`app::Controls`).
 pub const HOLD_TICKS: u8 = 48;
-/// The longest time between taps and a hold that belong together, ticks: 24/60 = 0.4 s.
+/// The longest time from the end of a tap to the next press that belongs to it, ticks:
+/// 24/60 = 0.4 s.
 pub const MOST_TICKS_BETWEEN_TAPS: u8 = 24;
 
 // ---- The frame, in pixels -----------------------------------------------------------------------
@@ -247,22 +254,26 @@ pub const TRAIL_FADING: u8 = 5;
 /// The speed of the serial link, bits per second. A frame message of at most 94 bytes takes 94 x
 /// 10/460,800 = 2.0 ms of the 16.7 ms of a tick.
 pub const BAUD: u32 = 460_800;
-/// The largest number of steps that are measured at once; a request for more measures this number.
+/// The largest number of steps whose time is measured at once; a request for more measures this
+/// number.
 /// With order 8 in `f64` they block a Cortex-M3 at 50 MHz for 16 x 136,500/50e6 = 44 ms.
 pub const MOST_MEASURED_STEPS: u32 = 16;
-/// The number of times that a bus is polled before it counts as stuck. A try takes at least 4
-/// processor cycles, so that the tries last 0.24 ms on the fastest board. The longest wait is for a
-/// byte of the serial port, 10/460,800 s = 22 us.
+/// The number of times that a serial port or an SPI bus is polled before it counts as stuck and the
+/// transfer fails. A try takes at least 4 processor cycles, so that the tries last 0.24 ms on the
+/// fastest board. The longest wait is for a byte of the serial port, 10/460,800 s = 22 us.
 pub const BUS_TRIES: u32 = 10_000;
 /// The size, bytes, of the queue of received bytes that wait for the application. When it is full,
-/// further ones are lost. A tick brings at most 460,800/10/60 = 768.
+/// further ones are lost; over USB the host waits instead. A tick of the serial port brings at most
+/// 460,800/10/60 = 768.
 pub const RECEIVE_QUEUE: usize = 1024;
 /// The size, bytes, of the queue of bytes that wait for the USB host. The host fetches 63 bytes
-/// about every 0.1 ms. If it is late, the queue holds a dozen frames.
+/// about every 0.1 ms. If it is late, the queue holds some ten frames. A message that does not fit
+/// is dropped as a whole.
 pub const USB_QUEUE: usize = 1024;
 /// The size, bytes, of the queue of bytes that wait for the Pico's UART: a frame and two answers.
-/// The line carries 768 bytes in a tick.
+/// The line carries 768 bytes in a tick. A message that does not fit waits for room; after at least
+/// 8 ms without room it is dropped as a whole.
 pub const UART_QUEUE: usize = 256;
-/// The largest number of messages that are executed in a tick. Others wait in the queue. When that
-/// is full, bytes are lost, and messages remain unanswered.
+/// The largest number of messages that are taken in a tick, commands and damaged ones together.
+/// Others wait in the queue. When that is full, bytes are lost, and messages remain unanswered.
 pub const MOST_MESSAGES_PER_TICK: usize = 4;

@@ -76,8 +76,8 @@ const CAUSES: [(u32, &str); 13] = [
 
 impl Stacked {
     /// Returns the number of bytes that the processor has stacked, without the word that aligns the
-    /// stack. `exception` is the value of the link register on entry to the handler. It shows
-    /// whether the registers of the floating-point unit are included.
+    /// stack: 104 with the registers of the floating-point unit, and 32 without. `exception` is the
+    /// value of the link register on entry to the handler; its bit 4 is 0 if they are included.
     pub fn size(exception: u32) -> u32 {
         if exception & (1 << 4) == 0 {
             26 * 4
@@ -95,6 +95,10 @@ impl Fault {
     }
 
     /// Returns the cause of the fault in words; if several bits are set, the most specific cause.
+    ///
+    /// It is a stack overflow if registers are missing on the stack, or if an access up to 128
+    /// bytes below `sp` was refused. If no register shows the cause, as usual on a Cortex-M0+, it
+    /// is unknown.
     pub fn cause(&self) -> &'static str {
         if self.is_stack_overflow() {
             return "stack overflow";
@@ -164,8 +168,9 @@ impl fmt::Display for Fault {
     }
 }
 
-/// Returns the size in bytes of the call that ends with these two halfwords: 4 for `bl`, 2 for
-/// `blx`, which is the second halfword alone. Returns `None` if they are no call.
+/// Returns the size in bytes of the call that ends with these two halfwords of Thumb code, in the
+/// order of their addresses: 4 for `bl`, 2 for `blx`, which is the second halfword alone. Returns
+/// `None` if they are no call.
 pub fn call_size([first, second]: [u16; 2]) -> Option<u32> {
     if first & 0xf800 == 0xf000 && second & 0xd000 == 0xd000 {
         Some(4)

@@ -105,10 +105,12 @@ macro_rules! choice {
         pub enum $name { $($(#[$row_doc])* #[doc = concat!("`", $text, "`")] $row,)* }
 
         impl $name {
-            /// Contains all choices, in the order of their table.
+            /// The list of all variants of this enum of named choices, in the order of their
+            /// declaration. It is never empty, and its first variant is the default.
             pub const ALL: &[$name] = &[$($name::$row,)*];
 
-            /// Returns the name for people, as in the documentation of the variant.
+            /// Returns the name of this choice for people, as in the documentation of the variant:
+            /// a few words such as `"ssd1306"` or `"step size"`.
             pub const fn name(self) -> &'static str {
                 match self { $($name::$row => $text,)* }
             }

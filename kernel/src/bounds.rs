@@ -128,8 +128,8 @@ impl<R: Real> Pendulum<R> {
     /// The forces between the rods contain 1/(m1 + m2 sin^2 D), which doubles within
     /// sin D = sqrt(m1/m2). An elbow with the rate d passes this peak in sqrt(m1/m2)/d.
     ///
-    /// It is 0 if nothing can move, and NaN for a state that is NaN. Refuses parameters whose modes
-    /// are out of range.
+    /// It is 0 if nothing can move, and NaN or infinite for a state that is not finite. Refuses
+    /// parameters whose modes are out of range.
     #[doc(hidden)]
     pub fn fastest_rate(&self, state: &State<R>) -> Result<R, Error> {
         let &Parameters { m1, m2, g, .. } = self.parameters();
@@ -170,7 +170,7 @@ impl<R: Real> Pendulum<R> {
     /// # Errors
     ///
     /// Refuses parameters whose modes are out of range ([`Error::OutOfRange`]). The state is not
-    /// checked; NaN gives NaN.
+    /// checked; one that is not finite gives NaN or 0.
     pub fn admissible_step(&self, state: &State<R>) -> Result<R, Error> {
         Ok(R::from_f64(RESOLVED) / self.fastest_rate(state)?)
     }

@@ -91,21 +91,21 @@ impl fmt::Display for Parameter {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum Error {
-    /// The value is NaN or infinite.
+    /// The value is NaN or infinite, or becomes infinite in the numbers of the method.
     NotFinite {
         /// The refused parameter.
         parameter: Parameter,
         /// The refused value.
         value: f64,
     },
-    /// The value is zero or negative.
+    /// The value is zero or negative, or becomes zero in the numbers of the method.
     NotPositive {
         /// The refused parameter.
         parameter: Parameter,
         /// The refused value.
         value: f64,
     },
-    /// The value exceeds a limit that the other parameters set.
+    /// The value exceeds a limit, which usually follows from the other parameters.
     TooLarge {
         /// The refused parameter.
         parameter: Parameter,
@@ -114,7 +114,7 @@ pub enum Error {
         /// The largest possible value.
         limit: f64,
     },
-    /// The value is below a limit that the other parameters set.
+    /// The value is below a limit: gravity below 0, or a frequency ratio too small for the rods.
     TooSmall {
         /// The refused parameter.
         parameter: Parameter,
@@ -135,8 +135,8 @@ pub enum Error {
     /// Each value alone is valid, but one of them or a product of them leaves the range of the
     /// arithmetic.
     ///
-    /// Also the error for an order that is not 2, 4 .. 16, and for a start of 2^31 - 1 turns or
-    /// more.
+    /// Also the error for a zero or subnormal step in [`Pendulum::run`](crate::Pendulum::run), for
+    /// an order that is not 2, 4 .. 16, and for a start of 2^31 - 1 turns or more.
     OutOfRange {
         /// The refused parameter. If a product is out of range, the mass, length or gravity whose
         /// value is farthest from 1 as a factor.

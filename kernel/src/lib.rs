@@ -60,7 +60,7 @@
 //! - **energy above rest**: the energy H above that of hanging at rest, K = H - min V.
 //! - **normal mode**: an oscillation with a fixed ratio of the angles; there are two ([`Modes`]).
 //! - **flip**: a rod turns over, when its angle passes plus or minus pi.
-//! - **turn**: a whole revolution of a rod since the start.
+//! - **turn**: a whole revolution of a rod, 2 pi; angles beyond plus or minus pi include turns.
 //! - **elbow**: the joint between the rods; its angle is D = a1 - a2.
 //! - **den**: m1 + m2 sin^2 D, the denominator of the equations.
 //! - **regular, chaotic**: a motion whose errors grow slowly, or exponentially.
@@ -86,6 +86,7 @@
 //!
 //! Plans:
 //!
+//! - **scene**: a pendulum and its start, which an application shows.
 //! - **frame**: a picture of the motion, at a fixed rate.
 //! - **tolerance**: the largest allowed distance of a bob from its exact position.
 //! - **accurate**: within the tolerance of the exact motion.

@@ -9,8 +9,8 @@ use crate::pendulum::{Parameters, Pendulum};
 pub struct Mode<R> {
     /// Angular frequency, rad/s.
     pub frequency: R,
-    /// The shape r = H2/H1 of the mode, a ratio of angles: the angle of rod 2 if the angle of rod 1
-    /// is 1.
+    /// The shape r = H2/H1 of the mode, the ratio of the amplitudes H of the angles: the angle of
+    /// rod 2 if the angle of rod 1 is 1.
     pub shape: R,
 }
 
@@ -153,10 +153,9 @@ impl<R: Real> Pendulum<R> {
 ///
 /// # Errors
 ///
-/// Refuses lengths that are not positive and finite, lengths whose squares leave the range of `R`,
-/// and a `slow` of 0. Also refuses a ratio p/q
-/// that no masses can give, by [`Error::TooSmall`]: it must exceed the square root of the longer
-/// rod over the shorter rod.
+/// Refuses lengths that are not positive and finite, lengths whose terms in the formula leave the
+/// range of `R`, and a `slow` of 0. Also refuses a ratio p/q that no masses can give, by
+/// [`Error::TooSmall`]: it must exceed the square root of the longer rod over the shorter rod.
 pub fn periodic_mass_ratio<R: Real>(fast: u16, slow: u16, lengths: [R; 2]) -> Result<R, Error> {
     // Only the lengths can be wrong here.
     let [l1, l2] = lengths;

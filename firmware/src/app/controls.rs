@@ -63,10 +63,13 @@ const ARROWS: [[Command; 2]; 4] = [
 /// | left | start angle clockwise | previous scene |
 /// | right | start angle counter-clockwise | next scene |
 ///
-/// The select button alone can do the most important things. A tap restarts the scene. Holding it
-/// for [`HOLD_TICKS`] selects the next scene. Holding it that long after one, two, three or four
-/// taps is a heavier bob 2, a lighter one, a turn to the right or to the left, and repeats. After
-/// more taps it does nothing. Each of these taps has restarted the scene.
+/// A held arrow repeats after [`REPEAT_DELAY_TICKS`], and then every [`REPEAT_PERIOD_TICKS`].
+///
+/// The select button alone can do the most important things. A tap restarts the scene when it ends.
+/// Holding it for [`HOLD_TICKS`] selects the next scene, once. Holding it that long after one, two,
+/// three or four taps is a heavier bob 2, a lighter one, a turn to the right or to the left, and
+/// repeats. After more taps it does nothing. Each of these taps has restarted the scene. Taps
+/// belong together if at most [`MOST_TICKS_BETWEEN_TAPS`] are between them.
 #[derive(Clone, Debug, Default)]
 pub struct Controls {
     arrows: [Button; 4],
@@ -75,8 +78,9 @@ pub struct Controls {
 }
 
 impl Controls {
-    /// Takes the reading of one tick; call it once in every tick. Returns the commands of the
-    /// buttons, usually none: first the arrows' commands, then the select button's own command.
+    /// Takes the reading of one tick of the clock; call it once in every tick. Returns the commands
+    /// of the buttons, usually none: at most one for each of up, down, left and right, in this
+    /// order, and then the select button's own command.
     pub fn tick(
         &mut self,
         Pressed {

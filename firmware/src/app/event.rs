@@ -9,13 +9,14 @@ use crate::motion::Settings;
 use crate::protocol::{Command, Field, LinkError, Restarted};
 use crate::scenes::SceneName;
 
-/// An event for the log. Totals are since reset; the other counts are since the last event of that
-/// kind.
+/// An event for the log. Totals are since reset, and wrap; the other counts are since the last
+/// event of that kind. `Panel` and `Link` are the types of the errors of the panel and of the link.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Event<Panel, Link> {
-    /// The board has restarted on its own. True if it plays the same scene as before.
+    /// The board has restarted on its own. True if it plays the same scene as before; false if the
+    /// restarts in a row are too many, or if that scene cannot be played.
     Restarted(Restarted, bool),
-    /// A scene starts with these settings.
+    /// A command, of a button or from the link, has started a scene with these settings.
     Started(SceneName, Settings),
     /// The command of a button is impossible because of this field. Nothing changes. (A command
     /// from the link gets an answer instead.)
@@ -46,11 +47,12 @@ pub enum Event<Panel, Link> {
     /// The step of the requested motion is longer than this, s: the longest step that resolves
     /// every motion of its energy.
     StepTooLong(f64),
-    /// The planner has a result, or another method computes the motion that is shown.
+    /// The planner has a result, or a method begins to compute the motion that is shown.
     Motion(PlannerEvent),
 }
 
-/// A function that takes the events of an application with this panel and link.
+/// A function that takes the events of an application with this panel and link, one at a time, in
+/// their order. It is called in the middle of the application's work, and returns nothing.
 pub trait Log<Panel: Display, Link: ErrorType>: FnMut(Event<Panel::Error, Link::Error>) {}
 
 impl<Panel: Display, Link: ErrorType, F: FnMut(Event<Panel::Error, Link::Error>)> Log<Panel, Link>

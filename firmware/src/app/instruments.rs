@@ -9,13 +9,13 @@ use crate::protocol::Identity;
 pub struct Instruments {
     /// Returns the count of the processor clock, for differences; starts anywhere and wraps.
     pub stopwatch: fn() -> u32,
-    /// Makes this number of steps with interrupts off. Their code is run from RAM (`true`) or from
-    /// flash.
+    /// Makes this number of steps of a motion with interrupts off. Their code is run from RAM
+    /// (`true`) or from flash. If it is not in that memory, no step is made.
     ///
-    /// Returns the processor cycles taken; 0 without a cycle counter, or if the code is not in that
-    /// memory.
+    /// Returns the processor cycles taken, on a Cortex-M0+ modulo 2^24; 0 without a cycle counter,
+    /// or if no step is made. The default makes the steps and returns 0.
     pub timed: fn(&mut OnBoards, u32, bool) -> u32,
-    /// Returns the program in flash.
+    /// Returns the bytes of the program in flash; none by default.
     pub image: fn() -> &'static [u8],
     /// The identity, without the checksum and the size of the image.
     pub identity: Identity,
@@ -38,7 +38,7 @@ impl Default for Instruments {
 
 impl Instruments {
     /// Returns the answer to [`Command::Identify`](crate::protocol::Command::Identify): `identity`
-    /// with the CRC-32 and the size of the image. Both are 0 without an image.
+    /// with the CRC-32/ISO-HDLC of the image and its size, bytes. Both are 0 if the image is empty.
     pub fn identity(&self) -> Identity {
         let image = (self.image)();
         Identity {

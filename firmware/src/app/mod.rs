@@ -29,6 +29,10 @@ pub use warm_restart::{Journal, Kept, MOST_RESTARTS, Record, SOUND_FRAMES};
 
 /// The application. It needs only a panel, a byte sink and buttons, so that it is the same on a
 /// board and in a test.
+///
+/// The main loop calls its functions; no interrupt does. Errors of the panel and of the link do not
+/// stop it: the first of several in a row is logged. A message blocks only while the link's `write`
+/// blocks.
 #[derive(Debug)]
 pub struct App<'a, Panel, Link, Keys> {
     /// The panel is borrowed, so that neither it nor the application is too large for the stack
@@ -67,7 +71,7 @@ pub struct App<'a, Panel, Link, Keys> {
 
 impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> {
     /// Creates an application that does not play yet: it shows an empty figure until a command, or
-    /// [`Player::play`], starts a scene.
+    /// [`Player::play`], starts a scene. Its clock is at tick 0, and nothing is sent yet.
     ///
     /// The start of a scene needs much stack. So it is better done when the application is at its
     /// final place.
@@ -103,19 +107,21 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
     }
 
     /// Sets the clock to tick `clock`, so that [`run_to`](Self::run_to) counts from there. Sets the
-    /// counts of frames and of ticks without a frame to `frames`. The scene is not changed.
+    /// count of frames, and also the count of ticks without a frame, to `frames`. The scene is not
+    /// changed, and no event is logged.
     pub fn count_from(&mut self, clock: u32, frames: u32) {
         self.ticks = clock;
         self.frames = frames;
         self.dropped = ThrottledCounter::starting(frames, clock);
     }
 
-    /// Plays again the scene from before a restart, and reports the restart to the host: to a host
-    /// that is connected now at once, and to any other when it asks.
+    /// Plays the scene from before a restart again from its start ([`Player::resume`]), and reports
+    /// the restart to the host: to a host that is connected now at once, and to any other when it
+    /// asks.
     ///
-    /// The present scene continues instead if the restarts in a row are too many
-    /// ([`MOST_RESTARTS`]), or if the scene of the record cannot be played. The log event
-    /// records this.
+    /// The present scene continues instead if the restarts in a row are more than
+    /// [`MOST_RESTARTS`], or if the scene of the record cannot be played. The event
+    /// [`Event::Restarted`] reports this; the message to the host does not.
     pub fn resume(&mut self, restart: &Record, mut log: impl Log<Panel, Link>) {
         let resumed = !restart.is_given_up() && self.player.resume(&restart.played).is_ok();
         log(Event::Restarted(restart.end, resumed));
@@ -123,14 +129,15 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
         self.send(&ToHost::Restarted(restart.end), &mut log);
     }
 
-    /// Drives the panel as this controller; `None` identifies it. Returns false if the board has no
-    /// panel with a choice of controllers.
+    /// Drives the panel as this controller; `None` identifies it. The panel is then searched for
+    /// and set up again. Returns false, and does nothing, if the board has no panel with a choice
+    /// of controllers.
     pub fn choose_panel(&mut self, controller: Option<Controller>) -> bool {
         self.panel.choose(controller)
     }
 
-    /// Returns what the host may ask for at any time: scene, settings, method, processor, speed,
-    /// and the state of player and panel.
+    /// Returns the answer to [`Command::Ask`]: scene, settings, method, processor, speed, and the
+    /// state of player and panel.
     pub fn status(&self) -> Status {
         Status {
             panel: self.panel.report(),
@@ -138,12 +145,15 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
         }
     }
 
-    /// Catches up with the clock, then draws and sends one frame. `clock` is the current tick of
-    /// the clock, which may wrap. If it is the tick of the last call, nothing is done. It must not
-    /// be an earlier one: that would count as a wrap.
+    /// Catches up with the clock, then draws one frame and sends it to the panel and over the link.
+    /// `clock` is the number of the current tick of 1/60 s, which may wrap. If all ticks up to it
+    /// are completed, nothing is done, and the result is true. It must not be an earlier one: that
+    /// would count as a wrap.
     ///
+    /// In each tick the buttons are read, their commands are executed, and the scene advances.
     /// Every tick is integrated, however late it is. The state after n ticks does not depend on the
-    /// number of calls.
+    /// number of calls. A motion that has left the finite numbers stops the scene at the next
+    /// frame, which is logged ([`Event::Stopped`]).
     ///
     /// A call completes at most [`MOST_TICKS_PER_FRAME`] ticks, and the next calls complete the
     /// rest. Returns true if no tick is left. If false, call again without waiting for the next
@@ -181,17 +191,20 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
         ticks == late
     }
 
-    /// Sends the last frame to the panel if it is still waiting for the bus. Returns true while it
-    /// waits.
+    /// Sends the last frame to the panel if it is still waiting for the bus and the bus is free.
+    /// Returns true if it still waits; false if it is sent, or if none waited. Does not wait for
+    /// the transfer.
     pub fn catch_up(&mut self) -> bool {
         self.panel.catch_up(self.canvas)
     }
 
-    /// Takes bytes received over the link, executes the commands and answers them. Damaged messages
-    /// get no answer; they are counted and logged.
+    /// Takes bytes received over the link, executes the commands and answers them. An impossible or
+    /// unreadable command is answered with [`Answer::Refused`]. Damaged messages get no answer;
+    /// they are counted and logged. The beginning of a message is kept for the next call.
     ///
-    /// Stops after [`MOST_MESSAGES_PER_TICK`] messages or [`RECEIVE_QUEUE`] bytes, so that a flood
-    /// of either does not delay the frame. The bytes left in `bytes` wait for the next call.
+    /// Stops after [`MOST_MESSAGES_PER_TICK`] messages, damaged ones included, or [`RECEIVE_QUEUE`]
+    /// bytes, so that a flood of either does not delay the frame. The iterator is not advanced
+    /// further; its source keeps the other bytes for the next call.
     pub fn receive(&mut self, bytes: impl IntoIterator<Item = u8>, mut log: impl Log<Panel, Link>) {
         let mut left = MOST_MESSAGES_PER_TICK;
         for byte in bytes.into_iter().take(RECEIVE_QUEUE) {
@@ -234,8 +247,8 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
         }
     }
 
-    /// Takes the number of received bytes that have been lost since reset, in all; may wrap. Frames
-    /// report it, and its growth is logged at most once a second.
+    /// Takes the number of received bytes that have been lost since reset, in all, not since the
+    /// last call; may wrap. Later frames report it, and its growth is logged at most once a second.
     pub fn note_lost(&mut self, total: u32, mut log: impl Log<Panel, Link>) {
         self.lost.total = total;
         if let Some(bytes) = self.lost.news(self.ticks) {
@@ -247,7 +260,7 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
     /// is then due. Returns true if more is left, and false without a job.
     ///
     /// An error ends the job: the motion has left the finite numbers, because the step is too long
-    /// for it.
+    /// for it. Then [`Answer::Refused`] is sent, and the result is false.
     pub fn work(&mut self, mut log: impl Log<Panel, Link>) -> bool {
         let Some((request, job)) = &mut self.work else {
             return false;

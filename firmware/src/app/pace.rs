@@ -37,7 +37,8 @@ impl Pace {
     }
 
     /// Returns the number of ticks of the scene that are due in this tick of the clock, and counts
-    /// them as done. Paused, it is 1 while `steps` are left, and then 0.
+    /// them as done. Not paused, it is 0 to [`GREATEST_SPEED`]. Paused, it is 1 while `steps` are
+    /// left, and then 0. To be called once in each tick of the clock.
     pub fn tick(&mut self) -> u32 {
         if self.paused {
             let due = self.steps.min(1);
@@ -51,7 +52,7 @@ impl Pace {
         ticks
     }
 
-    /// Sets the speed, simulated time per real time, rounded to hundredths.
+    /// Sets the speed, simulated time per real time, rounded to hundredths. A pause stays.
     ///
     /// Returns [`Field::Speed`], and keeps the old speed, if the rounded one is below 0.01 or above
     /// [`GREATEST_SPEED`], or is NaN.

@@ -61,7 +61,8 @@ enum MotionState {
 
 impl<'a> Player<'a> {
     /// Creates the player for a processor of this class. It shows an empty figure until a scene is
-    /// played.
+    /// played. Its name is until then [`SceneName::Frequencies`], with the default settings, which
+    /// a command such as [`Command::Restart`] starts.
     pub fn new(processor: Processor, ink: &'a mut FadeLayer) -> Self {
         let scene = AnyScene::empty();
         let report = scene.report(0);
@@ -78,12 +79,12 @@ impl<'a> Player<'a> {
         }
     }
 
-    /// Plays a scene with `settings` from its start, at the present pace. A scene that cannot use
-    /// the requested method follows its plan. A motion that is too fast does not advance: the state
-    /// is then [`PlayState::Stopped`].
+    /// Plays a scene with `settings` from its start, at the present pace: a pause stays. A scene
+    /// that cannot use the requested method follows its plan. A motion that is too fast does not
+    /// advance: the result is `Ok`, and the state is then [`PlayState::Stopped`].
     ///
     /// Returns the kernel's error if the settings describe no pendulum, or a pendulum that the
-    /// scene cannot show. Then nothing is changed.
+    /// scene cannot show. Then nothing is changed. Angles beyond straight up are not refused here.
     pub fn play(&mut self, name: SceneName, settings: Settings) -> Result<(), Error> {
         match self.play_by(self.method, name, settings) {
             Err(_) if self.method.is_some() => self.play_by(None, name, settings),
@@ -128,10 +129,12 @@ impl<'a> Player<'a> {
         Ok(())
     }
 
-    /// Executes a command. Returns true if a scene was started, the same or another one. A command
-    /// that does not concern the player, such as [`Command::Ask`], does nothing.
+    /// Executes a command. Returns true if a scene was started, the same or another one; false for
+    /// a change of pause or speed. A command that does not concern the player, such as
+    /// [`Command::Ask`], does nothing, and the result is false.
     ///
-    /// If the command is impossible, returns the field that is wrong. Then nothing is changed.
+    /// If the command is impossible, returns the field that is wrong. Then nothing is changed. A
+    /// motion that is too fast is not impossible: its scene starts, and is stopped.
     #[inline(never)] // Inlined, the start of a scene would be on the stack of every frame.
     pub fn execute(&mut self, command: Command) -> Result<bool, Field> {
         match command {
@@ -180,8 +183,9 @@ impl<'a> Player<'a> {
         Ok(false)
     }
 
-    /// Advances by one tick of the clock, which may be any number of ticks of the scene: none while
-    /// it is paused or stopped.
+    /// Advances by one tick of the clock, which is 0 to
+    /// [`GREATEST_SPEED`](crate::config::GREATEST_SPEED) ticks of the scene, as its speed requires:
+    /// none while it is stopped, and while it is paused one if a step is left.
     ///
     /// Calls `tell` with each result of the planner, and with each method that takes over.
     #[inline(never)]
@@ -253,7 +257,8 @@ impl<'a> Player<'a> {
     }
 
     /// Returns the cost of computing a frame by this method and step count, cycles of the price
-    /// list of the processor class. It is not measured.
+    /// list of the processor class. It is not measured. It is infinite for a method that is not in
+    /// [`Method::DRAWN`].
     pub fn cost(&self, stepping: Stepping) -> f32 {
         self.planner.processor.costs.of_frame(stepping)
     }
@@ -302,8 +307,9 @@ impl<'a> Player<'a> {
         false
     }
 
-    /// Draws the scene in place of the last frame, and a mark if it is paused. If the scene is
-    /// stopped, writes the reason instead.
+    /// Draws the scene in place of the last frame, with the numbers of the last
+    /// [`check`](Self::check), and a mark if it is paused. If the scene is stopped, writes the
+    /// reason instead.
     #[inline(never)]
     pub fn draw(&self, canvas: &mut Canvas) {
         match self.state() {
@@ -393,8 +399,11 @@ impl<'a> Player<'a> {
         }
     }
 
-    /// Plays the scene of a status from its start, with its method, speed and pause. If that is
-    /// impossible, returns the field that is wrong; then nothing is changed.
+    /// Plays the scene of a status from its start, with its method, speed, pause and steps left.
+    /// The processor and the panel of the status are ignored. A scene that cannot use the method
+    /// follows its plan, as in [`play`](Self::play).
+    ///
+    /// If that is impossible, returns the field that is wrong; then nothing is changed.
     pub fn resume(&mut self, status: &Status) -> Result<(), Field> {
         let Status {
             scene,

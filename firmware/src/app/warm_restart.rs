@@ -13,7 +13,8 @@ use serde::{Deserialize, Serialize};
 use crate::config::TICK_RATE;
 use crate::protocol::{Cause, Decoder, MAX_WIRE, Restarted, Status, encode, read};
 
-/// The bytes of a retained record.
+/// The memory for a retained record, bytes. Any contents are possible; [`Record::read`] checks
+/// them.
 pub type Kept = [u8; MAX_WIRE];
 
 /// The largest number of restarts in a row that play the same scene again. After more the board
@@ -26,10 +27,10 @@ pub const MOST_RESTARTS: u8 = 3;
 /// on a board that draws every frame.
 pub const SOUND_FRAMES: u32 = 60 * TICK_RATE;
 
-/// The retained record: what was played, and how the program ended.
+/// The retained record: the state before a restart, and the reason why the program ended.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Record {
-    /// The state of the player.
+    /// The state of the player and of the panel.
     pub played: Status,
     /// The end of the program. It has no cause while the program is running.
     pub end: Restarted,
@@ -43,7 +44,8 @@ impl Record {
         kept
     }
 
-    /// Returns the record; `None` if it is not intact.
+    /// Returns the record in these bytes; `None` if it is not intact, or if a program with another
+    /// version of the protocol wrote it.
     pub fn read(kept: &Kept) -> Option<Self> {
         let mut decoder = Decoder::default();
         for &byte in kept {
@@ -96,8 +98,9 @@ impl Journal {
         }
     }
 
-    /// Counts a frame and returns the record to keep after it: the state of the player, and `step`,
-    /// the tick of the scene that was shown. The record has no cause.
+    /// Counts a frame and returns the record to keep after it: `played`, the state of the player,
+    /// and `step`, the tick of the scene that was shown. The record has no cause. Its count of
+    /// restarts is that of [`new`](Self::new), and 0 from frame [`SOUND_FRAMES`] on.
     pub fn note(&mut self, played: Status, step: u64) -> Record {
         self.frames = self.frames.saturating_add(1);
         // After a minute without a restart, earlier restarts no longer count.

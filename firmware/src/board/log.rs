@@ -40,7 +40,7 @@ static PATH: Shared<Path> = Shared::new(Path {
     interrupts: false,
 });
 
-/// Opens the log of a chip, in memory. Earlier lines are lost. Parts of lines are also
+/// Opens the log of a chip, in memory (RTT). Earlier lines are lost. Parts of lines are also
 /// lost if no probe reads them and the 1024 bytes are full. From now on no debugger is assumed to
 /// be present (`crash::expect_no_debugger`).
 pub fn into_memory() {
@@ -49,7 +49,8 @@ pub fn into_memory() {
     PATH.with(|path| path.sink = Sink::Memory(channel));
 }
 
-/// Opens the log of an emulated chip, on the standard output. Without one the log goes nowhere.
+/// Opens the log of an emulated chip, on the emulator's standard output. Earlier lines are lost. If
+/// the output cannot be opened, all lines are lost.
 #[cfg(feature = "stm32f405")]
 pub fn into_emulator() {
     PATH.with(|path| path.sink = hio::hstdout().map_or(Sink::Nowhere, Sink::Emulator));

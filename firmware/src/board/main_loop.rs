@@ -78,8 +78,12 @@ impl<Panel: Display<Error: fmt::Display> + 'static, Link: Write, Keys: Buttons, 
     Board<Panel, Link, Keys, Dog>
 {
     /// Runs the application for ever. The application and the driver of the panel are put at the
-    /// given places, and draw in `buffers`. The scene is the first of the catalogue, or the one
-    /// from before a warm restart.
+    /// given places, and draw in `buffers`. `processor` is the class whose prices and budgets the
+    /// planner uses.
+    ///
+    /// The scene is the first of the catalogue, or after a warm restart the scene from before it,
+    /// unless the restarts in a row are too many. A controller that was chosen for the panel is
+    /// kept across every reset that leaves memory powered.
     pub fn play(
         self,
         place: &'static mut MaybeUninit<App<'static, Panel, Link, Keys>>,

@@ -43,7 +43,7 @@ const INTERRUPT: Interrupt = Interrupt(0);
 /// The parts of this board.
 pub type Mps2An386 = Board<NoDisplay, Outward, NoButtons, TwoStage>;
 
-/// Sets the board up. Returns `None` the second time.
+/// Sets the board up; the tick and the watchdog run from then on. Returns `None` the second time.
 pub fn take() -> Option<Mps2An386> {
     let instruments = start(Peripherals::take()?, BoardName::Mps2An386, HERTZ, [0; 4]);
 

@@ -18,7 +18,7 @@ pub trait PanelPort {
     fn reset(&mut self);
 }
 
-/// The bus, and the outbox while the interrupt does not own it.
+/// The bus, and the outbox while the interrupt does not own it. There is at most one.
 pub struct Bus<P> {
     port: P,
     outbox: Option<&'static mut Outbox>,

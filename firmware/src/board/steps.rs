@@ -35,8 +35,9 @@ core::arch::global_asm!(
     ".pool",
 );
 
-/// Makes `steps` steps of a motion by the copy of the code in RAM or in flash, with interrupts off.
-/// Returns the processor cycles taken; 0 without a cycle counter, as in QEMU.
+/// Makes `steps` steps of a motion by the copy of the code in RAM (`in_ram`) or in flash, with
+/// interrupts off. Returns the processor cycles taken, on a Cortex-M0+ modulo 2^24; 0 without a
+/// cycle counter, as in QEMU.
 pub fn timed(motion: &mut OnBoards, steps: u32, in_ram: bool) -> u32 {
     let advance = <OnBoards as Run>::advance as *const ();
     let place = if in_ram {

@@ -101,8 +101,8 @@ impl Outbox {
         }
     }
 
-    /// Requests that this many bytes are read from the panel after the messages. More than 2 count
-    /// as 2.
+    /// Requests that this many bytes are read from the panel after the messages; 0 requests none.
+    /// More than 2 count as 2. A later call replaces the number.
     pub fn ask(&mut self, bytes: u8) {
         self.asked = bytes.min(ANSWER as u8);
     }
@@ -112,9 +112,10 @@ impl Outbox {
         self.asked.into()
     }
 
-    /// Takes a byte that was read; called by the bus.
+    /// Takes a byte that was read; called by the bus, once for each requested byte. A third byte is
+    /// dropped.
     pub fn answer(&mut self, byte: u8) {
-        // A byte that was not requested is dropped.
+        // A byte beyond the capacity is dropped.
         let _ = self.answer.push(byte);
     }
 
@@ -124,8 +125,8 @@ impl Outbox {
         &self.answer
     }
 
-    /// Returns the number of bytes on the bus: the bytes of the messages and of the answer, with an
-    /// address for each.
+    /// Returns the number of bytes on the bus for the whole contents, sent or not: the bytes of the
+    /// messages and of the requested answer, with an address for each.
     pub fn len(&self) -> usize {
         let read = if self.asked == 0 { 0 } else { 1 + self.asked() };
         self.messages.len() + read
@@ -172,11 +173,11 @@ pub trait PanelBus {
     fn outbox(&mut self) -> Option<(&mut Outbox, Sent)>;
 
     /// Begins to send the messages in the outbox, and returns at once. Does nothing while a
-    /// transfer is in progress.
+    /// transfer is in progress. The outbox must contain a message: an empty transfer may never end.
     fn send(&mut self);
 
     /// Aborts the transfer, and frees a bus that hangs. The outbox is then available, with the
-    /// outcome [`ErrorKind::Other`].
+    /// outcome [`ErrorKind::Other`]; if no transfer was in progress, its outcome stays.
     fn abort(&mut self);
 }
 

@@ -315,8 +315,8 @@ impl Room {
 
 impl<'a, Bus: PanelBus> OledI2c<'a, Bus> {
     /// Creates a driver with a place to remember the picture, whose contents do not matter. The
-    /// controller is identified if `chosen` is `None`. The search for the panel begins with the
-    /// first frame.
+    /// panel is driven as the controller `chosen`, which is identified if it is `None`. Nothing is
+    /// sent yet: the search for the panel begins with the first frame.
     pub fn new(bus: Bus, memory: &'a mut Bitmap, chosen: Option<Controller>) -> Self {
         Self {
             bus,

@@ -56,8 +56,9 @@ const WAKE: [&[u8]; 19] = [
 
 /// The driver of a panel: an SPI device, and the pin that is high for data and low for commands.
 ///
-/// [`Ssd0323::init`] must be called before the first frame. After an error of the SPI device, the
-/// next frame is sent whole.
+/// [`Ssd0323::init`] must be called before the first frame. A frame is sent before
+/// [`flush`](Display::flush) returns. After an error of the SPI device, the next frame is sent
+/// whole.
 #[derive(Debug)]
 pub struct Ssd0323<'a, Spi, Pin> {
     spi: Spi,
@@ -68,8 +69,8 @@ pub struct Ssd0323<'a, Spi, Pin> {
 }
 
 impl<'a, Spi: SpiDevice, Pin: OutputPin<Error = Infallible>> Ssd0323<'a, Spi, Pin> {
-    /// Creates the driver of a panel with these lines, and a canvas for the copy of its memory.
-    /// Nothing is sent yet.
+    /// Creates the driver of a panel with these lines, and a canvas for the copy of its memory,
+    /// whose contents do not matter. Nothing is sent yet.
     pub fn new(spi: Spi, data_not_command: Pin, memory: &'a mut Canvas) -> Self {
         Self {
             spi,
@@ -80,7 +81,8 @@ impl<'a, Spi: SpiDevice, Pin: OutputPin<Error = Infallible>> Ssd0323<'a, Spi, Pi
     }
 
     /// Blanks the panel's memory, configures the controller and switches the panel on. Returns the
-    /// first error of the SPI device; the rest is then not sent, and the panel stays dark.
+    /// first error of the SPI device; the rest is then not sent, and the panel stays dark until a
+    /// later call succeeds.
     pub fn init(&mut self) -> Result<(), Spi::Error> {
         self.command(&ALL_COLUMNS)?;
         self.command(&ALL_ROWS)?;

@@ -4,7 +4,7 @@ use crate::graphics::canvas::{Canvas, HEIGHT, Row, WIDTH, carried};
 
 /// The number of rows in a page.
 const ROWS: usize = 8;
-/// The number of pages of a frame, 8.
+/// The number of pages of a frame, 8. A page is eight rows of pixels.
 pub const PAGES: usize = HEIGHT / ROWS;
 
 /// The Bayer matrix: the lighting order of the pixels of a square of 4 x 4 as it becomes brighter.
@@ -47,7 +47,7 @@ const ROOM: [[[u32; 2]; 4]; 2] = [room(false), room(true)];
 /// 128 x 64 pixels, each on or off, in the memory layout of the panel.
 ///
 /// A page is eight rows; the first page is at the top. A page has a byte for each column from the
-/// left. The lowest bit of a byte is the top row.
+/// left. The lowest bit of a byte is the top row. A bit of 1 is a pixel that is on.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Bitmap {
     /// The pages from the top.

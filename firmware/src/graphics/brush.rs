@@ -5,12 +5,14 @@ use core::ops::Range;
 
 use crate::graphics::{Canvas, HEIGHT, WIDTH};
 
-/// The number of subpixels in a pixel, in each direction.
+/// The number of subpixels in a pixel, 64 in each direction.
 pub const SUBPIXELS: i32 = 1 << SHIFT;
 const SHIFT: u32 = 6;
 const HALF: i32 = SUBPIXELS / 2;
 
 /// A point on the canvas, in subpixels from its top left corner. Pixel i covers 64 i to 64 i + 63.
+///
+/// Strokes and discs accept the spots of [`Spot::at`]; with larger numbers their sums may overflow.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Spot {
     /// To the right.
@@ -23,7 +25,8 @@ impl Spot {
     /// Returns the spot at (x, y) pixels, where (0, 0) is the top left corner of the canvas.
     ///
     /// Each coordinate is limited to one canvas size around the canvas, -128 to 256 and -64 to 128
-    /// pixels, so that no sum in this module can overflow. NaN becomes 0.
+    /// pixels, so that no sum in this module can overflow. It is rounded towards 0 to a subpixel.
+    /// NaN becomes 0.
     pub fn at(x: f32, y: f32) -> Self {
         let subpixels = |pixels: f32, size: usize| {
             let size = size as i32 * SUBPIXELS;
@@ -37,7 +40,8 @@ impl Spot {
 }
 
 /// The points within `radius` subpixels of the line from `from` to `to`. If both ends are the same,
-/// it is a disc. The edge is soft: over one pixel, half of it outside, the grey falls to 0.
+/// it is a disc. The edge is soft: over one pixel, half of it outside, the grey falls to 0. So a
+/// stroke with a radius below 32 is fainter, and one with radius 0 has at most half the brightness.
 #[derive(Clone, Copy, Debug)]
 pub struct Stroke {
     /// One end of the line.
@@ -85,7 +89,8 @@ impl Stroke {
 }
 
 /// A disc of `radius` subpixels, surrounded by a dark gap of `gap` subpixels that separates it from
-/// the background. Edges are soft, one pixel wide.
+/// the background. Edges are soft, one pixel wide. In the gap, up to its soft edge, the
+/// background becomes black.
 #[derive(Clone, Copy, Debug)]
 pub struct Disc {
     /// The middle.

@@ -8,7 +8,8 @@ pub const HEIGHT: usize = 64;
 /// The size of a row, bytes.
 const ROW: usize = WIDTH / 2;
 
-/// A row of pixels from the left, two in a byte. The high nibble is the left pixel.
+/// A row of 128 pixels from the left in 64 bytes, two in each. The high nibble is the left pixel.
+/// Pixels outside the row are ignored.
 ///
 /// The row is aligned to a word, so that it can be copied and compared by words.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -16,6 +17,7 @@ const ROW: usize = WIDTH / 2;
 pub struct Row(pub [u8; ROW]);
 
 /// The rows of pixels from the top. Drawing cannot fail: pixels outside the canvas are ignored.
+/// Greys must be 0 to 15.
 #[derive(Debug, PartialEq, Eq)]
 pub struct Canvas {
     /// The rows from the top.
@@ -75,7 +77,8 @@ impl Canvas {
     /// black.
     ///
     /// So the pixels from column `left` on scroll out at their left end, if the columns before
-    /// `left` are black, as they must be: they move, too.
+    /// `left` are black, as they must be: they move, too. With a `left` of 0 the whole canvas
+    /// scrolls.
     #[inline(never)]
     pub fn scroll(&mut self, left: i32) {
         for row in &mut self.rows {
@@ -112,9 +115,9 @@ impl Canvas {
         }
     }
 
-    /// Sets pixels to one grey, 0 to 15: the pixels whose bits are set, of the 8 x 8 to the right
-    /// of column `x` and below row `y`, both included. The others are unchanged. The first row is
-    /// in the highest byte, and the leftmost pixel of a row is in its highest bit.
+    /// Sets pixels to one grey, 0 to 15, brighter ones, too: the pixels whose bits are set, of the
+    /// 8 x 8 to the right of column `x` and below row `y`, both included. The others are unchanged.
+    /// The first row is in the highest byte, and the leftmost pixel of a row is in its highest bit.
     #[inline(never)]
     pub fn stamp(&mut self, x: i32, mut y: i32, mut bits: u64, grey: u8) {
         let word = (x >> 3) as usize;
@@ -147,7 +150,7 @@ impl Canvas {
 
 impl Row {
     /// Replaces the grey of the pixel in column `x` by a function of it. Only the low four bits of
-    /// the result count. Outside the row nothing is done.
+    /// the result count.
     #[inline]
     pub fn update(&mut self, x: i32, new: impl FnOnce(u8) -> u8) {
         if let Some(pair) = self.0.get_mut((x >> 1) as usize) {
@@ -163,12 +166,13 @@ impl Row {
     }
 }
 
-/// The speed of fading. Every row loses one grey in [`HEIGHT`]/`rows` ticks of the scene.
+/// The speed of fading. Every row loses one grey in 64/`rows` ticks of the scene; with 0 rows
+/// nothing fades.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Fading {
     /// The number of rows that lose a grey in a tick.
     pub rows: u8,
-    /// The final grey of a faded pixel, 0 to 15.
+    /// The final grey of a faded pixel, 0 to 15. Darker pixels do not change.
     pub last: u8,
 }
 

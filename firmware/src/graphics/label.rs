@@ -1,11 +1,13 @@
 //! Numbers as text without floating-point formatting, which alone would take 14 KB of flash.
 //!
-//! A name is put in front as it is, with its own space, and a unit behind. If a part of a label (a
-//! name, a digit, a unit) does not fit, it and the later parts are left out. NaN is written as 0.
+//! A name in front and a unit behind are written as they are, with the space that they contain. If
+//! a part of a label (a name, a digit, a unit) does not fit, it and the later parts are left out.
+//! NaN is written as 0. A number above 4,294,967,295 units of its last decimal place, or infinity,
+//! is written as that limit.
 
 use heapless::String;
 
-/// A label. Its capacity is the number of bytes that fit next to the motion.
+/// A label in UTF-8. Its capacity, 16 bytes, is the number that fits next to the motion.
 pub type Label = String<16>;
 
 /// Returns the mass ratio m2/m1, which must not be negative, to three significant digits, from 100
@@ -20,7 +22,7 @@ pub fn mass_ratio(ratio: f32) -> Label {
 }
 
 /// Returns a start angle, degrees, after its name: `α 120°`. It is rounded to one decimal if it is
-/// not a whole number of degrees.
+/// not a whole number of degrees: `α 12.5°`.
 pub fn degrees(name: &str, degrees: f32) -> Label {
     let decimals = if degrees == (degrees as i32) as f32 {
         0
@@ -30,8 +32,8 @@ pub fn degrees(name: &str, degrees: f32) -> Label {
     label(name, degrees, decimals, "°")
 }
 
-/// Returns a number of an axis: `10`, `0.2 s`. It is rounded to one decimal from 0.1 to 1, to two
-/// from 0.01 to 0.1, and otherwise to a whole number.
+/// Returns a number of an axis: `10`, `0.2 s`. It is rounded to one decimal from 0.1 to below 1,
+/// to two from 0.01 to below 0.1, and otherwise to a whole number.
 pub fn tick(value: f32, unit: &str) -> Label {
     let decimals = match value {
         0.1..1.0 => 1,
@@ -41,8 +43,8 @@ pub fn tick(value: f32, unit: &str) -> Label {
     label("", value, decimals, unit)
 }
 
-/// Returns a time, s, after a name, rounded down to tenths of a second, or to seconds from 1,000 s
-/// on. A negative time is written as 0.
+/// Returns a time, s, after a name and before its unit, rounded down to tenths of a second, or to
+/// seconds from 1,000 s on: `½px 12.3 s`, `½px 1234 s`. A negative time is written as 0.
 pub fn rounded_down(name: &str, seconds: f32) -> Label {
     let parts = if seconds < 1e3 { 10 } else { 1 };
     written([name, ""], (seconds * parts as f32) as u32, parts, " s")
@@ -55,7 +57,8 @@ pub fn time(seconds: f64) -> Label {
 }
 
 /// Returns `value`, rounded to `decimals` places (0 to 9), after a name and before a unit. A
-/// negative value that is rounded to 0 keeps its sign: `±12°`, `ω₁ 1.848`, `true -18.7 J`.
+/// negative value that is rounded to 0 keeps its sign. Halves are rounded away from 0. Examples:
+/// `±12°`, `ω₁ 1.848`, `true -18.7 J`.
 #[inline(never)]
 pub fn label(name: &str, value: f32, decimals: u32, unit: &str) -> Label {
     let one = 10_u32.saturating_pow(decimals);

@@ -1,5 +1,6 @@
 //! Curves over time or another quantity. They have one value per column, and are drawn with soft
-//! edges in integer arithmetic.
+//! edges in integer arithmetic. Rows and columns are in pixels from the top left corner of the
+//! canvas; pixels outside the canvas are ignored.
 
 use crate::graphics::{Canvas, HEIGHT, SUBPIXELS};
 
@@ -9,17 +10,17 @@ const HALF_THICKNESS: i32 = 38;
 /// A height on the canvas: subpixels down from the top edge.
 pub type Height = i16;
 
-/// Returns the height of `value`, where the value 0 is `zero` pixels below the top edge and a unit
-/// is `scale` pixels upwards. It is limited to twice the height of the canvas above and below the
-/// top edge. NaN is at the top edge.
+/// Returns the height of `value`, subpixels down from the top edge, where the value 0 is `zero`
+/// pixels below the top edge and a unit is `scale` pixels upwards. It is limited to twice the
+/// height of the canvas above and below the top edge. NaN is at the top edge.
 pub const fn height(value: f32, zero: f32, scale: f32) -> Height {
     let limit = (2 * HEIGHT as i32 * SUBPIXELS) as f32;
     ((zero - scale * value) * SUBPIXELS as f32).clamp(-limit, limit) as Height
 }
 
-/// Draws the part of a curve in column `x`, between two heights in either order, with a brightness
-/// of 0 (black) to 255 (grey 15). Pixels that are brighter already keep their grey. Outside the
-/// canvas nothing is drawn.
+/// Draws the part of a curve in column `x`, between two heights, subpixels, in either order. The
+/// curve extends 38 subpixels above and below them. Its brightness is 0 (black) to 255 (grey 15).
+/// Pixels that are brighter already keep their grey.
 #[inline(never)]
 pub fn column(canvas: &mut Canvas, x: i32, from: Height, to: Height, brightness: u8) {
     /// The product of brightness and coverage that is one grey, as for a
@@ -58,7 +59,8 @@ pub fn upright_axis(canvas: &mut Canvas, x: i32, from: i32, to: i32) {
 }
 
 /// Draws a scale bar, upright or level, from the pixel (x1, y1) to the pixel (x2, y2), which is to
-/// its right or below it. Either end has a foot of one pixel to both sides.
+/// its right or below it, in [`AXIS_GREY`]. Either end has a foot of one pixel to both sides.
+/// Brighter pixels keep their grey.
 #[inline(never)]
 pub fn bar(canvas: &mut Canvas, (x1, y1): (i32, i32), (x2, y2): (i32, i32)) {
     (x1..=x2).for_each(|x| (y1..=y2).for_each(|y| axis_dot(canvas, x, y)));
@@ -76,7 +78,7 @@ fn axis_dot(canvas: &mut Canvas, x: i32, y: i32) {
 }
 
 /// Returns the smallest step of a scale that is at least `least`: 1, 2 or 5 times a power of ten,
-/// from 0.01 to 100. Above 100, the result is 100.
+/// from 0.01 to 100. Above 100 and for NaN, the result is 100.
 pub fn scale_step(least: f32) -> f32 {
     const STEPS: [f32; 12] = [
         0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0,

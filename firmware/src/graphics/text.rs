@@ -15,11 +15,11 @@ const RIGHT: i32 = WIDTH as i32 - 1 - MARGIN;
 
 /// The height of a line of text, pixels.
 pub const LINE: i32 = 8;
-/// The top row of the lowest line.
+/// The top row of the lowest line of text, 55. A margin of one row is below the line.
 pub const LOWEST: i32 = HEIGHT as i32 - MARGIN - LINE;
 
 /// The position of a line of text. The last number is y, the row of its top; a number before it is
-/// the column x. Text beyond the edges is not drawn.
+/// the column x, both in pixels. The parts of the text beyond the edges are not drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Anchor {
     /// The line begins at the left edge, after a margin of one pixel.
@@ -34,18 +34,20 @@ pub enum Anchor {
     EndingAt(i32, i32),
 }
 
-/// Writes a line of text over the canvas, in grey 11. Characters have the glyphs of [`glyph`].
+/// Writes a line of text over the canvas, in grey 11. Characters have the glyphs of [`glyph`]. The
+/// pixels around the ink of the characters keep their grey.
 pub fn write(canvas: &mut Canvas, text: &str, anchor: Anchor) {
     put(canvas, text, corner(anchor, text), GREY);
 }
 
-/// The greys of ink and background of a highlighted line.
+/// The greys of ink and background of a highlighted line: black on grey 11.
 pub const MARKED: [u8; 2] = [0, GREY];
 /// The greys of ink and background of a line over a picture.
 pub const WHITE_ON_BLACK: [u8; 2] = [15, 0];
 
 /// Writes a line of text with the grey `ink` on a background of the grey `ground`, both 0 to 15.
-/// The background has the height of the line, and begins one column left of it.
+/// The background has the height of the line. It begins one column left of the text, and ends with
+/// the gap after the last character.
 pub fn write_on(canvas: &mut Canvas, text: &str, anchor: Anchor, [ink, ground]: [u8; 2]) {
     let width = width(text);
     let (left, top) = corner(anchor, text);
@@ -90,8 +92,8 @@ fn put(canvas: &mut Canvas, text: &str, (mut left, top): (i32, i32), grey: u8) {
     }
 }
 
-/// Draws the mark of a paused scene: two upright bars on black, 8 x 7 pixels at the right edge,
-/// below the first line of text.
+/// Draws the mark of a paused scene: two upright bars of grey 11 on black, in columns 119 to 126
+/// and rows 10 to 16, at the right edge below the first line of text.
 pub fn pause_mark(canvas: &mut Canvas) {
     for (bits, grey) in [(0xFFFF_FFFF_FFFF_FF00, 0), (0x0033_3333_3333_3300, GREY)] {
         canvas.stamp(RIGHT - 7, LINE + 2, bits, grey);
@@ -101,7 +103,7 @@ pub fn pause_mark(canvas: &mut Canvas) {
 /// The picture of a character.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Glyph {
-    /// The number of columns, with the gap after the character.
+    /// The number of columns, with the gap after the character: 3 to 9.
     pub width: i32,
     /// Eight rows from the top. The first row is in the highest byte, and the leftmost pixel of a
     /// row is in its highest bit.
@@ -128,7 +130,8 @@ const GLYPHS: [u64; 112] = {
     glyphs
 };
 
-/// Returns the glyph of a character. An unknown character has the glyph of a question mark.
+/// Returns the glyph of a character: the printable ASCII characters and `½±°μ₁₂αω√→↑`. Any other
+/// character has the glyph of a question mark.
 pub fn glyph(character: char) -> Glyph {
     let (place, width) = match character {
         ' ' => (0, 3),

@@ -25,13 +25,14 @@ pub struct Place {
 }
 
 impl Place {
-    /// The whole frame, with the pivot in the middle.
+    /// The whole frame, with the pivot in the middle and a reach of 28.5 pixels.
     pub const WHOLE: Self = Self {
         pivot: PIVOT,
         reach: REACH,
     };
-    /// The left half and the right half. Each is a circle of 25 pixels with room for a bob around
-    /// it. There is room for a line of text above them, and for one between them at the bottom.
+    /// The left half and the right half. Each is a circle with a radius of 25 pixels and room for a
+    /// bob around it. There is room for a line of text above them, and for one between them at the
+    /// bottom.
     pub const HALVES: [Self; 2] = [
         Self {
             pivot: (29.5, 36.0),
@@ -58,11 +59,13 @@ pub struct View {
 
 impl View {
     /// Creates the view of a pendulum with these parameters and directions. Both rods together are
-    /// `place.reach` long.
+    /// `place.reach` pixels long. The parameters are not checked; of masses and lengths only the
+    /// ratios count, and gravity has no effect.
     ///
     /// The bobs are spheres of one material, so that their radii are proportional to the cube root
-    /// of the mass. The heavier bob has the radius [`GREATEST_RADIUS`], which is reduced in
-    /// proportion in a smaller place. No radius is less than [`LEAST_RADIUS`].
+    /// of the mass. The heavier bob has the radius [`GREATEST_RADIUS`], 3 pixels in
+    /// [`Place::WHOLE`], in proportion to the reach. No radius is less than [`LEAST_RADIUS`], 1.5
+    /// pixels, or more than 255 subpixels.
     pub fn new(parameters: &Parameters<f32>, place: Place, directions: RodDirections) -> Self {
         let &Parameters { m1, m2, l1, l2, .. } = parameters;
         let greatest = GREATEST_RADIUS * place.reach / REACH;

@@ -30,12 +30,13 @@ pub struct Job<R = OnBoards> {
 impl<R: Run> Job<R> {
     /// Creates the job of a request, where `run` is its motion at the start. Of the request it uses
     /// the parameters, the method, the angles, `stride` and `samples`. If the stride is 0, every
-    /// reading is the initial one.
+    /// reading is the initial one. The number of samples, with the initial one, is at most
+    /// 2^32 - 1.
     ///
     /// # Errors
     ///
     /// Refuses parameters that [`Pendulum::new`] refuses, in the precision of the method, and
-    /// angles whose turns cannot be counted.
+    /// angles of 2^31 - 1 turns or more if the job counts them.
     pub fn new(run: R, request: &Request) -> Result<Self, Error> {
         let Request {
             method,

@@ -51,7 +51,8 @@ impl Derivatives<f32> for Textbook {
 }
 
 /// [`Pendulum::derivatives`] with the sines and cosines of the `micromath` crate, which cost little
-/// and have an absolute error of up to 1.2e-3.
+/// and have an absolute error of up to 1.2e-3. It refuses the parameters that [`Pendulum::new`]
+/// refuses.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Micromath(Pendulum<f32>);
 

@@ -78,8 +78,8 @@ pub struct Reading {
 
 impl Request {
     /// Returns a request for 10 s of a chaotic motion that every method can compute: equal rods and
-    /// bobs (1 m, 1 kg), both released at 2 rad; 2,560 steps of 1/256 s and 33 samples, one every
-    /// 80 steps.
+    /// bobs (1 m, 1 kg) at 9.81 m/s^2, both released from rest at 2 rad; 2,560 steps of 1/256 s and
+    /// 33 samples with the initial one, one every 80 steps.
     pub fn on_any_core(method: Method) -> Self {
         let parameters = Parameters {
             m1: 1.0,
@@ -104,8 +104,8 @@ impl Request {
     /// Returns the longest step, s, that resolves every motion of this energy; `None` for the
     /// closed form, which takes any step, and for values that the kernel refuses.
     ///
-    /// For RK4 it is [`Pendulum::admissible_step`]. A step of extrapolation of order 2 K errs as
-    /// little when it is K times as long.
+    /// For RK4 it is [`Pendulum::admissible_step`]; for extrapolation of order 2 K it is K times
+    /// that step, which errs as little. The `dt` of the request is not used.
     pub fn admissible_step(&self) -> Option<f64> {
         let ([a1, a2], [w1, w2]) = (self.angles, self.velocities);
         let share = match self.method.integrator() {
@@ -120,7 +120,9 @@ impl Request {
     }
 
     /// Returns the request in `text`: its bytes in the postcard format, each as two hexadecimal
-    /// digits. Returns `None` if the bytes are not exactly one request. Its values are not checked.
+    /// digits of either case. Returns `None` if the bytes are not exactly one request. Its values
+    /// are not checked. Of a byte below 16 the digit 0 may be a plus sign, and may be missing at the
+    /// end of the text.
     pub fn parse(text: &str) -> Option<Self> {
         let mut bytes = Vec::<u8, MAX_BYTES>::new();
         let byte = |digits: &[u8]| u8::from_str_radix(core::str::from_utf8(digits).ok()?, 16).ok();

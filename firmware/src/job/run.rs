@@ -12,7 +12,8 @@ pub trait Run: Copy {
     /// `advance(a + b)`. A motion may diverge; the [`state`](Self::state) then is not finite.
     fn advance(&mut self, steps: u32);
 
-    /// Returns the canonical state now, in SI units, with all digits that are carried.
+    /// Returns the canonical state now, in SI units (rad, kg m^2/s), with all digits that are
+    /// carried.
     ///
     /// If [`sides`](Self::sides) returns a value, whole turns of the angles may be missing.
     fn state(&self) -> State<f64>;

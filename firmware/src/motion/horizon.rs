@@ -34,8 +34,9 @@ impl Horizon {
     /// still grow, `½px ?` means that nothing is known, and `½px ok` that frames are always
     /// accurate.
     ///
-    /// It is rounded down, so that no frame is claimed that is not verified. A final result below a
-    /// second is rounded to the nearest hundredth, which is shorter than a frame.
+    /// It is rounded down to tenths of a second, or to seconds from 1,000 s on, so that no frame is
+    /// claimed that is not verified. A final result below a second is rounded to the nearest
+    /// hundredth, which is shorter than a frame.
     #[must_use]
     pub fn label(self) -> Label {
         match self {

@@ -51,7 +51,7 @@ const LENGTH_ERROR: f32 = 1e-3;
 const MOST_BEND: f32 = 1.0;
 
 impl Misprinted {
-    /// Creates the motion of equal rods from `start`.
+    /// Creates the motion of equal rods from the canonical state `start` (rad, kg m^2/s).
     ///
     /// The parameters are not checked: l2 is ignored and taken to be l1. A motion whose numbers are
     /// not finite is lost in its first tick.
@@ -83,8 +83,8 @@ impl Misprinted {
         }
     }
 
-    /// Returns true if the motion has become too fast for the shortest step, 1/480 s. It is then
-    /// lost, and stays so.
+    /// Returns true if the motion has become too fast for the shortest step, 1/480 s, or is not
+    /// finite. It is then lost, and stays so.
     pub fn is_lost(&self) -> bool {
         self.is_lost
     }
@@ -127,7 +127,7 @@ impl Misprinted {
         ]
     }
 
-    /// Returns the energy H, J, by the correct formula, as
+    /// Returns the energy H now, J, by the correct formula, as
     /// [`Pendulum::energy`](double_pendulum::Pendulum::energy) does:
     /// ((q1 - q2 cos D)^2 r + q2^2/mu)/2 - (1 + mu) G cos a1 - mu G cos a2, times m1 l^2.
     pub fn energy(&self) -> f32 {

@@ -32,8 +32,9 @@ impl Default for Settings {
 }
 
 impl Settings {
-    /// Returns a pendulum with equal rods: rods of [`ROD`], a first bob of 1 kg, [`GRAVITY`], and
-    /// the mass ratio m2/m1. Both rods are released from rest at the angle `degrees`.
+    /// Returns a pendulum with equal rods: rods of 1 m ([`ROD`]), a first bob of 1 kg, a gravity of
+    /// 9.81 m/s^2 ([`GRAVITY`]), and the mass ratio m2/m1. Both rods are released from rest at the
+    /// angle `degrees`.
     pub fn equal_rods(mass_ratio: f32, degrees: f32) -> Self {
         let parameters = Parameters::equal_rods(mass_ratio, ROD, GRAVITY as f32);
         Self {
@@ -43,7 +44,7 @@ impl Settings {
         }
     }
 
-    /// Returns the mass ratio m2/m1.
+    /// Returns the mass ratio m2/m1. An m1 of 0 gives infinity or NaN.
     pub fn mass_ratio(&self) -> f32 {
         self.parameters.mass_ratio()
     }
@@ -60,8 +61,8 @@ impl Settings {
         }
     }
 
-    /// Returns the settings with the next larger mass ratio of [`MASS_RATIOS`]. The largest one
-    /// stays.
+    /// Returns the settings with the next larger mass ratio of [`MASS_RATIOS`], by another m2. From
+    /// the largest one on, 100, and for NaN, they are unchanged.
     pub fn heavier(self) -> Self {
         let next = MASS_RATIOS
             .iter()
@@ -71,8 +72,8 @@ impl Settings {
         next.unwrap_or(self)
     }
 
-    /// Returns the settings with the next smaller mass ratio of [`MASS_RATIOS`]. The smallest one
-    /// stays.
+    /// Returns the settings with the next smaller mass ratio of [`MASS_RATIOS`], by another m2.
+    /// From the smallest one down, 0.01, and for NaN, they are unchanged.
     pub fn lighter(self) -> Self {
         let next = MASS_RATIOS
             .iter()
@@ -84,8 +85,8 @@ impl Settings {
     }
 
     /// Returns the settings with the start angles of both rods turned by `steps` times
-    /// [`ANGLE_STEP`], counter-clockwise if `steps` is positive. Each rod stops at straight up, 180
-    /// or -180 degrees.
+    /// [`ANGLE_STEP`], 1 degree, counter-clockwise if `steps` is positive. Each rod stops at
+    /// straight up, 180 or -180 degrees; an angle that is already beyond is moved there.
     pub fn turned(self, steps: i8) -> Self {
         let turn = |degrees: f32| {
             (degrees + f32::from(steps) * ANGLE_STEP).clamp(-GREATEST_ANGLE, GREATEST_ANGLE)
@@ -124,8 +125,8 @@ impl Settings {
     }
 
     /// Returns the problem to plan for a display `height` pixels high, in whose half height both
-    /// rods fit: a tolerance of half a pixel, [`PLANNED`] seconds, and [`TICK_RATE`] frames per
-    /// second. Nothing is checked.
+    /// rods fit: a tolerance of half a pixel, in m, [`PLANNED`] seconds, 30, and [`TICK_RATE`]
+    /// frames per second, 60. Nothing is checked.
     pub fn problem(&self, height: f32) -> Problem {
         let pendulum = self.parameters.cast();
         Problem {
@@ -137,8 +138,9 @@ impl Settings {
         }
     }
 
-    /// Returns the motion at its start, by this method and step count per frame of 1/60 s. Angle 1
-    /// starts `apart` rad larger than in the settings.
+    /// Returns the motion at its start, by this method and step count per frame of 1/60 s. A count
+    /// of 0 counts as 1, and the closed form always has 1. Angle 1 starts `apart` rad larger than
+    /// in the settings.
     ///
     /// # Errors
     ///
@@ -151,8 +153,8 @@ impl Settings {
     }
 }
 
-/// Returns [`HALF_PIXEL`] in metres on a display `height` pixels high. The length of both rods
-/// together is half of that height.
+/// Returns [`HALF_PIXEL`] in metres on a display `height` pixels high, (l1 + l2)/`height`. The
+/// length of both rods together is half of that height. Nothing is checked.
 pub fn half_pixel(&Parameters { l1, l2, .. }: &Parameters<f64>, height: f64) -> f64 {
     f64::from(HALF_PIXEL) * (l1 + l2) / (0.5 * height)
 }

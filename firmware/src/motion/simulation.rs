@@ -38,7 +38,7 @@ impl Simulation {
     /// Refuses settings that describe no pendulum or no finite start, a motion that the method
     /// refuses, and a step that is unstable for small oscillations ([`Pendulum::check_step`]).
     /// Returns [`Error::TooLarge`] with [`Parameter::Cost`] if the requested method costs more than
-    /// the budget of a frame.
+    /// the budget of a frame, or is not in [`Method::DRAWN`].
     pub fn new(
         settings: &Settings,
         &Resources {
@@ -65,8 +65,8 @@ impl Simulation {
         })
     }
 
-    /// Advances the motion by one tick. A motion that diverges is not reported here; its state is
-    /// then not finite, and stays so.
+    /// Advances the motion by one tick. A motion that diverges is not reported here; numbers of its
+    /// state are then not finite, and stay so, but its directions may look valid.
     #[inline(never)] // Not inlined, to save flash.
     pub fn tick(&mut self) {
         // A motion that has diverged is detected by its state.
@@ -124,7 +124,7 @@ impl CatchingUp {
 
     /// Advances by the frames of a tick, but not beyond `simulation`. Returns true if it has caught
     /// up with `simulation`, which then continues with this motion. To be called after each
-    /// [`Simulation::tick`].
+    /// [`Simulation::tick`], until it returns true. A motion that diverges is not reported here.
     pub fn tick(&mut self, simulation: &mut Simulation) -> bool {
         for _ in 0..self.most {
             if self.motion.frame() < simulation.motion.frame() {
@@ -175,7 +175,8 @@ impl Energy {
         self.relative(motion.energy_above_rest(&self.pendulum))
     }
 
-    /// Returns the same relative error of a motion that is in this state, in SI units, now.
+    /// Returns the same relative error of a motion that is in this state, in SI units (rad,
+    /// kg m^2/s), now.
     pub fn error_of_state(&self, state: &State<f32>) -> f32 {
         self.relative(self.pendulum.energy_above_rest(&state.cast()))
     }

@@ -10,6 +10,9 @@ use crate::motion::Settings;
 use crate::scenes::SceneName;
 
 /// A command to the application, from a button or over the serial link.
+///
+/// An impossible command changes nothing. Over the link its answer is
+/// [`Answer::Refused`](super::Answer::Refused) with the field that is wrong.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(target_os = "none", derive(defmt::Format))]
 pub enum Command {
@@ -37,14 +40,17 @@ pub enum Command {
     /// restart the scene.
     ///
     /// It accepts `M1` to `W2`, `MassRatio`, `Angle` and `Speed`. Another field is refused with
-    /// [`Field::Field`], and a value with which the scene cannot start with its own field. Nothing
-    /// has changed then.
+    /// [`Field::Field`]. A value with which the scene cannot start, and an angle beyond straight up
+    /// (pi rad), are refused with their own field.
     Set {
         field: Field,
         /// The value, in SI units; of an angle in rad.
         value: f64,
     },
     /// Starts the scene again by this method and no other; `None` leaves the choice to the plan.
+    /// Later starts use the method where they can, and otherwise follow their plan. Refused with
+    /// [`Field::Method`] if the method is not in [`Method::DRAWN`], or if the present scene cannot
+    /// start by it. Figures, `small-*` and `upright` ignore it.
     Method(Option<Method>),
     /// Pauses the scene (`true`) or lets it continue. It ends a [`Step`](Self::Step).
     Pause(bool),
@@ -60,7 +66,8 @@ pub enum Command {
     /// Requests the identity of the board. Changes nothing.
     Identify,
     /// Requests the samples of this motion. They are computed in the time that frames leave free.
-    /// The scene continues. A job in progress is replaced.
+    /// The scene continues. A job in progress is replaced, unless this request is refused, such as
+    /// with [`Field::Method`] if the application lacks the method.
     Simulate(Request),
     /// Requests the time of this number of further steps of the last requested motion. They are
     /// made without a break and with interrupts off, at most
@@ -75,7 +82,7 @@ pub enum Command {
     /// restart. Refused with [`Field::Panel`] if the panel has no choice of controllers.
     Panel(Option<Controller>),
     /// Plays a scene with these settings. They are set all at once, because a part of them alone
-    /// may be impossible.
+    /// may be impossible. Angles beyond 180 degrees either way are refused.
     Play(SceneName, Settings),
     /// Requests the last restart that the board made on its own. Changes nothing.
     AskRestart,
@@ -85,8 +92,8 @@ pub enum Command {
 /// its kind.
 const TO_CHIP: u8 = 0x80;
 
-/// Encodes a command for the wire, with its delimiters. Returns the used part of `wire`. `request`
-/// is a number that every answer to it repeats.
+/// Encodes a command for the wire, with its delimiters. Returns the used part of `wire`; every
+/// command fits. `request` is a number that every answer to it repeats.
 pub fn encode_command(request: u16, command: Command, wire: &mut [u8; MAX_WIRE]) -> &[u8] {
     encode(&(TO_CHIP, request, command), wire)
 }
@@ -94,7 +101,8 @@ pub fn encode_command(request: u16, command: Command, wire: &mut [u8; MAX_WIRE])
 /// Returns the number of an intact command, and the command if it can be read. `message` is without
 /// version and CRC, as [`Decoder::push`](super::Decoder::push) returns it.
 ///
-/// Returns `None` if the message is not a command. If not even the number can be read, it is 0.
+/// Returns `None` if the message is not a command, that is if it does not begin with the mark byte
+/// 0x80. If not even the number can be read, it is 0.
 pub fn decode_command(message: &[u8]) -> Option<(u16, Option<Command>)> {
     let numbered = message.strip_prefix(&[TO_CHIP])?;
     Some(

@@ -44,8 +44,8 @@ pub const VERSION: u8 = 12;
 pub const MAX_MESSAGE: usize = 97;
 /// The largest size of a message before framing, with version and CRC, bytes.
 const MAX_BODY: usize = 1 + MAX_MESSAGE + 4;
-/// The largest size of a message on the wire, bytes. COBS adds one byte, because bodies are below
-/// 254 bytes, and the delimiters add two.
+/// The largest size of a message on the wire, 105 bytes. Version and CRC add five bytes, COBS adds
+/// one, because bodies are below 254 bytes, and the delimiters add two.
 pub const MAX_WIRE: usize = MAX_BODY + 3;
 
 /// Encodes a message for the wire, with version, CRC and delimiters. Returns the used part of
@@ -106,7 +106,7 @@ pub enum LinkError {
 }
 
 impl LinkError {
-    /// Returns the error in words.
+    /// Returns the error in words, such as `wrong checksum`. The version is not in them.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Malformed => "malformed",
@@ -139,7 +139,8 @@ impl Default for Decoder {
 
 impl Decoder {
     /// Takes one byte. At the end of a message returns the message without version and CRC, or its
-    /// error; otherwise `None`. Repeated delimiters are ignored.
+    /// error; otherwise `None`. The end is the zero byte after the message. Repeated delimiters are
+    /// ignored.
     pub fn push(&mut self, byte: u8) -> Option<Result<&[u8], LinkError>> {
         match self.cobs.feed(byte) {
             Ok(DecodeResult::NoData | DecodeResult::DataStart) => None,

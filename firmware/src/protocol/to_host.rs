@@ -36,7 +36,8 @@ pub enum Answer {
     Refused(Field),
     /// The scene and its settings, and the state of the panel.
     Status(Status),
-    /// The plan of the scene; `None` if it shows no motion.
+    /// The plan of the scene; `None` if it shows no motion that is planned, or is too fast from its
+    /// start.
     Planned(Option<Planned>),
     /// The identity of the board.
     Identity(Identity),

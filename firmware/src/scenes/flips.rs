@@ -38,7 +38,9 @@ enum Searching {
     WithoutFpu(Search<WithoutFpu>, Option<Falling<WithoutFpu>>),
 }
 
-/// The map of flips, with a1 across and a2 upwards. The brightness is the time of the first flip.
+/// The map of flips, with a1 across and a2 upwards, each from -180 to 180 degrees, and both rods at
+/// rest at the start. The brightness is the time of the first flip: the sooner, the brighter
+/// ([`GREYS`]).
 ///
 /// The ink contains the map. Of the settings only the pendulum matters, not its start.
 #[derive(Clone, Debug)]
@@ -156,7 +158,7 @@ impl Flips {
         })
     }
 
-    /// Returns true if all pixels are done. Further ticks change nothing.
+    /// Returns true if all pixels are computed. Further ticks change nothing.
     pub fn is_done(&self) -> bool {
         self.block.size == 0
     }

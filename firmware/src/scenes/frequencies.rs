@@ -27,7 +27,7 @@ const CURVE: u8 = 200;
 
 /// The two frequencies of equal rods in units of sqrt(g/l), so that they depend only on the mass
 /// ratio. The curves grow from the left, by two columns in a tick, and are complete in a second. Of
-/// the settings only the mass ratio matters.
+/// the settings only the mass ratio matters; it is refused unless it is positive and finite.
 #[derive(Clone, Debug, Default)]
 pub struct Frequencies {
     /// The mass ratio at the right edge of the plot.

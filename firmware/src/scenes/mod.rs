@@ -177,8 +177,10 @@ macro_rules! catalogue {
 
         impl AnyScene {
             /// Starts the scene `name` in place of this one, and returns its height for the plan,
-            /// pixels, as [`Scene::new`] does. If that refuses `settings`, returns its error, and
-            /// this scene continues.
+            /// pixels, as [`Scene::new`] does: `None` if there is nothing to plan. If that refuses
+            /// `settings`, returns its error, and this scene continues. A motion that is only too
+            /// fast is no error ([`is_too_fast`](Self::is_too_fast)), unless the user has requested
+            /// its method.
             pub fn start(
                 &mut self,
                 name: SceneName,
@@ -190,8 +192,9 @@ macro_rules! catalogue {
                 }
             }
 
-            /// Advances the scene as [`Scene::tick`], and fades the ink. The ink must be clear at
-            /// the start.
+            /// Advances the scene by one tick of 1/60 s, to `ticks` ticks after the start, as
+            /// [`Scene::tick`], and fades the ink. The first call has `ticks` 1, and each further
+            /// one 1 more. The ink must be clear at the start.
             pub fn tick(&mut self, ticks: u64, ink: &mut FadeLayer) {
                 let fading = match self {
                     $(Self::$row(scene) => {
@@ -209,17 +212,20 @@ macro_rules! catalogue {
                 match self { $(Self::$row(scene) => scene.draw(report, canvas),)* }
             }
 
-            /// Returns [`Scene::planned`].
+            /// Returns the motion whose method and step count the plan may change; `None` if the
+            /// scene keeps its method or has no motion ([`Scene::planned`]).
             pub fn planned(&mut self) -> Option<&mut Simulation> {
                 match self { $(Self::$row(scene) => scene.planned(),)* }
             }
 
-            /// Returns [`Scene::is_too_fast`].
+            /// Returns true if no method resolves the motion at a cost that a frame can pay. Then
+            /// the scene must not advance ([`Scene::is_too_fast`]).
             pub fn is_too_fast(&self) -> bool {
                 match self { $(Self::$row(scene) => scene.is_too_fast(),)* }
             }
 
-            /// Returns [`Scene::report`].
+            /// Returns the numbers of the scene now, `ticks` ticks after the start. Of a planned
+            /// motion the horizon is `Always`; the player sets it ([`Scene::report`]).
             pub fn report(&self, ticks: u64) -> Report {
                 match self { $(Self::$row(scene) => scene.report(ticks),)* }
             }
@@ -244,7 +250,8 @@ catalogue! {
 }
 
 impl AnyScene {
-    /// Returns an empty figure, which is shown until a scene starts.
+    /// Returns an empty figure, which takes the place of a scene until one starts. It must not be
+    /// drawn.
     pub fn empty() -> Self {
         Self::Frequencies(frequencies::Frequencies::default())
     }

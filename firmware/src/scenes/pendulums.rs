@@ -19,8 +19,8 @@ use crate::graphics::{
 use crate::motion::{Horizon, Misprinted, Resources, Settings, Simulation};
 use crate::scenes::{Report, Scene, Shows, draw_clock, time};
 
-/// A pendulum and the trail of bob 2. The settings and the time are in the corners, which the
-/// motion never reaches.
+/// A pendulum and the trail of bob 2, which fades in 2.3 s. The settings and the time are in the
+/// corners, which the motion never reaches.
 #[derive(Clone, Debug)]
 pub struct Page {
     settings: Settings,
@@ -151,7 +151,8 @@ impl Halves {
 /// Returns the settings of figure 7: mass ratio 2.75, both rods at 171 degrees, released from
 /// rest.
 ///
-/// The page gives no more. The gravity is from its worked example, and the rods are 1 m long.
+/// The page gives no more. The gravity, 9.8 m/s^2, is from its worked example. The rods are 1 m
+/// long, and bob 1 has 1 kg.
 pub fn figure_7() -> Settings {
     let parameters = Parameters::equal_rods(2.75, 1.0, PAGE_GRAVITY as f32);
     Settings {
@@ -163,7 +164,8 @@ pub fn figure_7() -> Settings {
 
 /// The correct motion on the left, the misprinted one on the right, and their energies, J. The
 /// clock belongs to the correct motion. Unequal rods are refused, because the misprinted equations
-/// are for equal ones.
+/// are for equal ones. A misprinted motion that is too fast for its steps is no longer drawn, and
+/// `book too fast` replaces its energy.
 #[derive(Clone, Debug)]
 pub struct Figure7 {
     right: Simulation,
@@ -240,7 +242,8 @@ impl Scene for Figure7 {
 /// A motion in plain `f32` on the left, and the same motion in compensated `f32` on the right.
 ///
 /// The clock belongs to the left motion. It is compared with the same motion in 64 bits, which is
-/// not drawn. There is no plan, because the scene shows two given arithmetics.
+/// not drawn. There is no plan, because the scene shows two given arithmetics. A requested method
+/// is ignored. The scene is too fast if a frame cannot pay for all three motions.
 ///
 /// The `f32` nearest to pi is too large by 8.7e-8, so that the exact motion from there falls after
 /// about 3 s. Plain `f32` drops the first tiny increments completely, so that the pendulum does not

@@ -30,8 +30,8 @@ const CLOSED_FORM: Stepping = Stepping {
     steps: 1,
 };
 
-/// Returns the worked example of the page: equal rods of 0.25 m, g = 9.8 m/s^2, a1 = 0, a2 = 30
-/// degrees, released from rest, with the mass ratio m2/m1.
+/// Returns the worked example of the page: equal rods of 0.25 m, m1 = 1 kg, g = 9.8 m/s^2, a1 = 0,
+/// a2 = 30 degrees, released from rest, with the mass ratio m2/m1, which is not checked.
 pub fn example(mass_ratio: f32) -> Settings {
     let parameters = Parameters::equal_rods(mass_ratio, 0.25, PAGE_GRAVITY as f32);
     Settings {
@@ -42,7 +42,9 @@ pub fn example(mass_ratio: f32) -> Settings {
 }
 
 /// The two angles over time, by the linear model. The clock shows the time until which the exact
-/// motion has the same angles, to half a pixel of the curves.
+/// motion has the same angles, to half a pixel of the curves. A pendulum without gravity is
+/// refused. One that starts at rest has level curves, and is not planned. A requested method is
+/// ignored.
 #[derive(Clone, Debug)]
 pub struct Small {
     pendulum: Pendulum<f32>,

@@ -141,7 +141,8 @@ impl Image {
             .any(|(start, bytes)| address.wrapping_sub(*start) < bytes.len() as u32)
     }
 
-    /// Returns the word of four bytes at an address, or `None` if not all of them are loaded.
+    /// Returns the word of four bytes (little-endian) at an address, or `None` if not all of them
+    /// are loaded.
     pub fn word(&self, address: u32) -> Option<u32> {
         self.loaded.iter().find_map(|(start, bytes)| {
             let at = address.checked_sub(*start)? as usize;
@@ -168,7 +169,8 @@ impl Image {
     }
 
     /// Returns every instruction as its address, its first halfword, and its second halfword if it
-    /// has one. They are in the order of the sections. Data between code is left out.
+    /// has one. They are in the order of the sections. Data between code is left out, and so is
+    /// everything before the first mapping symbol `$t`.
     pub fn words(&self) -> Vec<(u32, u16, Option<u16>)> {
         let mut words = Vec::new();
         for (start, bytes) in &self.code {

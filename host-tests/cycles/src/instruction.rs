@@ -55,7 +55,7 @@ impl Instruction {
     /// Returns the cycles of the instruction alone, without a branch, for these contents of the
     /// registers. The effects of the neighbouring instructions are not included
     /// ([`Pipeline`](crate::Pipeline)). The registers, before the instruction, affect a division
-    /// only.
+    /// only. The result has no meaning if the core [lacks](Self::is_missing_on) the instruction.
     pub fn cycles(&self, core: Core, registers: &Registers) -> u64 {
         let more = match self.row.class {
             Class::LoadList | Class::StoreList => {

@@ -111,10 +111,11 @@ impl Pipeline {
         }
     }
 
-    /// Returns the cost of the next executed instruction.
+    /// Executes the next instruction and returns its cost.
     ///
-    /// `registers` are the contents of the registers before it. `branches` is true if the next
-    /// executed instruction is not the next one in memory.
+    /// `registers` are the contents of the registers before it. `branches` is true if the
+    /// instruction executed after it is not the next one in memory. The core must have the
+    /// instruction ([`Instruction::is_missing_on`]), which is not checked.
     pub fn execute(
         &mut self,
         instruction: Instruction,

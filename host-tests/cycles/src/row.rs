@@ -119,7 +119,8 @@ pub struct Row {
     pub(super) mask: u32,
     /// The values of those bits.
     pub(super) value: u32,
-    /// The cycles on the M3, the M4 and the M0+.
+    /// The cycles on the M3, the M4 and the M0+; 0 if the core does not have the instruction, and
+    /// for a division.
     pub(super) cycles: [u64; 3],
     /// The additional effect.
     pub class: Class,
@@ -131,7 +132,7 @@ pub struct Row {
 
 impl Row {
     /// Returns the cycles without the effects of the [`Class`], a refill or the previous
-    /// instruction.
+    /// instruction. They are 0 if the core does not have the instruction, and for a division.
     pub fn cycles(&self, core: Core) -> u64 {
         self.cycles[core as usize]
     }

@@ -65,8 +65,9 @@ fn hexadecimal(word: &[u8]) -> u32 {
     (halves | halves >> 16) as u32
 }
 
-/// Calls `each` with the registers before every instruction of a log, until `each` returns an
-/// error. An instruction whose lines are incomplete ends the log.
+/// Calls `each` with the registers before every instruction of a log, until the log ends or `each`
+/// returns an error, which is returned. A log that cannot be read is an error, too. An instruction
+/// whose lines are incomplete ends the log without an error.
 pub fn for_each_instruction(
     log: &mut dyn Read,
     each: &mut dyn FnMut(Registers) -> Result<()>,

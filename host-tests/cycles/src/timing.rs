@@ -33,7 +33,9 @@ pub const UNALIGNED_TARGET: u64 = 1;
 /// 7-1).
 pub const RESULT_USE_STALL: u64 = 1;
 
-/// The table of timings. The first row that matches an instruction is used.
+/// The table of timings: the mnemonics, the mask and the value of the encoding, the cycles on the
+/// M3, the M4 and the M0+, and the effects on neighbours ([`Row`]). 0 cycles mean that the core
+/// does not have the instruction, or a division. The first row that matches an instruction is used.
 #[rustfmt::skip]
 pub const TIMINGS: &[Row] = &[
     // 16-bit loads and stores

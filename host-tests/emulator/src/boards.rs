@@ -28,7 +28,7 @@ pub struct Board {
 
 impl Board {
     /// Returns the clock frequency of the processor that the board represents, Hz. QEMU's machine
-    /// with a Cortex-M0+ represents a Raspberry Pi Pico.
+    /// with a Cortex-M0+ represents a Raspberry Pi Pico at 125 MHz; `hertz` is its clock in QEMU.
     pub fn processor_hertz(&self) -> u32 {
         if self.core() == Core::M0Plus {
             125_000_000
@@ -40,8 +40,8 @@ impl Board {
     /// Returns the duration of an instruction when the clock counts instructions, as the exponent
     /// of a power of two in nanoseconds; QEMU allows no other durations.
     ///
-    /// An instruction takes 1.3 cycles on the STM32F405, 2 cycles of 125 MHz on the Cortex-M0+, and
-    /// 1.6 cycles of 50 MHz on the others.
+    /// An instruction takes 1.3 cycles on the STM32F405 (8 ns), 2 cycles of 125 MHz on the
+    /// Cortex-M0+ (16 ns), and 1.6 cycles of 50 MHz on the others (32 ns).
     pub fn instruction_shift(&self) -> u32 {
         match self.processor_hertz() {
             ..=50_000_000 => 5,
@@ -72,7 +72,8 @@ impl Board {
         self.core() != Core::M0Plus
     }
 
-    /// Returns the first address of the flash, where the processor reads its vectors.
+    /// Returns the first address of the flash of a board in QEMU, where the processor reads its
+    /// vectors. It is 0 for the Pico, which is not its address of the flash.
     pub fn flash(&self) -> u32 {
         match self.machine {
             "netduinoplus2" => 0x0800_0000,
@@ -90,8 +91,8 @@ impl Board {
     }
 }
 
-/// The board with an OLED panel in QEMU, here with the Cortex-M3 of the real one. QEMU can give it
-/// other processors.
+/// The board with an OLED panel and buttons in QEMU, here with the Cortex-M3 of the real one at 50
+/// MHz. QEMU can give it other processors.
 pub const LM3S6965EVB: Board = Board {
     name: "lm3s6965evb",
     machine: "lm3s6965evb",
@@ -104,7 +105,7 @@ pub const LM3S6965EVB: Board = Board {
     has_panel: true,
 };
 
-/// ARM's board without a panel and buttons, which is quick to emulate.
+/// ARM's board with a Cortex-M4F at 25 MHz, without a panel and buttons. It is quick to emulate.
 pub const MPS2_AN386: Board = Board {
     name: "mps2-an386",
     machine: "mps2-an386",
@@ -116,7 +117,9 @@ pub const MPS2_AN386: Board = Board {
     ..LM3S6965EVB
 };
 
-/// The boards of QEMU. The first one is the default of most commands.
+/// The boards of QEMU: the LM3S6965 with a Cortex-M3, then with a Cortex-M4F, [`MPS2_AN386`],
+/// [`STM32F405`], and the LM3S6965 with a Cortex-M0+. The first one is the default of most
+/// commands.
 pub const BOARDS: [Board; 5] = [
     LM3S6965EVB,
     Board {
@@ -135,8 +138,8 @@ pub const BOARDS: [Board; 5] = [
     },
 ];
 
-/// The board that exists as hardware: the same ELF file is flashed and emulated. QEMU does not
-/// emulate its panel, button and I2C.
+/// The board with a Cortex-M4F at 168 MHz that exists as hardware: the same ELF file is flashed and
+/// emulated. QEMU does not emulate its panel, button and I2C, so `has_panel` is false.
 pub const STM32F405: Board = Board {
     name: "stm32f405",
     machine: "netduinoplus2",
@@ -149,7 +152,8 @@ pub const STM32F405: Board = Board {
     has_panel: false,
 };
 
-/// The Raspberry Pi Pico, which is emulated by rp2040js instead of QEMU.
+/// The Raspberry Pi Pico with a Cortex-M0+ at 125 MHz, a panel and buttons. It is emulated by
+/// rp2040js instead of QEMU, so its `machine`, `cpu` and `serial_port` are not for QEMU.
 pub const PICO: Board = Board {
     name: "pico",
     machine: "rp2040js",

@@ -1,6 +1,6 @@
 //! The table of budgets: the limits of time and memory for each board, and their reasons.
 
-/// The part of a frame of 1/60 s that a scene may take.
+/// The part, 0 to 1, of a frame of 1/60 s that a scene may take.
 ///
 /// It applies to a 50 MHz Cortex-M3 in the tick that prepares a motion, and to a Cortex-M0+ at 125
 /// MHz for the map of flips. The rest is for the panel's bus, the serial link, commands, and
@@ -10,7 +10,7 @@ pub const SCENE: f64 = 0.55;
 /// computation of its motion. It is a seventh of a frame at 50 MHz. The most expensive scene,
 /// figure 7, takes 98,700.
 pub const SHOWING: u64 = 110_000;
-/// The part of a frame that must remain after the frame is on the panel and sent.
+/// The part of a frame, 0 to 1, that must remain after the frame is on the panel and sent.
 ///
 /// It is enough for a command in each frame, for a log line, and to compute requested motions in
 /// reasonable time. QEMU's buses take no time; the README has the times of a real board's buses.
@@ -29,7 +29,7 @@ pub struct Memory {
     pub stack: u32,
 }
 
-/// The memory limits of each application.
+/// The memory limits of each application, bytes, with the name of its board.
 ///
 /// - Text: the smallest chip has 256 KiB of flash. A sixteenth of it stays free; with a Cortex-M0+,
 ///   whose code is longer, 12 KiB. The F405 has 1 MiB, and three quarters of it stay free for
@@ -44,7 +44,7 @@ pub struct Memory {
 ///   of a crash.
 ///
 /// The Pico has 2 MiB of flash and more memory than the others. Its limits are higher because an
-/// M0+ takes more instructions and because of USB. Each has the name of its board.
+/// M0+ takes more instructions and because of USB.
 pub const MEMORY: [(&str, Memory); 6] = [
     (
         "lm3s6965evb",

@@ -76,8 +76,9 @@ pub fn flash_image_over(elf: &[u8], unused: u8) -> Result<(u32, Vec<u8>)> {
     Ok((start, image))
 }
 
-/// Returns the UF2 file that writes `image` to an RP2040's flash at `start`. Each block brings 256
-/// bytes; the rest of the last one is zeros.
+/// Returns the UF2 file that writes `image` to an RP2040's flash at the address `start`. Each block
+/// of 512 bytes brings 256 bytes of the image; the rest of the last one is zeros. An empty image
+/// gives an empty file.
 pub fn uf2(start: u32, image: &[u8]) -> Vec<u8> {
     let parts = image.chunks(BROUGHT);
     let count = parts.len() as u32;

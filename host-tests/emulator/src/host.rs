@@ -13,8 +13,8 @@ use firmware::scenes::{Report, SceneName};
 pub struct Show {
     /// The player with the scene.
     pub player: Player<'static>,
-    /// The events of the planner, each with its tick. They are in ascending order and never
-    /// removed.
+    /// The events of the planner, each with its tick of the scene, counted from its start. They are
+    /// in ascending order and never removed.
     pub news: Vec<(u64, PlannerEvent)>,
 }
 
@@ -37,8 +37,9 @@ impl Show {
         })
     }
 
-    /// Advances the player by one tick of 1/60 s. If the motion is no longer finite, the scene
-    /// stops and the report stays the last good one.
+    /// Advances the player by one tick of the clock, 1/60 s. At full speed the scene advances by
+    /// one tick, and while it is paused or stopped by none. If the motion is no longer finite, the
+    /// scene stops and the report stays the last good one.
     pub fn tick(&mut self) {
         let Self { player, news } = self;
         let step = player.report.step + 1;
@@ -56,8 +57,9 @@ impl Show {
     }
 
     /// Advances to the tick of a board's `frame` and returns the frame that the board should have
-    /// sent. The fields that only the board can know are copied from `frame`. A scene that has
-    /// stopped or is paused must have reached that tick; else this never returns.
+    /// sent. The fields that only the board can know are copied from `frame`. A frame of an earlier
+    /// tick than the current one gives the numbers of the current tick. A scene that has stopped or
+    /// is paused must have reached that tick; else this never returns.
     pub fn expected(&mut self, frame: &Frame) -> Frame {
         while self.report().step < frame.report.step {
             self.tick();

@@ -14,8 +14,8 @@ use console::cli::{Refused, unwritable};
 /// A file that is being written.
 ///
 /// Two commands may write to one name at the same time. The file that is completed last then has
-/// the name. If this is dropped before [`OutFile::finish`], an existing file of this name remains
-/// unchanged.
+/// the name. If this is dropped before [`OutFile::finish`], or the process is interrupted, the
+/// temporary file is removed and an existing file of this name remains unchanged.
 #[derive(Debug)]
 pub struct OutFile {
     /// The option in errors.
@@ -133,13 +133,13 @@ impl Write for OutFile {
 }
 
 /// Returns an error if a file cannot be written, before the work for it begins. An existing file
-/// remains unchanged. The refusal names the option and the file.
+/// remains unchanged, and a new one is not left behind. The refusal names the option and the file.
 pub fn check_writable(option: &'static str, path: &Path) -> Result<(), Refused> {
     OutFile::create(option, path).map(drop)
 }
 
-/// Writes a file of the folder that `--out` names, and creates the folder. An error names the
-/// option and the file.
+/// Writes a complete file in the folder that `--out` names, and creates the folder. It replaces an
+/// existing file. An error names the option and the file.
 pub fn write(path: &Path, bytes: impl AsRef<[u8]>) -> anyhow::Result<()> {
     let made = path.parent().map_or(Ok(()), fs::create_dir_all);
     made.map_err(|error| unwritable("--out", path, &error))?;

@@ -29,7 +29,8 @@ const PATIENCE: u32 = 5000;
 /// An emulated Pico.
 ///
 /// Its time advances only while the emulator processes a command such as that of [`Self::run`], so
-/// its results are bit-identical in every run. Dropping it ends the emulator.
+/// its results are bit-identical in every run. Dropping it ends the emulator. An emulator that has
+/// ended, such as at its time limit, is an error of every method that returns a `Result`.
 pub struct PicoMachine {
     input: ChildStdin,
     output: BufReader<ChildStdout>,
@@ -126,8 +127,7 @@ impl PicoMachine {
             .context("it ends with one")
     }
 
-    /// Sends bytes over USB. The board takes them when it runs. Only an emulator that has ended is
-    /// an error, here and in all methods below.
+    /// Sends bytes over USB. The board takes them when it runs.
     pub fn send_bytes(&mut self, bytes: &[u8]) -> anyhow::Result<()> {
         self.tell(&format!("usb {}", digits(bytes))).map(drop)
     }
@@ -176,7 +176,7 @@ impl PicoMachine {
         [self.usb.counts, self.uart.counts]
     }
 
-    /// Returns the picture in the memory of the panel.
+    /// Returns the picture in the memory of the panel. It is black while the panel is off.
     pub fn screenshot(&mut self) -> anyhow::Result<Screenshot> {
         Ok(Screenshot::from_pages(&self.tell("panel")?))
     }

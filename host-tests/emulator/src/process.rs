@@ -212,7 +212,8 @@ pub fn interrupted_by(signal: usize) -> ExitCode {
 }
 
 /// Returns a variable for the number of the signal that interrupts this process (Ctrl-C, Ctrl-\,
-/// SIGTERM, SIGHUP); it is 0 until then. The process then continues instead of ending.
+/// SIGTERM, SIGHUP); it is 0 until then. The process then continues instead of ending, unless
+/// [`on_interrupt`] has been called, too. An error means that the system refuses the handlers.
 pub fn interrupted() -> io::Result<Arc<AtomicUsize>> {
     let signal = Arc::default();
     for each in INTERRUPTS {
@@ -247,8 +248,9 @@ pub fn on_interrupt(hook: impl FnOnce() + Send + 'static) {
     hooks().push(Box::new(hook));
 }
 
-/// Removes this file or folder when this process is interrupted, because values are not dropped
-/// then. It may be gone already.
+/// Removes this file or folder, with its contents, when this process is interrupted, because values
+/// are not dropped then. It may be gone already. It is a hook of [`on_interrupt`], which ends the
+/// process.
 pub fn remove_on_interrupt(path: &Path) {
     let path = path.to_owned();
 

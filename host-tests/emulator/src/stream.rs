@@ -25,7 +25,8 @@ pub struct Stream {
 }
 
 impl Stream {
-    /// Takes the end of a pipe. An error means that it cannot be read without waiting.
+    /// Takes the end of a pipe, with no bytes read yet. An error means that it cannot be read
+    /// without waiting.
     pub fn of(pipe: impl Into<OwnedFd>) -> io::Result<Self> {
         let pipe = File::from(pipe.into());
         fcntl(&pipe, FcntlArg::F_SETFL(OFlag::O_NONBLOCK))?;
@@ -62,8 +63,8 @@ impl Stream {
     }
 }
 
-/// Waits until a stream has new bytes or has ended, for at most `TICK` milliseconds. It returns at
-/// once if a stream has unread bytes, and after that time if none of them is open.
+/// Waits until a stream has new bytes or has ended, for at most 100 ms. It returns at once if the
+/// pipe of a stream has unread bytes, and after that time if none of them is open.
 pub fn wait<'a>(streams: impl Iterator<Item = &'a Stream>) {
     let open = streams.filter(|stream| stream.is_open);
     let mut polled: Vec<_> = open

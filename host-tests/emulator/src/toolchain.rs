@@ -38,6 +38,9 @@ pub const TARGETS: [&str; 3] = [
 pub const WASM: &str = "wasm32-unknown-unknown";
 
 /// The tools that build and run programs for a target.
+///
+/// Its builds show progress on stderr. A build that takes more than 30 minutes is stopped, which is
+/// an error.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Toolchain {
     /// Debian's compiler. It is used if rustup has no ready-made core library.
@@ -57,16 +60,18 @@ fn missing(is_tried: bool, what: &str, why: &str, setup: &str, by_hand: &str) ->
     Refused::because(format_args!("{what} is missing: {why}; {setup}{by_hand}"))
 }
 
-/// Returns the tools if all are present. Installs nothing, and searches once per process. The
-/// refusal has a line for each missing tool, with the remedy.
+/// Returns the tools for the boards in QEMU, the core library of all [`TARGETS`] and QEMU, if both
+/// are present. Installs nothing, and searches once per process. The refusal has a line for each
+/// missing tool, with the remedy.
 pub fn ready() -> Result<Toolchain, Refused> {
     static READY: OnceLock<Result<Toolchain, Refused>> = OnceLock::new();
     READY.get_or_init(|| both(false, &TARGETS, arm)).clone()
 }
 
-/// Returns the tools and provides the missing ones, with a report of each. Two set-ups at the same
-/// time take turns. Refused if the folder for temporary files is not writable, or if a tool is
-/// missing and cannot be provided; the refusal has a line for each, with the remedy.
+/// Returns the tools of [`ready`] and provides the missing ones, with a report of each on stderr.
+/// Two set-ups at the same time take turns. Refused if the folder for temporary files is not
+/// writable, or if a tool is missing and cannot be provided; the refusal has a line for each, with
+/// the remedy.
 pub fn set_up() -> Result<Toolchain, Refused> {
     check_temporary_folder()?;
     ready().or_else(|_| {
@@ -139,7 +144,7 @@ pub fn set_up_web() -> Result<Toolchain, Refused> {
 }
 
 /// Returns a Chromium, and provides it if necessary: Debian's is unpacked into the target folder.
-/// The result is the program.
+/// The result is the program. Refused if it is missing and cannot be provided.
 pub fn set_up_chromium() -> Result<PathBuf, Refused> {
     let _turn = turn()?;
     let by_hand = "install this system's package chromium";
@@ -203,7 +208,7 @@ pub fn ready_for_pico() -> Result<PathBuf, Refused> {
 }
 
 /// Returns the program Node.js and provides it and the emulator of the Pico if necessary. Asks the
-/// user before anything is installed on the system.
+/// user before anything is installed on the system. Refusals are as in [`set_up_pico_with`].
 pub fn set_up_pico() -> Result<PathBuf, Refused> {
     set_up_pico_with(Consent::Ask)
 }

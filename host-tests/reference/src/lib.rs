@@ -15,7 +15,7 @@ use double_pendulum::{Error, Run};
 
 /// Advances RK4 in compensated `f64`, with a count of turns. Tests compare RK4 in fewer bits with
 /// it for as long as a day. This function is in this package because the package is optimised in
-/// every profile. An error means that the motion has diverged.
+/// every profile. An error means that the motion has diverged; `run` is then unchanged.
 pub fn advance(run: &mut Run<DirectionF64, true>, steps: u32) -> Result<(), Error> {
     run.advance(steps)
 }

@@ -40,8 +40,9 @@ pub struct Reference {
 }
 
 impl Reference {
-    /// Starts at time 0 from `motion`. Every `f64` is taken as exact. Masses, lengths and gravity
-    /// must be positive, all numbers in SI units.
+    /// Starts at time 0 from `motion`. Every `f64` is taken as exact. All numbers are finite and in
+    /// SI units. Masses and lengths must be positive, and gravity not negative, which is not
+    /// checked.
     pub fn new(parameters: &Parameters<f64>, motion: &Motion<f64>) -> Self {
         let &Parameters { m1, m2, l1, l2, g } = parameters;
         let &Motion { a1, a2, w1, w2 } = motion;
@@ -67,14 +68,16 @@ impl Reference {
         }
     }
 
-    /// Uses power series of another order, at least 24, and with it other steps. The distance
-    /// between the results of two orders shows how accurate both are.
+    /// Uses power series of another order, at least 24, and with it other steps. It is called
+    /// before the first advance. The distance between the results of two orders shows how accurate
+    /// both are.
     #[must_use]
     pub fn of_order(self, order: usize) -> Self {
         Self { order, ..self }
     }
 
-    /// Advances to time `t`, s. An earlier time changes nothing. The time must be finite.
+    /// Advances to time `t`, s, since the start. An earlier time changes nothing. With an infinite
+    /// time it never returns.
     pub fn advance_to(&mut self, t: f64) {
         // The series are computed anew when they have ended.
         let t = TwoFloat::from(t);
@@ -236,8 +239,8 @@ pub fn divide(a: TwoFloat, b: TwoFloat) -> TwoFloat {
     quotient + (a - quotient * b) / b
 }
 
-/// Returns the states at `times` (s, ascending) of the motion that begins at `start`. A time before
-/// its predecessor gives the state of the predecessor.
+/// Returns the states at `times` (s, ascending) of the motion that begins at `start`, one for each
+/// time. A time before an earlier one in the list gives the state at the latest time so far.
 pub fn states(
     parameters: &Parameters<f64>,
     start: &Motion<f64>,

@@ -87,7 +87,8 @@ const GOALS: [(Method, &str, [f64; 2], f64); 4] = [
     (Method::Rk4Fixed32, M3, [2.0, 0.5], 870.0),       // a quarter more for shifts of each quantity
 ];
 
-/// The estimated cycles of a step are at most those of [`GOALS`].
+/// The estimated cycles of a step are at most those of [`GOALS`], such as 220 for the compensated
+/// direction form in `f32` on the Cortex-M4F.
 #[test]
 fn a_step_costs_no_more_than_its_goal() -> Result<()> {
     // Every core has its own goals.

@@ -32,7 +32,7 @@ fn every_state(method: Method, scene: &Scene, steps: u32) -> Request {
 }
 
 /// Every method, in a regular and a chaotic motion, has the same CRC of all states on the host and
-/// on every board, over [`STEPS`].
+/// on a board of each kind of core, over a million steps, or 100,000 on the Cortex-M0+ ([`STEPS`]).
 #[test]
 #[ignore = "takes hours"]
 fn host_and_targets_agree_after_every_one_of_a_million_steps() -> Result<()> {

@@ -1,5 +1,5 @@
-//! The largest mass ratio that the keys reach, on the emulated board that is slowest with it. Up is
-//! pressed until nothing changes any more.
+//! The largest mass ratio that the keys reach, on the emulated board that is slowest with it. The
+//! command of the key up is sent until nothing changes any more.
 
 use emulator::boards::LM3S6965EVB;
 use emulator::host::Show;

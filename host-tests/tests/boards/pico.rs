@@ -210,9 +210,10 @@ fn measured(board: &mut PicoMachine, in_ram: bool) -> anyhow::Result<u32> {
     }
 }
 
-/// The emulator counts cycles on its own, which verifies the prices of `cargo count` independently
-/// of QEMU. Its flash and memory have no wait states, so both take the same time. If the copy in
-/// memory is damaged, only the steps that run there are affected.
+/// The emulator counts cycles on its own. For three methods they equal the estimate of `cargo
+/// count` to 4 %, which verifies it independently of QEMU. Its flash and memory have no wait
+/// states, so steps take the same time in both, to a tenth. If the copy in memory is damaged, only
+/// the steps that run there are affected.
 #[test]
 fn the_emulators_cycles_agree_with_the_estimate_in_flash_and_in_memory() -> anyhow::Result<()> {
     // Found: 0.5 % more, 2.6 % less, 0.1 % less.
@@ -397,8 +398,10 @@ fn every_frame_reaches_a_panel_on_a_slow_bus() -> anyhow::Result<()> {
 /// The clock's counts for 400 kHz, low and high (RP2040 data sheet, 4.3.14).
 const CLOCK_COUNTS: [u8; 2] = [175, 108];
 
-/// A panel whose power fails holds the clock low. A transfer does not end then, and the controller
-/// of the bus cannot be disabled. Its reset ends every transfer, and its setup is restored.
+/// While a panel holds the clock low, as one whose power fails does, the board reports it as absent
+/// and resets the controller of the bus. Within 2 s after the clock is free, the panel shows the
+/// host's picture, and the controller has its setup again. A transfer does not end while the clock
+/// is low, and the controller cannot be disabled; only its reset ends every transfer.
 #[test]
 fn a_panel_that_holds_the_clock_low_shows_the_picture_when_it_lets_go() -> anyhow::Result<()> {
     let mut board = switched_on()?;

@@ -357,8 +357,8 @@ fn without_a_debugger_a_fault_restarts_the_board() -> anyhow::Result<()> {
     Ok(())
 }
 
-/// The watchdog's non-maskable interrupt arrives in the middle of a long report. The fault remains
-/// the reported reason.
+/// The report of a fault takes so long that the watchdog's non-maskable interrupt arrives in it.
+/// The restarted board reports the fault as the cause, and the log contains no hang.
 #[test]
 fn a_report_that_takes_long_is_no_hang() -> anyhow::Result<()> {
     for board in watched() {

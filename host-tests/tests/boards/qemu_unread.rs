@@ -72,8 +72,8 @@ fn a_host_that_stops_reading_loses_frames_and_nothing_else() -> anyhow::Result<(
     Ok(())
 }
 
-/// The firmware is not at fault if the host stops QEMU or has no time for it: its clock does not
-/// advance meanwhile.
+/// QEMU is stopped for 2.5 s while a board plays by the host's clock. The log then reports neither
+/// a hang nor a restart, because the board's clock does not advance meanwhile.
 #[test]
 fn a_board_whose_emulator_pauses_does_not_take_it_for_a_hang() -> anyhow::Result<()> {
     /// The duration of a stop. It is longer than the watchdog's two stages.
@@ -111,7 +111,9 @@ fn a_board_whose_emulator_pauses_does_not_take_it_for_a_hang() -> anyhow::Result
         })
 }
 
-/// A host that sends faster than the board reads receives the number of lost bytes.
+/// A host sends 20,000 bytes faster than a board can read them. The frames of every board then
+/// have a number of lost bytes that is greater than zero and less than all, and its log reports
+/// the loss.
 #[test]
 fn received_bytes_that_are_lost_are_counted() -> anyhow::Result<()> {
     // Broken messages of a byte each. A board reads at most four of them in a tick, and they are

@@ -64,7 +64,7 @@ fn every_board_plays_every_scene_as_the_host_does_within_its_budgets() -> anyhow
     every_board_plays(LIMIT, short)
 }
 
-/// The same over an hour of each board's clock.
+/// The long run of what the module describes, over an hour of each board's clock.
 #[test]
 #[ignore = "an hour of five boards"]
 fn every_board_plays_every_scene_for_an_hour() -> anyhow::Result<()> {

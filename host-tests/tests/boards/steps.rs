@@ -91,8 +91,9 @@ fn reached(code: &Code, form: &str) -> BTreeSet<String> {
         .collect()
 }
 
-/// The claim of the kernel's example `fixed_point`: on a Cortex-M0+ a step in 32 bits consists of
-/// integer operations, while a step in `f32` does not.
+/// On a Cortex-M0+ a step in 32-bit fixed point calls no function of software floating point,
+/// directly or indirectly, while a step in `f32` does. It is the claim of the kernel's example
+/// `fixed_point`.
 #[test]
 fn steps_in_fixed_point_reach_no_soft_float() -> anyhow::Result<()> {
     let code = Code::read(&application(&PICO))?;

@@ -169,7 +169,8 @@ fn a_closed_output_ends_every_command_quietly() -> io::Result<()> {
     Ok(())
 }
 
-/// The boards' scene starts from the nearest `f32` to 120 degrees, which leads to another motion.
+/// `cargo plan --scene page` prints the horizon that the board's own code finds, for two chips. The
+/// boards' scene starts from the nearest `f32` to 120 degrees, which leads to another motion.
 #[test]
 fn a_scene_is_planned_as_the_boards_start_it() {
     let name = SceneName::Page;
@@ -210,7 +211,9 @@ fn wait_for_handler(process: u32) {
     }
 }
 
-/// The proof would take hours, and so would the search for motions that look the same on the panel.
+/// `cargo prove` is interrupted by SIGINT and by SIGTERM. It ends at once, prints the frames that
+/// it has proved, and its exit code is 128 plus the signal. The proof would take hours, and so
+/// would the search for motions that look the same on the panel.
 #[cfg(target_os = "linux")]
 #[test]
 fn an_interrupted_proof_prints_what_it_has_proved() {

@@ -66,7 +66,9 @@ fn a_motion_of_the_user_is_played_at_a_port() {
     );
 }
 
-/// The fastest board could execute these steps in time, so only this board can refuse them.
+/// The board refuses `--method`: exit code 2, no summary, and an error that names the method and
+/// the option. The fastest board could execute these steps in time, so only this board can refuse
+/// them.
 #[test]
 fn a_method_that_the_board_refuses_is_named() {
     let arguments = "--method extrapolation10-fixed64 --angles 120,120 --degrees --lengths 1,1/10";
@@ -153,7 +155,8 @@ fn board_without_a_choice_of_controllers_refuses_one() {
     );
 }
 
-/// The board's frames arrive, but they are always of another scene.
+/// The board's frames arrive, but they are always of another scene than that of `--scene`. The
+/// command has exit code 1 and reports that no frame has arrived for 10 s.
 #[test]
 fn a_board_that_never_plays_the_requested_scene_is_an_error() {
     let mut sequence = 0;
@@ -217,8 +220,9 @@ fn a_pulled_cable_is_reported_and_a_restarted_board_is_compared_again() {
     );
 }
 
-/// Over USB a restart disconnects the port, and the board's message about it is lost. The host
-/// learns of the restart only from the answer to its question after the port is back.
+/// The restart is reported once, with its cause, scene and step. Over USB a restart disconnects the
+/// port, and the board's message about it is lost. The host learns of the restart only from the
+/// answer to its question after the port is back.
 #[test]
 fn a_board_that_comes_back_after_a_hang_is_reported_as_restarted() {
     let end = Restarted {
@@ -281,7 +285,8 @@ fn a_foreign_device_is_reported_and_a_board_in_its_place_is_accepted() {
 }
 
 /// The session in a terminal has no time limit, because the user can quit. The terminal shows no
-/// number that was not received.
+/// number that was not received. After `q` the exit code is 1, and the error is that the session
+/// ended before the first frame.
 #[test]
 fn the_terminal_shows_no_number_of_a_silent_or_foreign_device() {
     for says in [b"", FOREIGNER] {

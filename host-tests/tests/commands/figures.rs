@@ -42,8 +42,9 @@ fn the_committed_figures_equal_the_kernels() {
 const EVERY: usize = 30;
 const TICKS_PER_FRAME: usize = 2;
 
-/// The host's frames equal the emulated panel's (test `boards scenes`), so neither may be older
-/// than the firmware.
+/// Pictures of the committed animation of every scene, one in a second, equal the frames that the
+/// host draws now, up to a small delay. The host's frames equal the emulated panel's (test `boards
+/// scenes`), so no animation may be older than the firmware.
 #[test]
 fn the_committed_animations_show_what_the_host_draws() {
     let outdated: Vec<_> = SceneName::ALL

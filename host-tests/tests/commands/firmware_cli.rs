@@ -49,7 +49,8 @@ fn a_program_without_end_is_stopped_with_success_on_request() {
     );
 }
 
-/// A row is the difference of two runs, so that the cost of the call cancels.
+/// The instructions of all lines that `cargo count --listing` prints add up to the number in the
+/// method's row. A row is the difference of two runs, so that the cost of the call cancels.
 #[test]
 fn the_costs_of_a_listing_add_up_to_the_row() {
     let numbers = |options: &str, place| -> Vec<f64> {
@@ -261,7 +262,9 @@ fn probe_rs_receives_the_image() -> io::Result<()> {
     Ok(())
 }
 
-/// The program is sent over USB. QEMU runs exactly these bytes.
+/// A fake `dfu-util` is called with the right device and address, and `cargo flash-f4 --dfu`
+/// succeeds although its exit code is 74. The file that it receives is a program: QEMU runs exactly
+/// these bytes to the first frame.
 #[test]
 fn dfu_util_receives_the_bytes_of_the_flash() -> io::Result<()> {
     let bin = handed(
@@ -313,7 +316,8 @@ fn pico(drive: &Path) -> Output {
     output(program("pico").arg("--drive").arg(drive))
 }
 
-/// The blocks are read as by the boot ROM.
+/// `cargo pico` copies a file to the drive whose blocks have the right heads and contain exactly
+/// the program as in flash. The blocks are read as by the boot ROM.
 #[test]
 fn the_copied_file_has_the_program_as_in_flash() {
     let drive = tempfile::tempdir().expect("a folder");

@@ -117,7 +117,8 @@ fn an_existing_file_remains_until_the_new_one_is_complete() {
     assert_eq!(names(folder.path()).len(), 2);
 }
 
-/// The rows before a motion leaves the finite numbers are correct.
+/// A motion leaves the finite numbers after 20 rows: `cargo simulate` has exit code 1, and the file
+/// has the heading and these 20 rows. They are correct.
 #[test]
 fn rows_before_an_error_are_in_the_file() {
     let folder = tempfile::tempdir().expect("a folder");

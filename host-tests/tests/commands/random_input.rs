@@ -227,7 +227,8 @@ proptest! {
         }
     }
 
-    /// Every reading of a request is finite.
+    /// A request is refused at its start, or its first readings are finite until it fails and is
+    /// then finished.
     #[test]
     fn requests_are_refused_or_computed(
         (method, parameters) in (select(ON_BOARDS), parameters()),
@@ -259,7 +260,9 @@ proptest! {
         }
     }
 
-    /// Parameters are refused, or valid for every method. Steps are finite or refused.
+    /// Random parameters are refused, or no function of the pendulum panics, its modes have finite
+    /// frequencies above zero, and hanging at rest it does not move. By every method, the first
+    /// twelve steps are finite or refused.
     #[test]
     fn the_kernel_refuses_or_stays_finite(
         parameters in parameters(),
@@ -352,7 +355,8 @@ proptest! {
         }
     }
 
-    /// A command line is refused, or requests a motion forwards in time.
+    /// A random command line of `simulate` is refused, or its plan has a step and a time between
+    /// rows that are greater than zero.
     #[test]
     fn command_lines_are_refused_or_good(
         words in vec(

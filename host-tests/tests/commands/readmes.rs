@@ -187,7 +187,7 @@ fn readme_links_to_a_section_name_one_of_its_headings() {
     assert!(checked > 20, "{checked} links to sections");
 }
 
-/// It has at most 120 lines.
+/// The README of the repository has at most 120 lines.
 #[test]
 fn the_first_readme_is_short() {
     assert!(read(README[0]).lines().count() <= 120);

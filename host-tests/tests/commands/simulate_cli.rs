@@ -18,6 +18,7 @@ fn simulate(arguments: &str) -> String {
     output.stdout
 }
 
+/// `cargo simulate --bits` prints the same text on the host and on every board, for two methods.
 /// The test `verify_board` compares every method, and `identity` every step.
 #[test]
 fn unequal_rods_with_velocities_have_the_same_bits_on_every_board() {

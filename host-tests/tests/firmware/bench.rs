@@ -34,7 +34,8 @@ pub fn app() -> Plain {
     of(NoDisplay, Vec::new(), NoButtons)
 }
 
-/// Returns the same with these settings of the page.
+/// Returns the application without devices, at the start of the page with these settings. Panics if
+/// the page cannot start with them.
 pub fn starting_with(settings: Settings) -> Plain {
     let mut app = app();
     app.player
@@ -43,12 +44,13 @@ pub fn starting_with(settings: Settings) -> Plain {
     app
 }
 
-/// Returns the bytes of a command on the link.
+/// Returns the bytes of a command on the link, with both delimiters. `request` is the number that
+/// its answers repeat.
 pub fn wire(request: u16, command: Command) -> Vec<u8> {
     encode_command(request, command, &mut [0; MAX_WIRE]).to_vec()
 }
 
-/// Returns the messages in a stream. Panics if the stream is damaged.
+/// Returns the messages to the host in a stream of bytes. Panics if the stream is damaged.
 pub fn messages(bytes: &[u8]) -> Vec<ToHost> {
     let mut inbox = Inbox::default();
     let messages = bytes.iter().filter_map(|&byte| inbox.take(byte)).collect();
@@ -56,7 +58,7 @@ pub fn messages(bytes: &[u8]) -> Vec<ToHost> {
     messages
 }
 
-/// Returns the frame messages in a stream without damage.
+/// Returns the frame messages in a stream. Panics if the stream is damaged.
 pub fn frames(bytes: &[u8]) -> Vec<Frame> {
     messages(bytes)
         .into_iter()
@@ -64,7 +66,8 @@ pub fn frames(bytes: &[u8]) -> Vec<Frame> {
         .collect()
 }
 
-/// Returns the answers in a stream without damage, with the numbers of their commands.
+/// Returns the answers in a stream, each with the number of its command. Panics if the stream is
+/// damaged.
 pub fn answers(bytes: &[u8]) -> Vec<(u16, Answer)> {
     messages(bytes)
         .into_iter()
@@ -72,7 +75,7 @@ pub fn answers(bytes: &[u8]) -> Vec<(u16, Answer)> {
         .collect()
 }
 
-/// Returns all places of the frame, row by row.
+/// Returns all places (x, y) of the frame, pixels, row by row from the top left corner.
 pub fn places() -> impl Iterator<Item = (i32, i32)> {
     (0..HEIGHT as i32).flat_map(|y| (0..WIDTH as i32).map(move |x| (x, y)))
 }

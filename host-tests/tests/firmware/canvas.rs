@@ -31,6 +31,8 @@ fn light(canvas: &Canvas) -> u32 {
         .sum()
 }
 
+/// Of three pixels at known places, the bytes of the canvas have the left one of a pair in the high
+/// nibble and the right one in the low nibble. All other bytes are 0.
 #[test]
 fn the_left_pixel_is_the_high_nibble() {
     let mut canvas = Canvas::default();
@@ -219,8 +221,9 @@ fn covered((x, y): (i32, i32), [from, to]: [(f64, f64); 2], radius: f64) -> f64 
     points.filter(|point| is_inside(*point)).count() as f64 / 256.0
 }
 
-/// The strokes are as wide as those of scenes and wider, of any direction and length, and some
-/// cross the edges.
+/// Every pixel of 100 strokes has the grey of the share of its area that the stroke covers, to
+/// [`GREY_TOLERANCE`]. The strokes are as wide as those of scenes and wider, of any direction and
+/// length, and some cross the edges.
 #[test]
 fn a_pixel_is_as_bright_as_it_is_covered() {
     let mut rng = Rng::with_seed(7);

@@ -121,7 +121,9 @@ fn no_tap_is_lost_at_any_speed() {
     assert_eq!(answers(&app.link), [(1, Answer::Done); 9]);
 }
 
-/// A board of 1 MHz whose steps take 100 cycles, and that knows its identity.
+/// `Identify` is answered with the identity, and with size and CRC of the program. `Measure` is
+/// refused before a motion is requested. Later it is answered with the cycles of the code in RAM or
+/// in flash for the largest number of steps, and the motion has no further sample.
 #[test]
 fn a_board_reports_its_identity_and_the_cycles_of_steps() {
     let mut app = app();
@@ -288,7 +290,7 @@ fn a_pause_outlasts_a_stop() {
 }
 
 /// The commands have an unknown kind, too few or too many fields, an invalid scene, setting or
-/// method, or no number.
+/// method, or no number. Each is refused with the field `Message` and its number, or 0.
 #[test]
 fn an_intact_command_that_cannot_be_read_is_answered_too() {
     let mut app = app();
@@ -312,7 +314,8 @@ fn an_intact_command_that_cannot_be_read_is_answered_too() {
     assert!(refusal(Field::Message).ends_with("flash the board again"));
 }
 
-/// The board receives its own messages on a looped-back link.
+/// The board receives its own messages on a looped-back link, and messages of every kind but the
+/// one of commands. It neither answers nor logs them.
 #[test]
 fn a_message_that_is_no_command_is_not_answered() {
     let mut app = app();
@@ -336,7 +339,7 @@ fn a_message_that_is_no_command_is_not_answered() {
     assert!(app.link.is_empty());
 }
 
-/// Bytes without a zero end no message.
+/// Of a million bytes that end no message, one call takes as many as the receive queue holds.
 #[test]
 fn an_endless_message_takes_one_queue_at_most() {
     let mut taken = 0;
@@ -453,7 +456,8 @@ fn the_plan_is_found_reported_and_followed() {
     assert_eq!(plan_report(&mut app), None);
 }
 
-/// A requested method is used, and remains until the plan may choose again.
+/// Each method that scenes are drawn by is used when it is requested. When the plan may choose
+/// again, the scene starts with its own initial method.
 #[test]
 fn a_method_can_be_forced() {
     let mut app = app();
@@ -479,7 +483,9 @@ fn fast() -> Settings {
     settings
 }
 
-/// The key Tab therefore always reaches the next scene, with any requested method.
+/// With settings that are too fast for it, the requested method is not used. It is remembered in
+/// the status, refused if it is requested again, and used again with other settings. A host that
+/// replays the status has the same scene.
 #[test]
 fn a_scene_that_cannot_use_the_requested_method_follows_its_plan() {
     let mut app = app();
@@ -519,7 +525,8 @@ fn a_scene_that_cannot_use_the_requested_method_follows_its_plan() {
     );
 }
 
-/// Every method is requested, from every scene to the next and back.
+/// With each requested method, the commands for the next and the previous scene go through the
+/// whole catalogue and back, and none is refused.
 #[test]
 fn every_scene_is_reached_with_any_requested_method() {
     for &method in Method::DRAWN {
@@ -545,7 +552,8 @@ fn every_scene_is_reached_with_any_requested_method() {
     }
 }
 
-/// The plan may replace a method that a scene has fallen back to.
+/// The plan may replace a method that a scene has fallen back to: the last plan that is found in 30
+/// s is in use at the end.
 #[test]
 fn a_scene_that_has_fallen_back_follows_its_plan() {
     let mut app = app();

@@ -25,7 +25,8 @@ fn planner(processor: Processor, settings: &Settings) -> Planner {
     planner
 }
 
-/// A held button restarts the scene before any planning.
+/// In the first [`SETTLED_TICKS`] ticks a planner does no work, not even in advance, and has no
+/// horizon. Then it begins. So a held button restarts the scene before any planning.
 #[test]
 fn nothing_is_planned_before_the_start_has_settled() {
     let mut planner = planner(CORTEX_M3, &Settings::default());
@@ -185,7 +186,8 @@ fn a_refused_motion_is_reported_once() {
     );
 }
 
-/// A processor with 100 cycles for a frame can afford neither a step nor a closed form.
+/// A processor with 100 cycles for a frame can afford neither a step nor a closed form. The result
+/// is `NoMethod`, and is kept with the problem and the budget.
 #[test]
 fn planner_reports_that_no_method_fits() {
     let mut planner = planner(

@@ -150,9 +150,10 @@ fn a_pause_is_marked_and_only_a_pause() -> Result<(), String> {
     Ok(())
 }
 
-/// A scene of curves plans its motion in the scale of the picture: the two rods of the planned
-/// pendulum are as long as a radian on the frame. A figure of two modes shows angle 1 larger by
-/// sqrt((1 + mu)/mu), and both together by the root of the mean square.
+/// The scenes `beats` follow a plan in the scale of their picture: either rod of the planned
+/// pendulum is as long as a radian on the frame. As the figure shows angle 1 larger by sqrt((1 +
+/// mu)/mu), that is times the root of the mean square of this factor and 1. The scene `frequencies`
+/// has no height.
 #[test]
 fn the_planned_height_is_that_of_the_shown_figure() {
     let start = |scene: &mut AnyScene, name: SceneName| {
@@ -191,8 +192,8 @@ fn the_planned_height_is_that_of_the_shown_figure() {
 }
 
 /// The map as each class of processors computes it, on any host: in `f32` if the processor has a
-/// unit for it. The map is complete in time on the chip of 168 MHz, and on slower ones or ones
-/// without a floating-point unit.
+/// unit for it. The map is complete within 5 s on the chip of 168 MHz, and within a minute on the
+/// other classes.
 #[test]
 fn the_map_of_flips_is_computed_as_on_the_boards_processor_and_in_time() {
     let settings = Settings::default();
@@ -232,7 +233,7 @@ fn the_map_of_flips_is_computed_as_on_the_boards_processor_and_in_time() {
     }
 }
 
-/// A scene without a motion continues when the start angle is turned.
+/// A scene without a motion continues when the start angle is turned; every other one restarts.
 #[test]
 fn only_scenes_with_angles_restart_when_an_angle_is_turned() {
     for &name in SceneName::ALL {
@@ -295,7 +296,8 @@ fn scales_have_round_steps() {
     assert_eq!(steps, [0.01, 0.5, 1.0, 2.0, 5.0, 50.0, 100.0]);
 }
 
-/// A motion that no plan can change is verified while it is played.
+/// A motion that no plan can change is verified while it is played: within a minute a plan is
+/// found, for the method that is shown.
 #[test]
 fn the_butterfly_is_planned_while_it_is_played() {
     let mut show = Show::new(SceneName::Butterfly, &Settings::equal_rods(1.0, 20.0))

@@ -94,8 +94,10 @@ fn hold<R: Real>() -> Result<(), Error> {
     Ok(())
 }
 
-/// See [`hold`]: no motion exceeds its bounds, and the admissible step does not depend on the
-/// precision.
+/// No quantity of 10,000 random motions exceeds its bound by more than a millionth in 100 steps of
+/// RK4. The admissible step in `f32` is that in `f64` to 4e-6. It is infinite if nothing can move,
+/// half as long for twice the momentum without gravity, and for a hanging pendulum shorter than the
+/// limit of stability ([`hold`]).
 #[test]
 fn bounds_and_admissible_steps_hold_in_either_precision() -> Result<(), Error> {
     hold::<f32>()?;
@@ -283,10 +285,10 @@ fn miss(
         .max(w2 / rate)
 }
 
-/// One admissible step from each of 3000 random starts has an error within
-/// [`tolerances::ADMISSIBLE`], times the fastest rate and the step: rad, and velocities in units of
-/// that rate. The largest error must reach a third of that bound, otherwise the steps would be too
-/// short. Both the classical step and the direction form are tested.
+/// One admissible step from each of 3000 random starts has an error within 3e-5 by the classical
+/// step, and 8e-5 in the direction form ([`tolerances::ADMISSIBLE`]), times the fastest rate and
+/// the step: rad, and velocities in units of that rate. The largest error must reach a third of
+/// that bound, otherwise the steps would be too short.
 #[test]
 fn an_admissible_step_resolves_every_motion() -> Result<(), Error> {
     let mut rng = Rng::with_seed(5);

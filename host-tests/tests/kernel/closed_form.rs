@@ -46,8 +46,9 @@ fn frequencies(mass_ratio: f64, gravity: f64, rod: f64) -> [f64; 2] {
     [root, -root].map(|root| (gravity / rod * (1.0 + mass_ratio + root)).sqrt())
 }
 
-/// The angles follow a1 = (pi/12) sqrt(mu/(1 + mu)) (cos w2 t - cos w1 t) and a2 = (pi/12)(cos w1 t
-/// + cos w2 t) for an hour, at every tick to 3.1e-7 rad.
+/// The angles of the three scenes of figures 3 to 5 follow a1 = (pi/12) sqrt(mu/(1 + mu))
+/// (cos w2 t - cos w1 t) and a2 = (pi/12)(cos w1 t + cos w2 t) for an hour, at every tick to 3.1e-7
+/// rad.
 #[test]
 fn small_oscillation_scenes_follow_the_formulas_for_an_hour() {
     for (name, mass_ratio) in SMALL {
@@ -86,10 +87,11 @@ fn place([x, y]: [f64; 2], mass_ratio: f64, [a1, a2]: [f64; 2]) -> [f64; 2] {
     [x + REACH / AMPLITUDE * slow, y - REACH / AMPLITUDE * fast]
 }
 
-/// The spots of both figures are drawn at the right position in every frame of a period. The left
-/// one follows cos w2 t and sin w1 t, the right one the high-precision motion. After the period of
-/// the frequencies the linear motion is at its start again, within [`CLOSED`] of its amplitude. The
-/// exact motion misses its start by more than [`NOT_CLOSED`] pixel.
+/// The spots of both figures of the four scenes of beats are drawn at the right pixel in every
+/// frame of a period. The left one follows cos w2 t and sin w1 t, the right one the high-precision
+/// motion. After the period of the frequencies the angles of the linear motion are at their start
+/// again, within 4e-5 of its amplitude ([`CLOSED`]). The exact motion misses its start by more than
+/// a pixel ([`NOT_CLOSED`]).
 #[test]
 fn beats_follow_the_formulas_and_only_the_linear_figure_closes() {
     for (name, mass_ratio, periods) in BEATS {

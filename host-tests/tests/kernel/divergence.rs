@@ -35,8 +35,9 @@ const EVEN: Parameters<f64> = Parameters {
     g: 9.8,
 };
 
-/// In steps that are far too long every method must return [`Error::Diverged`], and keep its last
-/// state, which is finite. Fixed point may refuse such steps at the start instead.
+/// In steps that are far too long a run by every method must return [`Error::Diverged`] within
+/// 100,000 steps, and keep its last state, which is finite. Fixed point may refuse such steps at
+/// the start instead.
 #[test]
 fn diverged_run_keeps_its_last_good_state_in_every_method() -> Result<(), Error> {
     for &method in Method::ALL {

@@ -91,8 +91,8 @@ fn exact(map: &Map, [a1, a2]: [f32; 2]) -> Flip<f32> {
 }
 
 /// The points of a map with a limit of 10 sqrt(l/g) that may turn over are compared with fine steps
-/// in `f64`: at most 0.1 % may be wrong by more than a grey level. Of a fixed random sample of
-/// [`JUDGED`] points, which is compared with the reference, none may be.
+/// in `f64`: at most 0.1 % may be wrong by more than a grey level. Of a fixed random sample of 60
+/// points ([`JUDGED`]), which is compared with the reference, none may be.
 ///
 /// A point must be [`Flip::Never`] exactly if its energy forbids a flip.
 #[test]
@@ -119,10 +119,10 @@ fn points_are_accurate_to_a_grey_level() -> Result<(), Error> {
     Ok(())
 }
 
-/// A map with a limit ten times as long is partly noise, because of chaos. Some points must be
-/// wrong, but fewer than the share [`tolerances::FLIPS_WRONG`] of the points that may turn over,
-/// and some must be in doubt. At most [`tolerances::FLIPS_UNSUSPECTED`] may be wrong without being
-/// in doubt.
+/// A map with a limit of 100 sqrt(l/g) is partly noise, because of chaos. Of the points that may
+/// turn over, some must be wrong by more than a grey level, compared with fine steps in `f64`, but
+/// fewer than 4 % ([`tolerances::FLIPS_WRONG`]), and some must be in doubt. At most 1 %
+/// ([`tolerances::FLIPS_UNSUSPECTED`]) may be wrong without being in doubt.
 #[test]
 fn most_wrong_points_are_in_doubt() -> Result<(), Error> {
     let [wrong, unsuspected, doubtful, points] = judge(&map(100.0, 32))?;

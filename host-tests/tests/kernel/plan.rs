@@ -65,8 +65,9 @@ type Row = (
     RangeInclusive<f64>,
 );
 
-/// Each row must give exactly its method, step count and limit, a horizon in its range, and the
-/// cost of the price list. The planning budget is large.
+/// Ten scenes, each with a price list and a frame budget: the plan must have exactly the method,
+/// step count and limit of its row, a horizon in the row's range, an error from 1e-6 to 1
+/// tolerances, and the cost of the price list. The planning budget is large.
 #[test]
 fn planner_chooses_the_cheapest_method_with_the_longest_horizon() {
     use Method::{
@@ -201,9 +202,10 @@ fn planner_chooses_the_cheapest_method_with_the_longest_horizon() {
     }
 }
 
-/// Methods beyond the frame budget are not tried: with small budgets the limit is the budget, and
-/// planning costs little. A method that costs more, and is accurate for less than a tenth longer,
-/// is chosen if it is accurate to the end.
+/// Methods beyond the frame budget are not tried: with small budgets the limit, of a plan and of
+/// the error that there is no method, is the frame budget, and planning costs little. A method that
+/// costs more, and is accurate for less than a tenth longer, is chosen if it is accurate to the
+/// end.
 #[test]
 fn planner_keeps_to_the_frame_budget_and_pays_for_the_end() {
     let figure7 = scene(2.75, 171.0, 30.0);
@@ -385,9 +387,10 @@ fn initial_method_is_in_64_bits_if_a_frame_pays_for_it() {
 /// up to 5e-3.
 const INITIAL_ENERGY: f64 = 2e-3;
 
-/// On each processor the initial method must be within the frame budget, and keep the energy above
-/// rest for 20 s to [`INITIAL_ENERGY`], from rest at 90, 120 and 180 degrees. At least six of the
-/// twelve must be in 32 bits. The mass ratio 100 is the largest that can be set by keys.
+/// On each of four processors the initial method must be within the frame budget, and keep the
+/// energy above rest for 20 s to a relative 2e-3 ([`INITIAL_ENERGY`]), from rest at 90, 120 and 180
+/// degrees. At least six of the twelve must be in 32 bits. The mass ratio 100 is the largest that
+/// can be set by keys.
 #[test]
 fn initial_method_resolves_the_energy_of_the_fastest_scenes() -> Result<(), Error> {
     let mut in_32_bits = 0;
@@ -469,7 +472,8 @@ fn requested_method_takes_steps_that_it_accepts() {
     }
 }
 
-/// A requested method has the longest steps that resolve the motion: exactly 7, 4 and 2 per frame.
+/// A requested method has the longest steps that resolve the motion: exactly 7 per frame by
+/// extrapolation in 64 bits, 4 by fixed point of 32 bits and 2 by compensated `f32`.
 ///
 /// Steps in 64 bits have a high order, but are shorter than the first steps of other methods. Fixed
 /// point refuses 2 steps here.

@@ -81,21 +81,24 @@ fn random_motions_are_inside(frames: u32) {
     }
 }
 
-/// See [`is_inside`]: 30 frames of 1/64 s.
+/// For 200 random motions over 30 frames of 1/64 s, the box contains the reference and the energy
+/// of the start, and is not wider than its tolerance ([`is_inside`]).
 #[test]
 fn random_motions_are_inside_for_half_a_second() {
     random_motions_are_inside(30);
 }
 
-/// See [`is_inside`]: 300 frames, 4.7 s.
+/// For 200 random motions over 300 frames, 4.7 s, the box contains the reference and the energy of
+/// the start, and is not wider than its tolerance ([`is_inside`]).
 #[test]
 #[ignore = "minutes"]
 fn random_motions_are_inside_for_long() {
     random_motions_are_inside(300);
 }
 
-/// The motions with the reference as their standard, each as [`is_inside`] requires: the hard
-/// cases, a pendulum at rest without gravity, and the first five seconds of the moving scenes.
+/// The box contains the reference and the energy of the start, and is not wider than its tolerance
+/// ([`is_inside`]), for all motions with the reference as their standard: the hard cases, a
+/// pendulum at rest without gravity, and the first five seconds of the moving scenes.
 #[test]
 fn the_reference_is_inside_where_it_is_used() {
     for case in hard_cases() {

@@ -39,7 +39,8 @@ fn consent(yes: bool) -> Consent {
     if yes { Consent::Given } else { Consent::Ask }
 }
 
-/// Installs everything that is missing and prints where it is.
+/// Installs everything that is missing and prints where it is. A tool that cannot be provided is
+/// [`Refused`].
 pub fn setup(options: &SetupOptions) -> anyhow::Result<()> {
     let is_ready = toolchain::ready().is_ok() && toolchain::ready_for_pico().is_ok();
     say(toolchain::set_up()?)?;
@@ -83,7 +84,8 @@ pub struct FwOptions {
 
 /// Runs a firmware. Cargo also uses this command as the runner for the ARM targets. Returns the
 /// exit code of the firmware, or success if `--seconds` ended it. An unknown binary is [`Refused`].
-/// Without `--seconds`, it is an error if the firmware runs for an hour.
+/// Without `--seconds`, it is an error if the firmware runs for an hour. With `--check` nothing is
+/// run, and a warning is an error.
 pub fn fw(options: &FwOptions) -> anyhow::Result<ExitCode> {
     let Some(binary) = &options.binary else {
         toolchain::set_up()?.check()?;

@@ -18,8 +18,9 @@ use emulator::flash::{flash_image, uf2};
 use emulator::link::{running_board, touch};
 use emulator::toolchain::{self, Toolchain, target};
 
-/// The name of the firmware's file, and the name of the label on a board's drive.
+/// The name of the firmware's file, in the target folder and on a board's drive.
 pub const FILE: &str = "pico.uf2";
+/// The name of the label on a board's drive.
 const LABEL: &str = "INFO_UF2.TXT";
 /// The line in the label of an RP2040.
 const OURS: &str = "Board-ID: RPI-RP2";
@@ -46,9 +47,9 @@ pub struct PicoOptions {
     drive: Option<PathBuf>,
 }
 
-/// Builds the firmware of the Raspberry Pi Pico and writes it to the target folder as UF2. Returns
-/// the number of bytes in the flash, and the file. The number does not include the overhead of the
-/// format.
+/// Builds the firmware of the Raspberry Pi Pico and writes it to the target folder as UF2, over an
+/// existing file. Returns the number of bytes in the flash, and the file. The number does not
+/// include the overhead of the format. An error means that the build or the writing fails.
 pub fn uf2_file(toolchain: &Toolchain) -> anyhow::Result<(usize, PathBuf)> {
     let (start, image) = flash_image(&fs::read(toolchain.build_for(&PICO)?)?)?;
     let file = target().join(FILE);

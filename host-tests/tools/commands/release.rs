@@ -34,8 +34,9 @@ const HASHERS: [(&str, &[&str]); 2] = [("sha256sum", &[]), ("shasum", &["-a", "2
 #[command(name = "cargo release-files")]
 pub struct ReleaseOptions {}
 
-/// Replaces the folder and prints the checksums. A machine without a program for checksums is
-/// [`Refused`].
+/// Replaces the folder `release-files` in the target folder and prints the checksums. A machine
+/// without a program for checksums is [`Refused`]. If a build or the packaging fails, which is an
+/// error, the folder is incomplete.
 pub fn run(_: &ReleaseOptions) -> anyhow::Result<()> {
     let hasher = HASHERS
         .iter()

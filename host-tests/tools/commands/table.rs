@@ -47,8 +47,8 @@ pub fn small(value: f64) -> String {
     }
 }
 
-/// Returns a bound of two digits, in exponent form, that is no less than `value`. Zero, infinity
-/// and NaN are printed as they are.
+/// Returns a bound of two digits, in exponent form, that is greater than the positive `value`: 1
+/// gives 1.1e0. Zero, infinity and NaN are printed as they are.
 pub fn at_most(value: f64) -> String {
     let rounded = format!("{value:.1e}");
 

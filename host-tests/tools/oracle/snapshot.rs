@@ -13,7 +13,8 @@ pub const GREYS: &[u8; 16] = b" .,:;-~=+*oaOX#@";
 /// comparing them. Any value has this effect.
 pub const BLESS: &str = "BLESS";
 
-/// Returns a picture as lines of `width` characters. `greys` are 0 to 15, row by row.
+/// Returns a picture as lines of `width` characters, each line with its end. `greys` are 0 to 15,
+/// row by row. A `width` of 0 panics.
 pub fn text(greys: &[u8], width: usize) -> String {
     let line = |row: &[u8]| {
         row.iter()
@@ -24,8 +25,9 @@ pub fn text(greys: &[u8], width: usize) -> String {
     greys.chunks(width).map(line).collect()
 }
 
-/// Compares a picture with the committed one called `name`. The error lists the differences and the
-/// command that accepts them. A file that cannot be read or written is an error, too.
+/// Compares a picture with the committed one called `name` in `host-tests/golden/scenes`. The error
+/// lists the differences and the command that accepts them. A file that cannot be read or written
+/// is an error, too.
 pub fn check(name: &str, picture: &str) -> Result<(), String> {
     let path = workspace()
         .join("host-tests/golden/scenes")
@@ -61,8 +63,9 @@ pub fn check(name: &str, picture: &str) -> Result<(), String> {
     ))
 }
 
-/// Compares `text` line by line with a committed file of the project. The error lists the lines
-/// that differ and the command that accepts them.
+/// Compares `text` line by line with a committed file; `file` is its path in the project. The error
+/// lists the lines that differ and the command that accepts them. A file that cannot be read or
+/// written is an error, too.
 pub fn check_lines(file: &str, text: &str) -> Result<(), String> {
     let path = workspace().join(file);
     if env::var_os(BLESS).is_some() {

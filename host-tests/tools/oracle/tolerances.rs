@@ -29,8 +29,8 @@ pub const MODES: [f64; 5] = [4.0, 4.0, 10.0, 10.0, 10.0];
 /// neglected cubic term, 1e-12, times the radians swung in the ten seconds (up to 200).
 pub const LINEAR: f64 = 1e-9;
 
-/// The excess over the bounds along a motion by RK4 with 0.05 rad per step: its energy error over
-/// 100 steps (measured: no excess at all).
+/// The excess over the bounds along a motion by RK4 with 0.05 rad per step, relative to each bound:
+/// the energy error over 100 steps (measured: no excess at all).
 pub const BOUNDS_DRIFT: f64 = 1e-6;
 
 /// The error of one admissible step, over (fastest rate) dt: rad in an angle, and in units of the
@@ -44,17 +44,17 @@ pub const ADMISSIBLE: [f64; 2] = [3e-5, 8e-5];
 /// within 3e-32, and within all digits of the table of known answers).
 pub const REFERENCE: f64 = 1e-31;
 
-/// The width of the enclosure of a direction, in units of the growth of a small error (measured:
-/// 2.3e-28 at most).
+/// The radius of the enclosure of a direction, which has no unit, divided by the growth of a small
+/// error (measured: 2.3e-28 at most).
 pub const ENCLOSURE: f64 = 1e-27;
 
-/// The mean energy of the misprinted form at figure 7, J, about -18.7: the spread of 32 chaotic
-/// runs of 100 s (measured -18.3 over 0..100 s, -18.9 over 5..100 s, and falling further in longer
-/// runs).
+/// The largest distance of the mean energy of the misprinted form at figure 7 from -18.7 J, in J:
+/// the spread of 32 chaotic runs of 100 s (measured -18.3 over 0..100 s, -18.9 over 5..100 s, and
+/// falling further in longer runs).
 pub const MISPRINT_ENERGY: f64 = 2.0;
 
-/// The largest share of its time that bob 2 of the misprinted form may be above the pivot (measured
-/// 8.4 %).
+/// The largest share, of 1, of its time that bob 2 of the misprinted form may be above the pivot
+/// (measured 8.4 %).
 pub const MISPRINT_ABOVE: f64 = 0.12;
 
 /// The error of the displayed energy of the misprinted form in the first 5 s, J (measured 0.15,
@@ -72,11 +72,12 @@ pub const LAST_DIGIT_OF_62_9: f64 = 0.05;
 /// 2.4e-3 of 127).
 pub const FIGURE_7_ENERGY: f64 = 0.01;
 
-/// The share of time above the pivot of the right form, about 50.7 %: the spread of 32 chaotic runs
-/// of 100 s (measured 52.0 %).
+/// The largest distance of the share of time above the pivot of the right form from 0.507: the
+/// spread of 32 chaotic runs of 100 s (measured 52.0 %).
 pub const FIGURE_7_ABOVE: f64 = 0.03;
 
-/// Returns the tolerance of a method compared with a known answer. It is the growth of a small
+/// Returns the tolerance of a method compared with a known answer, for each sine and cosine. `a1`
+/// and `a2` are the exact angles at that time, rad, with all turns. It is the growth of a small
 /// error times the errors of plain RK4 in 4096 steps a second, which no other method exceeds.
 ///
 /// - Truncation: RK4 has an error of (W dt)^5/120 in each step of an oscillation of rate W. W is
@@ -206,8 +207,8 @@ pub const NOT_CLOSED: f64 = 1.0;
 /// the method's error is smaller (measured 2e-9; compensated `f32` has 3e-8).
 pub const FIXED_32_FLOOR: f64 = 5e-9;
 
-/// The error at the steps that measure the order in 32 bits, rad. The errors by roundings scatter
-/// from step to step, and are smaller in most of the tried motions.
+/// The smallest error, rad, at which the order is measured in 32 bits. The errors by roundings
+/// scatter from step to step, and are smaller in most of the tried motions.
 pub const FIXED_32_ORDER_MEASURABLE: f64 = 5e-6;
 
 /// The ratio of the errors of the 64-bit fixed point and of `f64` at the same steps in the chaotic
@@ -234,8 +235,8 @@ pub const FLIPS_UNSUSPECTED: f64 = 0.01;
 pub const FIXED_64_AND_DOUBLE: f64 = 1e-9;
 
 /// The error after a second of a motion with both rods turning over, in steps of 1/8192 s, by every
-/// row of the table: the method's error in double precision, the roundings of single precision, and
-/// the sines of `micromath`.
+/// row of the table, rad and kg m^2/s: the method's error in double precision, the roundings of
+/// single precision, and the sines of `micromath`.
 pub const TURNING: [f64; 3] = [5e-7, 5e-3, 1.0];
 
 /// The error after a second of a motion of 2e-5 rad in closed form, rad and kg m^2/s. In double
@@ -258,11 +259,11 @@ pub const MISPRINT_ENERGY_SHOWN: f64 = 0.1;
 /// to 2.0e-4, plain 3.1e-4, fixed point 2.6e-6).
 pub const DAY_ENERGY: f64 = 1e-3;
 /// The change of the energy by moving back up to half a step, and by the roundings of directions
-/// and momenta to `f32`: the goal.
+/// and momenta to `f32`, relative to the energy above rest: the goal.
 pub const DAY_READING: f64 = 1e-4;
-/// The error after a second of 1024 steps forward and back in 32 bits: the effect of roundings that
-/// are carried into the next sum (measured 8e-8), and of roundings that are dropped (measured
-/// 1.8e-6).
+/// The error of the angles, rad, after a second of 1024 steps forward and back in 32 bits: the
+/// effect of roundings that are carried into the next sum (measured 8e-8), and of roundings that
+/// are dropped (measured 1.8e-6).
 pub const RETURN_OF_32_BITS: [f64; 2] = [1e-7, 4e-6];
 
 /// The relative error of a method's measured order: the next order contributes at the steps used,

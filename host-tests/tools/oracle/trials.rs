@@ -22,7 +22,8 @@ pub fn exact_methods() -> impl Iterator<Item = Method> {
 /// A [`Run`] that counts turns, whose method is chosen at run time. Its numbers are widened to
 /// `f64`.
 pub trait AnyRun: Debug {
-    /// Advances by `steps` steps. An error means that the motion has diverged.
+    /// Advances by `steps` steps. An error means that the motion has diverged; the run is then
+    /// unchanged.
     fn advance(&mut self, steps: u32) -> Result<(), Error>;
     /// Returns the angles, rad, with all turns, and the canonical momenta, kg m^2/s.
     fn state(&self) -> State<f64>;
@@ -30,7 +31,7 @@ pub trait AnyRun: Debug {
     fn directions(&self) -> [Direction<f64>; 2];
     /// Returns the angles, rad, with all turns.
     fn angles(&self) -> [f64; 2];
-    /// Returns the energy, J.
+    /// Returns the energy, J. The potential energy is 0 where both bobs are level with the pivot.
     fn energy(&self) -> f64;
 }
 
@@ -182,9 +183,10 @@ impl Trial {
         Ok((0..MOMENTS).map(next).collect())
     }
 
-    /// Returns the states at `moments` moments by RK4 in compensated `f64`, which is not in the
-    /// table, in steps of `dt`, s. An error means that the kernel refuses the trial or that the
-    /// motion diverges.
+    /// Returns the states at `moments` moments, evenly spread up to the end, by RK4 in compensated
+    /// `f64`, which is not in the table, in steps of `dt`, s. The moments are exact only if they
+    /// fall on whole steps. An error means that the kernel refuses the trial or that the motion
+    /// diverges.
     pub fn states_in_f64(&self, dt: f64, moments: u32) -> Result<Vec<State<f64>>, Error> {
         let mut run = Pendulum::new(&self.parameters)?
             .run::<DirectionF64>(&self.start, dt)?
@@ -231,7 +233,7 @@ pub fn apart(a: f64, b: f64) -> f64 {
 }
 
 /// Returns the largest difference of the angles, rad, without whole turns. The shorter list decides
-/// the number of states. It is infinite if an angle is not a number.
+/// the number of states. It is infinite if an angle is not a number, and 0 if a list is empty.
 pub fn largest_difference(states: &[State<f64>], others: &[State<f64>]) -> f64 {
     let pairs = states.iter().zip(others);
     pairs

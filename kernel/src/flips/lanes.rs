@@ -73,8 +73,8 @@ impl<const N: usize, const ROWS: usize> DirectionLanes<N, ROWS> {
         Self { constants, rows }
     }
 
-    /// Puts another motion into a lane, counted through all rows. Ignores a lane that does not
-    /// exist.
+    /// Puts another motion of the same pendulum and step into a lane, counted from 0 through all
+    /// rows. Ignores a lane that does not exist.
     #[inline(always)]
     pub fn put(&mut self, lane: usize, motion: &DirectionF32Plain) {
         let (_, _, z, inverse) = motion.parts();
@@ -120,7 +120,7 @@ impl<const N: usize, const ROWS: usize> DirectionLanes<N, ROWS> {
     }
 
     /// Returns (sin, cos) of both rods in the lanes of a row; those of rod 2 are nu times as long.
-    /// `row` must be less than `ROWS`.
+    /// Panics if `row` is not less than `ROWS`.
     #[inline(always)]
     pub fn rods(&self, row: usize) -> [[Numbers<N>; 2]; 2] {
         let [sin1, cos1, s, c, ..] = self.rows[row].0.z;

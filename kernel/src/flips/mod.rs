@@ -31,7 +31,7 @@ use crate::pendulum::{Parameters, Pendulum, State};
 pub enum Flip<R> {
     /// The energy is too low for any flip.
     Never,
-    /// A rod flips at this time after the start, s.
+    /// A rod flips at this time after the start, s. It is negative if the steps are.
     After(R),
     /// No rod flips within the computed steps.
     Later,
@@ -64,7 +64,7 @@ pub struct Falling<F: Form> {
     motion: F,
     /// The sides of the rods after the last step ([`Form::sides`]).
     sides: [[i32; 2]; 2],
-    /// The number of steps since the start.
+    /// The number of steps since the start, without the step of the flip.
     #[doc(hidden)]
     pub steps: u32,
 }
@@ -93,13 +93,15 @@ pub fn step_size<R: Real>(parameters: &Parameters<R>) -> Result<f64, Error> {
 }
 
 impl<F: Form> Flips<F> {
-    /// Creates a map with steps of `dt` s and at most `steps` steps for each start.
+    /// Creates a map with steps of `dt` s and at most `steps` steps for each start. A negative `dt`
+    /// runs backwards. If `steps` is 0, each start has the result [`Flip::Never`] or
+    /// [`Flip::Later`].
     ///
     /// # Errors
     ///
     /// Refuses the parameters and steps that the method `F` refuses, among them a step that is NaN,
-    /// infinite or zero, and a pendulum whose highest start has more energy than `F` allows. A step
-    /// beyond the limit of stability is refused in fixed point only.
+    /// infinite or zero and, in fixed point, a step that is too long for the energy of the highest
+    /// start. Other methods accept a step beyond the limit of stability.
     pub fn new(parameters: &Parameters<F::Real>, dt: f64, steps: u32) -> Result<Self, Error> {
         // The units must fit the start with the most energy: both rods upright.
         let highest = F::new(
@@ -115,12 +117,12 @@ impl<F: Form> Flips<F> {
         })
     }
 
-    /// Returns the motion that is released at the angles `a1`, `a2`, rad; `None` if the energy is
-    /// too low for any flip.
+    /// Returns the motion that is released at rest at the angles `a1`, `a2`, rad; `None` if the
+    /// energy is too low for any flip.
     ///
     /// # Errors
     ///
-    /// Refuses angles that are not finite.
+    /// Refuses angles that are not finite, and by the closed form 2^31 - 1 turns or more.
     #[doc(hidden)]
     pub fn start(&self, a1: F::Real, a2: F::Real) -> Result<Option<Falling<F>>, Error> {
         let state = State::at_rest(a1, a2);
@@ -140,7 +142,7 @@ impl<F: Form> Flips<F> {
 
     /// Computes at most `steps` steps. Returns the result once it is known, and `None` until then:
     /// [`Flip::After`], or [`Flip::Later`] after all steps of the map. It is not to be called again
-    /// after a result.
+    /// after a result. `falling` must be a motion of this map; this is not checked.
     #[inline]
     #[doc(hidden)]
     pub fn advance(&self, falling: &mut Falling<F>, steps: u32) -> Option<Flip<F::Real>> {
@@ -164,7 +166,7 @@ impl<F: Form> Flips<F> {
     ///
     /// # Errors
     ///
-    /// Refuses angles that are not finite.
+    /// Refuses angles that are not finite, and by the closed form 2^31 - 1 turns or more.
     pub fn of(&self, a1: F::Real, a2: F::Real) -> Result<Flip<F::Real>, Error> {
         let Some(mut falling) = self.start(a1, a2)? else {
             return Ok(Flip::Never);

@@ -35,9 +35,9 @@ impl Flips<DirectionF32Plain> {
     ///
     /// Each start has exactly one result, in any order. The results are bit-identical to those of
     /// [`of`](Self::of). Three times `N` starts are computed at a time; a lane whose motion has
-    /// flipped takes the next start. 8 lanes suit processors with vectors of 4 and of 8. The
-    /// function is inlined into its caller, so that it is compiled for the processor that the
-    /// caller is compiled for.
+    /// flipped takes the next start. 8 lanes suit processors with vectors of 4 and of 8; 0 lanes
+    /// give no result. The function is inlined into its caller, so that it is compiled for the
+    /// processor that the caller is compiled for.
     ///
     /// # Errors
     ///

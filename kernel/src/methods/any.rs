@@ -25,10 +25,10 @@ pub trait FormVisitor {
 }
 
 impl Method {
-    /// Calls `visitor` with the type that computes this method.
+    /// Calls `visitor` with the type that computes this method, and returns its result.
     ///
-    /// Returns `None` for `rk4-f32-micromath` and `textbook-f32`. They are listed for comparison,
-    /// and their types are not in this crate.
+    /// Returns `None`, without a call, for `rk4-f32-micromath` and `textbook-f32`. They are listed
+    /// for comparison, and their types are not in this crate.
     ///
     /// This links every method. To link one method only, pass its type to
     /// [`Pendulum::run`](crate::Pendulum::run).
@@ -124,8 +124,9 @@ impl DrawnMotion32 {
     ///
     /// Refuses:
     ///
-    /// - the inputs that [`Pendulum::run`](crate::Pendulum::run) refuses, except a start of too
-    ///   many turns and, by a method in `f32`, a step beyond the limit of stability;
+    /// - the inputs that [`Pendulum::run`](crate::Pendulum::run) refuses, but RK4 in `f32` accepts
+    ///   a step beyond the limit of stability, and only the closed form refuses a start of too many
+    ///   turns;
     /// - for the closed form, a pendulum without normal modes;
     /// - by [`Error::NotDrawn`], methods that are not in [`Method::DRAWN`] or not in 32 bits.
     #[inline(never)] // Inlined, the motions of all kinds would share a stack frame.
@@ -169,7 +170,7 @@ impl DrawnMotion32 {
     }
 
     /// Refuses a motion that has diverged, by [`Error::Diverged`]: its numbers are not finite or,
-    /// in fixed point, were ever out of range.
+    /// in fixed point, were ever out of range. `rk4-fixed32` tests its range after every 32 steps.
     ///
     /// In `f32` this is no check of the energy: a motion whose numbers are finite but meaningless
     /// is accepted.
@@ -199,8 +200,9 @@ impl DrawnMotion32 {
 
     /// Returns the directions of both rods, (sin, cos) each.
     ///
-    /// They may be up to half a step ahead of the [`state`](Self::state). A diverged motion need
-    /// not show it: in fixed point its directions are finite. Ask [`check`](Self::check).
+    /// By RK4 in `f32` they may be up to half a step ahead of the [`state`](Self::state), or behind
+    /// it. A diverged motion need not show it: in fixed point its directions are finite. Call
+    /// [`check`](Self::check).
     #[inline(never)]
     pub fn directions(&self) -> [Direction<f32>; 2] {
         match self {
@@ -226,9 +228,10 @@ impl DrawnMotion32 {
     }
 
     /// Returns the canonical state in SI units at the number of steps times dt. The angles are
-    /// within (-pi, pi], unless they include whole turns ([`has_turns`](Self::has_turns)).
+    /// within (-pi, pi]; by the closed form they include whole turns.
     ///
-    /// All its numbers are NaN if the motion has diverged in fixed point.
+    /// All its numbers are NaN if the motion has diverged in fixed point. In `f32` some may be NaN
+    /// or infinite.
     #[inline(never)]
     pub fn state(&self) -> State<f64> {
         match self {
@@ -274,8 +277,9 @@ impl DrawnMotion {
     ///
     /// Refuses:
     ///
-    /// - the inputs that [`Pendulum::run`](crate::Pendulum::run) refuses, except a start of too
-    ///   many turns and, by a method other than [`Fixed32`], a step beyond the limit of stability;
+    /// - the inputs that [`Pendulum::run`](crate::Pendulum::run) refuses, but RK4 in `f32` accepts
+    ///   a step beyond the limit of stability, extrapolation has only the limit of
+    ///   [`Fixed64`](crate::Fixed64), and only the closed form refuses a start of too many turns;
     /// - for the closed form, a pendulum without normal modes;
     /// - by [`Error::NotDrawn`], methods that are not in [`Method::DRAWN`].
     #[inline(never)] // Inlined, the motions of all kinds would share a stack frame.
@@ -303,7 +307,7 @@ impl DrawnMotion {
     }
 
     /// Refuses a motion that has diverged, by [`Error::Diverged`]: its numbers are not finite or,
-    /// in fixed point, were ever out of range.
+    /// in fixed point, were ever out of range. `rk4-fixed32` tests its range after every 32 steps.
     ///
     /// In `f32` this is no check of the energy: a motion whose numbers are finite but meaningless
     /// is accepted.
@@ -315,7 +319,8 @@ impl DrawnMotion {
     }
 
     /// Returns the sine and cosine of both rods, `[[sin a1, cos a1], [sin a2, cos a2]]`, as words
-    /// whose highest bit is the sign. The other bits are in the format of the method's numbers.
+    /// whose highest bit is the sign. The other bits are in the format of the method's numbers. The
+    /// words of a diverged motion are arbitrary.
     #[must_use]
     #[inline(never)]
     pub fn sides(&self) -> [[i32; 2]; 2] {
@@ -327,8 +332,9 @@ impl DrawnMotion {
 
     /// Returns the directions of both rods, (sin, cos) each.
     ///
-    /// They may be up to half a step ahead of the [`state`](Self::state). A diverged motion need
-    /// not show it: in fixed point its directions are finite. Ask [`check`](Self::check).
+    /// By RK4 in `f32` they may be up to half a step ahead of the [`state`](Self::state), or behind
+    /// it. A diverged motion need not show it: in fixed point its directions are finite. Call
+    /// [`check`](Self::check).
     #[must_use]
     #[inline(never)]
     pub fn directions(&self) -> [Direction<f32>; 2] {
@@ -349,9 +355,10 @@ impl DrawnMotion {
     }
 
     /// Returns the canonical state in SI units at the number of steps times dt. The angles are
-    /// within (-pi, pi], unless they include whole turns ([`has_turns`](Self::has_turns)).
+    /// within (-pi, pi]; by the closed form they include whole turns.
     ///
-    /// All its numbers are NaN if the motion has diverged in fixed point.
+    /// All its numbers are NaN if the motion has diverged in fixed point. In `f32` some may be NaN
+    /// or infinite.
     #[must_use]
     #[inline(never)]
     pub fn state(&self) -> State<f64> {
@@ -361,8 +368,8 @@ impl DrawnMotion {
         }
     }
 
-    /// Returns the energy above rest, J, as the method carries it: nothing is rounded to `f32`. It
-    /// is that at the time of the [`directions`](Self::directions).
+    /// Returns the energy above rest, J, as the method carries it: nothing more is rounded to
+    /// `f32`. It is that at the time of the [`directions`](Self::directions).
     ///
     /// `pendulum` must be the pendulum of this motion; this is not checked. The energy is NaN if
     /// the motion has diverged in fixed point.
@@ -374,7 +381,8 @@ impl DrawnMotion {
         }
     }
 
-    /// Returns true if the angles of the [`state`](Self::state) include whole turns.
+    /// Returns true if the angles of the [`state`](Self::state) include whole turns: of the methods
+    /// for drawing, only the closed form has them.
     #[must_use]
     pub fn has_turns(&self) -> bool {
         match self {

@@ -49,7 +49,7 @@ pub trait RungeKutta: Copy + Debug + PartialEq + 'static {
 }
 
 /// A motion on the equations `E` by the integrator `I`. It carries the state (a1, a2, p1, p2) only,
-/// in SI units.
+/// in SI units. A step is dt rounded to `R`.
 #[doc(hidden)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Canonical<R, E = Pendulum<R>, I = Rk4> {

@@ -189,8 +189,8 @@ fn factor_above<R: Real>(value: f64, factor: f64) -> R {
 }
 
 impl Scale {
-    /// Refuses momenta P1 and P2 that are NaN or too large for `R`. The error gives the momentum in
-    /// kg m^2/s.
+    /// Refuses the scaled momenta P1 and P2, which have no dimension, if one is not finite in `R`,
+    /// by [`Error::OutOfRange`]. The error gives the momentum in kg m^2/s.
     pub fn check<R: Real>(&self, momenta: [f64; 2]) -> Result<(), Error> {
         for (parameter, p) in [Parameter::P1, Parameter::P2].into_iter().zip(momenta) {
             if !R::from_f64(p).is_finite() {
@@ -206,10 +206,13 @@ impl Scale {
     /// Returns the state at the time of `count` steps of dt, in SI units, with angles in (-pi, pi].
     ///
     /// The motion is at `z` plus `lost`, which is the last rounding error of `z`. `rates` returns
-    /// the rates of change at a point, per unit of time.
+    /// the rates of change at a point, per unit of time tau. All three are in the order of
+    /// [`quantities`].
     ///
-    /// The motion can be up to half a step ahead of that time. Four stages take it back, each from
-    /// the slope of the one before: of order 4 in small oscillations and of order 2 in others.
+    /// The motion can be up to half a step ahead of that time, or behind it. Four stages take it
+    /// back, each from the slope of the one before: of order 4 in small oscillations and of order 2
+    /// in others. If they leave the finite numbers, the motion is not taken back. NaN in `z` gives
+    /// NaN.
     #[must_use]
     #[inline(never)] // Not inlined, to save flash.
     pub fn state<R: Real>(
@@ -236,15 +239,16 @@ impl Scale {
     }
 }
 
-/// The number of steps after which the lead is compared with half a step.
+/// The number of steps of a block. After each block the lead is compared with half a step.
 ///
 /// The lengths of the directions are restored at the same interval.
 pub(crate) const BLOCK: u32 = 32;
 
 /// The excess of a step over dt. It exists because the constants of the equations are rounded.
 ///
-/// When a motion would be more than half a step ahead of the time, the last step of a block is left
-/// out.
+/// The steps since the start are counted in blocks of [`BLOCK`] = 32. When a motion would be more
+/// than half a step ahead of the time, the last step of a block is left out. The motion is then
+/// about half a step behind.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Lead {
     /// The lead of each step in multiples of 2^-64 of a step.
@@ -257,17 +261,20 @@ pub(crate) struct Lead {
 const STEP: f64 = (1_u128 << 64) as f64;
 
 impl Lead {
-    /// Returns the lead of steps of length `step` instead of `dt`, in any unit.
+    /// Returns the lead of steps of length `step` instead of `dt`, both in the same unit and of the
+    /// same sign.
     ///
-    /// A step that is too short, by a rounding, has no lead.
+    /// A step that is too short, by a rounding, has no lead. The lead must be below 1/64 of a step;
+    /// this is not checked.
     pub fn new(step: f64, dt: f64) -> Self {
         Self {
             each: ((step - dt) / step * STEP) as u64,
         }
     }
 
-    /// Returns the number of steps to compute for the next `steps` steps, after which the count is
-    /// `count`. They must not go beyond the end of a block. `steps` is at least 1.
+    /// Returns the number of steps to compute for the next `steps` steps, after which the count of
+    /// steps since the start is `count`: `steps`, or one less. They must not go beyond the end of a
+    /// block, and `steps` must be at least 1; neither is checked.
     #[inline(always)]
     pub fn made(self, steps: u32, count: u64) -> u32 {
         if count as u32 % BLOCK == 0 {
@@ -277,16 +284,18 @@ impl Lead {
         }
     }
 
-    /// Returns true if the last step of the block that ends at `count` is left out, because the
-    /// lead exceeded half a step within the block.
+    /// Returns true if the last step of the block that ends at `count` steps since the start is
+    /// left out, because the lead exceeded half a step within the block. `count` must be a multiple
+    /// of 32; this is not checked.
     #[inline(always)]
     pub fn is_left_out(self, count: u64) -> bool {
         let after = count.wrapping_mul(self.each) as i64;
         after < i64::MIN + (self.each * u64::from(BLOCK)) as i64
     }
 
-    /// Returns the motion's lead over the exact time at `count`, in steps: at most half a step,
-    /// plus the lead of one block.
+    /// Returns the motion's lead over the exact time at `count` steps since the start, in steps.
+    /// Its magnitude is at most half a step, plus the lead of one block. It is negative if the
+    /// motion is behind.
     #[inline(never)] // Not inlined, to save flash.
     pub fn ahead(self, count: u64) -> f64 {
         let within = count % u64::from(BLOCK);

@@ -38,7 +38,7 @@ type Numbers = Lanes<f64, LANES>;
 ///
 /// The sums of the state are compensated: the rounding error of each is carried into the next. The
 /// lengths of the directions are restored after every step. Angles are within (-pi, pi];
-/// [`Run`](crate::Run) counts the turns.
+/// [`Run`](crate::Run) counts the turns on request.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ExtrapolationF64<const ORDER: u32> {
     coefficients: Coefficients<f64>,

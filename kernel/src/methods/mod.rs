@@ -1,6 +1,8 @@
 //! The numerical methods: a type for each row of the [table](crate::Method).
 //!
-//! [`Pendulum::run`](crate::Pendulum::run) takes the type of a method and returns a motion.
+//! [`Pendulum::run`](crate::Pendulum::run) takes the type of a method and returns a motion, or
+//! refuses inputs that the method cannot compute. [`Run::advance`] reports a motion that diverges.
+//! All inputs and results are in SI units and rad.
 
 pub(crate) mod any;
 mod canonical;
@@ -34,8 +36,11 @@ use crate::numbers::{Real, Sealed};
 use crate::pendulum::{Direction, Parameters, Pendulum, State};
 
 /// RK4 on Hamilton's equations in angles and momenta, in `f32`: `rk4-f32`.
+///
+/// A step is dt rounded to `f32`. The motion is ahead of the time or behind it by up to 6e-8 of the
+/// time, which nothing takes back.
 pub type HamiltonF32 = Canonical<f32>;
-/// RK4 on Hamilton's equations in `f64`: `rk4-f64`.
+/// RK4 on Hamilton's equations in angles and momenta, in `f64`: `rk4-f64`.
 pub type HamiltonF64 = Canonical<f64>;
 /// RK4 in the direction form, in `f32` with compensated sums: `rk4-f32-direction`.
 ///
@@ -59,10 +64,14 @@ pub type ClosedFormF64 = ClosedForm<f64>;
 ///
 /// # Time
 ///
-/// A step of 1/240 s is as accurate as one of 1/256 s, although no `f32` is 1/240. The rounded
-/// constants of a method make a step longer than dt by a known share, up to 2e-6 in `f32`. If the
-/// motion would be more than half a step ahead of the time, one step is left out. [`Run::state`]
-/// takes back the remaining difference. The directions may be half a step ahead.
+/// In the direction form in floating point, rounded constants make a step longer than dt by a known
+/// share, up to 2e-6 in `f32`. If the motion would be more than half a step ahead of the time, one
+/// step is left out, and the motion is half a step behind. [`Run::state`] takes back the
+/// difference, so that a step of 1/240 s is as accurate as one of 1/256 s, although no `f32` is
+/// 1/240. The directions, angles and the energy may be up to half a step ahead or behind.
+///
+/// Fixed point and the closed form are neither ahead nor behind. [`HamiltonF32`] is, because it
+/// rounds dt, and its state is not corrected.
 pub trait Form: Sealed + Copy + Debug + PartialEq + 'static {
     /// The numbers that [`Run::directions`] and [`Run::angles`] return.
     #[doc(hidden)]
@@ -114,7 +123,8 @@ pub trait Form: Sealed + Copy + Debug + PartialEq + 'static {
     }
 
     /// Refuses a motion that has diverged, by [`Error::Diverged`]: its numbers are not finite or,
-    /// in fixed point, were ever out of range. It costs a few comparisons.
+    /// in fixed point, were ever out of range. [`Fixed32`] tests its range after every 32 steps. It
+    /// costs a few comparisons.
     ///
     /// Unless [`CHECKS_ENERGY`](Self::CHECKS_ENERGY), a motion whose numbers are finite but
     /// meaningless is accepted.
@@ -136,8 +146,9 @@ pub trait Form: Sealed + Copy + Debug + PartialEq + 'static {
     /// Returns the directions of both rods in the numbers `Q`. In the direction form this needs no
     /// trigonometry.
     ///
-    /// They may be up to half a step ahead of the [`state`](Self::state). A diverged motion need
-    /// not show it: in fixed point its directions are finite. Call [`check`](Self::check).
+    /// They may be up to half a step ahead of the [`state`](Self::state) or behind it. A diverged
+    /// motion need not show it: in fixed point its directions are finite. Call
+    /// [`check`](Self::check).
     #[doc(hidden)]
     fn directions<Q: Real>(&self) -> [Direction<Q>; 2];
 
@@ -155,14 +166,15 @@ pub trait Form: Sealed + Copy + Debug + PartialEq + 'static {
 
     /// Returns the canonical state in SI units at the number of steps times dt, with all digits
     /// that the method carries. All its numbers are NaN if the motion has diverged in fixed point.
+    /// The angles are in (-pi, pi], unless [`HAS_TURNS`](Self::HAS_TURNS).
     #[doc(hidden)]
     fn state(&self) -> State<f64>;
 
     /// Returns the energy above rest, J, with all digits that the method carries.
     ///
-    /// `pendulum` is the pendulum of this motion. The energy follows from the directions and
-    /// momenta, which may be up to half a step ahead of the [`state`](Self::state). It is NaN if
-    /// the motion has diverged in fixed point.
+    /// `pendulum` must be the pendulum of this motion; this is not checked. The energy follows from
+    /// the directions and momenta, which may be up to half a step ahead of the
+    /// [`state`](Self::state) or behind it. It is NaN if the motion has diverged in fixed point.
     #[doc(hidden)]
     fn energy_above_rest(&self, pendulum: &Pendulum<f64>) -> f64 {
         let [upper, lower] = self.directions();

@@ -43,14 +43,15 @@ impl<R: Real> Pendulum<R> {
     ///
     /// Refuses:
     ///
-    /// - a step that is NaN, infinite, zero or subnormal, for [`DirectionF32`](crate::DirectionF32)
-    ///   in `f32`;
+    /// - a step that is NaN or infinite or, by [`Error::OutOfRange`], zero, subnormal or too large
+    ///   in the method's numbers (`f64` for fixed point and the closed form);
     /// - a start that is not finite;
     /// - a start of 2^31 - 1 turns or more, if the method carries directions or is the closed form;
     /// - a pendulum or a start out of the range of the method's numbers;
     /// - for the closed form, a pendulum without gravity;
-    /// - a step beyond the limit of stability of the fast mode, of frequency w1, or beyond that of
-    ///   [`Fixed32`] or [`Fixed64`](crate::Fixed64): [`Error::TooLarge`] contains the longest step.
+    /// - a step whose magnitude is beyond the limit of stability of the fast mode, of frequency w1,
+    ///   or beyond that of [`Fixed32`] or [`Fixed64`](crate::Fixed64): [`Error::TooLarge`] contains
+    ///   the longest step. The closed form has no such limit.
     ///
     /// The limit of RK4 is w1 dt = 2.83 ([`check_step`](Self::check_step)). Extrapolation of the
     /// orders 2, 4 .. 16 is stable, or lets the mode grow by less than a tenth in a step, up to w1
@@ -180,8 +181,9 @@ impl<F: Form, const COUNTS_TURNS: bool> Run<F, COUNTS_TURNS> {
     /// is 9/8 of the initial value, plus an allowance for rounding. [`Fixed64`](crate::Fixed64)
     /// checks the range of its numbers instead, and the closed form keeps its own energy.
     ///
-    /// Energy and lengths are checked once at the end of each call, not after every step; in fixed
-    /// point, after every 32 steps and after every step.
+    /// Energy and lengths are checked once at the end of each call, not after every step.
+    /// [`Fixed32`] is checked after every 32 steps since the start, [`Fixed64`](crate::Fixed64)
+    /// after every step.
     pub fn advance(&mut self, steps: u32) -> Result<(), Error> {
         let Self {
             mut motion,
@@ -234,8 +236,9 @@ impl<F: Form, const COUNTS_TURNS: bool> Run<F, COUNTS_TURNS> {
 
     /// Returns the directions of both rods, (sin, cos) each. A drawing needs no more.
     ///
-    /// They may be up to half a step ahead of the [`state`](Self::state). They belong to
-    /// the last call of [`advance`](Self::advance) without an error; before, to the start.
+    /// In the direction form in floating point they may be up to half a step ahead of the
+    /// [`state`](Self::state) or behind it. They belong to the last call of
+    /// [`advance`](Self::advance) without an error; before, to the start.
     #[must_use]
     pub fn directions(&self) -> [Direction<F::Real>; 2] {
         self.motion.directions()
@@ -267,8 +270,9 @@ impl<F: Form, const COUNTS_TURNS: bool> Run<F, COUNTS_TURNS> {
     /// The angles are within (-pi, pi], unless [whole turns](Self#whole-turns) are counted.
     ///
     /// The state is that at the number of steps times dt, even if the motion itself is ahead of
-    /// that time ([`Form`]). The difference is taken back. This changes the energy by at most a
-    /// share of 1e-4 if the fastest frequency times dt is 0.2 or less (asserted over a day).
+    /// that time or behind it ([`Form`]). The difference is taken back. This changes the energy by
+    /// at most a share of 1e-4 if the fastest frequency times dt is 0.2 or less (asserted over a
+    /// day). Only [`HamiltonF32`](crate::HamiltonF32) takes steps of dt rounded to `f32`.
     #[must_use]
     pub fn state(&self) -> State<f64> {
         let state = self.motion.state();
@@ -336,10 +340,11 @@ pub struct Turns {
 }
 
 impl Turns {
-    /// Starts the count at the finite angles `start`, rad, whose directions have the signs `now`.
+    /// Starts the count at the angles `start`, rad, whose directions have the signs `now`. The
+    /// result has one count for each rod.
     ///
     /// `now` is the sine and cosine of each rod as words whose highest bit is the sign
-    /// ([`Form::sides`]).
+    /// ([`Form::sides`]). The angles must not be NaN; this is not checked.
     ///
     /// # Errors
     ///
@@ -390,17 +395,18 @@ impl Turns {
     }
 
     /// Returns the angle, rad, including whole turns, of the direction that was observed last,
-    /// which is the argument.
+    /// which is the argument. Its length does not matter; NaN gives NaN.
     #[inline(never)] // Not inlined, to save flash.
     pub fn angle<R: Real>(&self, [s, c]: Direction<R>) -> R {
         R::from_f64(f64::from(self.whole) * core::f64::consts::TAU) + s.atan2(c)
     }
 
-    /// Returns `state` with whole turns added to its angles, so that each is as close as possible
-    /// to the direction that was observed last.
+    /// Returns `state` with whole turns added to its angles, rad, so that each is as close as
+    /// possible to the direction that was observed last.
     ///
-    /// This needs no trigonometry. The sign of the sine gives the direction to within a quarter
-    /// turn, and half a turn would be enough.
+    /// The state may differ from that direction by less than a quarter turn. If it differs by more,
+    /// the count may be wrong by a turn; this is not checked. The function needs no trigonometry,
+    /// because the sign of the sine gives the direction to within a quarter turn.
     #[inline(never)] // Not inlined, to save flash.
     #[must_use]
     pub fn unwrap([turns1, turns2]: &[Self; 2], state: State<f64>) -> State<f64> {

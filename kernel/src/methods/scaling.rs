@@ -66,7 +66,8 @@ pub(super) fn lost(is_lost: bool) -> Result<(), Error> {
 }
 
 impl Scaling {
-    /// Returns the same scaling with a unit of time that is `time` times as long.
+    /// Returns the same scaling with a unit of time that is `time` times as long. A negative `time`
+    /// reverses the time.
     #[must_use]
     pub fn in_unit(self, time: f64) -> Self {
         Self {
@@ -77,7 +78,7 @@ impl Scaling {
         }
     }
 
-    /// Returns the scaling with T = 1 s. The parameters must be valid.
+    /// Returns the scaling with T = 1 s. The parameters must be valid; this is not checked.
     ///
     /// Refuses ratios of masses or rods that need a shift of more than 12, by
     /// [`Error::OutOfRange`]. It names the value that is farthest from 1.

@@ -8,7 +8,7 @@ use crate::numbers::{Sealed, sine};
 /// `f32` or `f64`, and no other type: the operations that the formulas need.
 ///
 /// Every operation is IEEE 754 arithmetic or a routine in Rust that uses only such arithmetic. So a
-/// result is bit-identical on every machine.
+/// result is bit-identical on every machine, except for the bits of a NaN.
 pub trait Real:
     Sealed
     + Copy

@@ -23,9 +23,9 @@ pub struct Pendulum<R> {
 impl<R: Real> Pendulum<R> {
     /// Checks the parameters and prepares the equations.
     ///
-    /// Refuses NaN, infinite, zero or negative masses and lengths, negative gravity, and
-    /// combinations whose products leave the range of `R`. The [`Error`] names the parameter and
-    /// its value.
+    /// Refuses NaN, infinite, zero or negative masses and lengths, NaN, infinite or negative
+    /// gravity, and combinations whose products or quotients leave the range of `R`
+    /// ([`Error::OutOfRange`]). The [`Error`] names the parameter and its value.
     pub fn new(parameters: &Parameters<R>) -> Result<Self, Error> {
         parameters.check()?;
         let &Parameters { m1, m2, l1, l2, g } = parameters;
@@ -63,7 +63,8 @@ impl<R: Real> Pendulum<R> {
         &self.parameters
     }
 
-    /// Returns the time derivatives of (a1, a2, p1, p2) by Hamilton's equations, in rad/s and N m.
+    /// Returns the time derivatives (w1, w2, p1', p2') of z = (a1, a2, p1, p2) by Hamilton's
+    /// equations, in rad/s and N m. z is in rad and kg m^2/s.
     ///
     /// With D = a1 - a2 and den = m1 + m2 sin^2 D:
     ///
@@ -84,8 +85,10 @@ impl<R: Real> Pendulum<R> {
         self.derivatives_at([a1.own_sin_cos(), a2.own_sin_cos()], [p1, p2])
     }
 
-    /// Returns the [`derivatives`](Self::derivatives) for known directions (sin, cos) of both rods,
-    /// each of length 1, and momenta (p1, p2), kg m^2/s. It needs no trigonometry.
+    /// Returns the [`derivatives`](Self::derivatives), rad/s and N m, for known directions (sin,
+    /// cos) of both rods and momenta (p1, p2), kg m^2/s. It needs no trigonometry.
+    ///
+    /// The directions must be of length 1; this is not checked.
     #[doc(hidden)]
     #[inline]
     pub fn derivatives_at(
@@ -114,14 +117,14 @@ impl<R: Real> Pendulum<R> {
     }
 
     /// Returns the Hamiltonian H = T + V of the canonical state, J. It is zero if both bobs are at
-    /// the height of the pivot.
+    /// rest at the height of the pivot.
     ///
     /// H = (q1 - q2 cos D)^2 / (2 den) + q2^2 / (2 m2) - (m1 + m2) g l1 cos a1 - m2 g l2 cos a2
     ///
     /// with q1 = p1/l1, q2 = p2/l2 and the D and den of [`derivatives`](Self::derivatives). The
     /// kinetic energy is a sum of squares, so that it cannot be negative. The exact motion
     /// conserves H; its minimum is [`least_energy`](Self::least_energy). The cost is three sincos
-    /// and two divisions. A state that is NaN gives NaN.
+    /// and two divisions. A state that is not finite gives NaN or infinity.
     #[must_use]
     pub fn energy(&self, state: &State<R>) -> R {
         let (_, cos1) = state.a1.own_sin_cos();
@@ -147,7 +150,7 @@ impl<R: Real> Pendulum<R> {
     /// K = T + (m1 + m2) g l1 (1 - cos a1) + m2 g l2 (1 - cos a2)
     ///
     /// No term is negative, so that K keeps its relative precision for the smallest motions. There
-    /// H and min V nearly cancel. A state that is NaN gives NaN.
+    /// H and min V nearly cancel. A state that is not finite gives NaN or infinity.
     #[must_use]
     pub fn energy_above_rest(&self, state: &State<R>) -> R {
         let height1 = one_minus_cos(state.a1.own_sin_cos());
@@ -158,7 +161,9 @@ impl<R: Real> Pendulum<R> {
     }
 
     /// Returns the [energy above rest](Self::energy_above_rest), J, for known directions (sin, cos)
-    /// of both rods, each of length 1, and momenta (p1, p2), kg m^2/s. It needs no trigonometry.
+    /// of both rods and momenta (p1, p2), kg m^2/s. It needs no trigonometry.
+    ///
+    /// The directions must be of length 1; this is not checked.
     #[doc(hidden)]
     #[must_use]
     #[inline(never)] // Not inlined, to save flash.

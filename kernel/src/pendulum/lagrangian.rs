@@ -3,6 +3,9 @@
 //!
 //! Except for the transformation, they share no formula with
 //! [Hamilton's equations](crate::Pendulum::derivatives), so that each form is a check of the other.
+//!
+//! No function checks its arguments. Numbers that are not finite, or that overflow, give NaN or
+//! infinity.
 
 use crate::numbers::Real;
 use crate::pendulum::{Motion, Parameters, Pendulum, State};

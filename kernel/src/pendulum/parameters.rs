@@ -38,7 +38,8 @@ impl<R: Real> Parameters<R> {
         }
     }
 
-    /// Returns the mass ratio mu = m2/m1.
+    /// Returns the mass ratio mu = m2/m1. The masses are not checked: an `m1` of 0 gives infinity
+    /// or NaN.
     #[must_use]
     pub fn mass_ratio(&self) -> R {
         self.m2 / self.m1
@@ -47,7 +48,7 @@ impl<R: Real> Parameters<R> {
     /// Returns the same numbers in the arithmetic `S`, each rounded once. From `f32` to `f64` the
     /// numbers are exact.
     ///
-    /// The result is not checked: a large number in `f64` can be infinite in `f32`.
+    /// The result is not checked: a large number in `f64` can be infinite in `f32`, a small one 0.
     #[must_use]
     pub fn cast<S: Real>(self) -> Parameters<S> {
         let Self { m1, m2, l1, l2, g } = self;

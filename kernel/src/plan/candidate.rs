@@ -57,8 +57,8 @@ impl Candidate {
         self.state = CandidateState::Excluded;
     }
 
-    /// Returns true if the candidate has more than [`WORTH`] times as many accurate frames as
-    /// `other`, which is worth a higher cost.
+    /// Returns true if the candidate has more than 1.1 times ([`WORTH`]) as many accurate frames as
+    /// `other`, which is worth a higher cost. False if neither has any.
     pub fn has_longer_horizon(&self, other: &Self) -> bool {
         f64::from(self.accurate_frames) > WORTH * f64::from(other.accurate_frames)
     }
@@ -67,8 +67,9 @@ impl Candidate {
     ///
     /// `error` is an estimate of its error, and `bound` is an upper bound that is exceeded only in
     /// rare cases. Both are in units of the tolerance. The frame is accurate if the bound is at
-    /// most [`TOLERATED`]; a NaN bound counts as inaccurate. After the first inaccurate frame, or
-    /// if the candidate is excluded, nothing is recorded.
+    /// most 1 ([`TOLERATED`]); then it is counted, and the largest `error` is kept. A NaN bound
+    /// counts as inaccurate. The first inaccurate frame makes the candidate fail. After that, or if
+    /// the candidate is excluded, nothing is recorded.
     #[inline(never)] // Not inlined, to save flash.
     pub fn note(&mut self, error: f32, bound: f32) {
         if !self.is_accurate() {

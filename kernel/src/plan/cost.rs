@@ -168,12 +168,16 @@ impl Pair {
         Self::new(steps, steps.saturating_add(more).max(least))
     }
 
-    /// Returns a pair for each of the [`FINE`] steps of the fine run, the finest pair first.
+    /// Returns six pairs, the finest first: one for each of the [`FINE`] steps of the fine run,
+    /// from 0.53 to 2.1 admissible steps.
     ///
-    /// `rate` is the number of frames per second, and `admissible` the admissible step, s.
-    /// The coarse run makes at least `least` steps per frame and, unless `most` is less than
-    /// `least`, at most `most`. If `most` is less than the usual number, the fine run makes a third
-    /// more than `most`, and at least as many as the longest of the [`FINE`] steps.
+    /// `rate` is the number of frames per second, and `admissible` the admissible step, s. The fine
+    /// run makes from 2 to [`MOST_STEPS`] steps per frame, and the coarse run three quarters of
+    /// them. The coarse run makes at least `least` steps, and the fine run always more than it.
+    ///
+    /// The coarse run makes at most `most` steps, unless `most` is less than `least`. If `most` is
+    /// less than the usual number, the fine run makes a third more than `most`, and at least as
+    /// many as the longest of the [`FINE`] steps. Pairs may then be equal.
     pub fn all(
         rate: u16,
         admissible: f64,
@@ -197,7 +201,8 @@ impl Pair {
     }
 
     /// Returns the share of the distance between both runs that bounds the truncation error of the
-    /// fine run: [`TRUST`] times (coarse/fine)^10, but at least [`LEAST_SHARE`] and at most 1.
+    /// fine run: 16 ([`TRUST`]) times (coarse/fine)^10, but at least 1/32 ([`LEAST_SHARE`]) and at
+    /// most 1. Here coarse and fine are the step counts.
     ///
     /// If both runs resolve the motion, the order of the method gives (coarse/fine)^10.
     pub fn share_of_fine(&self) -> f32 {
@@ -225,18 +230,22 @@ pub(super) fn admissible_step(problem: &Problem) -> Result<f64, Error> {
 impl Stepping {
     /// Returns the method and step count to start with, before planning has produced a result.
     ///
-    /// They resolve every motion of the problem's energy, and a frame costs no more than `frame`.
-    /// In the order of preference:
+    /// They are the first of the following whose frame costs at most `frame`:
     ///
-    /// 1. [`Method::Extrapolation10Fixed64`] in steps whose roundings are the larger error;
-    /// 2. the same in the longest steps that a search tries;
-    /// 3. RK4 in 32 bits, by the method whose steps cost less, in [admissible
-    ///    steps](Pendulum::admissible_step);
+    /// 1. [`Method::Extrapolation10Fixed64`] in steps of 0.7 [admissible
+    ///    steps](Pendulum::admissible_step), whose roundings are the larger error;
+    /// 2. the same in steps of 1, 1.5, 2.1 or 4 admissible steps, the longest that a search tries;
+    /// 3. RK4 in 32 bits in admissible steps, by the method whose steps cost less, or else by the
+    ///    other one;
     /// 4. the same in twice as long steps. Longer ones gain or lose several percent of the energy
     ///    within seconds.
     ///
+    /// These lengths are upper limits. The step count is rounded up, for RK4 to a power of two, and
+    /// increased if the method refuses the steps as too long.
+    ///
     /// `frame` is the frame budget in the unit of `costs`. Returns `None` if a frame pays for none
-    /// of these, or if the methods refuse the motion.
+    /// of these, or if the methods refuse the motion, such as a start that is not finite or a rate
+    /// of 0.
     ///
     /// # Errors
     ///
@@ -274,11 +283,14 @@ impl Stepping {
         }))
     }
 
-    /// Returns `method` in the longest steps that a search tries first or, if the method refuses
-    /// these as too long, in the longest that it accepts. The cost of a frame does not matter.
+    /// Returns `method` with the fewest steps per frame whose length is at most 4 [admissible
+    /// steps](Pendulum::admissible_step), or 0.7 by [`Method::Extrapolation10Fixed64`]. By
+    /// the other methods the count is a power of two. If the method refuses the steps as too
+    /// long, it gets more, until it accepts them. The cost of a frame does not matter.
     ///
-    /// If the method refuses the motion itself, or every step count below 65,536, the result has
-    /// the step count that was tried first, which [`PlannedRun::new`] refuses.
+    /// If the method refuses the motion itself, is not in [`Method::DRAWN`], or refuses every step
+    /// count below 65,536, the result has the step count that was tried first, at most 65,536.
+    /// [`PlannedRun::new`] usually refuses it, too.
     ///
     /// # Errors
     ///
@@ -417,8 +429,9 @@ mod tests {
         }
     }
 
-    /// The share is [`LEAST_SHARE`] with twice the steps, 1 with one percent more, and
-    /// [`TRUST`] times 0.75^10 with a third more. Twice the steps reduce an error of order 10 by
+    /// The share of the distance that is assumed as the error of the fine run is 1/32
+    /// ([`LEAST_SHARE`]) with twice the steps of the coarse run, 1 with one percent more, and 16
+    /// ([`TRUST`]) times 0.75^10 with a third more. Twice the steps reduce an error of order 10 by
     /// 2^10; the assumed share is larger.
     #[test]
     fn share_of_the_fine_run_follows_from_its_order_within_limits() {

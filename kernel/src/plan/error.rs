@@ -15,17 +15,19 @@ pub enum Limit {
     /// The growth of rounding errors in 64 bits, which finer steps do not reduce.
     Growth,
     /// The frame budget. Finer steps or 64 bits may be accurate for longer, but cost more.
+    ///
+    /// Also the limit if 64 bits refuse the motion and finer steps in 32 bits do not help.
     Budget,
     /// The planning budget. It does not cover the next motion or frame of a trial, or a trial in
     /// finer steps.
     Planning,
-    /// The method and step count, which the caller has fixed ([`Search::of`](super::Search::of)).
-    /// Others may have a longer horizon.
+    /// The method and step count, which are fixed ([`Search::of`](super::Search::of) and
+    /// [`Search::extend`](super::Search::extend)). Others may have a longer horizon.
     Method,
 }
 
 impl Limit {
-    /// Returns the limit in words.
+    /// Returns the limit in words for a message, such as `the budget for planning`.
     #[doc(hidden)]
     #[must_use]
     pub const fn name(self) -> &'static str {

@@ -111,14 +111,16 @@ pub struct Plan {
     /// most the frame budget, unless the method was fixed by the caller ([`Search::of`]).
     pub cost: f32,
     /// The accuracy horizon, s since the start: all frames until this time are predicted to be
-    /// accurate. It is the duration of the problem if all its frames are.
+    /// accurate. It is the duration of the problem if all its frames are, and 0 only after
+    /// [`Search::of`].
     ///
     /// The prediction is not a proof, because the bound on rounding errors is a measured one. A
     /// frame may be inaccurate a little earlier (the repository's test `plan_study`).
     pub horizon: f64,
     /// The reason why the horizon is not longer.
     pub limit: Limit,
-    /// The cost of planning, in the unit of the [`Costs`]; at most the planning budget.
+    /// The cost of planning, in the unit of the [`Costs`]; at most the planning budget, except
+    /// after [`Search::extend`].
     pub spent: f32,
 }
 
@@ -148,15 +150,17 @@ impl Plan {
         }
     }
 
-    /// Returns the motion of the planned `problem` at its start.
+    /// Returns the motion of the planned `problem` at its start, by [`method`](Self::method) with
+    /// [`steps`](Self::steps) per frame of the problem. Other fields of the plan are not used.
     ///
     /// A motion of another problem starts, too, but nothing is known of its accuracy.
     ///
     /// # Errors
     ///
-    /// Refuses a problem with a start that is not finite, with numbers out of the range of the
-    /// method or, in fixed point, with a step that is too long; for the closed form a pendulum
-    /// without normal modes; and a method that is not in [`Method::DRAWN`].
+    /// Refuses a problem with an invalid pendulum, with a start that is not finite or of 2^31 - 1
+    /// turns or more, with numbers out of the range of the method, with a rate of 0 or, in fixed
+    /// point, with a step that is too long; for the closed form a pendulum without gravity; and a
+    /// method that is not in [`Method::DRAWN`].
     pub fn run(&self, problem: &Problem) -> Result<PlannedRun, Error> {
         PlannedRun::new(problem, self.stepping())
     }

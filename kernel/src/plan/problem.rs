@@ -72,7 +72,7 @@ impl Problem {
     }
 
     /// Returns the number of frames after the one at the start: the duration times the rate,
-    /// rounded to the nearest integer, at least 1.
+    /// rounded to the nearest integer (half to even), from 1 to 2^32 - 1; 1 if it is NaN.
     #[inline(never)] // Not inlined, to save flash.
     #[doc(hidden)]
     #[must_use]
@@ -81,7 +81,8 @@ impl Problem {
         if frames == 0 { 1 } else { frames }
     }
 
-    /// Returns the time of frame `frame` since the start, s. Frame 0 is the start.
+    /// Returns the time of frame `frame` since the start, s. Frame 0 is the start. A rate of 0
+    /// gives infinity, or NaN for frame 0.
     #[doc(hidden)]
     #[must_use]
     pub fn time(&self, frame: u32) -> f64 {

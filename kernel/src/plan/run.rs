@@ -6,7 +6,7 @@ use crate::methods::{DrawnMotion, Turns};
 use crate::pendulum::{Direction, Pendulum, State};
 use crate::table::Method;
 
-/// The directions of both rods, (sin, cos) each, for drawing.
+/// The directions of both rods for drawing: `[[sin a1, cos a1], [sin a2, cos a2]]`.
 #[doc(hidden)]
 pub type Directions = [Direction<f32>; 2];
 
@@ -33,7 +33,7 @@ impl PlannedRun {
     /// Refuses a start that is not finite, the inputs that [`Pendulum::run`] refuses, for the
     /// closed form a pendulum without normal modes, and methods that are not in [`Method::DRAWN`].
     /// A rate of 0 is refused as a step that is not finite. Unlike [`Pendulum::run`], it accepts
-    /// steps beyond the limit of stability in `f32`.
+    /// steps beyond the limit of stability, except by [`Method::Rk4Fixed32`].
     #[inline(never)] // Not inlined, to save flash.
     #[doc(hidden)]
     pub fn new(
@@ -84,6 +84,9 @@ impl PlannedRun {
     ///
     /// Returns [`Error::Diverged`] if the motion has left the finite numbers, or the range of its
     /// fixed point. Every later call then returns it, too. The frames are counted all the same.
+    ///
+    /// Unlike [`Run::advance`](crate::Run::advance), it checks no energy in `f32`: a motion whose
+    /// numbers are finite but meaningless is accepted.
     #[inline(never)] // Not inlined, to save flash.
     pub fn advance(&mut self, frames: u32) -> Result<(), Error> {
         for _ in 0..frames {
@@ -120,8 +123,8 @@ impl PlannedRun {
     }
 
     /// Returns both angles, rad, including whole turns, at the time of the
-    /// [`directions`](Self::directions). A rod that turns by more than a quarter turn in a step may
-    /// be miscounted by whole turns.
+    /// [`directions`](Self::directions). If a rod turns by more than a quarter turn in a step, or
+    /// in a frame by the closed form, its angle may be wrong by whole turns.
     #[must_use]
     pub fn angles(&self) -> [f32; 2] {
         let ([turns1, turns2], [direction1, direction2]) = (&self.turns, self.directions());
@@ -142,7 +145,8 @@ impl PlannedRun {
     }
 
     /// Returns the energy above rest, J, of the motion as it is carried: nothing is rounded to
-    /// `f32`. `pendulum` must be the pendulum of the problem; another one gives a wrong energy.
+    /// `f32`. It is that at the time of the [`directions`](Self::directions). `pendulum` must be
+    /// the pendulum of the problem; another one gives a wrong energy.
     #[inline(never)]
     #[doc(hidden)]
     #[must_use]

@@ -11,8 +11,9 @@ use crate::methods::lagrange::Lagrange;
 /// The added method.
 const ADDED: Method = Method::Rk4F32Lagrange;
 
-/// The added method is in the table with its name and order, and its equations, in `f64`, are those
-/// of Hamilton within [`forms::RK4`].
+/// The added method is in the table with its name and order 4. The average rates of 8 steps by its
+/// equations, in `f64`, are those of Hamilton's equations within 3e-8 of the velocities and forces
+/// that the energy allows ([`forms::RK4`]).
 #[test]
 fn added_method_obeys_hamiltons_equations() {
     assert_eq!(Method::from_name("rk4-f32-lagrange"), Some(ADDED));
@@ -76,7 +77,7 @@ fn added_method_draws_a_scene() -> Result<(), Error> {
     Ok(())
 }
 
-/// Each name of the table must lead back to its method.
+/// Each name of the table must lead back to its method by `Method::from_name`.
 #[test]
 fn method_names_are_unique() {
     Method::ALL

@@ -260,8 +260,8 @@ fn every_integrator_meets_its_order_conditions() {
     }
 }
 
-/// The 3/8 rule meets the conditions of order 4, has the weights of the book to 1e-12, and moves a
-/// pendulum as Hamilton's equations do.
+/// The 3/8 rule meets the conditions of order 4, has its limit of stability and the weights of the
+/// book to 1e-12, and moves a pendulum as Hamilton's equations do, to 3e-8 ([`forms::RK4`]).
 #[test]
 fn added_integrator_needs_only_a_type() {
     check::<ThreeEighths>(4);
@@ -281,8 +281,8 @@ fn added_integrator_needs_only_a_type() {
     );
 }
 
-/// Each weight of RK4 and of the 3/8 rule, changed alone by a quarter, is found and named with its
-/// right value, and no other is.
+/// A test of the test: if a single weight of RK4 or of the 3/8 rule is changed by 0.25 up or down,
+/// the message names this weight with its right value, and no other weight.
 #[test]
 fn a_single_wrong_weight_is_named() {
     for right in [tableau::<Rk4>(), tableau::<ThreeEighths>()] {

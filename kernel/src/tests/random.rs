@@ -4,18 +4,19 @@
 use double_pendulum::{Parameters, Pendulum, Real, State};
 use fastrand::Rng;
 
-/// Returns a random number between `low` and `high`, uniform in its logarithm.
+/// Returns a random number from `low` to below `high`, uniform in its logarithm. Both must be
+/// positive.
 pub fn log_uniform(rng: &mut Rng, low: f64, high: f64) -> f64 {
     low * (high / low).powf(rng.f64())
 }
 
-/// Returns a random number between -1 and 1.
+/// Returns a random number from -1 to below 1, uniformly distributed.
 pub fn symmetric(rng: &mut Rng) -> f64 {
     2.0 * rng.f64() - 1.0
 }
 
-/// Returns random parameters, rounded to `f32`: masses within a factor of 100 of each other,
-/// lengths within a factor of 10, and gravity from 1 to 20 m/s^2.
+/// Returns random parameters, rounded to `f32`, each uniform in its logarithm: masses from 0.1 to
+/// 10 kg, lengths from 0.3 to 3 m, and gravity from 1 to 20 m/s^2.
 pub fn parameters(rng: &mut Rng) -> Parameters<f64> {
     let [m1, m2, l1, l2, g] = [
         (0.1, 10.0),
@@ -28,8 +29,9 @@ pub fn parameters(rng: &mut Rng) -> Parameters<f64> {
     Parameters { m1, m2, l1, l2, g }
 }
 
-/// Returns a random state, rounded to `f32`: any angles within one turn in either direction, and
-/// momenta of the size that gravity can cause.
+/// Returns a random state, rounded to `f32`: angles from -2 pi to 2 pi rad, and momenta, kg m^2/s,
+/// up to the bounds of the energy E = g ((m1 + m2) l1 + m2 l2): |p1| <= l1 sqrt(2 (m1 + m2) E) and
+/// |p2| <= l2 sqrt(2 m2 E). All are uniformly distributed.
 pub fn state(rng: &mut Rng, &Parameters { m1, m2, l1, l2, g }: &Parameters<f64>) -> State<f64> {
     // The energy of turning over is about this.
     let energy = g * ((m1 + m2) * l1 + m2 * l2);
@@ -43,8 +45,8 @@ pub fn state(rng: &mut Rng, &Parameters { m1, m2, l1, l2, g }: &Parameters<f64>)
         .into()
 }
 
-/// Returns `count` pendulums of random [`parameters`], each with a random [`state`]. The numbers
-/// are the same in either precision.
+/// Returns `count` pendulums of random [`parameters`], each with a random [`state`]. Equal seeds
+/// give equal pendulums. The numbers are the same in either precision.
 pub fn pendulums<R: Real>(seed: u64, count: u32) -> impl Iterator<Item = (Pendulum<R>, State<R>)> {
     let mut rng = Rng::with_seed(seed);
     (0..count).map(move |_| {

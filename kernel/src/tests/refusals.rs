@@ -41,7 +41,7 @@ fn periods(fast: u16, slow: u16, lengths: [f64; 2]) -> Result<(), Error> {
     periodic_mass_ratio(fast, slow, lengths).map(drop)
 }
 
-/// Each bad parameter, state, motion or ratio of frequencies must be refused with exactly the
+/// Each bad parameter, step, state, motion or ratio of frequencies must be refused with exactly the
 /// expected error. Zero gravity, and finite states and motions, must be accepted.
 #[test]
 fn errors_contain_the_parameter_and_its_value() {
@@ -164,7 +164,8 @@ fn errors_contain_the_parameter_and_its_value() {
     assert_eq!(good, [Ok(()); 3]);
 }
 
-/// Three errors must be printed exactly as these lines.
+/// `NotPositive`, `TooLarge` and `UnequalRods` must be displayed as exactly the expected lines,
+/// which name the parameter, its value and the limit or reason.
 #[test]
 fn errors_are_printed_in_one_line() {
     // A message names the parameter, its value, and the reason.

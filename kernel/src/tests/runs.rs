@@ -181,8 +181,10 @@ fn energy_stays_within_its_bound<F: Form>() -> Result<(), Error> {
     Ok(())
 }
 
-/// Every form in floating point with steps does ([`energy_stays_within_its_bound`]). Fixed point
-/// checks its own range.
+/// In steps that are far too long, more than half of 200 fast motions must be refused as diverged.
+/// A refused step must not change the run. Before that, the energy H is at most 100 times the
+/// energy above rest of the start, and the directions are 1/2 to 2 long
+/// ([`energy_stays_within_its_bound`]). Every form in floating point with steps is tested.
 #[test]
 fn advance_refuses_an_energy_far_above_that_of_the_start() -> Result<(), Error> {
     energy_stays_within_its_bound::<HamiltonF32>()?;
@@ -251,7 +253,9 @@ fn counts_turns_on_request<F: Form>() -> Result<(), Error> {
     Ok(())
 }
 
-/// Methods that carry directions and a method that carries angles do ([`counts_turns_on_request`]).
+/// A run with counted turns has the same bits as one without. Its angles follow the rods beyond 3
+/// pi, and differ from the others by whole turns; these are within half a turn. A method that
+/// carries angles has the same angles in both ([`counts_turns_on_request`]).
 #[test]
 fn turns_are_counted_on_request() -> Result<(), Error> {
     counts_turns_on_request::<DirectionF32>()?;

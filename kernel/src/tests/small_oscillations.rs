@@ -164,7 +164,8 @@ fn modes_solve_the_matrix_equation_and_motions_have_amplitudes_and_phases() {
 
 /// The mass ratio for a given ratio of the frequencies is exact for equal rods, where it is a
 /// fraction of two whole numbers. With any rods the modes have that ratio to 8e-15, and after the
-/// common period the linear motion is at its start again within [`PERIOD`].
+/// common period the two angles of the linear motion are at their start again, within 1e-13 rad
+/// together ([`PERIOD`]).
 #[test]
 fn motions_with_a_periodic_mass_ratio_repeat() {
     for (fast, slow, lengths @ [l1, l2], exact) in [

@@ -72,7 +72,9 @@ fn hold<R: Real>() {
     }
 }
 
-/// See [`hold`]. A different bit in a mirrored, scaled or reversed motion fails.
+/// For 200 random pendulums in `f32` and in `f64`, bit for bit: reversed momenta reverse the
+/// velocities and keep the rates of the momenta, the mirror image of a start gives the mirrored
+/// motion, and scaled lengths, gravity or masses give the scaled motion ([`hold`]).
 #[test]
 fn symmetries_hold_in_either_precision() {
     hold::<f32>();
@@ -80,8 +82,8 @@ fn symmetries_hold_in_either_precision() {
 }
 
 /// 200 random motions in `f64` run for 256 steps, and again with reversed momenta. The angles must
-/// then equal the initial ones within [`tolerances::RETURN`] rad, and the momenta within the same
-/// share of their bounds.
+/// then equal the initial ones within 1e-10 rad ([`tolerances::RETURN`]), and the momenta within
+/// the same share of their bounds.
 #[test]
 fn reversed_momenta_return_to_the_start() {
     for (pendulum, start) in random::pendulums::<f64>(1, 200) {

@@ -40,8 +40,8 @@ fn ulps(value: f64, truth: f64) -> f64 {
     (value - truth).abs() / one
 }
 
-/// The larger absolute error of sine and cosine is at most [`NEAR`] for every 1009th float of
-/// [-pi, pi], and at most [`FAR`] for every 251st float of [-1e4, 1e4].
+/// The larger absolute error of sine and cosine in `f32` is at most 9e-8 ([`NEAR`]) for every
+/// 1009th float of [-pi, pi], and at most 1e-7 ([`FAR`]) for every 251st float of [-1e4, 1e4].
 #[test]
 fn own_f32_is_within_its_bounds_on_a_stride_of_the_floats() {
     for (limit, stride, bound) in [(core::f32::consts::PI, 1009, NEAR), (1e4, 251, FAR)] {
@@ -50,7 +50,8 @@ fn own_f32_is_within_its_bounds_on_a_stride_of_the_floats() {
     }
 }
 
-/// The larger absolute error of sine and cosine is at most [`NEAR`].
+/// The larger absolute error of sine and cosine in `f32` is at most 9e-8 ([`NEAR`]) for every float
+/// of [-pi, pi].
 #[test]
 #[ignore = "two minutes: every float of [-pi, pi]"]
 fn own_f32_is_within_its_bound_on_every_float_to_pi() {
@@ -60,7 +61,7 @@ fn own_f32_is_within_its_bound_on_every_float_to_pi() {
 }
 
 /// The float nearest to each positive multiple of pi/2 up to 1e4, and its two neighbours, have
-/// absolute errors of sine and cosine of at most [`FAR`].
+/// absolute errors of sine and cosine of at most 1e-7 ([`FAR`]).
 #[test]
 fn own_f32_is_within_its_bound_near_multiples_of_half_pi() {
     for k in 1..=6366 {
@@ -79,7 +80,7 @@ fn own_f32_is_within_its_bound_near_multiples_of_half_pi() {
 }
 
 /// Some nine million arguments up to 1.65e6 are compared with the standard library. Sine and cosine
-/// may each differ by [`ULPS`], in units of the last place of the result.
+/// may each differ by 1.4 units of the last place of the result ([`ULPS`]).
 #[test]
 fn own_f64_is_within_two_units_of_the_last_place() {
     let mut worst = 0.0_f64;
@@ -103,9 +104,9 @@ fn own_f64_is_within_two_units_of_the_last_place() {
 }
 
 /// A sample of all bit patterns of `f32`: a finite argument gives a sine and a cosine of at most 1
-/// plus an epsilon, infinities and NaN give NaN. Beyond the range of the reduction the results are
-/// those of `libm`, in `f32` and `f64`. The sine of a tiny argument is the argument, and its cosine
-/// is 1.
+/// plus an epsilon, infinities and NaN give NaN, in `f64`, too. Three arguments of each type beyond
+/// the range of the reduction give exactly the results of `libm`. The sine of a tiny argument is
+/// the argument, and its cosine is 1.
 #[test]
 fn every_bit_pattern_has_a_defined_result() {
     for x in (0..=u32::MAX).step_by(65_521).map(f32::from_bits) {

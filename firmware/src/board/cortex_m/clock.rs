@@ -25,8 +25,8 @@ fn SysTick() {
     TICKS.store(ticks().wrapping_add(1), Ordering::Relaxed);
 }
 
-/// Starts a clock of [`TICK_RATE`] ticks per second; `hertz` is the frequency of the processor, at
-/// most 1 GHz, because SysTick has 24 bits.
+/// Starts a clock of [`TICK_RATE`] ticks per second; `hertz` is the frequency of the processor, Hz,
+/// at most 1 GHz, because SysTick has 24 bits. A higher one is not checked.
 ///
 /// The period is rounded down to whole processor cycles: at 50 MHz it is 833,333 instead of
 /// 833,333.3, so that the clock is 0.4 parts per million fast.
@@ -41,7 +41,8 @@ pub fn start(mut systick: SYST, hertz: u32) {
 }
 
 /// Sleeps until the current tick is no longer `last`, and returns the current tick. It may be
-/// several ticks later if the caller was late; then the function returns at once.
+/// several ticks later if the caller was late; then the function returns at once. While the ticks
+/// are not counted, before [`start`] or with interrupts off, it waits for ever.
 pub fn wait_after(last: u32) -> u32 {
     // Interrupts are masked between the test and the sleep, so that an interrupt in between stays
     // pending. A pending interrupt wakes `wfi` even while masked, so no tick is slept through.
@@ -64,7 +65,7 @@ pub fn ticks() -> u32 {
 }
 
 /// Returns a count of processor cycles, for differences. It starts at an arbitrary number and
-/// wraps. Valid after [`start`].
+/// wraps. Valid after [`start`], and while interrupts are off for less than a tick at a time.
 pub fn cycles() -> u32 {
     elapsed(&SysTickTimer, PERIOD.load(Ordering::Relaxed))
 }

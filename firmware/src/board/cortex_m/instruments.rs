@@ -16,7 +16,7 @@ unsafe extern "C" {
 }
 
 /// Starts the parts of the processor: the stack guard, the tick and the cycle counter. `hertz` is
-/// its frequency, and `chip` the identification of the chip, zeros without one. Returns the
+/// its frequency, Hz, and `chip` the identification of the chip, zeros without one. Returns the
 /// measuring functions and the identity.
 pub fn start(core: Peripherals, board: BoardName, hertz: u32, chip: [u32; 4]) -> Instruments {
     guard_stack(core.MPU);

@@ -20,7 +20,8 @@ fn copies() -> &'static [[AtomicU8; MAX_WIRE]; 2] {
     black_box(&KEPT)
 }
 
-/// Writes both copies of the record, in case this frame is the last.
+/// Writes the record in place of the earlier one, in case this frame is the last. It is stored
+/// twice, so that one copy is intact if a reset interrupts the writing.
 #[inline(never)]
 pub fn keep(record: &Record) {
     let bytes = record.write();
@@ -41,7 +42,8 @@ fn kept() -> Option<Record> {
 
 /// Returns the record that was kept across the last reset, with this restart counted. Returns
 /// `None` if no record is intact, or after a reset from outside. `by_watchdog` is the board's own
-/// information about the reset ([`Record::restart`]).
+/// information about the reset ([`Record::restart`]). To be called before the first [`keep`], which
+/// replaces that record; the stored record is not changed.
 pub fn recall(by_watchdog: bool) -> Option<Record> {
     kept()?.restart(by_watchdog)
 }
@@ -52,7 +54,8 @@ pub fn chosen_panel() -> Option<Controller> {
     kept()?.played.panel.chosen
 }
 
-/// Returns the end of the record; `None` if no record is intact.
+/// Returns the second part of the stored record: the scene and the tick of the last frame, and the
+/// cause if [`end`] has recorded one. Returns `None` if no record is intact.
 pub fn last() -> Option<Restarted> {
     kept().map(|record| record.end)
 }

@@ -78,8 +78,9 @@ pub fn guard_stack(unit: MPU) {
 }
 
 /// Returns the addresses of the calls found on the stack from `sp` upwards, the last call first. A
-/// stack pointer within the guard or below counts as the lowest address of the stack. Some of them
-/// may have returned already, because the stack is not cleared.
+/// stack pointer within the guard or below counts as the lowest address of the stack, and one above
+/// the stack gives none. Some of the calls may have returned already, because the stack is not
+/// cleared.
 pub fn calls(sp: u32) -> impl Iterator<Item = u32> {
     let bottom = sp.max(guard().end).next_multiple_of(4);
     let words = (bottom..&raw const _stack_start as u32).step_by(4);

@@ -14,7 +14,7 @@ pub trait TickTimer {
 }
 
 /// Returns the time in counts of the timer since tick 0; wraps. `period` is the number of counts in
-/// a tick.
+/// a tick, which is a period of the timer; it must not be 0.
 ///
 /// The reading is right at any moment: also between the reload of the counter and the interrupt,
 /// and with interrupts masked for less than a period.

@@ -20,8 +20,8 @@ pub trait Watchdog {
     fn feed(&mut self);
 }
 
-/// The ARM watchdog of two stages (SP805 and similar). When its time is over it interrupts. When
-/// the same time is over again it resets the board.
+/// The ARM watchdog of two stages (SP805 and similar). When its time, [`WATCHDOG_SECONDS`], is over
+/// it interrupts. When the same time is over again it resets the board.
 #[derive(Debug)]
 pub struct TwoStage(Device);
 

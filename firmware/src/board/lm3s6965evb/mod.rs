@@ -33,8 +33,8 @@ use pins::{Output, Ssi};
 /// The parts of this board.
 pub type Lm3s6965evb = Board<Ssd0323<'static, Ssi, Output>, Outward, Keys, TwoStage>;
 
-/// Sets the board up. Returns `None` the second time. A panel that does not take its settings is
-/// only logged.
+/// Sets the board up; the tick and the watchdog run from then on. Returns `None` the second time. A
+/// panel that does not take its settings is only logged.
 pub fn take() -> Option<Lm3s6965evb> {
     let core = Peripherals::take()?;
     let hertz = system::start();

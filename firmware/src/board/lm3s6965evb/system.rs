@@ -48,8 +48,9 @@ const DIVIDER_FIELD: u32 = 0xF << 23;
 const DIVIDE_BY_4: u32 = 3 << 23;
 const PLL_LOCKED: u32 = 1 << 6;
 
-/// Starts the clock and powers the peripherals. Returns the frequency of the processor, Hz. If the
-/// PLL does not lock, that is the crystal's frequency: slow, but running.
+/// Starts the clock and powers the peripherals. Returns the frequency of the processor, Hz: 50 MHz.
+/// If the PLL does not lock, it is the crystal's 8 MHz: slow, but running. First the crystal
+/// starts, which takes 0.13 s.
 pub fn start() -> u32 {
     // An erratum of this revision: at the regulator's 2.5 V the chip may fail once the PLL runs.
     // The vendor's programs for this board begin with this setting (`REVISION_IS_A2`,
@@ -97,8 +98,8 @@ pub fn chip() -> [u32; 4] {
     [DID0.read(), DID1.read(), 0, 0]
 }
 
-/// Returns true if the watchdog caused the last reset. Call it only once, because the register
-/// accumulates the causes. In QEMU it always returns false.
+/// Returns true if the watchdog caused the last reset. Call it only once, because it clears the
+/// causes, which the register accumulates. In QEMU it always returns false.
 pub fn reset_by_watchdog() -> bool {
     let causes = RESC.read();
     RESC.write(0);
@@ -112,7 +113,8 @@ const TEST: Register = WATCHDOG_TIMER.register(0x418);
 const STALL: u32 = 1 << 8;
 const CALL: u16 = FIRST + 18;
 
-/// Starts the watchdog, which counts at `hertz`, the processor's clock.
+/// Starts the watchdog, which counts at `hertz`, the processor's clock, Hz. It must be fed from now
+/// on ([`TwoStage`]). It stops while a debugger halts the processor.
 pub fn start_watchdog(hertz: u32) -> TwoStage {
     // The registers stay unlocked until the next feeding.
     watchdog::stall_by(|stalls| {

@@ -46,8 +46,8 @@ const CRYSTAL: u32 = 12_000_000;
 /// The parts of this board.
 pub type Pico = Board<OledI2c<'static, Bus<I2c0>>, Outward, PinKeys, Watchdog>;
 
-/// Sets the board up. Returns `None` the second time, or if its clocks, the UART or USB do not
-/// start. The panel and the buttons may be absent.
+/// Sets the board up; the tick and the watchdog run from then on. Returns `None` the second time,
+/// or if its clocks, the UART or USB do not start. The panel and the buttons may be absent.
 pub fn take() -> Option<Pico> {
     let core = cortex_m::Peripherals::take()?;
     let mut chip = pac::Peripherals::take()?;

@@ -47,7 +47,8 @@ const UNIQUE_NUMBER: *const [u32; 3] = core::ptr::without_provenance(0x1fff_7a10
 /// The parts of this board.
 pub type Stm32f405 = Board<OledI2c<'static, Bus<I2c1>>, Outward, OneKey, IndependentWatchdog>;
 
-/// Sets the board up. Returns `None` the second time.
+/// Sets the board up; the tick and the watchdog run from then on. Returns `None` the second time.
+/// The panel and the button may be absent.
 pub fn take() -> Option<Stm32f405> {
     let core = cortex_m::Peripherals::take()?;
     let chip = pac::Peripherals::take()?;
@@ -80,7 +81,7 @@ pub fn take() -> Option<Stm32f405> {
 }
 
 /// The only button, which is the select button. A tap starts the scene again; held, it selects the
-/// next scene.
+/// next scene, and after taps it has the other effects of [`Controls`](crate::app::Controls).
 pub struct OneKey(PC7);
 
 impl Buttons for OneKey {

@@ -48,8 +48,8 @@ pub struct Inbox {
 
 impl Inbox {
     /// Takes a byte and returns the message that it completes. `None` means that a message is not
-    /// complete, or that it was damaged and is counted. The first damaged message of a connection
-    /// is not counted, because the connection may have begun within it.
+    /// complete, or that it was damaged and is counted. If the first message after [`Self::join`]
+    /// is damaged, it is not counted, because the connection may have begun within it.
     pub fn take(&mut self, byte: u8) -> Option<ToHost> {
         // A message is complete, damaged, or not complete yet.
         let message = match self

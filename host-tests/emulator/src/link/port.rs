@@ -93,9 +93,12 @@ impl Port {
         Ok(port)
     }
 
-    /// Returns the messages that have arrived since the last call. A port that has gone is opened
-    /// again when it is back. It is empty while the port is gone. This waits for at most a
-    /// millisecond after the last byte.
+    /// Returns the messages that have arrived since the last call, at most about 64 KiB of them. A
+    /// port that has gone is opened again when it is back, at most four times a second. The result
+    /// is empty while the port is gone. This waits for at most a millisecond after the last byte.
+    ///
+    /// It also asks the board for its last restart when [`Restarts`] requires it. That question has
+    /// the request number 65534, and its answer is among the messages.
     pub fn messages(&mut self) -> Vec<ToHost> {
         if self.open.is_none() {
             self.reopen();
@@ -296,7 +299,8 @@ fn only_one<P>(
     }
 }
 
-/// Makes a board at this port restart in its boot loader, by closing the port at a certain speed.
+/// Makes a board at this port restart in its boot loader, by closing the port at
+/// [`BAUD_OF_BOOT_LOADER`]. Does not wait for the restart.
 ///
 /// # Errors
 ///

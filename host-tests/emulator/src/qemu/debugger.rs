@@ -87,7 +87,7 @@ impl Machine {
     /// Runs to the next frame while `read` reads QEMU's log. The log contains the processor's
     /// registers before every instruction, hundreds of bytes each time. Returns the result of
     /// `read`. Errors are those of `read`, and as in [`Self::run_to_frame`]. The messages up to the
-    /// frame are dropped.
+    /// frame are dropped. The machine must be stopped, and is stopped afterwards.
     pub fn next_frame_logged<T: Send>(
         &mut self,
         read: impl FnOnce(File) -> anyhow::Result<T> + Send,
@@ -126,22 +126,23 @@ impl Machine {
         self.single_step(single_step)
     }
 
-    /// Runs until the instruction at this address is about to be executed. If the machine is
-    /// stopped there, runs until the next time. If the program never comes there, this ends with an
-    /// error at the time limit of the machine.
+    /// Runs until the instruction at this address is about to be executed. The machine must be
+    /// stopped. If it is stopped there, runs until the next time. If the program never comes there,
+    /// this ends with an error at the time limit of the machine.
     pub fn run_to(&mut self, address: u32) -> anyhow::Result<()> {
         self.run_until(&[address])
     }
 
-    /// Lets the machine run freely. This is twenty times as fast as from frame to frame, because
-    /// QEMU discards its translated code whenever it is stopped at a breakpoint. The machine must
-    /// be stopped; [`Self::stop`] stops it again.
+    /// Lets the machine run freely and returns at once. This is twenty times as fast as from frame
+    /// to frame, because QEMU discards its translated code whenever it is stopped at a breakpoint.
+    /// The machine must be stopped; [`Self::stop`] stops it again.
     pub fn run(&mut self) -> anyhow::Result<&mut Self> {
         self.leave(&[])?;
         self.say("c").map(|()| self)
     }
 
-    /// Stops the running machine at any place. The machine must be running ([`Self::run`]).
+    /// Stops the running machine at any place. The machine must be running ([`Self::run`]); else
+    /// this waits until QEMU's time limit, which is an error.
     pub fn stop(&mut self) -> anyhow::Result<()> {
         self.debugger.sender.write_all(b"\x03")?;
         let reply = self.hear()?;

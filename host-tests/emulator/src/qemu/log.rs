@@ -10,8 +10,9 @@ use defmt_decoder::{DecodeError, Frame, Locations, StreamDecoder, Table};
 /// A line of the output of the firmware or of QEMU.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct LogLine {
-    /// The defmt level in lower case. It is `None` for plain text, which comes from QEMU or from a
-    /// crash report of the firmware.
+    /// The defmt level in lower case, or `print` for a line without a level. It is `None` for plain
+    /// text, which comes from QEMU or from a crash report of the firmware, or reports that the log
+    /// is damaged.
     pub level: Option<String>,
     /// The message.
     pub text: String,
@@ -82,7 +83,7 @@ impl LogDecoder {
     }
 
     /// Takes the next bytes and returns the lines that they complete. If the stream is damaged, one
-    /// line reports it.
+    /// line reports it; if the stream has no marks to start again, no line follows.
     pub fn take(&mut self, bytes: &[u8]) -> Vec<LogLine> {
         let mut lines = Vec::new();
         let Some(stream) = &mut self.stream else {

@@ -55,7 +55,8 @@ const CHATTER: [&str; 2] = ["Timer with period zero, disabling", "has no peer"];
 ///
 /// Every method that waits also reads all output of the board, because QEMU stops while its output
 /// is not read. Dropping the machine ends QEMU. All methods that wait return an error, with QEMU's
-/// last lines, if QEMU ends first, such as at its time limit.
+/// last lines, if QEMU ends first, such as at its time limit. A command or a memory access that
+/// QEMU refuses is an error, too.
 pub struct Machine {
     /// True if the link is read. If not, the board's output fills the pipe and then its serial
     /// port.

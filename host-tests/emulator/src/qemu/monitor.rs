@@ -47,9 +47,9 @@ impl Machine {
             .map(drop)
     }
 
-    /// Presses and releases every button once, too early for the firmware to see a command. This
-    /// board's emulated hardware distinguishes a released button from a pressed one only after
-    /// that.
+    /// Presses and releases every button once, so quickly that the firmware sees no command. The
+    /// emulated hardware of the LM3S6965 distinguishes a released button from a pressed one only
+    /// after that.
     pub fn wake_keys(&mut self) -> anyhow::Result<()> {
         Key::ALL.iter().try_for_each(|&key| {
             [true, false]

@@ -123,7 +123,8 @@ impl Toolchain {
 
     /// Builds the image of the golden bits for a target. If `double` names a processor, the image
     /// is built for that processor, which computes `f64` in hardware. Returns the image: an ELF
-    /// file or, for WebAssembly, a module. Concurrent builds take turns.
+    /// file or, for WebAssembly, a module. Concurrent builds take turns. The tools are those of
+    /// [`set_up_for`] this target. An error contains the output of the compiler.
     pub fn build_cores(&self, target: &str, double: Option<&str>) -> anyhow::Result<PathBuf> {
         // Cargo gives both kinds of image the same name. Each is copied before the next build
         // replaces it.
@@ -160,8 +161,9 @@ impl Toolchain {
         self.finish(command, &format!("building cores for {names}"))
     }
 
-    /// Builds the images of the golden bits up to the first target that is not available: without a
-    /// network, each further one would wait for it. An error is a build that fails.
+    /// Builds the [`CORE_IMAGES`] up to the first target whose tools cannot be provided
+    /// ([`set_up_for`]) or need another compiler: without a network, each further one would wait
+    /// for it. An error is a build that fails.
     pub fn build_cores_ahead(&self) -> anyhow::Result<()> {
         let is_ready = |target: &str| {
             set_up_for(target).is_ok_and(|other| other.from_source == self.from_source)
@@ -222,7 +224,8 @@ impl Toolchain {
     }
 
     /// Builds the application as a WebAssembly module, without names and debug information. Returns
-    /// its file.
+    /// its file. The tools are those of [`set_up_web`](super::set_up_web). An error contains the
+    /// output of the compiler.
     pub fn build_web(&self) -> anyhow::Result<PathBuf> {
         let mut command = self.for_targets("build", &[WASM])?;
         command
@@ -242,9 +245,9 @@ impl Toolchain {
         every_board().try_for_each(|board| self.build_for(board).map(drop))
     }
 
-    /// Checks the firmware's binaries and its examples for microcontrollers, for every target. A
-    /// warning is an error, including clippy's warnings if the compiler has clippy. The error
-    /// contains the warnings.
+    /// Checks the firmware's binaries and its examples for microcontrollers, for all [`TARGETS`]. A
+    /// warning is an error. Clippy checks them, and must be installed, unless Debian's compiler is
+    /// used. The error contains the warnings of the first target that has any.
     pub fn check(&self) -> anyhow::Result<()> {
         for target in TARGETS {
             // All boards of a target are checked at once, with the features of all.

@@ -1,11 +1,14 @@
 //! The equations of motion: recurrences for the power series of a solution, and discs in complex
 //! time that bound its remainder.
+//!
+//! A [`Fixed`] is a ball, a midpoint with a bound of its error. A result that leaves its range is
+//! unknown (its radius is infinite), and so is every result from an unknown one.
 
 use std::array::from_fn;
 
 use super::Fixed;
 
-/// The constants of the equations, with time in any unit T.
+/// The constants of the equations, with time in any unit T and any whole number e.
 ///
 /// With D = a1 - a2, S and C its sine and cosine, M = (m1 + m2)/2^e, P1 = p1 T/(M l1^2) and P2 = p2
 /// T/(m2 l2^2):
@@ -30,7 +33,7 @@ pub struct Equations {
 impl Equations {
     /// Returns the coefficients 0 to `order` of the power series of the six numbers (sin a1, cos
     /// a1, S, C, P1, P2) from `start`. The time of the series is in units of `step` T. The first
-    /// index is the number, the second the power.
+    /// index is the number, the second the power. Coefficients of powers above 48 are unknown.
     pub fn series(&self, start: &[Fixed; 6], order: usize, step: Fixed) -> [Vec<Fixed>; 6] {
         let &Self {
             upper,

@@ -66,8 +66,8 @@ impl Fixed {
         }
     }
 
-    /// Makes a ball of an `f64` number, with all its bits down to 2^-116. A number outside the
-    /// range or NaN gives an unknown ball.
+    /// Makes a ball of an `f64` number, with all its bits down to 2^-116; smaller bits are covered
+    /// by the radius. A number outside the range or NaN gives an unknown ball.
     pub fn of(number: f64) -> Self {
         let scaled = number / ULP;
         let middle = if scaled.abs() < LIMIT as f64 {
@@ -78,8 +78,8 @@ impl Fixed {
         Self::new(middle, if scaled.fract() == 0.0 { 0.0 } else { 1.0 })
     }
 
-    /// Makes a ball of a fraction times 2^`exponent`, computed bit by bit. The denominator must not
-    /// be 0. A value outside the range gives an unknown ball.
+    /// Makes a ball of a fraction times 2^`exponent`, computed bit by bit. A denominator of 0
+    /// panics. A value outside the range, or an exponent below -116, gives an unknown ball.
     pub fn fraction(numerator: i64, denominator: u64, exponent: i32) -> Self {
         let above = u128::from(numerator.unsigned_abs());
         let below = u128::from(denominator);
@@ -109,13 +109,14 @@ impl Fixed {
         }
     }
 
-    /// Returns the `f64` nearest to the midpoint.
+    /// Returns the `f64` nearest to the midpoint. It is 0 for an unknown ball.
     pub fn about(self) -> f64 {
         self.middle as f64 * ULP
     }
 
-    /// Returns the largest distance of the true number from the midpoint. It is infinite if the
-    /// number is unknown.
+    /// Returns an upper bound of the distance of the true number from the midpoint, as a number
+    /// (not in units of the last place). It is slightly above 0 for an exact number, and infinite
+    /// if the number is unknown.
     pub fn radius(self) -> f64 {
         up(self.radius * ULP)
     }
@@ -126,7 +127,8 @@ impl Fixed {
         up(self.about().abs() + self.radius())
     }
 
-    /// Returns the ball with its radius increased by `radius`.
+    /// Returns the ball with its radius increased by `radius` or slightly more. `radius` is a
+    /// number as [`Self::radius`] returns it, not negative. An infinite one gives an unknown ball.
     pub fn wider(self, radius: f64) -> Self {
         Self::new(self.middle, self.radius + up(radius / ULP))
     }
@@ -140,8 +142,9 @@ impl Fixed {
         (up(self.radius) < (self.middle as f64).abs()).then_some(self.middle > 0)
     }
 
-    /// Returns the decimal with all known digits, but no more than `most` significant ones. The
-    /// last digit is accurate to two units. The ball must not be unknown.
+    /// Returns the decimal with all known digits, but no more than `most` significant ones. It is
+    /// cut, not rounded, and the last digit is accurate to two units. The digits before the point
+    /// and the point itself are always written. The ball must not be unknown.
     pub fn decimal(self, most: f64) -> String {
         // Decimals down to the radius, but not more than `most` significant digits.
         let places = (-self.radius().log10())
@@ -160,7 +163,7 @@ impl Fixed {
         )
     }
 
-    /// Divides by a whole number. It must not be 0.
+    /// Divides by a whole number. A divisor of 0 panics.
     pub fn over(self, whole: u32) -> Self {
         Self::new(
             self.middle / i128::from(whole),

@@ -33,7 +33,7 @@ const MOST_HALVINGS: i32 = 24;
 /// The precision of the arithmetic.
 #[derive(Clone, Copy, Debug)]
 pub struct Fineness {
-    /// The largest number of terms of the midpoint's power series, up to 48.
+    /// The largest number of terms of the midpoint's power series, 2 to 48.
     pub terms: usize,
     /// The highest power of the derivatives' power series.
     pub tangents: usize,
@@ -79,8 +79,8 @@ pub struct Enclosure {
 
 impl Enclosure {
     /// Makes an enclosure of all motions that begin in `start`, with 2^`frame.0` units of time and
-    /// `frame.1` frames in a second. `start` has the six numbers of the struct. Numbers that are
-    /// unknown or out of range make the first [`advance`](Self::advance) fail.
+    /// `frame.1` frames, at least 1, in a second. `start` has the six numbers of the struct.
+    /// Numbers that are unknown or out of range make the first [`advance`](Self::advance) fail.
     pub fn new(
         equations: Equations,
         frame: (i32, u16),
@@ -150,7 +150,7 @@ impl Enclosure {
     }
 
     /// Advances like [`advance`](Self::advance), and returns `None` in the middle of the frame if
-    /// `stopped` is not zero.
+    /// `stopped` is not zero. The set must not be used any more after either `None`.
     pub fn advance_unless(&mut self, stopped: &AtomicUsize) -> Option<()> {
         // The frame is divided into halves until every piece can be enclosed.
         let mut left = vec![0];

@@ -8,7 +8,7 @@ use super::equations::Equations;
 use super::fixed::Fixed;
 use super::{Enclosure, Fineness};
 
-/// Returns the fastest rate in a motion, 1/s: the fast normal frequency or the largest angular
+/// Returns the fastest rate in a motion, rad/s: the fast normal frequency or the largest angular
 /// velocity that its energy allows. It is 1 if the kernel refuses the parameters.
 pub fn fastest_rate(parameters: &Parameters<f64>, motion: &Motion<f64>) -> f64 {
     Pendulum::new(parameters).map_or(1.0, |pendulum| {
@@ -43,7 +43,7 @@ impl Start {
         }
     }
 
-    /// Returns the set that contains the start, for `rate` frames a second.
+    /// Returns the set that contains the start, for `rate` frames a second, at least 1.
     ///
     /// The unit of time is so short that no rod turns by more than 4 rad in it, and 2^e is near the
     /// root of (m1 + m2)/m1. The numbers of the equations are then neither large nor small, for

@@ -218,7 +218,8 @@ fn only_permitted_code_can_panic() {
     }
 }
 
-/// A check of the search: this image contains a panic.
+/// The search finds a panic in the program `inject-panic`, which contains one, and names its
+/// function as the owner.
 #[test]
 fn an_injected_panic_is_found() {
     let toolchain = crate::support::toolchain();

@@ -8,10 +8,11 @@ use firmware::graphics::{Bitmap, HEIGHT, WIDTH};
 /// The number of bits that a byte takes with its acknowledgement; a start or stop takes 1.
 pub const BYTE: u32 = 9;
 
-/// The time of a byte on the bus, ns: at 400 kHz, as measured on boards with 4.7 kOhm (346 kHz),
-/// and with the 10 kOhm of many modules (266 kHz).
+/// The time of a byte on the bus at 400 kHz, ns.
 pub const IDEAL: u32 = 22_500;
+/// The time of a byte on the bus as measured on boards with pull-ups of 4.7 kOhm (346 kHz), ns.
 pub const USUAL: u32 = 26_000;
+/// The time of a byte on the bus with the pull-ups of 10 kOhm of many modules (266 kHz), ns.
 pub const WORST: u32 = 34_000;
 
 /// The bus as an interrupt drives it, with the panel at its end.
@@ -26,13 +27,14 @@ pub struct Line {
     pub taken: u32,
     /// True if another device holds the clock low.
     pub hangs: bool,
+    /// The number of transfers that were aborted.
     pub freed: u32,
     /// The number of transfers.
     pub sent: u32,
 }
 
 impl Line {
-    /// Returns an idle bus of the usual speed with this panel.
+    /// Returns an idle bus of the speed [`USUAL`] with this panel.
     pub fn to(panel: Controller) -> Self {
         Self::at(USUAL, panel)
     }
@@ -52,12 +54,14 @@ impl Line {
         }
     }
 
-    /// Advances the time by a tick.
+    /// Advances the time by a tick of 1/60 s.
     pub fn run_tick(&mut self) {
         self.run(1_000_000_000 / TICK_RATE / (self.byte_nanos / BYTE));
     }
 
-    /// Advances the time by `bits` bits on the bus.
+    /// Advances the time by `bits` bits on the bus, and makes as much of the transfer as fits. An
+    /// absent panel, another address and a refused read end it with the error [`SILENCE`]. A bus
+    /// that hangs makes no progress.
     pub fn run(&mut self, bits: u32) {
         self.time = if self.hangs {
             0
@@ -274,7 +278,8 @@ impl Controller {
         Self { plugged_in, ..self }
     }
 
-    /// Interrupts the power for a moment.
+    /// Interrupts the power for a moment. Only kind and address remain; the display is off, and the
+    /// controller is plugged in.
     pub fn lose_power(&mut self) {
         *self = Self::new(self.kind, self.address);
     }
@@ -293,7 +298,9 @@ impl Controller {
         self.last_read
     }
 
-    /// Returns the bytes that are read, or `None` if the read is not acknowledged.
+    /// Returns the `count` bytes that are read, or `None` if the read is not acknowledged. After
+    /// data, if the memory can be read, they are a dummy byte and the bytes of the memory from the
+    /// present column on; otherwise all are the status. A read of no bytes is always acknowledged.
     pub fn read(&mut self, count: usize) -> Option<Vec<u8>> {
         // A read of no bytes does not read the status.
         let status = (count > 0 && self.kind.says != Says::Nothing)
@@ -405,7 +412,8 @@ impl Controller {
         }
     }
 
-    /// Returns true if each page of the picture is from one of these frames, and the display is on.
+    /// Returns true if each byte of the picture is from one of these frames, and the display is on.
+    /// A byte that is unknown since power-on is from none.
     pub fn shows_any_of(&self, frames: &[&Bitmap]) -> bool {
         self.on && self.late_pages(frames).is_empty()
     }
@@ -415,7 +423,8 @@ impl Controller {
         self.shows_any_of(&[frame])
     }
 
-    /// Returns the pages with a byte that is in none of these frames.
+    /// Returns the pages, counted from 0 at the top, with a byte that is in none of these frames,
+    /// or is unknown since power-on.
     pub fn late_pages(&self, frames: &[&Bitmap]) -> Vec<usize> {
         let Kind { columns, left, .. } = self.kind;
         // The part of a page that the panel shows.

@@ -120,7 +120,8 @@ pub struct CountOptions {
 }
 
 /// Counts as the options demand and prints a row for each method and board, a listing, or the cost
-/// of a call. Options that cannot be served are [`Refused`] before anything is built.
+/// of a call. Options that cannot be served are [`Refused`] before anything is built. With `--elf`
+/// a function that cannot be counted is [`Refused`], too, and a program that fails is an error.
 pub fn run(options: &CountOptions) -> anyhow::Result<()> {
     if let (Some(elf), Some(function)) = (&options.elf, &options.function) {
         return count_calls(&toolchain::set_up()?, options, elf, function);

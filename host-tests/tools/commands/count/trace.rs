@@ -53,7 +53,7 @@ pub fn one_of_each_core() -> impl Iterator<Item = &'static Board> {
 }
 
 impl Target {
-    /// Builds the default program, `measure`, for this board.
+    /// Builds the default program, `measure`, for this board. An error means that the build fails.
     pub fn build(toolchain: &Toolchain, board: &'static Board) -> Result<Self> {
         Self::of(toolchain, board, toolchain.build("measure", board.target)?)
     }
@@ -71,7 +71,8 @@ impl Target {
         })
     }
 
-    /// Returns the size of the program in the flash, bytes: code, constants and initial values.
+    /// Returns the size of the program in the flash, bytes: code, constants and initial values, and
+    /// gaps between them. An error is one of [`flash_image`].
     pub fn flash_bytes(&self) -> Result<usize> {
         Ok(flash_image(&std::fs::read(&self.elf)?)?.1.len())
     }
@@ -84,9 +85,10 @@ impl Target {
             .collect()
     }
 
-    /// Runs `request` at full speed. Returns its CRC and the ticks of the board's clock under
-    /// `-icount`, where an instruction takes 1 ns. A program that prints anything else has failed,
-    /// and the error contains its output.
+    /// Runs `request` at full speed. Returns its CRC and the ticks of the board's SysTick, at the
+    /// processor's clock after reset, under `-icount`, where an instruction takes 1 ns. After 2^24
+    /// ticks they begin again from 0. A program that prints anything else has failed, and the error
+    /// contains its output.
     pub fn run(&self, request: &Request) -> Result<(u32, u64)> {
         // The program prints the CRC in hexadecimal digits and then the ticks.
         let output = self.output(request)?;
@@ -205,9 +207,10 @@ pub fn counted<'a>(target: &'a Target, request: &Request) -> Result<Calls<'a>> {
 
 /// Counts the calls of `function` until the program on `target` ends, or until `limit` has passed.
 ///
-/// Returns the function, the cost of each call that returned, and the end of the program. It is an
-/// error if the program has no such function or no vectors for this board, and if no call has
-/// returned, unless the program failed.
+/// Returns the function, the cost of each call that returned, in order and with interrupts, and the
+/// end of the program. It is an error if the program has no such function or no vectors for this
+/// board, if a call executes an instruction without a known timing, and if no call has returned,
+/// unless the program failed.
 pub fn calls_of<'a>(
     target: &'a Target,
     function: &str,

@@ -41,7 +41,7 @@ pub fn start() -> State<f64> {
 }
 
 /// Returns the paths by the right equations and by the misprinted ones, with `refinement` times the
-/// figure's steps; 1 is the figure itself.
+/// figure's steps; 1 is the figure itself, and 0 is not possible.
 pub fn paths(refinement: u32) -> Result<[Path; 2], Error> {
     let pendulum = pendulum()?;
     let right = path(&pendulum, refinement, |z| pendulum.derivatives(z));

@@ -38,7 +38,8 @@ pub fn folder() -> PathBuf {
     workspace().join("host-tests/pictures")
 }
 
-/// Returns every figure: the name of its file in that folder, and its content.
+/// Returns every figure: the path of its file relative to [`folder`], such as
+/// `figures/figure-2.svg`, and its content.
 pub fn figures() -> Result<Vec<(String, String)>> {
     let [light, equal, heavy] = small::MASS_RATIOS;
     let figures = [

@@ -1,4 +1,7 @@
 //! A figure on paper: an SVG file with the same bytes in every run.
+//!
+//! A unit of length is as wide as a pixel of a common screen. It has 8 dots, which are the pixels
+//! of the drawing areas.
 
 use anyhow::Result;
 use plotters::coord::Shift;
@@ -16,8 +19,9 @@ const TYPEFACE: &str = "sans-serif";
 pub const TEXT: RGBColor = RGBColor(34, 34, 34);
 /// The colour of the lines of a grid, a light grey.
 pub const GRID: RGBColor = RGBColor(225, 225, 225);
-/// Two colours that can be distinguished without colour vision.
+/// The colour of the first curve. It and [`ORANGE`] can be distinguished without colour vision.
 pub const BLUE: RGBColor = RGBColor(0, 95, 175);
+/// The colour of the second curve.
 pub const ORANGE: RGBColor = RGBColor(205, 85, 15);
 
 /// A rectangle of a figure that is drawn on.
@@ -25,7 +29,7 @@ pub type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 /// A chart with two linear axes.
 pub type Axes<'a> = ChartContext<'a, SVGBackend<'a>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
 
-/// Returns a length in dots; `length` is in units ([`DOTS`]).
+/// Returns a length in dots, 8 times `length`, which is in units.
 pub const fn units(length: u32) -> u32 {
     length * DOTS
 }

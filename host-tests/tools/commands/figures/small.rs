@@ -60,7 +60,8 @@ pub fn points(modes: Modes<f64>) -> Vec<CurvePoint> {
     (0..=POINTS).map(point).collect()
 }
 
-/// Returns figure `number`, both angles over time for a mass ratio, as an SVG file.
+/// Returns figure `number`, both angles over time for a mass ratio, as an SVG file. `number` is
+/// only for the title. An error is one of [`modes`], or the figure cannot be drawn.
 pub fn figure(number: u32, mass_ratio: f64) -> Result<String> {
     let modes = modes(mass_ratio)?;
     let points = points(modes);

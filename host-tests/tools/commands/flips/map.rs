@@ -110,7 +110,7 @@ impl Map {
 
     /// Returns the flips of [`Map::starts`], in that order. `tick` is called by several threads.
     /// Each call receives the number of starts that were completed by that thread since its last
-    /// call.
+    /// call. An error means that an angle is not finite.
     pub fn points(&self, tick: impl Fn(usize) + Sync) -> Result<Vec<FlipPair>, Error> {
         let starts = self.starts();
 

@@ -182,9 +182,10 @@ fn chip() -> impl TypedValueParser<Value = Chip> {
     })
 }
 
-/// Every chip; the first is the default. They are the LM3S6965 without a floating-point unit, the
-/// STM32F405 with a floating-point unit for `f32`, the slowest board's chip with such a unit, and
-/// the chip of the Raspberry Pi Pico, which multiplies 32 bits only.
+/// Every chip; the first is the default. They are `m3`, the LM3S6965 without a floating-point unit
+/// at 50 MHz; `m4f`, the STM32F405 with a floating-point unit for `f32` at 168 MHz; `slow-m4f`, the
+/// slowest board's chip with such a unit at 25 MHz; and `pico`, the chip of the Raspberry Pi Pico
+/// at 125 MHz, which multiplies 32 bits only.
 pub const CHIPS: [Chip; 4] = [
     Chip {
         name: "m3",

@@ -23,7 +23,7 @@ pub struct Scene {
 /// The largest number of states that are compared with the reference in each second.
 pub const SAMPLES: u32 = 4;
 
-/// A regular and a chaotic motion.
+/// A regular motion from 0.5 rad for 10 s, and a chaotic one from 2 rad for 5 s.
 pub const SCENES: [Scene; 2] = [
     Scene {
         name: "regular",
@@ -36,7 +36,7 @@ pub const SCENES: [Scene; 2] = [
         duration: 5,
     },
 ];
-/// The regular motion for ten times as long.
+/// The regular motion from 0.5 rad for ten times as long, 100 s.
 pub const LONG: Scene = Scene {
     name: "regular-long",
     angle: 0.5,
@@ -82,8 +82,8 @@ fn samples(rate: u32) -> u32 {
         .unwrap_or(1)
 }
 
-/// Returns the request for `method` through `scene` with `rate` steps a second. It requests
-/// [`SAMPLES`] states per second, or for fewer if these do not fall on whole steps.
+/// Returns the request for `method` through `scene` with `rate` steps a second, at least 1. It
+/// requests [`SAMPLES`] states per second, or 2 or 1 if these do not fall on whole steps.
 pub fn request(method: Method, scene: &Scene, rate: u32) -> Request {
     Request {
         method,

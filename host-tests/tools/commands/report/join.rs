@@ -59,7 +59,8 @@ impl Point {
 
 /// Returns the points of every method and of every program in C, through the scenes on all targets.
 /// The closed forms are left out, because their error comes from the linear equations. The long
-/// scene has the typical number of steps. Also returns a line for each missing program.
+/// scene has the typical number of steps. Also returns a line for each missing program. An error
+/// means that QEMU or a program on a target fails.
 pub fn join(toolchain: &Toolchain, targets: &[Target]) -> Result<(Vec<Point>, Vec<String>)> {
     let scenes = [&SCENES[0], &SCENES[1], &LONG]
         .map(|scene| (scene, accuracy::exact(scene, SAMPLES * scene.duration)));

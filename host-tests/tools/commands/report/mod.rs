@@ -48,7 +48,8 @@ pub struct ReportOptions {
 }
 
 /// Writes the table and the charts, and prints the advice. With `--readme` it is an error if a
-/// program in C could not be built; the READMEs are then not changed.
+/// program in C could not be built; the READMEs are then not changed, but the other files are
+/// written.
 pub fn run(options: &ReportOptions) -> Result<()> {
     let toolchain = toolchain::set_up()?;
     let folder = options

@@ -234,8 +234,9 @@ impl StartOptions {
         })
     }
 
-    /// Returns the first option whose number has too many digits for [`Self::exact`]. It is empty
-    /// if all are short enough and no gravity is given.
+    /// Returns the first option, with its value, whose number has too many digits for
+    /// [`Self::exact`]. Gravity is not checked: it is the result if all others are short enough and
+    /// it is given. Otherwise the result is empty.
     pub fn too_long(&self) -> String {
         let pairs = [
             ("--masses", Some(&self.masses)),

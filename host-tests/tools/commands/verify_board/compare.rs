@@ -126,7 +126,7 @@ const REQUEST: u16 = u16::MAX;
 
 /// Returns for every method of the boards, in the order of [`ON_BOARDS`], the average cycles of a
 /// step over the first second from rest: from flash and from RAM. `None` means that the board has
-/// no cycle counter or no copy of the method in RAM.
+/// no cycle counter or no copy of the method in RAM. Errors are as in [`Talk::next`].
 pub fn measured(talk: &mut Talk) -> anyhow::Result<Vec<[Option<f64>; 2]>> {
     ON_BOARDS
         .iter()
@@ -136,7 +136,8 @@ pub fn measured(talk: &mut Talk) -> anyhow::Result<Vec<[Option<f64>; 2]>> {
 
 /// Returns the section of the measured cycles ([`measured`]) with the estimate of `cargo count`.
 /// Instructions are counted in QEMU, on a board with the same processor; without such a board, or
-/// without a cycle counter, the estimates are left out. There are no faults.
+/// without a cycle counter, the estimates are left out. There are no faults. An error means that
+/// the tools are missing, or that the build or QEMU fails.
 pub fn cycles(measured: &[[Option<f64>; 2]], board: Option<&Board>) -> anyhow::Result<Section> {
     let note = "Measured with the processor's cycle counter, interrupts off, over 256 steps of the \
                 regular motion: once with the code in flash and, if there is one, once with its \

@@ -80,7 +80,8 @@ fn verdict(difference: Option<String>) -> String {
 }
 
 /// Verifies the board and writes the report. Returns true if there was no fault. An error means
-/// that the board does not answer, a build fails, or the report cannot be written.
+/// that the board does not answer or refuses a request, a build fails, or the report cannot be
+/// written.
 pub fn run(options: &VerifyOptions) -> anyhow::Result<bool> {
     let mut talk = Talk::new(demo::port(&options.port)?)?;
     let identity = talk.ask(protocol::Command::Identify, |answer| {

@@ -33,8 +33,9 @@ impl Display for Refused {
     }
 }
 
-/// Runs a command with the options of the command line. Prints an error if it fails, and returns
-/// its exit code.
+/// Runs a command with the options of the command line. Prints an error to stderr if it fails, and
+/// returns its exit code: 2 for wrong options and [`Refused`], 1 for any other error, else that of
+/// the result of `run`. With `--help` it prints the help and does not call `run`.
 ///
 /// The reader of the output may stop at any time (`| head`). The command then ends quietly and with
 /// success.
@@ -63,7 +64,7 @@ pub fn main<Options: Parser, Done: Termination>(
     }
 }
 
-/// Returns the exit code of a command that checks for faults: success if `well`.
+/// Returns the exit code of a command that checks for faults: success if `well`, else 1.
 pub fn verdict(well: bool) -> ExitCode {
     ExitCode::from(u8::from(!well))
 }

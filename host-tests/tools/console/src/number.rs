@@ -31,14 +31,15 @@ impl Number {
         }
     }
 
-    /// Returns the nearest `f64`.
+    /// Returns the nearest `f64`. A fraction or a quotient may be a few units of the last place
+    /// off, if its exact value is unknown or has numbers of more than 53 bits.
     pub fn value(&self) -> f64 {
         self.value
     }
 
-    /// Returns the exact value, in lowest terms. It is always known if the numerator and the
-    /// denominator, written without exponents, have at most 18 digits. `None` means that only
-    /// [`Number::value`] is known.
+    /// Returns the exact value, in lowest terms. It is always known for a decimal and for a
+    /// fraction of whole numbers, if each number, written without exponents, has at most 18 digits.
+    /// `None` means that only [`Number::value`] is known.
     pub fn exact(&self) -> Option<Fraction> {
         self.fraction
     }
@@ -56,8 +57,8 @@ impl Number {
         count.try_into().ok().filter(|_| parts == 1)
     }
 
-    /// Returns the number divided by `parts`, which must not be 0. The exact value stays known
-    /// unless it becomes too long.
+    /// Returns the number divided by `parts`; by 0 it is infinite or NaN. The exact value stays
+    /// known unless it becomes too long.
     pub fn divided_by(&self, parts: u32) -> Number {
         let fraction = self
             .fraction

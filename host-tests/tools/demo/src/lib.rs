@@ -56,7 +56,8 @@ const LIMIT: [f64; 2] = [60.0, 20.0];
 
 /// Shows the board in the terminal, or runs it without one and prints a summary. Returns true if no
 /// bit differs from the host's and if, on an emulated board that is run frame by frame, nothing
-/// else went wrong. Options that cannot be served are [`Refused`].
+/// else went wrong. Options that cannot be served are [`Refused`]. It is another error if the
+/// emulator ends, if no frame arrives, or if a file cannot be written.
 pub fn run(options: &DemoOptions) -> anyhow::Result<bool> {
     let is_live = !options.headless && stdout().is_terminal() && stdin().is_terminal();
     // All options are checked before anything is built.

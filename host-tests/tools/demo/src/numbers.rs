@@ -13,9 +13,9 @@ use ratatui::widgets::{Axis, Block, Chart, Dataset, GraphType, Paragraph, Sparkl
 
 use super::readings::{Readings, energy_error};
 
-/// The smallest width of the numbers, and the largest, beyond which a value would be too distant
-/// from its name, in columns.
+/// The smallest width of the numbers, in columns.
 pub const NARROWEST: u16 = 15;
+/// The largest width, beyond which a value would be too distant from its name, in columns.
 const WIDEST: u16 = 24;
 /// The number of rows that the numbers need in the narrowest column.
 pub const ROWS: u16 = 13;

@@ -145,7 +145,8 @@ pub type PanelChoice = Option<Controller>;
 
 impl DemoOptions {
     /// Refuses requests that are known to fail before anything is built: files that cannot be
-    /// written, a speed out of range, a method or a motion that the scene cannot show.
+    /// written, a speed out of range, a method or a motion that the scene cannot show. The last two
+    /// are not checked for a board at a port without `--scene`, whose scene is not known yet.
     pub fn check(&self) -> Result<(), Refused> {
         // The files must be writable.
         for (option, file) in [
@@ -187,7 +188,8 @@ impl DemoOptions {
 
     /// Returns the settings to start `scene` with, or `None` if the scene's own settings apply.
     ///
-    /// Returns an error if the scene cannot show the motion or use the method.
+    /// Returns an error if the scene cannot show the motion or use the method. For a board at a
+    /// port the fastest processor class is assumed, so the board may still refuse them.
     pub fn start(&self, scene: SceneName) -> Result<Option<Settings>, Refused> {
         let own = self.motion.settings(scene, self.processor())?;
         let settings = own.unwrap_or_else(|| scene.first_settings());

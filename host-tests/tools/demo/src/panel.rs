@@ -72,8 +72,8 @@ fn in_terminal(grey: u8) -> Color {
     Color::Indexed(TERMINAL[usize::from(grey.min(BRIGHTEST_GREY))])
 }
 
-/// Returns the colours of all 16 greys from black on, as bytes for red, green and blue, in the
-/// format of image files.
+/// Returns the colours of all 16 greys from black on, as 48 bytes: red, green and blue of each, in
+/// the format of image files.
 pub fn palette() -> Vec<u8> {
     let most = u32::from(BRIGHTEST_GREY);
     let mix = |grey: u32| {
@@ -113,7 +113,7 @@ pub struct Recording {
 }
 
 impl Recording {
-    /// Creates the file, or empties an existing one. An error means that it cannot be written.
+    /// Creates the GIF file, or empties an existing one. An error means that it cannot be written.
     pub fn create(path: &Path) -> anyhow::Result<Self> {
         let file =
             File::create(path).with_context(|| format!("cannot write {}", path.display()))?;

@@ -256,7 +256,7 @@ impl Readings {
 }
 
 /// Returns the method of a frame and the accuracy horizon, in one line. The horizon is in s of
-/// simulated time since the motion began.
+/// simulated time since the motion began. For a stopped scene it returns the reason and the remedy.
 pub fn stepping(frame: &Frame) -> String {
     if frame.state == PlayState::Stopped {
         return "this motion is too fast for this chip: change the masses or the angle, or choose \
@@ -293,8 +293,8 @@ fn computed(frame: &Frame) -> String {
     }
 }
 
-/// Returns a relative energy error as text, formatted by `write`, or that it is smaller than `f64`
-/// can show.
+/// Returns a relative energy error as text, formatted by `write`. If its size is below 4e-15, which
+/// is less than `f64` can show, the result is `< 4e-15`.
 pub fn energy_error(error: f32, write: impl Fn(f32) -> String) -> String {
     if error.abs() < LEAST_ENERGY_ERROR {
         format!("< {LEAST_ENERGY_ERROR:.0e}")

@@ -88,7 +88,7 @@ pub fn slower(now: f32) -> Option<f32> {
     SPEEDS.into_iter().rev().find(|speed| *speed < now)
 }
 
-/// A session with one board: its messages are received, the user's options are sent to it with its
+/// A session with one board: its messages are received, the user's options are sent to it after its
 /// first frame, and its panel is recorded from the first frame of the requested scene on.
 ///
 /// The caller calls [`Session::hear`] again and again, and [`Session::look`] for a picture.
@@ -145,8 +145,9 @@ impl<'a> Session<'a> {
     /// Asks the board for its scene whenever the comparison needs it. Draws and records the panel
     /// of a board whose panel cannot be read.
     ///
-    /// An error means that the board refuses the user's options, that an emulator has ended, or
-    /// that the recording cannot be written. The refusal of a key is a line of the log.
+    /// An error means that the user's options do not suit the board's scene or are refused by the
+    /// board, that an emulator has ended, or that the recording cannot be written. The refusal of a
+    /// key is a line of the log.
     pub fn hear(&mut self) -> anyhow::Result<()> {
         for message in self.source.messages()? {
             match message {

@@ -16,7 +16,7 @@ const LANES: usize = 8;
 
 /// Returns the flips of the starts (a1, a2 in rad), in their order, computed with the widest
 /// vectors of this processor. Times are in s. An error is one of the kernel's [`Flips`]: a start
-/// that it refuses.
+/// that it refuses, because an angle is not finite. There are then no results at all.
 #[multiversion(targets("x86_64+avx2+bmi1+bmi2+fma+lzcnt+popcnt"))]
 pub fn flips(search: &Search, starts: &[[f32; 2]]) -> Result<Vec<Flip<f32>>, Error> {
     each(search, starts)

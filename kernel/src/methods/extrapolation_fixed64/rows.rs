@@ -93,8 +93,11 @@ impl Factor {
 }
 
 impl Rows {
-    /// Prepares steps of `dt` s of the order `order`. The unit of time of `scaling` is one of
-    /// [`unit_of_time`]. Refuses an order that is not 2, 4 .. 16.
+    /// Prepares steps of `dt` s of the order `order`. Refuses an order that is not 2, 4 .. 16, by
+    /// [`Error::OutOfRange`].
+    ///
+    /// The unit of time of `scaling` must be one of [`unit_of_time`] for the same `dt`; this is not
+    /// checked.
     pub fn new(order: u32, scaling: &Scaling, dt: f64) -> Result<Self, Error> {
         let count = rows(order)?;
         let mut shares = [Factor::ZERO; ROWS];
@@ -164,7 +167,8 @@ impl Rows {
     }
 
     /// Returns the end of a step from `z`: an eighth of sin a1, cos a1, S and C, and P1 and P2.
-    /// Sets bits of `reach` if a quantity left its range; the end is then meaningless.
+    /// Sets bits of `reach` if a quantity left its range; the end is then meaningless. It clears no
+    /// bits.
     ///
     /// Compiled for three kinds of pendulum, because shifts by constants are cheaper: equal rods
     /// with a bob 2 that is at most as heavy as bob 1, a heavier bob 2, and all others.

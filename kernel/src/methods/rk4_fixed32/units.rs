@@ -38,7 +38,8 @@ const LONGEST_STEP_AT_ELBOW: f64 = 0.5;
 /// The largest value of [`Units::halvings`].
 const MOST_HALVINGS: u32 = 12;
 
-/// The constants that all steps of one motion share.
+/// The constants that all steps of one motion share, without dimension, in the units of
+/// [`Scaling`]: nu and m are divided by its powers of two.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Units {
     /// nu.
@@ -65,7 +66,11 @@ pub struct Units {
 }
 
 impl Units {
-    /// Chooses the units for a motion with `energy` joules above rest and steps of `dt` seconds.
+    /// Chooses the units for a motion with `energy` joules above rest and steps of `dt` seconds. A
+    /// negative `dt` runs backwards.
+    ///
+    /// The parameters must be valid, the energy finite and not negative, and `dt` not zero. This is
+    /// not checked.
     ///
     /// # Errors
     ///

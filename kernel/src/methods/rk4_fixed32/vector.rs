@@ -5,7 +5,7 @@ use core::ops::{Add, Sub};
 use crate::numbers::fixed::{Q30, Slope, Torque};
 
 /// One number for each of the six quantities sin a1, cos a1, S, C, P1 and P2: `D` for those of
-/// directions, `M` for momenta.
+/// directions, `M` for momenta. None has a dimension: P1 and P2 are scaled by the motion's units.
 #[derive(Clone, Copy)]
 pub struct Quantities<D, M> {
     /// sin a1.

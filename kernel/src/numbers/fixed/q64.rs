@@ -1,4 +1,7 @@
 //! Fractions of 64 bits: more digits than an `f64`, and much faster where `f64` is software.
+//!
+//! A `Q64` is from -1/2 to below 1/2, in multiples of 2^-64. A number of 1/2 - 2^-33 or more is
+//! too large for `*`, `times_word` and `down`, whose results may be wrong. This is not checked.
 
 use core::ops::Mul;
 
@@ -28,7 +31,7 @@ impl Q64 {
     }
 
     /// Returns the number over `divisor` in the numbers `R`, rounded once if `divisor` is a power
-    /// of two.
+    /// of two. A divisor of 0 gives infinity or NaN.
     pub fn over<R: Real>(self, divisor: f64) -> R {
         R::from_i64(self.0) * R::from_f64(1.0 / (UNIT * divisor))
     }
@@ -130,7 +133,7 @@ impl Q64 {
     }
 
     /// Returns the number times 2^`by`, moved to the middle of the values that it may have had
-    /// before it was rounded down, so that no bias is left. `by` is at least 1. Bits that do not
+    /// before it was rounded down, so that no bias is left. `by` is from 1 to 63. Bits that do not
     /// fit are lost; the caller checks with [`reach`](Self::reach).
     #[inline(always)]
     pub fn up(self, by: u32) -> Self {
