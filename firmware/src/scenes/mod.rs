@@ -250,8 +250,7 @@ catalogue! {
 }
 
 impl AnyScene {
-    /// Returns an empty figure, which takes the place of a scene until one starts. It must not be
-    /// drawn.
+    /// Returns an empty figure, which takes the place of a scene until one starts.
     pub fn empty() -> Self {
         Self::Frequencies(frequencies::Frequencies::default())
     }
