@@ -22,20 +22,47 @@
 //!
 //! # Where to look
 //!
-//! - **The step of a motion on the panel**: from a scene by `motion::Simulation` to the kernel's
-//!   `plan/run.rs` (`PlannedRun`) and `methods/any.rs` (`DrawnMotion`), and from there to the file
-//!   of the method: `rk4_fixed32.rs`, `rk4_direction.rs` or `extrapolation_fixed64.rs`.
-//! - **Its method and step count**: before there is a plan, the kernel's `Stepping::initial`
-//!   (`plan/cost.rs`). Then `plan/search.rs`, with the prices of `plan/prices.rs` and the budgets
-//!   of [`config`]; `Player::follow` adopts the plan.
-//! - **A button**: the board's `Buttons`, `app/controls.rs`, a [`protocol::Command`],
-//!   `Player::execute`, `motion/settings.rs`.
-//! - **A frame on the link**: `Player::frame`, `App::show`, and the table of bytes at
-//!   [`protocol::Frame`].
-//! - **A fault**: `board/cortex_m/crash.rs`, `board/main_loop.rs` (`resume`),
-//!   `app/warm_restart.rs`.
-//! - **The bytes for a panel**: `display/oled_i2c.rs`, with a row for each controller, or
+//! Each entry names the functions in the order of their calls. `kernel/` is the folder of the
+//! crate [`double_pendulum`].
+//!
+//! - **The step of a motion on the panel.** `Simulation::tick` (`motion/simulation.rs`),
+//!   `PlannedRun::advance` (`kernel/src/plan/run.rs`), `DrawnMotion::advance`
+//!   (`kernel/src/methods/any.rs`), and the step itself in the file of the method in
+//!   `kernel/src/methods/`. Scene and processor decide which method that is, and `cargo plan
+//!   --scene page --target m3` prints it:
+//!   - `extrapolation_fixed64.rs` (`Fixed64State::step`), with the equations in its `rows.rs`:
+//!     64-bit fixed point, multiples of 2^-64 (`Q64`). It draws the page, on every board.
+//!   - `rk4_fixed32.rs` (`Fixed32::step`): RK4 in 32-bit fixed point, multiples of 2^-30 (`Q30`).
+//!     It draws regular motions on a chip without floating point, and the page with `cargo demo
+//!     --method rk4-fixed32`.
+//!   - `rk4_direction.rs` (`Rk4Direction::step`): RK4 in `f32`, for chips with a floating-point
+//!     unit.
+//! - **Its method and step count.** Before there is a plan: `Simulation::new`, with
+//!   `Stepping::initial` (`kernel/src/plan/cost.rs`). Then `Planner::tick` (`motion/planner.rs`)
+//!   advances a `Search` (`kernel/src/plan/search.rs`): its `refine` chooses the next step count to
+//!   try, and its `is_better` the method. `Player::follow` (`app/player.rs`) adopts the plan. The
+//!   prices are in `kernel/src/plan/prices.rs`, the budgets in [`config`] (`Processor`).
+//! - **A button.** `Buttons::read` of the board (its `mod.rs`) reads the pins in `App::tick`
+//!   (`app/mod.rs`). `Controls::tick` (`app/controls.rs`) debounces them and returns a
+//!   [`protocol::Command`], such as `Heavier`. `Player::execute` (`app/player.rs`) calls
+//!   `Settings::heavier` (`motion/settings.rs`), the next of `MASS_RATIOS`, and starts the scene
+//!   again: `Player::play_by`, `AnyScene::start`, `Simulation::new`.
+//! - **A frame on the link.** The table of bytes and the recipe for another field are at
+//!   [`protocol::Frame`] (`protocol/to_host.rs`). `Player::frame` and `App::show` fill it, and
+//!   `encode` (`protocol/mod.rs`) writes it.
+//! - **A fault.** `hard_fault` and `crash` (`board/cortex_m/crash.rs`) write a report where a
+//!   debugger may read it, not on a Pico; store the cause in memory that a reset keeps
+//!   (`board/cortex_m/retained.rs`); and reset. Then `resume` (`board/main_loop.rs`) starts the
+//!   same scene again, or after more than `MOST_RESTARTS` (`app/warm_restart.rs`) the first one,
+//!   and logs the cause. The host asks for it and prints it (`host-tests/emulator/src/link/`,
+//!   `restarts.rs`).
+//! - **The bytes for a panel.** `display/oled_i2c.rs`, with a row for each controller, or
 //!   `display/ssd0323.rs`.
+//! - **Another term of the equations, such as friction.** No scene has one. "Out of scope" in
+//!   `kernel/README.md` says what it takes.
+//!
+//! To add a panel controller or a board: "Other boards" in `firmware/README.md`. To add a scene or
+//! a method: "Changing it" in `host-tests/README.md`.
 //!
 //! # Glossary
 //!

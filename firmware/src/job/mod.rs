@@ -121,8 +121,8 @@ impl Request {
 
     /// Returns the request in `text`: its bytes in the postcard format, each as two hexadecimal
     /// digits of either case. Returns `None` if the bytes are not exactly one request. Its values
-    /// are not checked. Of a byte below 16 the digit 0 may be a plus sign, and may be missing at the
-    /// end of the text.
+    /// are not checked. Of a byte below 16 the digit 0 may be a plus sign, and may be missing at
+    /// the end of the text.
     pub fn parse(text: &str) -> Option<Self> {
         let mut bytes = Vec::<u8, MAX_BYTES>::new();
         let byte = |digits: &[u8]| u8::from_str_radix(core::str::from_utf8(digits).ok()?, 16).ok();

@@ -92,6 +92,7 @@ impl ToHost {
 ///
 /// | bytes | field |
 /// |---|---|
+/// | 1, before COBS | [`VERSION`](super::VERSION) of the protocol |
 /// | 1 | 0, the number of [`ToHost::Frame`] |
 /// | varint, 1 to 5 each | `sequence`, `dropped`, `lost` |
 /// | 1 | `scene`, the number in the table of [`scenes`](crate::scenes) |
@@ -104,6 +105,10 @@ impl ToHost {
 /// | 1, or 1 and 4 | `report.horizon`: its number, and the time of the last two kinds |
 /// | 1, or 1 and 1 and varint | `report.stepping`: 0; or 1, the method's number, the step count |
 /// | varint, 1 to 5 each | `scene_cycles`, `busy_cycles` |
+/// | 4, before COBS | the CRC-32 of all bytes above, little-endian |
+///
+/// COBS then replaces the zeros, and a zero before and after marks the ends
+/// ([`encode`](super::encode)): at most 94 bytes in all. `report` is a [`Report`].
 ///
 /// The numbers of all kinds are in `wire-12.txt` in this folder (test `link`). To add a field:
 ///

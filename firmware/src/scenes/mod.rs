@@ -1,5 +1,7 @@
 //! The trait of all scenes, and the catalogue. Each row of the catalogue contains a name, a scene
 //! and its initial settings.
+//!
+//! To add a scene, see "Changing it" in `host-tests/README.md`.
 
 mod beats;
 mod butterfly;

@@ -309,8 +309,9 @@ impl Stepping {
     }
 
     /// Returns true if the steps resolve every motion of the problem's energy: those of RK4 are at
-    /// most two [admissible steps](Pendulum::admissible_step) long. In longer ones it gains or loses
-    /// several percent of the energy within seconds, or diverges. The other methods always do.
+    /// most two [admissible steps](Pendulum::admissible_step) long. In longer ones it gains or
+    /// loses several percent of the energy within seconds, or diverges. The other methods always
+    /// do.
     ///
     /// # Errors
     ///
