@@ -5,7 +5,9 @@
 //! interrupts.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::io::{BufRead, BufReader, Read};
+use std::io::{self, BufRead, BufReader, Read};
+use std::thread::sleep;
+use std::time::Duration;
 
 use anyhow::{Context, Result};
 
@@ -65,6 +67,22 @@ fn hexadecimal(word: &[u8]) -> u32 {
     (halves | halves >> 16) as u32
 }
 
+/// The time between two reads of a log. In this time QEMU about fills a pipe of 64 KiB.
+const PAUSE: Duration = Duration::from_micros(500);
+
+/// A log that is read in large pieces.
+///
+/// QEMU writes each line on its own. A reader that waits for the next byte would be woken for each
+/// line, which costs more time than the rest of its work.
+struct Pieces<'a>(&'a mut dyn Read);
+
+impl Read for Pieces<'_> {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        sleep(PAUSE);
+        self.0.read(buffer)
+    }
+}
+
 /// Calls `each` with the registers before every instruction of a log, until the log ends or `each`
 /// returns an error, which is returned. A log that cannot be read is an error, too. An instruction
 /// whose lines are incomplete ends the log without an error.
@@ -72,7 +90,7 @@ pub fn for_each_instruction(
     log: &mut dyn Read,
     each: &mut dyn FnMut(Registers) -> Result<()>,
 ) -> Result<()> {
-    let mut log = BufReader::with_capacity(1 << 20, log);
+    let mut log = BufReader::with_capacity(1 << 20, Pieces(log));
     let mut first = Vec::new();
     let mut rest = [0; 12 * WORD];
     // An instruction begins with a line of r0 to r3. Other lines are QEMU's own messages.
