@@ -59,6 +59,7 @@ export class Board {
       this.due = watchdog.reason;
     };
     this.addRegisters(chip.ppb);
+    this.shortenWrites(chip);
     this.mendEntry(chip.core);
     this.isInBootLoader = false;
     addRom(chip);
@@ -82,6 +83,18 @@ export class Board {
     };
   }
 
+  /** The emulator looks for a peripheral before it writes to memory. That takes longer than the write. */
+  shortenWrites(chip) {
+    const write = chip.writeUint32.bind(chip);
+    const { sramView } = chip;
+    const last = chip.sram.length - 4;
+    chip.writeUint32 = (address, value) => {
+      const offset = (address >>> 0) - RAM;
+      if (offset >= 0 && offset <= last) sramView.setUint32(offset, value, true);
+      else write(address, value);
+    };
+  }
+
   addRegisters(ppb) {
     const [read, write] = [ppb.readUint32.bind(ppb), ppb.writeUint32.bind(ppb)];
     const isAdded = (offset) => offset === AIRCR || offset === DHCSR || (offset >= MPU_TYPE && offset <= MPU_LAST);
@@ -99,7 +112,7 @@ export class Board {
       const cycle = 1e9 / clkSys;
       while (clock.nanos < end && this.due === null) {
         if (this.isInBootLoader) clock.tick(end - clock.nanos);
-        else if (!core.waiting) clock.tick(core.executeInstruction() * cycle);
+        else if (!core.waiting) this.execute(end, cycle);
         else if (core.checkForInterrupts()) core.waiting = false;
         else clock.tick(Math.max(1, Math.min(clock.nanosToNextAlarm, end - clock.nanos)));
         if (this.chip.clkSys !== clkSys) break;
@@ -107,6 +120,19 @@ export class Board {
       if (this.due !== null) this.restart();
     }
     this.tell();
+  }
+
+  /** Executes instructions up to the next event: an alarm, the end, a sleep, a restart, another clock. */
+  execute(end, cycle) {
+    const { chip } = this;
+    const { core, clock, clkSys } = chip;
+    do {
+      const time = core.executeInstruction() * cycle;
+      const now = clock.nanosCounter + time;
+      const alarm = clock.nextAlarm;
+      if (alarm !== null && alarm.nanos <= now) return clock.tick(time);
+      clock.nanosCounter = now;
+    } while (clock.nanosCounter < end && !core.waiting && this.due === null && chip.clkSys === clkSys && !this.isInBootLoader);
   }
 
   restart() {

@@ -72,7 +72,9 @@ impl PicoMachine {
         std::fs::write(&file, blocks)?;
 
         let mut command = Command::new(node);
+        // Other boards use the other processors, so Node.js compiles in its own thread.
         command
+            .arg("--single-threaded")
             .arg(workspace().join("host-tests/emulator/rp2040/main.js"))
             .arg(&file);
         command.stdin(Stdio::piped()).stdout(Stdio::piped());
