@@ -13,6 +13,7 @@ use host_tests::commands::count::{
     FULL_CYCLE, Minimal, MinimalPrices, affordable_cost, prices, step_cost, table, table_in_readme,
 };
 use host_tests::commands::report::accuracy::{self, SCENES};
+use rayon::prelude::*;
 
 /// The instructions in a tick of the board's clock, 12.5 MHz after reset, under `-icount`, where an
 /// instruction takes 1 ns.
@@ -227,34 +228,39 @@ const PUBLIC: RangeInclusive<f64> = 0.97..=1.03;
 /// hidden function, to 3 %, for each method and kind of core.
 #[test]
 fn a_crate_outside_pays_what_the_hidden_function_costs() -> Result<()> {
+    // Each pair of a target and a program outside.
+    let targets = targets();
+    let pairs: Vec<_> = targets
+        .iter()
+        .flat_map(|target| {
+            let outside = minimal()
+                .iter()
+                .find(|outside| outside.board == target.board)
+                .expect("one of each core");
+            let prices = outside.prices.iter();
+            prices
+                .filter(|price| !price.program.counts_turns)
+                .map(move |price| (target, price))
+        })
+        .collect();
+
+    // The same motion and the same number of steps, without `Run::advance`.
+    let hidden: Vec<_> = pairs
+        .par_iter()
+        .map(|(target, price)| {
+            let request = request(price.program.method, 0.5, price.steps);
+            Ok(step_cost(target, &request)?.cycles)
+        })
+        .collect::<Result<_>>()?;
+
     let mut wrong = Vec::new();
-    for target in &targets() {
-        let outside = minimal()
-            .iter()
-            .find(|outside| outside.board == target.board)
-            .expect("one of each core");
-        for &Minimal {
-            program,
-            steps,
-            step,
-            ..
-        } in outside
-            .prices
-            .iter()
-            .filter(|price| !price.program.counts_turns)
-        {
-            // The same motion and the same number of steps, without `Run::advance`.
-            let hidden = step_cost(target, &request(program.method, 0.5, steps))?.cycles;
-            println!(
-                "{program} on {}: {step:.1}, hidden {hidden:.1}",
-                target.board.name
-            );
-            if !PUBLIC.contains(&(step / hidden)) {
-                wrong.push(format!(
-                    "{program} on {}: {step:.1} instead of {hidden:.1}",
-                    target.board.name
-                ));
-            }
+    for ((target, Minimal { program, step, .. }), hidden) in pairs.into_iter().zip(hidden) {
+        let board = target.board.name;
+        println!("{program} on {board}: {step:.1}, hidden {hidden:.1}");
+        if !PUBLIC.contains(&(step / hidden)) {
+            wrong.push(format!(
+                "{program} on {board}: {step:.1} instead of {hidden:.1}"
+            ));
         }
     }
     assert!(wrong.is_empty(), "cycles a step: {wrong:#?}");

@@ -12,6 +12,7 @@ pub use minimal::{Minimal, MinimalPrices, Program, table, table_in_readme};
 pub use trace::Target;
 
 use anyhow::Result;
+use cycles::{Calls, Cost};
 use firmware::job::Request;
 use trace::counted;
 
@@ -58,35 +59,27 @@ pub struct StepCost {
 /// samples are ignored. An error means that QEMU fails, that the program refuses the request, or
 /// that it has no counted function.
 pub fn affordable_steps(target: &Target, request: &Request) -> Result<u32> {
-    let one = counted(
-        target,
-        &Request {
-            stride: 1,
-            samples: 1,
-            ..*request
-        },
-    )?
-    .cost()
-    .instructions;
+    Ok(affordable(one_step(target, request)?.instructions))
+}
+
+/// Returns the number of steps that can be counted in a few seconds if one takes this number of
+/// instructions.
+fn affordable(one: u64) -> u32 {
     // A multiple of the period, so that the rare work has its true share of the average.
     let steps = (AFFORDABLE_INSTRUCTIONS / one.max(1)).clamp(LEAST_STEPS, FULL_CYCLE.into());
-    Ok(if steps < REGULAR {
+    let steps = if steps < REGULAR {
         steps
     } else {
         steps - steps % REGULAR
-    } as u32)
+    };
+    steps as u32
 }
 
 /// Returns the cost of one step of `request` on `target`, averaged over the number of steps that
 /// can be counted in a few seconds. `request` and errors are as in [`affordable_steps`].
 pub fn affordable_cost(target: &Target, request: &Request) -> Result<StepCost> {
-    step_cost(
-        target,
-        &Request {
-            stride: affordable_steps(target, request)?,
-            ..*request
-        },
-    )
+    let calling = one_step(target, request)?;
+    cost_after(calling, target, request, affordable(calling.instructions))
 }
 
 /// Returns the cost of one step of `request` on `target`, averaged over `request.stride` steps
@@ -96,20 +89,31 @@ pub fn affordable_cost(target: &Target, request: &Request) -> Result<StepCost> {
 /// It is the difference between a run with one step more and a run of one step, so that the costs
 /// of the call and the return cancel.
 pub fn step_cost(target: &Target, request: &Request) -> Result<StepCost> {
-    let steps = request.stride;
-    let run = |stride| {
-        counted(
-            target,
-            &Request {
-                stride,
-                samples: 1,
-                ..*request
-            },
-        )
-    };
+    cost_after(one_step(target, request)?, target, request, request.stride)
+}
+
+/// Returns the cost of a run of one step, including its call.
+fn one_step(target: &Target, request: &Request) -> Result<Cost> {
+    Ok(counted_run(target, request, 1)?.cost())
+}
+
+/// Returns the calls of a run of this number of steps.
+fn counted_run<'a>(target: &'a Target, request: &Request, stride: u32) -> Result<Calls<'a>> {
+    counted(
+        target,
+        &Request {
+            stride,
+            samples: 1,
+            ..*request
+        },
+    )
+}
+
+/// Returns the cost of one step, averaged over `steps` steps after the first. `calling` is the cost
+/// of a run of one step.
+fn cost_after(calling: Cost, target: &Target, request: &Request, steps: u32) -> Result<StepCost> {
     // The difference of the two runs is the cost of `steps` steps.
-    let calling = run(1)?.cost();
-    let whole = run(1 + steps)?;
+    let whole = counted_run(target, request, 1 + steps)?;
     let all = whole.cost();
     let per_step = |all: u64, calling: u64| all.saturating_sub(calling) as f64 / f64::from(steps);
     Ok(StepCost {

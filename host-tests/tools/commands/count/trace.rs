@@ -10,6 +10,7 @@ use std::collections::BTreeSet;
 use std::io;
 use std::path::PathBuf;
 use std::process::{Command, ExitStatus, Stdio};
+use std::sync::{Mutex, PoisonError};
 use std::thread;
 use std::time::Duration;
 
@@ -168,10 +169,20 @@ impl Target {
         command
     }
 
-    /// Returns the options for one instruction per translation block, which QEMU 8.1 renamed.
+    /// Returns the options for one instruction per translation block, which QEMU 8.1 renamed. QEMU
+    /// is asked once per process.
     fn single_step(&self) -> Result<&'static [&'static str]> {
-        let help = process::run(Command::new(&self.qemu).arg("--help"), QUICK)?.stdout;
-        let is_renamed = help.contains("one-insn-per-tb");
+        static IS_RENAMED: Mutex<Option<(PathBuf, bool)>> = Mutex::new(None);
+        let mut known = IS_RENAMED.lock().unwrap_or_else(PoisonError::into_inner);
+        let is_renamed = match &*known {
+            Some((qemu, is_renamed)) if *qemu == self.qemu => *is_renamed,
+            _ => {
+                let help = process::run(Command::new(&self.qemu).arg("--help"), QUICK)?.stdout;
+                let is_renamed = help.contains("one-insn-per-tb");
+                *known = Some((self.qemu.clone(), is_renamed));
+                is_renamed
+            }
+        };
         Ok(if is_renamed {
             &["-accel", "tcg,one-insn-per-tb=on"]
         } else {
