@@ -5,6 +5,7 @@
 #![forbid(unsafe_code)]
 
 pub mod enclosure;
+pub mod optimised;
 pub mod taylor;
 
 pub use twofloat;

@@ -1,0 +1,24 @@
+//! Steps of the kernel for tests that make millions of them.
+//!
+//! The kernel's functions are generic, so a caller compiles them with its own settings. The tests
+//! are not optimised. This package is.
+
+use double_pendulum::{Pendulum, Real, State};
+
+/// A number type whose classical steps are compiled here.
+pub trait Step: Real {
+    /// Returns the state after a classical step of `dt` seconds: [`Pendulum::step`].
+    fn step(pendulum: &Pendulum<Self>, state: &State<Self>, dt: Self) -> State<Self>;
+}
+
+impl Step for f32 {
+    fn step(pendulum: &Pendulum<Self>, state: &State<Self>, dt: Self) -> State<Self> {
+        pendulum.step(state, dt)
+    }
+}
+
+impl Step for f64 {
+    fn step(pendulum: &Pendulum<Self>, state: &State<Self>, dt: Self) -> State<Self> {
+        pendulum.step(state, dt)
+    }
+}
