@@ -31,7 +31,6 @@ pub struct Bounds<R> {
 
 impl<R: Real> Bounds<R> {
     /// Returns the bounds for K = `energy_above_rest`, J, which is not negative.
-    #[inline(never)]
     pub(crate) fn new(parameters: &Parameters<R>, energy_above_rest: R) -> Self {
         let &Parameters { m1, m2, l1, l2, .. } = parameters;
         let twice = R::TWO * energy_above_rest;
@@ -121,7 +120,7 @@ impl<R: Real> Pendulum<R> {
         }
     }
 
-    /// Returns the fastest rate of change, 1/s, of any quantity in a motion with the energy of
+    /// Returns the fastest rate of change W, 1/s, of any quantity in a motion with the energy of
     /// `state`: W = sqrt(w1^2 + (1 + m2/m1) d^2). Here w1 is the fast normal frequency (0 without
     /// gravity) and d is [`Bounds::elbow`].
     ///
@@ -130,8 +129,7 @@ impl<R: Real> Pendulum<R> {
     ///
     /// It is 0 if nothing can move, and NaN or infinite for a state that is not finite. Refuses
     /// parameters whose modes are out of range.
-    #[doc(hidden)]
-    pub fn fastest_rate(&self, state: &State<R>) -> Result<R, Error> {
+    fn fastest_rate(&self, state: &State<R>) -> Result<R, Error> {
         let &Parameters { m1, m2, g, .. } = self.parameters();
         // The frequency that gravity causes, and the rate that the motion causes.
         let normal = if g == R::ZERO {
@@ -144,8 +142,11 @@ impl<R: Real> Pendulum<R> {
     }
 
     /// Returns the longest step, s, that resolves every motion with the energy of `state` by RK4:
-    /// 1/(4 W), where W is the [`fastest_rate`](Self::fastest_rate). It is infinite if nothing can
-    /// move.
+    /// 1/(4 W). It is infinite if nothing can move.
+    ///
+    /// W = sqrt(w1^2 + (1 + m2/m1) d^2) is the fastest rate of change, 1/s, of any quantity in such
+    /// a motion. Here w1 is the fast normal frequency (0 without gravity) and d is
+    /// [`Bounds::elbow`].
     ///
     /// The error of such a step is at most 3e-5 W dt rad in each angle (0.0072 (W dt)^5, for any
     /// masses and lengths), and at most the same share of W in each velocity; in the direction form
@@ -185,7 +186,6 @@ pub(crate) const RK4_STABLE: f64 = 2.828_427_124_746_190_3;
 /// Returns the longest step, s, whose phase of the fast mode is at most `phase` rad.
 ///
 /// It is infinite if a pendulum has no modes: without gravity, or out of the range of `f64`.
-#[inline(never)] // Not inlined, to save flash.
 pub(crate) fn stable_step(parameters: &Parameters<f64>, phase: f64) -> f64 {
     Modes::new(parameters).map_or(f64::INFINITY, |modes| phase / modes.fast.frequency)
 }
@@ -202,7 +202,6 @@ fn check_forward<R: Real>(dt: f64) -> Result<(), Error> {
 }
 
 /// Refuses a step of `dt` s that is NaN, infinite, zero or out of the range of `R`.
-#[inline(never)] // Not inlined, to save flash.
 pub(crate) fn check_step<R: Real>(dt: f64) -> Result<(), Error> {
     let parameter = Parameter::Dt;
     let value = dt;

@@ -134,7 +134,7 @@ extern crate std;
 mod bounds;
 mod error;
 pub mod flips;
-#[doc(hidden)]
+#[doc(hidden)] // For emulated cores and boards, which compute the golden bits, too.
 pub mod golden;
 mod methods;
 mod numbers;
@@ -150,19 +150,19 @@ pub use error::{Error, Parameter};
 pub use methods::extrapolation::Extrapolation;
 pub use methods::{
     ClosedFormF32, ClosedFormF64, DirectionF32, DirectionF32Plain, ExtrapolationF64, Fixed32,
-    Fixed64, Form, FormVisitor, HamiltonF32, HamiltonF64, Oscillation, Run, SmallOscillations, rk4,
+    Fixed64, Form, FormVisitor, HamiltonF32, HamiltonF64, Run, SmallOscillations, rk4,
 };
-pub use numbers::Real;
+pub use numbers::{Real, sin_cos};
 pub use pendulum::{Direction, Motion, Parameters, Pendulum, State, Vector};
 pub use small::{Mode, Modes, periodic_mass_ratio};
 pub use table::{Equations, Integrator, Method, Numbers};
 
-/// Parts of the methods, for tools and tests. They may change at any time.
-#[doc(hidden)]
+/// Parts of the methods, for the firmware, tools and tests. They may change at any time.
+#[doc(hidden)] // Needed by one of these each, not by a user who computes a motion.
 pub mod parts {
-    pub use crate::methods::rk4::Rk4;
+    pub use crate::flips::falling::Falling;
     pub use crate::methods::{
-        Canonical, Derivatives, DirectionF64, DrawnMotion, Rk4Direction, RungeKutta, Turns,
+        Canonical, Derivatives, DirectionF64, DrawnMotion, Rk4, Rk4Direction, RungeKutta, Turns,
     };
 }
 

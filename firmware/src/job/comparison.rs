@@ -64,6 +64,6 @@ impl Derivatives<f32> for Micromath {
     #[inline(always)]
     fn derivatives(&self, &[a1, a2, p1, p2]: &[f32; 4]) -> [f32; 4] {
         self.0
-            .derivatives_at([F32Ext::sin_cos(a1), F32Ext::sin_cos(a2)], [p1, p2])
+            .derivatives_at([a1, a2].map(|a| F32Ext::sin_cos(a).into()), [p1, p2])
     }
 }

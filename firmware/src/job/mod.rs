@@ -152,10 +152,10 @@ fn crc<F: Form>(mut run: F, request: &Request) -> u32 {
     let mut digest = CRC.digest();
     for _ in 0..request.samples {
         counted_steps(&mut run, request.stride);
-        Form::bits(&run, |word| digest.update(&word.to_le_bytes()));
+        run.bits(|word| digest.update(&word.to_le_bytes()));
     }
 
-    <[f64; 4]>::from(Form::state(&run))
+    <[f64; 4]>::from(Run::state(&run))
         .iter()
         .for_each(|number| digest.update(&number.to_le_bytes()));
     digest.finalize()

@@ -31,7 +31,7 @@ pub trait Run: Copy {
 #[inline(never)]
 pub(super) fn start<F: Form>(request: &Request) -> Result<F, Error> {
     let (parameters, state) = rounded(request)?;
-    Form::new(&parameters, &state, request.dt)
+    F::new(&parameters, &state, request.dt)
 }
 
 /// Returns the same by the request's method. Refuses methods that scenes are not drawn by.
@@ -55,15 +55,15 @@ fn rounded(request: &Request) -> Result<(Parameters<f64>, State<f64>), Error> {
 impl<F: Form> Run for F {
     #[inline(always)]
     fn advance(&mut self, steps: u32) {
-        Form::advance(self, steps);
+        self.advance(steps);
     }
 
     fn state(&self) -> State<f64> {
-        Form::state(self)
+        self.state()
     }
 
     fn sides(&self) -> Option<[[i32; 2]; 2]> {
-        (!F::HAS_TURNS).then(|| Form::sides(self))
+        (!F::HAS_TURNS).then(|| self.sides())
     }
 }
 

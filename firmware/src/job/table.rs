@@ -100,12 +100,12 @@ impl Run for OnBoards {
     fn advance(&mut self, steps: u32) {
         match self {
             Self::Drawn(motion) => motion.advance(steps),
-            Self::Rk4F64(motion) => Form::advance(motion, steps),
-            Self::Rk4F32(motion) => Form::advance(motion, steps),
-            Self::Extrapolation8Fixed64(motion) => Form::advance(motion, steps),
-            Self::Extrapolation12Fixed64(motion) => Form::advance(motion, steps),
-            Self::Extrapolation16Fixed64(motion) => Form::advance(motion, steps),
-            Self::ClosedFormF64(motion) => Form::advance(motion, steps),
+            Self::Rk4F64(motion) => Run::advance(motion, steps),
+            Self::Rk4F32(motion) => Run::advance(motion, steps),
+            Self::Extrapolation8Fixed64(motion) => Run::advance(motion, steps),
+            Self::Extrapolation12Fixed64(motion) => Run::advance(motion, steps),
+            Self::Extrapolation16Fixed64(motion) => Run::advance(motion, steps),
+            Self::ClosedFormF64(motion) => Run::advance(motion, steps),
         }
     }
 

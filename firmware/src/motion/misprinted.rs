@@ -1,6 +1,6 @@
 //! The motion by the equations for equal rods as the page prints them.
 
-use double_pendulum::{Parameters, Real, State, rk4};
+use double_pendulum::{Parameters, State, rk4, sin_cos};
 
 use crate::config::{DT, STEPS_PER_TICK};
 use crate::graphics::RodDirections;
@@ -63,9 +63,9 @@ impl Misprinted {
     ) -> Self {
         // Everything is divided by m1 l^2 or by the length of the rods.
         let inertia = m1 * l * l;
-        let (sin1, cos1) = start.a1.own_sin_cos();
+        let (sin1, cos1) = sin_cos(start.a1);
         let elbow = start.a1 - start.a2;
-        let (sin_d, cos_d) = elbow.own_sin_cos();
+        let (sin_d, cos_d) = sin_cos(elbow);
         let z = [
             sin1,
             cos1,

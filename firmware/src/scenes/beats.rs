@@ -2,7 +2,7 @@
 //! return to their start after a few periods, and their Lissajous figure closes. The exact motion
 //! from the same start does not return.
 
-use double_pendulum::{Error, Modes, Oscillation, Parameters, SmallOscillations};
+use double_pendulum::{Error, Modes, Parameters, SmallOscillations};
 
 use crate::config::{GRAVITY, ROD};
 use crate::graphics::{
@@ -90,9 +90,9 @@ impl Scene for Beats {
         // Scale the larger amplitude to the figure.
         let modes = Modes::new(&settings.parameters.cast())?;
         let linear = SmallOscillations::new(modes, &settings.motion());
-        let amplitude = |part: Oscillation<f32>, shape: f32| part.amplitude() * shape.abs();
         let shape = [modes.fast.shape, modes.slow.shape].map(|shape| shape as f32);
-        let greatest = amplitude(linear.fast, shape[0]).max(amplitude(linear.slow, shape[1]));
+        let [fast, slow] = linear.amplitudes();
+        let greatest = (fast * shape[0].abs()).max(slow * shape[1].abs());
         let scale = if greatest > 0.0 {
             REACH / greatest
         } else {

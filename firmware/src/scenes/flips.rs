@@ -1,7 +1,8 @@
 //! The map of flips: it shows for every start whether a rod turns over, and when. It is computed on
 //! the board, coarse first.
 
-use double_pendulum::flips::{Falling, Flip, Flips as Search, step_size};
+use double_pendulum::flips::{Flip, Flips as Search, step_size};
+use double_pendulum::parts::Falling;
 // The methods for processors with and without a floating-point unit. A board links only the method
 // of its own processor, for both.
 #[cfg(target_abi = "eabihf")]
@@ -177,7 +178,7 @@ fn work<F: Form<Real = f32>>(
     // A new start costs more than a step, even if it can never flip.
     let Some(motion) = falling else {
         // The search refuses no angle of the map.
-        *falling = search.start(a1, a2).ok().flatten();
+        *falling = Falling::start(search, a1, a2).ok().flatten();
         return if falling.is_some() {
             (pace.start, None)
         } else {
@@ -187,7 +188,7 @@ fn work<F: Form<Real = f32>>(
 
     // Follow the motion for the rest of the budget.
     let before = motion.steps;
-    let flip = search.advance(motion, steps);
+    let flip = motion.advance(search, steps);
     let made = motion.steps.wrapping_sub(before);
     if flip.is_some() {
         *falling = None;

@@ -6,7 +6,7 @@
 //!   the number pi could be represented exactly.
 
 use double_pendulum::plan::Stepping;
-use double_pendulum::{DirectionF32, Error, Method, Parameters, Pendulum, Real, Run, State};
+use double_pendulum::{DirectionF32, Error, Method, Parameters, Pendulum, Run, State, sin_cos};
 
 use crate::config::{
     HALF_PIXEL, PAGE_GRAVITY, Processor, STEPS_PER_TICK, TICK_RATE, TRAIL_BRIGHTNESS, TRAIL_FADING,
@@ -292,7 +292,7 @@ impl Upright {
 
 /// Returns the directions (sin, cos) of both rods.
 fn directions(state: &State<f32>) -> RodDirections {
-    state.angles().map(|angle| angle.own_sin_cos().into())
+    state.angles().map(|angle| sin_cos(angle).into())
 }
 
 impl Scene for Upright {

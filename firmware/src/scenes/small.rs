@@ -2,7 +2,7 @@
 //! within their envelopes.
 
 use double_pendulum::plan::Stepping;
-use double_pendulum::{Error, Method, Modes, Parameters, Pendulum, Real, SmallOscillations};
+use double_pendulum::{Error, Method, Modes, Parameters, Pendulum, SmallOscillations, sin_cos};
 
 use crate::config::{PAGE_GRAVITY, TICK_RATE};
 use crate::graphics::{
@@ -72,7 +72,7 @@ impl Small {
         let turns = self.exchange * t;
         let exchanged = (turns - libm::rint(turns)) as f32 * core::f32::consts::TAU;
         let phase = exchanged + self.phase;
-        let (_, cos) = phase.own_sin_cos();
+        let (_, cos) = sin_cos(phase);
         self.amplitudes
             .map(|[c1, c2]| libm::sqrtf((c1 * c1 + c2 * c2 + 2.0 * c1 * c2 * cos).max(0.0)))
     }
@@ -129,7 +129,7 @@ impl Scene for Small {
         let motion = SmallOscillations::new(modes, &settings.motion());
 
         // The amplitudes, and the largest value of an angle, rad.
-        let [c1, c2] = [motion.fast, motion.slow].map(|part| part.amplitude());
+        let [c1, c2] = motion.amplitudes();
         let amplitudes = [
             [c1, c2],
             [modes.fast.shape as f32 * c1, modes.slow.shape as f32 * c2],
@@ -140,6 +140,7 @@ impl Scene for Small {
             .fold(0.0, f32::max);
 
         // The scales.
+        let [fast_phase, slow_phase] = motion.phases();
         let exchange = core::f32::consts::TAU / modes.exchange() as f32;
         let ticks_per_column = (exchange * TICK_RATE as f32 / COLUMNS_PER_EXCHANGE) as u32;
         let scale = if greatest > 0.0 {
@@ -151,7 +152,7 @@ impl Scene for Small {
             pendulum,
             amplitudes,
             exchange: modes.exchange() / core::f64::consts::TAU,
-            phase: motion.fast.phase() - motion.slow.phase(),
+            phase: fast_phase - slow_phase,
             motion,
             scale,
             ticks_per_column: ticks_per_column.max(1),

@@ -6,7 +6,7 @@ use std::sync::OnceLock;
 use anyhow::Result;
 
 use crate::support::{targets, toolchain};
-use double_pendulum::plan::Costs;
+use double_pendulum::plan::{Costs, Stepping};
 use double_pendulum::{Method, Parameters};
 use firmware::job::Request;
 use host_tests::commands::count::{
@@ -188,15 +188,12 @@ fn price_lists_equal_the_counted_costs() -> Result<()> {
         // The lists in the order of their fields.
         let listed = board.processor().costs;
         let all = |costs: Costs| {
-            let steps = Method::DRAWN.iter().map(move |method| costs.step(*method));
-            steps.chain([Some(costs.preparation)])
+            let steps = Method::DRAWN
+                .iter()
+                .map(move |&method| costs.of_frame(Stepping { method, steps: 1 }));
+            steps.chain([costs.preparation])
         };
-        let is_near = |(listed, counted): (Option<f32>, Option<f32>)| {
-            let ratio = listed
-                .zip(counted)
-                .map(|(listed, counted)| listed / counted);
-            ratio.is_some_and(|ratio| PRICED.contains(&ratio))
-        };
+        let is_near = |(listed, counted): (f32, f32)| PRICED.contains(&(listed / counted));
         if !all(listed).zip(all(counted)).all(is_near) {
             wrong.push(format!(
                 "{}: {listed:?} listed, {counted:?} counted",

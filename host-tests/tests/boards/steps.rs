@@ -13,8 +13,11 @@ use object::{Object, ObjectSection};
 const STEPS: [(&str, &str); 5] = [
     ("OnBoards as firmware::job::run::Run>", "advance"),
     ("methods::any::DrawnMotion", "advance"),
-    ("double_pendulum::methods::Form>", "advance"),
-    ("Fixed32 as double_pendulum::methods::Form>", "advance"),
+    ("double_pendulum::methods::FormOperations>", "advance"),
+    (
+        "Fixed32 as double_pendulum::methods::FormOperations>",
+        "advance",
+    ),
     ("rows::Rows", "end_in"),
 ];
 
@@ -72,8 +75,9 @@ fn no_branch_leads_out_of_the_steps() -> anyhow::Result<()> {
 
 /// Returns the functions that steps of the form `form` reach in the Pico's application.
 fn reached(code: &Code, form: &str) -> BTreeSet<String> {
-    let is_step =
-        |name: &str| name.contains(form) && name.contains("Form>") && name.ends_with("advance");
+    let is_step = |name: &str| {
+        name.contains(form) && name.contains("FormOperations>") && name.ends_with("advance")
+    };
     let mut found: Vec<u32> = code.functions_named(is_step).collect();
     // The list grows while it is searched.
     let mut seen = 0;

@@ -170,7 +170,7 @@ fn in_modes(parameters: &Parameters<f64>, [a1, a2]: [f64; 2]) -> [f64; 2] {
 fn curve_scale(settings: &Settings) -> f64 {
     let modes = Modes::new(&settings.parameters.cast()).expect("good settings");
     let motion = SmallOscillations::<f32>::new(modes, &settings.motion());
-    let [fast, slow] = [motion.fast, motion.slow].map(|part| f64::from(part.amplitude()).abs());
+    let [fast, slow] = motion.amplitudes().map(f64::from);
     let greatest = (fast + slow).max(modes.fast.shape.abs() * fast + modes.slow.shape.abs() * slow);
     10.5 / greatest
 }
@@ -180,8 +180,9 @@ fn curve_scale(settings: &Settings) -> f64 {
 fn figure_scale(settings: &Settings) -> f64 {
     let modes = Modes::new(&settings.parameters.cast()).expect("good settings");
     let linear = SmallOscillations::<f64>::new(modes, &settings.motion().cast());
-    let fast = linear.fast.amplitude() * modes.fast.shape.abs();
-    let slow = linear.slow.amplitude() * modes.slow.shape.abs();
+    let [fast, slow] = linear.amplitudes();
+    let fast = fast * modes.fast.shape.abs();
+    let slow = slow * modes.slow.shape.abs();
     21.5 / fast.max(slow)
 }
 

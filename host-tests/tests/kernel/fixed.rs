@@ -454,6 +454,21 @@ fn fixed64_motion_is_accurate_or_reported_as_diverged() -> Result<(), Error> {
 /// ([`tolerances::FIXED_64_FLOOR`]).
 #[test]
 fn motion_of_less_energy_runs_in_the_same_units() -> Result<(), Error> {
+    /// Returns the state after 256 steps from `low`, in the units of `highest` and in its own.
+    fn states<F: Form>(
+        parameters: &Parameters<f64>,
+        highest: &State<f64>,
+        low: &State<f64>,
+        dt: f64,
+    ) -> Result<[State<f64>; 2], Error> {
+        let highest = F::new(parameters, highest, dt)?;
+        let motions = [highest.started(low)?, F::new(parameters, low, dt)?];
+        Ok(motions.map(|mut motion| {
+            motion.advance(256);
+            motion.state()
+        }))
+    }
+
     let parameters = Parameters::equal_rods(1.0, 1.0, 9.81);
     let dt = 1.0 / 256.0;
     let low = State {
@@ -463,13 +478,8 @@ fn motion_of_less_energy_runs_in_the_same_units() -> Result<(), Error> {
         p2: -0.2,
     };
 
-    // The lower motion in the units of the higher one, and in its own.
-    let highest = Fixed64::<10>::new(&parameters, &State::at_rest(PI, PI), dt)?;
-    let [lower, own] =
-        [highest.started(&low)?, Form::new(&parameters, &low, dt)?].map(|mut motion| {
-            motion.advance(256);
-            motion.state()
-        });
+    let highest = State::at_rest(PI, PI);
+    let [lower, own] = states::<Fixed64<10>>(&parameters, &highest, &low, dt)?;
     let error = largest_difference(&[lower], &[own]);
     assert!(error <= tolerances::FIXED_64_FLOOR, "{error:e} rad");
     Ok(())

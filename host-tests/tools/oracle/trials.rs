@@ -5,7 +5,7 @@ use std::fmt::Debug;
 
 use double_pendulum::parts::DirectionF64;
 use double_pendulum::{
-    Direction, Equations, Error, Form, FormVisitor, Method, Parameters, Pendulum, Real, Run, State,
+    Direction, Equations, Error, Form, FormVisitor, Method, Parameters, Pendulum, Run, State,
 };
 use firmware::job::visit;
 use reference::{advance, taylor};
@@ -45,15 +45,15 @@ impl<F: Form> AnyRun for Run<F, true> {
     }
 
     fn directions(&self) -> [Direction<f64>; 2] {
-        Run::directions(self).map(|direction| direction.map(Real::to_f64))
+        Run::directions(self).map(|direction| direction.map(Into::into))
     }
 
     fn angles(&self) -> [f64; 2] {
-        Run::angles(self).map(Real::to_f64)
+        Run::angles(self).map(Into::into)
     }
 
     fn energy(&self) -> f64 {
-        Run::energy(self).to_f64()
+        Run::energy(self).into()
     }
 }
 

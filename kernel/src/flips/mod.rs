@@ -17,14 +17,16 @@
 //! # Ok::<(), double_pendulum::Error>(())
 //! ```
 
+pub(crate) mod falling;
 mod lanes;
 mod side_by_side;
 
 use crate::error::Error;
 use crate::methods::Form;
 use crate::methods::run::turns_over;
-use crate::numbers::Real;
+use crate::numbers::{Real, RealOperations};
 use crate::pendulum::{Parameters, Pendulum, State};
+use falling::Falling;
 
 /// The time of the first flip.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -55,18 +57,6 @@ pub struct Flips<F: Form> {
     highest: F,
     dt: F::Real,
     steps: u32,
-}
-
-/// A motion that has not flipped yet.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[doc(hidden)]
-pub struct Falling<F: Form> {
-    motion: F,
-    /// The sides of the rods after the last step ([`Form::sides`]).
-    sides: [[i32; 2]; 2],
-    /// The number of steps since the start, without the step of the flip.
-    #[doc(hidden)]
-    pub steps: u32,
 }
 
 /// Returns the longest step, s, that resolves the motion of every start from rest.
@@ -117,61 +107,16 @@ impl<F: Form> Flips<F> {
         })
     }
 
-    /// Returns the motion that is released at rest at the angles `a1`, `a2`, rad; `None` if the
-    /// energy is too low for any flip.
-    ///
-    /// # Errors
-    ///
-    /// Refuses angles that are not finite, and by the closed form 2^31 - 1 turns or more.
-    #[doc(hidden)]
-    pub fn start(&self, a1: F::Real, a2: F::Real) -> Result<Option<Falling<F>>, Error> {
-        let state = State::at_rest(a1, a2);
-        state.check()?;
-
-        // With too little energy for a flip, no motion has to be computed.
-        if self.pendulum.cannot_turn_over(&state) {
-            return Ok(None);
-        }
-        let motion = self.highest.started(&state.cast())?;
-        Ok(Some(Falling {
-            motion,
-            sides: motion.sides(),
-            steps: 0,
-        }))
-    }
-
-    /// Computes at most `steps` steps. Returns the result once it is known, and `None` until then:
-    /// [`Flip::After`], or [`Flip::Later`] after all steps of the map. It is not to be called again
-    /// after a result. `falling` must be a motion of this map; this is not checked.
-    #[inline]
-    #[doc(hidden)]
-    pub fn advance(&self, falling: &mut Falling<F>, steps: u32) -> Option<Flip<F::Real>> {
-        for _ in 0..steps {
-            if falling.steps >= self.steps {
-                return Some(Flip::Later);
-            }
-            falling.motion.advance_one();
-
-            // Both rods are tested after each step.
-            let before = core::mem::replace(&mut falling.sides, falling.motion.sides());
-            if passes(&before, &falling.sides) < 0 {
-                return Some(self.passage(falling.steps, before, falling.sides));
-            }
-            falling.steps += 1;
-        }
-        None
-    }
-
     /// Returns the first flip of the motion that is released at rest at the angles `a1`, `a2`, rad.
     ///
     /// # Errors
     ///
     /// Refuses angles that are not finite, and by the closed form 2^31 - 1 turns or more.
     pub fn of(&self, a1: F::Real, a2: F::Real) -> Result<Flip<F::Real>, Error> {
-        let Some(mut falling) = self.start(a1, a2)? else {
+        let Some(mut falling) = Falling::start(self, a1, a2)? else {
             return Ok(Flip::Never);
         };
-        Ok(self.advance(&mut falling, u32::MAX).unwrap_or(Flip::Later))
+        Ok(falling.advance(self, u32::MAX).unwrap_or(Flip::Later))
     }
 
     /// Returns the time of the passage. The sides are `before` after `steps` steps, and `after` one
@@ -198,7 +143,6 @@ impl<F: Form> Flips<F> {
 
 /// Returns a negative number if a rod has passed straight up between the sides `before` and
 /// `after`, (sin, cos) of each rod.
-#[inline(always)]
 fn passes(before: &[[i32; 2]; 2], after: &[[i32; 2]; 2]) -> i32 {
     // A rod passes straight up if its sine changes its sign while its cosine is negative.
     let [[upper_before, _], [lower_before, _]] = *before;

@@ -2,13 +2,14 @@
 
 use core::array::from_fn;
 
+use super::falling::Falling;
 use super::lanes::{DirectionLanes, Numbers};
-use super::{Falling, Flip, Flips, passes};
+use super::{Flip, Flips, passes};
 use crate::error::Error;
 use crate::methods::direction::BLOCK;
 use crate::methods::run::turns_over;
-use crate::methods::{DirectionF32Plain, Form};
-use crate::numbers::Real;
+use crate::methods::{DirectionF32Plain, FormOperations};
+use crate::numbers::RealOperations;
 use crate::pendulum::{Direction, State};
 
 /// Three rows of `N` motions.
@@ -43,7 +44,7 @@ impl Flips<DirectionF32Plain> {
     ///
     /// Refuses angles that are not finite. The starts before these may then lack their results.
     #[inline(always)]
-    #[doc(hidden)]
+    #[doc(hidden)] // For hosts with vectors only.
     pub fn of_each<const N: usize>(
         &self,
         starts: impl IntoIterator<Item = [f32; 2]>,
@@ -85,7 +86,7 @@ impl Flips<DirectionF32Plain> {
         give: &mut impl FnMut(usize, Flip<f32>),
     ) -> Result<Option<(usize, DirectionF32Plain)>, Error> {
         for (start, [a1, a2]) in starts {
-            match self.start(a1, a2)? {
+            match Falling::start(self, a1, a2)? {
                 Some(Falling { motion, .. }) => return Ok(Some((start, motion))),
                 None => give(start, Flip::Never),
             }
@@ -205,7 +206,6 @@ mod tests {
 
     /// Returns the flips of all starts, in the vectors that the tests are compiled for. Asserts
     /// that each start is given once.
-    #[inline(always)]
     fn any(flips: &Flips<DirectionF32Plain>) -> Result<Vec<Option<Flip<f32>>>, Error> {
         let mut found = std::vec![None; SIDE * SIDE];
         flips.of_each::<8>(starts(SIDE), |start, flip| {

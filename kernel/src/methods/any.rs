@@ -8,7 +8,7 @@
 
 use super::{
     ClosedFormF32, ClosedFormF64, DirectionF32, DirectionF32Plain, ExtrapolationF64, Fixed32,
-    Fixed64, Form, HamiltonF32, HamiltonF64,
+    Fixed64, Form, FormOperations, HamiltonF32, HamiltonF64,
 };
 use crate::error::Error;
 use crate::pendulum::{Direction, Parameters, Pendulum, State};
@@ -140,24 +140,30 @@ impl DrawnMotion32 {
             return Err(Error::NotDrawn { method });
         };
         Ok(match drawn {
-            DrawnMethod::ClosedFormF32 => Self::ClosedFormF32(Form::new(parameters, start, dt)?),
+            DrawnMethod::ClosedFormF32 => {
+                Self::ClosedFormF32(FormOperations::new(parameters, start, dt)?)
+            }
             DrawnMethod::Rk4F32DirectionPlain => {
-                Self::Rk4F32DirectionPlain(Form::new(parameters, start, dt)?)
+                Self::Rk4F32DirectionPlain(FormOperations::new(parameters, start, dt)?)
             }
             DrawnMethod::Rk4F32Direction => {
-                Self::Rk4F32Direction(Form::new(parameters, start, dt)?)
+                Self::Rk4F32Direction(FormOperations::new(parameters, start, dt)?)
             }
-            DrawnMethod::Rk4Fixed32 => Self::Rk4Fixed32(Form::new(parameters, start, dt)?),
+            DrawnMethod::Rk4Fixed32 => {
+                Self::Rk4Fixed32(FormOperations::new(parameters, start, dt)?)
+            }
             // In 64 bits: `DrawnMotion::new` creates its motion.
             DrawnMethod::Extrapolation10Fixed64 => return Err(Error::NotDrawn { method }),
             #[cfg(test)]
-            DrawnMethod::Rk4F32Lagrange => Self::Rk4F32Lagrange(Form::new(parameters, start, dt)?),
+            DrawnMethod::Rk4F32Lagrange => {
+                Self::Rk4F32Lagrange(FormOperations::new(parameters, start, dt)?)
+            }
         })
     }
 
     /// Advances the motion by `steps` steps. A motion that diverges is not reported;
     /// [`check`](Self::check) it afterwards.
-    #[inline(never)] // Not inlined: each caller would contain every method.
+    #[inline(never)] // Boards find the step by this name, to run it in memory.
     pub fn advance(&mut self, steps: u32) {
         match self {
             Self::ClosedFormF32(motion) => motion.advance(steps),
@@ -203,7 +209,6 @@ impl DrawnMotion32 {
     /// By RK4 in `f32` they may be up to half a step ahead of the [`state`](Self::state), or behind
     /// it. A diverged motion need not show it: in fixed point its directions are finite. Call
     /// [`check`](Self::check).
-    #[inline(never)]
     pub fn directions(&self) -> [Direction<f32>; 2] {
         match self {
             Self::ClosedFormF32(motion) => motion.directions(),
@@ -232,7 +237,6 @@ impl DrawnMotion32 {
     ///
     /// All its numbers are NaN if the motion has diverged in fixed point. In `f32` some may be NaN
     /// or infinite.
-    #[inline(never)]
     pub fn state(&self) -> State<f64> {
         match self {
             Self::ClosedFormF32(motion) => motion.state(),
@@ -290,7 +294,7 @@ impl DrawnMotion {
         dt: f64,
     ) -> Result<Self, Error> {
         if method == Method::Extrapolation10Fixed64 {
-            Form::new(parameters, start, dt).map(Self::Extrapolation10Fixed64)
+            FormOperations::new(parameters, start, dt).map(Self::Extrapolation10Fixed64)
         } else {
             DrawnMotion32::new(method, parameters, start, dt).map(Self::In32Bits)
         }
@@ -298,7 +302,7 @@ impl DrawnMotion {
 
     /// Advances the motion by `steps` steps. A motion that diverges is not reported;
     /// [`check`](Self::check) it afterwards.
-    #[inline(never)] // Not inlined: each caller would contain every method.
+    #[inline(never)] // Boards find the step by this name, to run it in memory.
     pub fn advance(&mut self, steps: u32) {
         match self {
             Self::In32Bits(motion) => motion.advance(steps),
@@ -322,7 +326,6 @@ impl DrawnMotion {
     /// whose highest bit is the sign. The other bits are in the format of the method's numbers. The
     /// words of a diverged motion are arbitrary.
     #[must_use]
-    #[inline(never)]
     pub fn sides(&self) -> [[i32; 2]; 2] {
         match self {
             Self::In32Bits(motion) => motion.sides(),
@@ -336,7 +339,6 @@ impl DrawnMotion {
     /// it. A diverged motion need not show it: in fixed point its directions are finite. Call
     /// [`check`](Self::check).
     #[must_use]
-    #[inline(never)]
     pub fn directions(&self) -> [Direction<f32>; 2] {
         match self {
             Self::In32Bits(motion) => motion.directions(),
@@ -360,7 +362,6 @@ impl DrawnMotion {
     /// All its numbers are NaN if the motion has diverged in fixed point. In `f32` some may be NaN
     /// or infinite.
     #[must_use]
-    #[inline(never)]
     pub fn state(&self) -> State<f64> {
         match self {
             Self::In32Bits(motion) => motion.state(),

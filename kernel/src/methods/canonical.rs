@@ -3,15 +3,13 @@
 use core::fmt::Debug;
 use core::marker::PhantomData;
 
-use super::Form;
-use super::rk4::Rk4;
-use crate::bounds::check_step;
+use super::{FormOperations, rk4};
+use crate::bounds::{RK4_STABLE, check_step};
 use crate::error::Error;
-use crate::numbers::{Real, Sealed};
+use crate::numbers::Real;
 use crate::pendulum::{Direction, Parameters, Pendulum, State};
 
 /// The equations of motion of a pendulum.
-#[doc(hidden)]
 pub trait Derivatives<R: Real>: Copy + Debug + PartialEq + 'static {
     /// Prepares the equations. Refuses the parameters that [`Pendulum::new`] refuses.
     fn prepare(parameters: &Parameters<R>) -> Result<Self, Error>;
@@ -20,14 +18,16 @@ pub trait Derivatives<R: Real>: Copy + Debug + PartialEq + 'static {
     fn derivatives(&self, z: &[R; 4]) -> [R; 4];
 }
 
-#[doc(hidden)]
-impl<R: Real> Derivatives<R> for Pendulum<R> {
+/// Hamilton's equations ([`Pendulum::derivatives`]).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hamilton<R>(Pendulum<R>);
+
+impl<R: Real> Derivatives<R> for Hamilton<R> {
     fn prepare(parameters: &Parameters<R>) -> Result<Self, Error> {
-        Pendulum::new(parameters)
+        Pendulum::new(parameters).map(Self)
     }
-    #[inline(always)]
     fn derivatives(&self, z: &[R; 4]) -> [R; 4] {
-        Pendulum::derivatives(self, z)
+        self.0.derivatives(z)
     }
 }
 
@@ -35,7 +35,6 @@ impl<R: Real> Derivatives<R> for Pendulum<R> {
 ///
 /// To add an integrator, implement this trait in a file of its own, as `rk4.rs` does. The unit test
 /// `every_integrator_meets_its_order_conditions` names a weight that is wrong.
-#[doc(hidden)]
 pub trait RungeKutta: Copy + Debug + PartialEq + 'static {
     /// The order p: the error of a step is proportional to dt^(p + 1).
     const ORDER: u32;
@@ -48,21 +47,30 @@ pub trait RungeKutta: Copy + Debug + PartialEq + 'static {
     fn step<R: Real, const N: usize>(f: impl Fn(&[R; N]) -> [R; N], z: &[R; N], dt: R) -> [R; N];
 }
 
+/// The classical Runge-Kutta method, as the integrator of [`Canonical`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rk4;
+
+impl RungeKutta for Rk4 {
+    const ORDER: u32 = 4;
+    const STABLE: f64 = RK4_STABLE;
+
+    fn step<R: Real, const N: usize>(f: impl Fn(&[R; N]) -> [R; N], z: &[R; N], dt: R) -> [R; N] {
+        rk4::step(f, z, dt)
+    }
+}
+
 /// A motion on the equations `E` by the integrator `I`. It carries the state (a1, a2, p1, p2) only,
 /// in SI units. A step is dt rounded to `R`.
-#[doc(hidden)]
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Canonical<R, E = Pendulum<R>, I = Rk4> {
+pub struct Canonical<R, E = Hamilton<R>, I = Rk4> {
     equations: E,
     dt: R,
     state: State<R>,
     integrator: PhantomData<I>,
 }
 
-impl<R, E, I> Sealed for Canonical<R, E, I> {}
-
-#[doc(hidden)]
-impl<R: Real, E: Derivatives<R>, I: RungeKutta> Form for Canonical<R, E, I> {
+impl<R: Real, E: Derivatives<R>, I: RungeKutta> FormOperations for Canonical<R, E, I> {
     type Real = R;
     const STABLE: f64 = I::STABLE;
     const HAS_TURNS: bool = true;
@@ -85,7 +93,6 @@ impl<R: Real, E: Derivatives<R>, I: RungeKutta> Form for Canonical<R, E, I> {
         Ok(Self { state, ..*self })
     }
 
-    #[inline(always)]
     fn advance(&mut self, steps: u32) {
         for _ in 0..steps {
             self.state = I::step(

@@ -1,34 +1,31 @@
 //! Small oscillations in closed form: the linear motion at any time, and as a method with steps.
 
-use super::Form;
+use super::FormOperations;
 use super::scaling::lost;
 use crate::bounds::check_step;
 use crate::error::{Error, Parameter};
-use crate::numbers::{Real, Sealed};
+use crate::numbers::Real;
 use crate::pendulum::{Direction, Motion, Parameters, Pendulum, State};
 use crate::small::{Mode, Modes};
 
 /// The share of one normal mode in the angle of rod 1: C cos wt + S sin wt.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[doc(hidden)]
-pub struct Oscillation<R> {
+pub(crate) struct Oscillation<R> {
     /// C, rad.
-    pub cosine: R,
+    cosine: R,
     /// S, rad.
-    pub sine: R,
+    sine: R,
 }
 
 impl<R: Real> Oscillation<R> {
     /// Returns the amplitude of rod 1, sqrt(C^2 + S^2), rad. The amplitude of rod 2 is the
     /// magnitude of the mode's shape times this. NaN gives NaN.
-    #[must_use]
     pub fn amplitude(&self) -> R {
         (self.cosine * self.cosine + self.sine * self.sine).sqrt()
     }
 
     /// Returns the phase, rad, in [-pi, pi]: C cos wt + S sin wt = amplitude cos(wt + phase). It is
     /// 0 or plus or minus pi if the amplitude is 0. NaN gives NaN.
-    #[must_use]
     pub fn phase(&self) -> R {
         (-self.sine).atan2(self.cosine)
     }
@@ -51,11 +48,9 @@ pub struct SmallOscillations<R> {
     turns: [f64; 2],
     modes: [Mode<R>; 2],
     /// The share of the fast mode: C1 and S1.
-    #[doc(hidden)]
-    pub fast: Oscillation<R>,
+    pub(crate) fast: Oscillation<R>,
     /// The share of the slow mode: C2 and S2.
-    #[doc(hidden)]
-    pub slow: Oscillation<R>,
+    pub(crate) slow: Oscillation<R>,
     /// True if an angle may exceed [`SMALL`].
     is_wide: bool,
 }
@@ -114,9 +109,25 @@ impl<R: Real> SmallOscillations<R> {
         linear
     }
 
+    /// Returns the amplitudes of rod 1 in the fast and in the slow mode, sqrt(C^2 + S^2), rad.
+    ///
+    /// The amplitudes of rod 2 are the shapes r of the modes times these.
+    #[must_use]
+    pub fn amplitudes(&self) -> [R; 2] {
+        [self.fast, self.slow].map(|mode| mode.amplitude())
+    }
+
+    /// Returns the phases of the fast and of the slow mode at the start, rad, in [-pi, pi].
+    ///
+    /// C cos wt + S sin wt = A cos(wt + phase), where A is the [amplitude](Self::amplitudes).
+    #[must_use]
+    pub fn phases(&self) -> [R; 2] {
+        [self.fast, self.slow].map(|mode| mode.phase())
+    }
+
     /// Returns upper bounds of both angles, rad: the sums of the amplitudes of the modes.
     fn reach(&self) -> [R; 2] {
-        let [fast, slow] = [&self.fast, &self.slow].map(Oscillation::amplitude);
+        let [fast, slow] = self.amplitudes();
         let [of_fast, of_slow] = self.modes.map(|mode| mode.shape.abs());
         [fast + slow, of_fast * fast + of_slow * slow]
     }
@@ -127,7 +138,7 @@ impl<R: Real> SmallOscillations<R> {
     /// rounding error of w t in `f64`, to 1e-9 rad in a day. A `t` that is not finite gives NaN.
     #[must_use]
     pub fn at(&self, t: f64) -> Motion<R> {
-        let phases = self.phases(t);
+        let phases = self.sincos(t);
         let [a1, a2] = self.angles(phases);
         let ([fast, slow], [(sin_fast, cos_fast), (sin_slow, cos_slow)]) = (&self.modes, phases);
 
@@ -153,7 +164,7 @@ impl<R: Real> SmallOscillations<R> {
     /// `t` that is not finite gives NaN.
     #[must_use]
     pub fn directions(&self, t: f64) -> [Direction<R>; 2] {
-        let angles = self.angles(self.phases(t));
+        let angles = self.angles(self.sincos(t));
         if self.is_wide {
             return angles.map(|a| a.own_sin_cos().into());
         }
@@ -170,8 +181,8 @@ impl<R: Real> SmallOscillations<R> {
     }
 
     /// Returns (sin wt, cos wt) of the fast and the slow mode.
-    #[inline]
-    fn phases(&self, t: f64) -> [(R, R); 2] {
+    #[inline] // One function with the directions, which boards run in memory.
+    fn sincos(&self, t: f64) -> [(R, R); 2] {
         let phase = |turns: f64| {
             let turns = turns * t;
             (R::from_f64(turns - libm::rint(turns)) * R::from_f64(core::f64::consts::TAU))
@@ -181,7 +192,6 @@ impl<R: Real> SmallOscillations<R> {
     }
 
     /// Returns a1 and a2 at these phases.
-    #[inline]
     fn angles(&self, [(sin_fast, cos_fast), (sin_slow, cos_slow)]: [(R, R); 2]) -> [R; 2] {
         let a_fast = self.fast.cosine * cos_fast + self.fast.sine * sin_fast;
         let a_slow = self.slow.cosine * cos_slow + self.slow.sine * sin_slow;
@@ -215,10 +225,7 @@ impl<R: Real> ClosedForm<R> {
     }
 }
 
-impl<R> Sealed for ClosedForm<R> {}
-
-#[doc(hidden)]
-impl<R: Real> Form for ClosedForm<R> {
+impl<R: Real> FormOperations for ClosedForm<R> {
     type Real = R;
     const HAS_TURNS: bool = true;
     const STABLE: f64 = f64::INFINITY;

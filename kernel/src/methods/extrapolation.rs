@@ -82,7 +82,6 @@ pub(super) fn half_substeps(row: usize) -> f64 {
 }
 
 /// Returns the weight w(n) of the row `row`, counted from 0, of `rows` rows.
-#[inline(never)] // Not inlined, to save flash.
 pub(super) fn weight(row: usize, rows: usize) -> f64 {
     let square = half_substeps(row) * half_substeps(row);
     let mut weight = 1.0;
@@ -94,7 +93,6 @@ pub(super) fn weight(row: usize, rows: usize) -> f64 {
 
 impl<R: Real> Extrapolation<R> {
     /// Prepares steps of `order` 2, 4 .. 16. Refuses any other order, by [`Error::OutOfRange`].
-    #[inline(never)] // Not inlined, to save flash.
     pub fn new(order: u32) -> Result<Self, Error> {
         let rows = rows(order)?;
         let mut weights = [R::ZERO; ROWS];
@@ -122,7 +120,6 @@ impl<R: Real> Extrapolation<R> {
     /// assert!(error < 3e-14); // The error of the method is 2e-14.
     /// # Ok::<(), double_pendulum::Error>(())
     /// ```
-    #[inline]
     pub fn step<const N: usize>(&self, f: impl Fn(&[R; N]) -> [R; N], z: &[R; N], dt: R) -> [R; N] {
         // The change over 2 h at the point that is `change` away from z. All sums are sums of
         // changes, which round less than sums of states.

@@ -20,10 +20,10 @@
 //! same on every machine.
 
 use crate::error::{Error, Parameter, check_finite};
-use crate::methods::Form;
+use crate::methods::FormOperations;
 use crate::methods::direction::{Coefficients, Scale, directions, prepare, quantities};
 use crate::methods::extrapolation::{Extrapolation, ROWS, is_order, stable};
-use crate::numbers::{Lanes, Real, Sealed};
+use crate::numbers::{Lanes, Real, RealOperations};
 use crate::pendulum::{Direction, Parameters, State};
 
 /// The number of rows that are computed side by side. Two vectors of SSE2 hide each other's
@@ -96,7 +96,6 @@ impl<const ORDER: u32> ExtrapolationF64<ORDER> {
     }
 
     /// Returns the change of the six quantities over one step.
-    #[inline(always)]
     fn change(&self) -> [f64; 6] {
         let (shares, weights, _) = self.method.parts();
         let mut first = [0.0; 6];
@@ -189,7 +188,6 @@ impl<const ORDER: u32> ExtrapolationF64<ORDER> {
     }
 
     /// Returns the constants where the lanes compute `rows`.
-    #[inline(always)]
     fn pace(&self, rows: [usize; LANES]) -> Pace {
         let (shares, _, _) = self.method.parts();
         let share = Lanes(rows.map(|row| shares[row % ROWS]));
@@ -203,7 +201,6 @@ impl<const ORDER: u32> ExtrapolationF64<ORDER> {
     }
 
     /// Returns the change over 2 h at the points that are `change` away from the start of the step.
-    #[inline(always)]
     fn slope(&self, pace: &Pace, change: &[Numbers; 6]) -> [Numbers; 6] {
         let z: [Numbers; 6] = core::array::from_fn(|i| Numbers::splat(self.z[i]) + change[i]);
         let [sin1, cos1, s, c, p1, p2] = z;
@@ -279,10 +276,7 @@ impl<const ORDER: u32> ExtrapolationF64<ORDER> {
     }
 }
 
-impl<const ORDER: u32> Sealed for ExtrapolationF64<ORDER> {}
-
-#[doc(hidden)]
-impl<const ORDER: u32> Form for ExtrapolationF64<ORDER> {
+impl<const ORDER: u32> FormOperations for ExtrapolationF64<ORDER> {
     type Real = f64;
     const STABLE: f64 = stable(ORDER);
 
@@ -315,8 +309,7 @@ impl<const ORDER: u32> Form for ExtrapolationF64<ORDER> {
         })
     }
 
-    // Never inlined, because a call costs little compared with a step and the step is large.
-    #[inline(never)]
+    #[inline(never)] // Users without optimisation share the optimised function.
     fn advance(&mut self, steps: u32) {
         for _ in 0..steps {
             self.step();

@@ -35,12 +35,12 @@ use core::cell::Cell;
 
 use crate::bounds::check_step;
 use crate::error::{Error, Parameter};
-use crate::methods::Form;
+use crate::methods::FormOperations;
 use crate::methods::direction::{quantities, state_of};
 use crate::methods::extrapolation::{is_order, stable};
 use crate::methods::scaling::{Scaling, lost};
+use crate::numbers::Real;
 use crate::numbers::fixed::Q64;
-use crate::numbers::{Real, Sealed};
 use crate::pendulum::{Direction, Parameters, Pendulum, State};
 use rows::{EIGHTH, Rows, unit_of_time};
 
@@ -112,7 +112,6 @@ impl Fixed64State {
     /// Prepares the motion from `start` in steps of `dt` s by `order`, which must be 2, 4 .. 16.
     ///
     /// The errors are the same as for the public type [`Fixed64`].
-    #[inline(never)]
     fn new(
         parameters: &Parameters<f64>,
         start: &State<f64>,
@@ -165,7 +164,6 @@ impl Fixed64State {
     }
 
     /// Advances the motion by `steps` steps. A lost motion goes on, without meaning.
-    #[inline(never)]
     fn advance(&mut self, steps: u32) {
         for _ in 0..steps {
             self.step();
@@ -209,7 +207,6 @@ impl Fixed64State {
     }
 
     /// Returns the state in SI units, with angles in (-pi, pi]; NaN if the motion is lost.
-    #[inline(never)]
     fn state(&self) -> State<f64> {
         let z = if self.lost {
             [f64::NAN; 6]
@@ -222,7 +219,7 @@ impl Fixed64State {
 
 /// Returns a direction with its length restored to first order in the error of its square, and that
 /// error. `gain` is half of 1/`square`.
-#[inline(always)]
+#[inline(always)] // `slope`, `times`, `restored`: +8 % cycles on an M3 without.
 fn restored([s, c]: [Q64; 2], square: Q64, gain: Q64) -> ([Q64; 2], Q64) {
     let missing = square - s * s - c * c;
     let relative = missing.up(7) * gain;
@@ -230,10 +227,7 @@ fn restored([s, c]: [Q64; 2], square: Q64, gain: Q64) -> ([Q64; 2], Q64) {
     ([restored(s), restored(c)], missing)
 }
 
-impl<const ORDER: u32> Sealed for Fixed64<ORDER> {}
-
-#[doc(hidden)]
-impl<const ORDER: u32> Form for Fixed64<ORDER> {
+impl<const ORDER: u32> FormOperations for Fixed64<ORDER> {
     type Real = f32;
     const STABLE: f64 = stable(ORDER);
     const CHECKS_ENERGY: bool = true;
@@ -248,7 +242,6 @@ impl<const ORDER: u32> Form for Fixed64<ORDER> {
         Ok(Self(self.0.started(start)))
     }
 
-    #[inline]
     fn advance(&mut self, steps: u32) {
         self.0.advance(steps);
     }
@@ -276,7 +269,6 @@ impl<const ORDER: u32> Form for Fixed64<ORDER> {
         ]
     }
 
-    #[inline(never)] // Not inlined, to save flash.
     fn momenta<R: Real>(&self) -> [R; 2] {
         let [.., p1, p2] = self.0.z;
         let [unit1, unit2] = self.0.momenta;

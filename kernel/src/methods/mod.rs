@@ -20,8 +20,10 @@ pub(crate) mod run;
 mod scaling;
 
 pub use any::{DrawnMotion, FormVisitor};
-pub use canonical::{Canonical, Derivatives, RungeKutta};
-pub use closed_form::{ClosedForm, Oscillation, SmallOscillations};
+#[cfg(test)]
+pub(crate) use canonical::Hamilton;
+pub use canonical::{Canonical, Derivatives, Rk4, RungeKutta};
+pub use closed_form::{ClosedForm, SmallOscillations};
 pub use extrapolation_f64::ExtrapolationF64;
 pub use extrapolation_fixed64::Fixed64;
 pub use rk4_direction::Rk4Direction;
@@ -32,7 +34,7 @@ use core::fmt::Debug;
 
 use crate::bounds::RK4_STABLE;
 use crate::error::Error;
-use crate::numbers::{Real, Sealed};
+use crate::numbers::Real;
 use crate::pendulum::{Direction, Parameters, Pendulum, State};
 
 /// RK4 on Hamilton's equations in angles and momenta, in `f32`: `rk4-f32`.
@@ -59,8 +61,9 @@ pub type ClosedFormF64 = ClosedForm<f64>;
 
 /// A method: its equations, its numbers and its integrator. A value is a motion of a pendulum.
 ///
-/// The trait is sealed, and its items are implementation details. Pass the type to
-/// [`Pendulum::run`](crate::Pendulum::run), which returns a motion with checks and with turns.
+/// The trait is sealed: the types of the methods of this crate implement it, and no others. Pass
+/// such a type to [`Pendulum::run`](crate::Pendulum::run), which returns a motion with checks and
+/// with turns. `F::Real` is the type of its numbers.
 ///
 /// # Time
 ///
@@ -72,19 +75,24 @@ pub type ClosedFormF64 = ClosedForm<f64>;
 ///
 /// Fixed point and the closed form are neither ahead nor behind. [`HamiltonF32`] is, because it
 /// rounds dt, and its state is not corrected.
-pub trait Form: Sealed + Copy + Debug + PartialEq + 'static {
+pub trait Form: FormOperations + Copy + Debug + PartialEq + 'static {}
+
+impl<F: FormOperations> Form for F {}
+
+/// The operations of a [`Form`]. A motion by them has no checks and no turns.
+///
+/// No other crate can name this trait, so that [`Form`] is sealed and may get new operations.
+/// Generic code can call them.
+pub trait FormOperations: Copy + Debug + PartialEq + 'static {
     /// The numbers that [`Run::directions`] and [`Run::angles`] return.
-    #[doc(hidden)]
     type Real: Real;
 
     /// The largest phase w1 dt, rad, of a stable step; w1 is the frequency of the fast normal mode.
     /// [`Pendulum::run`](crate::Pendulum::run) refuses longer steps.
-    #[doc(hidden)]
     const STABLE: f64 = RK4_STABLE;
 
     /// True if [`check`](Self::check) refuses every energy that is far too large, and every
     /// direction that is far too long. If it is false, [`Run`] checks both.
-    #[doc(hidden)]
     const CHECKS_ENERGY: bool = false;
 
     /// Checks the parameters and prepares the motion from `start`, in steps of `dt` seconds.
@@ -95,7 +103,6 @@ pub trait Form: Sealed + Copy + Debug + PartialEq + 'static {
     ///
     /// Refuses the inputs that [`Pendulum::run`](crate::Pendulum::run) refuses, except a step
     /// beyond [`STABLE`](Self::STABLE) and a start of too many turns.
-    #[doc(hidden)]
     fn new(parameters: &Parameters<f64>, start: &State<f64>, dt: f64) -> Result<Self, Error>;
 
     /// Returns a motion of the same pendulum from another start, in the same units and steps. Its
@@ -105,19 +112,15 @@ pub trait Form: Sealed + Copy + Debug + PartialEq + 'static {
     /// # Errors
     ///
     /// Refuses a start that is not finite, or out of the range of the method's numbers.
-    #[doc(hidden)]
     fn started(&self, start: &State<f64>) -> Result<Self, Error>;
 
     /// Advances the motion by `steps` steps.
     ///
     /// `advance(a); advance(b)` is bit-identical to `advance(a + b)`. A motion that diverges is not
     /// reported; [`check`](Self::check) it afterwards.
-    #[doc(hidden)]
     fn advance(&mut self, steps: u32);
 
     /// Advances the motion by one step. A loop that reads the motion after each step uses it.
-    #[doc(hidden)]
-    #[inline(always)]
     fn advance_one(&mut self) {
         self.advance(1);
     }
@@ -128,7 +131,6 @@ pub trait Form: Sealed + Copy + Debug + PartialEq + 'static {
     ///
     /// Unless [`CHECKS_ENERGY`](Self::CHECKS_ENERGY), a motion whose numbers are finite but
     /// meaningless is accepted.
-    #[doc(hidden)]
     fn check(&self) -> Result<(), Error>;
 
     /// Returns the sine and cosine of both rods as words whose highest bit is the sign.
@@ -136,11 +138,9 @@ pub trait Form: Sealed + Copy + Debug + PartialEq + 'static {
     /// The order is `[[sin a1, cos a1], [sin a2, cos a2]]`. The signs show when a rod turns over.
     /// The other bits are in the format of the method's numbers. A diverged motion has arbitrary
     /// words.
-    #[doc(hidden)]
     fn sides(&self) -> [[i32; 2]; 2];
 
     /// Returns the number that a word of [`sides`](Self::sides) represents, in an arbitrary unit.
-    #[doc(hidden)]
     fn side_value(side: i32) -> Self::Real;
 
     /// Returns the directions of both rods in the numbers `Q`. In the direction form this needs no
@@ -149,17 +149,14 @@ pub trait Form: Sealed + Copy + Debug + PartialEq + 'static {
     /// They may be up to half a step ahead of the [`state`](Self::state) or behind it. A diverged
     /// motion need not show it: in fixed point its directions are finite. Call
     /// [`check`](Self::check).
-    #[doc(hidden)]
     fn directions<Q: Real>(&self) -> [Direction<Q>; 2];
 
     /// Returns the momenta p1 and p2, kg m^2/s, at the time of the
     /// [`directions`](Self::directions). They are NaN if the motion has diverged in fixed point.
-    #[doc(hidden)]
     fn momenta<Q: Real>(&self) -> [Q; 2];
 
     /// Returns the [`momenta`](Self::momenta) with a relative error of a few units in the last
     /// place of the method's numbers. A check of the energy needs no more.
-    #[doc(hidden)]
     fn momenta_nearly(&self) -> [Self::Real; 2] {
         self.momenta()
     }
@@ -167,7 +164,6 @@ pub trait Form: Sealed + Copy + Debug + PartialEq + 'static {
     /// Returns the canonical state in SI units at the number of steps times dt, with all digits
     /// that the method carries. All its numbers are NaN if the motion has diverged in fixed point.
     /// The angles are in (-pi, pi], unless [`HAS_TURNS`](Self::HAS_TURNS).
-    #[doc(hidden)]
     fn state(&self) -> State<f64>;
 
     /// Returns the energy above rest, J, with all digits that the method carries.
@@ -175,19 +171,16 @@ pub trait Form: Sealed + Copy + Debug + PartialEq + 'static {
     /// `pendulum` must be the pendulum of this motion; this is not checked. The energy follows from
     /// the directions and momenta, which may be up to half a step ahead of the
     /// [`state`](Self::state) or behind it. It is NaN if the motion has diverged in fixed point.
-    #[doc(hidden)]
     fn energy_above_rest(&self, pendulum: &Pendulum<f64>) -> f64 {
         let [upper, lower] = self.directions();
         pendulum.energy_above_rest_at([unit(upper), unit(lower)], self.momenta())
     }
 
     /// True if the angles of [`state`](Self::state) include whole turns.
-    #[doc(hidden)]
     const HAS_TURNS: bool = false;
 
     /// Passes the words that the motion carries from step to step to `feed`, one at a time and
     /// always in the same order, to compare machines.
-    #[doc(hidden)]
     fn bits(&self, feed: impl FnMut(u64));
 }
 

@@ -3,8 +3,6 @@
 //! Scenes are drawn by RK4 steps that are written out for their numbers: those of `f32` are in
 //! `rk4_direction.rs`, those of fixed point in `rk4_fixed32.rs`.
 
-use super::RungeKutta;
-use crate::bounds::RK4_STABLE;
 use crate::numbers::Real;
 use crate::pendulum::{Pendulum, State};
 
@@ -19,7 +17,6 @@ use crate::pendulum::{Pendulum, State};
 /// The error is O(dt^5) after one step, and O(dt^4) after a fixed time. A negative `dt` steps
 /// backwards. The inputs are not checked; NaN gives NaN. The unit of time is that of f.
 #[must_use]
-#[inline]
 pub fn step<R: Real, const N: usize>(f: impl Fn(&[R; N]) -> [R; N], z: &[R; N], dt: R) -> [R; N] {
     let half = dt * R::HALF;
     let k1 = f(z);
@@ -31,7 +28,6 @@ pub fn step<R: Real, const N: usize>(f: impl Fn(&[R; N]) -> [R; N], z: &[R; N], 
 }
 
 /// Returns z + dt k.
-#[inline(always)]
 fn advanced<R: Real, const N: usize>(z: &[R; N], dt: R, k: &[R; N]) -> [R; N] {
     core::array::from_fn(|i| z[i] + dt * k[i])
 }
@@ -45,23 +41,7 @@ impl<R: Real> Pendulum<R> {
     /// [`admissible_step`](Self::admissible_step) before the first step, and [`State::finite`]
     /// after each.
     #[must_use]
-    #[inline]
     pub fn step(&self, state: &State<R>, dt: R) -> State<R> {
         step(|z| self.derivatives(z), &(*state).into(), dt).into()
-    }
-}
-
-/// The classical Runge-Kutta method, as the integrator of [`Canonical`](super::Canonical).
-#[doc(hidden)]
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Rk4;
-
-impl RungeKutta for Rk4 {
-    const ORDER: u32 = 4;
-    const STABLE: f64 = RK4_STABLE;
-
-    #[inline(always)]
-    fn step<R: Real, const N: usize>(f: impl Fn(&[R; N]) -> [R; N], z: &[R; N], dt: R) -> [R; N] {
-        step(f, z, dt)
     }
 }

@@ -82,7 +82,6 @@ impl Scaling {
     ///
     /// Refuses ratios of masses or rods that need a shift of more than 12, by
     /// [`Error::OutOfRange`]. It names the value that is farthest from 1.
-    #[inline(never)]
     pub fn in_seconds(parameters: &Parameters<f64>) -> Result<Self, Error> {
         let &Parameters { m1, m2, l1, l2, g } = parameters;
         let nu = l1 / l2;

@@ -7,7 +7,4 @@ mod real;
 mod sine;
 
 pub(crate) use lanes::Lanes;
-pub use real::Real;
-
-/// Keeps a public trait to the types of this crate, so that it may get new methods.
-pub trait Sealed {}
+pub use real::{Real, RealOperations, sin_cos};

@@ -79,21 +79,20 @@ impl<R: Real> Pendulum<R> {
     /// The difference from the form of `[math24]` is at most 1e-13 (`f64`) or 2e-6 (`f32`) of the
     /// largest term. The state is not checked; if it is not finite, the result is NaN or infinity.
     #[must_use]
-    #[inline]
     pub fn derivatives(&self, z: &[R; 4]) -> [R; 4] {
         let &[a1, a2, p1, p2] = z;
-        self.derivatives_at([a1.own_sin_cos(), a2.own_sin_cos()], [p1, p2])
+        self.derivatives_at([a1.own_sin_cos().into(), a2.own_sin_cos().into()], [p1, p2])
     }
 
     /// Returns the [`derivatives`](Self::derivatives), rad/s and N m, for known directions (sin,
     /// cos) of both rods and momenta (p1, p2), kg m^2/s. It needs no trigonometry.
     ///
     /// The directions must be of length 1; this is not checked.
-    #[doc(hidden)]
-    #[inline]
+    #[doc(hidden)] // For the firmware's method with other sines.
+    #[must_use]
     pub fn derivatives_at(
         &self,
-        [(sin1, cos1), (sin2, cos2)]: [(R, R); 2],
+        [[sin1, cos1], [sin2, cos2]]: [[R; 2]; 2],
         [p1, p2]: [R; 2],
     ) -> [R; 4] {
         let Parameters { m1, m2, .. } = self.parameters;
@@ -138,9 +137,11 @@ impl<R: Real> Pendulum<R> {
     /// momenta (p1, p2), kg m^2/s. It needs no trigonometry.
     ///
     /// The directions must be of length 1; this is not checked.
-    #[must_use]
-    #[inline(never)] // Not inlined, to save flash.
-    pub fn energy_at(&self, [[sin1, cos1], [sin2, cos2]]: [[R; 2]; 2], momenta: [R; 2]) -> R {
+    pub(crate) fn energy_at(
+        &self,
+        [[sin1, cos1], [sin2, cos2]]: [[R; 2]; 2],
+        momenta: [R; 2],
+    ) -> R {
         let elbow = (sin1 * cos2 - cos1 * sin2, cos1 * cos2 + sin1 * sin2);
         self.kinetic_energy_of(elbow, momenta) - self.torque[0] * cos1 - self.torque[1] * cos2
     }
@@ -164,10 +165,7 @@ impl<R: Real> Pendulum<R> {
     /// of both rods and momenta (p1, p2), kg m^2/s. It needs no trigonometry.
     ///
     /// The directions must be of length 1; this is not checked.
-    #[doc(hidden)]
-    #[must_use]
-    #[inline(never)] // Not inlined, to save flash.
-    pub fn energy_above_rest_at(
+    pub(crate) fn energy_above_rest_at(
         &self,
         [[sin1, cos1], [sin2, cos2]]: [[R; 2]; 2],
         momenta: [R; 2],
@@ -186,7 +184,6 @@ impl<R: Real> Pendulum<R> {
     }
 
     /// Returns the kinetic energy T, J, from (sin D, cos D) and the momenta, kg m^2/s.
-    #[inline(never)] // Not inlined, to save flash.
     fn kinetic_energy_of(&self, (sin_d, cos_d): (R, R), [p1, p2]: [R; 2]) -> R {
         let Parameters { m1, m2, .. } = self.parameters;
         let q1 = p1 * self.inverse_length[0];

@@ -171,7 +171,6 @@ impl<R: Real> Pendulum<R> {
 }
 
 /// Returns (sin, cos) of the elbow's angle D.
-#[inline(always)]
 fn elbow<R: Real>(motion: &Motion<R>) -> (R, R) {
     (motion.a1 - motion.a2).own_sin_cos()
 }

@@ -58,7 +58,6 @@ impl<R: Real> Parameters<R> {
 
     /// Refuses NaN, infinite, zero or negative masses and lengths, and NaN, infinite or negative
     /// gravity.
-    #[inline(never)] // Not inlined, to save flash.
     pub(crate) fn check(&self) -> Result<(), Error> {
         for (parameter, value) in self.named() {
             if !value.is_finite() {
@@ -82,7 +81,6 @@ impl<R: Real> Parameters<R> {
 
     /// Returns the error for parameters whose products overflow or underflow. It names the value
     /// that is farthest from 1.
-    #[inline(never)] // Not inlined, to save flash.
     pub(crate) fn out_of_range(&self) -> Error {
         // Factors above and below 1 count alike.
         let distance = |value: f64| if value < 1.0 { 1.0 / value } else { value };

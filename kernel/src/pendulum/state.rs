@@ -46,34 +46,6 @@ impl<R: Real> State<R> {
         <[R; 4]>::from(self).map(R::cast).into()
     }
 
-    /// Refuses NaN and infinite values: [`Error::NotFinite`] names the first of them.
-    #[inline(never)] // Not inlined, to save flash.
-    #[doc(hidden)]
-    pub fn check(&self) -> Result<(), Error> {
-        check_finite([
-            (Parameter::A1, self.a1),
-            (Parameter::A2, self.a2),
-            (Parameter::P1, self.p1),
-            (Parameter::P2, self.p2),
-        ])
-    }
-}
-
-/// Converts from the order of `[math24]`: a1, a2, p1, p2.
-impl<R> From<[R; 4]> for State<R> {
-    fn from([a1, a2, p1, p2]: [R; 4]) -> Self {
-        Self { a1, a2, p1, p2 }
-    }
-}
-
-/// Converts to the order of `[math24]`: a1, a2, p1, p2.
-impl<R> From<State<R>> for [R; 4] {
-    fn from(point: State<R>) -> Self {
-        [point.a1, point.a2, point.p1, point.p2]
-    }
-}
-
-impl<R: Real> State<R> {
     /// Returns the state if all its numbers are finite, and [`Error::Diverged`] otherwise.
     ///
     /// A step that resolves the motion leads from a finite state to a finite state. A longer step
@@ -97,6 +69,31 @@ impl<R: Real> State<R> {
     /// ```
     pub fn finite(self) -> Result<Self, Error> {
         self.check().map(|()| self).map_err(Error::diverged)
+    }
+
+    /// Refuses NaN and infinite values: [`Error::NotFinite`] names the first of them.
+    #[doc(hidden)] // For settings; `Pendulum::run` checks its start.
+    pub fn check(&self) -> Result<(), Error> {
+        check_finite([
+            (Parameter::A1, self.a1),
+            (Parameter::A2, self.a2),
+            (Parameter::P1, self.p1),
+            (Parameter::P2, self.p2),
+        ])
+    }
+}
+
+/// Converts from the order of `[math24]`: a1, a2, p1, p2.
+impl<R> From<[R; 4]> for State<R> {
+    fn from([a1, a2, p1, p2]: [R; 4]) -> Self {
+        Self { a1, a2, p1, p2 }
+    }
+}
+
+/// Converts to the order of `[math24]`: a1, a2, p1, p2.
+impl<R> From<State<R>> for [R; 4] {
+    fn from(point: State<R>) -> Self {
+        [point.a1, point.a2, point.p1, point.p2]
     }
 }
 
@@ -142,8 +139,7 @@ impl<R: Real> Motion<R> {
     }
 
     /// Refuses NaN and infinite values: [`Error::NotFinite`] names the first of them.
-    #[inline(never)] // Not inlined, to save flash.
-    #[doc(hidden)]
+    #[doc(hidden)] // For settings; `Pendulum::run` checks its start.
     pub fn check(&self) -> Result<(), Error> {
         check_finite([
             (Parameter::A1, self.a1),

@@ -70,7 +70,6 @@ impl Candidate {
     /// most 1 ([`TOLERATED`]); then it is counted, and the largest `error` is kept. A NaN bound
     /// counts as inaccurate. The first inaccurate frame makes the candidate fail. After that, or if
     /// the candidate is excluded, nothing is recorded.
-    #[inline(never)] // Not inlined, to save flash.
     pub fn note(&mut self, error: f32, bound: f32) {
         if !self.is_accurate() {
             return;
@@ -96,7 +95,6 @@ impl Candidate {
 /// `rods` are the lengths of the rods; the result has the same unit. It is NaN if any direction is
 /// NaN. The relative position is included so that the angles are accurate, too: if both rods have
 /// opposite errors, bob 2 may be where it belongs.
-#[inline(never)] // Not inlined, to save flash.
 pub(super) fn distance(rods: [f32; 2], a: &Directions, b: &Directions) -> f32 {
     let difference = |rod: usize, axis: usize| rods[rod] * (a[rod][axis] - b[rod][axis]);
     let [bob1, relative] = [0, 1].map(|rod| [difference(rod, 0), difference(rod, 1)]);

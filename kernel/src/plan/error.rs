@@ -28,7 +28,7 @@ pub enum Limit {
 
 impl Limit {
     /// Returns the limit in words for a message, such as `the budget for planning`.
-    #[doc(hidden)]
+    #[doc(hidden)] // For the firmware's log, which has no `Display`.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {

@@ -91,7 +91,7 @@ use crate::table::Method;
 pub use cost::{Budget, Costs, Stepping};
 pub use error::{Limit, PlanError};
 pub use problem::Problem;
-pub use run::{Directions, PlannedRun};
+pub use run::PlannedRun;
 pub use search::Search;
 
 /// The result of a search: the chosen method and its accuracy horizon.
@@ -141,7 +141,6 @@ impl Plan {
     }
 
     /// Returns the method and step count; the count is 1 for the closed form.
-    #[doc(hidden)]
     #[must_use]
     pub fn stepping(&self) -> Stepping {
         Stepping {

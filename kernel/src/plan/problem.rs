@@ -73,8 +73,7 @@ impl Problem {
 
     /// Returns the number of frames after the one at the start: the duration times the rate,
     /// rounded to the nearest integer (half to even), from 1 to 2^32 - 1; 1 if it is NaN.
-    #[inline(never)] // Not inlined, to save flash.
-    #[doc(hidden)]
+    #[doc(hidden)] // For the firmware's budgets, and for proofs.
     #[must_use]
     pub fn frames(&self) -> u32 {
         let frames = libm::rint(self.duration * f64::from(self.rate)) as u32;
@@ -83,15 +82,12 @@ impl Problem {
 
     /// Returns the time of frame `frame` since the start, s. Frame 0 is the start. A rate of 0
     /// gives infinity, or NaN for frame 0.
-    #[doc(hidden)]
-    #[must_use]
-    pub fn time(&self, frame: u32) -> f64 {
+    pub(super) fn time(&self, frame: u32) -> f64 {
         f64::from(frame) / f64::from(self.rate)
     }
 
     /// Returns the pendulum and `start` with their numbers changed by a perturbation, times the
     /// rounding error of `method`. m1 and l1 are not changed.
-    #[inline(never)]
     pub(super) fn perturbed(
         &self,
         start: &State<f64>,

@@ -12,10 +12,11 @@ use std::string::String;
 use std::vec::Vec;
 
 use double_pendulum::parts::{Canonical, Rk4, RungeKutta};
-use double_pendulum::{Extrapolation, Integrator, Method, Pendulum};
+use double_pendulum::{Extrapolation, Integrator, Method};
 
 use super::forms;
 use super::three_eighths::ThreeEighths;
+use crate::methods::Hamilton;
 
 /// The number of equations: more than the 65 stages of extrapolation of order 16.
 const N: usize = 72;
@@ -276,7 +277,7 @@ fn added_integrator_needs_only_a_type() {
         let error = *read.weight(weight) - *book.clone().weight(weight);
         assert!(error.abs() <= ROUNDING, "{weight:?}: {error}");
     }
-    forms::is_that_of_hamiltons_equations::<Canonical<f64, Pendulum<f64>, ThreeEighths>>(
+    forms::is_that_of_hamiltons_equations::<Canonical<f64, Hamilton<f64>, ThreeEighths>>(
         forms::RK4,
     );
 }

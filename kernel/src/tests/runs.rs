@@ -7,7 +7,7 @@ use std::vec;
 use double_pendulum::parts::DirectionF64;
 use double_pendulum::{
     DirectionF32, DirectionF32Plain, Error, ExtrapolationF64, Fixed32, Fixed64, Form, HamiltonF32,
-    HamiltonF64, Modes, Motion, Parameter, Parameters, Pendulum, Real, State,
+    HamiltonF64, Modes, Motion, Parameter, Parameters, Pendulum, State,
 };
 use fastrand::Rng;
 
@@ -161,10 +161,11 @@ fn energy_stays_within_its_bound<F: Form>() -> Result<(), Error> {
             let before = run;
             match run.advance(1) {
                 Ok(()) => {
-                    let energy = run.energy().to_f64();
+                    let energy: f64 = run.energy().into();
                     assert!(energy <= 1.001 * most, "{energy:e} J of {most:e} J");
                     for [s, c] in run.directions() {
-                        let length = (s * s + c * c).sqrt().to_f64();
+                        let square: f64 = (s * s + c * c).into();
+                        let length = square.sqrt();
                         assert!((0.49..2.01).contains(&length), "{length}");
                     }
                 }
@@ -224,11 +225,12 @@ fn counts_turns_on_request<F: Form>() -> Result<(), Error> {
             .into_iter()
             .zip(motion.momenta::<f64>())
         {
-            let error = (nearly.to_f64() - exact).abs();
+            let error = (Into::<f64>::into(nearly) - exact).abs();
             assert!(error <= 3e-7 * exact.abs(), "{nearly:?} for {exact}");
         }
 
-        let [own, counted] = [plain.angles(), counting.angles()].map(|it| it.map(Real::to_f64));
+        let [own, counted] =
+            [plain.angles(), counting.angles()].map(|angles| angles.map(Into::<f64>::into));
         let states = [plain.state(), counting.state()].map(|state| state.angles());
         for (own, counted) in own
             .into_iter()

@@ -201,7 +201,7 @@ fn motions_with_a_periodic_mass_ratio_repeat() {
         );
 
         // The motion is at its start again after the common period.
-        let motion = SmallOscillations::new(
+        let motion = SmallOscillations::<f64>::new(
             modes,
             &Motion {
                 a1: 0.1,

@@ -48,6 +48,11 @@ struct Exact {
     frames: Vec<Directions>,
 }
 
+/// Returns the time of frame `frame` of the scene, s since the start, which is frame 0.
+fn time(scene: &Problem, frame: u32) -> f64 {
+    f64::from(frame) / f64::from(scene.rate)
+}
+
 /// Returns the sine and cosine of both angles.
 fn directions([a1, a2]: [f64; 2]) -> Directions {
     [libm::sin(a1), libm::cos(a1), libm::sin(a2), libm::cos(a2)]
@@ -66,7 +71,7 @@ impl Exact {
     fn frame(&mut self, frame: u32) -> Directions {
         while self.frames.len() < frame as usize {
             let next = self.frames.len() as u32 + 1;
-            self.reference.advance_to(self.scene.time(next));
+            self.reference.advance_to(time(&self.scene, next));
             self.frames
                 .push(directions(self.reference.motion().angles()));
         }
@@ -112,7 +117,7 @@ impl Exact {
             pendulum, start, ..
         } = &self.scene;
         let mut other = Reference::new(pendulum, start).of_order(OTHER_ORDER);
-        other.advance_to(self.scene.time(self.frames.len() as u32));
+        other.advance_to(time(&self.scene, self.frames.len() as u32));
         let [sin1, cos1, sin2, cos2] = directions(other.motion().angles());
         distance(&self.scene, [[sin1, cos1], [sin2, cos2]], *last)
     }
@@ -180,7 +185,7 @@ impl Case {
                 let predicted = (plan.horizon * f64::from(scene.rate)).round() as u32;
                 let (accurate, error) = exact.judge(plan.stepping(), predicted);
                 case.plan = Some(plan);
-                case.horizon = scene.time(accurate);
+                case.horizon = time(scene, accurate);
                 case.longest = case.horizon;
                 case.error = error;
             }
@@ -230,7 +235,7 @@ fn judged(scene: &Problem, by_force: bool, is_checked: bool) -> Vec<Case> {
             {
                 continue;
             }
-            let horizon = scene.time(exact.judge(stepping, 0).0);
+            let horizon = time(scene, exact.judge(stepping, 0).0);
             for (case, chip) in cases.iter_mut().zip(&CHIPS) {
                 if needed(case, chip) {
                     case.longest = case.longest.max(horizon);

@@ -35,17 +35,18 @@ pub fn modes(mass_ratio: f64) -> Result<Modes<f64>, Error> {
 
 /// Returns the motion from a1 = 0, a2 = 30 degrees, let go from rest.
 ///
-/// The amplitude of C1 cos w1 t + C2 cos w2 t in each angle is sqrt(C1^2 + C2^2 + 2 C1 C2 cos (w1 -
-/// w2) t), rad. There are 1501 points in 5 s, the start and the end included.
+/// The amplitude of A1 cos (w1 t + f1) + A2 cos (w2 t + f2) in each angle is sqrt(A1^2 + A2^2 + 2 A1
+/// A2 cos ((w1 - w2) t + f1 - f2)), rad. There are 1501 points in 5 s, the start and the end included.
 pub fn points(modes: Modes<f64>) -> Vec<CurvePoint> {
     let motion = SmallOscillations::new(modes, &Motion::at_rest(0.0, FRAC_PI_6));
-    let [fast, slow] = [motion.fast.cosine, motion.slow.cosine];
+    let [fast, slow] = motion.amplitudes();
+    let [fast_phase, slow_phase] = motion.phases();
     let point = |i: u32| {
         let time = DURATION * f64::from(i) / f64::from(POINTS);
         // The envelopes follow the beat of the two modes.
-        let cos = libm::cos(modes.exchange() * time);
+        let cos = libm::cos(modes.exchange() * time + fast_phase - slow_phase);
         let amplitude =
-            |c1: f64, c2: f64| (c1 * c1 + c2 * c2 + 2.0 * c1 * c2 * cos).max(0.0).sqrt();
+            |a1: f64, a2: f64| (a1 * a1 + a2 * a2 + 2.0 * a1 * a2 * cos).max(0.0).sqrt();
         let envelopes = [
             amplitude(fast, slow),
             amplitude(modes.fast.shape * fast, modes.slow.shape * slow),

@@ -22,6 +22,11 @@ pub struct Verdict {
     is_right: Option<bool>,
 }
 
+/// Returns the time of frame `frame` of the scene, s since the start, which is frame 0.
+pub fn time(scene: &Problem, frame: u32) -> f64 {
+    f64::from(frame) / f64::from(scene.rate)
+}
+
 /// Returns the frames after the start one by one, at most `scene.frames()` of them. The sequence
 /// ends after a frame that is proved wrong, when the motion can no longer be enclosed, or when
 /// `stopped` is not zero. A drawn motion that diverges counts as proved wrong.
@@ -192,7 +197,7 @@ fn ambiguity_time(scene: &Problem, frames: u32, stopped: &AtomicUsize) -> Option
     });
     verdicts
         .find(|(_, are_apart)| *are_apart)
-        .map(|(frame, _)| scene.time(frame))
+        .map(|(frame, _)| time(scene, frame))
 }
 
 /// Returns the reason why the motion is not enclosed further, and the option to change.
@@ -231,7 +236,7 @@ pub fn words(
     stopped: &AtomicUsize,
 ) -> String {
     let (right, open) = counts(frames);
-    let end = scene.time(frames.len() as u32);
+    let end = time(scene, frames.len() as u32);
     let is_complete = frames.len() as u32 == scene.frames();
     // The reason why the sequence of frames has ended.
     let first = match frames.last().map(|frame| frame.is_right) {
@@ -279,7 +284,7 @@ proved     within half a pixel until {:.3} s, all {right} frames
 undecided  {open} frames
 predicted  {predicted}
 known      {known}{unknown}",
-        scene.time(right),
+        time(scene, right),
     )
 }
 

@@ -17,7 +17,7 @@ use crate::oracle::known_answers;
 use console::cli::{Refused, choice, complain, say};
 use console::progress::Progress;
 use emulator::process::{interrupted, interrupted_by};
-use horizon::{frames, words};
+use horizon::{frames, time, words};
 use reference::enclosure::Start;
 
 const EXAMPLES: &str = "Examples:
@@ -127,7 +127,7 @@ pub fn run(options: &ProveOptions) -> anyhow::Result<ExitCode> {
         bar.advance(1);
         proved.push(frame);
         if options.csv {
-            say(frame.row(scene.time(proved.len() as u32)))?;
+            say(frame.row(time(&scene, proved.len() as u32)))?;
         }
     }
 

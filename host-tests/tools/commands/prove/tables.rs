@@ -7,7 +7,7 @@ use clap::Parser;
 use firmware::scenes::SceneName;
 use reference::enclosure::Start;
 
-use super::horizon::{counts, frames};
+use super::horizon::{counts, frames, time};
 use crate::commands::plan::SceneOptions;
 use crate::oracle::known_answers::KnownAnswer;
 use console::number::Number;
@@ -42,7 +42,7 @@ pub fn horizons(name: SceneName) -> Result<String> {
                 let (right, open) =
                     counts(&frames(&scene, &start, plan.stepping(), &never)?.collect::<Vec<_>>());
                 unproved += open;
-                [plan.horizon, scene.time(right)].map(|time| format!("{time:.2}"))
+                [plan.horizon, time(&scene, right)].map(|time| format!("{time:.2}"))
             }
         });
     }

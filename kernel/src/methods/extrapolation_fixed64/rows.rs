@@ -81,7 +81,7 @@ impl Factor {
     }
 
     /// Returns the product with `number`, rounded down. It wraps if it does not fit.
-    #[inline(always)]
+    #[inline(always)] // `slope`, `times`, `restored`: +8 % cycles on an M3 without.
     fn times(&self, number: Q64) -> Q64 {
         let product = number * self.rest;
         if self.whole == 0 {
@@ -187,7 +187,7 @@ impl Rows {
 
     /// Returns the [`end`](Self::end) of a step from `origin`, for one kind of pendulum
     /// ([`Equations`]).
-    #[inline(never)]
+    #[inline(never)] // Boards find the step by this name, to run it in memory.
     fn end_in<const UNLIKE: bool, const INVERSE: bool>(
         &self,
         origin: &[Q64; 6],
@@ -250,7 +250,7 @@ struct Equations<'a, const UNLIKE: bool, const INVERSE: bool> {
 
 impl<const UNLIKE: bool, const INVERSE: bool> Equations<'_, UNLIKE, INVERSE> {
     /// Returns the changes of the six quantities at `z` over the share of the step of `row`.
-    #[inline(always)]
+    #[inline(always)] // `slope`, `times`, `restored`: +8 % cycles on an M3 without.
     fn slope(&self, row: &Row, z: &[Q64; 6]) -> [Q64; 6] {
         // Sines and cosines are below 2, momenta below 1/4.
         for &z in z {
@@ -303,7 +303,6 @@ impl<const UNLIKE: bool, const INVERSE: bool> Equations<'_, UNLIKE, INVERSE> {
     }
 
     /// Returns r = 1/(m + S^2), where `square` is S^2.
-    #[inline(always)]
     fn inverse(&self, square: Q64) -> Q64 {
         let shifts = &self.rows.shifts;
         let denominator = self.rows.inertia + self.down(square, shifts.momentum);
@@ -320,19 +319,16 @@ impl<const UNLIKE: bool, const INVERSE: bool> Equations<'_, UNLIKE, INVERSE> {
     }
 
     /// Records in `reach` whether the magnitude of `number` is 2^-`places` or more.
-    #[inline(always)]
     fn guard(&self, number: Q64, places: u32) {
         self.reach.set(self.reach.get() | number.reach(places));
     }
 
     /// Returns `number` times 2^-`by` if `UNLIKE`, otherwise `number`, because `by` is 0.
-    #[inline(always)]
     fn down(&self, number: Q64, by: u32) -> Q64 {
         if UNLIKE { number.down(by) } else { number }
     }
 
     /// Returns `number` times 2^`by`, and records whether that is 2^-`places` or more.
-    #[inline(always)]
     fn up(&self, number: Q64, by: u32, places: u32) -> Q64 {
         self.guard(number, by + places);
         number.up(by)
