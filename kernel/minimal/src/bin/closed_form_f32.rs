@@ -6,5 +6,5 @@ use double_pendulum::ClosedFormF32;
 
 #[cortex_m_rt::entry]
 fn main() -> ! {
-    minimal::swing(minimal::start::<ClosedFormF32>(), 32, minimal::draw)
+    minimal::swing(minimal::start::<ClosedFormF32>(), 8, minimal::draw)
 }
