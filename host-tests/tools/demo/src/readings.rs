@@ -18,6 +18,8 @@ use emulator::qemu::LogLine;
 
 /// The number of past frames that are kept, for 12 s; no more are shown.
 const KEPT: usize = 12 * TICK_RATE as usize;
+/// The time of a first frame, s, from which on the board has played before it was connected.
+const BEFORE: f64 = 1.0;
 /// The time over which frames are counted for their rate.
 const RATE_SPAN: Duration = Duration::from_secs(1);
 
@@ -104,8 +106,13 @@ impl Readings {
             self.past.clear();
         }
 
-        // These figures are of all motions together.
-        self.simulated += report.time - before.map_or(0.0, |last| last.report.time);
+        // These figures are of all motions together. The time before the first frame is not seen.
+        let seen = match (before, last) {
+            (Some(before), _) => before.report.time,
+            (None, None) if report.time >= BEFORE => report.time,
+            (None, _) => 0.0,
+        };
+        self.simulated += report.time - seen;
         self.greatest_energy_error = self.greatest_energy_error.max(report.energy_error.abs());
         self.frames += 1;
 
@@ -443,14 +450,7 @@ mod tests {
             (butterfly, &[0.875, 1.0]),
         ] {
             for &time in times {
-                readings.frame(Frame {
-                    scene,
-                    report: Report {
-                        time,
-                        ..Report::default()
-                    },
-                    ..Frame::default()
-                });
+                readings.frame(at(scene, time));
             }
         }
         assert!(
@@ -458,5 +458,31 @@ mod tests {
             "{}",
             readings.report()
         );
+    }
+
+    /// A board that has played for an hour is connected. The summary counts from its first frame.
+    #[test]
+    fn simulated_time_before_the_first_frame_does_not_count() {
+        let mut readings = Readings::default();
+        for time in [3600.0, 3600.5, 3601.0] {
+            readings.frame(at(SceneName::Page, time));
+        }
+        assert!(
+            readings.report().contains("simulated time        1.000 s"),
+            "{}",
+            readings.report()
+        );
+    }
+
+    /// Returns a frame of a scene at this time, s.
+    fn at(scene: SceneName, time: f64) -> Frame {
+        Frame {
+            scene,
+            report: Report {
+                time,
+                ..Report::default()
+            },
+            ..Frame::default()
+        }
     }
 }
