@@ -69,7 +69,8 @@ pub struct Processor {
 
 impl Processor {
     /// Returns true if the processor has a floating-point unit. It is recognised by the price list:
-    /// without one, a step in fixed point costs less than a plain `f32` step.
+    /// without one, a step in fixed point costs less than a plain `f32` step. Equal prices count as
+    /// without.
     pub fn has_float(&self) -> bool {
         self.costs.direction_plain < self.costs.fixed32
     }
@@ -158,7 +159,7 @@ pub const PROCESSOR: Processor = if cfg!(target_abi = "eabihf") {
 /// the motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FlipsPace {
-    /// The budget of a tick.
+    /// The budget of a tick. Its last new start may exceed it. With 0 nothing is computed.
     pub steps: u32,
     /// The number of steps that a new start counts as if its motion must be computed.
     pub start: u32,
@@ -195,7 +196,7 @@ pub const PAGE_GRAVITY: f64 = 9.8;
 pub const FIRST_MASS_RATIO: f32 = 1.0;
 /// The start angle of both rods at power-on, degrees. It is well in the chaotic regime.
 pub const FIRST_ANGLE: f32 = 120.0;
-/// The mass ratios that the buttons select.
+/// The mass ratios that the buttons select, in ascending order.
 ///
 /// They are the Renard series R10 (ISO 3), which is geometric with the ratio 10^(1/10) = 1.26 and
 /// rounded so that every label is short. They cover two decades on either side of 1.
@@ -221,7 +222,8 @@ pub const REPEAT_DELAY_TICKS: u8 = 24;
 pub const REPEAT_PERIOD_TICKS: u8 = 4;
 
 /// The time after which the select button, held alone, acts, ticks: 48/60 = 0.8 s. It changes the
-/// scene, or has the effect that the taps before it select (`app::Controls`).
+/// scene, or has the effect that the taps before it select (`app::Controls`). The tick in which the
+/// press is recognised counts as the first.
 pub const HOLD_TICKS: u8 = 48;
 /// The longest time from the end of a tap to the next press that belongs to it, ticks:
 /// 24/60 = 0.4 s.
@@ -255,8 +257,8 @@ pub const TRAIL_FADING: u8 = 5;
 /// 10/460,800 = 2.0 ms of the 16.7 ms of a tick.
 pub const BAUD: u32 = 460_800;
 /// The largest number of steps whose time is measured at once; a request for more measures this
-/// number.
-/// With order 8 in `f64` they block a Cortex-M3 at 50 MHz for 16 x 136,500/50e6 = 44 ms.
+/// number. With order 16 in 64 bits of fixed point they block a Cortex-M3 at 50 MHz for
+/// 16 x 46,450/50e6 = 15 ms.
 pub const MOST_MEASURED_STEPS: u32 = 16;
 /// The number of times that a serial port or an SPI bus is polled before it counts as stuck and the
 /// transfer fails. A try takes at least 4 processor cycles, so that the tries last 0.24 ms on the

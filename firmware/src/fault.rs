@@ -16,15 +16,15 @@ pub struct Fault {
     /// bytes too low if the processor has aligned the stack.
     pub sp: u32,
     /// The address of the last call found on the stack; `None` if none is found. It is the only
-    /// evidence if the registers are missing.
+    /// evidence if the registers are missing, and is reported only then.
     pub last_call: Option<u32>,
     /// The Configurable Fault Status Register.
     pub cfsr: u32,
     /// The HardFault Status Register.
     pub hfsr: u32,
-    /// The MemManage Address Register.
+    /// The MemManage Address Register, valid while bit 7 of CFSR is set.
     pub mmfar: u32,
-    /// The BusFault Address Register.
+    /// The BusFault Address Register, valid while bit 15 of CFSR is set.
     pub bfar: u32,
 }
 
@@ -94,11 +94,13 @@ impl Fault {
         cfsr & NOT_STACKED == 0
     }
 
-    /// Returns the cause of the fault in words; if several bits are set, the most specific cause.
+    /// Returns the cause of the fault in a few English words, such as `division by zero`. If
+    /// several bits of CFSR are set, it is the most specific cause.
     ///
-    /// It is a stack overflow if registers are missing on the stack, or if an access up to 128
-    /// bytes below `sp` was refused. If no register shows the cause, as usual on a Cortex-M0+, it
-    /// is unknown.
+    /// It is `stack overflow` if registers are missing on the stack, or if the memory protection
+    /// refused a data access 1 to 128 bytes below `sp`. If no bit of CFSR names a cause, HFSR is
+    /// used, and then the Thumb bit of the stacked `xpsr`, which should be set. If none of them
+    /// shows the cause, as usual on a Cortex-M0+, it is `unknown cause (a Cortex-M0+ tells none)`.
     pub fn cause(&self) -> &'static str {
         if self.is_stack_overflow() {
             return "stack overflow";
@@ -169,8 +171,9 @@ impl fmt::Display for Fault {
 }
 
 /// Returns the size in bytes of the call that ends with these two halfwords of Thumb code, in the
-/// order of their addresses: 4 for `bl`, 2 for `blx`, which is the second halfword alone. Returns
-/// `None` if they are no call.
+/// order of their addresses: 4 for `bl`, 2 for `blx` of a register, which is the second halfword
+/// alone. Returns `None` if they are no call. Data, and a part of another instruction, may look
+/// like one.
 pub fn call_size([first, second]: [u16; 2]) -> Option<u32> {
     if first & 0xf800 == 0xf000 && second & 0xd000 == 0xd000 {
         Some(4)

@@ -80,7 +80,8 @@
 //!
 //! - **scene**: a figure that moves, such as one pendulum or a plot ([`scenes::Scene`]).
 //! - **catalogue**: the table of all scenes with their names and initial settings.
-//! - **settings**: a pendulum and its initial angles and velocities ([`motion::Settings`]).
+//! - **settings**: a pendulum and its initial angles, in degrees, and velocities, in rad/s
+//!   ([`motion::Settings`]).
 //! - **page**: the article `[math24]` of the kernel, the source of the figures.
 //! - **player**: the state of the scene that is shown, and its pace ([`app::Player`]).
 //! - **report**: the numbers of a scene at one tick ([`scenes::Report`]).

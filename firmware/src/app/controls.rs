@@ -28,8 +28,8 @@ pub struct Pressed {
 
 /// The buttons of a board.
 pub trait Buttons {
-    /// Returns the levels of the buttons now. The application reads them once a tick and debounces
-    /// them itself.
+    /// Returns the levels of the buttons now, without waiting. The application reads them once a
+    /// tick and debounces them itself.
     fn read(&mut self) -> Pressed;
 }
 
@@ -63,13 +63,15 @@ const ARROWS: [[Command; 2]; 4] = [
 /// | left | start angle clockwise | previous scene |
 /// | right | start angle counter-clockwise | next scene |
 ///
-/// A held arrow repeats after [`REPEAT_DELAY_TICKS`], and then every [`REPEAT_PERIOD_TICKS`].
+/// An arrow that is held alone repeats after [`REPEAT_DELAY_TICKS`], and then every
+/// [`REPEAT_PERIOD_TICKS`].
 ///
-/// The select button alone can do the most important things. A tap restarts the scene when it ends.
-/// Holding it for [`HOLD_TICKS`] selects the next scene, once. Holding it that long after one, two,
-/// three or four taps is a heavier bob 2, a lighter one, a turn to the right or to the left, and
-/// repeats. After more taps it does nothing. Each of these taps has restarted the scene. Taps
-/// belong together if at most [`MOST_TICKS_BETWEEN_TAPS`] are between them.
+/// The select button alone can do the most important things. A tap restarts the scene when it ends:
+/// a press shorter than [`HOLD_TICKS`], in which no arrow has caused a command. Holding it for
+/// [`HOLD_TICKS`] selects the next scene, once. Holding it that long after one, two, three or four
+/// taps is a heavier bob 2, a lighter one, a turn to the right or to the left, and repeats every
+/// [`REPEAT_PERIOD_TICKS`]. After more taps it does nothing. Each of these taps has restarted the
+/// scene. Taps belong together if at most [`MOST_TICKS_BETWEEN_TAPS`] are between them.
 #[derive(Clone, Debug, Default)]
 pub struct Controls {
     arrows: [Button; 4],

@@ -16,7 +16,8 @@ pub enum Event<Panel, Link> {
     /// The board has restarted on its own. True if it plays the same scene as before; false if the
     /// restarts in a row are too many, or if that scene cannot be played.
     Restarted(Restarted, bool),
-    /// A command, of a button or from the link, has started a scene with these settings.
+    /// A command, of a button or from the link, has started a scene with these settings, whose
+    /// angles are in degrees. A scene that is resumed after a restart has no such event.
     Started(SceneName, Settings),
     /// The command of a button is impossible because of this field. Nothing changes. (A command
     /// from the link gets an answer instead.)
@@ -33,11 +34,13 @@ pub enum Event<Panel, Link> {
     },
     /// The host has sent bytes faster than they were taken. It is logged at most once a second.
     Lost { bytes: u32, total: u32 },
-    /// A frame did not reach the panel, but the previous one did.
+    /// A frame did not reach the panel: the first one, or one after a frame that did. Further
+    /// failures in a row are not logged.
     Panel(Panel),
     /// The panel answers for the first time, or again.
     PanelFound(Found),
-    /// A message did not reach the link, but the previous one did.
+    /// A message did not reach the link: the first one, or one after a message that did. Further
+    /// failures in a row are not logged.
     Link(Link),
     /// A host has requested a motion.
     Asked,
@@ -45,14 +48,15 @@ pub enum Event<Panel, Link> {
     /// The scene does not advance until it is started again.
     Stopped,
     /// The step of the requested motion is longer than this, s: the longest step that resolves
-    /// every motion of its energy.
+    /// every motion of its energy. The motion is computed all the same.
     StepTooLong(f64),
     /// The planner has a result, or a method begins to compute the motion that is shown.
     Motion(PlannerEvent),
 }
 
 /// A function that takes the events of an application with this panel and link, one at a time, in
-/// their order. It is called in the middle of the application's work, and returns nothing.
+/// their order. It is called in the middle of the application's work, which waits for it, and
+/// returns nothing.
 pub trait Log<Panel: Display, Link: ErrorType>: FnMut(Event<Panel::Error, Link::Error>) {}
 
 impl<Panel: Display, Link: ErrorType, F: FnMut(Event<Panel::Error, Link::Error>)> Log<Panel, Link>

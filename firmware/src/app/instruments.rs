@@ -7,7 +7,8 @@ use crate::protocol::Identity;
 /// nothing.
 #[derive(Clone, Copy, Debug)]
 pub struct Instruments {
-    /// Returns the count of the processor clock, for differences; starts anywhere and wraps.
+    /// Returns the count of the processor clock, for differences; starts anywhere and wraps. The
+    /// default always returns 0.
     pub stopwatch: fn() -> u32,
     /// Makes this number of steps of a motion with interrupts off. Their code is run from RAM
     /// (`true`) or from flash. If it is not in that memory, no step is made.
@@ -39,6 +40,7 @@ impl Default for Instruments {
 impl Instruments {
     /// Returns the answer to [`Command::Identify`](crate::protocol::Command::Identify): `identity`
     /// with the CRC-32/ISO-HDLC of the image and its size, bytes. Both are 0 if the image is empty.
+    /// Each call reads the whole image.
     pub fn identity(&self) -> Identity {
         let image = (self.image)();
         Identity {

@@ -71,7 +71,8 @@ pub struct App<'a, Panel, Link, Keys> {
 
 impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> {
     /// Creates an application that does not play yet: it shows an empty figure until a command, or
-    /// [`Player::play`], starts a scene. Its clock is at tick 0, and nothing is sent yet.
+    /// [`Player::play`], starts a scene. The ink of `buffers` is not cleared before that. The clock
+    /// is at tick 0, and nothing is sent yet. `processor` has the prices and budgets of the player.
     ///
     /// The start of a scene needs much stack. So it is better done when the application is at its
     /// final place.
@@ -107,8 +108,8 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
     }
 
     /// Sets the clock to tick `clock`, so that [`run_to`](Self::run_to) counts from there. Sets the
-    /// count of frames, and also the count of ticks without a frame, to `frames`. The scene is not
-    /// changed, and no event is logged.
+    /// count of frames, and also the count of ticks without a frame, to `frames`. The scene and the
+    /// other counts are not changed, and no event is logged.
     pub fn count_from(&mut self, clock: u32, frames: u32) {
         self.ticks = clock;
         self.frames = frames;
@@ -117,7 +118,7 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
 
     /// Plays the scene from before a restart again from its start ([`Player::resume`]), and reports
     /// the restart to the host: to a host that is connected now at once, and to any other when it
-    /// asks.
+    /// asks. Of the record, the processor and the controller chosen for the panel are ignored.
     ///
     /// The present scene continues instead if the restarts in a row are more than
     /// [`MOST_RESTARTS`], or if the scene of the record cannot be played. The event
@@ -129,15 +130,16 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
         self.send(&ToHost::Restarted(restart.end), &mut log);
     }
 
-    /// Drives the panel as this controller; `None` identifies it. The panel is then searched for
-    /// and set up again. Returns false, and does nothing, if the board has no panel with a choice
-    /// of controllers.
+    /// Drives the panel as this controller; `None` identifies it. From the next frame on, the panel
+    /// is searched for and set up again. Returns false, and does nothing, if the board has no panel
+    /// with a choice of controllers.
     pub fn choose_panel(&mut self, controller: Option<Controller>) -> bool {
         self.panel.choose(controller)
     }
 
-    /// Returns the answer to [`Command::Ask`]: scene, settings, method, processor, speed, and the
-    /// state of player and panel.
+    /// Returns the answer to [`Command::Ask`]: scene, settings (angles in degrees), requested
+    /// method, processor class, speed, ticks left of a [`Command::Step`], and the state of player
+    /// and panel.
     pub fn status(&self) -> Status {
         Status {
             panel: self.panel.report(),
@@ -156,8 +158,8 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
     /// frame, which is logged ([`Event::Stopped`]).
     ///
     /// A call completes at most [`MOST_TICKS_PER_FRAME`] ticks, and the next calls complete the
-    /// rest. Returns true if no tick is left. If false, call again without waiting for the next
-    /// tick.
+    /// rest. All ticks of a call but the last count as ticks without a frame ([`Event::Dropped`]).
+    /// Returns true if no tick is left. If false, call again without waiting for the next tick.
     pub fn run_to(&mut self, clock: u32, mut log: impl Log<Panel, Link>) -> bool {
         let late = clock.wrapping_sub(self.ticks);
         let ticks = late.min(MOST_TICKS_PER_FRAME);
@@ -200,7 +202,8 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
 
     /// Takes bytes received over the link, executes the commands and answers them. An impossible or
     /// unreadable command is answered with [`Answer::Refused`]. Damaged messages get no answer;
-    /// they are counted and logged. The beginning of a message is kept for the next call.
+    /// they are counted, and logged at most once a second. Intact messages that are no commands are
+    /// ignored and not counted. The beginning of a message is kept for the next call.
     ///
     /// Stops after [`MOST_MESSAGES_PER_TICK`] messages, damaged ones included, or [`RECEIVE_QUEUE`]
     /// bytes, so that a flood of either does not delay the frame. The iterator is not advanced
@@ -260,7 +263,7 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
     /// is then due. Returns true if more is left, and false without a job.
     ///
     /// An error ends the job: the motion has left the finite numbers, because the step is too long
-    /// for it. Then [`Answer::Refused`] is sent, and the result is false.
+    /// for it. Then [`Answer::Refused`] is sent, with [`Field::Dt`], and the result is false.
     pub fn work(&mut self, mut log: impl Log<Panel, Link>) -> bool {
         let Some((request, job)) = &mut self.work else {
             return false;

@@ -11,7 +11,8 @@ const WHOLE_TICK: u32 = 100;
 pub struct Pace {
     /// True if the scene advances only by `steps`.
     pub paused: bool,
-    /// The number of ticks left to advance while paused, one in each tick of the clock.
+    /// The number of ticks left to advance while paused, one in each tick of the clock. It has no
+    /// effect otherwise.
     pub steps: u32,
     /// The number of ticks of the scene in [`WHOLE_TICK`] ticks of the clock.
     speed: u32,
@@ -52,7 +53,8 @@ impl Pace {
         ticks
     }
 
-    /// Sets the speed, simulated time per real time, rounded to hundredths. A pause stays.
+    /// Sets the speed, simulated time per real time, rounded to the nearest hundredth. A pause
+    /// stays.
     ///
     /// Returns [`Field::Speed`], and keeps the old speed, if the rounded one is below 0.01 or above
     /// [`GREATEST_SPEED`], or is NaN.

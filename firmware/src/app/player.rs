@@ -17,7 +17,8 @@ pub enum PlannerEvent {
     /// The planner has found a result: a plan, or the reason why no method fits.
     Found(PlanResult),
     /// The motion is now computed by this method and step count, at this cost of a frame, cycles of
-    /// the price list.
+    /// the price list. [`Player::tick`] reports it when a plan takes over. The application also
+    /// logs it when a command has started a scene.
     Shown(Stepping, f32),
 }
 
@@ -27,7 +28,7 @@ pub struct Player<'a> {
     /// The name of the scene. The public fields are for reading only; commands and ticks change
     /// them.
     pub name: SceneName,
-    /// The pendulum, and its initial angles and velocities.
+    /// The pendulum, and its initial angles (degrees) and velocities (rad/s).
     pub settings: Settings,
     scene: AnyScene,
     /// The requested method; `None` leaves the choice to the plan. It outlasts the scene.
@@ -62,7 +63,8 @@ enum MotionState {
 impl<'a> Player<'a> {
     /// Creates the player for a processor of this class. It shows an empty figure until a scene is
     /// played. Its name is until then [`SceneName::Frequencies`], with the default settings, which
-    /// a command such as [`Command::Restart`] starts.
+    /// a command such as [`Command::Restart`] starts. The pace is full speed, not paused, and no
+    /// method is requested. The ink is not cleared before a scene starts.
     pub fn new(processor: Processor, ink: &'a mut FadeLayer) -> Self {
         let scene = AnyScene::empty();
         let report = scene.report(0);
@@ -79,12 +81,18 @@ impl<'a> Player<'a> {
         }
     }
 
-    /// Plays a scene with `settings` from its start, at the present pace: a pause stays. A scene
-    /// that cannot use the requested method follows its plan. A motion that is too fast does not
-    /// advance: the result is `Ok`, and the state is then [`PlayState::Stopped`].
+    /// Plays a scene with `settings`, whose angles are in degrees, from its start, at the present
+    /// pace: a pause stays. A scene that cannot use the requested method follows its plan, also if
+    /// a frame by that method costs more than the scene's budget. A motion that is too fast for
+    /// every method does not advance: the result is `Ok`, and the state [`PlayState::Stopped`].
     ///
-    /// Returns the kernel's error if the settings describe no pendulum, or a pendulum that the
-    /// scene cannot show. Then nothing is changed. Angles beyond straight up are not refused here.
+    /// # Errors
+    ///
+    /// Returns the kernel's error if the settings describe no pendulum, a start that is not finite,
+    /// numbers that no method can start with, or a pendulum that the scene cannot show, such as
+    /// unequal rods in `figure-7` or zero gravity in `flips`. Then nothing is changed. Angles
+    /// beyond straight up are not refused here. Not checked: the start in a figure, which does not
+    /// use it; `frequencies` uses and checks the mass ratio alone.
     pub fn play(&mut self, name: SceneName, settings: Settings) -> Result<(), Error> {
         match self.play_by(self.method, name, settings) {
             Err(_) if self.method.is_some() => self.play_by(None, name, settings),
@@ -131,10 +139,15 @@ impl<'a> Player<'a> {
 
     /// Executes a command. Returns true if a scene was started, the same or another one; false for
     /// a change of pause or speed. A command that does not concern the player, such as
-    /// [`Command::Ask`], does nothing, and the result is false.
+    /// [`Command::Ask`], does nothing, and the result is false. So does a turn of the start angles
+    /// in a scene that has none. Angles are in rad in [`Command::Set`], but in degrees in
+    /// [`Command::Play`].
     ///
-    /// If the command is impossible, returns the field that is wrong. Then nothing is changed. A
-    /// motion that is too fast is not impossible: its scene starts, and is stopped.
+    /// If the command is impossible, nothing is changed, and the result is the field that is wrong:
+    /// for [`Command::Set`] its own field, or [`Field::Field`] if that cannot be set; for
+    /// [`Command::Method`] it is [`Field::Method`], also if a frame by the method costs too much;
+    /// for the others a field of the settings. A motion that is too fast for every method is not
+    /// impossible: its scene starts, and is stopped.
     #[inline(never)] // Inlined, the start of a scene would be on the stack of every frame.
     pub fn execute(&mut self, command: Command) -> Result<bool, Field> {
         match command {
@@ -187,7 +200,8 @@ impl<'a> Player<'a> {
     /// [`GREATEST_SPEED`](crate::config::GREATEST_SPEED) ticks of the scene, as its speed requires:
     /// none while it is stopped, and while it is paused one if a step is left.
     ///
-    /// Calls `tell` with each result of the planner, and with each method that takes over.
+    /// Calls `tell` with each result of the planner, and with each method that takes over. A motion
+    /// that diverges is not noticed here, but by [`check`](Self::check).
     #[inline(never)]
     pub fn tick(&mut self, mut tell: impl FnMut(PlannerEvent)) {
         if self.is_stopped() {
@@ -245,20 +259,24 @@ impl<'a> Player<'a> {
 
     /// Performs a piece of the next tick's planning in advance. Returns true if it did, so that
     /// more may be left. Returns false, without work, if the budget of that tick is spent, if
-    /// nothing is left to plan, or if the scene is paused, stopped or switching its method.
+    /// nothing is left to plan, in the first ticks of a scene
+    /// ([`SETTLED_TICKS`](crate::config::SETTLED_TICKS)), or if the scene is paused, stopped or
+    /// switching its method. No result depends on whether it is called.
     pub fn look_ahead(&mut self) -> bool {
         !self.is_still() && !self.is_switching() && self.planner.work_ahead()
     }
 
-    /// Returns the last result of the planner, if any, and its problem; `None` if the
-    /// scene shows no planned motion or is too fast from its start.
+    /// Returns the last result of the planner, if any, and its problem; `None` if the scene shows
+    /// no planned motion or is too fast from its start. If the motion has diverged later, the
+    /// result stays.
     pub fn plan(&self) -> Option<Planned> {
         self.planner.planned()
     }
 
     /// Returns the cost of computing a frame by this method and step count, cycles of the price
     /// list of the processor class. It is not measured. It is infinite for a method that is not in
-    /// [`Method::DRAWN`].
+    /// [`Method::DRAWN`], and 0 for a step count of 0, except for the closed form, whose cost does
+    /// not depend on it.
     pub fn cost(&self, stepping: Stepping) -> f32 {
         self.planner.processor.costs.of_frame(stepping)
     }
@@ -309,7 +327,7 @@ impl<'a> Player<'a> {
 
     /// Draws the scene in place of the last frame, with the numbers of the last
     /// [`check`](Self::check), and a mark if it is paused. If the scene is stopped, writes the
-    /// reason instead.
+    /// reason instead, with the mass ratio and the start angle of rod 1.
     #[inline(never)]
     pub fn draw(&self, canvas: &mut Canvas) {
         match self.state() {
@@ -365,8 +383,9 @@ impl<'a> Player<'a> {
         }
     }
 
-    /// Returns the frame message. The numbers that only the clock and the link of the board know
-    /// are 0: sequence, dropped frames, lost bytes and cycles.
+    /// Returns the frame message, with the report of the last [`check`](Self::check) and the start
+    /// angle of rod 1, rad. The numbers that only the clock and the link of the board know are 0:
+    /// sequence, dropped frames, lost bytes and cycles.
     pub fn frame(&self) -> Frame {
         let [start_angle, _] = self.settings.angles();
         Frame {
@@ -379,7 +398,8 @@ impl<'a> Player<'a> {
         }
     }
 
-    /// Returns the state of the player. The state of the panel is the default.
+    /// Returns the state of the player; the angles of the settings are in degrees. The state of the
+    /// panel is the default. The steps left have no effect unless the player is paused.
     pub fn status(&self) -> Status {
         let Self {
             name: scene,
@@ -399,11 +419,14 @@ impl<'a> Player<'a> {
         }
     }
 
-    /// Plays the scene of a status from its start, with its method, speed, pause and steps left.
-    /// The processor and the panel of the status are ignored. A scene that cannot use the method
-    /// follows its plan, as in [`play`](Self::play).
+    /// Plays the scene of a status from its start, with its method, speed, pause and steps left. A
+    /// scene that was stopped starts again, not paused. The processor and the panel of the status
+    /// are ignored. A scene that cannot use the method follows its plan, as in
+    /// [`play`](Self::play).
     ///
-    /// If that is impossible, returns the field that is wrong; then nothing is changed.
+    /// If that is impossible, returns the field that is wrong; then nothing is changed. It is
+    /// [`Field::Speed`] if the speed, rounded to hundredths, is not 0.01 to 4, and otherwise the
+    /// field of the settings that [`play`](Self::play) refuses.
     pub fn resume(&mut self, status: &Status) -> Result<(), Field> {
         let Status {
             scene,
@@ -452,7 +475,8 @@ impl<'a> Player<'a> {
         Ok(true)
     }
 
-    /// Returns the settings with one field changed. Refuses an angle beyond straight up.
+    /// Returns the settings with one field changed to `value`, in SI units: of an angle in rad.
+    /// Refuses an angle beyond straight up, and a field that is none of the settings.
     fn with(&self, field: Field, value: f64) -> Result<Settings, Field> {
         let mut settings = self.settings;
         let Settings {
@@ -481,7 +505,7 @@ impl<'a> Player<'a> {
     }
 }
 
-/// Refuses an angle beyond straight up.
+/// Refuses an angle beyond straight up, and an angle that is NaN.
 fn in_range(settings: Settings) -> Result<Settings, Field> {
     let is_beyond = |degrees: f32| !(-GREATEST_ANGLE..=GREATEST_ANGLE).contains(&degrees);
     match settings.degrees.map(is_beyond) {

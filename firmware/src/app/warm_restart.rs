@@ -13,8 +13,8 @@ use serde::{Deserialize, Serialize};
 use crate::config::TICK_RATE;
 use crate::protocol::{Cause, Decoder, MAX_WIRE, Restarted, Status, encode, read};
 
-/// The memory for a retained record, bytes. Any contents are possible; [`Record::read`] checks
-/// them.
+/// The memory for a retained record, 105 bytes ([`MAX_WIRE`]). Any contents are possible;
+/// [`Record::read`] checks them.
 pub type Kept = [u8; MAX_WIRE];
 
 /// The largest number of restarts in a row that play the same scene again. After more the board
@@ -45,7 +45,8 @@ impl Record {
     }
 
     /// Returns the record in these bytes; `None` if it is not intact, or if a program with another
-    /// version of the protocol wrote it.
+    /// version of the protocol wrote it. Bytes after the first message are ignored. The numbers of
+    /// an intact record, such as its settings, are not checked.
     pub fn read(kept: &Kept) -> Option<Self> {
         let mut decoder = Decoder::default();
         for &byte in kept {
@@ -99,8 +100,9 @@ impl Journal {
     }
 
     /// Counts a frame and returns the record to keep after it: `played`, the state of the player,
-    /// and `step`, the tick of the scene that was shown. The record has no cause. Its count of
-    /// restarts is that of [`new`](Self::new), and 0 from frame [`SOUND_FRAMES`] on.
+    /// and `step`, the tick of the scene that was shown. The record has no cause, and its registers
+    /// are 0. Its count of restarts is that of [`new`](Self::new), and 0 from the call with the
+    /// number [`SOUND_FRAMES`] on.
     pub fn note(&mut self, played: Status, step: u64) -> Record {
         self.frames = self.frames.saturating_add(1);
         // After a minute without a restart, earlier restarts no longer count.

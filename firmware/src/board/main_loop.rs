@@ -31,9 +31,11 @@ pub struct Board<Panel, Link, Keys, Dog> {
     pub keys: Keys,
     /// The measuring functions and the identity.
     pub instruments: Instruments,
-    /// The watchdog, which is running.
+    /// The watchdog, which is running. It must be fed from the start of the board on, as
+    /// [`play`](Board::play) does.
     pub watchdog: Dog,
-    /// True if the board's own register indicates that the watchdog caused the last reset.
+    /// True if the board's own register indicates that the watchdog caused the last reset; always
+    /// false on a board without such a register.
     pub reset_by_watchdog: bool,
 }
 
@@ -77,13 +79,18 @@ macro_rules! program {
 impl<Panel: Display<Error: fmt::Display> + 'static, Link: Write, Keys: Buttons, Dog: Watchdog>
     Board<Panel, Link, Keys, Dog>
 {
-    /// Runs the application for ever. The application and the driver of the panel are put at the
-    /// given places, and draw in `buffers`. `processor` is the class whose prices and budgets the
-    /// planner uses.
+    /// Runs the application for ever, and sleeps between the ticks. The application and the driver
+    /// of the panel are put at the given places, whose contents are overwritten, and draw in
+    /// `buffers`. `processor` is the class whose prices and budgets the planner uses. Not checked:
+    /// it is the class of this board.
     ///
-    /// The scene is the first of the catalogue, or after a warm restart the scene from before it,
-    /// unless the restarts in a row are too many. A controller that was chosen for the panel is
-    /// kept across every reset that leaves memory powered.
+    /// The scene is the first of the catalogue with the default settings, or after a warm restart
+    /// the scene from before it. That is not played again after more than [`MOST_RESTARTS`]
+    /// restarts in a row, or if its settings are refused. A controller that was chosen for the
+    /// panel is kept across every reset that leaves memory powered.
+    ///
+    /// Every finished frame feeds the watchdog and replaces the retained record. Received bytes
+    /// come from the interrupt of the serial port, not from `link`.
     pub fn play(
         self,
         place: &'static mut MaybeUninit<App<'static, Panel, Link, Keys>>,

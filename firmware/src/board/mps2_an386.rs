@@ -43,7 +43,10 @@ const INTERRUPT: Interrupt = Interrupt(0);
 /// The parts of this board.
 pub type Mps2An386 = Board<NoDisplay, Outward, NoButtons, TwoStage>;
 
-/// Sets the board up; the tick and the watchdog run from then on. Returns `None` the second time.
+/// Sets the board up. The tick and the watchdog run from then on, and the watchdog must be fed. No
+/// register indicates a reset by the watchdog, so `reset_by_watchdog` is always false.
+///
+/// Returns `None` the second time, or if other code has taken the processor's peripherals.
 pub fn take() -> Option<Mps2An386> {
     let instruments = start(Peripherals::take()?, BoardName::Mps2An386, HERTZ, [0; 4]);
 

@@ -9,16 +9,22 @@ use crate::display::{Outbox, PanelBus, Sent};
 
 /// The device of a bus.
 pub trait PanelPort {
-    /// Begins a transfer to this address of seven bits. Returns at once; the interrupt does the
-    /// rest.
+    /// Begins a transfer to this address of seven bits; the interrupt does the rest. It only waits
+    /// for the stop of the last transfer, at most [`TRIES`] polls.
+    ///
+    /// Not checked: no transfer is in progress, and the interrupt owns the outbox.
     fn begin(&mut self, address: u8);
 
     /// Frees a bus that hangs, and resets the device, which ends a transfer in progress. The device
-    /// does not interrupt until the next [`begin`](Self::begin).
+    /// does not interrupt until the next [`begin`](Self::begin). The outbox stays where it is.
+    ///
+    /// It waits for the clocks that free the bus, at most some 0.1 ms. If the bus still hangs, this
+    /// is not reported.
     fn reset(&mut self);
 }
 
-/// The bus, and the outbox while the interrupt does not own it. There is at most one.
+/// The bus, and the outbox while the interrupt does not own it. There is at most one. The board
+/// creates it; [`PanelBus`] is its interface.
 pub struct Bus<P> {
     port: P,
     outbox: Option<&'static mut Outbox>,
@@ -26,10 +32,10 @@ pub struct Bus<P> {
     megahertz: u32,
 }
 
-/// The number of tries to wait for a start or a stop of the bus. It takes 5 us, and these tries
-/// take at least 12 us. The Pico also waits this long for the bus's block to leave its reset.
+/// The largest number of polls that wait for a start or a stop of the bus. It takes 5 us, and these
+/// polls take at least 12 us. The Pico also waits this long for the bus's block to leave its reset.
 ///
-/// After the last try a transfer begins all the same; if it hangs, the driver of the panel aborts
+/// After the last poll a transfer begins all the same; if it hangs, the driver of the panel aborts
 /// it. But if the STM32 waits in vain for the start before a further message or the answer, the
 /// transfer ends with [`ErrorKind::Other`], and the port is reset.
 pub const TRIES: u32 = 500;

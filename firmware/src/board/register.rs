@@ -9,20 +9,23 @@ impl Device {
     ///
     /// # Safety
     ///
-    /// The 4 KiB from `base` must be the registers of a device, all of 32 bits, and no value
-    /// written to them may break memory safety: no DMA addresses, no memory protection.
+    /// The 4 KiB from `base`, a multiple of 4, must be the registers of a device, all of 32 bits.
+    /// No value written to them may break memory safety: no DMA addresses, no memory protection.
     pub const unsafe fn at(base: usize) -> Self {
         Self(base)
     }
 
-    /// Returns the register at this offset. The lowest two bits of the offset and those beyond 4
-    /// KiB are ignored.
+    /// Returns the register at this offset from the base, bytes. The lowest two bits of the offset
+    /// and those beyond 4 KiB are ignored.
     pub const fn register(self, offset: usize) -> Register {
         Register(self.0 + (offset & 0xffc))
     }
 }
 
 /// A 32-bit device register at a fixed address.
+///
+/// Not checked: the device has a register there, and is powered and clocked. On most chips an
+/// access to a device without power is a fault.
 #[derive(Clone, Copy, Debug)]
 pub struct Register(usize);
 
@@ -35,7 +38,7 @@ impl Register {
         unsafe { (self.0 as *const u32).read_volatile() }
     }
 
-    /// Writes all 32 bits of the register.
+    /// Writes all 32 bits of the register. Writing some registers has side effects.
     #[inline]
     pub fn write(self, value: u32) {
         // SAFETY: by the contract of [`Device::at`] this is a register whose writes do not break
@@ -43,15 +46,16 @@ impl Register {
         unsafe { (self.0 as *mut u32).write_volatile(value) }
     }
 
-    /// Clears the bits of `clear`, then sets those of `set`, by one read and one write. It is not
-    /// atomic: an interrupt in between may also write.
+    /// Clears the bits of `clear`, then sets those of `set`, by one read and one write. A bit in
+    /// both is set. It is not atomic: what an interrupt writes in between is overwritten.
     #[inline]
     pub fn modify(self, clear: u32, set: u32) {
         self.write((self.read() & !clear) | set);
     }
 
     /// Reads until the bits of `mask` are `wanted`, at most `tries` times. Returns true as soon as
-    /// they are, and false after the last try.
+    /// they are, and false after the last try; with 0 tries at once. A bit of `wanted` outside
+    /// `mask` is never found.
     #[inline]
     pub fn wait(self, mask: u32, wanted: u32, tries: u32) -> bool {
         (0..tries).any(|_| self.read() & mask == wanted)

@@ -31,7 +31,8 @@ impl Inbox {
         self.note_overrun(is_refused);
     }
 
-    /// Counts a lost byte if `overrun`: the port had no room for one byte, or for several in a row.
+    /// Counts one lost byte if `overrun` is true: the port had no room for a byte, or for several
+    /// in a row. Otherwise does nothing.
     pub fn note_overrun(&mut self, overrun: bool) {
         self.lost = self.lost.wrapping_add(overrun.into());
     }
@@ -48,7 +49,7 @@ pub(in crate::board) fn receive() {
     INBOX.with(|inbox| inbox.receive.map(|receive| receive(inbox)));
 }
 
-/// Takes the oldest received byte from the queue; `None` if the queue is empty.
+/// Takes the oldest received byte from the queue; `None` if the queue is empty. Does not wait.
 pub fn received() -> Option<u8> {
     INBOX.with(|inbox| inbox.received.pop_front()).flatten()
 }
@@ -62,8 +63,11 @@ pub fn lost() -> u32 {
 /// The sending direction of a port. The function sends bytes, and returns true if the port has
 /// taken all of them in time.
 ///
-/// If not, [`Write::write`] returns [`ErrorKind::TimedOut`]; a part of the bytes may have been
-/// sent.
+/// [`Write::write`] waits for that. It returns the number of all bytes, or
+/// [`ErrorKind::TimedOut`] if the port was late; a part of the bytes may then have been sent. The
+/// port is late after [`BUS_TRIES`] polls for a byte. On the Pico it is late after four times as
+/// many for the message, and then the UART has sent no part; a message longer than
+/// [`UART_QUEUE`](crate::config::UART_QUEUE) always is.
 pub struct Outward(pub(in crate::board) fn(&[u8]) -> bool);
 
 /// Sends bytes one by one. Each waits until the port `is_ready` for it, at most [`BUS_TRIES`]

@@ -16,7 +16,8 @@ const CAPACITY: usize = PAGES * (5 + 2 + WIDTH) + 48;
 const ANSWER: usize = 2;
 
 /// Messages to one address, and the answer to them. Each message is stored as its length and its
-/// bytes. The default is empty, with the outcome `Ok`.
+/// bytes; in all there is room for 1,128 bytes. The default is empty, with the address 0 and the
+/// outcome `Ok`.
 #[derive(Debug)]
 pub struct Outbox {
     /// The address of the panel, seven bits, set by [`address_to`](Self::address_to).
@@ -52,7 +53,8 @@ pub const SILENCE: ErrorKind = ErrorKind::NoAcknowledge(NoAcknowledgeSource::Unk
 pub struct OutByte {
     /// The byte itself.
     pub value: u8,
-    /// The byte is the last of its message: a stop follows, or the start of the next message.
+    /// True if the byte is the last of its message: a stop follows, or the start of the next
+    /// message.
     pub ends_message: bool,
 }
 
@@ -73,7 +75,8 @@ impl Default for Outbox {
 }
 
 impl Outbox {
-    /// Empties the outbox; messages put in from now on are for this address.
+    /// Empties the outbox, of messages and answer; messages put in from now on are for this address
+    /// of seven bits, which is not checked. The outcome becomes `Ok`, and no byte is requested.
     pub fn address_to(&mut self, address: u8) {
         self.address = address;
         self.messages.clear();
@@ -87,8 +90,8 @@ impl Outbox {
     }
 
     /// Appends a message: the control byte `head`, and up to 254 bytes. A longer message, or one
-    /// that does not fit into the outbox, is dropped without notice. The longest update of a panel
-    /// fits (test `oled_i2c`).
+    /// that does not fit into the outbox with its length and `head`, is dropped without notice. The
+    /// longest update of a panel fits (test `oled_i2c`).
     pub fn put(&mut self, head: u8, body: &[u8]) {
         let needed = 2 + body.len();
         if let Ok(length) = u8::try_from(needed - 1)
@@ -107,7 +110,7 @@ impl Outbox {
         self.asked = bytes.min(ANSWER as u8);
     }
 
-    /// Returns the number of bytes to read.
+    /// Returns the number of bytes to read, 0 to 2.
     pub fn asked(&self) -> usize {
         self.asked.into()
     }
@@ -173,7 +176,8 @@ pub trait PanelBus {
     fn outbox(&mut self) -> Option<(&mut Outbox, Sent)>;
 
     /// Begins to send the messages in the outbox, and returns at once. Does nothing while a
-    /// transfer is in progress. The outbox must contain a message: an empty transfer may never end.
+    /// transfer is in progress. Not checked: the outbox must contain a message, because an empty
+    /// transfer may never end.
     fn send(&mut self);
 
     /// Aborts the transfer, and frees a bus that hangs. The outbox is then available, with the

@@ -33,13 +33,13 @@ pub trait Display {
 
     /// Sends the last frame, which is the canvas, if it is still waiting for the bus. It is called
     /// in the time left until the next frame. Returns true while the frame waits; false if none
-    /// does.
+    /// does, as by default.
     fn catch_up(&mut self, _: &Canvas) -> bool {
         false
     }
 
-    /// Returns the panel that was found since the last call; `None` if none was, or if the driver
-    /// does not search.
+    /// Returns the panel that was found since the last call, the last of several; `None` if none
+    /// was, or if the driver does not search.
     fn found(&mut self) -> Option<Found> {
         None
     }
@@ -49,8 +49,9 @@ pub trait Display {
         PanelReport::default()
     }
 
-    /// Drives the panel as this controller; `None` identifies it. Returns false if the board has
-    /// no panel with a choice of controllers.
+    /// Drives the panel as this controller, from the next frame on; `None` identifies it. Returns
+    /// false, and does nothing, if the board has no panel with a choice of controllers, as by
+    /// default.
     fn choose(&mut self, _: Option<Controller>) -> bool {
         false
     }
@@ -156,9 +157,9 @@ pub struct PanelReport {
     pub whole: u8,
 }
 
-/// The controller that the build variable `PANEL` names; `None` without the variable, and then the
-/// controller is identified. Another name is an error of the build. A controller chosen by the host
-/// has precedence.
+/// The controller that the build variable `PANEL` names: `ssd1306`, `sh1106` or `sh1107`. Another
+/// value is an error of the build. It is `None` without the variable, and then the controller is
+/// identified. A controller chosen by the host has precedence.
 pub const BUILT_FOR: Option<Controller> = match option_env!("PANEL") {
     None => None,
     Some(name) => match name.as_bytes() {

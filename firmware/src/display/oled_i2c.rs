@@ -175,7 +175,8 @@ pub enum OledError {
     Lost,
     /// The bus is too slow for every frame. The panel shows the others.
     Slow {
-        /// The number of frames, of the last [`TICK_RATE`], that were sent to the panel.
+        /// The number of frames, of the last [`TICK_RATE`], that were sent to the panel, whole or
+        /// in part.
         shown: u32,
     },
 }
@@ -199,7 +200,8 @@ impl fmt::Display for OledError {
 /// The driver looks for an absent panel once a second, and returns an error for its frames at once.
 /// The bus sends a frame after [`flush`](Display::flush) has returned, so that an error is returned
 /// with a later frame, and then with every frame until it is over. The result before the first
-/// search has ended is `Ok`.
+/// search has ended is `Ok`. No function waits for the bus. If six frames in a row find it busy,
+/// 0.1 s, the transfer is aborted, and the panel counts as lost or absent.
 #[derive(Debug)]
 pub struct OledI2c<'a, Bus> {
     /// The bus of the panel.

@@ -56,9 +56,10 @@ const WAKE: [&[u8]; 19] = [
 
 /// The driver of a panel: an SPI device, and the pin that is high for data and low for commands.
 ///
-/// [`Ssd0323::init`] must be called before the first frame. A frame is sent before
-/// [`flush`](Display::flush) returns. After an error of the SPI device, the next frame is sent
-/// whole.
+/// [`Ssd0323::init`] must be called before the first frame, which is not checked. A frame is sent
+/// before [`flush`](Display::flush) returns. After an error of the SPI device, the next frame is
+/// sent whole. The panel takes at most 4 MHz. It cannot be read, so that an absent panel is no
+/// error.
 #[derive(Debug)]
 pub struct Ssd0323<'a, Spi, Pin> {
     spi: Spi,

@@ -1,5 +1,6 @@
 //! Strokes and discs with soft edges, in integer arithmetic. Rods, bobs and traces are made of
-//! them.
+//! them. Not checked: their spots are within the limits of [`Spot::at`]. Beyond these limits, sums
+//! may overflow.
 
 use core::ops::Range;
 
@@ -10,14 +11,13 @@ pub const SUBPIXELS: i32 = 1 << SHIFT;
 const SHIFT: u32 = 6;
 const HALF: i32 = SUBPIXELS / 2;
 
-/// A point on the canvas, in subpixels from its top left corner. Pixel i covers 64 i to 64 i + 63.
-///
-/// Strokes and discs accept the spots of [`Spot::at`]; with larger numbers their sums may overflow.
+/// A point on or near the canvas, in subpixels from its top left corner. Pixel i covers 64 i to
+/// 64 i + 63.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Spot {
-    /// To the right.
+    /// The distance to the right, subpixels; negative to the left of the canvas.
     pub x: i16,
-    /// Down.
+    /// The distance down, subpixels; negative above the canvas.
     pub y: i16,
 }
 
@@ -89,8 +89,8 @@ impl Stroke {
 }
 
 /// A disc of `radius` subpixels, surrounded by a dark gap of `gap` subpixels that separates it from
-/// the background. Edges are soft, one pixel wide. In the gap, up to its soft edge, the
-/// background becomes black.
+/// the background. Edges are soft, one pixel wide, half of it outside the radius. In the gap, up to
+/// its soft edge, the background becomes black. A disc with a radius below 32 is fainter.
 #[derive(Clone, Copy, Debug)]
 pub struct Disc {
     /// The middle.

@@ -9,7 +9,7 @@ pub const HEIGHT: usize = 64;
 const ROW: usize = WIDTH / 2;
 
 /// A row of 128 pixels from the left in 64 bytes, two in each. The high nibble is the left pixel.
-/// Pixels outside the row are ignored.
+/// Pixels outside the row are ignored. Greys are 0 (black) to 15. This is not checked.
 ///
 /// The row is aligned to a word, so that it can be copied and compared by words.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -17,7 +17,8 @@ const ROW: usize = WIDTH / 2;
 pub struct Row(pub [u8; ROW]);
 
 /// The rows of pixels from the top. Drawing cannot fail: pixels outside the canvas are ignored.
-/// Greys must be 0 to 15.
+///
+/// Not checked: greys are 0 (black) to 15. A larger one gives wrong greys or overflows.
 #[derive(Debug, PartialEq, Eq)]
 pub struct Canvas {
     /// The rows from the top.
@@ -74,7 +75,7 @@ impl Canvas {
     }
 
     /// Moves all pixels to the left by one column. Column `left - 1` and the last column become
-    /// black.
+    /// black; the first column is lost.
     ///
     /// So the pixels from column `left` on scroll out at their left end, if the columns before
     /// `left` are black, as they must be: they move, too. With a `left` of 0 the whole canvas
@@ -98,8 +99,8 @@ impl Canvas {
         Some((row.get((x >> 1) as usize)? >> shift(x)) & 0x0F)
     }
 
-    /// Replaces the grey of a pixel by a function of it. Only the low four bits of the result
-    /// count.
+    /// Replaces the grey of the pixel in column `x` and row `y` by a function of it. Only the low
+    /// four bits of the result count. The function is not called for a pixel outside the canvas.
     #[inline]
     pub fn update(&mut self, x: i32, y: i32, new: impl FnOnce(u8) -> u8) {
         if let Some(row) = self.row_mut(y) {
@@ -150,7 +151,7 @@ impl Canvas {
 
 impl Row {
     /// Replaces the grey of the pixel in column `x` by a function of it. Only the low four bits of
-    /// the result count.
+    /// the result count. The function is not called for a pixel outside the row.
     #[inline]
     pub fn update(&mut self, x: i32, new: impl FnOnce(u8) -> u8) {
         if let Some(pair) = self.0.get_mut((x >> 1) as usize) {
@@ -170,9 +171,10 @@ impl Row {
 /// nothing fades.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Fading {
-    /// The number of rows that lose a grey in a tick.
+    /// The number of rows that lose a grey in a tick. Above 64, some rows lose more than one.
     pub rows: u8,
-    /// The final grey of a faded pixel, 0 to 15. Darker pixels do not change.
+    /// The final grey of a faded pixel, 0 to 15. Darker pixels do not change. From 15 on, nothing
+    /// fades.
     pub last: u8,
 }
 
@@ -193,7 +195,7 @@ pub struct FadeLayer {
 }
 
 impl FadeLayer {
-    /// A layer without traces.
+    /// A layer without traces. The first row to fade is the top one.
     pub const NONE: Self = Self {
         frame: Canvas::BLACK,
         row: 0,

@@ -2,17 +2,17 @@
 //!
 //! A name in front and a unit behind are written as they are, with the space that they contain. If
 //! a part of a label (a name, a digit, a unit) does not fit, it and the later parts are left out.
-//! NaN is written as 0. A number above 4,294,967,295 units of its last decimal place, or infinity,
-//! is written as that limit.
+//! NaN is written as 0, or 0.0 and so on with decimals. A number of more than 4,294,967,295 units
+//! of its last decimal place, or infinity, is written as that limit; the sign remains.
 
 use heapless::String;
 
 /// A label in UTF-8. Its capacity, 16 bytes, is the number that fits next to the motion.
 pub type Label = String<16>;
 
-/// Returns the mass ratio m2/m1, which must not be negative, to three significant digits, from 100
-/// on to whole numbers, and below 0.1 to four decimals: `μ 100`, `μ 31.5`, `μ 2.75`, `μ 0.315`, `μ
-/// 0.0125`.
+/// Returns the mass ratio m2/m1, rounded to three significant digits, from 100 on to whole numbers,
+/// and below 0.1 to four decimals: `μ 100`, `μ 31.5`, `μ 2.75`, `μ 0.315`, `μ 0.0125`. A negative
+/// ratio, which no pendulum has, has a sign and four decimals.
 pub fn mass_ratio(ratio: f32) -> Label {
     let decimals = [100.0, 10.0, 1.0, 0.1]
         .into_iter()
@@ -32,8 +32,9 @@ pub fn degrees(name: &str, degrees: f32) -> Label {
     label(name, degrees, decimals, "°")
 }
 
-/// Returns a number of an axis: `10`, `0.2 s`. It is rounded to one decimal from 0.1 to below 1,
-/// to two from 0.01 to below 0.1, and otherwise to a whole number.
+/// Returns a number of an axis, before its unit: `10`, `0.2 s`. It is rounded to one decimal from
+/// 0.1 to below 1, to two from 0.01 to below 0.1, and otherwise to a whole number, also if it is
+/// negative.
 pub fn tick(value: f32, unit: &str) -> Label {
     let decimals = match value {
         0.1..1.0 => 1,
@@ -56,9 +57,9 @@ pub fn time(seconds: f64) -> Label {
     written([""; 2], (seconds * 10.0) as u32, 10, " s")
 }
 
-/// Returns `value`, rounded to `decimals` places (0 to 9), after a name and before a unit. A
-/// negative value that is rounded to 0 keeps its sign. Halves are rounded away from 0. Examples:
-/// `±12°`, `ω₁ 1.848`, `true -18.7 J`.
+/// Returns `value`, rounded to `decimals` places, after a name and before a unit. A negative value
+/// that is rounded to 0 keeps its sign. Halves are rounded away from 0. Examples: `±12°`, `ω₁
+/// 1.848`, `true -18.7 J`. Not checked: `decimals` is 0 to 9; with more, the digits are wrong.
 #[inline(never)]
 pub fn label(name: &str, value: f32, decimals: u32, unit: &str) -> Label {
     let one = 10_u32.saturating_pow(decimals);

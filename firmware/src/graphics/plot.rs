@@ -11,8 +11,9 @@ const HALF_THICKNESS: i32 = 38;
 pub type Height = i16;
 
 /// Returns the height of `value`, subpixels down from the top edge, where the value 0 is `zero`
-/// pixels below the top edge and a unit is `scale` pixels upwards. It is limited to twice the
-/// height of the canvas above and below the top edge. NaN is at the top edge.
+/// pixels below the top edge and a unit is `scale` pixels upwards. It is rounded towards 0, and
+/// limited to twice the height of the canvas above and below the top edge. If any of the three
+/// numbers is NaN, the result is 0, the top edge.
 pub const fn height(value: f32, zero: f32, scale: f32) -> Height {
     let limit = (2 * HEIGHT as i32 * SUBPIXELS) as f32;
     ((zero - scale * value) * SUBPIXELS as f32).clamp(-limit, limit) as Height
@@ -42,7 +43,8 @@ pub fn column(canvas: &mut Canvas, x: i32, from: Height, to: Height, brightness:
 pub const AXIS_GREY: u8 = 8;
 
 /// Draws a dotted line in row `y`, every third pixel from column `from` to column `to` (exclusive),
-/// in [`AXIS_GREY`]. Brighter pixels keep their grey.
+/// in [`AXIS_GREY`]. Brighter pixels keep their grey. If `from` is not less than `to`, nothing is
+/// drawn.
 #[inline(never)] // Not inlined, to save flash.
 pub fn axis(canvas: &mut Canvas, from: i32, to: i32, y: i32) {
     if let Some(row) = canvas.row_mut(y) {
@@ -53,14 +55,16 @@ pub fn axis(canvas: &mut Canvas, from: i32, to: i32, y: i32) {
 }
 
 /// Draws a dotted line in column `x`, every third pixel from row `from` to row `to` (exclusive), in
-/// [`AXIS_GREY`]. Brighter pixels keep their grey.
+/// [`AXIS_GREY`]. Brighter pixels keep their grey. If `from` is not less than `to`, nothing is
+/// drawn.
 pub fn upright_axis(canvas: &mut Canvas, x: i32, from: i32, to: i32) {
     (from..to).step_by(3).for_each(|y| axis_dot(canvas, x, y));
 }
 
 /// Draws a scale bar, upright or level, from the pixel (x1, y1) to the pixel (x2, y2), which is to
 /// its right or below it, in [`AXIS_GREY`]. Either end has a foot of one pixel to both sides.
-/// Brighter pixels keep their grey.
+/// Brighter pixels keep their grey. Not checked: two diagonal corners give a filled rectangle, and
+/// a second pixel to the left of or above the first gives only the feet.
 #[inline(never)]
 pub fn bar(canvas: &mut Canvas, (x1, y1): (i32, i32), (x2, y2): (i32, i32)) {
     (x1..=x2).for_each(|x| (y1..=y2).for_each(|y| axis_dot(canvas, x, y)));
@@ -78,7 +82,8 @@ fn axis_dot(canvas: &mut Canvas, x: i32, y: i32) {
 }
 
 /// Returns the smallest step of a scale that is at least `least`: 1, 2 or 5 times a power of ten,
-/// from 0.01 to 100. Above 100 and for NaN, the result is 100.
+/// from 0.01 to 100. Above 100 and for NaN, the result is 100; for 0 and negative numbers it is
+/// 0.01.
 pub fn scale_step(least: f32) -> f32 {
     const STEPS: [f32; 12] = [
         0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0,

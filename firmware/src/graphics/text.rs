@@ -45,9 +45,9 @@ pub const MARKED: [u8; 2] = [0, GREY];
 /// The greys of ink and background of a line over a picture.
 pub const WHITE_ON_BLACK: [u8; 2] = [15, 0];
 
-/// Writes a line of text with the grey `ink` on a background of the grey `ground`, both 0 to 15.
-/// The background has the height of the line. It begins one column left of the text, and ends with
-/// the gap after the last character.
+/// Writes a line of text with the grey `ink` on a background of the grey `ground`, both 0 to 15,
+/// which is not checked. The background has the height of the line. It begins one column left of
+/// the text, and ends with the gap after the last character. Without text it is this one column.
 pub fn write_on(canvas: &mut Canvas, text: &str, anchor: Anchor, [ink, ground]: [u8; 2]) {
     let width = width(text);
     let (left, top) = corner(anchor, text);
@@ -106,7 +106,7 @@ pub struct Glyph {
     /// The number of columns, with the gap after the character: 3 to 9.
     pub width: i32,
     /// Eight rows from the top. The first row is in the highest byte, and the leftmost pixel of a
-    /// row is in its highest bit.
+    /// row is in its highest bit. A bit of 1 is ink.
     pub rows: u64,
 }
 
@@ -131,7 +131,7 @@ const GLYPHS: [u64; 112] = {
 };
 
 /// Returns the glyph of a character: the printable ASCII characters and `½±°μ₁₂αω√→↑`. Any other
-/// character has the glyph of a question mark.
+/// character, such as the end of a line, has the glyph of a question mark.
 pub fn glyph(character: char) -> Glyph {
     let (place, width) = match character {
         ' ' => (0, 3),

@@ -5,7 +5,8 @@ use double_pendulum::Parameters;
 use crate::config::{GREATEST_RADIUS, LEAST_RADIUS, PIVOT, REACH, ROD_HALF_WIDTH};
 use crate::graphics::{Canvas, Disc, FadeLayer, SUBPIXELS, Spot, Stroke};
 
-/// The directions of both rods: (sin, cos) of their angles from the downward vertical.
+/// The directions of both rods, rod 1 first: (sin, cos) of their angles, each from the downward
+/// vertical and positive to the right. Not checked: the length of each direction is 1.
 pub type RodDirections = [[f32; 2]; 2];
 
 /// The brightness of a rod, of 255. It is between the trail's and the bobs'.
@@ -32,7 +33,7 @@ impl Place {
     };
     /// The left half and the right half. Each is a circle with a radius of 25 pixels and room for a
     /// bob around it. There is room for a line of text above them, and for one between them at the
-    /// bottom.
+    /// bottom. The pivots are at (29.5, 36) and (98.5, 36) pixels.
     pub const HALVES: [Self; 2] = [
         Self {
             pivot: (29.5, 36.0),
@@ -59,8 +60,8 @@ pub struct View {
 
 impl View {
     /// Creates the view of a pendulum with these parameters and directions. Both rods together are
-    /// `place.reach` pixels long. The parameters are not checked; of masses and lengths only the
-    /// ratios count, and gravity has no effect.
+    /// `place.reach` pixels long. Nothing is checked. Of masses and lengths only the ratios count,
+    /// and gravity has no effect. Positions are limited as in [`Spot::at`].
     ///
     /// The bobs are spheres of one material, so that their radii are proportional to the cube root
     /// of the mass. The heavier bob has the radius [`GREATEST_RADIUS`], 3 pixels in
@@ -97,8 +98,9 @@ impl View {
         [(x1, y1), (x1 + rod2 * sin2, y1 + rod2 * cos2)]
     }
 
-    /// Turns the rods to these directions: the bobs move there at once, and leave no trace. A bob
-    /// whose position is NaN goes to the edge of the canvas ([`Spot::at`]).
+    /// Turns the rods to these directions: the bobs move there at once, and leave no trace. Their
+    /// positions are limited as in [`Spot::at`]. A coordinate that is NaN becomes 0, the left or
+    /// the top edge of the canvas.
     pub fn turn(&mut self, directions: RodDirections) {
         self.spots = self.bobs(directions).map(|(x, y)| Spot::at(x, y));
     }
@@ -131,7 +133,8 @@ impl View {
 
     /// Draws the pivot, the rods and the bobs over the canvas. The brightness of the bobs is 0
     /// (black) to 255 (grey 15); the rods are no brighter than the bobs, and at most 190. Around
-    /// each bob the background is darkened.
+    /// each bob the background is darkened. Pixels under pivot and rods that are brighter already
+    /// keep their grey; the bobs replace them. The parts outside the canvas are not drawn.
     pub fn draw(&self, canvas: &mut Canvas, brightness: u8) {
         let (pivot, [bob1, bob2]) = (Spot::at(self.pivot.0, self.pivot.1), self.spots);
         let half_width = (ROD_HALF_WIDTH * SUBPIXELS as f32) as u8;

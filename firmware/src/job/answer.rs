@@ -29,9 +29,12 @@ pub struct Job<R = OnBoards> {
 
 impl<R: Run> Job<R> {
     /// Creates the job of a request, where `run` is its motion at the start. Of the request it uses
-    /// the parameters, the method, the angles, `stride` and `samples`. If the stride is 0, every
-    /// reading is the initial one. The number of samples, with the initial one, is at most
+    /// the parameters, the method, the angles (rad), `stride` and `samples`. If the stride is 0,
+    /// every reading is the initial one. The number of samples, with the initial one, is at most
     /// 2^32 - 1.
+    ///
+    /// Not checked: `run` is the motion of this request, by its method, before the first step. Its
+    /// angles are then finite.
     ///
     /// # Errors
     ///
@@ -74,12 +77,13 @@ impl<R: Run> Job<R> {
     }
 
     /// Computes at most one step. Returns the reading if a sample is due, and `None` if none is or
-    /// if the job is finished. The first call returns the initial reading.
+    /// if the job is finished. The first call computes no step and returns the initial reading.
     ///
     /// # Errors
     ///
-    /// Returns [`Error::Diverged`] instead of a reading that is not finite, and ends the job. All
-    /// earlier readings are finite.
+    /// Returns [`Error::Diverged`] instead of a reading with a number that is not finite, and ends
+    /// the job. All earlier readings are finite. A motion whose numbers are finite but meaningless
+    /// is not noticed.
     pub fn advance(&mut self) -> Result<Option<Reading>, Error> {
         if self.is_finished() {
             return Ok(None);

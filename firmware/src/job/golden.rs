@@ -7,11 +7,13 @@ use double_pendulum::golden::{HEADER, Line, MOTIONS};
 
 use super::table::{GoldenBits, visit};
 
-/// Writes the contents of the kernel's file `golden/bits.csv`, computed on this machine: a heading,
-/// and a line for each method and motion.
+/// Writes the contents of the kernel's file `golden/bits.csv`, computed on this machine, to
+/// `output`; the file itself is neither read nor changed. They are the line [`HEADER`], and a line
+/// for each motion of [`MOTIONS`] by each method of [`Method::ALL`], the motions of a method next
+/// to each other. Every line ends with a line feed.
 ///
-/// If a method refuses a motion, its error takes the place of the bits. Only errors of `output` are
-/// returned.
+/// If a method refuses a motion, or the motion diverges, the error in words takes the place of the
+/// bits. Only errors of `output` are returned, the first one at once.
 pub fn write_golden(output: &mut impl Write) -> fmt::Result {
     writeln!(output, "{HEADER}")?;
     for &method in Method::ALL {

@@ -49,15 +49,16 @@ pub struct Request {
     pub method: Method,
     /// m1, m2 (kg), l1, l2 (m), g (m/s^2), in this order.
     pub parameters: Parameters<f64>,
-    /// The initial angles a1 and a2, rad.
+    /// The initial angles a1 and a2, rad (not degrees), from the downward vertical.
     pub angles: [f64; 2],
     /// The initial angular velocities w1 and w2, rad/s.
     pub velocities: [f64; 2],
-    /// The step size, s.
+    /// The step size, s: positive, and within the limit of the method. Of the closed form it may
+    /// also be negative, and has no limit.
     pub dt: f64,
-    /// The number of steps from one sample to the next.
+    /// The number of steps from one sample to the next; 0 repeats the initial sample.
     pub stride: u32,
-    /// The number of samples after the initial one.
+    /// The number of samples after the initial one; 0 leaves only that one.
     pub samples: u32,
 }
 
@@ -102,10 +103,12 @@ impl Request {
     }
 
     /// Returns the longest step, s, that resolves every motion of this energy; `None` for the
-    /// closed form, which takes any step, and for values that the kernel refuses.
+    /// closed form, which takes any step, and for parameters that the kernel refuses.
     ///
     /// For RK4 it is [`Pendulum::admissible_step`]; for extrapolation of order 2 K it is K times
-    /// that step, which errs as little. The `dt` of the request is not used.
+    /// that step, which errs as little. The `dt` of the request is not used. The start is not
+    /// checked: the step is infinite if nothing can move, and NaN or 0 for a start that is not
+    /// finite.
     pub fn admissible_step(&self) -> Option<f64> {
         let ([a1, a2], [w1, w2]) = (self.angles, self.velocities);
         let share = match self.method.integrator() {
@@ -120,7 +123,8 @@ impl Request {
     }
 
     /// Returns the request in `text`: its bytes in the postcard format, each as two hexadecimal
-    /// digits of either case. Returns `None` if the bytes are not exactly one request. Its values
+    /// digits of either case, without separators. Returns `None` if the bytes are not exactly one
+    /// request, or for any other character, such as a final line feed. The values of the request
     /// are not checked. Of a byte below 16 the digit 0 may be a plus sign, and may be missing at
     /// the end of the text.
     pub fn parse(text: &str) -> Option<Self> {
@@ -137,7 +141,7 @@ impl Request {
     }
 }
 
-/// Writes the text that [`Request::parse`] reads.
+/// Writes the text that [`Request::parse`] reads, in lower case, without a line feed.
 impl fmt::Display for Request {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let bytes = &mut [0; MAX_BYTES];

@@ -9,18 +9,22 @@ use super::Request;
 /// [`OnBoards`](super::OnBoards).
 pub trait Run: Copy {
     /// Makes `steps` steps of the request's step size. `advance(a); advance(b)` is bit-identical to
-    /// `advance(a + b)`. A motion may diverge; the [`state`](Self::state) then is not finite.
+    /// `advance(a + b)`. The number of steps is not limited.
+    ///
+    /// A motion may diverge. Numbers of the [`state`](Self::state) then are not finite or, in `f32`
+    /// and `f64`, may be finite but meaningless. `rk4-fixed32` shows it at most 32 steps late.
     fn advance(&mut self, steps: u32);
 
     /// Returns the canonical state now, in SI units (rad, kg m^2/s), with all digits that are
     /// carried.
     ///
-    /// If [`sides`](Self::sides) returns a value, whole turns of the angles may be missing.
+    /// If [`sides`](Self::sides) returns a value, the angles are in (-pi, pi], without whole turns.
     fn state(&self) -> State<f64>;
 
     /// Returns (sin, cos) of rod 1 and of rod 2 as words whose highest bit is the sign, if the
-    /// caller must count whole turns by these signs after each step. Returns `None` if the angles
-    /// of the state include the turns.
+    /// caller must count whole turns by these signs after each step. The other bits are in the
+    /// format of the method, and the words of a diverged motion are arbitrary. Returns `None` if
+    /// the angles of the state include the turns.
     fn sides(&self) -> Option<[[i32; 2]; 2]> {
         None
     }

@@ -11,7 +11,8 @@ use super::run::{start, start_drawn};
 use super::{Reading, Request, Run, answer, crc};
 
 /// Calls `visitor` with the type that computes `method`: a type of the kernel or, for a comparison
-/// with the kernel, of this module. Returns the visitor's result.
+/// with the kernel, of this module. Returns the visitor's result. Every method has a type, so the
+/// visitor is always called, once.
 ///
 /// This links every method. Hosts and the program `measure` use it; the application of a board does
 /// not.
@@ -65,12 +66,17 @@ pub enum OnBoards {
 
 impl OnBoards {
     /// Returns the motion of a request at its start. Returns `None` if boards do not have the
-    /// method.
+    /// method. `stride` and `samples` are not used.
     ///
     /// # Errors
     ///
     /// The inner result is the kernel's error if it refuses the request: parameters that describe
-    /// no pendulum, a start that is not finite, or a step that the method cannot make.
+    /// no pendulum, a start that is not finite or out of the method's range, or a step that the
+    /// method cannot make. Such a step is NaN, infinite, 0, negative or too long
+    /// ([`Pendulum::check_step`]); only the closed form makes negative and long ones, but it
+    /// refuses a pendulum without gravity.
+    ///
+    /// [`Pendulum::check_step`]: double_pendulum::Pendulum::check_step
     #[inline(never)] // Inlined, the compiler would move this large value word by word.
     pub fn start(request: &Request) -> Option<Result<Self, Error>> {
         Some(match request.method {
@@ -171,11 +177,13 @@ impl FormVisitor for CrcOf<'_> {
 }
 
 impl Request {
-    /// Calls `each` with every reading, the initial one first, until it returns an error.
+    /// Calls `each` with every reading, the initial one first, until it returns an error. This
+    /// makes `stride` times `samples` steps; their number is not limited.
     ///
     /// # Errors
     ///
-    /// Returns the error of `each`, the kernel's error if it refuses the request, or
+    /// Returns the error of `each`; the kernel's error if it refuses the request
+    /// ([`OnBoards::start`], [`Job::new`](super::Job::new)), before any call; or
     /// [`Error::Diverged`] in place of the first reading that is not finite.
     pub fn readings<E: From<Error>>(
         &self,
@@ -186,12 +194,15 @@ impl Request {
     }
 
     /// Returns the CRC-32 of all numbers that the method carries, at every sample except the
-    /// initial one, and of the last state. Bit-identical runs have the same CRC; different runs
-    /// have different ones, except by a chance of 1 in 2^32.
+    /// initial one, and of the last state; without samples, of the initial state. Bit-identical
+    /// runs have the same CRC; different runs have different ones, except by a chance of 1 in 2^32.
+    ///
+    /// It makes `stride` times `samples` steps; their number is not limited.
     ///
     /// # Errors
     ///
-    /// Returns the kernel's error if it refuses the request. A motion that diverges is no error.
+    /// Returns the kernel's error if it refuses the request, as [`OnBoards::start`] does. A motion
+    /// that diverges is no error.
     pub fn crc(&self) -> Result<u32, Error> {
         visit(self.method, CrcOf(self))
     }

@@ -20,7 +20,8 @@ pub enum Horizon {
 }
 
 impl Horizon {
-    /// Returns the verified time, s: 0 if none is, infinity if the frames are always accurate.
+    /// Returns the verified time, s after the start: 0 if none is verified, infinity if the frames
+    /// are always accurate.
     #[must_use]
     pub fn verified(self) -> f32 {
         match self {
@@ -48,14 +49,14 @@ impl Horizon {
         }
     }
 
-    /// Returns true while planning is in progress.
+    /// Returns true while planning is in progress: for `Undecided` and `AtLeast`.
     #[must_use]
     pub fn is_open(self) -> bool {
         matches!(self, Self::Undecided | Self::AtLeast(_))
     }
 
     /// Returns true if planning has ended and frames at `time`, s after the start, are later than
-    /// the horizon.
+    /// the horizon. Returns false at the horizon itself, and for all variants but `Until`.
     #[must_use]
     pub fn is_past(self, time: f64) -> bool {
         matches!(self, Self::Until(end) if time > f64::from(end))

@@ -51,7 +51,8 @@ const LENGTH_ERROR: f32 = 1e-3;
 const MOST_BEND: f32 = 1.0;
 
 impl Misprinted {
-    /// Creates the motion of equal rods from the canonical state `start` (rad, kg m^2/s).
+    /// Creates the motion of equal rods (kg, m, m/s^2) from the canonical state `start` (rad,
+    /// kg m^2/s).
     ///
     /// The parameters are not checked: l2 is ignored and taken to be l1. A motion whose numbers are
     /// not finite is lost in its first tick.
@@ -83,8 +84,8 @@ impl Misprinted {
         }
     }
 
-    /// Returns true if the motion has become too fast for the shortest step, 1/480 s, or is not
-    /// finite. It is then lost, and stays so.
+    /// Returns true if a [`tick`](Self::tick) found the motion too fast for the shortest step,
+    /// 1/480 s, or not finite. It is then lost, and stays so. Before the first tick it is false.
     pub fn is_lost(&self) -> bool {
         self.is_lost
     }
@@ -117,8 +118,8 @@ impl Misprinted {
         self.z = [sin1, cos1, sin_d, cos_d, q1, q2];
     }
 
-    /// Returns the directions (sin, cos) of both rods. A lost motion keeps the last directions
-    /// that a step reached.
+    /// Returns the directions (sin, cos) of both rods, from the downward vertical. A lost motion
+    /// keeps the last directions that a step reached.
     pub fn directions(&self) -> RodDirections {
         let [sin1, cos1, sin_d, cos_d, ..] = self.z;
         [
@@ -129,7 +130,9 @@ impl Misprinted {
 
     /// Returns the energy H now, J, by the correct formula, as
     /// [`Pendulum::energy`](double_pendulum::Pendulum::energy) does:
-    /// ((q1 - q2 cos D)^2 r + q2^2/mu)/2 - (1 + mu) G cos a1 - mu G cos a2, times m1 l^2.
+    /// ((q1 - q2 cos D)^2 r + q2^2/mu)/2 - (1 + mu) G cos a1 - mu G cos a2, times m1 l^2. The
+    /// potential is zero at the pivot. A lost motion has the energy of the last step. Numbers beyond
+    /// the range of `f32` give infinity or NaN.
     pub fn energy(&self) -> f32 {
         let &Self {
             mass_ratio: mu,

@@ -73,7 +73,7 @@ impl Settings {
     }
 
     /// Returns the settings with the next smaller mass ratio of [`MASS_RATIOS`], by another m2.
-    /// From the smallest one down, 0.01, and for NaN, they are unchanged.
+    /// From the smallest one down, 0.01, for NaN, and for an m1 of 0, they are unchanged.
     pub fn lighter(self) -> Self {
         let next = MASS_RATIOS
             .iter()
@@ -86,7 +86,8 @@ impl Settings {
 
     /// Returns the settings with the start angles of both rods turned by `steps` times
     /// [`ANGLE_STEP`], 1 degree, counter-clockwise if `steps` is positive. Each rod stops at
-    /// straight up, 180 or -180 degrees; an angle that is already beyond is moved there.
+    /// straight up, 180 or -180 degrees; an angle that is already beyond is moved there, also by 0
+    /// steps. An angle that is NaN stays NaN.
     pub fn turned(self, steps: i8) -> Self {
         let turn = |degrees: f32| {
             (degrees + f32::from(steps) * ANGLE_STEP).clamp(-GREATEST_ANGLE, GREATEST_ANGLE)
@@ -126,7 +127,7 @@ impl Settings {
 
     /// Returns the problem to plan for a display `height` pixels high, in whose half height both
     /// rods fit: a tolerance of half a pixel, in m, [`PLANNED`] seconds, 30, and [`TICK_RATE`]
-    /// frames per second, 60. Nothing is checked.
+    /// frames per second, 60. Angles are in rad there. Nothing is checked.
     pub fn problem(&self, height: f32) -> Problem {
         let pendulum = self.parameters.cast();
         Problem {
@@ -145,7 +146,8 @@ impl Settings {
     /// # Errors
     ///
     /// Refuses settings that describe no pendulum or no finite start, a step that the method cannot
-    /// make, and a method that is not in [`Method::DRAWN`](double_pendulum::Method::DRAWN).
+    /// make, and a method that is not in [`Method::DRAWN`](double_pendulum::Method::DRAWN). Most
+    /// methods accept a step that is unstable, unlike [`Simulation::new`](super::Simulation::new).
     pub fn run(&self, apart: f64, stepping: Stepping) -> Result<PlannedRun, Error> {
         let mut problem = self.problem(HEIGHT as f32);
         problem.start.a1 += apart;

@@ -10,7 +10,7 @@ use crate::motion::Settings;
 /// The processor and the method for computing a motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Resources {
-    /// The price list and the budgets.
+    /// The price list and the budgets, processor cycles.
     pub processor: Processor,
     /// The requested method; `None` leaves the choice to the plan.
     pub method: Option<Method>,
@@ -30,8 +30,9 @@ pub struct Simulation {
 }
 
 impl Simulation {
-    /// Creates a simulation at its start, computed by the requested method or, without one, by
-    /// [`Stepping::initial`].
+    /// Creates a simulation at its start, computed by the requested method with the step count of
+    /// [`Stepping::of`] or, without one, by [`Stepping::initial`]. Without a requested method, a
+    /// motion that is only too fast is no error, but sets [`is_too_fast`](Self::is_too_fast).
     ///
     /// # Errors
     ///
@@ -65,8 +66,9 @@ impl Simulation {
         })
     }
 
-    /// Advances the motion by one tick. A motion that diverges is not reported here; numbers of its
-    /// state are then not finite, and stay so, but its directions may look valid.
+    /// Advances the motion by one tick, 1/60 s. It must not be [too fast](Self::is_too_fast), which
+    /// is not checked. A motion that diverges is not reported here; numbers of its state are then
+    /// not finite, and stay so, but its directions may look valid.
     #[inline(never)] // Not inlined, to save flash.
     pub fn tick(&mut self) {
         // A motion that has diverged is detected by its state.
@@ -102,7 +104,7 @@ pub struct CatchingUp {
 
 impl CatchingUp {
     /// Creates the motion of `settings` at its start, by `stepping`. In each tick it advances by as
-    /// many frames as [`Processor::look_ahead`] pays for, at least 2.
+    /// many frames of 1/60 s as [`Processor::look_ahead`] pays for, at least 2.
     ///
     /// # Errors
     ///
@@ -125,6 +127,7 @@ impl CatchingUp {
     /// Advances by the frames of a tick, but not beyond `simulation`. Returns true if it has caught
     /// up with `simulation`, which then continues with this motion. To be called after each
     /// [`Simulation::tick`], until it returns true. A motion that diverges is not reported here.
+    /// Not checked: both motions have the same settings.
     pub fn tick(&mut self, simulation: &mut Simulation) -> bool {
         for _ in 0..self.most {
             if self.motion.frame() < simulation.motion.frame() {
@@ -170,13 +173,14 @@ impl Energy {
     /// Returns the relative energy error (E - E0)/(E0 - Emin) of the motion now, from its own
     /// numbers, before they are rounded for the report. E0 is the energy at the start. Returns 0 if
     /// the start is hanging at rest, which a motion never leaves. The error of a diverged motion is
-    /// not finite.
+    /// not finite. Not checked: `motion` is of the same pendulum.
     pub fn error(&self, motion: &PlannedRun) -> f32 {
         self.relative(motion.energy_above_rest(&self.pendulum))
     }
 
     /// Returns the same relative error of a motion that is in this state, in SI units (rad,
-    /// kg m^2/s), now.
+    /// kg m^2/s), now. It is 0 if the start is hanging at rest, and otherwise not finite for a state
+    /// that is not finite.
     pub fn error_of_state(&self, state: &State<f32>) -> f32 {
         self.relative(self.pendulum.energy_above_rest(&state.cast()))
     }
@@ -190,8 +194,9 @@ impl Energy {
         }
     }
 
-    /// Returns the energy E, J, that has this relative [`error`](Self::error). The potential is
-    /// zero at the pivot.
+    /// Returns the energy E, J, that has this relative [`error`](Self::error), (E - E0)/(E0 - Emin).
+    /// The potential is zero at the pivot. An error that is not finite gives an energy that is not
+    /// finite. If the start is hanging at rest, every finite error gives Emin.
     pub fn of_error(&self, error: f32) -> f32 {
         let above_rest = self.start + f64::from(error) * self.start;
         (self.pendulum.least_energy() + above_rest) as f32

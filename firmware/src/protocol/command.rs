@@ -12,19 +12,27 @@ use crate::scenes::SceneName;
 /// A command to the application, from a button or over the serial link.
 ///
 /// An impossible command changes nothing. Over the link its answer is
-/// [`Answer::Refused`](super::Answer::Refused) with the field that is wrong.
+/// [`Answer::Refused`](super::Answer::Refused) with the field that is wrong. A command that is
+/// ignored counts as executed.
+///
+/// A scene that starts keeps the pause, the speed and the requested method. If it cannot start by
+/// that method, it follows its plan. A motion that is too fast is not refused: its scene starts,
+/// and is [`Stopped`](super::PlayState::Stopped).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(target_os = "none", derive(defmt::Format))]
 pub enum Command {
-    /// Selects the next larger mass ratio of [`MASS_RATIOS`](crate::config::MASS_RATIOS), and
-    /// starts the scene again. The largest one stays.
+    /// Selects the next larger mass ratio m2/m1 of [`MASS_RATIOS`](crate::config::MASS_RATIOS), by
+    /// another m2, and starts the scene again. The largest one, 100, stays, and the scene starts
+    /// again all the same.
     Heavier,
-    /// Selects the next smaller mass ratio, and starts the scene again. The smallest one stays.
+    /// Selects the next smaller mass ratio in the same way. The smallest one, 0.01, stays.
     Lighter,
-    /// Turns both start angles by one [`ANGLE_STEP`](crate::config::ANGLE_STEP) clockwise, to -180
-    /// degrees at most, and starts the scene again. A scene without start angles ignores it.
+    /// Turns both start angles by one [`ANGLE_STEP`](crate::config::ANGLE_STEP), 1 degree,
+    /// clockwise, to -180 degrees at most, and starts the scene again. A scene without start angles
+    /// ignores it, and continues.
     TurnLeft,
-    /// Turns both start angles by one step counter-clockwise, to 180 degrees at most.
+    /// Turns both start angles by one step counter-clockwise, to 180 degrees at most, in the same
+    /// way.
     TurnRight,
     /// Starts the scene again with the same settings.
     Restart,
@@ -40,51 +48,67 @@ pub enum Command {
     /// restart the scene.
     ///
     /// It accepts `M1` to `W2`, `MassRatio`, `Angle` and `Speed`. Another field is refused with
-    /// [`Field::Field`]. A value with which the scene cannot start, and an angle beyond straight up
-    /// (pi rad), are refused with their own field.
+    /// [`Field::Field`]. A value with which the scene cannot start, an angle beyond straight up (pi
+    /// rad either way), and a speed that is not 0.01 to 4 after rounding to hundredths, are refused
+    /// with their own field.
     Set {
         field: Field,
-        /// The value, in SI units; of an angle in rad.
+        /// The value, in the unit of the field; an angle in rad, not in degrees. All but the speed
+        /// are stored in `f32`.
         value: f64,
     },
     /// Starts the scene again by this method and no other; `None` leaves the choice to the plan.
-    /// Later starts use the method where they can, and otherwise follow their plan. Refused with
-    /// [`Field::Method`] if the method is not in [`Method::DRAWN`], or if the present scene cannot
-    /// start by it. Figures, `small-*` and `upright` ignore it.
+    /// Later starts use the method where they can, and otherwise follow their plan.
+    ///
+    /// Refused with [`Field::Method`] if the method is not in [`Method::DRAWN`], or if the present
+    /// scene cannot start by it: the method refuses the motion, or costs more than the budget of a
+    /// frame. Figures, `small-*` and `upright` do not use it, but start again.
     Method(Option<Method>),
-    /// Pauses the scene (`true`) or lets it continue. It ends a [`Step`](Self::Step).
+    /// Pauses the scene (`true`) or lets it continue. It ends a [`Step`](Self::Step). A stopped
+    /// scene stays stopped.
     Pause(bool),
-    /// Pauses the scene, or lets it continue if it is paused.
+    /// Pauses the scene, or lets it continue if it is paused, also during a [`Step`](Self::Step),
+    /// which ends.
     TogglePause,
-    /// Advances the scene by this number of ticks, one in each tick of the clock, and then pauses
-    /// it; 0 pauses it at once.
+    /// Advances the scene by this number of ticks, one in each tick of the clock at any speed, and
+    /// then leaves it paused; 0 pauses it at once. It replaces the rest of an earlier one.
     Step(u32),
-    /// Requests the scene, its settings and its state. Changes nothing.
+    /// Requests the scene, its settings and its state ([`Answer::Status`](super::Answer::Status)).
+    /// Changes nothing.
     Ask,
-    /// Requests the plan of the scene, as far as it is known. Changes nothing.
+    /// Requests the plan of the scene, as far as it is known
+    /// ([`Answer::Planned`](super::Answer::Planned)). Changes nothing.
     AskPlan,
-    /// Requests the identity of the board. Changes nothing.
+    /// Requests the identity of the board ([`Answer::Identity`](super::Answer::Identity)). Changes
+    /// nothing.
     Identify,
-    /// Requests the samples of this motion. They are computed in the time that frames leave free.
-    /// The scene continues. A job in progress is replaced, unless this request is refused, such as
-    /// with [`Field::Method`] if the application lacks the method.
+    /// Requests the samples of this motion ([`Answer::Sample`](super::Answer::Sample)). They are
+    /// computed in the time that frames leave free. The scene continues. A job in progress is
+    /// replaced, and sends no more samples.
+    ///
+    /// Refused with [`Field::Method`] if the application lacks the method, and otherwise with the
+    /// field that the kernel refuses, such as [`Field::Dt`]; then the earlier job continues.
     Simulate(Request),
-    /// Requests the time of this number of further steps of the last requested motion. They are
-    /// made without a break and with interrupts off, at most
-    /// [`MOST_MEASURED_STEPS`](crate::config::MOST_MEASURED_STEPS). No sample of that motion
-    /// follows. Refused with [`Field::Message`] if no motion was requested.
+    /// Requests the time of this number of further steps of the last requested motion
+    /// ([`Answer::Measured`](super::Answer::Measured)). They are made without a break and with
+    /// interrupts off, at most [`MOST_MEASURED_STEPS`](crate::config::MOST_MEASURED_STEPS), 16. No
+    /// sample of that motion follows, but it can be measured again. Refused with [`Field::Message`]
+    /// if no motion was requested since reset.
     Measure {
         steps: u32,
         /// True to run the code of the steps in RAM, false to run it in flash.
         in_ram: bool,
     },
-    /// Drives the panel as this controller; `None` identifies it. The choice is kept across a
-    /// restart. Refused with [`Field::Panel`] if the panel has no choice of controllers.
+    /// Drives the panel as this controller; `None` identifies it. The choice is kept across every
+    /// reset that leaves memory powered. Refused with [`Field::Panel`] if the panel has no choice
+    /// of controllers.
     Panel(Option<Controller>),
-    /// Plays a scene with these settings. They are set all at once, because a part of them alone
-    /// may be impossible. Angles beyond 180 degrees either way are refused.
+    /// Plays a scene with these settings, whose angles are in degrees. They are set all at once,
+    /// because a part of them alone may be impossible. Angles beyond 180 degrees either way are
+    /// refused.
     Play(SceneName, Settings),
-    /// Requests the last restart that the board made on its own. Changes nothing.
+    /// Requests the last restart that the board made on its own
+    /// ([`Answer::Restart`](super::Answer::Restart)). Changes nothing.
     AskRestart,
 }
 
@@ -93,16 +117,18 @@ pub enum Command {
 const TO_CHIP: u8 = 0x80;
 
 /// Encodes a command for the wire, with its delimiters. Returns the used part of `wire`; every
-/// command fits. `request` is a number that every answer to it repeats.
+/// command fits. `request` is a number that every answer to it repeats; any number is allowed. The
+/// values of the command are not checked.
 pub fn encode_command(request: u16, command: Command, wire: &mut [u8; MAX_WIRE]) -> &[u8] {
     encode(&(TO_CHIP, request, command), wire)
 }
 
-/// Returns the number of an intact command, and the command if it can be read. `message` is without
-/// version and CRC, as [`Decoder::push`](super::Decoder::push) returns it.
+/// Returns the number of an intact command, and the command. `message` is without version and CRC,
+/// as [`Decoder::push`](super::Decoder::push) returns it.
 ///
-/// Returns `None` if the message is not a command, that is if it does not begin with the mark byte
-/// 0x80. If not even the number can be read, it is 0.
+/// The command is `None` if it is unknown, incomplete, or followed by further bytes. If not even
+/// the number can be read, it is 0. The whole result is `None` if the message is not a command,
+/// that is if it does not begin with the mark byte 0x80.
 pub fn decode_command(message: &[u8]) -> Option<(u16, Option<Command>)> {
     let numbered = message.strip_prefix(&[TO_CHIP])?;
     Some(
@@ -116,15 +142,25 @@ choice! {
     Field {
         /// The requested method.
         Method = "method";
+        /// The mass of bob 1, kg.
         M1 = "m1";
+        /// The mass of bob 2, kg.
         M2 = "m2";
+        /// The length of rod 1, m.
         L1 = "l1";
+        /// The length of rod 2, m.
         L2 = "l2";
+        /// The gravity, m/s^2.
         G = "g";
+        /// The start angle of rod 1, rad.
         A1 = "a1";
+        /// The start angle of rod 2, rad.
         A2 = "a2";
+        /// The angular velocity of rod 1 at the start, rad/s.
         W1 = "w1";
+        /// The angular velocity of rod 2 at the start, rad/s.
         W2 = "w2";
+        /// The step size of a requested motion, s; also a motion that diverged.
         Dt = "step size";
         /// The mass ratio m2/m1; m2 is set.
         MassRatio = "mu";
@@ -135,6 +171,7 @@ choice! {
         /// A field that cannot be set.
         Field = "field";
         /// The message itself: it is no known command, or does not have the fields of that command.
+        /// Also [`Command::Measure`] without a requested motion.
         Message = "message";
         /// The board has no panel with a choice of controllers.
         Panel = "panel";

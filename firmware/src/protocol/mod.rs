@@ -49,8 +49,9 @@ const MAX_BODY: usize = 1 + MAX_MESSAGE + 4;
 pub const MAX_WIRE: usize = MAX_BODY + 3;
 
 /// Encodes a message for the wire, with version, CRC and delimiters. Returns the used part of
-/// `wire`. All messages fit (test `link`); one longer than [`MAX_MESSAGE`] would be sent as an
-/// empty one.
+/// `wire`, which begins and ends with a zero; the rest of `wire` is zeros. All messages fit (test
+/// `link`); one longer than [`MAX_MESSAGE`] would be sent as an empty one. The type of the message
+/// is not encoded.
 pub fn encode<'wire>(message: &impl Serialize, wire: &'wire mut [u8; MAX_WIRE]) -> &'wire [u8] {
     frame(
         postcard::to_slice(message, &mut [0; MAX_MESSAGE]).unwrap_or_default(),
@@ -58,8 +59,8 @@ pub fn encode<'wire>(message: &impl Serialize, wire: &'wire mut [u8; MAX_WIRE]) 
     )
 }
 
-/// Returns the message in `bytes`, which are without version and CRC; `None` unless they contain
-/// exactly one message of type `M`.
+/// Returns the message in `bytes`, which are without version and CRC; `None` unless they are
+/// exactly one message of type `M`. Its numbers are not checked: they may be NaN.
 pub fn read<M: DeserializeOwned>(bytes: &[u8]) -> Option<M> {
     postcard::take_from_bytes(bytes)
         .ok()
@@ -68,7 +69,8 @@ pub fn read<M: DeserializeOwned>(bytes: &[u8]) -> Option<M> {
 }
 
 /// Frames a message of bytes for the wire: adds version, CRC, COBS and delimiters. Returns the used
-/// part of `wire`, which is empty if the message is longer than [`MAX_MESSAGE`].
+/// part of `wire`, which begins and ends with a zero; the rest of `wire` is zeros. If the message
+/// is longer than [`MAX_MESSAGE`], that part is empty, and `wire` is unchanged.
 #[inline(never)] // One copy instead of one for each kind of message, to save flash.
 pub fn frame<'wire>(message: &[u8], wire: &'wire mut [u8; MAX_WIRE]) -> &'wire [u8] {
     if message.len() > MAX_MESSAGE {
@@ -101,7 +103,7 @@ pub enum LinkError {
     Malformed,
     /// The CRC does not match.
     Checksum,
-    /// The message is intact, but its sender uses this other version of the protocol.
+    /// The CRC matches, but the sender uses this other version of the protocol.
     Version(u8),
 }
 
@@ -117,7 +119,8 @@ impl LinkError {
 }
 
 /// A decoder that splits a byte stream into checked messages. After damage it resynchronises at the
-/// next delimiter.
+/// next delimiter. A stream that it receives from the middle of a message on begins with an error,
+/// as a rule.
 #[derive(Debug)]
 pub struct Decoder {
     cobs: DecoderState,
@@ -140,7 +143,8 @@ impl Default for Decoder {
 impl Decoder {
     /// Takes one byte. At the end of a message returns the message without version and CRC, or its
     /// error; otherwise `None`. The end is the zero byte after the message. Repeated delimiters are
-    /// ignored.
+    /// ignored. The message may be empty; only [`read`] and [`decode_command`] check whether it is
+    /// a known one.
     pub fn push(&mut self, byte: u8) -> Option<Result<&[u8], LinkError>> {
         match self.cobs.feed(byte) {
             Ok(DecodeResult::NoData | DecodeResult::DataStart) => None,

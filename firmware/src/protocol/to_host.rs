@@ -14,10 +14,13 @@ use crate::scenes::{Report, SceneName};
 /// A message to the host.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum ToHost {
-    /// A drawn frame, sent as soon as it is on the panel.
+    /// A drawn frame, sent after the driver of the panel has the picture. The panel may show it a
+    /// little later, or not at all.
     Frame(Frame),
     /// The board has restarted on its own, and plays its scene from the start. Later frames are
-    /// counted from 0 again.
+    /// counted from 0 again. After more than [`MOST_RESTARTS`](crate::app::MOST_RESTARTS) restarts
+    /// in a row, or if that scene is refused, it plays the first scene instead; only the frames
+    /// show this.
     ///
     /// Over USB no host receives this message, because a restart ends the connection. A host that
     /// opens the port asks with [`Command::AskRestart`](super::Command::AskRestart).
@@ -29,7 +32,8 @@ pub enum ToHost {
 /// An answer to a command.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Answer {
-    /// The command has been executed.
+    /// The command has been executed, or the scene ignores it. Commands that request something have
+    /// the answers below instead.
     Done,
     /// The field that is wrong. The command is not executed, and nothing has changed; or the
     /// requested motion cannot be computed, or not to its end.
@@ -42,10 +46,12 @@ pub enum Answer {
     /// The identity of the board.
     Identity(Identity),
     /// A sample of the requested motion. The first one, with index 0, is the start. The last one
-    /// has the index [`Request::samples`](crate::job::Request::samples).
+    /// has the index [`Request::samples`](crate::job::Request::samples), unless the motion is
+    /// refused before, measured or replaced.
     Sample { index: u32, reading: Reading },
     /// The longest step that resolves every motion of the energy of the requested one, s. The step
-    /// of the request is longer. The samples follow all the same.
+    /// of the request is longer. The samples follow all the same. It is not sent if the step is
+    /// short enough, or by the closed form.
     StepTooLong(f64),
     /// The time of all `steps` steps together in processor cycles, including the call. It is 0 if
     /// there is no cycle counter, as in QEMU, or if the code is not in that memory. `steps` is the
@@ -125,17 +131,18 @@ pub struct Frame {
     /// was late; wraps.
     pub dropped: u32,
     /// A lower bound of the number of bytes from the host that were lost since reset because they
-    /// came faster than they were taken.
+    /// came faster than they were taken; wraps.
     pub lost: u32,
     /// The scene that is shown.
     pub scene: SceneName,
     /// The state of the scene's time.
     pub state: PlayState,
-    /// The mass ratio m2/m1.
+    /// The mass ratio m2/m1 of the settings.
     pub mass_ratio: f32,
-    /// The start angle of rod 1, rad. In the page's settings both rods have it.
+    /// The start angle of rod 1 in the settings, rad (not degrees). In the page's settings both
+    /// rods have it.
     pub start_angle: f32,
-    /// The report of the scene, to the last bit.
+    /// The report of the scene, to the last bit. While the scene is stopped, it does not change.
     pub report: Report,
     /// The time that the scene took for this frame, to advance and to be drawn, in counts of the
     /// processor clock. They are cycles on a chip. QEMU does not model cycles; there they are the
@@ -150,15 +157,17 @@ pub struct Frame {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Status {
     pub scene: SceneName,
+    /// The settings of the scene. Their angles are in degrees, other than in a [`Frame`].
     pub settings: Settings,
     /// The requested method; `None` leaves the choice to the plan.
     pub method: Option<Method>,
     /// The class of the processor, as an index in [`PROCESSORS`](crate::config::PROCESSORS).
     pub processor: u8,
     pub state: PlayState,
-    /// The number of ticks left of a [`Step`](super::Command::Step) command.
+    /// The number of ticks left of a [`Step`](super::Command::Step) command; 0 without one.
     pub steps: u32,
-    /// The simulated time per real time, 0.01 to 4, while the scene plays.
+    /// The simulated time per real time, 0.01 to 4, while the scene plays; 1 is full speed. A pause
+    /// does not change it.
     pub speed: f32,
     /// The state of the panel.
     pub panel: PanelReport,
@@ -195,8 +204,8 @@ choice! {
 pub struct Restarted {
     /// The cause; `None` if it is unknown.
     pub cause: Option<Cause>,
-    /// The number of restarts in a row, including this one, at most 255. After a minute of frames
-    /// without a restart the board counts from 0.
+    /// The number of restarts in a row, including this one, at most 255. After 3,600 frames without
+    /// a restart, a minute at full rate, the board counts from 0.
     pub restarts: u8,
     /// The program counter when the cause came; 0 if it is unknown.
     pub pc: u32,
@@ -210,7 +219,8 @@ pub struct Restarted {
     pub step: u64,
 }
 
-/// Writes the scene and the tick of the last frame.
+/// Writes the scene and the tick of the last frame, such as `scene page, step 60`, without a line
+/// feed.
 impl fmt::Display for Restarted {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "scene {}, step {}", self.scene.name(), self.step)
@@ -239,10 +249,12 @@ pub struct Identity {
     pub hertz: u32,
     /// The CPUID register of the processor.
     pub processor: u32,
-    /// The identification of the chip and its unique number, or zeros.
+    /// The identification of the chip and its unique number: DID0 and DID1 of an LM3S6965, CHIP_ID
+    /// of a Pico, IDCODE and the three words of the number of an STM32F405. The other words are
+    /// zeros, and so are all of an emulated STM32F405 and of an MPS2.
     pub chip: [u32; 4],
-    /// The CRC-32 of the program in flash, code and constants.
+    /// The CRC-32 of the program in flash, code and constants; 0 if it is not known.
     pub image: u32,
-    /// The size of the program, bytes.
+    /// The size of the program, bytes; 0 if it is not known.
     pub image_bytes: u32,
 }

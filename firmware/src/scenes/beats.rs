@@ -24,7 +24,8 @@ const AMPLITUDE: f32 = 12.0;
 /// Returns the settings of equal rods of 1 m and mass ratio m2/m1 at 9.81 m/s^2, with the slow mode
 /// at its turning point, and the fast mode on its way through rest. Both modes have the same
 /// amplitude of angle 2, 12 degrees. The figure closes only if the ratio of the frequencies is
-/// rational, as in the scenes of the catalogue. The mass ratio is not checked.
+/// rational, as in the scenes of the catalogue. Not checked: the mass ratio is positive and finite.
+/// Otherwise numbers may be infinite or NaN.
 #[inline(never)] // Not inlined, to save flash.
 pub fn closing(mass_ratio: f32) -> Settings {
     let gravity = GRAVITY as f32;
@@ -44,8 +45,12 @@ pub fn closing(mass_ratio: f32) -> Settings {
 /// (across): the linear motion on the left, the exact motion on the right.
 ///
 /// The clock belongs to the exact motion. The linear motion is not accurate; its difference is the
-/// subject of the scene. A pendulum without gravity is refused. One that starts at rest is shown as
-/// two spots in the middles of the figures, and is not planned.
+/// subject of the scene. `±` and a number of degrees is the larger amplitude of angle 2. Where an
+/// exact angle passes straight up, its curve is interrupted.
+///
+/// A pendulum without gravity is refused, and so is everything that [`Simulation::new`] refuses.
+/// One that hangs at rest at the start is shown as two spots in the middles of the figures, and is
+/// not planned.
 #[derive(Clone, Debug)]
 pub struct Beats {
     simulation: Simulation,

@@ -42,12 +42,14 @@ const fn row(e_foldings: f32) -> i32 {
 
 /// Two pendulums at one pivot, and the e-foldings of their separation over time: ln(separation/1e-6
 /// rad), 0 at the start. The separation is the distance in the plane of both angles, without whole
-/// turns. The plot has four values per second, and shows the last 15 s.
+/// turns. The plot has four values per second, and shows the last 15 s. The first pendulum is bright
+/// and leaves a trace; angle 1 of the second starts 1e-6 rad larger.
 ///
 /// Both use the initial method, the most accurate one within half the budget of a frame, or the
 /// method that the user has selected. The plan does not change it: a method that is accurate to
 /// half a pixel can be off by far more than a millionth of a radian, and would soon hide the growth
-/// of the separation.
+/// of the separation. The scene refuses what [`Simulation::new`] refuses, among it a user's method
+/// that costs more than half the budget.
 #[derive(Clone, Debug)]
 pub struct Butterfly {
     first: Simulation,

@@ -40,10 +40,12 @@ enum Searching {
 }
 
 /// The map of flips, with a1 across and a2 upwards, each from -180 to 180 degrees, and both rods at
-/// rest at the start. The brightness is the time of the first flip: the sooner, the brighter
-/// ([`GREYS`]).
+/// rest at the start. The brightness is the time of the first flip: the sooner, the brighter, grey
+/// 15 to 2 ([`GREYS`]). Grey 1 means no flip before 100 sqrt(l1/g), and black (0) that no flip is
+/// possible. Pixels that are not computed yet are black, too.
 ///
-/// The ink contains the map. Of the settings only the pendulum matters, not its start.
+/// The ink contains the map. Of the settings only the pendulum matters, not its start. Zero gravity
+/// is refused. A requested method is ignored.
 #[derive(Clone, Debug)]
 pub struct Flips {
     searching: Searching,
@@ -122,7 +124,8 @@ impl Block {
 }
 
 impl Flips {
-    /// Creates the map as [`Scene::new`] does, with the work per tick of any processor.
+    /// Creates the map as [`Scene::new`] does, with the work per tick of any processor. With a
+    /// budget of 0 steps it is never computed.
     ///
     /// On a host the map is computed in `f32` if `in_float`, and otherwise in fixed point. A board
     /// links only the method of its own processor, and uses it whatever `in_float` says. Of the

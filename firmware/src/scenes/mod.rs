@@ -94,8 +94,8 @@ pub struct Report {
     /// turns; zeros if no pendulum moves.
     pub state: State<f32>,
     /// The relative energy error (E - E0)/(E0 - Emin) of that pendulum, computed before its numbers
-    /// are rounded for this report; 0 for the linear motion. An error smaller than
-    /// [`LEAST_ENERGY_ERROR`] is rounding of the energy itself.
+    /// are rounded for this report; 0 for the linear motion and if no pendulum moves. An error
+    /// smaller than [`LEAST_ENERGY_ERROR`] is rounding of the energy itself.
     pub energy_error: f32,
     /// The accuracy horizon of the scene.
     pub horizon: Horizon,
@@ -179,10 +179,16 @@ macro_rules! catalogue {
 
         impl AnyScene {
             /// Starts the scene `name` in place of this one, and returns its height for the plan,
-            /// pixels, as [`Scene::new`] does: `None` if there is nothing to plan. If that refuses
-            /// `settings`, returns its error, and this scene continues. A motion that is only too
-            /// fast is no error ([`is_too_fast`](Self::is_too_fast)), unless the user has requested
-            /// its method.
+            /// pixels, as [`Scene::new`] does: `None` if there is nothing to plan. A motion that is
+            /// only too fast is no error ([`is_too_fast`](Self::is_too_fast)). The ink is not
+            /// cleared.
+            ///
+            /// # Errors
+            ///
+            /// Refuses settings that describe no pendulum or no finite start, or a pendulum that
+            /// the scene cannot show, such as one without gravity or with unequal rods. A scene
+            /// that uses the requested method refuses it if it cannot compute the motion, or if a
+            /// frame costs more than the budget. After an error this scene continues.
             pub fn start(
                 &mut self,
                 name: SceneName,
@@ -196,7 +202,8 @@ macro_rules! catalogue {
 
             /// Advances the scene by one tick of 1/60 s, to `ticks` ticks after the start, as
             /// [`Scene::tick`], and fades the ink. The first call has `ticks` 1, and each further
-            /// one 1 more. The ink must be clear at the start.
+            /// one 1 more. The ink must be clear at the start. A scene that is [too
+            /// fast](Self::is_too_fast) must not advance. None of this is checked.
             pub fn tick(&mut self, ticks: u64, ink: &mut FadeLayer) {
                 let fading = match self {
                     $(Self::$row(scene) => {
@@ -207,8 +214,9 @@ macro_rules! catalogue {
                 ink.fade(fading);
             }
 
-            /// Draws the whole frame, over the previous one. `report` is the current report of the
-            /// scene.
+            /// Draws the whole frame, over the previous one: a copy of the ink, and the rest of
+            /// the picture over it. `report` is the current report of the scene, which is not
+            /// checked.
             pub fn draw(&self, report: &Report, ink: &FadeLayer, canvas: &mut Canvas) {
                 canvas.clone_from(&ink.frame);
                 match self { $(Self::$row(scene) => scene.draw(report, canvas),)* }
@@ -252,7 +260,8 @@ catalogue! {
 }
 
 impl AnyScene {
-    /// Returns an empty figure, which takes the place of a scene until one starts.
+    /// Returns an empty figure, which takes the place of a scene until one starts. Its ticks add
+    /// nothing to the ink.
     pub fn empty() -> Self {
         Self::Frequencies(frequencies::Frequencies::default())
     }

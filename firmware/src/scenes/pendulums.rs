@@ -19,8 +19,9 @@ use crate::graphics::{
 use crate::motion::{Horizon, Misprinted, Resources, Settings, Simulation};
 use crate::scenes::{Report, Scene, Shows, draw_clock, time};
 
-/// A pendulum and the trail of bob 2, which fades in 2.3 s. The settings and the time are in the
-/// corners, which the motion never reaches.
+/// A pendulum and the trail of bob 2, which fades in 2.3 s of the scene. The mass ratio, the start
+/// angles (degrees), the time and the horizon are in the corners, which the motion never reaches.
+/// The scene refuses what [`Simulation::new`] refuses.
 #[derive(Clone, Debug)]
 pub struct Page {
     settings: Settings,
@@ -163,9 +164,10 @@ pub fn figure_7() -> Settings {
 }
 
 /// The correct motion on the left, the misprinted one on the right, and their energies, J. The
-/// clock belongs to the correct motion. Unequal rods are refused, because the misprinted equations
-/// are for equal ones. A misprinted motion that is too fast for its steps is no longer drawn, and
-/// `book too fast` replaces its energy.
+/// clock and a requested method belong to the correct motion. Unequal rods are refused, because the
+/// misprinted equations are for equal ones, and so is everything that [`Simulation::new`] refuses. A
+/// misprinted motion that is too fast for its steps is no longer drawn, and `book too fast` replaces
+/// its energy.
 #[derive(Clone, Debug)]
 pub struct Figure7 {
     right: Simulation,
@@ -242,8 +244,10 @@ impl Scene for Figure7 {
 /// A motion in plain `f32` on the left, and the same motion in compensated `f32` on the right.
 ///
 /// The clock belongs to the left motion. It is compared with the same motion in 64 bits, which is
-/// not drawn. There is no plan, because the scene shows two given arithmetics. A requested method
-/// is ignored. The scene is too fast if a frame cannot pay for all three motions.
+/// not drawn, until a bob is half a pixel off. There is no plan, because the scene shows two given
+/// arithmetics. A requested method is ignored. The scene is too fast if a frame cannot pay for all
+/// three motions. It accepts any start, and refuses settings that describe no pendulum or no finite
+/// start, and steps that a method cannot make.
 ///
 /// The `f32` nearest to pi is too large by 8.7e-8, so that the exact motion from there falls after
 /// about 3 s. Plain `f32` drops the first tiny increments completely, so that the pendulum does not

@@ -42,9 +42,11 @@ pub fn example(mass_ratio: f32) -> Settings {
 }
 
 /// The two angles over time, by the linear model. The clock shows the time until which the exact
-/// motion has the same angles, to half a pixel of the curves. A pendulum without gravity is
-/// refused. One that starts at rest has level curves, and is not planned. A requested method is
-/// ignored.
+/// motion has the same angles, to half a pixel of the curves. The scale is in degrees. A requested
+/// method is ignored.
+///
+/// Settings that describe no pendulum or no finite start are refused, and so is a pendulum without
+/// gravity. One that hangs at rest at the start has level curves, and is not planned.
 #[derive(Clone, Debug)]
 pub struct Small {
     pendulum: Pendulum<f32>,

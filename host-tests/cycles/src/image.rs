@@ -11,6 +11,9 @@ use object::{
 use crate::instruction::{Instruction, is_long};
 
 /// A program for an ARM processor, read from its ELF file.
+///
+/// Addresses are those at which the program uses its code and data, also if these are stored
+/// elsewhere and copied at the start. Memory that starts as zeros is not a part of the image.
 #[derive(Debug)]
 pub struct Image {
     path: PathBuf,
@@ -41,8 +44,9 @@ pub struct Function {
 }
 
 impl Image {
-    /// Reads an ELF file. An error, which names the file, means that it is unreadable or no program
-    /// for ARM.
+    /// Reads an ELF file. An error, which names the file, means that it is unreadable, damaged or
+    /// no program for ARM. A file without symbols is no error: it has no functions and no
+    /// [`words`](Self::words).
     pub fn read(path: &Path) -> Result<Self> {
         Self::parse(path).with_context(|| path.display().to_string())
     }
@@ -104,7 +108,8 @@ impl Image {
         })
     }
 
-    /// Returns all functions and labels whose demangled names contain `part`, by address.
+    /// Returns all functions and labels whose demangled names contain `part`, by address. An empty
+    /// `part` gives all.
     pub fn functions_named(&self, part: &str) -> impl Iterator<Item = &Function> {
         self.functions
             .iter()
@@ -113,7 +118,8 @@ impl Image {
 
     /// Returns the function or label with this name, mangled or demangled. If no name is equal,
     /// returns the only function whose demangled name contains `name`. It is an error if there is
-    /// none, or if several functions are possible. Names of the same address count as one.
+    /// none, or if several functions are possible. Names of the same address count as one; the one
+    /// with the smallest size is returned.
     pub fn function(&self, name: &str) -> Result<&Function> {
         let is_it = |function: &&Function| function.name == name || function.symbol == name;
         let mut found: Vec<_> = self.functions.iter().filter(is_it).collect();
@@ -134,7 +140,7 @@ impl Image {
         }
     }
 
-    /// Returns true if something is loaded at this address.
+    /// Returns true if something is loaded at this address, code or data.
     pub fn holds(&self, address: u32) -> bool {
         self.loaded
             .iter()
@@ -151,13 +157,13 @@ impl Image {
         })
     }
 
-    /// Returns the error that the program has no such function.
+    /// Returns the error that the program has no such function. It names the program's file.
     pub fn lacks(&self, function: &str) -> anyhow::Error {
         anyhow!("{}: no function {function}", self.path.display())
     }
 
     /// Returns the function that contains this address, or `None`. A label without a size contains
-    /// no address.
+    /// no address. Of several functions, it is the one that begins last and, of these, the largest.
     pub fn function_at(&self, address: u32) -> Option<&Function> {
         let before = self
             .functions
@@ -169,8 +175,8 @@ impl Image {
     }
 
     /// Returns every instruction as its address, its first halfword, and its second halfword if it
-    /// has one. They are in the order of the sections. Data between code is left out, and so is
-    /// everything before the first mapping symbol `$t`.
+    /// has one. They are in the order of the sections, and by address in each. Data between code is
+    /// left out, and so is everything before the first mapping symbol `$t`.
     pub fn words(&self) -> Vec<(u32, u16, Option<u16>)> {
         let mut words = Vec::new();
         for (start, bytes) in &self.code {
@@ -200,8 +206,9 @@ impl Image {
         words
     }
 
-    /// Returns the instruction at this address. It is an error if no code is loaded there, or if
-    /// the table of timings does not have the instruction.
+    /// Returns the instruction at this address, which is without the Thumb bit. It is an error if
+    /// nothing is loaded there, or if the table of timings does not have the instruction. Not
+    /// checked: that it is code; data is decoded, too.
     pub fn instruction_at(&self, address: u32) -> Result<Instruction> {
         let halfword = |address: u32| {
             self.loaded.iter().find_map(|(start, bytes)| {

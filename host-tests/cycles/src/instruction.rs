@@ -34,7 +34,8 @@ pub struct Instruction {
 
 impl Instruction {
     /// Returns the instruction of these halfwords, or `None` if the table has no row for it. The
-    /// second halfword is ignored if the first is a 16-bit instruction.
+    /// second halfword is ignored if the first is a 16-bit instruction. A core need not have the
+    /// instruction ([`is_missing_on`](Self::is_missing_on)).
     pub fn decode(first: u16, second: u16) -> Option<Self> {
         let word = u32::from(first) << 16 | if is_long(first) { u32::from(second) } else { 0 };
         let row = ROWS[(word >> 24) as usize]
@@ -53,7 +54,8 @@ impl Instruction {
     }
 
     /// Returns the cycles of the instruction alone, without a branch, for these contents of the
-    /// registers. The effects of the neighbouring instructions are not included
+    /// registers. For a floating-point quotient or root they are the cycles of the unit, not of the
+    /// core. The effects of the neighbouring instructions are not included
     /// ([`Pipeline`](crate::Pipeline)). The registers, before the instruction, affect a division
     /// only. The result has no meaning if the core [lacks](Self::is_missing_on) the instruction.
     pub fn cycles(&self, core: Core, registers: &Registers) -> u64 {
@@ -68,7 +70,8 @@ impl Instruction {
         self.row.cycles(core) + more
     }
 
-    /// Returns true if it reads memory.
+    /// Returns true if it is a load, of floating-point registers, too. It is false for ldrex and
+    /// for table branches, although they read memory.
     pub fn loads(&self) -> bool {
         match self.row.class {
             Class::Load | Class::LoadPair | Class::LoadList => true,
@@ -77,13 +80,13 @@ impl Instruction {
         }
     }
 
-    /// Returns true if it uses the floating-point unit.
+    /// Returns true if it uses the floating-point unit, for a load, a store or a move, too.
     pub fn is_float(&self) -> bool {
         self.word >> 26 == 0b11_1011
     }
 
-    /// Returns true if the core does not have this instruction. The table contains no cycles for a
-    /// division, because they depend on the operands.
+    /// Returns true if the core does not have this instruction. A division is missing on the M0+
+    /// only.
     pub fn is_missing_on(&self, core: Core) -> bool {
         self.row.cycles(core) == 0 && (self.row.class != Class::Divide || core == Core::M0Plus)
     }
@@ -104,14 +107,15 @@ impl Instruction {
         registers(self.row.address, self.word).any(written)
     }
 
-    /// Returns the floating-point register with a late result, or `None`. A late result stalls an
-    /// instruction that follows at once and consumes it.
+    /// Returns the number of the floating-point register with a late result, 0 to 31 for s0 to s31,
+    /// or `None`. A late result stalls an instruction that follows at once and consumes it.
     pub fn late_result(&self) -> Option<u32> {
         matches!(self.row.class, Class::Arithmetic(_) | Class::Aside(_))
             .then(|| Float::D.register(self.word))
     }
 
-    /// Returns true if the instruction needs the floating-point register `s` at its start.
+    /// Returns true if the instruction needs the floating-point register `s`, 0 to 31, at its
+    /// start. An addend is needed later and does not count.
     pub fn consumes(&self, s: u32) -> bool {
         match self.row.class {
             Class::Arithmetic(reads) | Class::Aside(reads) | Class::Move(reads) => {

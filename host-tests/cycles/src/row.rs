@@ -2,7 +2,7 @@
 
 use crate::Core;
 
-/// The additional effect on the time of an instruction.
+/// The additional effect on the time of an instruction. On the M0+ neighbours have no effect.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Class {
     /// No effect.
@@ -138,7 +138,8 @@ impl Row {
     }
 
     /// Returns true if the instruction writes a new address to the register of its address (pre-
-    /// and post-indexed).
+    /// and post-indexed). It is false for loads and stores of pairs and lists, whose written
+    /// registers are not in the table.
     pub fn updates_base(&self) -> bool {
         self.address.iter().any(|field| self.writes.contains(field))
     }

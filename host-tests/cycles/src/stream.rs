@@ -85,7 +85,11 @@ impl Read for Pieces<'_> {
 
 /// Calls `each` with the registers before every instruction of a log, until the log ends or `each`
 /// returns an error, which is returned. A log that cannot be read is an error, too. An instruction
-/// whose lines are incomplete ends the log without an error.
+/// whose lines are incomplete ends the log without an error. Waits for a log that is being written,
+/// and sleeps for 0.5 ms before each read of up to 1 MiB.
+///
+/// The first of the four lines of an instruction begins with `R00=`; other lines before it are
+/// skipped. Not checked: the format of the four lines.
 pub fn for_each_instruction(
     log: &mut dyn Read,
     each: &mut dyn FnMut(Registers) -> Result<()>,
@@ -142,7 +146,8 @@ impl<'a> Stream<'a> {
 
     /// Takes the registers before the next instruction. Returns the address, the instruction and
     /// the cost of the previous instruction, or `None` at the first call. It is an error if the
-    /// previous instruction is not in the program or has no known timing.
+    /// previous instruction is not in the program or has no known timing. Not checked: that the
+    /// core has the instruction.
     pub fn see(&mut self, next: Registers) -> Result<Option<(u32, Instruction, Cost)>> {
         let Some(before) = self.before.replace(next) else {
             return Ok(None);
@@ -175,7 +180,8 @@ impl<'a> Calls<'a> {
     }
 
     /// Takes the registers before the next instruction. A call begins at an entry, unless another
-    /// call is running. Errors are as in [`Stream::see`].
+    /// call is running. It ends at the caller's return address if the stack pointer is as at the
+    /// entry. Errors are as in [`Stream::see`], during a call only.
     pub fn see(&mut self, registers: Registers) -> Result<()> {
         if self.running.is_none() && self.entries.contains(&registers.pc()) {
             self.running = Some((
@@ -209,15 +215,16 @@ impl<'a> Calls<'a> {
         Ok(())
     }
 
-    /// Returns the total cost of all calls that have returned. It is zero if none has.
+    /// Returns the total cost of all calls that have returned. It is zero if none has. A running
+    /// call is not included.
     pub fn cost(&self) -> Cost {
         let mut all = Cost::default();
         self.ended.iter().for_each(|call| all += *call);
         all
     }
 
-    /// Returns the size of all distinct executed instructions, in bytes. A running call is
-    /// included.
+    /// Returns the size of all instructions executed in calls, each address once, in bytes. A
+    /// running call is included.
     pub fn hot_bytes(&self) -> u32 {
         self.spots
             .values()
@@ -225,8 +232,8 @@ impl<'a> Calls<'a> {
             .sum()
     }
 
-    /// Returns the size of all entered functions, in bytes. Code outside of any function with a
-    /// known size does not count.
+    /// Returns the size of all functions in which an instruction of a call was executed, in bytes.
+    /// Code outside of any function with a known size does not count. A running call is included.
     pub fn code_bytes(&self) -> u32 {
         let functions: BTreeSet<_> = self
             .spots

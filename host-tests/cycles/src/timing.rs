@@ -24,10 +24,10 @@ use crate::row::{Row, row};
 /// "normally 1" (DDI 0337, table 3-1 of older issues).
 pub const DIRECT_REFILL: u64 = 1;
 /// The cycles to refill the pipeline after any other instruction that is not followed by the next
-/// one in memory, such as bx or a pop of pc: "normally 2".
+/// one in memory, such as bx or a pop of pc: "normally 2". On the M0+ only a pop of pc takes them.
 pub const INDIRECT_REFILL: u64 = 2;
 /// The additional cycles if a taken branch leads to a 32-bit instruction off a word's boundary. The
-/// first fetch then brings only half of it.
+/// first fetch then brings only half of it. The M0+ does not take them.
 pub const UNALIGNED_TARGET: u64 = 1;
 /// The additional cycles until a floating-point result can be consumed (DDI 0439, notes of table
 /// 7-1).

@@ -81,7 +81,9 @@ impl Board {
         }
     }
 
-    /// Returns the kind of core, which determines the timings of instructions.
+    /// Returns the kind of core, which determines the timings of instructions. It is chosen by
+    /// `cpu`: the `cortex-m0` counts as a Cortex-M0+, and any name but that and `cortex-m3` as a
+    /// Cortex-M4F.
     pub fn core(&self) -> Core {
         match self.cpu {
             "cortex-m3" => Core::M3,

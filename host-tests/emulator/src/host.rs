@@ -13,20 +13,23 @@ use firmware::scenes::{Report, SceneName};
 pub struct Show {
     /// The player with the scene.
     pub player: Player<'static>,
-    /// The events of the planner, each with its tick of the scene, counted from its start. They are
-    /// in ascending order and never removed.
+    /// The events of the planner, each with its tick of the scene, counted from its start. At a
+    /// speed above 1 it is the first of the ticks that were made at once. They are in ascending
+    /// order and never removed.
     pub news: Vec<(u64, PlannerEvent)>,
 }
 
 impl Show {
-    /// Starts a scene as on a board with the default processor. Errors are as in [`Show::on`].
+    /// Starts a scene as on a board with the default processor. `settings` have the angles in
+    /// degrees. Errors are as in [`Show::on`].
     pub fn new(name: SceneName, settings: &Settings) -> Result<Self, Error> {
         Self::on(PROCESSOR, name, settings)
     }
 
-    /// Starts a scene as on a board with this `processor`. An error means that the scene cannot
-    /// show `settings` on it, such as a pendulum that the kernel refuses. The memory of the scene
-    /// is never freed.
+    /// Starts a scene as on a board with this `processor`; the plan chooses the method. `settings`
+    /// have the angles in degrees. An error means that the scene cannot show them, such as a
+    /// pendulum that the kernel refuses or a number that is not finite. A motion that is too fast
+    /// is no error: the scene is stopped from its start. The memory of the scene is never freed.
     pub fn on(processor: Processor, name: SceneName, settings: &Settings) -> Result<Self, Error> {
         let ink = Box::leak(Box::new(FadeLayer::NONE));
         let mut player = Player::new(processor, ink);
@@ -49,7 +52,8 @@ impl Show {
         let _ = player.check();
     }
 
-    /// Returns the picture of the current state.
+    /// Returns the picture of the current state, with the mark of a pause. A stopped scene shows
+    /// the reason instead.
     pub fn frame(&self) -> Canvas {
         let mut canvas = Canvas::default();
         self.player.draw(&mut canvas);
@@ -57,9 +61,10 @@ impl Show {
     }
 
     /// Advances to the tick of a board's `frame` and returns the frame that the board should have
-    /// sent. The fields that only the board can know are copied from `frame`. A frame of an earlier
-    /// tick than the current one gives the numbers of the current tick. A scene that has stopped or
-    /// is paused must have reached that tick; else this never returns.
+    /// sent. The fields that only the board can know are copied from `frame`: `sequence`,
+    /// `dropped`, `lost`, `scene_cycles` and `busy_cycles`. A frame of an earlier tick than the
+    /// current one gives the numbers of the current tick. A scene that has stopped or is paused
+    /// must have reached that tick; else this never returns.
     pub fn expected(&mut self, frame: &Frame) -> Frame {
         while self.report().step < frame.report.step {
             self.tick();
@@ -82,7 +87,8 @@ impl Show {
         }
     }
 
-    /// Returns the numbers of the scene at the current tick.
+    /// Returns the numbers of the scene at the current tick. After a stop they are those of the
+    /// last good one.
     pub fn report(&self) -> Report {
         self.player.report
     }

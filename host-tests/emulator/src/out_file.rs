@@ -15,7 +15,8 @@ use console::cli::{Refused, unwritable};
 ///
 /// Two commands may write to one name at the same time. The file that is completed last then has
 /// the name. If this is dropped before [`OutFile::finish`], or the process is interrupted, the
-/// temporary file is removed and an existing file of this name remains unchanged.
+/// temporary file is removed and an existing file of this name remains unchanged. A device or a
+/// pipe is written directly and keeps the bytes written so far.
 #[derive(Debug)]
 pub struct OutFile {
     /// The option in errors.
@@ -33,9 +34,10 @@ enum Content {
 }
 
 impl OutFile {
-    /// Begins the file that `option` names. An existing file must be writable, and a new file's
-    /// folder must exist and be writable; else this is refused. A device or a pipe is opened and
-    /// written directly.
+    /// Begins the file that `option` names, as a temporary file in the same folder. An existing
+    /// file must be writable, and a new file's folder must exist and be writable; else this is
+    /// refused. A device or a pipe is opened and written directly; a named pipe without a reader
+    /// blocks this. From now on an interrupt ends the process ([`remove_on_interrupt`]).
     pub fn create(option: &'static str, path: &Path) -> Result<Self, Refused> {
         let content = Content::create(path).map_err(|error| unwritable(option, path, &error))?;
         Ok(Self {
@@ -45,8 +47,10 @@ impl OutFile {
         })
     }
 
-    /// Gives the file its name and replaces an existing file. If that is not possible, the written
-    /// file is removed and the error names the option.
+    /// Gives the file its name and replaces an existing file, with the access rights of that file
+    /// as far as the umask allows. A symbolic link stays, and its target is replaced. If that is
+    /// not possible, the written file is removed and the error names the option. For a device or a
+    /// pipe it does nothing.
     pub fn finish(self) -> anyhow::Result<()> {
         let Self {
             option,
@@ -66,7 +70,8 @@ impl OutFile {
         }
     }
 
-    /// Writes the complete file. An error leaves an existing file unchanged.
+    /// Writes the complete file: all bytes, then [`OutFile::finish`]. An error, which names the
+    /// option and the file, leaves an existing file unchanged.
     pub fn write_whole(mut self, bytes: &[u8]) -> anyhow::Result<()> {
         self.write_all(bytes).map_err(|error| self.failed(&error))?;
         self.finish()
@@ -134,12 +139,14 @@ impl Write for OutFile {
 
 /// Returns an error if a file cannot be written, before the work for it begins. An existing file
 /// remains unchanged, and a new one is not left behind. The refusal names the option and the file.
+/// It tries by [`OutFile::create`], with the same effects on a pipe and on interrupts.
 pub fn check_writable(option: &'static str, path: &Path) -> Result<(), Refused> {
     OutFile::create(option, path).map(drop)
 }
 
-/// Writes a complete file in the folder that `--out` names, and creates the folder. It replaces an
-/// existing file. An error names the option and the file.
+/// Writes a complete file in the folder that `--out` names, and creates the folder and those above
+/// it. `path` is that of the file. It replaces an existing file. An error names the option and the
+/// file.
 pub fn write(path: &Path, bytes: impl AsRef<[u8]>) -> anyhow::Result<()> {
     let made = path.parent().map_or(Ok(()), fs::create_dir_all);
     made.map_err(|error| unwritable("--out", path, &error))?;

@@ -29,8 +29,9 @@ const PATIENCE: u32 = 5000;
 /// An emulated Pico.
 ///
 /// Its time advances only while the emulator processes a command such as that of [`Self::run`], so
-/// its results are bit-identical in every run. Dropping it ends the emulator. An emulator that has
-/// ended, such as at its time limit, is an error of every method that returns a `Result`.
+/// its results are bit-identical in every run. Every method that returns a `Result` waits until the
+/// emulator has processed its command. Dropping it ends the emulator. An emulator that has ended,
+/// such as at its time limit, is an error of every such method.
 pub struct PicoMachine {
     input: ChildStdin,
     output: BufReader<ChildStdout>,
@@ -51,15 +52,17 @@ pub struct PicoMachine {
 
 impl PicoMachine {
     /// Starts a board with this firmware in its flash, exactly as `cargo pico` copies it. Node.js
-    /// runs the emulator. `limit` is a time of the host, after which the emulator is killed. An
-    /// error means that the ELF file is unusable or that Node.js cannot be started.
+    /// runs the emulator. `limit` is a time of the host, after which the emulator is killed. No
+    /// time passes on the board yet. An error means that the ELF file is unusable or that Node.js
+    /// cannot be started. A missing rp2040js shows as an error of the next command.
     pub fn start(node: &Path, elf: &Path, limit: Duration) -> anyhow::Result<Self> {
         let (start, image) = flash_image(&std::fs::read(elf)?)?;
         Self::flashed(node, &uf2(start, &image), elf, limit)
     }
 
     /// Starts a board whose flash has been written by this UF2 file. The ELF file is used to decode
-    /// the log. `limit` and errors are as in [`Self::start`].
+    /// the log. `limit` and errors are as in [`Self::start`]. A wrong UF2 file ends the emulator,
+    /// which is an error of the next command.
     pub fn flashed(
         node: &Path,
         blocks: &[u8],
@@ -106,8 +109,9 @@ impl PicoMachine {
         })
     }
 
-    /// Advances the board's time by `time`, in whole microseconds, and returns the messages that it
-    /// has sent over USB since they were last fetched. An error means that the emulator has ended.
+    /// Advances the board's time by `time`, in whole microseconds (a fraction is dropped), and
+    /// returns the messages that it has sent over USB since they were last fetched. An error means
+    /// that the emulator has ended.
     pub fn run(&mut self, time: Duration) -> anyhow::Result<Vec<ToHost>> {
         self.tell(&format!("run {}", time.as_micros()))?;
         Ok(std::mem::take(&mut self.heard_by_usb))
@@ -119,8 +123,8 @@ impl PicoMachine {
         up_to_frame(PATIENCE, || self.run(SLICE))
     }
 
-    /// Runs to the next frame and returns it; other messages are dropped. Errors are as in
-    /// [`Self::run_to_frame`].
+    /// Runs to the next frame and returns it; other messages are dropped. If several are waiting,
+    /// it is the last one. Errors are as in [`Self::run_to_frame`].
     pub fn next_frame(&mut self) -> anyhow::Result<Frame> {
         self.run_to_frame()?
             .into_iter()
@@ -129,12 +133,12 @@ impl PicoMachine {
             .context("it ends with one")
     }
 
-    /// Sends bytes over USB. The board takes them when it runs.
+    /// Sends bytes over USB. The board takes them when it runs; until then they are kept.
     pub fn send_bytes(&mut self, bytes: &[u8]) -> anyhow::Result<()> {
         self.tell(&format!("usb {}", digits(bytes))).map(drop)
     }
 
-    /// Sends a command over USB with this request number.
+    /// Sends a command over USB with this request number, as [`Self::send_bytes`] does.
     pub fn send(&mut self, request: u16, command: protocol::Command) -> anyhow::Result<()> {
         self.send_bytes(encode_command(request, command, &mut [0; MAX_WIRE]))
     }
@@ -152,38 +156,42 @@ impl PicoMachine {
         .map(drop)
     }
 
-    /// Opens the USB serial port at this speed, or closes it if `baud` is 0. The port is open at
-    /// the start.
+    /// Opens the USB serial port at this speed, bits per second, or closes it if `baud` is 0. The
+    /// port is open at the start. The board notices when it runs. If the port is closed at the
+    /// speed [`BAUD_OF_BOOT_LOADER`](crate::link::BAUD_OF_BOOT_LOADER), the board restarts in its
+    /// boot loader.
     pub fn set_port(&mut self, baud: u32) -> anyhow::Result<()> {
         self.tell(&format!("port {baud}")).map(drop)
     }
 
-    /// Returns true if the program has handed over to the chip's boot loader.
+    /// Returns true if the program has ever handed over to the chip's boot loader.
     pub fn is_in_boot_loader(&self) -> bool {
         self.is_in_boot_loader
     }
 
-    /// Returns the messages that the board has sent by the UART since the last call.
+    /// Returns the messages that the board has sent by the UART since the last call, oldest first.
+    /// It does not run the board.
     pub fn heard_by_uart(&mut self) -> Vec<ToHost> {
         std::mem::take(&mut self.heard_by_uart)
     }
 
-    /// Returns the lines of the log since the last call.
+    /// Returns the lines of the log since the last call, oldest first. It does not run the board.
     pub fn lines(&mut self) -> Vec<LogLine> {
         std::mem::take(&mut self.lines)
     }
 
-    /// Returns the counts of the USB link and of the UART.
+    /// Returns the counts of the USB link (first) and of the UART since the start.
     pub fn counts(&self) -> [Counts; 2] {
         [self.usb.counts, self.uart.counts]
     }
 
-    /// Returns the picture in the memory of the panel. It is black while the panel is off.
+    /// Returns the picture in the memory of the panel, with greys of 0 and 15 only. It is black
+    /// while the panel is off.
     pub fn screenshot(&mut self) -> anyhow::Result<Screenshot> {
         Ok(Screenshot::from_pages(&self.tell("panel")?))
     }
 
-    /// Presses or releases a button.
+    /// Presses or releases a button. The board sees it when it runs.
     pub fn set_key(&mut self, key: Key, down: bool) -> anyhow::Result<()> {
         let pin = match key {
             Key::Up => 10,
@@ -196,9 +204,10 @@ impl PicoMachine {
             .map(drop)
     }
 
-    /// Sends a command to the emulator. Returns the bytes that it requests, if any, such as the
-    /// panel's memory. The messages and log lines that arrive meanwhile are kept. An error means
-    /// that the emulator has ended, or has printed something else than hexadecimal digits.
+    /// Sends a command to the emulator: a line of `main.js`, without the newline. Returns the bytes
+    /// that it requests, such as the panel's memory; empty if it requests none. The messages and
+    /// log lines that arrive meanwhile are kept. An error means that the emulator has ended, as it
+    /// does after an unknown command, or has printed something else than hexadecimal digits.
     pub fn tell(&mut self, command: &str) -> anyhow::Result<Vec<u8>> {
         const GONE: &str = "the emulator of the Pico no longer answers";
         writeln!(self.input, "{command}")

@@ -41,8 +41,8 @@ pub struct Running {
     limit: Duration,
 }
 
-/// Starts `command` in its own process group. The group is killed after `limit` at the latest, even
-/// if nothing waits for it.
+/// Starts `command` in its own process group, with a warden run by `sh`. The group is killed after
+/// `limit` at the latest, even if nothing waits for it.
 ///
 /// A child in the background must not read the terminal, so give it `Stdio::null()` or a pipe as
 /// its standard input. An error means that the program or the shell cannot be started; it names the
@@ -73,8 +73,10 @@ pub fn spawn(command: &mut Command, limit: Duration) -> io::Result<Running> {
 }
 
 impl Running {
-    /// Waits until the child ends, and kills the rest of its group. Returns an error of kind
-    /// `TimedOut` if the child was killed at its time limit.
+    /// Waits until the child ends, and kills the rest of its group. Closes its standard input
+    /// first, if that is a pipe that was not taken. A child whose full output pipe nobody reads
+    /// ends at its time limit only. Returns an error of kind `TimedOut` if the child was killed at
+    /// its time limit. Another failure of the child is a status.
     pub fn wait(&mut self) -> io::Result<ExitStatus> {
         // The child, then the warden, which kills the rest of the group.
         let status = self.child.wait()?;
@@ -92,15 +94,15 @@ impl Running {
         }
     }
 
-    /// Returns the child's exit status if it has ended, without waiting. Returns `None` while it
-    /// runs. Errors are as in [`Self::wait`].
+    /// Returns the child's exit status if it has ended, without waiting, and kills the rest of its
+    /// group then. Returns `None` while it runs. Errors are as in [`Self::wait`].
     pub fn try_wait(&mut self) -> io::Result<Option<ExitStatus>> {
         self.child.try_wait()?.map(|_| self.wait()).transpose()
     }
 
-    /// Returns the child's exit status if it has ended. If all of these [`streams`](Self::streams)
-    /// have ended, the child is about to end, and this waits for it. Errors are as in
-    /// [`Self::wait`].
+    /// Returns the child's exit status if it has ended, and `None` while it runs. If all of these
+    /// [`streams`](Self::streams) have ended, or there are none, the child is about to end, and
+    /// this waits for it. Errors are as in [`Self::wait`].
     pub fn ended(&mut self, streams: &[Stream]) -> io::Result<Option<ExitStatus>> {
         if streams.iter().any(|stream| stream.is_open) {
             self.try_wait()
@@ -109,8 +111,8 @@ impl Running {
         }
     }
 
-    /// Returns the standard output and the standard error of the child. Both must be pipes and can
-    /// be taken only once; else this is an error.
+    /// Returns the standard output and the standard error of the child, in this order. Both must be
+    /// pipes and can be taken only once; else this is an error.
     pub fn streams(&mut self) -> io::Result<[Stream; 2]> {
         let pipes = self.child.stdout.take().zip(self.child.stderr.take());
         let (stdout, stderr) = pipes.ok_or_else(|| io::Error::other("a child without pipes"))?;
@@ -157,8 +159,9 @@ pub fn run(command: &mut Command, limit: Duration) -> io::Result<Output> {
 
 /// Runs a command like [`run`] and reports its progress to `watch`.
 ///
-/// `watch` is called with the last line of new output. While no output arrives, it is called with
-/// `None` at least ten times a second to show that the child is alive.
+/// `watch` is called with the last line of new output, which may be incomplete. If both outputs
+/// have new bytes, it is a line of the standard error. While no output arrives, `watch` is called
+/// with `None` at least ten times a second to show that the child is alive.
 pub fn run_watched(
     command: &mut Command,
     limit: Duration,
@@ -206,14 +209,15 @@ pub fn run_watched(
 const INTERRUPTS: [i32; 4] = [SIGINT, SIGQUIT, SIGTERM, SIGHUP];
 
 /// Returns the shell's exit code for a command ended by this signal, such as 130 after Ctrl-C.
-/// Returns success for 0, which means no signal.
+/// Returns success for 0, which means no signal. Not checked: that the number is below 128.
 pub fn interrupted_by(signal: usize) -> ExitCode {
     ExitCode::from(if signal == 0 { 0 } else { 128 + signal as u8 })
 }
 
 /// Returns a variable for the number of the signal that interrupts this process (Ctrl-C, Ctrl-\,
-/// SIGTERM, SIGHUP); it is 0 until then. The process then continues instead of ending, unless
-/// [`on_interrupt`] has been called, too. An error means that the system refuses the handlers.
+/// SIGTERM, SIGHUP), the last one if there are several; it is 0 until then. The process then
+/// continues instead of ending, unless [`on_interrupt`] has been called, too. This lasts until the
+/// process ends. An error means that the system refuses the handlers.
 pub fn interrupted() -> io::Result<Arc<AtomicUsize>> {
     let signal = Arc::default();
     for each in INTERRUPTS {
@@ -222,9 +226,10 @@ pub fn interrupted() -> io::Result<Arc<AtomicUsize>> {
     Ok(signal)
 }
 
-/// Runs `hook` when this process is interrupted, before it exits. It is for things that must be
-/// restored, such as the terminal's mode. The exit code is 128 plus the number of the signal. Hooks
-/// run in the order in which they were added, and are never removed.
+/// Runs `hook` when this process is interrupted (Ctrl-C, Ctrl-\, SIGTERM, SIGHUP), before it exits.
+/// It is for things that must be restored, such as the terminal's mode. The exit code is 128 plus
+/// the number of the signal. Hooks run in a thread of their own, in the order in which they were
+/// added, and are never removed. If the system refuses the handlers, no hook runs.
 pub fn on_interrupt(hook: impl FnOnce() + Send + 'static) {
     type Hook = Box<dyn FnOnce() + Send>;
     static HOOKS: Mutex<Vec<Hook>> = Mutex::new(Vec::new());
@@ -249,8 +254,8 @@ pub fn on_interrupt(hook: impl FnOnce() + Send + 'static) {
 }
 
 /// Removes this file or folder, with its contents, when this process is interrupted, because values
-/// are not dropped then. It may be gone already. It is a hook of [`on_interrupt`], which ends the
-/// process.
+/// are not dropped then. It may be gone already; a failure is ignored. It is a hook of
+/// [`on_interrupt`], which ends the process.
 pub fn remove_on_interrupt(path: &Path) {
     let path = path.to_owned();
 

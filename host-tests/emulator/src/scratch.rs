@@ -30,8 +30,9 @@ pub struct Scratch {
 }
 
 impl Scratch {
-    /// Makes a folder in the system's directory for temporary files, and removes old folders of
-    /// killed processes there. An error means that the folder cannot be made or locked.
+    /// Makes a folder in the system's directory for temporary files (`TMPDIR`), and removes old
+    /// folders of killed processes there. An error means that the folder cannot be made or locked.
+    /// From now on an interrupt ends the process ([`remove_on_interrupt`]).
     pub fn new() -> io::Result<Self> {
         let folder = tempfile::Builder::new().prefix(PREFIX).tempdir()?;
         remove_on_interrupt(folder.path());

@@ -25,8 +25,8 @@ pub struct Stream {
 }
 
 impl Stream {
-    /// Takes the end of a pipe, with no bytes read yet. An error means that it cannot be read
-    /// without waiting.
+    /// Takes the end of a pipe, with no bytes read yet, and sets it to reads that do not wait. An
+    /// error means that this is impossible.
     pub fn of(pipe: impl Into<OwnedFd>) -> io::Result<Self> {
         let pipe = File::from(pipe.into());
         fcntl(&pipe, FcntlArg::F_SETFL(OFlag::O_NONBLOCK))?;
@@ -47,8 +47,9 @@ impl Stream {
     }
 
     /// Removes the next complete line from `bytes` and returns it without the white space at its
-    /// end. At the end of the stream the last line need not be complete. Returns `None` if there is
-    /// no line.
+    /// end; bytes that are not UTF-8 are replaced. At the end of the stream the last line need not
+    /// be complete. Returns `None` if there is no line. It reads nothing from the pipe
+    /// ([`Self::take_in`]).
     pub fn line(&mut self) -> Option<String> {
         // The end of a stream also ends its last line.
         let last = (!self.is_open && !self.bytes.is_empty()).then_some(self.bytes.len());
@@ -64,7 +65,8 @@ impl Stream {
 }
 
 /// Waits until a stream has new bytes or has ended, for at most 100 ms. It returns at once if the
-/// pipe of a stream has unread bytes, and after that time if none of them is open.
+/// pipe of a stream has unread bytes, and after that time if none of them is open. Bytes that have
+/// been read into `bytes` do not count. A signal may end the wait early.
 pub fn wait<'a>(streams: impl Iterator<Item = &'a Stream>) {
     let open = streams.filter(|stream| stream.is_open);
     let mut polled: Vec<_> = open
@@ -89,7 +91,8 @@ pub struct Channel {
 
 impl Channel {
     /// Makes the pipes for QEMU's `-chardev pipe` with this path: QEMU reads `path.in` and writes
-    /// `path.out`. An error means that they exist already or cannot be made.
+    /// `path.out`. An extension of `path` itself is replaced by these. An error means that they
+    /// exist already or cannot be made. Nothing removes them but the removal of their folder.
     pub fn make(path: &Path) -> io::Result<Self> {
         let pipe = |end| {
             let path = path.with_extension(end);

@@ -39,8 +39,9 @@ pub const WASM: &str = "wasm32-unknown-unknown";
 
 /// The tools that build and run programs for a target.
 ///
-/// Its builds show progress on stderr. A build that takes more than 30 minutes is stopped, which is
-/// an error.
+/// Its builds show progress on stderr, and write below `firmware` in the target folder. Cargo may
+/// load crates from the network. A build that takes more than 30 minutes is stopped, which is an
+/// error.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Toolchain {
     /// Debian's compiler. It is used if rustup has no ready-made core library.
@@ -61,17 +62,20 @@ fn missing(is_tried: bool, what: &str, why: &str, setup: &str, by_hand: &str) ->
 }
 
 /// Returns the tools for the boards in QEMU, the core library of all [`TARGETS`] and QEMU, if both
-/// are present. Installs nothing, and searches once per process. The refusal has a line for each
-/// missing tool, with the remedy.
+/// are present. Installs nothing, and searches once per process: a later call repeats the first
+/// result, even after [`set_up`]. The refusal has a line for each missing tool, with the remedy.
 pub fn ready() -> Result<Toolchain, Refused> {
     static READY: OnceLock<Result<Toolchain, Refused>> = OnceLock::new();
     READY.get_or_init(|| both(false, &TARGETS, arm)).clone()
 }
 
 /// Returns the tools of [`ready`] and provides the missing ones, with a report of each on stderr.
-/// Two set-ups at the same time take turns. Refused if the folder for temporary files is not
-/// writable, or if a tool is missing and cannot be provided; the refusal has a line for each, with
-/// the remedy.
+/// This loads packages from the network, each tool within about 20 minutes, and writes to the
+/// target folder. Two set-ups at the same time take turns: the second one waits without a limit.
+///
+/// Refused if the folder for temporary files (`TMPDIR`) is not writable, if the target folder
+/// cannot be made or locked, or if a tool is missing and cannot be provided; the refusal has a line
+/// for each, with the remedy.
 pub fn set_up() -> Result<Toolchain, Refused> {
     check_temporary_folder()?;
     ready().or_else(|_| {
@@ -124,7 +128,9 @@ fn check_temporary_folder() -> Result<(), Refused> {
 /// Returns the core library and the emulator for another target, and provides them if necessary.
 ///
 /// QEMU emulates a board for an ARM microcontroller, and Linux for RISC-V and aarch64. Node.js runs
-/// WebAssembly. Any other target counts as an ARM microcontroller. Refusals are as in [`set_up`].
+/// WebAssembly; if it is missing, the user is asked ([`Consent::Ask`]). Any other target counts as
+/// an ARM microcontroller. Refusals are as in [`set_up`], but the folder for temporary files is not
+/// checked.
 pub fn set_up_for(target: &str) -> Result<Toolchain, Refused> {
     let emulator = match target.split('-').next() {
         Some("wasm32") => |installs: bool| tools::node(installs.then_some(Consent::Ask)),
@@ -137,14 +143,15 @@ pub fn set_up_for(target: &str) -> Result<Toolchain, Refused> {
 }
 
 /// Returns the core library for the page in a browser, and provides it if necessary. The page needs
-/// no emulator. The field `qemu` is empty. Refusals are as in [`set_up`].
+/// no emulator. The field `qemu` is empty. Refusals are as in [`set_up_for`].
 pub fn set_up_web() -> Result<Toolchain, Refused> {
     let _turn = turn()?;
     both(true, &[WASM], |_| Ok(PathBuf::new()))
 }
 
-/// Returns a Chromium, and provides it if necessary: Debian's is unpacked into the target folder.
-/// The result is the program. Refused if it is missing and cannot be provided.
+/// Returns the program of a Chromium that prints its version, from `PATH` or the target folder. If
+/// there is none, Debian's is unpacked into the target folder, within 3 minutes. Refused if that is
+/// impossible, or the target folder cannot be made or locked.
 pub fn set_up_chromium() -> Result<PathBuf, Refused> {
     let _turn = turn()?;
     let by_hand = "install this system's package chromium";
@@ -201,8 +208,8 @@ fn qemu(installs: bool, emulator: &Emulator) -> Result<PathBuf, Refused> {
         .map_err(|why| missing(installs, emulator.program, &why, SETUP, &by_hand))
 }
 
-/// Returns the program Node.js if it and the emulator of the Raspberry Pi Pico are present.
-/// Installs nothing. A missing tool is refused.
+/// Returns the program Node.js, version 18 or newer, if it and the emulator of the Raspberry Pi
+/// Pico are present. Installs nothing. A missing tool is refused.
 pub fn ready_for_pico() -> Result<PathBuf, Refused> {
     tools::rp2040js(None)
 }
@@ -214,7 +221,9 @@ pub fn set_up_pico() -> Result<PathBuf, Refused> {
 }
 
 /// Returns the program Node.js and provides it and the emulator of the Pico if necessary, with this
-/// consent of the user. A tool that cannot be provided is refused.
+/// consent of the user. Node.js and npm are installed on the system by apt-get, as root only. npm
+/// then fetches the emulator into `host-tests/emulator/rp2040`. A tool that cannot be provided is
+/// refused, and so is a target folder that cannot be made or locked.
 pub fn set_up_pico_with(consent: Consent) -> Result<PathBuf, Refused> {
     ready_for_pico().or_else(|_| {
         let _turn = turn()?;
@@ -285,8 +294,9 @@ fn above(start: &Path) -> Option<PathBuf> {
     start.ancestors().find(is_it).map(Path::to_owned)
 }
 
-/// Returns the folder of everything built: `CARGO_TARGET_DIR` as for cargo, or else `target` in the
-/// workspace.
+/// Returns the folder of everything built: `CARGO_TARGET_DIR` as for cargo, relative to the current
+/// folder, or else `target` in the workspace. It need not exist yet. Without the variable it may
+/// end the process as [`workspace`] does.
 pub fn target() -> PathBuf {
     let chosen = env::var_os("CARGO_TARGET_DIR").filter(|folder| !folder.is_empty());
     chosen

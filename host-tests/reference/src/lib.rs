@@ -16,14 +16,19 @@ use double_pendulum::{Error, Run};
 
 /// Advances RK4 in compensated `f64`, with a count of turns. Tests compare RK4 in fewer bits with
 /// it for as long as a day. This function is in this package because the package is optimised in
-/// every profile. An error means that the motion has diverged; `run` is then unchanged.
+/// every profile.
+///
+/// An error means that the motion has diverged by the checks of [`Run::advance`], made once at the
+/// end: numbers that are not finite, or directions or an energy that are far off. `run` is then
+/// unchanged.
 pub fn advance(run: &mut Run<DirectionF64, true>, steps: u32) -> Result<(), Error> {
     run.advance(steps)
 }
 
-/// Returns the time when a rod first turns over, by RK4 in compensated `f64`. The map of flips is
-/// compared with it. The start is at rest at `a1` and `a2`, rad; the time is in s. Angles that are
-/// not finite are an error.
+/// Returns the time when a rod first turns over, s, by RK4 in compensated `f64`. The map of flips
+/// is compared with it. The start is at rest at `a1` and `a2`, rad. The result is [`Flip::Never`]
+/// if the energy is too low, and [`Flip::Later`] if no rod turns over within the steps of `search`.
+/// Angles that are not finite are an error.
 pub fn flip(search: &Flips<DirectionF64>, a1: f64, a2: f64) -> Result<Flip<f64>, Error> {
     search.of(a1, a2)
 }

@@ -7,7 +7,8 @@ use double_pendulum::{Pendulum, Real, State};
 
 /// A number type whose classical steps are compiled here.
 pub trait Step: Real {
-    /// Returns the state after a classical step of `dt` seconds: [`Pendulum::step`].
+    /// Returns the state after a step of RK4 of `dt` seconds: [`Pendulum::step`]. A negative `dt`
+    /// steps backwards. Not checked: the step, and that the result is finite.
     fn step(pendulum: &Pendulum<Self>, state: &State<Self>, dt: Self) -> State<Self>;
 }
 

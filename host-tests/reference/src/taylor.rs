@@ -40,9 +40,11 @@ pub struct Reference {
 }
 
 impl Reference {
-    /// Starts at time 0 from `motion`. Every `f64` is taken as exact. All numbers are finite and in
-    /// SI units. Masses and lengths must be positive, and gravity not negative, which is not
-    /// checked.
+    /// Starts at time 0 from `motion`, in rad and rad/s, with `parameters` in kg, m and m/s^2.
+    /// Every `f64` is taken as exact.
+    ///
+    /// Not checked: that the numbers are finite, masses and lengths positive, and gravity not
+    /// negative. The results have no meaning otherwise.
     pub fn new(parameters: &Parameters<f64>, motion: &Motion<f64>) -> Self {
         let &Parameters { m1, m2, l1, l2, g } = parameters;
         let &Motion { a1, a2, w1, w2 } = motion;
@@ -53,8 +55,8 @@ impl Reference {
         )
     }
 
-    /// Starts like [`Reference::new`] from numbers of full precision: angles in rad, velocities in
-    /// rad/s.
+    /// Starts like [`Reference::new`] from numbers of full precision, under the same conditions.
+    /// `motion` is a1, a2 (rad), w1, w2 (rad/s).
     pub fn exact(parameters: Parameters<TwoFloat>, motion: [TwoFloat; 4]) -> Self {
         let zero = TwoFloat::from(0.0);
         Self {
@@ -70,14 +72,14 @@ impl Reference {
 
     /// Uses power series of another order, at least 24, and with it other steps. It is called
     /// before the first advance. The distance between the results of two orders shows how accurate
-    /// both are.
+    /// both are. A smaller order is not checked; below 19 the first advance panics.
     #[must_use]
     pub fn of_order(self, order: usize) -> Self {
         Self { order, ..self }
     }
 
-    /// Advances to time `t`, s, since the start. An earlier time changes nothing. With an infinite
-    /// time it never returns.
+    /// Advances to time `t`, s, since the start. An earlier time or NaN changes nothing. With an
+    /// infinite time it never returns.
     pub fn advance_to(&mut self, t: f64) {
         // The series are computed anew when they have ended.
         let t = TwoFloat::from(t);
@@ -233,14 +235,16 @@ fn sin_cos(angle: TwoFloat) -> [TwoFloat; 2] {
 }
 
 /// Returns a/b to full precision. The quotient of twofloat 0.8.4 is accurate to 1e-16 only, so its
-/// remainder is divided as well. `b` must not be 0.
+/// remainder is divided as well. Not checked: that `b` is not 0; the quotient by 0 is not finite.
 pub fn divide(a: TwoFloat, b: TwoFloat) -> TwoFloat {
     let quotient = a / b;
     quotient + (a - quotient * b) / b
 }
 
 /// Returns the states at `times` (s, ascending) of the motion that begins at `start`, one for each
-/// time. A time before an earlier one in the list gives the state at the latest time so far.
+/// time. A time before an earlier one in the list gives the state at the latest time so far, and a
+/// time before 0 the start. The conditions are those of [`Reference::new`], and an infinite time
+/// never returns.
 pub fn states(
     parameters: &Parameters<f64>,
     start: &Motion<f64>,

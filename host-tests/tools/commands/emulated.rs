@@ -39,8 +39,8 @@ fn consent(yes: bool) -> Consent {
     if yes { Consent::Given } else { Consent::Ask }
 }
 
-/// Installs everything that is missing and prints where it is. A tool that cannot be provided is
-/// [`Refused`].
+/// Installs everything that is missing and prints where it is. Without `--yes`, system packages are
+/// installed only after a question. A tool that cannot be provided is [`Refused`].
 pub fn setup(options: &SetupOptions) -> anyhow::Result<()> {
     let is_ready = toolchain::ready().is_ok() && toolchain::ready_for_pico().is_ok();
     say(toolchain::set_up()?)?;
@@ -82,10 +82,13 @@ pub struct FwOptions {
     check: bool,
 }
 
-/// Runs a firmware. Cargo also uses this command as the runner for the ARM targets. Returns the
-/// exit code of the firmware, or success if `--seconds` ended it. An unknown binary is [`Refused`].
-/// Without `--seconds`, it is an error if the firmware runs for an hour. With `--check` nothing is
-/// run, and a warning is an error.
+/// Runs a firmware and prints its log to stdout until it ends. Cargo also uses this command as the
+/// runner for the ARM targets. A name without a slash is a binary, which is built first; any other
+/// name is a file, which is run as it is. Missing tools are installed.
+///
+/// Returns the exit code of the firmware, or success if `--seconds` ended it. An unknown binary is
+/// [`Refused`]. Without `--seconds`, it is an error if the firmware runs for an hour. With
+/// `--check` nothing is run, and a warning is an error.
 pub fn fw(options: &FwOptions) -> anyhow::Result<ExitCode> {
     let Some(binary) = &options.binary else {
         toolchain::set_up()?.check()?;
@@ -211,7 +214,11 @@ const LIMITS: [Duration; 2] = [Duration::from_secs(3600), Duration::from_secs(12
 const THREADS: [&str; 2] = ["RUST_TEST_THREADS", "RAYON_NUM_THREADS"];
 
 /// Runs the set-up, builds the firmware, then runs exactly `cargo test`, with its own output and
-/// exit code. An error means that the set-up or a build fails, or that the time limit is exceeded.
+/// exit code. If `RUST_TEST_THREADS` or `RAYON_NUM_THREADS` is not set, it is twice the number of
+/// processors for the tests.
+///
+/// An error means that the set-up or a build fails, or that a time limit is exceeded: 1 hour for
+/// compiling the tests and again for running them, or 12 hours each with `--long`.
 pub fn verify(options: &TestOptions) -> anyhow::Result<ExitCode> {
     let limit = LIMITS[usize::from(options.long)];
     // Returns a running `cargo test` with these arguments.

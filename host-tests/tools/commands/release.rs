@@ -34,9 +34,12 @@ const HASHERS: [(&str, &[&str]); 2] = [("sha256sum", &[]), ("shasum", &["-a", "2
 #[command(name = "cargo release-files")]
 pub struct ReleaseOptions {}
 
-/// Replaces the folder `release-files` in the target folder and prints the checksums. A machine
-/// without a program for checksums is [`Refused`]. If a build or the packaging fails, which is an
-/// error, the folder is incomplete.
+/// Replaces the folder `release-files` in the target folder, with everything in it, and prints the
+/// checksums and the folder. Missing tools are installed, and cargo contacts the registry if its
+/// index is not on this machine.
+///
+/// A machine without a program for checksums, or whose tools cannot be provided, is [`Refused`]. If
+/// a build or the packaging fails, which is an error, the folder is incomplete.
 pub fn run(_: &ReleaseOptions) -> anyhow::Result<()> {
     let hasher = HASHERS
         .iter()

@@ -5,19 +5,21 @@
 pub struct Table {
     /// The headings.
     pub columns: Vec<&'static str>,
-    /// The rows, each with as many cells as there are columns.
+    /// The rows, each with as many cells as there are columns, which is not checked.
     pub rows: Vec<Vec<String>>,
 }
 
 impl Table {
-    /// Returns the table as CSV. No cell may contain a comma or a quote.
+    /// Returns the table as CSV: the headings, then the rows, with commas between the cells and a
+    /// newline after each line. Not checked: no cell may contain a comma, a quote or a newline.
     pub fn csv(&self) -> String {
         let lines = std::iter::once(self.columns.join(","))
             .chain(self.rows.iter().map(|row| row.join(",")));
         lines.map(|line| line + "\n").collect()
     }
 
-    /// Returns the table in Markdown. No cell may contain a vertical bar.
+    /// Returns the table in Markdown: the headings, a line of dashes, then the rows, with a newline
+    /// after each line. Not checked: no cell may contain a vertical bar or a newline.
     pub fn markdown(&self) -> String {
         let heads = [
             self.columns.join(" | "),
@@ -30,15 +32,17 @@ impl Table {
     }
 }
 
-/// Returns `page` with `text` between the first mark `start` and the next mark `end`, which remain,
-/// or `None` if these are missing.
+/// Returns `page` with `text` in place of everything between the first mark `start` and the next
+/// mark `end`. The marks remain, and nothing is added around `text`. Returns `None` if there is no
+/// `start`, or no `end` after it.
 pub fn between(page: &str, [start, end]: [&str; 2], text: &str) -> Option<String> {
     let (head, rest) = page.split_once(start)?;
     let (_, tail) = rest.split_once(end)?;
     Some(format!("{head}{start}{text}{end}{tail}"))
 }
 
-/// Returns an error or a drift with two digits, or "none" if it is not finite.
+/// Returns an error or a drift with two digits in exponent form, such as "1.5e-7", or "none" if it
+/// is not finite.
 pub fn small(value: f64) -> String {
     if value.is_finite() {
         format!("{value:.1e}")
@@ -48,7 +52,8 @@ pub fn small(value: f64) -> String {
 }
 
 /// Returns a bound of two digits, in exponent form, that is greater than the positive `value`: 1
-/// gives 1.1e0. Zero, infinity and NaN are printed as they are.
+/// gives 1.1e0. Zero gives 0.0e0, infinity and NaN are printed by their names. Not checked: for a
+/// negative `value` the result may be below it or above it.
 pub fn at_most(value: f64) -> String {
     let rounded = format!("{value:.1e}");
 

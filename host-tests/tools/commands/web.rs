@@ -18,7 +18,7 @@ use emulator::out_file::{OutFile, check_writable};
 use emulator::process;
 use emulator::toolchain::{self, find, target};
 
-/// The name of the file in the target folder.
+/// The name of the page's file in the target folder.
 pub const FILE: &str = "double-pendulum.html";
 /// The page without its facts and its module.
 const TEMPLATE: &str = include_str!("../../../firmware/web/page.html");
@@ -30,7 +30,8 @@ pub const PROCESSORS: [(&str, &str, Processor); 3] = [
     ("m0", "Cortex-M0+ at 125 MHz", CORTEX_M0PLUS),
 ];
 
-/// The options of Chromium without a window, also for root, without requests of its own.
+/// The options of Chromium without a window, also for root, without requests of its own, with a
+/// space between two options.
 pub const HEADLESS: &str = "--headless --no-sandbox --disable-gpu --disable-quic --no-first-run \
     --disable-background-networking --disable-component-update --disable-sync --hide-scrollbars";
 /// The options of a picture. The virtual time passes in a moment.
@@ -54,8 +55,12 @@ pub struct WebOptions {
     picture: Option<PathBuf>,
 }
 
-/// Writes the page, and makes the picture and opens the page if the options demand it. A picture
-/// that cannot be written and a missing program are [`Refused`] before the build.
+/// Writes the page, and makes the picture and opens the page if the options demand it. Existing
+/// files are replaced. The picture shows the page 8.5 s after its start.
+///
+/// A picture that cannot be written and a missing program are [`Refused`] before the build; a
+/// missing Chromium is installed first. Another error means that the build fails, or that Chromium
+/// fails or takes longer than 120 s. The browser is started and not waited for.
 pub fn run(options: &WebOptions) -> anyhow::Result<()> {
     // Refuse before the build.
     let picture = options.picture.as_deref();
@@ -89,8 +94,9 @@ fn opener() -> Result<PathBuf, Refused> {
     })
 }
 
-/// Builds the application and writes the page. Returns its path. An error means that the build
-/// fails or the file cannot be written.
+/// Builds the application and writes the page into the target folder, over an existing one. Missing
+/// tools are installed. Returns the path of the page. An error means that a tool cannot be
+/// provided, the build fails, or the file cannot be written.
 pub fn write_page() -> anyhow::Result<PathBuf> {
     let module = fs::read(toolchain::set_up_web()?.build_web()?)?;
     let page = TEMPLATE
@@ -101,7 +107,7 @@ pub fn write_page() -> anyhow::Result<PathBuf> {
     Ok(file)
 }
 
-/// Returns bytes in hexadecimal digits.
+/// Returns bytes in lower-case hexadecimal digits, two for each byte, without separators.
 pub fn digits(bytes: &[u8]) -> String {
     bytes.iter().map(|byte| format!("{byte:02x}")).collect()
 }

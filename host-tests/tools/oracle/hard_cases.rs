@@ -43,7 +43,9 @@ pub struct HardCase {
     pub reason: &'static str,
 }
 
-/// Returns every line, in the file's order. Panics with the first line that cannot be read.
+/// Returns every line, in the file's order. The heading is not among them. The file is compiled
+/// into the program. Panics with the first line that cannot be read. Not checked: the range of the
+/// numbers.
 pub fn hard_cases() -> Vec<HardCase> {
     let lines = include_str!("../../reference/hard_cases.csv")
         .lines()

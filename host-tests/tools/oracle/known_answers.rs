@@ -16,7 +16,8 @@ use reference::twofloat::consts::PI;
 pub struct KnownAnswer {
     /// The scene's name.
     pub scene: &'static str,
-    /// The scene's name, its given numbers and the time, as written in the file.
+    /// The scene's name, its given numbers and the time, as written in the file, with commas
+    /// between them. Angles are in degrees, velocities in rad/s, all other numbers in SI units.
     pub given: &'static str,
     /// The scene at its start, in full precision.
     pub start: Reference,
@@ -26,19 +27,21 @@ pub struct KnownAnswer {
     pub time: f64,
     /// (sin a1, cos a1, sin a2, cos a2) at that time.
     pub directions: [TwoFloat; 4],
-    /// The largest error of the directions: two units of the last digit written.
+    /// The largest error of the directions, each in turn: two units of the last digit written.
     pub radius: [f64; 4],
     /// The growth of a small error of the start until that time, as a factor.
     pub growth: f64,
 }
 
-/// The names of the columns.
+/// The names of the columns, with commas between them and without a newline. The angles are in
+/// degrees, the velocities in rad/s, all other numbers in SI units.
 pub const HEADING: &str =
     "scene,a1_deg,a2_deg,w1_start,w2_start,m1,m2,l1,l2,g,t,sin_a1,cos_a1,sin_a2,cos_a2,growth";
 /// The number of columns that contain the scene, its given numbers and the time.
 const GIVEN: usize = 11;
 
-/// Returns every line, in the file's order.
+/// Returns every line, in the file's order, without the heading. The file is compiled into the
+/// program.
 ///
 /// # Errors
 /// Names the first line that cannot be read.

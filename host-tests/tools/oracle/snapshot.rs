@@ -6,15 +6,16 @@ use std::fs;
 
 use emulator::toolchain::workspace;
 
-/// The character of each of the panel's 16 greys, from black to white.
+/// The character of each of the panel's 16 greys, from black (0) to white (15).
 pub const GREYS: &[u8; 16] = b" .,:;-~=+*oaOX#@";
 
 /// The environment variable that makes [`check`] and [`check_lines`] write the files instead of
-/// comparing them. Any value has this effect.
+/// comparing them. Any value has this effect, even an empty one.
 pub const BLESS: &str = "BLESS";
 
 /// Returns a picture as lines of `width` characters, each line with its end. `greys` are 0 to 15,
-/// row by row. A `width` of 0 panics.
+/// row by row. Only the lower four bits of each byte count. A last row that is not complete gives a
+/// shorter line. A `width` of 0 panics.
 pub fn text(greys: &[u8], width: usize) -> String {
     let line = |row: &[u8]| {
         row.iter()
@@ -25,9 +26,16 @@ pub fn text(greys: &[u8], width: usize) -> String {
     greys.chunks(width).map(line).collect()
 }
 
-/// Compares a picture with the committed one called `name` in `host-tests/golden/scenes`. The error
-/// lists the differences and the command that accepts them. A file that cannot be read or written
-/// is an error, too.
+/// Compares a picture with the committed one, the file `host-tests/golden/scenes/NAME.txt`. Returns
+/// `Ok` if both are the same, byte by byte.
+///
+/// The error names the file and the command that accepts the picture, and lists the rows that
+/// differ, each with the old one above the new one. Rows that only one of the two pictures has, and
+/// other ends of lines, are an error but are not listed. A file that cannot be read or written is
+/// an error, too.
+///
+/// If [`BLESS`] is set, nothing is compared: the picture replaces the file, or creates it, and the
+/// result is `Ok`. The folder must exist.
 pub fn check(name: &str, picture: &str) -> Result<(), String> {
     let path = workspace()
         .join("host-tests/golden/scenes")
@@ -63,9 +71,16 @@ pub fn check(name: &str, picture: &str) -> Result<(), String> {
     ))
 }
 
-/// Compares `text` line by line with a committed file; `file` is its path in the project. The error
-/// lists the lines that differ and the command that accepts them. A file that cannot be read or
-/// written is an error, too.
+/// Compares `text` with a committed file; `file` is its path in the project. Returns `Ok` if both
+/// are the same, byte by byte.
+///
+/// The error contains the command that accepts the text, the numbers of lines before and now, and
+/// the lines that differ, each with the old one above the new one. Lines that only one of the two
+/// texts has, and other ends of lines, are an error but are not listed. A file that cannot be read
+/// or written is an error, too.
+///
+/// If [`BLESS`] is set, nothing is compared: the text replaces the file, or creates it, and the
+/// result is `Ok`. The folder must exist.
 pub fn check_lines(file: &str, text: &str) -> Result<(), String> {
     let path = workspace().join(file);
     if env::var_os(BLESS).is_some() {

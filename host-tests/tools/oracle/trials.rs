@@ -11,7 +11,8 @@ use firmware::job::visit;
 use reference::{advance, taylor};
 
 /// Returns all methods whose errors depend on the step. The closed form has the error of its linear
-/// equations, and the `micromath` method has the error of its sines.
+/// equations, and the `micromath` method has the error of its sines. They are in the order of
+/// [`Method::ALL`].
 pub fn exact_methods() -> impl Iterator<Item = Method> {
     let is_exact = |method: &Method| {
         method.equations() != Equations::Linear && *method != Method::Rk4F32Micromath
@@ -22,14 +23,15 @@ pub fn exact_methods() -> impl Iterator<Item = Method> {
 /// A [`Run`] that counts turns, whose method is chosen at run time. Its numbers are widened to
 /// `f64`.
 pub trait AnyRun: Debug {
-    /// Advances by `steps` steps. An error means that the motion has diverged; the run is then
-    /// unchanged.
+    /// Advances by `steps` steps. 0 steps are possible. An error means that the motion has
+    /// diverged; the run is then unchanged.
     fn advance(&mut self, steps: u32) -> Result<(), Error>;
     /// Returns the angles, rad, with all turns, and the canonical momenta, kg m^2/s.
     fn state(&self) -> State<f64>;
-    /// Returns (sin, cos) of both angles.
+    /// Returns (sin, cos) of both angles, rod 1 first. In the direction form they may be up to half
+    /// a step ahead of the state or behind it.
     fn directions(&self) -> [Direction<f64>; 2];
-    /// Returns the angles, rad, with all turns.
+    /// Returns the angles a1 and a2, rad, with all turns.
     fn angles(&self) -> [f64; 2];
     /// Returns the energy, J. The potential energy is 0 where both bobs are level with the pivot.
     fn energy(&self) -> f64;
@@ -73,8 +75,9 @@ impl FormVisitor for Start<'_> {
     }
 }
 
-/// Returns the motion of a pendulum from its start by `method`, in steps of `dt` s. An error means
-/// that the kernel refuses the pendulum, the start or the step.
+/// Returns the motion of a pendulum from its start by `method`, in steps of `dt` s; a negative `dt`
+/// runs backwards. All numbers are in SI units and are rounded to those of the method. An error
+/// means that the kernel refuses the pendulum, the start or the step.
 pub fn run(
     method: Method,
     parameters: &Parameters<f64>,
@@ -93,12 +96,12 @@ pub fn run(
     )
 }
 
-/// A motion to try, in SI units.
+/// A motion to try, in SI units. Nothing is checked until it is computed.
 #[derive(Clone, Copy, Debug)]
 pub struct Trial {
-    /// Masses, lengths and gravity.
+    /// Masses (kg), lengths (m) and gravity (m/s^2).
     pub parameters: Parameters<f64>,
-    /// The start of the motion.
+    /// The start of the motion: angles, rad, and canonical momenta, kg m^2/s.
     pub start: State<f64>,
     /// The duration, s.
     pub seconds: f64,
@@ -109,8 +112,8 @@ pub struct Trial {
 pub const MOMENTS: u32 = 16;
 
 impl Trial {
-    /// Returns a motion from rest at (`a1`, `a2`), rad, with rods of 1 m, a bob 1 of 1 kg, and g =
-    /// 9.81 m/s^2.
+    /// Returns a motion from rest at (`a1`, `a2`), rad, with rods of 1 m, a bob 1 of 1 kg, a bob 2
+    /// of `mass_ratio` kg, and g = 9.81 m/s^2. It takes `seconds` s.
     pub fn at_rest(mass_ratio: f64, a1: f64, a2: f64, seconds: f64) -> Self {
         Self {
             parameters: Parameters::equal_rods(mass_ratio, 1.0, 9.81),
@@ -119,17 +122,20 @@ impl Trial {
         }
     }
 
-    /// Returns a regular motion, from rest at 0.5 rad.
+    /// Returns a regular motion of `seconds` s, from rest with both rods at 0.5 rad. The bobs have
+    /// 1 kg, the rods 1 m.
     pub fn regular(seconds: f64) -> Self {
         Self::at_rest(1.0, 0.5, 0.5, seconds)
     }
 
-    /// Returns a chaotic motion with turns, from rest at 2 rad.
+    /// Returns a chaotic motion of `seconds` s with turns, from rest with both rods at 2 rad. The
+    /// bobs have 1 kg, the rods 1 m.
     pub fn chaotic(seconds: f64) -> Self {
         Self::at_rest(1.0, 2.0, 2.0, seconds)
     }
 
-    /// Returns a motion with different masses and lengths that is in motion at the start.
+    /// Returns a motion of `seconds` s with different masses and lengths that is in motion at the
+    /// start.
     pub fn unlike(seconds: f64) -> Self {
         let parameters = Parameters {
             m1: 0.7,
@@ -150,8 +156,9 @@ impl Trial {
         }
     }
 
-    /// Returns the trial with its numbers rounded once to `f32`, if `method` computes in single
-    /// precision, or else unchanged.
+    /// Returns the trial with its numbers rounded once to `f32`, if the numbers of `method` are
+    /// `f32`, plain or compensated. For all other methods, also in 32-bit fixed point, it is
+    /// unchanged. The duration is never rounded.
     pub fn held_by(&self, method: Method) -> Self {
         if !method.is_single() {
             return *self;
@@ -172,7 +179,8 @@ impl Trial {
 
     /// Returns the states by `method` at the [`MOMENTS`] moments, in steps of `dt`, s. They are NaN
     /// after the motion has diverged. An error means that the method does not accept the trial or
-    /// the step. The moments are exact only if they fall on whole steps.
+    /// the step. The number of steps between two moments is rounded, so the moments are exact only
+    /// if they fall on whole steps.
     pub fn states(&self, method: Method, dt: f64) -> Result<Vec<State<f64>>, Error> {
         let mut run = run(method, &self.parameters, &self.start, dt)?;
         let steps = self.steps(dt, MOMENTS);
@@ -184,9 +192,9 @@ impl Trial {
     }
 
     /// Returns the states at `moments` moments, evenly spread up to the end, by RK4 in compensated
-    /// `f64`, which is not in the table, in steps of `dt`, s. The moments are exact only if they
-    /// fall on whole steps. An error means that the kernel refuses the trial or that the motion
-    /// diverges.
+    /// `f64`, which is not in the table, in steps of `dt`, s. The number of steps between two
+    /// moments is rounded, so the moments are exact only if they fall on whole steps. An error
+    /// means that the kernel refuses the trial or that the motion diverges.
     pub fn states_in_f64(&self, dt: f64, moments: u32) -> Result<Vec<State<f64>>, Error> {
         let mut run = Pendulum::new(&self.parameters)?
             .run::<DirectionF64>(&self.start, dt)?
@@ -198,7 +206,8 @@ impl Trial {
     }
 
     /// Returns the exact states at the [`MOMENTS`] moments, by the reference. The start is not
-    /// among them. An error means that the kernel refuses the parameters.
+    /// among them. An error means that the kernel refuses the parameters. Not checked: the start
+    /// and the duration must be finite.
     pub fn exact(&self) -> Result<Vec<State<f64>>, Error> {
         let pendulum = Pendulum::new(&self.parameters)?;
         let at = |moment: u32| self.seconds * f64::from(moment) / f64::from(MOMENTS);
@@ -210,8 +219,8 @@ impl Trial {
     }
 
     /// Returns the largest error of an angle at the moments, rad and at most pi, by `method` with
-    /// steps of `dt`, s; infinite if the motion has diverged. The reference is the exact motion of
-    /// the rounded numbers. An error is one of [`Trial::states`].
+    /// steps of `dt`, s; infinite if the motion has diverged. Whole turns do not count. The
+    /// reference is the exact motion of the rounded numbers. An error is one of [`Trial::states`].
     pub fn error(&self, method: Method, dt: f64) -> Result<f64, Error> {
         Ok(largest_difference(
             &self.states(method, dt)?,
@@ -220,8 +229,8 @@ impl Trial {
     }
 }
 
-/// Returns the angle between two directions, rad, at most pi. It is infinite if one of the angles
-/// is not a number.
+/// Returns the angle between two directions, rad, from 0 to pi. `a` and `b` are angles in rad. It
+/// is infinite if one of them is not finite.
 pub fn apart(a: f64, b: f64) -> f64 {
     let turns = (a - b) / TAU;
     let apart = (turns - turns.round()).abs() * TAU;
@@ -232,8 +241,9 @@ pub fn apart(a: f64, b: f64) -> f64 {
     }
 }
 
-/// Returns the largest difference of the angles, rad, without whole turns. The shorter list decides
-/// the number of states. It is infinite if an angle is not a number, and 0 if a list is empty.
+/// Returns the largest difference of the angles, rad, at most pi, without whole turns. Momenta are
+/// not compared. The shorter list decides the number of states. It is infinite if an angle is not
+/// finite, and 0 if a list is empty.
 pub fn largest_difference(states: &[State<f64>], others: &[State<f64>]) -> f64 {
     let pairs = states.iter().zip(others);
     pairs

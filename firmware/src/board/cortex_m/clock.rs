@@ -25,8 +25,10 @@ fn SysTick() {
     TICKS.store(ticks().wrapping_add(1), Ordering::Relaxed);
 }
 
-/// Starts a clock of [`TICK_RATE`] ticks per second; `hertz` is the frequency of the processor, Hz,
-/// at most 1 GHz, because SysTick has 24 bits. A higher one is not checked.
+/// Starts a clock of [`TICK_RATE`] ticks per second. It counts while interrupts are on.
+///
+/// `hertz` is the frequency of the processor, Hz. Not checked: it is at least [`TICK_RATE`], and at
+/// most 1 GHz, because SysTick has 24 bits.
 ///
 /// The period is rounded down to whole processor cycles: at 50 MHz it is 833,333 instead of
 /// 833,333.3, so that the clock is 0.4 parts per million fast.
@@ -60,12 +62,16 @@ pub fn wait_after(last: u32) -> u32 {
 }
 
 /// Returns the number of the current tick of 1/60 s. It starts at an arbitrary number, and wraps.
+/// It stays the same before [`start`], and while interrupts are off.
 pub fn ticks() -> u32 {
     TICKS.load(Ordering::Relaxed)
 }
 
 /// Returns a count of processor cycles, for differences. It starts at an arbitrary number and
-/// wraps. Valid after [`start`], and while interrupts are off for less than a tick at a time.
+/// wraps. Valid after [`start`], and while interrupts are off for less than a tick at a time. A
+/// difference is wrong if [`Instruments::timed`] ran in between on a Cortex-M0+.
+///
+/// [`Instruments::timed`]: crate::app::Instruments::timed
 pub fn cycles() -> u32 {
     elapsed(&SysTickTimer, PERIOD.load(Ordering::Relaxed))
 }

@@ -15,9 +15,12 @@ unsafe extern "C" {
     static __erodata: u8;
 }
 
-/// Starts the parts of the processor: the stack guard, the tick and the cycle counter. `hertz` is
-/// its frequency, Hz, and `chip` the identification of the chip, zeros without one. Returns the
-/// measuring functions and the identity.
+/// Starts the parts of the processor: the stack guard, the tick and the cycle counter, which a
+/// Cortex-M0+ lacks. `hertz` is its frequency, Hz, limited as in [`clock::start`], and `chip` the
+/// identification of the chip, zeros without one.
+///
+/// Returns the measuring functions and the identity. The checksum and the size of the image in it
+/// are 0 until [`Instruments::identity()`] computes them.
 pub fn start(core: Peripherals, board: BoardName, hertz: u32, chip: [u32; 4]) -> Instruments {
     guard_stack(core.MPU);
     clock::start(core.SYST, hertz);

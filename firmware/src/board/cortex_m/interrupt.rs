@@ -20,7 +20,9 @@ impl<T> Shared<T> {
         Self(Mutex::new(RefCell::new(value)))
     }
 
-    /// Calls `act` with the data, with interrupts off. Returns `None` if called from within `act`.
+    /// Calls `act` with the data, with interrupts off, and returns its result. Returns `None`,
+    /// without a call, if `act` of the same data is in progress: when called from within it, from a
+    /// fault, or from the interrupt that cannot be masked.
     pub fn with<R>(&self, act: impl FnOnce(&mut T) -> R) -> Option<R> {
         free(|token| {
             self.0

@@ -19,8 +19,12 @@ use cortex_m_semihosting::{nr, syscall1};
 
 pub(super) use instruments::start;
 
-/// Returns the command line that a debugger, or QEMU, has for the program; `None` if none answers,
-/// or if it does not fit into `buffer` or is not UTF-8.
+/// Returns the command line that a debugger, or QEMU, has for the program. It is put into `buffer`,
+/// which must also have room for a final zero byte; the zero is not returned. An empty command line
+/// is an empty string.
+///
+/// Returns `None` if no debugger answers, if the line does not fit, or if it is not UTF-8. If a
+/// probe was unplugged in debug mode, the processor halts here (`crash.rs`).
 pub fn command_line(buffer: &mut [u8]) -> Option<&str> {
     let mut block = [buffer.as_mut_ptr() as usize, buffer.len()];
     // SAFETY: SYS_GET_CMDLINE takes the address and length of a buffer. It writes a string of at

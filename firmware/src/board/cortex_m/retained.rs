@@ -41,9 +41,10 @@ fn kept() -> Option<Record> {
 }
 
 /// Returns the record that was kept across the last reset, with this restart counted. Returns
-/// `None` if no record is intact, or after a reset from outside. `by_watchdog` is the board's own
-/// information about the reset ([`Record::restart`]). To be called before the first [`keep`], which
-/// replaces that record; the stored record is not changed.
+/// `None` if no record is intact, if another version of the protocol wrote it, or after a reset
+/// from outside. `by_watchdog` is the board's own information about the reset
+/// ([`Record::restart`]). To be called before the first [`keep`], which replaces that record; the
+/// stored record is not changed.
 pub fn recall(by_watchdog: bool) -> Option<Record> {
     kept()?.restart(by_watchdog)
 }
@@ -55,13 +56,15 @@ pub fn chosen_panel() -> Option<Controller> {
 }
 
 /// Returns the second part of the stored record: the scene and the tick of the last frame, and the
-/// cause if [`end`] has recorded one. Returns `None` if no record is intact.
+/// cause if [`end`] has recorded one. Before the first [`keep`] it is the record of the run before
+/// the reset. Returns `None` if no record is intact.
 pub fn last() -> Option<Restarted> {
     kept().map(|record| record.end)
 }
 
 /// Records why the program ends: the cause, the program counter, the link register and the fault
-/// status. Does nothing if no record is intact, as before the first scene after power-on.
+/// status (CFSR), 0 where unknown. They replace those of an earlier call; the rest of the record
+/// stays. Does nothing if no record is intact, as before the first scene after power-on.
 #[inline(never)]
 pub fn end(cause: Cause, pc: u32, lr: u32, cfsr: u32) {
     if let Some(Record { played, end }) = kept() {

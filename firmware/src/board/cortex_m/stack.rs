@@ -53,7 +53,8 @@ fn guard() -> Range<u32> {
     start.wrapping_add(statics.next_multiple_of(EIGHTH).min(REGION))..start.wrapping_add(REGION)
 }
 
-/// Sets the guard up. Logs a warning if the processor has no memory protection unit.
+/// Sets the guard up; from then on an access to it is a fault. If the processor has no memory
+/// protection unit, only logs a warning.
 ///
 /// Source: ARM DDI 0403, B3.5.
 pub fn guard_stack(unit: MPU) {

@@ -17,7 +17,8 @@ pub trait TickTimer {
 /// a tick, which is a period of the timer; it must not be 0.
 ///
 /// The reading is right at any moment: also between the reload of the counter and the interrupt,
-/// and with interrupts masked for less than a period.
+/// and with interrupts masked for less than a period. If they are masked for longer, whole periods
+/// are missing for good.
 pub fn elapsed(timer: &impl TickTimer, period: u32) -> u32 {
     let last = period.wrapping_sub(1);
     loop {

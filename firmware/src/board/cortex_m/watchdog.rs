@@ -15,13 +15,13 @@ use crate::config::{TICK_RATE, WATCHDOG_SECONDS};
 
 /// A watchdog.
 pub trait Watchdog {
-    /// Restarts the watchdog's time, [`WATCHDOG_SECONDS`]. If it ends, a watchdog with an interrupt
-    /// reports a hang; after about twice the time every watchdog resets the board.
+    /// Restarts the watchdog's time, [`WATCHDOG_SECONDS`] (1 s). If it ends, a watchdog with an
+    /// interrupt reports a hang; after about twice the time every watchdog resets the board.
     fn feed(&mut self);
 }
 
-/// The ARM watchdog of two stages (SP805 and similar). When its time, [`WATCHDOG_SECONDS`], is over
-/// it interrupts. When the same time is over again it resets the board.
+/// The ARM watchdog of two stages (SP805 and similar). When its time, [`WATCHDOG_SECONDS`] (1 s),
+/// is over it interrupts. When the same time is over again without a feeding, it resets the board.
 #[derive(Debug)]
 pub struct TwoStage(Device);
 

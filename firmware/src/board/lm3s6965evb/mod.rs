@@ -33,8 +33,11 @@ use pins::{Output, Ssi};
 /// The parts of this board.
 pub type Lm3s6965evb = Board<Ssd0323<'static, Ssi, Output>, Outward, Keys, TwoStage>;
 
-/// Sets the board up; the tick and the watchdog run from then on. Returns `None` the second time. A
-/// panel that does not take its settings is only logged.
+/// Sets the board up. The tick and the watchdog run from then on, and the watchdog must be fed. A
+/// panel that does not take its settings is only logged, and stays dark.
+///
+/// Waits 0.13 s for the crystal. Returns `None` the second time, or if other code has taken the
+/// processor's peripherals.
 pub fn take() -> Option<Lm3s6965evb> {
     let core = Peripherals::take()?;
     let hertz = system::start();
@@ -65,7 +68,9 @@ pub fn take() -> Option<Lm3s6965evb> {
     })
 }
 
-/// The buttons at PE0 to PE3 and PF1, each low while pressed.
+/// The buttons at PE0 to PE3 and PF1, each low while pressed; an open pin is not pressed.
+///
+/// Not checked: [`take`] has powered and set up the pins. Without power a reading is a fault.
 #[derive(Debug)]
 pub struct Keys;
 

@@ -9,11 +9,15 @@ use embedded_hal::spi::{self, ErrorKind, Operation, SpiDevice};
 use crate::board::register::{Device, Register};
 use crate::config::BUS_TRIES;
 
-/// A port of eight pins. In its functions, `pins` is a mask with a bit for each pin.
+/// A port of eight pins. In its functions, `pins` is a mask: bit n means pin n. The other pins, and
+/// earlier settings that a function does not mention, stay unchanged.
+///
+/// Not checked: [`system::start`](super::system::start) has powered the port. Before that every
+/// access is a fault.
 #[derive(Clone, Copy, Debug)]
 pub struct Pins(Device);
 
-/// Port A; the next four are C, D, E and F.
+/// Port A. The next four constants are the ports C, D, E and F.
 pub const A: Pins = port(0x4000_4000);
 pub const C: Pins = port(0x4000_6000);
 pub const D: Pins = port(0x4000_7000);
@@ -32,33 +36,36 @@ impl Pins {
         self.0.register((pins as usize) << 2)
     }
 
-    /// Connects `pins` to the port's serial device.
+    /// Connects `pins` to the device that the data sheet assigns to each of them, such as UART0 or
+    /// SSI0 at port A. The levels and directions are then the device's.
     pub fn use_for_device(self, pins: u8) {
         self.0.register(0x420).modify(0, pins.into()); // alternate function
         self.0.register(0x51C).modify(0, pins.into()); // digital
     }
 
-    /// Makes `pins` inputs with pull-ups.
+    /// Makes `pins` inputs with pull-ups. A pin that was connected to a device stays connected.
     pub fn use_for_input(self, pins: u8) {
         self.0.register(0x400).modify(pins.into(), 0); // direction
         self.0.register(0x510).modify(0, pins.into()); // pull-up
         self.0.register(0x51C).modify(0, pins.into());
     }
 
-    /// Makes `pins` outputs. Returns them; they are set high or low together.
+    /// Makes `pins` outputs. Returns them; they are set high or low together. Until then each has
+    /// the level last written to it, low after a reset. A pin that was connected to a device stays
+    /// connected.
     pub fn use_for_output(self, pins: u8) -> Output {
         self.0.register(0x400).modify(0, pins.into());
         self.0.register(0x51C).modify(0, pins.into());
         Output(self.data(pins))
     }
 
-    /// Returns true if all of `pins` are low now.
+    /// Returns true if all of `pins` are low now; also true if `pins` is 0.
     pub fn are_low(self, pins: u8) -> bool {
         self.data(pins).read() == 0
     }
 }
 
-/// Output pins, all set to the same level.
+/// Output pins of a port, all set to the same level. Setting them never fails.
 #[derive(Debug)]
 pub struct Output(Register);
 
@@ -96,8 +103,9 @@ const BUSY: u32 = 1 << 4;
 /// Eight bits. The clock is high when idle, and data are taken on its first, falling edge.
 const MODE_2_BYTES: u32 = 1 << 6 | 7;
 
-/// The panel's SPI bus, which can only write. A transaction that reads returns
-/// [`ErrorKind::Other`], and so does a bus that is busy for more than [`BUS_TRIES`] polls.
+/// The panel's SPI bus, which can only write. A transaction waits until its bytes are sent. It ends
+/// with [`ErrorKind::Other`] at the first operation that is not a write, a delay included, or if
+/// the bus is busy for more than [`BUS_TRIES`] polls. Earlier operations have been sent.
 #[derive(Debug)]
 pub struct Ssi(());
 

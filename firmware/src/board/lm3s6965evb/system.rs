@@ -48,9 +48,11 @@ const DIVIDER_FIELD: u32 = 0xF << 23;
 const DIVIDE_BY_4: u32 = 3 << 23;
 const PLL_LOCKED: u32 = 1 << 6;
 
-/// Starts the clock and powers the peripherals. Returns the frequency of the processor, Hz: 50 MHz.
-/// If the PLL does not lock, it is the crystal's 8 MHz: slow, but running. First the crystal
-/// starts, which takes 0.13 s.
+/// Starts the clock and powers the peripherals: the watchdog, SSI0, UART0 and the ports A, C, D, E
+/// and F. Before that an access to them is a fault. Returns the frequency of the processor, Hz: 50
+/// MHz. If the PLL does not lock, it is the crystal's 8 MHz: slow, but running.
+///
+/// First the crystal starts, which takes 0.13 s. Without a crystal the processor stops.
 pub fn start() -> u32 {
     // An erratum of this revision: at the regulator's 2.5 V the chip may fail once the PLL runs.
     // The vendor's programs for this board begin with this setting (`REVISION_IS_A2`,
@@ -93,7 +95,8 @@ fn start_crystal() {
     }
 }
 
-/// Returns the two identification registers of the chip and two zeros. It has no unique number.
+/// Returns the two identification registers of the chip, DID0 and DID1, and two zeros. It has no
+/// unique number.
 pub fn chip() -> [u32; 4] {
     [DID0.read(), DID1.read(), 0, 0]
 }
@@ -114,7 +117,8 @@ const STALL: u32 = 1 << 8;
 const CALL: u16 = FIRST + 18;
 
 /// Starts the watchdog, which counts at `hertz`, the processor's clock, Hz. It must be fed from now
-/// on ([`TwoStage`]). It stops while a debugger halts the processor.
+/// on ([`TwoStage`]). It stops while a debugger halts the processor. Not checked: [`start`] has
+/// powered it.
 pub fn start_watchdog(hertz: u32) -> TwoStage {
     // The registers stay unlocked until the next feeding.
     watchdog::stall_by(|stalls| {

@@ -1,6 +1,9 @@
 //! Raspberry Pi Pico: an RP2040 with a Cortex-M0+ at 125 MHz, a one-colour OLED panel on I2C0, up
 //! to five buttons, and the serial link over USB and UART0 at once. The second core is not used.
 //!
+//! A host that opens the USB port at 1200 baud and closes it again restarts the chip in its boot
+//! loader.
+//!
 //! Source: RP2040 data sheet, for the watchdog 2.8 (boot sequence), 2.13 (its resets), 2.14
 //! (subsystem resets), 4.7; Raspberry Pi Pico data sheet, for the pins.
 //!
@@ -46,8 +49,12 @@ const CRYSTAL: u32 = 12_000_000;
 /// The parts of this board.
 pub type Pico = Board<OledI2c<'static, Bus<I2c0>>, Outward, PinKeys, Watchdog>;
 
-/// Sets the board up; the tick and the watchdog run from then on. Returns `None` the second time,
-/// or if its clocks, the UART or USB do not start. The panel and the buttons may be absent.
+/// Sets the board up. The tick and the watchdog run from then on, and the watchdog must be fed. The
+/// panel and the buttons may be absent.
+///
+/// Returns `None` the second time, if other code has taken the peripherals, or if the settings of
+/// the clocks, the UART or USB are refused. Waits for the crystal and the PLLs, for ever if they do
+/// not start, and 12 ms for a host to notice that USB was disconnected.
 pub fn take() -> Option<Pico> {
     let core = cortex_m::Peripherals::take()?;
     let mut chip = pac::Peripherals::take()?;
@@ -120,7 +127,8 @@ pub fn take() -> Option<Pico> {
     })
 }
 
-/// The five buttons. Absent ones are never pressed, and select alone is sufficient.
+/// The five buttons: up, down, left, right and select, each low while pressed. Absent ones are
+/// never pressed, and select alone is sufficient.
 pub struct PinKeys([Pin<DynPinId, FunctionSioInput, PullUp>; 5]);
 
 impl Buttons for PinKeys {

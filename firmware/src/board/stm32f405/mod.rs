@@ -47,8 +47,12 @@ const UNIQUE_NUMBER: *const [u32; 3] = core::ptr::without_provenance(0x1fff_7a10
 /// The parts of this board.
 pub type Stm32f405 = Board<OledI2c<'static, Bus<I2c1>>, Outward, OneKey, IndependentWatchdog>;
 
-/// Sets the board up; the tick and the watchdog run from then on. Returns `None` the second time.
-/// The panel and the button may be absent.
+/// Sets the board up. The tick and the watchdog, which the emulator lacks, run from then on, and
+/// the watchdog must be fed. The panel and the button may be absent.
+///
+/// A chip whose own oscillator reads as not ready counts as emulated: its log goes to the emulator,
+/// and its number is zeros. On a chip this waits for the PLL. Returns `None` the second time, or if
+/// other code has taken the peripherals.
 pub fn take() -> Option<Stm32f405> {
     let core = cortex_m::Peripherals::take()?;
     let chip = pac::Peripherals::take()?;
@@ -80,8 +84,12 @@ pub fn take() -> Option<Stm32f405> {
     })
 }
 
-/// The only button, which is the select button. A tap starts the scene again; held, it selects the
-/// next scene, and after taps it has the other effects of [`Controls`](crate::app::Controls).
+/// The only button, which is the select button, low while pressed. A tap starts the scene again;
+/// held, it selects the next scene, and after taps it has the other effects of
+/// [`Controls`](crate::app::Controls).
+///
+/// If it is absent, it is never pressed. In the emulator it reads as pressed from the start, which
+/// has no effect.
 pub struct OneKey(PC7);
 
 impl Buttons for OneKey {

@@ -28,7 +28,8 @@ pub fn refusal(field: Field) -> &'static str {
     }
 }
 
-/// A decoder of received bytes into messages.
+/// A decoder of received bytes into messages. A new one expects the start of a message;
+/// [`join`](Self::join) tolerates the middle of one.
 #[derive(Debug, Default)]
 pub struct Inbox {
     /// The decoder, with the message that is incomplete.
@@ -48,8 +49,9 @@ pub struct Inbox {
 
 impl Inbox {
     /// Takes a byte and returns the message that it completes. `None` means that a message is not
-    /// complete, or that it was damaged and is counted. If the first message after [`Self::join`]
-    /// is damaged, it is not counted, because the connection may have begun within it.
+    /// complete, or that it was damaged, which is counted and stored in `damage`. If the first
+    /// message after [`Self::join`] is damaged, it is not counted, because the connection may have
+    /// begun within it.
     pub fn take(&mut self, byte: u8) -> Option<ToHost> {
         // A message is complete, damaged, or not complete yet.
         let message = match self
@@ -94,7 +96,7 @@ impl Inbox {
     }
 
     /// Begins a connection to a board that may be in the middle of a message and of its count of
-    /// frames.
+    /// frames. An incomplete message is dropped, and the counts are kept.
     ///
     /// The expected sequence number of the previous connection is kept. A smaller number shows that
     /// the board has restarted in between.

@@ -3,8 +3,8 @@
 use firmware::config::TICK_RATE;
 use firmware::display::{BusFault, Controller, Found, PanelReport, PanelState};
 
-/// Returns the panel's state in one line, or `None` if the board has no panel that reports its
-/// state.
+/// Returns the panel's state in one line without a newline, with the remedy for a panel that is
+/// absent or slow. Returns `None` if the board has no panel that reports its state.
 pub fn panel(report: &PanelReport) -> Option<String> {
     let line = match report.state {
         PanelState::Unknown => return None,

@@ -47,7 +47,8 @@ pub struct Port {
     pub inbox: Inbox,
     /// The restarts of the board.
     pub restarts: Restarts,
-    /// Reports of problems and recoveries, one line each, reported once. The caller drains them.
+    /// Reports of problems and recoveries, one line each, reported once, such as 2 s without a
+    /// message. The caller drains them.
     pub notices: Vec<String>,
     /// The time of the last intact message, of the opening of the port, or of the last attempt to
     /// open it.
@@ -59,9 +60,9 @@ pub struct Port {
 }
 
 impl Port {
-    /// Opens the port of this name; `auto` means the only one over USB and waits up to 3 s for it.
-    /// Returns the reason as one line if the port is missing, in use, not accessible or, with
-    /// `auto`, ambiguous.
+    /// Opens the port of this name at [`BAUD`] bits per second; `auto` means the only one over USB
+    /// and waits up to 3 s for it. Returns the reason as one line if the port is missing, in use,
+    /// not accessible or, with `auto`, ambiguous. Not checked: that a board is at its other end.
     pub fn open(name: &str) -> Result<Self, String> {
         // A port without a name may take a moment to appear.
         let (name, open) = if name == AUTO {
@@ -93,12 +94,14 @@ impl Port {
         Ok(port)
     }
 
-    /// Returns the messages that have arrived since the last call, at most about 64 KiB of them. A
-    /// port that has gone is opened again when it is back, at most four times a second. The result
-    /// is empty while the port is gone. This waits for at most a millisecond after the last byte.
+    /// Returns the messages that have arrived since the last call, at most about 64 KiB of them,
+    /// oldest first. A port that has gone is opened again when it is back, at most four times a
+    /// second. The result is empty while the port is gone. This waits for at most a millisecond
+    /// after the last byte.
     ///
     /// It also asks the board for its last restart when [`Restarts`] requires it. That question has
-    /// the request number 65534, and its answer is among the messages.
+    /// the request number 65534, and its answer is among the messages. It is sent as by
+    /// [`Self::send`], which may wait.
     pub fn messages(&mut self) -> Vec<ToHost> {
         if self.open.is_none() {
             self.reopen();
@@ -123,14 +126,15 @@ impl Port {
     }
 
     /// Sends a command. While the port is gone, the command is dropped. `request` is the number
-    /// that the answer will have. A port that does not take the command within 0.5 s counts as
-    /// gone.
+    /// that the answer will have; 65534 is used by [`Self::messages`]. Waits until the port has
+    /// taken the command. A port that does not take it within 0.5 s counts as gone, which is a
+    /// notice.
     pub fn send(&mut self, request: u16, command: Command) {
         self.send_bytes(encode_command(request, command, &mut [0; MAX_WIRE]));
     }
 
-    /// Sends bytes. Without a port they are dropped; a port that does not take them within 0.5 s
-    /// counts as gone.
+    /// Sends bytes and waits until the port has taken them. Without a port they are dropped; a port
+    /// that takes no byte for 0.5 s counts as gone, which is a notice.
     pub fn send_bytes(&mut self, bytes: &[u8]) {
         let Some(port) = &mut self.open else { return };
         let sent = port
@@ -300,7 +304,8 @@ fn only_one<P>(
 }
 
 /// Makes a board at this port restart in its boot loader, by closing the port at
-/// [`BAUD_OF_BOOT_LOADER`]. Does not wait for the restart.
+/// [`BAUD_OF_BOOT_LOADER`]. Does not wait for the restart. Not checked: that a board is there and
+/// obeys.
 ///
 /// # Errors
 ///

@@ -69,9 +69,9 @@ impl Restarts {
         }
     }
 
-    /// Returns true if the question must be sent now. It is called after each message, so that
-    /// nothing is sent to a device that is not a board. An unanswered question is due again after
-    /// 60 messages.
+    /// Returns true if the question must be sent now, and counts it as sent. It is called after
+    /// each message, so that nothing is sent to a device that is not a board. An unanswered
+    /// question is due again after 60 messages.
     pub fn is_question_due(&mut self) -> bool {
         let (is_due, next) = match self.question {
             Question::Due | Question::Asked(PATIENCE..) => (true, Question::Asked(0)),
@@ -97,8 +97,8 @@ impl Restarts {
     }
 }
 
-/// Returns a restart in one line: the cause, the place if it is known, and the number of restarts
-/// in a row.
+/// Returns a restart in one line without a newline: the cause, the scene and its tick, the
+/// addresses of the place if they are known, and the number of restarts in a row.
 pub fn describe_restart(end: &Restarted) -> String {
     let place = match end.pc {
         0 => String::new(),

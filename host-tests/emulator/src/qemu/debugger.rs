@@ -73,9 +73,10 @@ impl Machine {
         Ok(machine)
     }
 
-    /// Runs to the next frame and returns all messages up to it. The machine must be stopped, and
-    /// is stopped again when the frame is on the panel. It is an error if the board sleeps 1000
-    /// times without a frame, or if QEMU ends.
+    /// Runs to the next frame and returns all messages up to it that have not been fetched. The
+    /// machine must be stopped, and is stopped again when the frame is on the panel. It is an error
+    /// if the board sleeps 1000 times without a frame, or if QEMU ends. Not checked: that the
+    /// machine is from [`Self::halted`]; another one runs to its time limit.
     pub fn run_to_frame(&mut self) -> anyhow::Result<Vec<ToHost>> {
         let sleeps = self.places.sleeps.clone();
         up_to_frame(PATIENCE, || {
@@ -86,8 +87,10 @@ impl Machine {
 
     /// Runs to the next frame while `read` reads QEMU's log. The log contains the processor's
     /// registers before every instruction, hundreds of bytes each time. Returns the result of
-    /// `read`. Errors are those of `read`, and as in [`Self::run_to_frame`]. The messages up to the
-    /// frame are dropped. The machine must be stopped, and is stopped afterwards.
+    /// `read`, which runs in a thread of its own and must read to the end of the log, because QEMU
+    /// waits while nobody does. Errors are those of `read`, and as in [`Self::run_to_frame`]. The
+    /// messages up to the frame are dropped. The machine must be from [`Self::halted`] and stopped,
+    /// and is stopped afterwards.
     pub fn next_frame_logged<T: Send>(
         &mut self,
         read: impl FnOnce(File) -> anyhow::Result<T> + Send,
@@ -126,9 +129,9 @@ impl Machine {
         self.single_step(single_step)
     }
 
-    /// Runs until the instruction at this address is about to be executed. The machine must be
-    /// stopped. If it is stopped there, runs until the next time. If the program never comes there,
-    /// this ends with an error at the time limit of the machine.
+    /// Runs until the instruction at this address, without the Thumb bit, is about to be executed.
+    /// The machine must be stopped. If it is stopped there, runs until the next time. If the
+    /// program never comes there, this ends with an error at the time limit of the machine.
     pub fn run_to(&mut self, address: u32) -> anyhow::Result<()> {
         self.run_until(&[address])
     }
@@ -154,7 +157,8 @@ impl Machine {
     }
 
     /// Sets some registers, which may include the program counter, before the machine continues.
-    /// The machine must be stopped.
+    /// The machine must be stopped. An address in the program counter is without the Thumb bit. An
+    /// error leaves the registers before it in the list set.
     pub fn divert(&mut self, registers: &[(Register, u32)]) -> anyhow::Result<()> {
         self.places.here = None;
         registers
@@ -162,7 +166,8 @@ impl Machine {
             .try_for_each(|(register, value)| self.set(*register, *value))
     }
 
-    /// Writes bytes to memory from this address on. The machine must be stopped.
+    /// Writes bytes to memory from this address on, in pieces of 512. The machine must be stopped.
+    /// An address without memory is an error; the pieces before it are then written.
     pub fn write(&mut self, address: u32, bytes: &[u8]) -> anyhow::Result<()> {
         for (start, piece) in (address..)
             // A packet has a limited size.

@@ -7,7 +7,8 @@ use std::path::Path;
 use anyhow::Context;
 use defmt_decoder::{DecodeError, Frame, Locations, StreamDecoder, Table};
 
-/// A line of the output of the firmware or of QEMU.
+/// A line of the output of the firmware or of QEMU. It is displayed as the level, padded to 5
+/// characters and followed by a space, the text and the place, without a newline.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct LogLine {
     /// The defmt level in lower case, or `print` for a line without a level. It is `None` for plain
@@ -16,7 +17,8 @@ pub struct LogLine {
     pub level: Option<String>,
     /// The message.
     pub text: String,
-    /// The file name and line number of the statement, ` [file:line]`, where they are known.
+    /// The file name and line number of the statement, ` [file:line]` with a space in front; empty
+    /// if they are not known.
     pub place: String,
 }
 
@@ -61,7 +63,8 @@ pub struct LogDecoder {
 impl LogDecoder {
     /// Makes a decoder for the firmware in the file `elf`. Its format strings stay in memory for
     /// the rest of the program. A program without a log is no error; its decoder returns no lines.
-    /// An error means that the file is unreadable or that its log is of another version of defmt.
+    /// An error means that the file is unreadable or no ELF file, or that its log is of another
+    /// version of defmt.
     pub fn new(elf: &Path) -> anyhow::Result<Self> {
         let program = std::fs::read(elf).with_context(|| elf.display().to_string())?;
         let Some(table) = Table::parse(&program)?.map(Box::new) else {

@@ -21,7 +21,8 @@ use crate::stream::{self, Channel, Stream};
 /// The clock of an emulated board.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Clock {
-    /// The host's clock. The board is as fast as a real one if the host can keep up.
+    /// The host's clock. The board is as fast as a real one if the host can keep up. Its watchdog
+    /// does not restart it, because the host may delay QEMU for seconds.
     Real,
     /// The count of executed instructions. Every instruction takes the [same
     /// time](Board::instruction), and no time passes on the host while the board sleeps. The
@@ -44,7 +45,8 @@ pub struct Settings<'a> {
     /// True if a debugger is attached. It answers the firmware's semihosting calls and so receives
     /// its log.
     pub debugger: bool,
-    /// QEMU is ended after this time at the latest, by the host's clock.
+    /// QEMU is ended after this time at the latest, by the host's clock. Waits then end with an
+    /// error.
     pub limit: Duration,
 }
 
@@ -59,7 +61,7 @@ const CHATTER: [&str; 2] = ["Timer with period zero, disabling", "has no peer"];
 /// QEMU refuses is an error, too.
 pub struct Machine {
     /// True if the link is read. If not, the board's output fills the pipe and then its serial
-    /// port.
+    /// port, and a wait for a message that has not arrived yet lasts until QEMU ends.
     pub listens: bool,
     /// QEMU's control channel.
     pub(super) monitor: Channel,
@@ -83,7 +85,8 @@ pub struct Machine {
 
 impl Machine {
     /// Starts a board and lets it run. The host is attached before the first instruction is
-    /// executed. An error means that the ELF file is unusable or that QEMU cannot be started.
+    /// executed. An error means that the ELF file is unusable, that QEMU cannot be started, or that
+    /// it ends at once.
     pub fn start(settings: &Settings) -> anyhow::Result<Self> {
         let mut machine = Self::boot(settings)?;
         machine.run()?;
@@ -248,7 +251,7 @@ impl Machine {
     }
 
     /// Waits for the next message for which `kind` returns `Some`, and returns that value. The
-    /// messages before it are dropped.
+    /// messages before it are dropped; later ones are kept.
     pub fn wait_for<M>(&mut self, kind: impl Fn(ToHost) -> Option<M>) -> anyhow::Result<M> {
         self.wait_until(|machine| {
             std::iter::from_fn(|| machine.messages.pop_front()).find_map(&kind)
@@ -266,8 +269,8 @@ impl Machine {
         self.wait_for(ToHost::answer)
     }
 
-    /// Returns the messages that have arrived since the last call, without waiting. Returns an
-    /// error if QEMU has ended.
+    /// Returns the messages that have arrived since the last call, oldest first, without waiting.
+    /// Returns an error if QEMU has ended.
     pub fn messages(&mut self) -> anyhow::Result<Vec<ToHost>> {
         self.take_in()?;
         Ok(self.messages.drain(..).collect())
@@ -278,7 +281,8 @@ impl Machine {
         self.send_bytes(encode_command(request, command, &mut [0; MAX_WIRE]))
     }
 
-    /// Sends all bytes. Blocks until everything is written or QEMU exits. QEMU's end is an error.
+    /// Sends all bytes. Blocks until everything is written to the pipe to QEMU, from which the
+    /// board may take it later, or until QEMU exits. QEMU's end is an error.
     pub fn send_bytes(&mut self, mut bytes: &[u8]) -> anyhow::Result<()> {
         self.wait_until(|machine| {
             bytes = &bytes[machine.serial.sender.write(bytes).unwrap_or(0)..];
@@ -291,15 +295,16 @@ impl Machine {
         self.inbox.counts
     }
 
-    /// Returns the lines of the log that have arrived since the last call, without waiting. They
-    /// can be fetched after QEMU has ended, too.
+    /// Returns the lines of the log that have arrived since the last call, oldest first, without
+    /// waiting. They can be fetched after QEMU has ended, too.
     pub fn lines(&mut self) -> Vec<LogLine> {
         // The lines of a machine that has ended are returned, too.
         let _ = self.take_in();
         std::mem::take(&mut self.lines)
     }
 
-    /// Returns the same lines as [`Self::lines`] as one text.
+    /// Returns the same lines as [`Self::lines`] as one text, with a newline after each. They count
+    /// as fetched.
     pub fn log_text(&mut self) -> String {
         self.lines()
             .iter()

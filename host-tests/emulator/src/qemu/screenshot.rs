@@ -14,7 +14,8 @@ const GREY_UNIT: u8 = 17;
 /// The picture on the panel: 4-bit greys, row by row from the top left.
 #[derive(Clone, PartialEq, Eq)]
 pub struct Screenshot {
-    /// The grey of each pixel: 0 is black, 15 is white. There are [`WIDTH`] x [`HEIGHT`] of them.
+    /// The grey of each pixel: 0 is black, 15 is white. There are [`WIDTH`] x [`HEIGHT`] of them,
+    /// 128 x 64.
     pub greys: Vec<u8>,
 }
 
@@ -56,9 +57,10 @@ impl Screenshot {
         Ok(Self::drawn(|x, y| pixels[index(x, y)] / GREY_UNIT))
     }
 
-    /// Makes a screenshot from the memory of a one-colour panel. The memory contains pages of eight
-    /// rows from the top, with a byte for every column. Pixels beyond the memory are black. The top
-    /// row is bit 0; a set bit is white.
+    /// Makes a screenshot from the memory of a one-colour panel. The memory contains eight pages of
+    /// eight rows from the top, with a byte for each of the 128 columns from the left. The top row
+    /// of a page is bit 0; a set bit is white (15). Pixels beyond the memory are black, and bytes
+    /// beyond the eight pages are ignored.
     pub fn from_pages(memory: &[u8]) -> Self {
         let is_lit = |x: usize, y: usize| {
             memory

@@ -63,7 +63,8 @@ pub(super) fn bring<T>(
 /// The user's consent to install packages on the system.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Consent {
-    /// Asks the user on the terminal. Without a terminal, nothing is installed.
+    /// Asks the user on the terminal and waits for the answer. Only `y` and `yes` are a consent.
+    /// Without a terminal, nothing is installed.
     Ask,
     /// The user has passed `--yes`.
     Given,

@@ -98,10 +98,12 @@ impl Toolchain {
         self.build(board.binary, board.target)
     }
 
-    /// Builds a binary of the firmware with all optimisations, once per process, and returns the
-    /// ELF file.
+    /// Builds a binary of the firmware with all optimisations, and returns the ELF file,
+    /// `firmware/TARGET/release/BINARY` in the target folder. An older file is replaced. It is
+    /// built once per process: later calls return the same file, also if the sources have changed.
     ///
-    /// Concurrent builds take turns. An error contains the output of the compiler.
+    /// Concurrent builds take turns. An error contains the output of the compiler, also if there is
+    /// no such binary or target.
     pub fn build(&self, binary: &str, target: &str) -> anyhow::Result<PathBuf> {
         let elf = Self::folder().join(target).join("release").join(binary);
         let this = (binary.to_owned(), target.to_owned());
@@ -123,8 +125,11 @@ impl Toolchain {
 
     /// Builds the image of the golden bits for a target. If `double` names a processor, the image
     /// is built for that processor, which computes `f64` in hardware. Returns the image: an ELF
-    /// file or, for WebAssembly, a module. Concurrent builds take turns. The tools are those of
-    /// [`set_up_for`] this target. An error contains the output of the compiler.
+    /// file or, for WebAssembly, a module. Each target and processor has its own file, and an older
+    /// one is replaced.
+    ///
+    /// Concurrent builds take turns. The tools are those of [`set_up_for`] this target. An error
+    /// contains the output of the compiler.
     pub fn build_cores(&self, target: &str, double: Option<&str>) -> anyhow::Result<PathBuf> {
         // Cargo gives both kinds of image the same name. Each is copied before the next build
         // replaces it.
@@ -224,8 +229,8 @@ impl Toolchain {
     }
 
     /// Builds the application as a WebAssembly module, without names and debug information. Returns
-    /// its file. The tools are those of [`set_up_web`](super::set_up_web). An error contains the
-    /// output of the compiler.
+    /// its file, and replaces an older one. The tools are those of
+    /// [`set_up_web`](super::set_up_web). An error contains the output of the compiler.
     pub fn build_web(&self) -> anyhow::Result<PathBuf> {
         let mut command = self.for_targets("build", &[WASM])?;
         command

@@ -299,7 +299,7 @@ fn judged_once(path: &Path) -> Result<(), String> {
 }
 
 /// Returns the program that the shell would run for this name, or `None` if no folder of `PATH` has
-/// it.
+/// it or `PATH` is not set. The path is relative if that folder is.
 pub fn find(program: &str) -> Option<PathBuf> {
     env::split_paths(&env::var_os("PATH")?).find_map(|folder| executable(folder.join(program)))
 }

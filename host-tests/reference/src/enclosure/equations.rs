@@ -81,7 +81,8 @@ impl Equations {
     }
 
     /// Returns the energy of the six numbers `z`, divided by M l1^2/T^2. The potential energy is 0
-    /// where both bobs are level with the pivot.
+    /// where both bobs are level with the pivot. It is unknown if one of the numbers is, or if
+    /// their balls are so wide that k + l S^2 may be 0.
     pub fn energy(&self, &[sin1, cos1, s, c, p1, p2]: &[Fixed; 6]) -> Fixed {
         let &Self {
             upper,
@@ -113,10 +114,11 @@ const TRIES: usize = 12;
 /// The shortest usable time, in steps. With it, a power series of 48 terms ends at 2^-116.
 const SHORTEST: f64 = 6.0;
 
-/// Returns the longest time found, in steps of `step` T, and the radii of discs about `middle`. No
-/// solution that starts within [`STARTS`] of the discs leaves them in complex times up to that
-/// time. Returns `None` if the time is shorter than 6 steps. `extent` is the size of the set of
-/// starts about `middle`; the discs are large enough for it.
+/// Returns the longest time found, at most 24, in steps of `step` T, and the radii of discs about
+/// `middle`. No solution that starts within [`STARTS`] of the discs leaves them in complex times up
+/// to that time. `extent` is the size of the set of starts about `middle`; the radii are at least
+/// 64 times as large. Returns `None` if the time is shorter than 6 steps, as it is with unknown
+/// numbers.
 ///
 /// Theorem (Picard and Lindeloef for analytic equations; Hille, Ordinary Differential Equations in
 /// the Complex Domain, 2.3): if z0 + t f(B) is in the product of discs B for |t| <= T, one solution

@@ -6,13 +6,14 @@
 const FRACTION: u32 = 116;
 /// The limit of midpoints. Smaller ones cannot overflow a sum of [`MOST_TERMS`] products.
 const LIMIT: i128 = 1 << 124;
-/// The largest number of terms in a sum of products.
+/// The largest number of terms in a sum of products. The result of a longer one is unknown.
 pub const MOST_TERMS: usize = 48;
 /// 2^-116, the unit of the last place.
 pub const ULP: f64 = 1.0 / (1_u128 << FRACTION) as f64;
 
 /// Returns a number that is no less than the sum of products of numbers >= 0 that `f64` computed as
-/// `value` in fewer than 2^20 operations.
+/// `value` in fewer than 2^20 operations. Not checked: that `value` is not negative. Infinity and
+/// NaN are returned as they are.
 ///
 /// Each operation may have reduced it by a factor of 1 - u, u = 2^-53: (1 - u)^(2^20 + 2) (1 +
 /// 2^-32) > 1 (N. Higham, Accuracy and Stability of Numerical Algorithms, 2002, lemma 3.1). The
@@ -23,7 +24,8 @@ pub fn up(value: f64) -> f64 {
 
 /// A ball: all numbers within `radius` units of the last place of `middle`, which is in the same
 /// units. Numbers are between -256 and 256. A result that leaves this range, or whose radius
-/// overflows, is unknown: its radius is infinite, and so are the radii of all results from it.
+/// overflows, is unknown: its radius is infinite, and so are the radii of all results from it. `==`
+/// compares midpoints and radii, not the true numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fixed {
     middle: i128,
@@ -31,17 +33,17 @@ pub struct Fixed {
 }
 
 impl Fixed {
-    /// 0.
+    /// The exact number 0.
     pub const ZERO: Self = Self {
         middle: 0,
         radius: 0.0,
     };
-    /// 1.
+    /// The exact number 1.
     pub const ONE: Self = Self {
         middle: 1 << FRACTION,
         radius: 0.0,
     };
-    /// pi, cut after 116 bits.
+    /// The number pi, cut after 116 bits, with a radius of one unit of the last place.
     pub const PI: Self = Self {
         middle: 0x32_43F6_A888_5A30_8D31_3198_A2E0_3707,
         radius: 1.0,
@@ -78,8 +80,9 @@ impl Fixed {
         Self::new(middle, if scaled.fract() == 0.0 { 0.0 } else { 1.0 })
     }
 
-    /// Makes a ball of a fraction times 2^`exponent`, computed bit by bit. A denominator of 0
-    /// panics. A value outside the range, or an exponent below -116, gives an unknown ball.
+    /// Makes a ball of a fraction times 2^`exponent`, computed bit by bit. Bits below 2^-116 are
+    /// cut and covered by the radius. A denominator of 0 panics. A value outside the range, or an
+    /// exponent below -116, gives an unknown ball.
     pub fn fraction(numerator: i64, denominator: u64, exponent: i32) -> Self {
         let above = u128::from(numerator.unsigned_abs());
         let below = u128::from(denominator);
@@ -128,7 +131,9 @@ impl Fixed {
     }
 
     /// Returns the ball with its radius increased by `radius` or slightly more. `radius` is a
-    /// number as [`Self::radius`] returns it, not negative. An infinite one gives an unknown ball.
+    /// number as [`Self::radius`] returns it. An infinite one or NaN gives an unknown ball. Not
+    /// checked: that it is not negative; a negative one shrinks the ball, which then proves
+    /// nothing.
     pub fn wider(self, radius: f64) -> Self {
         Self::new(self.middle, self.radius + up(radius / ULP))
     }
@@ -144,7 +149,8 @@ impl Fixed {
 
     /// Returns the decimal with all known digits, but no more than `most` significant ones. It is
     /// cut, not rounded, and the last digit is accurate to two units. The digits before the point
-    /// and the point itself are always written. The ball must not be unknown.
+    /// and the point itself are always written, even if nothing follows; a minus sign precedes a
+    /// negative number. Not checked: that the ball is not unknown; an unknown one gives `0.`.
     pub fn decimal(self, most: f64) -> String {
         // Decimals down to the radius, but not more than `most` significant digits.
         let places = (-self.radius().log10())
@@ -163,7 +169,7 @@ impl Fixed {
         )
     }
 
-    /// Divides by a whole number. A divisor of 0 panics.
+    /// Returns the ball divided by a whole number. A divisor of 0 panics.
     pub fn over(self, whole: u32) -> Self {
         Self::new(
             self.middle / i128::from(whole),
@@ -171,7 +177,8 @@ impl Fixed {
         )
     }
 
-    /// Returns the inverse, which is unknown if the ball may contain 0.
+    /// Returns the inverse. It is unknown if the ball may contain 0, if its radius is about half
+    /// its midpoint or more, or if the inverse is out of range.
     ///
     /// For any x about 1/b: |1/b - x| = |x| |1 - b x|/|b x|, and |b x| >= 1 - |1 - b x|. Newton's
     /// iteration makes x accurate.
@@ -193,7 +200,8 @@ impl Fixed {
     }
 
     /// Returns coefficient k of the product of two power series; `a` and `b` are their coefficients
-    /// 0 to k. It is unknown if there are more than 48.
+    /// 0 to k. It is unknown if there are more than 48, and about 0 if there are none. Not checked:
+    /// that both have the same length.
     ///
     /// |a b - a0 b0| <= |a0| rb + ra (|b0| + rb). With a = a1 2^64 + a0 the sum of a1 b1 is exact:
     /// 48 terms up to 2^120. The terms a1 b0, a0 b1 and a0 b0 2^-64 are up to 2^124. Each of them

@@ -30,12 +30,13 @@ const SEGMENTS: usize = 6 * 2048;
 /// The binary logarithm of the largest number of steps in a frame.
 const MOST_HALVINGS: i32 = 24;
 
-/// The precision of the arithmetic.
+/// The precision of the arithmetic. The ranges of the fields are not checked. The default has 48
+/// terms, tangents up to the power 10, an offset of 2^-56, and all allowances 1.
 #[derive(Clone, Copy, Debug)]
 pub struct Fineness {
     /// The largest number of terms of the midpoint's power series, 2 to 48.
     pub terms: usize,
-    /// The highest power of the derivatives' power series.
+    /// The highest power of the derivatives' power series. At most that of the midpoint is used.
     pub tangents: usize,
     /// The distance from the midpoint for a difference quotient in place of a derivative, relative
     /// to the radius of the disc; at least 2^-100.
@@ -57,7 +58,8 @@ impl Default for Fineness {
     }
 }
 
-/// An enclosure of the true (sin a1, cos a1, S, C, P1, P2).
+/// An enclosure of the true (sin a1, cos a1, S, C, P1, P2). S and C are the sine and cosine of a1 -
+/// a2; P1 and P2 are the scaled momenta of [`Equations`].
 ///
 /// These are at middle + the sum of y_k segment_k + d, where |y_k| <= 1 and |d_i| <= about_i.
 #[derive(Clone, Debug)]
@@ -81,6 +83,7 @@ impl Enclosure {
     /// Makes an enclosure of all motions that begin in `start`, with 2^`frame.0` units of time and
     /// `frame.1` frames, at least 1, in a second. `start` has the six numbers of the struct.
     /// Numbers that are unknown or out of range make the first [`advance`](Self::advance) fail.
+    /// With 0 frames in a second the first advance panics.
     pub fn new(
         equations: Equations,
         frame: (i32, u16),
@@ -105,8 +108,8 @@ impl Enclosure {
         set
     }
 
-    /// Returns the smallest box that contains the set: (sin a1, cos a1, S, C, P1, P2). P1 and P2
-    /// are the scaled momenta of [`Equations`].
+    /// Returns the smallest box that contains the set: (sin a1, cos a1, S, C, P1, P2), as the
+    /// struct defines them. A number that has left the range of [`Fixed`] is unknown.
     pub fn hull(&self) -> [Fixed; 6] {
         let extent = self.extent(0);
         from_fn(|i| self.middle[i].wider(extent[i]))
@@ -123,7 +126,7 @@ impl Enclosure {
     }
 
     /// Returns about the factor by which a small error of the start has grown: the largest of the
-    /// six numbers. It is 1 at the start.
+    /// six numbers. It is 1 at the start. It is an estimate; nothing is proved about it.
     pub fn growth(&self) -> f64 {
         let of = |i: usize| {
             self.segments
@@ -135,22 +138,24 @@ impl Enclosure {
         (0..6).map(of).fold(0.0, f64::max)
     }
 
-    /// Returns the directions of the rods, (sin, cos) each. The second one is computed from the
-    /// sine and cosine of a1 - a2. They have no unit.
+    /// Returns the directions of the rods: `[[sin a1, cos a1], [sin a2, cos a2]]`. The second one
+    /// is computed from the sine and cosine of a1 - a2. They have no unit.
     pub fn directions(&self) -> [[Fixed; 2]; 2] {
         let [sin1, cos1, s, c, ..] = self.hull();
         [[sin1, cos1], [sin1 * c - cos1 * s, cos1 * c + sin1 * s]]
     }
 
-    /// Advances by a frame. Returns `None` if the set has become too large to be followed, or its
-    /// numbers too large for the arithmetic. The set is then somewhere within the frame and must
-    /// not be used any more.
+    /// Advances by a frame, in pieces of 1 to 2^-24 frames, as large as can be enclosed. Returns
+    /// `None` if not even the smallest piece can be: the set has become too large to be followed (1
+    /// or more in one of the numbers is always too large), or its numbers too large for the
+    /// arithmetic. The set is then somewhere within the frame and must not be used any more.
     pub fn advance(&mut self) -> Option<()> {
         self.advance_unless(&AtomicUsize::new(0))
     }
 
     /// Advances like [`advance`](Self::advance), and returns `None` in the middle of the frame if
-    /// `stopped` is not zero. The set must not be used any more after either `None`.
+    /// `stopped` is not zero. It is read before each piece of the frame. The set must not be used
+    /// any more after either `None`.
     pub fn advance_unless(&mut self, stopped: &AtomicUsize) -> Option<()> {
         // The frame is divided into halves until every piece can be enclosed.
         let mut left = vec![0];

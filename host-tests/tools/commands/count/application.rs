@@ -34,7 +34,8 @@ const SHOWING: [(&str, &str); 7] = [
 /// The cost of one frame of an application: executed instructions (exact) and cycles (estimated).
 #[derive(Clone, Copy, Debug, Default)]
 pub struct FrameProfile {
-    /// The cost of everything that the board executes until the frame is complete.
+    /// The cost of everything that the board executes from the end of the frame before until the
+    /// frame is complete.
     pub whole: Cost,
     /// The cost of the functions that show the frame, with all functions that they call.
     pub showing: Cost,
@@ -42,8 +43,9 @@ pub struct FrameProfile {
 
 impl FrameProfile {
     /// Runs `board` to its next frame and profiles everything that it executes. The machine must be
-    /// stopped. An error means that a function that shows a frame is missing, that an instruction
-    /// has no known timing, or that QEMU ends.
+    /// stopped, and is stopped afterwards. `image` is the program that runs on it, and `core` its
+    /// core; neither is checked. An error means that a function that shows a frame is missing, that
+    /// an instruction has no known timing, or that QEMU ends.
     pub fn of_next(board: &mut Machine, image: &Image, core: Core) -> Result<Self> {
         let showing = SHOWING
             .into_iter()
@@ -100,8 +102,9 @@ const MARKS: [&str; 2] = [
 ];
 
 /// Returns the price list of every method that a plan chooses from, on one board for each kind of
-/// core. The costs are in cycles (estimated); `preparation` is per motion, all others are per step.
-/// An error means that a program cannot be built, or that QEMU fails.
+/// core: a Cortex-M3, a Cortex-M4F and a Cortex-M0+, in this order. It builds the programs and runs
+/// them in QEMU. The costs are in cycles (estimated); `preparation` is per motion, all others are
+/// per step. An error means that a program cannot be built, or that QEMU fails.
 pub fn prices(toolchain: &Toolchain) -> Result<Vec<(&'static Board, Costs)>> {
     let targets = Target::build_all(toolchain)?;
     targets
@@ -178,8 +181,9 @@ fn in_application(board: &'static Board, toolchain: &Toolchain) -> Result<(f32, 
     Ok((step, prepared))
 }
 
-/// Writes the price lists into the kernel's source and returns the path of the file. An error means
-/// that the file cannot be read or written, or that it has lost the lines around the lists.
+/// Writes the price lists into the kernel's source, `kernel/src/plan/prices.rs`, in place of the
+/// lists there. Returns the path of the file. An error means that the file cannot be read or
+/// written, or that it has lost the lines around the lists.
 pub fn write_prices(prices: &[(&Board, Costs)]) -> Result<PathBuf> {
     let path = workspace().join(PRICES_FILE);
     let old = std::fs::read_to_string(&path)?;

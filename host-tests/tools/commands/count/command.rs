@@ -120,8 +120,12 @@ pub struct CountOptions {
 }
 
 /// Counts as the options demand and prints a row for each method and board, a listing, or the cost
-/// of a call. Options that cannot be served are [`Refused`] before anything is built. With `--elf`
-/// a function that cannot be counted is [`Refused`], too, and a program that fails is an error.
+/// of a call. Missing tools are installed. With `--write-prices` it changes the price lists in the
+/// kernel's source, with `--readme` the table in its README.
+///
+/// Options that cannot be served are [`Refused`] before anything is built. With `--elf` a function
+/// that cannot be counted is [`Refused`], too, and a program that fails is an error. A program that
+/// its time limit has stopped is not: the calls until then are printed.
 pub fn run(options: &CountOptions) -> anyhow::Result<()> {
     if let (Some(elf), Some(function)) = (&options.elf, &options.function) {
         return count_calls(&toolchain::set_up()?, options, elf, function);

@@ -132,7 +132,7 @@ pub struct MinimalPrices {
 impl MinimalPrices {
     /// Builds all programs for `board` and counts them. An error means that a program cannot be
     /// built, fails in QEMU, or does not make its three calls: with no step, with one step, and
-    /// with more.
+    /// with more. A program that runs for half an hour is stopped, which is an error, too.
     pub fn count(toolchain: &Toolchain, board: &'static Board) -> Result<Self> {
         let folder = toolchain.build_minimal(board.target)?;
         let target = |binary| Target::of(toolchain, board, folder.join(binary));
@@ -150,8 +150,8 @@ impl MinimalPrices {
         })
     }
 
-    /// Counts all programs on one board for each kind of core. An error is one of
-    /// [`MinimalPrices::count`].
+    /// Counts all programs on one board for each kind of core: a Cortex-M3, a Cortex-M4F and a
+    /// Cortex-M0+, in this order. An error is one of [`MinimalPrices::count`].
     pub fn count_all(toolchain: &Toolchain) -> Result<Vec<Self>> {
         one_of_each_core()
             .map(|board| Self::count(toolchain, board))
@@ -168,8 +168,9 @@ const MARKS: [&str; 2] = [
 /// The kernel's README.
 const README: &str = "kernel/README.md";
 
-/// Returns the table of prices as the kernel's README shows it now. An error means that the file or
-/// the lines around the table are missing.
+/// Returns the table of prices as the kernel's README shows it now, with its last newline and
+/// without the lines around it. An error means that the file or the lines around the table are
+/// missing.
 pub fn table_in_readme() -> Result<String> {
     let page = std::fs::read_to_string(workspace().join(README))?;
     let [start, end] = MARKS;
@@ -181,8 +182,9 @@ pub fn table_in_readme() -> Result<String> {
 
 const NO_PLACE: &str = "kernel/README.md has no place for the prices";
 
-/// Writes the table of prices into the kernel's README. An error means that the file cannot be read
-/// or written, or that the lines around the table are missing.
+/// Writes the table of prices ([`table`]) into the kernel's README, in place of the table there. An
+/// error means that the file cannot be read or written, or that the lines around the table are
+/// missing.
 pub fn write_table(boards: &[MinimalPrices]) -> Result<()> {
     let path = workspace().join(README);
     let page = std::fs::read_to_string(&path)?;
@@ -190,9 +192,12 @@ pub fn write_table(boards: &[MinimalPrices]) -> Result<()> {
     Ok(std::fs::write(path, page)?)
 }
 
-/// Returns the table of prices for the kernel's README: a row for each program. A cell of a core
-/// has the cycles of a step and of a call, as in "1,234 + 56". The last column has the flash on
-/// each board, in bytes.
+/// Returns the table of prices for the kernel's README, in Markdown, with a newline after each
+/// line: a row for each of [`PROGRAMS`], and one for a program without a motion. There is a column
+/// for the core of each board, in the order of `boards`.
+///
+/// A cell of a core has the cycles of a step, rounded, and of a call, as in "1,234 + 56". The last
+/// column has the flash on each board, in bytes, as in "1,234 / 5,678".
 pub fn table(boards: &[MinimalPrices]) -> String {
     let cores: Vec<_> = boards
         .iter()

@@ -52,12 +52,14 @@ pub struct StepCost {
     pub stack_bytes: u32,
 }
 
-/// Returns the number of steps that can be counted in a few seconds: [`FULL_CYCLE`] for a cheap
-/// method, fewer for an expensive one, at least 4. From 32 on it is a multiple of 32.
+/// Runs one step in QEMU and returns the number of steps that can be counted in a few seconds:
+/// [`FULL_CYCLE`] for a cheap method, fewer for an expensive one, at least 4. From 32 on it is a
+/// multiple of 32.
 ///
 /// The method, the pendulum and the step size are those of `request`; its numbers of steps and
-/// samples are ignored. An error means that QEMU fails, that the program refuses the request, or
-/// that it has no counted function.
+/// samples are ignored. An error means that QEMU fails or runs for half an hour, that the program
+/// refuses the request, that it has no counted function, or that it executes an instruction without
+/// a known timing.
 pub fn affordable_steps(target: &Target, request: &Request) -> Result<u32> {
     Ok(affordable(one_step(target, request)?.instructions))
 }
@@ -83,8 +85,8 @@ pub fn affordable_cost(target: &Target, request: &Request) -> Result<StepCost> {
 }
 
 /// Returns the cost of one step of `request` on `target`, averaged over `request.stride` steps
-/// after the first; `stride` must be at least 1, and `samples` is ignored. Errors are as in
-/// [`affordable_steps`].
+/// after the first; `stride` must be from 1 to 2^32 - 2, which is not checked, and `samples` is
+/// ignored. Errors are as in [`affordable_steps`].
 ///
 /// It is the difference between a run with one step more and a run of one step, so that the costs
 /// of the call and the return cancel.

@@ -31,9 +31,9 @@ pub(super) const LIMIT: Duration = Duration::from_secs(1800);
 /// The end of a program that was traced.
 #[derive(Debug)]
 pub struct Ended {
-    /// The exit status of QEMU, or an error if its time was up.
+    /// The exit status of QEMU, which may be a failure, or an error if its time was up.
     pub status: io::Result<ExitStatus>,
-    /// Everything that the program printed.
+    /// Everything that the program printed; empty if that is not UTF-8.
     pub output: String,
 }
 
@@ -48,7 +48,8 @@ pub struct Target {
     pub image: Image,
 }
 
-/// Returns one board for each kind of core: a Cortex-M3, a Cortex-M4F and a Cortex-M0+.
+/// Returns one board for each kind of core: a Cortex-M3, a Cortex-M4F and a Cortex-M0+, in this
+/// order.
 pub fn one_of_each_core() -> impl Iterator<Item = &'static Board> {
     BOARDS.iter().filter(|board| board.has_panel)
 }
@@ -60,7 +61,8 @@ impl Target {
     }
 
     /// Returns a target with another program. A program that takes the same requests must make its
-    /// steps in a function called `counted_steps`. An error means that the file is unreadable or no
+    /// steps in a function called `counted_steps`. The file must remain where it is. The program
+    /// must suit the board, which is not checked. An error means that the file is unreadable or no
     /// program for ARM.
     pub fn of(toolchain: &Toolchain, board: &'static Board, elf: PathBuf) -> Result<Self> {
         let image = Image::read(&elf)?;
@@ -73,13 +75,14 @@ impl Target {
     }
 
     /// Returns the size of the program in the flash, bytes: code, constants and initial values, and
-    /// gaps between them. An error is one of [`flash_image`].
+    /// gaps between them. An error means that the file cannot be read, or is one of
+    /// [`flash_image`].
     pub fn flash_bytes(&self) -> Result<usize> {
         Ok(flash_image(&std::fs::read(&self.elf)?)?.1.len())
     }
 
     /// Builds the default program for one board of each kind of core: the same machine with a
-    /// Cortex-M3, a Cortex-M4F and a Cortex-M0+.
+    /// Cortex-M3, a Cortex-M4F and a Cortex-M0+, in this order. An error means that a build fails.
     pub fn build_all(toolchain: &Toolchain) -> Result<Vec<Self>> {
         one_of_each_core()
             .map(|board| Self::build(toolchain, board))
@@ -89,7 +92,7 @@ impl Target {
     /// Runs `request` at full speed. Returns its CRC and the ticks of the board's SysTick, at the
     /// processor's clock after reset, under `-icount`, where an instruction takes 1 ns. After 2^24
     /// ticks they begin again from 0. A program that prints anything else has failed, and the error
-    /// contains its output.
+    /// contains its output. Other errors are as in [`Self::output`].
     pub fn run(&self, request: &Request) -> Result<(u32, u64)> {
         // The program prints the CRC in hexadecimal digits and then the ticks.
         let output = self.output(request)?;
@@ -100,8 +103,9 @@ impl Target {
         numbers.with_context(|| format!("{}: {}", request.method, output.trim()))
     }
 
-    /// Runs `request` at full speed and returns everything that the program prints, even if it
-    /// fails. An error means that QEMU cannot be started or exceeds its time limit.
+    /// Runs `request` at full speed and returns everything that the program prints to standard
+    /// output, even if it fails. An error means that QEMU cannot be started or exceeds its time
+    /// limit, half an hour.
     pub fn output(&self, request: &Request) -> Result<String> {
         Ok(process::run(
             self.emulator(&request.to_string())
@@ -192,8 +196,8 @@ impl Target {
 }
 
 /// Runs `request` on `target` and returns all calls of the counted function. An error means that
-/// the program fails, that it never calls the function, or that it executes an instruction without
-/// a known timing.
+/// the program fails or runs for half an hour, that it never calls the function, or that it
+/// executes an instruction without a known timing.
 pub fn counted<'a>(target: &'a Target, request: &Request) -> Result<Calls<'a>> {
     // The compiler makes one copy of the function for each method.
     let entries = target
@@ -216,7 +220,8 @@ pub fn counted<'a>(target: &'a Target, request: &Request) -> Result<Calls<'a>> {
     Ok(calls)
 }
 
-/// Counts the calls of `function` until the program on `target` ends, or until `limit` has passed.
+/// Counts the calls of `function` until the program on `target` ends, or until `limit` has passed,
+/// which is no error ([`Ended::status`]).
 ///
 /// Returns the function, the cost of each call that returned, in order and with interrupts, and the
 /// end of the program. It is an error if the program has no such function or no vectors for this

@@ -25,23 +25,25 @@ const REACH: f64 = 2.1;
 pub struct Path {
     /// 256 points per second, the start and the end included, in m right of the pivot and above it.
     pub points: Vec<(f64, f64)>,
-    /// The smallest and the largest energy, J. They are by the right equations, for bob 1 of 1 kg,
-    /// at the points.
+    /// The smallest and the largest energy, J; the potential energy is 0 where both bobs are level
+    /// with the pivot. They are by the right equations, for bob 1 of 1 kg, at the points.
     pub energies: [f64; 2],
 }
 
-/// Returns the pendulum of the figure, with bob 1 of 1 kg.
+/// Returns the pendulum of the figure: bobs of 1 kg and 2.75 kg and rods of 1 m in the gravity of
+/// the page. The kernel accepts it, so that there is no error.
 pub fn pendulum() -> Result<Pendulum<f64>, Error> {
     Pendulum::new(&Parameters::equal_rods(MASS_RATIO, ROD, PAGE_GRAVITY))
 }
 
-/// Returns the start of the figure: both rods at rest at 171 degrees.
+/// Returns the start of the figure: both rods at rest at 171 degrees. The state is in rad.
 pub fn start() -> State<f64> {
     State::at_rest(START.to_radians(), START.to_radians())
 }
 
-/// Returns the paths by the right equations and by the misprinted ones, with `refinement` times the
-/// figure's steps; 1 is the figure itself, and 0 is not possible.
+/// Returns the paths by the right equations and by the misprinted ones, in this order, by RK4 with
+/// `refinement` times the figure's 8192 steps a second. 1 is the figure itself. Not checked:
+/// `refinement` must be from 1 to 50,000. The points are at the same times with any `refinement`.
 pub fn paths(refinement: u32) -> Result<[Path; 2], Error> {
     let pendulum = pendulum()?;
     let right = path(&pendulum, refinement, |z| pendulum.derivatives(z));
@@ -74,7 +76,8 @@ fn path(pendulum: &Pendulum<f64>, refinement: u32, rhs: impl Fn(&[f64; 4]) -> [f
     }
 }
 
-/// Returns figure 7 as an SVG file.
+/// Returns figure 7 as the text of an SVG file: the path by the right equations on the left, by the
+/// misprinted ones on the right. Nothing is written. It is an error if the figure cannot be drawn.
 pub fn figure() -> Result<String> {
     let paths = paths(1)?;
     let title = format!("Figure 7: path of bob 2 in the first {DURATION} s");

@@ -34,25 +34,27 @@ pub const fn units(length: u32) -> u32 {
     length * DOTS
 }
 
-/// Returns the style of a line. Its width is in tenths of a unit.
+/// Returns the style of a line. Its `width` is in tenths of a unit, rounded up to whole dots.
 pub fn line(colour: RGBColor, width: u32) -> ShapeStyle {
     colour.stroke_width(units(width).div_ceil(10))
 }
 
-/// Returns a colour with a strength from 0 to 1, as it looks on white. With 0 it is white.
+/// Returns a colour with a strength from 0 to 1, as it looks on white. With 0 it is white, with 1
+/// unchanged. The strength is not checked.
 pub fn pale(RGBColor(red, green, blue): RGBColor, strength: f64) -> RGBColor {
     let [red, green, blue] =
         [red, green, blue].map(|channel| (255.0 - strength * (255.0 - f64::from(channel))) as u8);
     RGBColor(red, green, blue)
 }
 
-/// Returns the style of text in the colour [`TEXT`]. The height of its letters is in units.
+/// Returns the style of text in the colour [`TEXT`]. Its `height`, the size of the letters, is in
+/// units.
 pub fn text(height: u32) -> TextStyle<'static> {
     (TYPEFACE, units(height)).into_font().color(&TEXT)
 }
 
 /// Writes a line in `style`, centred, into the top 23 units of the area and returns the rest of the
-/// area.
+/// area. An error means that the line cannot be drawn.
 pub fn headed<'a>(area: &Area<'a>, line: &str, style: TextStyle<'_>) -> Result<Area<'a>> {
     let (head, rest) = area.split_vertically(units(23));
     let (width, height) = head.dim_in_pixel();
@@ -61,8 +63,10 @@ pub fn headed<'a>(area: &Area<'a>, line: &str, style: TextStyle<'_>) -> Result<A
     Ok(rest)
 }
 
-/// Draws axes. Each has a quantity with its unit (empty if the chart below names it), a range, and
-/// a largest number of labels.
+/// Draws axes. Each has a quantity with its unit (empty if the chart below names it), a range from
+/// its first to its second number, and a largest number of labels. The first quantity is
+/// horizontal, and so is the first number of labels. Not checked: the ends of a range differ. An
+/// error means that the axes cannot be drawn.
 pub fn axes<'a>(
     area: &Area<'a>,
     (across, [left, right]): (&str, [f64; 2]),
@@ -104,8 +108,10 @@ fn plain(number: &f64) -> String {
     rounded.to_string().replace('-', "−")
 }
 
-/// Returns a figure as an SVG file. It has this width and height in units, and is drawn on white
-/// below its title and other lines. `draw` receives the area below them.
+/// Returns a figure as the text of an SVG file. It has this width and height in units, and is drawn
+/// on white below its title, the first of `lines`, and the other lines. Each line takes 23 units of
+/// the height. `draw` receives the area below them. An error is one of `draw`, or means that a line
+/// cannot be drawn.
 pub fn svg<const N: usize>(
     [width, height]: [u32; 2],
     lines: [&str; N],

@@ -16,27 +16,30 @@ const ROD: f64 = 0.25;
 const DURATION: f64 = 5.0;
 const POINTS: u32 = 1500;
 
-/// The angles of the linear motion and their envelopes at one time.
+/// The angles of the linear motion and their envelopes at one time. Arrays are in the order of the
+/// rods.
 #[derive(Clone, Copy, Debug)]
 pub struct CurvePoint {
     /// The time since the start, s.
     pub time: f64,
     /// The angles of the rods, degrees.
     pub angles: [f64; 2],
-    /// The largest swing of each angle at this time while the modes beat, degrees.
+    /// The largest swing of each angle to either side, from 0 on, at this time while the modes
+    /// beat, degrees.
     pub envelopes: [f64; 2],
 }
 
-/// Returns the normal modes of the figures: equal rods of 0.25 m in the gravity of the page. An
-/// error means that the mass ratio is not a positive number.
+/// Returns the normal modes of the figures: equal rods of 0.25 m in the gravity of the page.
+/// Frequencies are in rad/s. An error means that the mass ratio is not a positive number.
 pub fn modes(mass_ratio: f64) -> Result<Modes<f64>, Error> {
     Modes::new(&Parameters::equal_rods(mass_ratio, ROD, PAGE_GRAVITY))
 }
 
-/// Returns the motion from a1 = 0, a2 = 30 degrees, let go from rest.
+/// Returns the motion of `modes` from a1 = 0, a2 = 30 degrees, let go from rest: 1501 points in 5 s
+/// at equal intervals, the start and the end included. All angles are in degrees.
 ///
-/// The amplitude of A1 cos (w1 t + f1) + A2 cos (w2 t + f2) in each angle is sqrt(A1^2 + A2^2 + 2 A1
-/// A2 cos ((w1 - w2) t + f1 - f2)), rad. There are 1501 points in 5 s, the start and the end included.
+/// The amplitude of A1 cos (w1 t + f1) + A2 cos (w2 t + f2) in each angle is
+/// sqrt(A1^2 + A2^2 + 2 A1 A2 cos ((w1 - w2) t + f1 - f2)).
 pub fn points(modes: Modes<f64>) -> Vec<CurvePoint> {
     let motion = SmallOscillations::new(modes, &Motion::at_rest(0.0, FRAC_PI_6));
     let [fast, slow] = motion.amplitudes();
@@ -61,8 +64,8 @@ pub fn points(modes: Modes<f64>) -> Vec<CurvePoint> {
     (0..=POINTS).map(point).collect()
 }
 
-/// Returns figure `number`, both angles over time for a mass ratio, as an SVG file. `number` is
-/// only for the title. An error is one of [`modes`], or the figure cannot be drawn.
+/// Returns figure `number`, both angles over time for a mass ratio, as the text of an SVG file.
+/// `number` is only for the title. An error is one of [`modes`], or the figure cannot be drawn.
 pub fn figure(number: u32, mass_ratio: f64) -> Result<String> {
     let modes = modes(mass_ratio)?;
     let points = points(modes);
@@ -106,8 +109,8 @@ pub fn figure(number: u32, mass_ratio: f64) -> Result<String> {
     })
 }
 
-/// The mass ratios of figures 3 to 5. They are marked in figure 2, whose mass ratios range from 0
-/// to the last one. At 0 itself there are no modes.
+/// The mass ratios m2/m1 of figures 3 to 5. They are marked in figure 2, whose mass ratios range
+/// from 0 to the last one. At 0 itself there are no modes.
 pub const MASS_RATIOS: [f64; 3] = [0.2, 1.0, 5.0];
 const RATIOS: u32 = 500;
 

@@ -7,20 +7,21 @@ use firmware::scenes::flips::GREYS;
 use rayon::prelude::*;
 use vectors::{Search, flips};
 
-/// A rectangle of starts, a1 across and a2 upwards.
+/// A rectangle of starts, a1 across and a2 upwards. The fields are not checked.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Map {
     /// The pendulum. Its gravity equals its l1, so that times are in sqrt(l1/g).
     pub parameters: Parameters<f32>,
     /// The step, sqrt(l1/g).
     pub dt: f64,
-    /// The time limit, sqrt(l1/g).
+    /// The time limit, sqrt(l1/g), more than 1.
     pub limit: f32,
-    /// Pixels across and down.
+    /// Pixels across and down, each at least 1.
     pub size: [usize; 2],
-    /// The start in the middle of the map, rad.
+    /// The start in the middle of the map, a1, a2 in rad.
     pub centre: [f64; 2],
-    /// The distance from the middle to each side, rad.
+    /// The distance from the middle to each side, rad: the same across and upwards, so that pixels
+    /// are square only in a square map.
     pub half: f64,
     /// The searches with the step and with half of it. Both end at the limit.
     pub searches: [Search; 2],
@@ -39,9 +40,10 @@ const LEAST_PORTION: usize = 64;
 const PORTION_STEPS: f64 = 1e9;
 
 impl Map {
-    /// Returns the map of all starts, with the step that suits the pendulum, up to the time
-    /// `limit`, sqrt(l1/g). The gravity of the pendulum must equal its l1. An error means that
-    /// `f32` cannot represent the pendulum or the step.
+    /// Returns the map of all starts, from -pi to pi in both angles, with the step that suits the
+    /// pendulum, up to the time `limit`, sqrt(l1/g). An error means that the kernel refuses the
+    /// pendulum, or that `f32` cannot represent it or the step. Not checked: the gravity must equal
+    /// l1, `limit` must exceed 1, and `size` must not contain 0.
     pub fn new(parameters: Parameters<f32>, limit: f32, size: [usize; 2]) -> Result<Self, Error> {
         let dt = step_size(&parameters)?;
         let search = |dt: f64| Search::new(&parameters, dt, (f64::from(limit) / dt).ceil() as u32);
@@ -81,7 +83,7 @@ impl Map {
     }
 
     /// Returns the start at the middle of a pixel. `[0, 0]` is the top left pixel; the result is
-    /// a1, a2 in rad.
+    /// a1, a2 in rad. Not checked: the pixel must be in the map.
     pub fn start(&self, [column, row]: [usize; 2]) -> [f32; 2] {
         let Self {
             size: [width, height],
@@ -108,9 +110,10 @@ impl Map {
             .collect()
     }
 
-    /// Returns the flips of [`Map::starts`], in that order. `tick` is called by several threads.
-    /// Each call receives the number of starts that were completed by that thread since its last
-    /// call. An error means that an angle is not finite.
+    /// Returns the flips of [`Map::starts`], in that order. All processors compute, which may take
+    /// hours. `tick` is called by several threads. Each call receives the number of starts that
+    /// were completed by that thread since its last call. An error means that an angle is not
+    /// finite.
     pub fn points(&self, tick: impl Fn(usize) + Sync) -> Result<Vec<FlipPair>, Error> {
         let starts = self.starts();
 
@@ -130,7 +133,7 @@ impl Map {
     }
 
     /// Returns all pixels with the flips of their starts. `points` must come from [`Map::points`]
-    /// of this map. The pixels are row by row from the top left.
+    /// of this map; this panics if there are fewer. The pixels are row by row from the top left.
     pub fn shown(&self, points: &[FlipPair]) -> impl Iterator<Item = ([usize; 2], FlipPair)> {
         let rows = self.rows();
         let [width, height] = self.size;
@@ -158,7 +161,7 @@ impl Map {
     }
 
     /// Returns the position of a flip on the logarithmic scale from sqrt(l1/g) to the limit, 0 to
-    /// 1, or `None` if the flip has no time.
+    /// 1, or `None` if the flip has no time. A flip before sqrt(l1/g) is at 0.
     pub fn share(&self, flip: Flip<f32>) -> Option<f32> {
         match flip {
             Flip::After(time) => Some((time.ln() / self.limit.ln()).clamp(0.0, 1.0)),

@@ -89,8 +89,9 @@ pub struct FlipsOptions {
 /// minute or more.
 const ANNOUNCED_STEPS: f64 = 1e6;
 
-/// Computes the map, writes the file and prints how much of the map is uncertain. Options that
-/// cannot be used, and a file that cannot be written, are [`Refused`] before the computation.
+/// Computes the map, writes the file and prints how much of the map is uncertain. The file replaces
+/// an existing one when the map is complete. The computation may take hours. Options that cannot be
+/// used, and a file that cannot be written, are [`Refused`] before the computation.
 pub fn run(options: &FlipsOptions) -> Result<()> {
     let map = options
         .map()

@@ -9,9 +9,14 @@ use firmware::graphics::glyph;
 
 use super::map::{FlipPair, Map};
 
-/// Returns the content of a file with this name: a table if it ends in `.csv`, or else a PNG.
-/// `points` must come from `map`. With `doubt`, points of a picture whose time is uncertain
-/// ([`Map::differ`]) have their own colour.
+/// Returns the content of a file with this name: a table in CSV if it ends in `.csv`, in lower
+/// case, or else a PNG. Nothing is written. `points` must come from `map`; this panics if there are
+/// fewer.
+///
+/// The picture is as wide as the map and has a legend below it, whose parts that do not fit are
+/// left out. With `doubt`, points of a picture whose time is uncertain ([`Map::differ`]) have their
+/// own colour. The table has the angles, rad, and both times, sqrt(l1/g), of each pixel from the
+/// top left on. A time is empty if no rod can turn over, and `inf` if no rod does within the limit.
 pub fn file(name: &Path, map: &Map, points: &[FlipPair], doubt: bool) -> Result<Vec<u8>> {
     let pixels = map.shown(points);
     if name.extension().is_some_and(|end| end == "csv") {

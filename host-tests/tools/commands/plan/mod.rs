@@ -28,8 +28,8 @@ pub struct PlanOptions {
     scene: SceneOptions,
 }
 
-/// Prints the plan of the scene, or the reason why no plan was found. Only options that cannot be
-/// used are an error ([`Refused`]).
+/// Prints the plan of the scene, or the reason why no plan was found. Advice about the options goes
+/// to stderr. Only options that cannot be used are an error ([`Refused`]).
 pub fn run(PlanOptions { scene }: &PlanOptions) -> anyhow::Result<()> {
     let (problem, plan) = scene.plan().map_err(Refused::because)?;
     scene.start.advice().iter().for_each(complain);

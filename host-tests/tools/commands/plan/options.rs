@@ -88,8 +88,9 @@ pub struct SceneOptions {
 const HIGHEST: f64 = 1e6;
 
 impl SceneOptions {
-    /// Returns the scene with its plan, or with the limit that forbids any plan. An error is one
-    /// line that names the option and the value.
+    /// Returns the scene with its plan, or with the limit that forbids any plan. Lengths are in m,
+    /// angles in rad, times in s, costs in cycles. An error is one line that names the option and
+    /// the value; it is caused by a number out of range or by a built-in scene without a motion.
     ///
     /// The plan of a [linear](SceneName::is_linear) scene is the horizon of the linear motion.
     pub fn plan(&self) -> anyhow::Result<(Problem, Result<Plan, Limit>)> {

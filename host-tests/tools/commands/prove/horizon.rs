@@ -31,9 +31,10 @@ pub fn time(scene: &Problem, frame: u32) -> f64 {
 /// ends after a frame that is proved wrong, when the motion can no longer be enclosed, or when
 /// `stopped` is not zero. A drawn motion that diverges counts as proved wrong.
 ///
-/// The drawn motion is that of `scene`, by the method and steps per frame of `stepping`; the exact
-/// motion begins at `start`. An error means that the method does not accept the scene or the step,
-/// so that nothing is drawn.
+/// Each frame is computed when it is requested. The drawn motion is that of `scene`, by the method
+/// and steps per frame of `stepping`; the exact motion begins at `start`. An error means that the
+/// method does not accept the scene or the step, so that nothing is drawn. Not checked: `start`
+/// must be the start of `scene`.
 pub fn frames<'a>(
     scene: &Problem,
     start: &Start,
@@ -122,12 +123,13 @@ pub fn counts(frames: &[Verdict]) -> (u32, usize) {
 }
 
 impl Verdict {
-    /// Returns the row of the frame at `time`, s: the middles of the box that contains the exact
-    /// motion, the box's radius, and the verdict.
+    /// Returns the row of the frame at `time`, s, without a newline. Its cells are the time, the
+    /// middles of the box that contains the exact motion (sin a1, cos a1, sin a2, cos a2), the
+    /// largest radius of the box, and the verdict: "right", "wrong", or "open" if the frame is not
+    /// decided.
     ///
     /// The box refers to the printed numbers, read as decimals or as `f64`: its radius includes the
-    /// rounding of the middles and is rounded up. A frame that is not decided has the verdict
-    /// "open".
+    /// rounding of the middles and is rounded up.
     pub fn row(&self, time: f64) -> String {
         let middles = self
             .exact
@@ -226,8 +228,9 @@ const WIDE: f64 = 1e-12;
 const LENGTHS: f64 = 30.0;
 const MASSES: f64 = 1000.0;
 
-/// Returns the results of the proof, one line each. `frames` are all frames of [`frames`], and
-/// `stopped` is its argument. Times are in s since the start.
+/// Returns the results of the proof, one line each, without a newline at the end. Computes the
+/// motions with the same numbers on the panel, too, until `stopped`. `frames` are all frames of
+/// [`frames`], and `stopped` is its argument. Times are in s since the start.
 pub fn words(
     scene: &Problem,
     plan: &Result<Plan, Limit>,

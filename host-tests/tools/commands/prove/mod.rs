@@ -67,7 +67,8 @@ pub struct ProveOptions {
 }
 
 /// Prints the proof or the table. The exit code is a success for any result of the proof. If Ctrl-C
-/// ended the proof, it is the code of the signal. Options that cannot be used are [`Refused`].
+/// ended the proof, the frames so far are reported and it is the code of the signal, 130. Options
+/// that cannot be used are [`Refused`].
 pub fn run(options: &ProveOptions) -> anyhow::Result<ExitCode> {
     // Tables of many scenes, without a scene of the user.
     if options.table {

@@ -12,21 +12,23 @@ use crate::commands::plan::SceneOptions;
 use crate::oracle::known_answers::KnownAnswer;
 use console::number::Number;
 
-/// Returns the scenes that move, at least at the end: all with angles except the upright one.
+/// Returns the scenes that move, at least at the end: all with angles except the upright one, in
+/// the order of [`SceneName::ALL`].
 pub fn moving() -> impl Iterator<Item = &'static SceneName> {
     SceneName::ALL
         .iter()
         .filter(|name| name.has_angles() && **name != SceneName::Upright)
 }
 
-/// The heading of the table of horizons.
+/// The heading of the table of horizons: two lines of Markdown, without a newline at the end.
 pub const HEADING: &str = "\
 | scene | M3: plan | proved | M4F: plan | proved | M0+: plan | proved | open |
 | --- | --- | --- | --- | --- | --- | --- | --- |";
 
-/// Returns the table's line of one scene, with its predicted and proved horizons. Times are in s;
-/// "none" means that no method is fast enough for the chip. The last cell is the number of
-/// undecided frames on all chips.
+/// Returns the table's line of one scene, in Markdown and without a newline, with its predicted and
+/// proved horizons. Times are in s; "none" means that no method is fast enough for the chip. The
+/// last cell is the number of undecided frames on all chips. It takes seconds. An error means that
+/// the scene has no motion to plan.
 pub fn horizons(name: SceneName) -> Result<String> {
     // Each chip adds the predicted and the proved horizon.
     let mut cells = vec![name.name().to_owned()];
@@ -54,12 +56,13 @@ const RATE: u16 = 64;
 /// The largest number of digits that are written.
 const DIGITS: f64 = 33.0;
 
-/// Returns the known answers of one scene, one line each, computed from the given numbers. Each
-/// number has an error of at most two units of its last digit, except the growth of a small error,
-/// which is approximate.
+/// Returns the known answers of one scene, one line each, computed from the given numbers. The
+/// lines are as in the file, without newlines. Each number has an error of at most two units of its
+/// last digit, except the growth of a small error, which is approximate.
 ///
-/// `scene` has at least one row; its rows have the same start and ascending times, s. An error
-/// means that a number has too many digits, or that the enclosure becomes too wide.
+/// `scene` has at least one row, else this panics; its rows have the same start and ascending
+/// times, s, which is not checked. An error means that a number has too many digits, or that the
+/// enclosure becomes too wide.
 pub fn known_answers(scene: &[KnownAnswer]) -> Result<Vec<String>> {
     // The nine numbers after the name of the scene: the start and the pendulum.
     let exact = |text: &str| text.parse::<Number>().ok()?.exact();

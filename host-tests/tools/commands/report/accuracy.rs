@@ -8,8 +8,8 @@ use firmware::job::Request;
 use crate::oracle::trials::apart;
 use reference::taylor;
 
-/// A motion of equal rods and bobs from rest. Every number can be represented in `f32`, so that all
-/// arithmetics compute the same pendulum.
+/// A motion of equal rods (1 m) and bobs (1 kg) from rest. Every number can be represented in
+/// `f32`, so that all arithmetics compute the same pendulum.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scene {
     /// The name in tables and files.
@@ -43,7 +43,8 @@ pub const LONG: Scene = Scene {
     duration: 100,
 };
 
-/// The largest errors of a motion at the compared moments. Both are infinite if it has diverged.
+/// The largest errors of a motion at the compared moments; 0 if there are none. Both are infinite
+/// if it has diverged.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Error {
     /// The error of an angle, rad, without whole turns.
@@ -59,7 +60,8 @@ const LOST: Error = Error {
 };
 
 /// Returns the angles a1 and a2 of the exact motion after each of `steps` equal steps through a
-/// scene. Angles are in rad, with their whole turns.
+/// scene. The start is not among them. Angles are in rad, with their whole turns. 0 steps give an
+/// empty list.
 pub fn exact(scene: &Scene, steps: u32) -> Vec<[f64; 2]> {
     let Request {
         parameters,
@@ -82,8 +84,9 @@ fn samples(rate: u32) -> u32 {
         .unwrap_or(1)
 }
 
-/// Returns the request for `method` through `scene` with `rate` steps a second, at least 1. It
-/// requests [`SAMPLES`] states per second, or 2 or 1 if these do not fall on whole steps.
+/// Returns the request for `method` through `scene` with `rate` steps a second, at least 1, which
+/// is not checked. Gravity is rounded to `f32`. It requests [`SAMPLES`] states per second, or 2 or
+/// 1 if these do not fall on whole steps.
 pub fn request(method: Method, scene: &Scene, rate: u32) -> Request {
     Request {
         method,
@@ -110,7 +113,8 @@ const LOW: [u32; 3] = [16, 32, 64];
 
 /// Returns the numbers of steps a second to try with `method` in a scene: some small ones and all
 /// larger powers of two. The long scene is tried with the typical number only. The powers of two
-/// are from 2^7 to 2^`finest`.
+/// are from 2^7 to 2^`finest`, at most 31; the small numbers do not depend on `finest`. All numbers
+/// ascend.
 pub fn rates(method: Method, scene: &Scene, finest: u32) -> impl Iterator<Item = u32> {
     let few: &[u32] = if method.order() > 4 { &HIGH } else { &LOW };
     let all = few
@@ -121,7 +125,8 @@ pub fn rates(method: Method, scene: &Scene, finest: u32) -> impl Iterator<Item =
 }
 
 /// Returns the error of `method` in `steps` equal steps through the scene, compared after each
-/// step, or `None` as in [`error`]. A second need not be a whole number of steps.
+/// step, or `None` as in [`error`]. A second need not be a whole number of steps. 0 steps give
+/// `None`.
 pub fn error_after(method: Method, scene: &Scene, steps: u32) -> Option<Error> {
     let dt = f64::from(scene.duration) / f64::from(steps);
     let request = Request {
@@ -149,9 +154,11 @@ pub fn error(request: &Request, exact: &[[f64; 2]]) -> Option<Error> {
     }
 }
 
-/// Returns the largest error of both angles and of both bobs at all moments of `angles` (a1, a2 in
-/// rad). `exact` has the angles of these moments and possibly, equally often, of moments between
-/// them. The errors are infinite if an angle is not finite or if the kernel refuses the parameters.
+/// Returns the largest error, in rad and pixels of the panel, of both angles and of both bobs at
+/// all moments of `angles` (a1, a2 in rad). `exact` has the angles of these moments and possibly,
+/// equally often, of moments between them. The errors are infinite if an angle is not finite or if
+/// the kernel refuses the parameters. Not checked: with an `exact` that is shorter than `angles`,
+/// only its moments are compared.
 pub fn worst(parameters: &Parameters<f64>, angles: &[[f64; 2]], exact: &[[f64; 2]]) -> Error {
     let Ok(pendulum) = Pendulum::new(parameters) else {
         return LOST;

@@ -29,10 +29,10 @@ const LIMIT: Duration = Duration::from_secs(180);
 /// The method in Rust with the same equations.
 const TEXTBOOK: Method = Method::TextbookF32;
 
-/// Returns the costs and errors of every program on every board, through `scenes`: each with its
-/// exact angles (rad), [`SAMPLES`](super::accuracy::SAMPLES) per second. Also returns a line for
-/// each program that cannot be built, with the reason. A program that fails on the target is an
-/// error.
+/// Builds the programs into `target/peers-c`, runs them in QEMU, and returns the costs and errors
+/// of every program on every board, through `scenes`: each with its exact angles (rad),
+/// [`SAMPLES`](super::accuracy::SAMPLES) per second. Also returns a line for each program that
+/// cannot be built, with the reason. A program that fails on the target is an error.
 pub fn points(
     toolchain: &Toolchain,
     targets: &[Target],

@@ -40,7 +40,7 @@ impl Point {
 
     /// Returns true if another of `points` has, in the same scene and on the same board, neither
     /// more cycles per simulated second nor a larger error of an angle, and is better in at least
-    /// one of them.
+    /// one of them. The point itself may be among `points`.
     pub fn is_dominated(&self, points: &[Self]) -> bool {
         let error = self.error.angle;
         let cycles = self.cycles();
@@ -58,9 +58,11 @@ impl Point {
 }
 
 /// Returns the points of every method and of every program in C, through the scenes on all targets.
-/// The closed forms are left out, because their error comes from the linear equations. The long
-/// scene has the typical number of steps. Also returns a line for each missing program. An error
-/// means that QEMU or a program on a target fails.
+/// It runs QEMU for minutes. The closed forms are left out, because their error comes from the
+/// linear equations. The long scene has the typical number of steps only. The methods are in the
+/// order of [`Method::ALL`], and the programs in C are last. Also returns a line for each program
+/// in C that cannot be built, with the reason. An error means that QEMU or a program on a target
+/// fails.
 pub fn join(toolchain: &Toolchain, targets: &[Target]) -> Result<(Vec<Point>, Vec<String>)> {
     let scenes = [&SCENES[0], &SCENES[1], &LONG]
         .map(|scene| (scene, accuracy::exact(scene, SAMPLES * scene.duration)));
@@ -109,9 +111,9 @@ pub fn join(toolchain: &Toolchain, targets: &[Target]) -> Result<(Vec<Point>, Ve
     Ok((points, absent))
 }
 
-/// Returns the table of the report, a row for each point. Its titles name the units. A step is
-/// "resolved" if it is at most the admissible step of the motion. The verdict is "dominated"
-/// ([`Point::is_dominated`]) or "best".
+/// Returns the table of the report, a row for each point, in the order of `points`. Its titles name
+/// the units. A step is "resolved" if it is at most the admissible step of the motion. The verdict
+/// is "dominated" ([`Point::is_dominated`]) or "best".
 pub fn table(points: &[Point]) -> Table {
     let row = |point: &Point| {
         let Point {

@@ -47,9 +47,13 @@ pub struct ReportOptions {
     out: Option<PathBuf>,
 }
 
-/// Writes the table and the charts, and prints the advice. With `--readme` it is an error if a
-/// program in C could not be built; the READMEs are then not changed, but the other files are
-/// written.
+/// Measures, which takes minutes, writes the table and the charts into the folder of the options,
+/// and prints the advice. The folder is created, and existing files are replaced. Missing tools are
+/// installed.
+///
+/// With `--readme` the generated parts of the READMEs and the charts that they show are replaced,
+/// too. It is then an error if a program in C could not be built; the READMEs are not changed, but
+/// the other files are written.
 pub fn run(options: &ReportOptions) -> Result<()> {
     let toolchain = toolchain::set_up()?;
     let folder = options

@@ -27,8 +27,11 @@ use emulator::qemu::{Clock, Machine, Settings};
 use emulator::toolchain;
 
 /// Prints the table of methods or the motion, or writes it to the file of the options. Options that
-/// cannot be used are [`Refused`] before the first row. A motion that diverges later is an error
-/// after the rows before it; these are kept.
+/// cannot be used are [`Refused`] before the first row. With a board as the place, missing tools
+/// are installed and the board is emulated.
+///
+/// A motion that diverges later is an error after the rows before it; these are kept. The file
+/// replaces an existing one after the last row; if there is no row, it remains unchanged.
 pub fn run(options: &SimulateOptions) -> anyhow::Result<()> {
     if options.list {
         return Ok(say(list())?);

@@ -13,7 +13,8 @@ use console::cli::choice;
 use console::number::{Number, Pair};
 use emulator::boards::{BOARDS, Board};
 
-/// The place where the motion is computed: the firmware on an emulated board, or this program.
+/// The place where the motion is computed: the firmware on an emulated board, or, with `None`, this
+/// program.
 pub type Place = Option<&'static Board>;
 
 /// The name of this program as a place.
@@ -147,7 +148,8 @@ pub struct StartOptions {
 }
 
 impl StartOptions {
-    /// Returns the pendulum: kg, m, m/s^2.
+    /// Returns the pendulum in kg, m and m/s^2, each number rounded to `f64`. The numbers are not
+    /// checked.
     pub fn parameters(&self) -> Parameters<f64> {
         let [[m1, m2], [l1, l2]] = [&self.masses, &self.lengths].map(Pair::values);
         Parameters {
@@ -159,7 +161,8 @@ impl StartOptions {
         }
     }
 
-    /// Returns the start in rad and rad/s, converted from the units of the options.
+    /// Returns the start in rad and rad/s, converted from the units of the options. Without
+    /// `--angles` it is the usual start angle. The numbers are not checked.
     pub fn motion(&self) -> Motion<f64> {
         let radians = |angle: f64| {
             if self.degrees {
@@ -179,7 +182,7 @@ impl StartOptions {
     }
 
     /// Returns a line of advice if an angle looks like degrees: more than a turn, without
-    /// --degrees.
+    /// --degrees. Otherwise, and without `--angles`, returns `None`. Nothing is printed.
     pub fn advice(&self) -> Option<String> {
         let angles = self.angles.as_ref().filter(|_| !self.degrees)?;
         let largest = [&angles.0, &angles.1]

@@ -17,7 +17,7 @@ pub struct Plan {
     pub request: Request,
     /// The time between rows: row n is at n times this.
     pub every: Number,
-    /// A note for the user, printed before the rows.
+    /// A note for the user, which the caller prints before the rows; one line without a newline.
     pub note: Option<String>,
 }
 
@@ -36,8 +36,12 @@ struct Timing {
     samples: u32,
 }
 
-/// Checks all options before the first row. An error is one line that names the option and the
-/// value. It uses the step of the options, or else chooses one; the tolerance is not considered.
+/// Checks all options before the first row, and computes the first step on this computer. An error
+/// is one line that names the option and the value.
+///
+/// It uses the step of the options, or else chooses one; the tolerance is not considered. A time of
+/// the last row of 0 gives the start only. A step that may be too long for the motion is no error,
+/// but causes a note.
 pub fn plan(options: &SimulateOptions) -> anyhow::Result<Plan> {
     let until = &options.until;
     ensure!(

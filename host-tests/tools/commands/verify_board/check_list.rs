@@ -47,7 +47,8 @@ pub const CHECKS: &[Check] = &[
 pub const BLANK: &str = "(fill in)";
 
 /// Returns the check list of the board `name`: the observed restarts, and a row for each manual
-/// check.
+/// check of this board. A board that this project does not know has only the checks that every
+/// board needs. Nothing is sent.
 pub fn section(port: &Port, name: &str) -> Section {
     let note = "The board reports its restarts itself. Please fill in the other rows as the check \
                 list in `firmware/README.md` describes; leave rows that do not apply.";

@@ -44,8 +44,9 @@ fn request(method: Method, (_, m2, angle): (&str, f64, f64)) -> Request {
     }
 }
 
-/// Compares every method of the boards in both motions. A difference is a fault of the section. An
-/// error means that the board does not answer, refuses a request, or loses a sample.
+/// Compares every method of the boards in both motions, of 2 s each in steps of 1/256 s. A
+/// difference is a fault of the section. An error means that the board does not answer within 20 s,
+/// refuses a request, or loses a sample.
 pub fn methods(talk: &mut Talk) -> anyhow::Result<Section> {
     let note = "Motions from rest in steps of 1/256 s, computed by the board on request.";
     let mut section = Section::new("Bits", note, &["method", "motion", "steps", "bits"]);
@@ -124,9 +125,10 @@ fn sample(talk: &mut Talk, number: u16) -> anyhow::Result<(u32, Reading)> {
 /// The number of the requests whose steps are measured.
 const REQUEST: u16 = u16::MAX;
 
-/// Returns for every method of the boards, in the order of [`ON_BOARDS`], the average cycles of a
-/// step over the first second from rest: from flash and from RAM. `None` means that the board has
-/// no cycle counter or no copy of the method in RAM. Errors are as in [`Talk::next`].
+/// Measures on the board, and returns for every method of the boards, in the order of
+/// [`ON_BOARDS`], the average cycles of a step over the first second from rest: from flash and from
+/// RAM. `None` means that the board has no cycle counter or no copy of the method in RAM. Errors
+/// are as in [`Talk::next`].
 pub fn measured(talk: &mut Talk) -> anyhow::Result<Vec<[Option<f64>; 2]>> {
     ON_BOARDS
         .iter()
@@ -136,8 +138,9 @@ pub fn measured(talk: &mut Talk) -> anyhow::Result<Vec<[Option<f64>; 2]>> {
 
 /// Returns the section of the measured cycles ([`measured`]) with the estimate of `cargo count`.
 /// Instructions are counted in QEMU, on a board with the same processor; without such a board, or
-/// without a cycle counter, the estimates are left out. There are no faults. An error means that
-/// the tools are missing, or that the build or QEMU fails.
+/// without a cycle counter, the estimates are left out. `measured` is in the order of
+/// [`ON_BOARDS`]. There are no faults. Nothing is installed. An error means that the tools are
+/// missing, or that the build or QEMU fails.
 pub fn cycles(measured: &[[Option<f64>; 2]], board: Option<&Board>) -> anyhow::Result<Section> {
     let note = "Measured with the processor's cycle counter, interrupts off, over 256 steps of the \
                 regular motion: once with the code in flash and, if there is one, once with its \
@@ -227,9 +230,9 @@ const FRAMES: u32 = TICK_RATE;
 const PATIENCE: usize = 10 * FRAMES as usize;
 
 /// Plays every scene on the board, whose processor has a clock of `hertz` Hz, and compares a second
-/// of each. Faults are differences, and times that the clock cannot have measured. Dropped frames
-/// are no fault. An error means that the board is silent, or that too few of its frames can be
-/// compared.
+/// of each. The board is left in the last scene. Faults are differences, and times that the clock
+/// cannot have measured. Dropped frames are no fault. An error means that the board is silent for
+/// 20 s, or that too few of its frames can be compared.
 pub fn scenes(talk: &mut Talk, hertz: u32) -> anyhow::Result<Section> {
     let columns = &[
         "scene",

@@ -79,9 +79,13 @@ fn verdict(difference: Option<String>) -> String {
     difference.unwrap_or_else(|| "identical".to_owned())
 }
 
-/// Verifies the board and writes the report. Returns true if there was no fault. An error means
-/// that the board does not answer or refuses a request, a build fails, or the report cannot be
-/// written.
+/// Verifies the board, which takes minutes, asks the person at it, and writes the report over an
+/// existing file. The extension of its name is replaced by `md`. Prints the faults to stderr and
+/// the result to stdout. Returns true if there was no fault.
+///
+/// A port that cannot be opened is refused. Another error means that the board does not answer
+/// within 20 s or refuses a request, that a tool is missing or a build fails, or that the report
+/// cannot be written.
 pub fn run(options: &VerifyOptions) -> anyhow::Result<bool> {
     let mut talk = Talk::new(demo::port(&options.port)?)?;
     let identity = talk.ask(protocol::Command::Identify, |answer| {

@@ -30,8 +30,8 @@ pub struct Talk {
 }
 
 impl Talk {
-    /// Begins the conversation when the board has sent a frame. The error is that of
-    /// [`Talk::next`].
+    /// Begins the conversation when the board has sent a frame. Waits for at most 20 s. The error
+    /// is that of [`Talk::next`].
     pub fn new(port: Port) -> anyhow::Result<Self> {
         let mut talk = Self {
             port,
@@ -42,8 +42,8 @@ impl Talk {
     }
 
     /// Returns the value of `kind` for the next message that it accepts, and drops the others. A
-    /// refusal by the board is an error, and so is a wait of 20 s; that error contains the latest
-    /// notice of the port.
+    /// refusal by the board of any request is an error, and so is a wait of 20 s; that error
+    /// contains the latest notice of the port.
     pub fn next<M>(&mut self, kind: impl Fn(ToHost) -> Option<M>) -> anyhow::Result<M> {
         let since = Instant::now();
         let mut notice = None;
@@ -76,13 +76,14 @@ impl Talk {
         bail!(notice.unwrap_or(silence))
     }
 
-    /// Returns the next frame. Errors are as in [`Talk::next`].
+    /// Returns the next frame and drops the other messages before it. Errors are as in
+    /// [`Talk::next`].
     pub fn next_frame(&mut self) -> anyhow::Result<Frame> {
         self.next(ToHost::frame)
     }
 
     /// Returns the next answer to the request of this number for which `kind` returns `Some`, as
-    /// that value. Errors are as in [`Talk::next`].
+    /// that value. Drops the other messages before it. Errors are as in [`Talk::next`].
     pub fn answer<A>(
         &mut self,
         request: u16,
@@ -96,7 +97,8 @@ impl Talk {
         })
     }
 
-    /// Sends a command and returns its answer of this kind. Errors are as in [`Talk::next`].
+    /// Sends a command with the request number 0 and returns the value of `kind` for the first
+    /// answer to it that `kind` accepts. Errors are as in [`Talk::next`].
     pub fn ask<A>(
         &mut self,
         command: Command,
@@ -110,8 +112,9 @@ impl Talk {
 /// The number of frames that may still be in transmission when the person answers.
 const UNDER_WAY: u32 = 12;
 
-/// Asks the person about the panel and the buttons of the board `name`, in the scene `Page`, and
-/// waits for each answer without limit.
+/// Asks the person about the panel and the buttons of the board `name`, in the scene `Page`, which
+/// it starts. Prints the questions to stderr, reads the answers from stdin, and waits for each
+/// without limit while the board sends frames.
 ///
 /// A wrong panel is a fault, and so is a button whose tap does not start the motion again. A
 /// question without an answer, or a button that the board does not have, is no fault. Errors are as

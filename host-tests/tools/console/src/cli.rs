@@ -19,7 +19,8 @@ pub const REFUSED: u8 = 2;
 pub struct Refused(String);
 
 impl Refused {
-    /// Returns a refusal with the reason that is printed after `error: `.
+    /// Returns a refusal with the reason that [`main`] prints after `error: `. It should be one
+    /// line without a newline, which is not checked.
     pub fn because(reason: impl Display) -> Self {
         Self(reason.to_string())
     }
@@ -33,9 +34,13 @@ impl Display for Refused {
     }
 }
 
-/// Runs a command with the options of the command line. Prints an error to stderr if it fails, and
-/// returns its exit code: 2 for wrong options and [`Refused`], 1 for any other error, else that of
-/// the result of `run`. With `--help` it prints the help and does not call `run`.
+/// Runs a command with the options of the command line. If it fails, prints one line to stderr,
+/// `error: ` with the error and its causes. Returns the exit code: 2 for wrong options and
+/// [`Refused`], 1 for any other error, else that of the result of `run`. With `--help` it prints
+/// the help to stdout, returns success, and does not call `run`.
+///
+/// The first argument is left out if it is the name of the command without `cargo `, because cargo
+/// passes it.
 ///
 /// The reader of the output may stop at any time (`| head`). The command then ends quietly and with
 /// success.
@@ -64,23 +69,24 @@ pub fn main<Options: Parser, Done: Termination>(
     }
 }
 
-/// Returns the exit code of a command that checks for faults: success if `well`, else 1.
+/// Returns the exit code of a command that checks for faults: 0 if `well`, else 1.
 pub fn verdict(well: bool) -> ExitCode {
     ExitCode::from(u8::from(!well))
 }
 
-/// Prints a line of the command's result. If the output is closed, returns an error, and [`main`]
-/// then ends the command quietly.
+/// Prints a line of the command's result to stdout, with a newline. Any failure to print is an
+/// error. If the reader has closed the output, [`main`] then ends the command quietly.
 pub fn say(line: impl Display) -> io::Result<()> {
     writeln!(stdout(), "{line}")
 }
 
-/// Prints a line to standard error: an error, a warning, progress. A failure to print is ignored.
+/// Prints a line to standard error, with a newline: an error, a warning, progress. A failure to
+/// print is ignored.
 pub fn complain(line: impl Display) {
     let _ = writeln!(stderr(), "{line}");
 }
 
-/// Returns the refusal of a file that cannot be written.
+/// Returns the refusal of a file that cannot be written: `OPTION: cannot write PATH: ERROR`.
 pub fn unwritable(option: &str, path: &Path, error: &io::Error) -> Refused {
     Refused::because(format_args!(
         "{option}: cannot write {}: {error}",
@@ -88,7 +94,8 @@ pub fn unwritable(option: &str, path: &Path, error: &io::Error) -> Refused {
     ))
 }
 
-/// Returns a parser that accepts the names of these choices. The names must differ.
+/// Returns a parser that accepts the names of these choices. Case matters. The names must differ,
+/// which is not checked; of equal ones the first is taken.
 pub fn choice<Choice>(
     choices: impl IntoIterator<Item = Choice>,
     name: impl Fn(Choice) -> &'static str,
@@ -172,8 +179,8 @@ fn one_line(report: &str) -> String {
     line + &tip
 }
 
-/// Returns the option that sets the refused parameter of the pendulum or its display, or else
-/// `otherwise`. A diverged motion is no error of an option.
+/// Returns the option that sets the refused parameter of the pendulum or its display, such as
+/// `--masses`, or else `otherwise`. A diverged motion is no error of an option.
 pub fn option_of(error: &Error, otherwise: &'static str) -> &'static str {
     match error.parameter() {
         _ if matches!(error, Error::Diverged { .. }) => otherwise,

@@ -3,7 +3,8 @@
 use std::fmt;
 use std::str::FromStr;
 
-/// A finite number with its text.
+/// A number with its text. A number that was parsed is finite. It is printed as it was written;
+/// after [`Number::divided_by`], as a whole number, a fraction or a decimal.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Number {
     text: String,
@@ -22,7 +23,7 @@ const NOT_FINITE: &str = "must be a finite number";
 const ZERO_DENOMINATOR: &str = "the denominator is zero";
 
 impl Number {
-    /// Returns the number 1.
+    /// Returns the number 1, with the text `1`.
     pub fn one() -> Self {
         Self {
             text: "1".to_owned(),
@@ -44,21 +45,22 @@ impl Number {
         self.fraction
     }
 
-    /// Returns true if the nearest `f64` is greater than zero.
+    /// Returns true if the nearest `f64` is greater than zero. A positive number that is rounded to
+    /// 0 is not.
     pub fn is_positive(&self) -> bool {
         self.value > 0.0
     }
 
     /// Returns how many times `step` divides the number, computed exactly. Returns `None` if that
-    /// is not a whole number from 0 on, if `step` is zero, or if one of the exact values is
-    /// unknown.
+    /// is not a whole number from 0 to 2^63 - 1, if `step` is zero, or if one of the exact values
+    /// is unknown.
     pub fn whole_multiple_of(&self, step: &Number) -> Option<u64> {
         let (count, parts) = quotient(self.fraction?, step.fraction?)?;
         count.try_into().ok().filter(|_| parts == 1)
     }
 
-    /// Returns the number divided by `parts`; by 0 it is infinite or NaN. The exact value stays
-    /// known unless it becomes too long.
+    /// Returns the number divided by `parts`; by 0 it is infinite or NaN, without an exact value.
+    /// Otherwise the exact value stays known unless it becomes too long.
     pub fn divided_by(&self, parts: u32) -> Number {
         let fraction = self
             .fraction
@@ -77,7 +79,8 @@ impl Number {
     }
 
     /// Returns `count` times the number. It is the nearest `f64` if the exact value is known and
-    /// its numerator times `count` and its denominator have at most 53 bits each.
+    /// its numerator times `count` and its denominator have at most 53 bits each. It is infinite if
+    /// the product exceeds the range of `f64`.
     pub fn times(&self, count: u64) -> f64 {
         let count = count as f64;
         self.fraction.map_or(self.value * count, |(above, below)| {
@@ -171,12 +174,13 @@ fn nearest((above, below): Fraction) -> f64 {
     above as f64 / below as f64
 }
 
-/// Two numbers separated by a comma: one for each bob or rod.
+/// Two numbers separated by a comma: one for each bob or rod, number 1 first. Spaces around a
+/// number are accepted.
 #[derive(Clone, Debug)]
 pub struct Pair(pub Number, pub Number);
 
 impl Pair {
-    /// Returns the nearest `f64` numbers.
+    /// Returns the nearest `f64` numbers, in their order.
     pub fn values(&self) -> [f64; 2] {
         [self.0.value(), self.1.value()]
     }

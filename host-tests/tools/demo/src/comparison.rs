@@ -56,8 +56,9 @@ pub struct Comparison {
 
 impl Comparison {
     /// Takes a frame that has just arrived. Returns true if the host must send a request for the
-    /// board's scene. A frame of another scene, or with a smaller step number than the one before,
-    /// discards the frames that still wait. The answer goes to [`Comparison::status`].
+    /// board's scene: at the first frame without a known scene or with a difference in doubt, and
+    /// after every 60 more. A frame of another scene, or with a smaller step number than the one
+    /// before, discards the frames that still wait. The answer goes to [`Comparison::status`].
     pub fn frame(&mut self, frame: &Frame) -> bool {
         // Another scene or a smaller step number means that a new motion has begun on the board.
         let starts =
@@ -82,7 +83,8 @@ impl Comparison {
 
     /// Takes the board's report of its scene. If no scene is known, or if a difference is in doubt
     /// and the report is of another scene, the host starts the reported one. If a difference is in
-    /// doubt and the report is of the same scene, the difference is real.
+    /// doubt and the report is of the same scene, the difference is real. A scene that cannot start
+    /// on the host counts as not known. In all other cases the report changes nothing.
     pub fn status(&mut self, status: &Status) {
         // Only the start of the scene is compared. Its pause and speed do not matter.
         let start = Status {
@@ -111,7 +113,7 @@ impl Comparison {
     /// Compares the oldest waiting frame and returns it; its numbers may differ from the host's.
     /// Returns `None` if no frame waits, if the board has not reported its scene, if a difference
     /// is in doubt, or if the host's scene has not reached the frame yet; then it continues in the
-    /// next call.
+    /// next call, because a call advances the host by at most 2000 ticks.
     pub fn follow(&mut self) -> Option<Frame> {
         let (_, show) = self.playing.as_mut().filter(|_| self.doubt.is_none())?;
         let frame = self
@@ -153,7 +155,7 @@ impl Comparison {
         Screenshot::from(&canvas)
     }
 
-    /// Returns true if no frame waits to be compared.
+    /// Returns true if no frame waits to be compared, also before the first frame.
     pub fn is_settled(&self) -> bool {
         self.waiting.is_empty()
     }

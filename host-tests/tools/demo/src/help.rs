@@ -37,7 +37,7 @@ const NUMBERS: [(&str, &str); 10] = [
     ),
 ];
 
-/// Draws a page of the help over the whole terminal.
+/// Draws a page of the help over the whole terminal. With [`Help::Hidden`] it draws nothing.
 pub fn draw(frame: &mut Frame, page: Help) {
     let (title, text) = match page {
         Help::Hidden => return,

@@ -54,10 +54,14 @@ const NO_TERMINAL: &str = "no terminal: running headless; --record FILE.gif or -
 /// time.
 const LIMIT: [f64; 2] = [60.0, 20.0];
 
-/// Shows the board in the terminal, or runs it without one and prints a summary. Returns true if no
-/// bit differs from the host's and if, on an emulated board that is run frame by frame, nothing
-/// else went wrong. Options that cannot be served are [`Refused`]. It is another error if the
-/// emulator ends, if no frame arrives, or if a file cannot be written.
+/// Shows the board in the terminal until the user quits, or runs it without one and prints a
+/// summary to stdout. `--seconds` limits both; without a terminal the default is 10 s. Missing
+/// tools are installed, and the files of the options are replaced.
+///
+/// Returns true if no bit differs from the host's and if, on an emulated board that is run frame by
+/// frame, nothing else went wrong. Options that cannot be served are [`Refused`]. It is another
+/// error if a build fails, if the emulator ends, if no frame arrives, or if a file cannot be
+/// written. Without a terminal, a board at a port may be silent for 10 s.
 pub fn run(options: &DemoOptions) -> anyhow::Result<bool> {
     let is_live = !options.headless && stdout().is_terminal() && stdin().is_terminal();
     // All options are checked before anything is built.
@@ -90,8 +94,8 @@ pub fn run(options: &DemoOptions) -> anyhow::Result<bool> {
     finish(options, session)
 }
 
-/// Opens a serial port by its path, or the only one over USB for `auto`. The refusal is for
-/// `--port`.
+/// Opens a serial port by its path, or the only one over USB for `auto`, which waits up to 3 s for
+/// it. The refusal is for `--port`.
 pub fn port(name: &str) -> Result<Port, Refused> {
     Port::open(name).map_err(|reason| Refused::because(format_args!("--port {reason}")))
 }

@@ -20,8 +20,9 @@ use emulator::process;
 /// frame is no faster than a real one.
 const LOOK: Duration = Duration::from_nanos(1_000_000_000 / TICK_RATE as u64);
 
-/// Shows the board for this number of seconds of its clock, or until the user quits. An error means
-/// that the terminal or the board fails; the terminal is restored.
+/// Shows the board for this number of seconds of its clock, which may be infinite, or until the
+/// user quits. Ctrl-C and signals restore the terminal, too. An error means that the terminal or
+/// the board fails; the terminal is restored.
 pub fn watch(session: &mut Session, seconds: f64) -> anyhow::Result<()> {
     // Ctrl-C must leave a usable terminal.
     process::on_interrupt(|| {

@@ -80,8 +80,10 @@ impl OwnMotion {
 
     /// Returns the settings to play `scene` with, or `None` if no option is given.
     ///
-    /// Returns an error if the scene does not use an option, or if it cannot show the motion on
-    /// `processor`. The numbers are rounded to `f32`.
+    /// The given values replace those of the scene, rounded to `f32`. In the settings, angles are
+    /// in degrees and velocities in rad/s. Returns an error if the scene does not use an option, if
+    /// an angle is more than half a turn, or if the scene cannot show the motion on `processor`,
+    /// which includes a motion that is too fast for it.
     pub fn settings(
         &self,
         scene: SceneName,

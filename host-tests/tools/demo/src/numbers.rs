@@ -17,13 +17,13 @@ use super::readings::{Readings, energy_error};
 pub const NARROWEST: u16 = 15;
 /// The largest width, beyond which a value would be too distant from its name, in columns.
 const WIDEST: u16 = 24;
-/// The number of rows that the numbers need in the narrowest column.
+/// The number of rows that the numbers need in the narrowest column, without the bars.
 pub const ROWS: u16 = 13;
 /// The smallest scale of the bars. Smaller errors are mainly the rounding of the energy.
 const LEAST_SCALE: f32 = 1e-14;
 
-/// Draws the latest numbers in the area, and the bars below them if frames with angles have
-/// arrived.
+/// Draws the latest numbers in the area, of which it uses at most 24 columns, and the bars below
+/// them if frames with angles have arrived.
 pub fn draw(frame: &mut Frame, area: Rect, readings: &Readings) {
     let area = Rect {
         width: area.width.min(WIDEST),
@@ -170,7 +170,9 @@ fn within_half_a_turn(degrees: f64) -> f64 {
     degrees - 2.0 * HALF_TURN * ((degrees - HALF_TURN - ROUNDING) / (2.0 * HALF_TURN)).ceil()
 }
 
-/// Draws the chart of both angles, degrees, over the last 5 s of simulated time.
+/// Draws the chart of both angles, degrees, over the last 5 s of simulated time. `past` is in
+/// ascending order of time. Angles are within half a turn. Without reports the chart has only its
+/// axes.
 pub fn draw_angles(frame: &mut Frame, area: Rect, past: &[Report]) {
     // The chart shows the last `SPAN` seconds, and from the start before that time.
     let end = past.last().map_or(0.0, |last| last.time).max(SPAN);

@@ -89,7 +89,7 @@ fn after_help() -> String {
     )
 }
 
-/// Every key with its effect.
+/// Every key of the live view, several of them separated by ", ", with its effect.
 pub const KEYS: [(&str, &str); 10] = [
     ("up, down", "mass ratio m2/m1: next larger, next smaller"),
     ("left, right", "start angle of both rods by 1 degree"),
@@ -112,13 +112,13 @@ pub fn scene_key(place: usize) -> char {
         .unwrap_or(' ')
 }
 
-/// Returns the scene with this key, or `None` if no scene has it.
+/// Returns the scene with this key, or `None` if no scene has it. Capital letters are no such keys.
 pub fn scene_of_key(key: char) -> Option<SceneName> {
     let place = (0..SceneName::ALL.len()).find(|place| scene_key(*place) == key)?;
     SceneName::ALL.get(place).copied()
 }
 
-/// Returns what a scene shows, in one line.
+/// Returns what a scene shows, in one line without a newline.
 pub fn shows(scene: SceneName) -> &'static str {
     match scene {
         SceneName::Page => "the animation of math24.net: from 120 degrees, soon chaotic",
@@ -147,6 +147,7 @@ impl DemoOptions {
     /// Refuses requests that are known to fail before anything is built: files that cannot be
     /// written, a speed out of range, a method or a motion that the scene cannot show. The last two
     /// are not checked for a board at a port without `--scene`, whose scene is not known yet.
+    /// Existing files remain unchanged, and no new ones are left behind.
     pub fn check(&self) -> Result<(), Refused> {
         // The files must be writable.
         for (option, file) in [
@@ -189,7 +190,8 @@ impl DemoOptions {
     /// Returns the settings to start `scene` with, or `None` if the scene's own settings apply.
     ///
     /// Returns an error if the scene cannot show the motion or use the method. For a board at a
-    /// port the fastest processor class is assumed, so the board may still refuse them.
+    /// port the fastest processor class is assumed, so the board may still refuse them. In the
+    /// settings, angles are in degrees and velocities in rad/s.
     pub fn start(&self, scene: SceneName) -> Result<Option<Settings>, Refused> {
         let own = self.motion.settings(scene, self.processor())?;
         let settings = own.unwrap_or_else(|| scene.first_settings());
@@ -214,8 +216,9 @@ impl DemoOptions {
     }
 }
 
-/// Returns an error, the reason in words, if a scene with these settings does not use a method on
-/// this processor: it always uses another one, has no choice, is too slow with it, or refuses it.
+/// Starts the scene as a trial, without a board. Returns an error, the reason in words, if a scene
+/// with these settings does not use a method on this processor: it always uses another one, has no
+/// choice, is too slow with it, or refuses it.
 pub fn usable(
     method: Method,
     scene: SceneName,

@@ -21,8 +21,8 @@ use emulator::qemu::{HEIGHT, Screenshot, WIDTH};
 /// The smallest grey that is shown as a dot. Only the end of a fading trail is darker.
 const SET: u8 = 3;
 
-/// Draws the screenshot over the area: with a pixel in half a character if the area is wide enough,
-/// or else in Braille.
+/// Draws the screenshot over the area: with a pixel in half a character if the area has at least
+/// 128 columns, or else in Braille, without the three darkest greys.
 pub fn draw(frame: &mut Frame, area: Rect, screenshot: &Screenshot) {
     // A terminal that is wide enough shows every pixel in its grey.
     let in_greys = usize::from(area.width) >= WIDTH;
@@ -100,7 +100,9 @@ const UNCHANGED: u8 = 16;
 /// The unit of time in GIF: hundredths of a second.
 const GIF_RATE: i64 = 100;
 
-/// An animation that is being written.
+/// An animation that is being written, at most 30 pictures per second of the board, repeated for
+/// ever. The file is complete only after [`Recording::finish`]; if this is dropped before, an
+/// incomplete file remains.
 pub struct Recording {
     path: PathBuf,
     encoder: Encoder<BufWriter<File>>,
@@ -113,7 +115,8 @@ pub struct Recording {
 }
 
 impl Recording {
-    /// Creates the GIF file, or empties an existing one. An error means that it cannot be written.
+    /// Creates the GIF file, or empties an existing one. It has no picture yet. An error means that
+    /// it cannot be written.
     pub fn create(path: &Path) -> anyhow::Result<Self> {
         let file =
             File::create(path).with_context(|| format!("cannot write {}", path.display()))?;
@@ -131,15 +134,15 @@ impl Recording {
         })
     }
 
-    /// Returns true if a picture is to be added at this tick of the board's clock; always true
-    /// before the first picture.
+    /// Returns true if a picture is to be added at this tick of the board's clock, 1/60 s, which is
+    /// every second tick; always true before the first picture.
     pub fn is_due(&self, tick: i64) -> bool {
         self.due.is_none_or(|due| tick >= due)
     }
 
-    /// Adds the panel's picture from `tick` on, unless it comes too soon. The previous picture is
-    /// shown longer if this one is late. Ticks are of 1/60 s and ascend. An error means that the
-    /// file cannot be written; it is then removed.
+    /// Adds the panel's picture from `tick` on, unless it is not due ([`Recording::is_due`]). The
+    /// previous picture is shown longer if this one is late. Ticks are of 1/60 s and ascend. An
+    /// error means that the file cannot be written; it is then removed.
     pub fn add(&mut self, screenshot: &Screenshot, tick: i64) -> anyhow::Result<()> {
         if !self.is_due(tick) {
             return Ok(());
@@ -185,8 +188,8 @@ impl Recording {
             .map_err(|error| unwritten(&self.path, &cause(error)))
     }
 
-    /// Writes the rest of the file. Returns the file and the number of its pictures. If that is not
-    /// possible, removes the file and returns an error.
+    /// Writes the rest of the file. Returns the path of the file and the number of its pictures. If
+    /// that is not possible, removes the file and returns an error.
     pub fn finish(self) -> anyhow::Result<(PathBuf, usize)> {
         let Self {
             path,
@@ -232,7 +235,9 @@ fn magnified(screenshot: &Screenshot) -> Vec<u8> {
 }
 
 /// Reads an animation for tests. Returns the greys of each picture, one for each pixel of the
-/// panel, row by row, and its duration in hundredths of a second.
+/// panel, row by row, and its duration in hundredths of a second. Greys are from 0, black, to 15.
+/// It must be an animation of `cargo demo`, which is not checked. An error means that the file
+/// cannot be read or is no GIF.
 pub fn played(path: &Path) -> anyhow::Result<Vec<(Vec<u8>, u16)>> {
     let mut options = DecodeOptions::new();
     options.set_color_output(ColorOutput::Indexed);
@@ -256,7 +261,7 @@ pub fn played(path: &Path) -> anyhow::Result<Vec<(Vec<u8>, u16)>> {
     Ok(played)
 }
 
-/// Returns the screenshot as a PNG file, each pixel as a square of 3 by 3.
+/// Returns the screenshot as the bytes of a PNG file, each pixel as a square of 3 by 3.
 pub fn png(screenshot: &Screenshot) -> anyhow::Result<Vec<u8>> {
     let [width, height] = SIZE.map(u32::from);
     let mut file = Vec::new();

@@ -36,7 +36,7 @@ pub enum Help {
 }
 
 impl Help {
-    /// Returns the page after the key `?`.
+    /// Returns the page after the key `?`: the keys, then the numbers, then no page.
     pub fn next(self) -> Self {
         match self {
             Self::Hidden => Self::Keys,
@@ -64,7 +64,8 @@ pub struct Readings {
     pub start: Option<[f32; 2]>,
     /// The counts of the link.
     pub counts: Counts,
-    /// The state of the panel when the board was last asked.
+    /// The state of the panel when the board was last asked. It is `None` before, and for an
+    /// emulated board.
     pub panel: Option<PanelReport>,
     /// The reports since the start of the motion, oldest first. It is empty in scenes without
     /// angles. At most 12 s of frames are kept.
@@ -130,15 +131,16 @@ impl Readings {
     }
 
     /// Takes the board's report of its scene. It is needed because frames contain the start angle
-    /// of rod 1 only.
+    /// of rod 1 only. If the scene does not use the requested method, a warning is added to the
+    /// lines, once until the scene or the method changes.
     pub fn status(&mut self, status: &Status) {
         self.start = Some(status.settings.degrees);
         self.note_method(status);
         self.comparison.status(status);
     }
 
-    /// Takes the state of the panel. A change is written to the log. A change is a panel that is
-    /// found or lost, or begins or ceases to work well ([`link::is_well`]).
+    /// Takes the state of the panel. A change is added to the lines. A change is the first report,
+    /// or a panel that is found or lost, or begins or ceases to work well ([`link::is_well`]).
     pub fn panel(&mut self, report: &PanelReport) {
         let before = self.panel.replace(*report);
         // The panel has changed if it is found or lost, or begins or ceases to work well.
@@ -184,7 +186,7 @@ impl Readings {
         }
     }
 
-    /// Returns the number of frames that have arrived in the last second.
+    /// Returns the number of frames that have arrived in the last second of the host's clock.
     pub fn rate(&self) -> usize {
         self.arrivals
             .iter()
@@ -219,8 +221,9 @@ impl Readings {
             .collect()
     }
 
-    /// Returns the summary, a line for each number, of all scenes and restarts together. The
-    /// dropped frames, the method and the horizon are taken from the latest frame.
+    /// Returns the summary, a line for each number and no newline at the end, of all scenes and
+    /// restarts together. The dropped frames, the method and the horizon are taken from the latest
+    /// frame.
     pub fn report(&self) -> String {
         let Self {
             frames,
@@ -300,8 +303,8 @@ fn computed(frame: &Frame) -> String {
     }
 }
 
-/// Returns a relative energy error as text, formatted by `write`. If its size is below 4e-15, which
-/// is less than `f64` can show, the result is `< 4e-15`.
+/// Returns an energy error, relative to the energy above rest, as text, formatted by `write`. If
+/// its size is below 4e-15, which is less than `f64` can show, the result is `< 4e-15`.
 pub fn energy_error(error: f32, write: impl Fn(f32) -> String) -> String {
     if error.abs() < LEAST_ENERGY_ERROR {
         format!("< {LEAST_ENERGY_ERROR:.0e}")

@@ -49,8 +49,8 @@ impl Source {
         Ok(())
     }
 
-    /// Returns the lines of the log since the last call, or the notices of a port, and the counts
-    /// of the link.
+    /// Returns the lines of the log since the last call, or the notices of a port as warnings, and
+    /// the counts of the link.
     pub fn log_and_counts(&mut self) -> (Vec<LogLine>, Counts) {
         match self {
             Self::Live(machine) | Self::Lockstep(machine) => (machine.lines(), machine.counts()),
@@ -114,7 +114,7 @@ pub struct Session<'a> {
 }
 
 impl<'a> Session<'a> {
-    /// Returns a session before the first message.
+    /// Returns a session before the first message. Nothing is sent yet.
     pub fn new(options: &'a DemoOptions, source: Source, recording: Option<Recording>) -> Self {
         let readings = Readings::default();
         let screenshot = Screenshot::from_pages(&[]);
@@ -141,9 +141,9 @@ impl<'a> Session<'a> {
         }
     }
 
-    /// Receives the board's messages; a board that is run frame by frame runs to its next frame.
-    /// Asks the board for its scene whenever the comparison needs it. Draws and records the panel
-    /// of a board whose panel cannot be read.
+    /// Receives the board's messages; a board that is run frame by frame runs to its next frame,
+    /// others are not waited for. Asks the board for its scene whenever the comparison needs it.
+    /// Draws and records the panel of a board whose panel cannot be read.
     ///
     /// An error means that the user's options do not suit the board's scene or are refused by the
     /// board, that an emulator has ended, or that the recording cannot be written. The refusal of a
@@ -241,13 +241,15 @@ impl<'a> Session<'a> {
         ))
     }
 
-    /// Sends the command of a key. Only an emulator that has ended is an error.
+    /// Sends the command of a key and does not wait for its answer. Only an emulator that has ended
+    /// is an error.
     pub fn command(&mut self, command: Command) -> anyhow::Result<()> {
         self.source.send(KEY, command)
     }
 
     /// Sets the speed that `next` returns for the current one. Does nothing until the board has
     /// reported the current speed. At the last speed, `next` returns `None` and nothing changes.
+    /// Only an emulator that has ended is an error.
     pub fn change_speed(&mut self, next: fn(f32) -> Option<f32>) -> anyhow::Result<()> {
         let Some(speed) = self.readings.speed.and_then(next) else {
             return Ok(());

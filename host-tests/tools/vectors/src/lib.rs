@@ -7,16 +7,17 @@ use double_pendulum::flips::{Flip, Flips};
 use double_pendulum::{DirectionF32Plain, Error};
 use multiversion::multiversion;
 
-/// The kernel's search with the method whose steps cost least.
+/// The kernel's search with the method whose steps cost least. Angles are in rad, times in s.
 pub type Search = Flips<DirectionF32Plain>;
 
 /// The number of starts that are computed side by side: a vector of 8 with AVX2, two vectors of 4
 /// without.
 const LANES: usize = 8;
 
-/// Returns the flips of the starts (a1, a2 in rad), in their order, computed with the widest
-/// vectors of this processor. Times are in s. An error is one of the kernel's [`Flips`]: a start
-/// that it refuses, because an angle is not finite. There are then no results at all.
+/// Returns the first flip from rest at each of the starts (a1, a2 in rad), in their order, computed
+/// with the widest vectors of this processor. Times are in s. An error is one of the kernel's
+/// [`Flips`]: a start that it refuses, because an angle is not finite. There are then no results at
+/// all. No starts give an empty list. Only the calling thread computes.
 #[multiversion(targets("x86_64+avx2+bmi1+bmi2+fma+lzcnt+popcnt"))]
 pub fn flips(search: &Search, starts: &[[f32; 2]]) -> Result<Vec<Flip<f32>>, Error> {
     each(search, starts)
