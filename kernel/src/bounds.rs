@@ -7,9 +7,10 @@ use crate::small::Modes;
 
 /// The largest magnitudes that a motion of a given energy can reach.
 ///
-/// Each is reached by some motion of that energy. K is the energy above hanging at rest, J. The
-/// bounds follow from T <= K, T >= m1 v1^2/2 and T >= m2 v2^2/2, and from completing squares in T
-/// for each w and p alone. They are exact up to the rounding of K.
+/// Each is reached by some motion of that energy. K is the energy above hanging at rest, J; w1 and
+/// w2 are the angular velocities of the rods, and p1 and p2 the canonical momenta. The bounds
+/// follow from T <= K, T >= m1 v1^2/2 and T >= m2 v2^2/2, and from completing squares in T for each
+/// w and p alone. They are exact up to the rounding of K.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bounds<R> {
     /// |w1| <= sqrt(2 K/m1)/l1, rad/s.
@@ -62,6 +63,10 @@ impl<R: Real> Modes<R> {
 
     /// Refuses a step `dt` (s) that is NaN, infinite, zero, negative, out of the range of `R`, or
     /// longer than [`step_limit`](Self::step_limit).
+    ///
+    /// The errors are, in this order, [`Error::NotFinite`], [`Error::NotPositive`],
+    /// [`Error::OutOfRange`] for a step that is zero, subnormal or infinite in `R`, and
+    /// [`Error::TooLarge`] with the limit.
     pub fn check_step(&self, dt: f64) -> Result<(), Error> {
         check_forward::<R>(dt)?;
         let limit = self.step_limit().to_f64();
@@ -78,7 +83,7 @@ impl<R: Real> Modes<R> {
 
 impl<R: Real> Pendulum<R> {
     /// Returns the bounds of the motion through `state`, forwards and backwards in time. A state
-    /// that is not finite gives bounds that are NaN or infinite.
+    /// that is not finite, or an overflow, gives bounds that are NaN or infinite.
     #[must_use]
     pub fn bounds(&self, state: &State<R>) -> Bounds<R> {
         Bounds::new(self.parameters(), self.energy_above_rest(state))
@@ -88,7 +93,7 @@ impl<R: Real> Pendulum<R> {
     /// 2 g min((m1 + m2) l1, m2 l2).
     ///
     /// It is the height of the lower of the two saddles V(pi, 0) and V(0, pi) above min V. Without
-    /// gravity it is 0.
+    /// gravity it is 0. It is infinite if it overflows.
     #[must_use]
     pub fn turnover_energy(&self) -> R {
         // A torque of gravity is the weight on a rod times its length.
@@ -110,8 +115,8 @@ impl<R: Real> Pendulum<R> {
     /// Refuses the steps `dt` (s) that [`Modes::check_step`] refuses: steps that are not positive
     /// and finite, out of the range of `R`, or longer than [`Modes::step_limit`].
     ///
-    /// Without gravity, where no modes exist, there is no limit. Also refuses parameters whose
-    /// modes are out of range ([`Error::OutOfRange`]).
+    /// Without gravity, where no modes exist, there is no longest step. Also refuses parameters
+    /// whose modes are out of range ([`Error::OutOfRange`]).
     pub fn check_step(&self, dt: f64) -> Result<(), Error> {
         if self.parameters().g == R::ZERO {
             check_forward::<R>(dt)
@@ -171,7 +176,7 @@ impl<R: Real> Pendulum<R> {
     /// # Errors
     ///
     /// Refuses parameters whose modes are out of range ([`Error::OutOfRange`]). The state is not
-    /// checked; one that is not finite gives NaN or 0.
+    /// checked; one that is not finite, or whose bounds overflow, gives NaN or 0.
     pub fn admissible_step(&self, state: &State<R>) -> Result<R, Error> {
         Ok(R::from_f64(RESOLVED) / self.fastest_rate(state)?)
     }

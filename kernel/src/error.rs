@@ -50,7 +50,8 @@ pub enum Parameter {
     Duration,
     /// Frames per second.
     Rate,
-    /// Cost of a step or of its preparation, in the unit of the price list.
+    /// Cost of a step, of a frame by the closed form, or of preparing a motion, in the unit of the
+    /// price list.
     Cost,
     /// Largest allowed cost of computing a frame, or of planning, in the unit of the price list.
     Budget,
@@ -111,7 +112,7 @@ pub enum Error {
         parameter: Parameter,
         /// The refused value.
         value: f64,
-        /// The largest possible value.
+        /// The largest possible value; of a step, which may be negative, the largest magnitude.
         limit: f64,
     },
     /// The value is below a limit: gravity below 0, or a frequency ratio too small for the rods.

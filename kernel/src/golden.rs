@@ -70,7 +70,8 @@ const CHAOTIC: Golden = Golden {
     dt: DT,
 };
 
-/// The motions of every method: a regular and a chaotic one, each in both directions of time.
+/// The motions of every method: a regular and a chaotic one, each first forwards and then backwards
+/// in time, in steps of 1/240 s.
 pub const MOTIONS: [Golden; 4] = [
     REGULAR,
     Golden {
@@ -102,7 +103,8 @@ impl Golden {
     ///
     /// # Errors
     ///
-    /// Returns the errors of [`Pendulum::run`] and of [`Run::advance`](crate::Run::advance).
+    /// Returns the errors of [`Pendulum::new`], [`Pendulum::run`] and
+    /// [`Run::advance`](crate::Run::advance).
     pub fn bits<F: Form>(&self) -> Result<Bits, Error> {
         let pendulum = Pendulum::<f64>::new(&self.parameters)?;
         let mut run = pendulum.run::<F>(&self.start, self.dt)?.counting_turns();
@@ -123,8 +125,8 @@ impl Golden {
 
 /// A line of the file: a motion by a method, and its bits.
 ///
-/// Displays as the columns of [`HEADER`], the bits as 16 hexadecimal digits each, without a line
-/// feed.
+/// Displays as the columns of [`HEADER`], separated by commas, without a line feed. The checksum
+/// and the bits have 16 lower-case hexadecimal digits each.
 #[derive(Clone, Copy, Debug)]
 pub struct Line<'a>(pub Method, pub &'a Golden, pub Bits);
 
@@ -143,8 +145,8 @@ const FNV_PRIME: u64 = 0x0000_0100_0000_01b3;
 /// The FNV-1a hash of an empty sequence of bytes.
 pub const FNV_OFFSET: u64 = 0xcbf2_9ce4_8422_2325;
 
-/// Returns the FNV-1a hash of a sequence: `hash` is the hash of its earlier bytes, and `bytes` are
-/// the next ones (G. Fowler, L. C. Noll, K.-P. Vo).
+/// Returns the FNV-1a hash of a sequence: `hash` is the hash of its earlier bytes, at first
+/// [`FNV_OFFSET`], and `bytes` are the next ones (G. Fowler, L. C. Noll, K.-P. Vo).
 #[must_use]
 pub fn fnv_1a(hash: u64, bytes: &[u8]) -> u64 {
     bytes.iter().fold(hash, |hash, &byte| {

@@ -21,6 +21,9 @@ pub struct Mode<R> {
 /// frequencies solve det(K - w^2 M) = 0, that is
 /// (m1 + m2) g^2 - w^2 (m1 + m2)(l1 + l2) g + w^4 m1 l1 l2 = 0.
 ///
+/// Here and in the methods, w1 > w2 > 0 are the angular frequencies of the fast and the slow mode,
+/// rad/s, not the angular velocities of the rods.
+///
 /// The same two numbers are the growth rates about the inverted position (pi, pi), because K
 /// changes its sign there.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -36,7 +39,8 @@ pub struct Modes<R> {
 impl<R: Real> Modes<R> {
     /// Returns the modes of a pendulum.
     ///
-    /// With M = m1 + m2, s = l1 + l2, d = l1 - l2 and c = sqrt((m1 d^2 + m2 s^2)/M):
+    /// With M = m1 + m2 (here not the matrix), s = l1 + l2, d = l1 - l2 and
+    /// c = sqrt((m1 d^2 + m2 s^2)/M):
     ///
     /// - w1^2 = g M (s + c) / (2 m1 l1 l2) and w2^2 = 2 g / (s + c)
     /// - shape of w1: -M (c + d) / (2 m2 l2); shape of w2: 2 l1 / (c + d)
@@ -51,7 +55,8 @@ impl<R: Real> Modes<R> {
     ///
     /// Refuses:
     ///
-    /// - NaN, infinite, zero or negative masses and lengths, and gravity that is not positive;
+    /// - NaN, infinite, zero or negative masses and lengths, and gravity that is not positive and
+    ///   finite;
     /// - by [`Error::OutOfRange`], parameters whose frequencies, shapes or exchange frequency
     ///   overflow, underflow or are subnormal in `R`.
     pub fn new(parameters: &Parameters<R>) -> Result<Self, Error> {
@@ -127,15 +132,15 @@ impl<R: Real> Modes<R> {
 
 impl<R: Real> Pendulum<R> {
     /// Returns the stiffness matrix K of small oscillations, N m/rad, row by row:
-    /// diag((m1 + m2) g l1, m2 g l2).
+    /// diag((m1 + m2) g l1, m2 g l2). It is zero without gravity.
     #[must_use]
     pub fn stiffness(&self) -> [[R; 2]; 2] {
         let [k1, k2] = self.torque;
         [[k1, R::ZERO], [R::ZERO, k2]]
     }
 
-    /// Returns the normal modes ([`Modes::new`]). Refuses zero gravity, and modes out of the range
-    /// of `R`.
+    /// Returns the normal modes ([`Modes::new`]). Refuses zero gravity, by [`Error::NotPositive`],
+    /// and modes out of the range of `R`, by [`Error::OutOfRange`].
     pub fn modes(&self) -> Result<Modes<R>, Error> {
         Modes::new(self.parameters())
     }
@@ -149,13 +154,15 @@ impl<R: Real> Pendulum<R> {
 /// mu = (p^2 l1 - q^2 l2)(p^2 l2 - q^2 l1) / (p q (l1 + l2))^2,
 ///
 /// which follows from (w1/w2 + w2/w1)^2 = (1 + mu)(l1 + l2)^2/(l1 l2). For equal rods it is
-/// mu = ((r^2 - 1)/(2r))^2 with r = p/q. The common period is 2 pi p/w1 = 2 pi q/w2.
+/// mu = ((r^2 - 1)/(2r))^2 with r = p/q. A common period is 2 pi p/w1 = 2 pi q/w2, s, and the
+/// shortest one if p and q have no common factor.
 ///
 /// # Errors
 ///
 /// Refuses lengths that are not positive and finite, lengths whose terms in the formula leave the
-/// range of `R`, and a `slow` of 0. Also refuses a ratio p/q that no masses can give, by
-/// [`Error::TooSmall`]: it must exceed the square root of the longer rod over the shorter rod.
+/// range of `R` ([`Error::OutOfRange`]), and a `slow` of 0 ([`Error::NotFinite`]). Also refuses a
+/// ratio p/q that no masses can give, such as 0, by [`Error::TooSmall`]: it must exceed the square
+/// root of the longer rod over the shorter rod.
 pub fn periodic_mass_ratio<R: Real>(fast: u16, slow: u16, lengths: [R; 2]) -> Result<R, Error> {
     // Only the lengths can be wrong here.
     let [l1, l2] = lengths;

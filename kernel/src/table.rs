@@ -66,7 +66,7 @@ impl fmt::Display for Numbers {
 pub enum Integrator {
     /// The classical Runge-Kutta method.
     Rk4,
-    /// W. B. Gragg's extrapolation, of any even order.
+    /// W. B. Gragg's extrapolation, of an even order from 2 to 16.
     Extrapolation,
     /// The solution at any time, without steps.
     ClosedForm,
@@ -82,7 +82,8 @@ impl fmt::Display for Integrator {
     }
 }
 
-/// The ways to compute a motion. [`Method::visit`] lists the type that computes each.
+/// The ways to compute a motion. Displays as the name. [`Method::visit`] calls generic code with
+/// the type that computes each.
 ///
 /// | name | equations | numbers | integrator | order | scenes are drawn by it |
 /// |---|---|---|---|---|---|

@@ -12,7 +12,7 @@ pub struct Falling<F: Form> {
     /// The sides of the rods after the last step
     /// ([`sides`](crate::methods::FormOperations::sides)).
     sides: [[i32; 2]; 2],
-    /// The number of steps since the start.
+    /// The number of steps since the start, without the step of the flip.
     pub steps: u32,
 }
 
@@ -22,7 +22,8 @@ impl<F: Form> Falling<F> {
     ///
     /// # Errors
     ///
-    /// Refuses angles that are not finite, and by the closed form 2^31 - 1 turns or more.
+    /// Refuses angles that are not finite and, by the closed form, a start from which an angle may
+    /// exceed 2^31 - 1 turns.
     pub fn start(map: &Flips<F>, a1: F::Real, a2: F::Real) -> Result<Option<Self>, Error> {
         let state = State::at_rest(a1, a2);
         state.check()?;
@@ -40,8 +41,11 @@ impl<F: Form> Falling<F> {
     }
 
     /// Computes at most `steps` steps. Returns the result once it is known, and `None` until then:
-    /// [`Flip::After`], or [`Flip::Later`] after all steps of `map`, which must be the map of the
-    /// start; this is not checked. It is not to be called again after a result.
+    /// [`Flip::After`], or [`Flip::Later`] in the first call that would exceed the steps of `map`.
+    /// After exactly these steps, and for 0 `steps`, the result is `None`.
+    ///
+    /// `map` must be the map of the start, and the method must not be called again after a result;
+    /// neither is checked.
     pub fn advance(&mut self, map: &Flips<F>, steps: u32) -> Option<Flip<F::Real>> {
         for _ in 0..steps {
             if self.steps >= map.steps {

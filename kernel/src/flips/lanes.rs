@@ -47,7 +47,8 @@ struct Stage<const N: usize> {
 ///
 /// Each stage is computed for all rows before the next stage of any row. A stage must wait for the
 /// one before it, and meanwhile the processor computes the other rows. The caller restores the
-/// lengths and leaves out steps exactly when a single motion would.
+/// lengths and leaves out steps exactly when a single motion would. `N` must not be 0, otherwise
+/// [`put`](Self::put) and [`keep`](Self::keep) panic.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct DirectionLanes<const N: usize, const ROWS: usize> {
     constants: Constants<N>,
@@ -76,7 +77,7 @@ impl<const N: usize, const ROWS: usize> DirectionLanes<N, ROWS> {
     }
 
     /// Puts another motion of the same pendulum and step into a lane, counted from 0 through all
-    /// rows. Ignores a lane that does not exist.
+    /// rows. Ignores a lane that does not exist. The pendulum and the step are not checked.
     pub fn put(&mut self, lane: usize, motion: &DirectionF32Plain) {
         let (_, _, z, inverse) = motion.parts();
         let numbers = z.into_iter().chain([inverse]);
@@ -85,7 +86,8 @@ impl<const N: usize, const ROWS: usize> DirectionLanes<N, ROWS> {
         }
     }
 
-    /// Resets a lane to its motion in `before`. Ignores a lane that does not exist.
+    /// Resets a lane, counted from 0 through all rows, to its motion in `before`. Ignores a lane
+    /// that does not exist.
     pub fn keep(&mut self, lane: usize, before: &mut Self) {
         for (place, number) in self.lane(lane).zip(before.lane(lane)) {
             *place = *number;

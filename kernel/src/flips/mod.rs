@@ -63,7 +63,7 @@ pub struct Flips<F: Form> {
 ///
 /// It is twice the [admissible step](Pendulum::admissible_step) from straight up. With a light bob
 /// 2 it is shorter, so that [`Fixed32`] accepts it. Without gravity, where nothing moves, it is
-/// infinite, and [`Flips::new`] refuses it.
+/// infinite; it is 0 if the energy overflows in `R`. [`Flips::new`] refuses both.
 ///
 /// # Errors
 ///
@@ -89,9 +89,10 @@ impl<F: Form> Flips<F> {
     ///
     /// # Errors
     ///
-    /// Refuses the parameters and steps that the method `F` refuses, among them a step that is NaN,
-    /// infinite or zero and, in fixed point, a step that is too long for the energy of the highest
-    /// start. Other methods accept a step beyond the limit of stability.
+    /// Refuses the parameters that [`Pendulum::new`] refuses, and the parameters and steps that the
+    /// method `F` refuses, among them a step that is NaN, infinite or zero and, in fixed point, a
+    /// step that is too long for the energy of the highest start. Other methods accept a step
+    /// beyond the limit of stability.
     pub fn new(parameters: &Parameters<F::Real>, dt: f64, steps: u32) -> Result<Self, Error> {
         // The units must fit the start with the most energy: both rods upright.
         let highest = F::new(
@@ -108,10 +109,12 @@ impl<F: Form> Flips<F> {
     }
 
     /// Returns the first flip of the motion that is released at rest at the angles `a1`, `a2`, rad.
+    /// It computes steps until the flip, or all steps of the map.
     ///
     /// # Errors
     ///
-    /// Refuses angles that are not finite, and by the closed form 2^31 - 1 turns or more.
+    /// Refuses angles that are not finite and, by the closed form, a start from which an angle may
+    /// exceed 2^31 - 1 turns.
     pub fn of(&self, a1: F::Real, a2: F::Real) -> Result<Flip<F::Real>, Error> {
         let Some(mut falling) = Falling::start(self, a1, a2)? else {
             return Ok(Flip::Never);

@@ -14,11 +14,11 @@ pub trait Derivatives<R: Real>: Copy + Debug + PartialEq + 'static {
     /// Prepares the equations. Refuses the parameters that [`Pendulum::new`] refuses.
     fn prepare(parameters: &Parameters<R>) -> Result<Self, Error>;
     /// Returns the time derivatives of z = (a1, a2, p1, p2), in rad/s and N m, where z is in rad
-    /// and kg m^2/s.
+    /// and kg m^2/s. `z` is not checked: one that is not finite gives NaN or infinity.
     fn derivatives(&self, z: &[R; 4]) -> [R; 4];
 }
 
-/// Hamilton's equations ([`Pendulum::derivatives`]).
+/// Hamilton's equations ([`Pendulum::derivatives`]), which [`Canonical`] integrates by default.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hamilton<R>(Pendulum<R>);
 
@@ -40,14 +40,16 @@ pub trait RungeKutta: Copy + Debug + PartialEq + 'static {
     const ORDER: u32;
 
     /// The largest phase w dt, rad, of a stable step, where w is the frequency of an oscillation.
+    /// [`Pendulum::run`] refuses longer steps.
     const STABLE: f64;
 
-    /// Computes one step for z' = f(z): returns the state a time `dt` after `z`. A negative `dt`
-    /// steps backwards. The inputs are not checked.
+    /// Computes one step for z' = f(z): returns the state a time `dt` after `z`, in the unit of
+    /// time of f. A negative `dt` steps backwards. The inputs are not checked; NaN gives NaN.
     fn step<R: Real, const N: usize>(f: impl Fn(&[R; N]) -> [R; N], z: &[R; N], dt: R) -> [R; N];
 }
 
-/// The classical Runge-Kutta method, as the integrator of [`Canonical`].
+/// The classical Runge-Kutta method ([`rk4::step`]), as the integrator of [`Canonical`]. Its order
+/// is 4 and its largest stable phase 2 sqrt(2) rad.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rk4;
 
@@ -61,7 +63,7 @@ impl RungeKutta for Rk4 {
 }
 
 /// A motion on the equations `E` by the integrator `I`. It carries the state (a1, a2, p1, p2) only,
-/// in SI units. A step is dt rounded to `R`.
+/// in SI units. Its angles include whole turns. A step is dt rounded to `R`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Canonical<R, E = Hamilton<R>, I = Rk4> {
     equations: E,

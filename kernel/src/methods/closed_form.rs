@@ -19,7 +19,8 @@ pub(crate) struct Oscillation<R> {
 
 impl<R: Real> Oscillation<R> {
     /// Returns the amplitude of rod 1, sqrt(C^2 + S^2), rad. The amplitude of rod 2 is the
-    /// magnitude of the mode's shape times this. NaN gives NaN.
+    /// magnitude of the mode's shape times this. It is infinite if a square overflows. NaN gives
+    /// NaN.
     pub fn amplitude(&self) -> R {
         (self.cosine * self.cosine + self.sine * self.sine).sqrt()
     }
@@ -37,6 +38,10 @@ impl<R: Real> Oscillation<R> {
 ///
 /// - a1(t) = C1 cos w1 t + S1 sin w1 t + C2 cos w2 t + S2 sin w2 t
 /// - a2(t) = r1 (C1 cos w1 t + S1 sin w1 t) + r2 (C2 cos w2 t + S2 sin w2 t)
+///
+/// Here w1 and w2 are angular frequencies, rad/s, not the angular velocities of a [`Motion`]. C1,
+/// S1, C2 and S2 are constants of the motion, rad, not the S and C of the direction form. A shape
+/// is the ratio a2/a1 of the angles in its mode.
 ///
 /// It is the limit of the exact motion for small angles. With equal rods of 0.25 m, equal masses,
 /// and only rod 2 at 30 degrees, the two are 1 degree apart after 0.07 s. From 5 degrees they stay
@@ -64,8 +69,8 @@ impl<R: Real> SmallOscillations<R> {
     /// C1 = (r2 a1 - a2)/(r2 - r1) and C2 = (a2 - r1 a1)/(r2 - r1). w1 S1 and w2 S2 follow in the
     /// same way from the angular velocities.
     ///
-    /// `modes` must be the modes of the pendulum. Nothing is checked: a start that is not finite
-    /// gives angles that are NaN or infinite.
+    /// `modes` must be the modes of the pendulum. Nothing is checked: a start that is not finite,
+    /// or modes out of the range of `R`, give angles that are NaN or infinite.
     #[must_use]
     pub fn new(modes: Modes<f64>, start: &Motion<R>) -> Self {
         let turns = [modes.fast, modes.slow].map(|mode| mode.frequency / core::f64::consts::TAU);
@@ -109,9 +114,11 @@ impl<R: Real> SmallOscillations<R> {
         linear
     }
 
-    /// Returns the amplitudes of rod 1 in the fast and in the slow mode, sqrt(C^2 + S^2), rad.
+    /// Returns the amplitudes of rod 1 in the fast and in the slow mode, rad: sqrt(C1^2 + S1^2) and
+    /// sqrt(C2^2 + S2^2).
     ///
-    /// The amplitudes of rod 2 are the shapes r of the modes times these.
+    /// The amplitudes of rod 2 are these times the magnitudes of the shapes r of the modes. An
+    /// amplitude is infinite if a square overflows, and NaN if the start was not finite.
     #[must_use]
     pub fn amplitudes(&self) -> [R; 2] {
         [self.fast, self.slow].map(|mode| mode.amplitude())
@@ -119,7 +126,9 @@ impl<R: Real> SmallOscillations<R> {
 
     /// Returns the phases of the fast and of the slow mode at the start, rad, in [-pi, pi].
     ///
-    /// C cos wt + S sin wt = A cos(wt + phase), where A is the [amplitude](Self::amplitudes).
+    /// For each mode, C cos wt + S sin wt = A cos(wt + phase), where A is the
+    /// [amplitude](Self::amplitudes). The phase of a mode with A = 0 is 0, or plus or minus pi. NaN
+    /// gives NaN.
     #[must_use]
     pub fn phases(&self) -> [R; 2] {
         [self.fast, self.slow].map(|mode| mode.phase())
@@ -132,10 +141,13 @@ impl<R: Real> SmallOscillations<R> {
         [fast + slow, of_fast * fast + of_slow * slow]
     }
 
-    /// Returns the angles and angular velocities a time `t`, s, after the start.
+    /// Returns the angles, rad, and angular velocities, rad/s, of both rods at a time `t`, s, after
+    /// the start.
     ///
-    /// `t` may be negative. The phase w t is reduced to a turn in `f64`. Its error grows as the
-    /// rounding error of w t in `f64`, to 1e-9 rad in a day. A `t` that is not finite gives NaN.
+    /// The angles include whole turns. `t` may be negative. A `t` that is not finite gives NaN.
+    ///
+    /// The phase w t is reduced to a turn in `f64`. Its error grows as the rounding error of w t in
+    /// `f64`, to 1e-9 rad in a day.
     #[must_use]
     pub fn at(&self, t: f64) -> Motion<R> {
         let phases = self.sincos(t);
@@ -153,7 +165,8 @@ impl<R: Real> SmallOscillations<R> {
         }
     }
 
-    /// Returns the directions of both rods, (sin, cos) each, a time `t`, s, after the start.
+    /// Returns the directions of rod 1 and rod 2, (sin, cos) each, a time `t`, s, after the start.
+    /// `t` may be negative.
     ///
     /// If the sums of the amplitudes, which no angle exceeds, are at most 0.6 rad, the first terms
     /// of the series are used: sin a = a - a^3/6 and cos a = 1 - a^2/2 + a^4/24. The error is
@@ -203,7 +216,10 @@ impl<R: Real> SmallOscillations<R> {
 /// A motion by the closed form: the [`SmallOscillations`] of a pendulum, computed at the time of
 /// each step.
 ///
-/// [`Pendulum::run`] refuses a pendulum without gravity for it. There is no longest step.
+/// [`Pendulum::run`] refuses for it a pendulum without gravity, and a start from which an angle may
+/// exceed 2^31 - 1 turns. There is no longest step. The angles of the state include whole turns.
+/// Its momenta follow from the linear angles and angular velocities by [`Pendulum::to_state`], so
+/// that its energy H, unlike the energy of the linear equations, is not constant.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ClosedForm<R> {
     parameters: Parameters<f64>,

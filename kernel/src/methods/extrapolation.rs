@@ -109,7 +109,8 @@ impl<R: Real> Extrapolation<R> {
     /// Computes one step for z' = f(z): returns the state a time `dt` after `z`.
     ///
     /// A negative `dt` steps backwards. The inputs are not checked; NaN gives NaN. The unit of time
-    /// is that of f.
+    /// is that of f. A step that is too long for f gives a meaningless state;
+    /// [`Pendulum::run`](crate::Pendulum::run) lists the limits for an oscillation.
     ///
     /// ```
     /// use double_pendulum::Extrapolation;

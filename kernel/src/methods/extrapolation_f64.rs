@@ -38,7 +38,8 @@ type Numbers = Lanes<f64, LANES>;
 ///
 /// The sums of the state are compensated: the rounding error of each is carried into the next. The
 /// lengths of the directions are restored after every step. Angles are within (-pi, pi];
-/// [`Run`](crate::Run) counts the turns on request.
+/// [`Run`](crate::Run) counts the turns on request. [`Pendulum::run`](crate::Pendulum::run) lists
+/// the longest steps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ExtrapolationF64<const ORDER: u32> {
     coefficients: Coefficients<f64>,

@@ -47,10 +47,10 @@ use rows::{EIGHTH, Rows, unit_of_time};
 /// A motion in the direction form, stepped by extrapolation of order `ORDER`, 2, 4 .. 16, in 64-bit
 /// fixed point.
 ///
-/// The method accepts any start, and any masses and rods whose scaled ratios are below about 4,000.
-/// Others are refused with an error that names the parameter. It also refuses a step of more than
-/// 15 of its units of time, or a step that would turn a rod by more than 1.5 rad at the fastest
-/// rate; the error contains the longest possible step.
+/// The method accepts any start of finite energy, and any masses and rods whose scaled ratios are
+/// below about 4,000. Other ratios are refused with an error that names the parameter. It also
+/// refuses a step of more than 15 of its units of time, or a step that would turn a rod by more
+/// than 1.5 rad at the fastest rate; the error contains the longest possible step, s.
 ///
 /// An order that is not 2, 4 .. 16 does not compile:
 ///

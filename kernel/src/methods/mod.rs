@@ -42,7 +42,7 @@ use crate::pendulum::{Direction, Parameters, Pendulum, State};
 /// A step is dt rounded to `f32`. The motion is ahead of the time or behind it by up to 6e-8 of the
 /// time, which nothing takes back.
 pub type HamiltonF32 = Canonical<f32>;
-/// RK4 on Hamilton's equations in angles and momenta, in `f64`: `rk4-f64`.
+/// RK4 on Hamilton's equations in angles and momenta, in `f64`: `rk4-f64`. A step is dt exactly.
 pub type HamiltonF64 = Canonical<f64>;
 /// RK4 in the direction form, in `f32` with compensated sums: `rk4-f32-direction`.
 ///
@@ -88,7 +88,8 @@ pub trait FormOperations: Copy + Debug + PartialEq + 'static {
     type Real: Real;
 
     /// The largest phase w1 dt, rad, of a stable step; w1 is the frequency of the fast normal mode.
-    /// [`Pendulum::run`](crate::Pendulum::run) refuses longer steps.
+    /// [`Pendulum::run`](crate::Pendulum::run) refuses longer steps. It is infinite if the method
+    /// has no such limit, or applies it in [`new`](Self::new).
     const STABLE: f64 = RK4_STABLE;
 
     /// True if [`check`](Self::check) refuses every energy that is far too large, and every
@@ -102,32 +103,36 @@ pub trait FormOperations: Copy + Debug + PartialEq + 'static {
     /// # Errors
     ///
     /// Refuses the inputs that [`Pendulum::run`](crate::Pendulum::run) refuses, except a step
-    /// beyond [`STABLE`](Self::STABLE) and a start of too many turns.
+    /// beyond [`STABLE`](Self::STABLE), a start of too many turns (only the closed form refuses
+    /// it), and some parameters that only [`Pendulum::new`](crate::Pendulum::new) refuses.
     fn new(parameters: &Parameters<f64>, start: &State<f64>, dt: f64) -> Result<Self, Error>;
 
-    /// Returns a motion of the same pendulum from another start, in the same units and steps. Its
-    /// energy must not exceed the energy of the start in [`new`](Self::new). This is not checked;
-    /// in fixed point the numbers may then leave their range.
+    /// Returns a motion of the same pendulum from another start, in the same units and steps,
+    /// counted from 0. Its energy must not exceed the energy of the start in [`new`](Self::new).
+    /// This is not checked; in fixed point the numbers may then leave their range.
     ///
     /// # Errors
     ///
-    /// Refuses a start that is not finite, or out of the range of the method's numbers.
+    /// Refuses a start that is not finite, or out of the range of the method's numbers; the closed
+    /// form refuses a start from which an angle may exceed 2^31 - 1 turns.
     fn started(&self, start: &State<f64>) -> Result<Self, Error>;
 
     /// Advances the motion by `steps` steps.
     ///
     /// `advance(a); advance(b)` is bit-identical to `advance(a + b)`. A motion that diverges is not
-    /// reported; [`check`](Self::check) it afterwards.
+    /// reported; [`check`](Self::check) it afterwards. It goes on without meaning, except that
+    /// [`Fixed32`] stops.
     fn advance(&mut self, steps: u32);
 
-    /// Advances the motion by one step. A loop that reads the motion after each step uses it.
+    /// Advances the motion by one step, as `advance(1)` does. A loop that reads the motion after
+    /// each step uses it.
     fn advance_one(&mut self) {
         self.advance(1);
     }
 
     /// Refuses a motion that has diverged, by [`Error::Diverged`]: its numbers are not finite or,
-    /// in fixed point, were ever out of range. [`Fixed32`] tests its range after every 32 steps. It
-    /// costs a few comparisons.
+    /// in fixed point, were ever out of range. [`Fixed32`] tests its range after every 32 steps
+    /// since the start, [`Fixed64`] after every step. It costs a few comparisons.
     ///
     /// Unless [`CHECKS_ENERGY`](Self::CHECKS_ENERGY), a motion whose numbers are finite but
     /// meaningless is accepted.
@@ -140,11 +145,12 @@ pub trait FormOperations: Copy + Debug + PartialEq + 'static {
     /// words.
     fn sides(&self) -> [[i32; 2]; 2];
 
-    /// Returns the number that a word of [`sides`](Self::sides) represents, in an arbitrary unit.
+    /// Returns the number that a word of [`sides`](Self::sides) represents, in a unit that may
+    /// differ between the rods. The sides of an `f64` are cut to 20 bits of its fraction.
     fn side_value(side: i32) -> Self::Real;
 
-    /// Returns the directions of both rods in the numbers `Q`. In the direction form this needs no
-    /// trigonometry.
+    /// Returns the directions of rod 1 and rod 2, (sin, cos) each, in the numbers `Q`. In the
+    /// direction form this needs no trigonometry.
     ///
     /// They may be up to half a step ahead of the [`state`](Self::state) or behind it. A diverged
     /// motion need not show it: in fixed point its directions are finite. Call
@@ -152,7 +158,8 @@ pub trait FormOperations: Copy + Debug + PartialEq + 'static {
     fn directions<Q: Real>(&self) -> [Direction<Q>; 2];
 
     /// Returns the momenta p1 and p2, kg m^2/s, at the time of the
-    /// [`directions`](Self::directions). They are NaN if the motion has diverged in fixed point.
+    /// [`directions`](Self::directions). They are NaN if the motion has diverged in fixed point,
+    /// and infinite beyond the range of `Q`.
     fn momenta<Q: Real>(&self) -> [Q; 2];
 
     /// Returns the [`momenta`](Self::momenta) with a relative error of a few units in the last
@@ -166,7 +173,8 @@ pub trait FormOperations: Copy + Debug + PartialEq + 'static {
     /// The angles are in (-pi, pi], unless [`HAS_TURNS`](Self::HAS_TURNS).
     fn state(&self) -> State<f64>;
 
-    /// Returns the energy above rest, J, with all digits that the method carries.
+    /// Returns the energy above that of hanging at rest, J, with all digits that the method
+    /// carries.
     ///
     /// `pendulum` must be the pendulum of this motion; this is not checked. The energy follows from
     /// the directions and momenta, which may be up to half a step ahead of the

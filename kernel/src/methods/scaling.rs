@@ -67,7 +67,7 @@ pub(super) fn lost(is_lost: bool) -> Result<(), Error> {
 
 impl Scaling {
     /// Returns the same scaling with a unit of time that is `time` times as long. A negative `time`
-    /// reverses the time.
+    /// reverses the time. `time` must be finite and not 0; this is not checked.
     #[must_use]
     pub fn in_unit(self, time: f64) -> Self {
         Self {
@@ -120,9 +120,10 @@ impl Scaling {
 
     /// Returns the longest units of time T for a motion within `bounds`: the longest that keeps
     /// every rate within `rate`, and the longest that keeps every torque of gravity within
-    /// `torque`. They are in the present unit of time.
+    /// `torque`. They are in s; the two limits have no dimension.
     ///
-    /// The first is infinite if nothing can move, the second without gravity.
+    /// The first is infinite if nothing can move, the second without gravity. The scaling must be
+    /// that [`in_seconds`](Self::in_seconds), and the bounds not NaN; neither is checked.
     pub fn longest(&self, bounds: &Bounds<f64>, [rate, torque]: [f64; 2]) -> [f64; 2] {
         let [momentum1, momentum2] = self.momenta;
         let rates = [

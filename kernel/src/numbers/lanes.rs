@@ -20,7 +20,7 @@ impl<R: Copy, const N: usize> Lanes<R, N> {
 }
 
 impl<R: Copy + Add<Output = R>, const N: usize> Lanes<R, N> {
-    /// Returns twice the numbers.
+    /// Returns the sum of each number and itself. A sum beyond the largest number is infinite.
     pub fn twice(self) -> Self {
         self + self
     }

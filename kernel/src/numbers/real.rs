@@ -90,8 +90,8 @@ pub trait RealOperations:
     /// Returns the magnitude.
     #[must_use]
     fn abs(self) -> Self;
-    /// Returns twice the number. If an addition is a call of a library, the exponent is increased
-    /// instead, with the same bits as the sum.
+    /// Returns twice the number; infinity beyond the largest number. If an addition is a call of a
+    /// library, the exponent is increased instead, with the same bits as the sum.
     #[must_use]
     fn twice(self) -> Self;
     /// Returns a word with the sign of the number in its highest bit.

@@ -23,9 +23,10 @@ pub struct Pendulum<R> {
 impl<R: Real> Pendulum<R> {
     /// Checks the parameters and prepares the equations.
     ///
-    /// Refuses NaN, infinite, zero or negative masses and lengths, NaN, infinite or negative
-    /// gravity, and combinations whose products or quotients leave the range of `R`
-    /// ([`Error::OutOfRange`]). The [`Error`] names the parameter and its value.
+    /// Refuses NaN, infinite, zero or negative masses and lengths, and NaN, infinite or negative
+    /// gravity. Also refuses, by [`Error::OutOfRange`], combinations whose products or quotients in
+    /// the equations overflow, underflow or are subnormal in `R`. The [`Error`] names the parameter
+    /// and its value.
     pub fn new(parameters: &Parameters<R>) -> Result<Self, Error> {
         parameters.check()?;
         let &Parameters { m1, m2, l1, l2, g } = parameters;
@@ -77,7 +78,8 @@ impl<R: Real> Pendulum<R> {
     /// and one division.
     ///
     /// The difference from the form of `[math24]` is at most 1e-13 (`f64`) or 2e-6 (`f32`) of the
-    /// largest term. The state is not checked; if it is not finite, the result is NaN or infinity.
+    /// largest term. The state is not checked. If it is not finite or a product overflows, some or
+    /// all of the results are NaN or infinite.
     #[must_use]
     pub fn derivatives(&self, z: &[R; 4]) -> [R; 4] {
         let &[a1, a2, p1, p2] = z;
@@ -87,7 +89,8 @@ impl<R: Real> Pendulum<R> {
     /// Returns the [`derivatives`](Self::derivatives), rad/s and N m, for known directions (sin,
     /// cos) of both rods and momenta (p1, p2), kg m^2/s. It needs no trigonometry.
     ///
-    /// The directions must be of length 1; this is not checked.
+    /// The directions must be of length 1; this is not checked. Arguments that are not finite give
+    /// NaN or infinity.
     #[doc(hidden)] // For the firmware's method with other sines.
     #[must_use]
     pub fn derivatives_at(
@@ -123,7 +126,7 @@ impl<R: Real> Pendulum<R> {
     /// with q1 = p1/l1, q2 = p2/l2 and the D and den of [`derivatives`](Self::derivatives). The
     /// kinetic energy is a sum of squares, so that it cannot be negative. The exact motion
     /// conserves H; its minimum is [`least_energy`](Self::least_energy). The cost is three sincos
-    /// and two divisions. A state that is not finite gives NaN or infinity.
+    /// and two divisions. A state that is not finite, or an overflow, gives NaN or infinity.
     #[must_use]
     pub fn energy(&self, state: &State<R>) -> R {
         let (_, cos1) = state.a1.own_sin_cos();
@@ -151,7 +154,8 @@ impl<R: Real> Pendulum<R> {
     /// K = T + (m1 + m2) g l1 (1 - cos a1) + m2 g l2 (1 - cos a2)
     ///
     /// No term is negative, so that K keeps its relative precision for the smallest motions. There
-    /// H and min V nearly cancel. A state that is not finite gives NaN or infinity.
+    /// H and min V nearly cancel. A state that is not finite, or an overflow, gives NaN or
+    /// infinity.
     #[must_use]
     pub fn energy_above_rest(&self, state: &State<R>) -> R {
         let height1 = one_minus_cos(state.a1.own_sin_cos());
@@ -177,7 +181,8 @@ impl<R: Real> Pendulum<R> {
     }
 
     /// Returns the least possible energy, J, which is the energy of hanging at rest:
-    /// min V = -(m1 + m2) g l1 - m2 g l2.
+    /// min V = -(m1 + m2) g l1 - m2 g l2. It is zero without gravity, and -infinity if the sum
+    /// overflows.
     #[must_use]
     pub fn least_energy(&self) -> R {
         -(self.torque[0] + self.torque[1])

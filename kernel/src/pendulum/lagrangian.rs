@@ -71,6 +71,8 @@ impl<R: Real> Pendulum<R> {
     /// Returns the kinetic energy, J (`[math24]`, "Lagrange equations").
     ///
     /// T = (m1 + m2)/2 l1^2 w1^2 + m2/2 l2^2 w2^2 + m2 l1 l2 w1 w2 cos(a1 - a2)
+    ///
+    /// If the terms nearly cancel, their rounding may make the result slightly negative.
     #[must_use]
     pub fn kinetic_energy(&self, motion: &Motion<R>) -> R {
         let &Motion { w1, w2, .. } = motion;
@@ -93,7 +95,8 @@ impl<R: Real> Pendulum<R> {
         -(m1 + m2) * g * l1 * cos1 - m2 * g * l2 * cos2
     }
 
-    /// Returns the Lagrangian L = T - V, J.
+    /// Returns the Lagrangian L = T - V, J: [`kinetic_energy`](Self::kinetic_energy) less
+    /// [`potential_energy`](Self::potential_energy).
     #[must_use]
     pub fn lagrangian(&self, motion: &Motion<R>) -> R {
         self.kinetic_energy(motion) - self.potential_energy(motion.angles())

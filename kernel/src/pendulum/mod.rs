@@ -11,5 +11,6 @@ pub use parameters::Parameters;
 pub use state::{Motion, State};
 
 /// `[sin, cos]` of an angle from the downward vertical. Its length is 1, except for the errors of
-/// the method that computed it.
+/// the method that computed it. Only in [`Run::directions_q30`](crate::Run::directions_q30) both
+/// numbers are integers, in multiples of 2^-30.
 pub type Direction<R> = [R; 2];

@@ -4,6 +4,9 @@ use crate::error::{Error, Parameter};
 use crate::numbers::Real;
 
 /// The five constants of a double pendulum, in SI units, chosen by the caller.
+///
+/// The masses and lengths must be finite and more than 0, gravity finite and at least 0.
+/// [`Pendulum::new`](crate::Pendulum::new) and [`Modes::new`](crate::Modes::new) check this.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -21,7 +24,8 @@ pub struct Parameters<R> {
 }
 
 impl<R: Real> Parameters<R> {
-    /// Returns equal rods of length `l`, a bob 1 of 1 kg, and a bob 2 of `mu` kg: mu = m2/m1.
+    /// Returns equal rods of length `l`, m, a bob 1 of 1 kg, and a bob 2 of `mu` kg: mu = m2/m1.
+    /// The gravitational acceleration is `g`, m/s^2.
     ///
     /// If `l` and `g` are 1, the equations are the dimensionless equations of `[math24]` for equal
     /// rods. Then the unit of time is sqrt(l/g), of momenta m1 l^2 sqrt(g/l), and of energy m1 g l.
@@ -39,7 +43,7 @@ impl<R: Real> Parameters<R> {
     }
 
     /// Returns the mass ratio mu = m2/m1. The masses are not checked: an `m1` of 0 gives infinity
-    /// or NaN.
+    /// or NaN. A ratio out of the range of `R` is infinite or 0.
     #[must_use]
     pub fn mass_ratio(&self) -> R {
         self.m2 / self.m1

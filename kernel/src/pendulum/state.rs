@@ -6,7 +6,9 @@ use crate::numbers::Real;
 /// Angles and canonical momenta: a point of the phase space.
 ///
 /// Angles are measured from the downward vertical, positive counter-clockwise, and are not wrapped.
-/// [`Pendulum::to_motion`](crate::Pendulum::to_motion) converts to angular velocities.
+/// [`Pendulum::to_motion`](crate::Pendulum::to_motion) converts to angular velocities. The default,
+/// all zero, hangs at rest. Any number is accepted here; [`finite`](Self::finite) and
+/// [`Pendulum::run`](crate::Pendulum::run) refuse NaN and infinity.
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -33,7 +35,7 @@ impl<R: Real> State<R> {
         }
     }
 
-    /// Returns both angles, rad.
+    /// Returns both angles (a1, a2), rad.
     #[must_use]
     pub fn angles(&self) -> [R; 2] {
         [self.a1, self.a2]
@@ -46,7 +48,8 @@ impl<R: Real> State<R> {
         <[R; 4]>::from(self).map(R::cast).into()
     }
 
-    /// Returns the state if all its numbers are finite, and [`Error::Diverged`] otherwise.
+    /// Returns the state if all its numbers are finite. Otherwise returns [`Error::Diverged`] with
+    /// the first of a1, a2, p1 and p2 that is NaN or infinite.
     ///
     /// A step that resolves the motion leads from a finite state to a finite state. A longer step
     /// can have any result ([`Modes::step_limit`](crate::Modes::step_limit) is valid for small
@@ -71,7 +74,8 @@ impl<R: Real> State<R> {
         self.check().map(|()| self).map_err(Error::diverged)
     }
 
-    /// Refuses NaN and infinite values: [`Error::NotFinite`] names the first of them.
+    /// Refuses NaN and infinite values: [`Error::NotFinite`] names the first of them, in the order
+    /// a1, a2, p1, p2.
     #[doc(hidden)] // For settings; `Pendulum::run` checks its start.
     pub fn check(&self) -> Result<(), Error> {
         check_finite([
@@ -99,8 +103,9 @@ impl<R> From<State<R>> for [R; 4] {
 
 /// Angles and angular velocities: the variables of the Lagrangian, with w = da/dt.
 ///
-/// Angles are as in [`State`]. [`Pendulum::to_state`](crate::Pendulum::to_state) converts to
-/// canonical momenta.
+/// Angles are as in [`State`]: from the downward vertical, positive counter-clockwise, and not
+/// wrapped. [`Pendulum::to_state`](crate::Pendulum::to_state) converts to canonical momenta. The
+/// default, all zero, hangs at rest. Any number is accepted here, also NaN and infinity.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Motion<R> {
     /// Angle of rod 1, rad.
@@ -125,7 +130,7 @@ impl<R: Real> Motion<R> {
         }
     }
 
-    /// Returns both angles, rad.
+    /// Returns both angles (a1, a2), rad.
     #[must_use]
     pub fn angles(&self) -> [R; 2] {
         [self.a1, self.a2]
@@ -138,7 +143,8 @@ impl<R: Real> Motion<R> {
         <[R; 4]>::from(self).map(R::cast).into()
     }
 
-    /// Refuses NaN and infinite values: [`Error::NotFinite`] names the first of them.
+    /// Refuses NaN and infinite values: [`Error::NotFinite`] names the first of them, in the order
+    /// a1, a2, w1, w2.
     #[doc(hidden)] // For settings; `Pendulum::run` checks its start.
     pub fn check(&self) -> Result<(), Error> {
         check_finite([

@@ -48,7 +48,8 @@ impl Costs {
 
     /// Returns the cost of a frame by this method and step count, in the unit of the prices. It is
     /// infinite for a method that is not in [`Method::DRAWN`], and 0 for a step count of 0, except
-    /// for the closed form, which has the cost of one frame at any step count.
+    /// for the closed form, which has the cost of one frame at any step count. The prices are not
+    /// checked.
     #[must_use]
     pub fn of_frame(&self, Stepping { method, steps }: Stepping) -> f32 {
         let steps = if method == Method::ClosedFormF32 {
@@ -79,7 +80,8 @@ pub struct Budget {
 pub struct Stepping {
     /// The method. Only those in [`Method::DRAWN`] can be run or planned.
     pub method: Method,
-    /// The number of steps per frame. The closed form has no steps and ignores it.
+    /// The number of steps per frame. A motion or search counts 0 as 1. The closed form has no
+    /// steps and ignores it.
     pub steps: u32,
 }
 
@@ -158,7 +160,8 @@ impl Pair {
 
     /// Returns the pair whose coarse run makes `steps` steps per frame.
     ///
-    /// The fine run makes a third more steps, at least one more, and in all at least `least`.
+    /// The fine run makes a third more steps, at least one more, and in all at least `least`. Its
+    /// step count is limited to 2^32 - 1.
     pub fn of_coarse(steps: u32, least: u32) -> Self {
         let more = (steps / 3).max(1);
         Self::new(steps, steps.saturating_add(more).max(least))
@@ -238,9 +241,9 @@ impl Stepping {
     /// These lengths are upper limits. The step count is rounded up, for RK4 to a power of two, and
     /// increased if the method refuses the steps as too long.
     ///
-    /// `frame` is the frame budget in the unit of `costs`. Returns `None` if a frame pays for none
-    /// of these, or if the methods refuse the motion, such as a start that is not finite or a rate
-    /// of 0.
+    /// `frame` is the frame budget in the unit of `costs`. Neither is checked. Returns `None` if a
+    /// frame pays for none of these, or if the methods refuse the motion, such as a start that is
+    /// not finite or a rate of 0.
     ///
     /// # Errors
     ///
@@ -301,10 +304,12 @@ impl Stepping {
         Ok(Self::accepted(method, problem, steps, |_| true).unwrap_or(Self { method, steps }))
     }
 
-    /// Returns true if the steps resolve every motion of the problem's energy: those of RK4 are at
-    /// most two [admissible steps](Pendulum::admissible_step) long. In longer ones it gains or
-    /// loses several percent of the energy within seconds, or diverges. The other methods always
-    /// do.
+    /// Returns true if the steps resolve every motion of the problem's energy. Those of
+    /// [`Method::ClosedFormF32`] and [`Method::Extrapolation10Fixed64`] always do. Every other
+    /// method is judged as RK4. Its step count must be at least the smallest power of two whose
+    /// steps are at most two [admissible steps](Pendulum::admissible_step) long, or 65,536 if that
+    /// is less. In longer steps RK4 gains or loses several percent of the energy within seconds, or
+    /// diverges. The start and the rate are not checked.
     ///
     /// # Errors
     ///

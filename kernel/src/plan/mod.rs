@@ -125,7 +125,8 @@ pub struct Plan {
 }
 
 impl Plan {
-    /// Plans `problem` in one call: runs a [`Search`] to its end.
+    /// Plans `problem` in one call: runs a [`Search`] to its end. The call takes as long as the
+    /// search, which the planning budget limits.
     ///
     /// # Errors
     ///

@@ -17,7 +17,8 @@ pub struct Problem {
     /// The largest allowed distance of a bob from its exact position, m; more than 0. It applies to
     /// both bobs, and to the position of bob 2 relative to bob 1.
     pub tolerance: f64,
-    /// The duration of the motion, s; more than 0, and at most (2^32 - 1)/`rate`.
+    /// The duration of the motion, s; more than 0, and at most (2^32 - 1)/`rate`. It is rounded to
+    /// whole frames, at least one.
     pub duration: f64,
     /// The number of frames per second; at least 1.
     pub rate: u16,
@@ -72,7 +73,8 @@ impl Problem {
     }
 
     /// Returns the number of frames after the one at the start: the duration times the rate,
-    /// rounded to the nearest integer (half to even), from 1 to 2^32 - 1; 1 if it is NaN.
+    /// rounded to the nearest integer (half to even). It is limited to the range from 1 to
+    /// 2^32 - 1; a NaN gives 1.
     #[doc(hidden)] // For the firmware's budgets, and for proofs.
     #[must_use]
     pub fn frames(&self) -> u32 {

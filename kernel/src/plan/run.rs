@@ -12,7 +12,10 @@ pub(super) type Directions = [Direction<f32>; 2];
 /// A motion in progress, frame by frame, by the method of a plan.
 ///
 /// It is bit-identical to the motion that the search has measured. After [`advance`](Self::advance)
-/// has returned an error, directions and states are meaningless, and may look valid.
+/// has returned an error, directions, states and energies are meaningless, and may look valid.
+///
+/// Whole turns are counted after each step. If a rod turns by more than a quarter turn in a step,
+/// they may be miscounted.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlannedRun {
     stepping: Stepping,
@@ -29,10 +32,12 @@ impl PlannedRun {
     ///
     /// # Errors
     ///
-    /// Refuses a start that is not finite, the inputs that [`Pendulum::run`] refuses, for the
-    /// closed form a pendulum without normal modes, and methods that are not in [`Method::DRAWN`].
-    /// A rate of 0 is refused as a step that is not finite. Unlike [`Pendulum::run`], it accepts
-    /// steps beyond the limit of stability, except by [`Method::Rk4Fixed32`].
+    /// Refuses a start that is not finite, the inputs that [`Pendulum::new`] and [`Pendulum::run`]
+    /// refuse, for the closed form a pendulum without normal modes, and methods that are not in
+    /// [`Method::DRAWN`]. A rate of 0 is refused as a step that is not finite. Unlike
+    /// [`Pendulum::run`], it accepts steps beyond the limit of stability, except by
+    /// [`Method::Rk4Fixed32`]. [`Method::Extrapolation10Fixed64`] refuses steps beyond the limit of
+    /// [`Fixed64`](crate::Fixed64) only.
     #[inline(never)] // Counted by its name, as the price of a preparation.
     pub fn new(
         &Problem {
@@ -69,7 +74,8 @@ impl PlannedRun {
         })
     }
 
-    /// Returns the method and its number of steps per frame, at least 1.
+    /// Returns the method and its number of steps per frame, which is at least 1, and always 1 for
+    /// the closed form.
     #[must_use]
     pub fn stepping(&self) -> Stepping {
         self.stepping
@@ -81,6 +87,8 @@ impl PlannedRun {
     ///
     /// Returns [`Error::Diverged`] if the motion has left the finite numbers, or the range of its
     /// fixed point. Every later call then returns it, too. The frames are counted all the same.
+    /// [`Method::Rk4Fixed32`] tests its range after every 32 steps since the start, so that the
+    /// error may come up to 32 steps late.
     ///
     /// Unlike [`Run::advance`](crate::Run::advance), it checks no energy in `f32`: a motion whose
     /// numbers are finite but meaningless is accepted.
@@ -113,15 +121,15 @@ impl PlannedRun {
     /// Returns the directions of both rods: `[[sin a1, cos a1], [sin a2, cos a2]]`. Their lengths
     /// are 1 up to the errors of the method.
     ///
-    /// Except by the closed form they may be up to half a step ahead of the [`time`](Self::time).
+    /// By RK4 in `f32` they may be up to half a step ahead of the [`time`](Self::time), or behind
+    /// it.
     #[must_use]
     pub fn directions(&self) -> [Direction<f32>; 2] {
         self.motion.directions()
     }
 
     /// Returns the canonical state in SI units, rounded to `f32`, at the time of the
-    /// [`directions`](Self::directions). The angles include whole turns. A rod that turns by more
-    /// than a quarter turn in a step may be miscounted by whole turns.
+    /// [`directions`](Self::directions). The angles include whole turns.
     ///
     /// This is enough for a picture, and costs far less than [`state`](Self::state) on a processor
     /// whose `f64` is software.

@@ -76,7 +76,8 @@ impl Shadows {
     /// Creates the shadows of a motion in 64 bits that makes `steps` steps per frame. The shadows
     /// themselves are computed by `stepping`.
     ///
-    /// No motion is prepared yet ([`prepare`](Self::prepare)).
+    /// No motion is prepared yet ([`prepare`](Self::prepare)). A pendulum that is refused counts as
+    /// one that cannot move; it is reported by [`prepare`](Self::prepare).
     pub fn new(stepping: Stepping, problem: &Problem, steps: u32) -> Self {
         // The fastest rate advances a phase by a radian in four admissible steps.
         let rate = super::cost::admissible_step(problem).map_or(0.0, |step| 0.25 / step);
@@ -103,7 +104,7 @@ impl Shadows {
         }
     }
 
-    /// Returns the shadows that are still needed.
+    /// Returns the shadows that are still needed: all four, later the one that is kept.
     pub fn runs(&mut self) -> impl Iterator<Item = &mut Run<DrawnMotion32>> {
         let kept = self.kept;
         let runs = self.runs.iter_mut().enumerate();
@@ -122,7 +123,8 @@ impl Shadows {
         self.is_far
     }
 
-    /// Prepares one shadow close to a motion in the state `motion`, or draws one back to it.
+    /// Prepares one shadow close to a motion in the state `motion`, or draws one back to it. The
+    /// state is that of the fine run at the same frame, in SI units.
     ///
     /// Returns true if it has done either, and false if there is nothing to do.
     ///
@@ -176,7 +178,8 @@ impl Shadows {
         Ok(true)
     }
 
-    /// Compares the shadows with the frame `motion`.
+    /// Compares the shadows with the frame `motion`. All their steps towards it must have been
+    /// made; this is not checked. A shadow that is not prepared counts as diverged.
     ///
     /// Returns the largest rounding error that is expected of a run in 64 bits, in units of the
     /// tolerance. `rods` are the lengths of the rods in the same unit. The result is NaN if the

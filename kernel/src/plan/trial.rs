@@ -119,7 +119,7 @@ impl<M: Motion> Run<M> {
     }
 
     /// Returns the directions at the frame, and begins the next frame. All steps towards the frame
-    /// must have been made.
+    /// must have been made; this is not checked.
     ///
     /// The result is NaN if the motion has diverged, because its directions need not show that, or
     /// if it is not prepared.
@@ -207,9 +207,9 @@ impl Trial {
     /// steps, and both runs of the reference. Without one, `stepping` is the only one of these, and
     /// is compared with three runs of its own in 5/4, 6/4 and 7/4 of its steps.
     ///
-    /// If `stepping` is in 64 bits, a reference is required and the trial has no candidates in 32
-    /// bits; the closed form is one in any case. Plain `f32` is a candidate if `stepping` is
-    /// compensated `f32`. `shadow` is the method and step count of the shadows.
+    /// If `stepping` is in 64 bits, a reference is required, which is not checked, and the trial
+    /// has no candidates in 32 bits; the closed form is one in any case. Plain `f32` is a candidate
+    /// if `stepping` is compensated `f32`. `shadow` is the method and step count of the shadows.
     ///
     /// No motion is prepared yet. A pendulum that is refused is reported by
     /// [`prepare`](Self::prepare). Without normal modes the closed form fails at the first frame.
@@ -312,7 +312,7 @@ impl Trial {
     }
 
     /// Returns the largest number of accurate frames of a candidate in 32 bits or of the closed
-    /// form. It is 0 if none of them is part of the trial.
+    /// form, including those that have failed. It is 0 if none of them is part of the trial.
     pub fn frames_in_32_bits(&self) -> u32 {
         let frames = self.candidates[..=CLOSED]
             .iter()
@@ -416,10 +416,11 @@ impl Trial {
     }
 
     /// Makes steps of one motion towards the next frame: as many as `cost` pays for, but at least
-    /// one. All motions must be prepared.
+    /// one, also if `cost` is 0, negative or NaN. All motions must be prepared; this is not
+    /// checked.
     ///
     /// Returns the cost of these steps, in the unit of `costs`; 0 if every motion has reached the
-    /// frame.
+    /// frame. `cost` has the same unit.
     pub fn advance(&mut self, costs: &Costs, cost: f32) -> f32 {
         let mut spent = 0.0;
 
@@ -449,7 +450,8 @@ impl Trial {
         spent
     }
 
-    /// Compares the frames at time `t`, s. All steps towards them must have been made.
+    /// Compares the frames at time `t`, s since the start. All steps towards them must have been
+    /// made; this is not checked.
     ///
     /// A candidate fails if its error may exceed the tolerance, or if it or a run that it is
     /// compared with has diverged.
@@ -519,7 +521,8 @@ impl Trial {
         self.by_rounding = true;
     }
 
-    /// Excludes all candidates except the `wanted` ones.
+    /// Excludes all candidates except the `wanted` ones. A wanted candidate that has failed or is
+    /// already excluded stays so.
     pub fn retain(&mut self, wanted: impl Fn(&Candidate) -> bool) {
         self.candidates
             .iter_mut()

@@ -1,7 +1,9 @@
 //! Fractions of 64 bits: more digits than an `f64`, and much faster where `f64` is software.
 //!
 //! A `Q64` is from -1/2 to below 1/2, in multiples of 2^-64. A number of 1/2 - 2^-33 or more is
-//! too large for `*`, `times_word` and `down`, whose results may be wrong. This is not checked.
+//! too large for `*`, `times_word` and `down`, whose results may be wrong. This is not checked, nor
+//! are the ranges of `by` and `places`: beyond them debug builds panic, and others return a wrong
+//! number.
 
 use core::ops::Mul;
 
@@ -30,7 +32,7 @@ impl Q64 {
     }
 
     /// Returns the number over `divisor` in the numbers `R`, rounded once if `divisor` is a power
-    /// of two. A divisor of 0 gives infinity or NaN.
+    /// of two, and otherwise a few times. A divisor of 0 gives infinity or NaN, a NaN gives NaN.
     pub fn over<R: Real>(self, divisor: f64) -> R {
         R::from_i64(self.0) * R::from_f64(1.0 / (UNIT * divisor))
     }
