@@ -55,14 +55,14 @@
 //!   (`board/cortex_m/retained.rs`); and reset. Then `resume` (`board/main_loop.rs`) starts the
 //!   same scene again, or after more than `MOST_RESTARTS` (`app/warm_restart.rs`) the first one,
 //!   and logs the cause. The host asks for it and prints it (`host-tests/emulator/src/link/`,
-//!   `restarts.rs`).
+//!   `restarts.rs`). The user's side is "When it crashes or hangs" in `firmware/README.md`.
 //! - **The bytes for a panel.** `display/oled_i2c.rs`, with a row for each controller, or
 //!   `display/ssd0323.rs`.
 //! - **Another term of the equations, such as friction.** No scene has one. "Out of scope" in
 //!   `kernel/README.md` says what it takes.
 //!
-//! To add a panel controller or a board: "Other boards" in `firmware/README.md`. To add a scene or
-//! a method: "Changing it" in `host-tests/README.md`.
+//! To add a panel controller or a board: the sections of these names in `firmware/README.md`. To
+//! add a scene or a method: "Changing it" in `host-tests/README.md`.
 //!
 //! # Glossary
 //!

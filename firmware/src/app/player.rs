@@ -102,7 +102,6 @@ impl<'a> Player<'a> {
 
     /// Plays a scene by `method` and no other, or by its plan. If that is impossible, nothing is
     /// changed.
-    #[inline(never)] // Inlined, the start of a scene would be on the stack of every frame.
     fn play_by(
         &mut self,
         method: Option<Method>,
@@ -148,7 +147,6 @@ impl<'a> Player<'a> {
     /// [`Command::Method`] it is [`Field::Method`], also if a frame by the method costs too much;
     /// for the others a field of the settings. A motion that is too fast for every method is not
     /// impossible: its scene starts, and is stopped.
-    #[inline(never)] // Inlined, the start of a scene would be on the stack of every frame.
     pub fn execute(&mut self, command: Command) -> Result<bool, Field> {
         match command {
             Command::Heavier => return self.start(self.name, self.settings.heavier()),
@@ -202,7 +200,7 @@ impl<'a> Player<'a> {
     ///
     /// Calls `tell` with each result of the planner, and with each method that takes over. A motion
     /// that diverges is not noticed here, but by [`check`](Self::check).
-    #[inline(never)]
+    #[inline(never)] // Inlined, it takes 5,840 bytes of flash (M3).
     pub fn tick(&mut self, mut tell: impl FnMut(PlannerEvent)) {
         if self.is_stopped() {
             return;
@@ -236,7 +234,6 @@ impl<'a> Player<'a> {
     /// A plan whose horizon is past is not followed, because its motion is as inaccurate as the
     /// current one. A plan that costs less, but has a shorter horizon than the panel has shown, is
     /// not followed either.
-    #[inline(never)] // Inlined, the start of a motion would be on the stack of every frame.
     fn follow(&mut self, found: &PlanResult) {
         let (MotionState::FollowsPlan, Ok(plan)) = (&self.motion, found) else {
             return;
@@ -311,7 +308,7 @@ impl<'a> Player<'a> {
     /// stops the scene, and returns true once; the report stays the last good one.
     ///
     /// To be called before each frame.
-    #[inline(never)]
+    #[inline(never)] // Test `scenes` profiles it by its name.
     pub fn check(&mut self) -> bool {
         if self.is_stopped() {
             return false;
@@ -328,7 +325,7 @@ impl<'a> Player<'a> {
     /// Draws the scene in place of the last frame, with the numbers of the last
     /// [`check`](Self::check), and a mark if it is paused. If the scene is stopped, writes the
     /// reason instead, with the mass ratio and the start angle of rod 1.
-    #[inline(never)]
+    #[inline(never)] // Test `scenes` profiles it by its name.
     pub fn draw(&self, canvas: &mut Canvas) {
         match self.state() {
             PlayState::Playing => self.scene.draw(&self.report, self.ink, canvas),

@@ -31,7 +31,6 @@ pub struct Register(usize);
 
 impl Register {
     /// Returns the value of the register. Reading some registers has side effects.
-    #[inline]
     pub fn read(self) -> u32 {
         // SAFETY: by the contract of [`Device::at`] this is a register; any 32-bit pattern is a
         // `u32`.
@@ -39,7 +38,6 @@ impl Register {
     }
 
     /// Writes all 32 bits of the register. Writing some registers has side effects.
-    #[inline]
     pub fn write(self, value: u32) {
         // SAFETY: by the contract of [`Device::at`] this is a register whose writes do not break
         // memory safety.
@@ -48,7 +46,6 @@ impl Register {
 
     /// Clears the bits of `clear`, then sets those of `set`, by one read and one write. A bit in
     /// both is set. It is not atomic: what an interrupt writes in between is overwritten.
-    #[inline]
     pub fn modify(self, clear: u32, set: u32) {
         self.write((self.read() & !clear) | set);
     }
@@ -56,7 +53,6 @@ impl Register {
     /// Reads until the bits of `mask` are `wanted`, at most `tries` times. Returns true as soon as
     /// they are, and false after the last try; with 0 tries at once. A bit of `wanted` outside
     /// `mask` is never found.
-    #[inline]
     pub fn wait(self, mask: u32, wanted: u32, tries: u32) -> bool {
         (0..tries).any(|_| self.read() & mask == wanted)
     }

@@ -55,7 +55,7 @@ pub struct Stroke {
 impl Stroke {
     /// Draws the stroke with a brightness of 0 (black) to 255 (grey 15). Pixels that are brighter
     /// already keep their grey. The parts outside the canvas are not drawn.
-    #[inline(never)] // Not inlined, to save flash.
+    #[inline(never)] // Test `scenes` profiles it by its name.
     pub fn lighten(&self, canvas: &mut Canvas, brightness: u8) {
         let limit = i32::from(self.radius) + HALF;
         let line = Line::new(self.from, self.to, limit);
@@ -169,7 +169,6 @@ fn middle(pixel: i32) -> i32 {
 ///
 /// The edge is a ramp one pixel wide. For a straight edge of any direction this agrees with the
 /// covered area to a few percent.
-#[inline(always)]
 fn shade(brightness: u8) -> impl Fn(i32) -> u8 {
     /// The product of brightness and coverage that is one grey. Full brightness, 255 = 17 x 15,
     /// times full coverage is 15 of them.
@@ -277,7 +276,6 @@ impl Line {
     /// A spot is at most one canvas size outside the canvas. So differences are below 3 x 128 x 64
     /// = 24,576 across and half that down, and sums of two products are below 24,576^2 x 1.25 =
     /// 7.6e8. They fit into 31 bits.
-    #[inline(always)]
     fn covered(&self, (x, y): (i32, i32), progress: i32, across: i32) -> i32 {
         let &Self {
             along,
@@ -316,7 +314,6 @@ impl Line {
 ///
 /// The chord between `low` and `high` gives a first value that is never too large, and too small by
 /// a few at most.
-#[inline(always)]
 fn root(square: i32, low: i32, high: i32) -> i32 {
     let mut root = low
         + (square - low * low)

@@ -68,7 +68,6 @@ impl Canvas {
     }
 
     /// Returns row `y`, counted from the top; `None` outside the canvas.
-    #[inline]
     pub fn row_mut(&mut self, y: i32) -> Option<&mut Row> {
         // A negative number becomes an index far beyond the end.
         self.rows.get_mut(y as usize)
@@ -80,7 +79,7 @@ impl Canvas {
     /// So the pixels from column `left` on scroll out at their left end, if the columns before
     /// `left` are black, as they must be: they move, too. With a `left` of 0 the whole canvas
     /// scrolls.
-    #[inline(never)]
+    #[inline(never)] // Test `scenes` profiles it by its name.
     pub fn scroll(&mut self, left: i32) {
         for row in &mut self.rows {
             let mut from_right = 0;
@@ -101,7 +100,6 @@ impl Canvas {
 
     /// Replaces the grey of the pixel in column `x` and row `y` by a function of it. Only the low
     /// four bits of the result count. The function is not called for a pixel outside the canvas.
-    #[inline]
     pub fn update(&mut self, x: i32, y: i32, new: impl FnOnce(u8) -> u8) {
         if let Some(row) = self.row_mut(y) {
             row.update(x, new);
@@ -109,7 +107,6 @@ impl Canvas {
     }
 
     /// Sets a pixel to a grey of 0 to 15. A pixel that is brighter already keeps its grey.
-    #[inline]
     pub fn lighten(&mut self, x: i32, y: i32, grey: u8) {
         if let Some(row) = self.row_mut(y) {
             row.lighten(x, grey);
@@ -119,7 +116,7 @@ impl Canvas {
     /// Sets pixels to one grey, 0 to 15, brighter ones, too: the pixels whose bits are set, of the
     /// 8 x 8 to the right of column `x` and below row `y`, both included. The others are unchanged.
     /// The first row is in the highest byte, and the leftmost pixel of a row is in its highest bit.
-    #[inline(never)]
+    #[inline(never)] // Inlined, it takes 496 bytes of flash (M3).
     pub fn stamp(&mut self, x: i32, mut y: i32, mut bits: u64, grey: u8) {
         let word = (x >> 3) as usize;
         let shift = 4 * (x & 7);
@@ -152,7 +149,6 @@ impl Canvas {
 impl Row {
     /// Replaces the grey of the pixel in column `x` by a function of it. Only the low four bits of
     /// the result count. The function is not called for a pixel outside the row.
-    #[inline]
     pub fn update(&mut self, x: i32, new: impl FnOnce(u8) -> u8) {
         if let Some(pair) = self.0.get_mut((x >> 1) as usize) {
             let old = (*pair >> shift(x)) & 0x0F;
@@ -161,7 +157,6 @@ impl Row {
     }
 
     /// Sets a pixel to a grey of 0 to 15. A pixel that is brighter already keeps its grey.
-    #[inline]
     pub fn lighten(&mut self, x: i32, grey: u8) {
         self.update(x, |old| old.max(grey));
     }
@@ -203,7 +198,7 @@ impl FadeLayer {
 
     /// Fades the next `rows` rows by one grey each, after the lowest row the top one again; to be
     /// called once a tick of the scene. Pixels at or below the grey `last` are unchanged.
-    #[inline(never)]
+    #[inline(never)] // Test `scenes` profiles it by its name.
     pub fn fade(&mut self, Fading { rows, last }: Fading) {
         let room = u32::from(15_u8.saturating_sub(last)) * ONES;
 
@@ -226,19 +221,16 @@ const ONES: u32 = 0x0101_0101;
 
 /// Returns a 1 for every other grey of eight, from the lowest, if adding `room` to it carries out
 /// of its nibble; otherwise 0.
-#[inline(always)]
 pub(super) fn carried(greys: u32, room: u32) -> u32 {
     (((greys & (15 * ONES)) + room) >> 4) & ONES
 }
 
 /// Returns the position of a pixel's nibble in its byte, as a shift.
-#[inline]
 fn shift(x: i32) -> u32 {
     4 * (!x as u32 & 1)
 }
 
 /// Returns each of eight bits as a nibble of 0 or 15.
-#[inline]
 fn nibbles(bits: u32) -> u32 {
     let fours = (bits | bits << 12) & 0x000F_000F;
     let twos = (fours | fours << 6) & 0x0303_0303;

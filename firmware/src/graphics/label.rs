@@ -60,7 +60,7 @@ pub fn time(seconds: f64) -> Label {
 /// Returns `value`, rounded to `decimals` places, after a name and before a unit. A negative value
 /// that is rounded to 0 keeps its sign. Halves are rounded away from 0. Examples: `±12°`, `ω₁
 /// 1.848`, `true -18.7 J`. Not checked: `decimals` is 0 to 9; with more, the digits are wrong.
-#[inline(never)]
+#[inline(never)] // Inlined, it takes 2,024 bytes of flash (M3).
 pub fn label(name: &str, value: f32, decimals: u32, unit: &str) -> Label {
     let one = 10_u32.saturating_pow(decimals);
     let sign = if value < 0.0 { "-" } else { "" };
@@ -73,7 +73,6 @@ pub fn label(name: &str, value: f32, decimals: u32, unit: &str) -> Label {
 }
 
 /// Returns a number in units of 1/`one`, where `one` is a power of ten, between `head` and `unit`.
-#[inline(never)]
 fn written(head: [&str; 2], number: u32, one: u32, unit: &str) -> Label {
     let mut label = Label::new();
     let mut write = || {

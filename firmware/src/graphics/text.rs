@@ -84,7 +84,6 @@ fn corner(anchor: Anchor, text: &str) -> (i32, i32) {
 }
 
 /// Draws the characters from the corner (left, top) on.
-#[inline(never)]
 fn put(canvas: &mut Canvas, text: &str, (mut left, top): (i32, i32), grey: u8) {
     for Glyph { width, rows } in text.chars().map(glyph) {
         canvas.stamp(left, top, rows, grey);

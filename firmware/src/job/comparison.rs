@@ -30,7 +30,6 @@ impl Derivatives<f32> for Textbook {
     /// - A1 = p1 p2 sin(a1 - a2) / (l1 l2 den)
     /// - A2 = (p1^2 m2 l2^2 - 2 p1 p2 m2 l1 l2 cos(a1 - a2) + p2^2 (m1 + m2) l1^2) sin(2 (a1 - a2))
     ///   / (2 l1^2 l2^2 den^2)
-    #[inline(always)]
     fn derivatives(&self, &[a1, a2, p1, p2]: &[f32; 4]) -> [f32; 4] {
         let Parameters { m1, m2, l1, l2, g } = self.0;
         let d = a1 - a2;
@@ -62,7 +61,6 @@ impl Derivatives<f32> for Micromath {
         Pendulum::new(parameters).map(Self)
     }
 
-    #[inline(always)]
     fn derivatives(&self, &[a1, a2, p1, p2]: &[f32; 4]) -> [f32; 4] {
         self.0
             .derivatives_at([a1, a2].map(|a| F32Ext::sin_cos(a).into()), [p1, p2])

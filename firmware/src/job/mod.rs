@@ -167,7 +167,7 @@ fn crc<F: Form>(mut run: F, request: &Request) -> u32 {
 
 /// Makes `steps` steps. The counter of cycles (`cargo count`) finds this function by its name, and
 /// counts from its first instruction to its return.
-#[inline(never)]
+#[inline(never)] // Found by its name (`cargo count`, test `count_elf`).
 fn counted_steps<R: Run>(run: &mut R, steps: u32) {
     let mut local = *run;
     local.advance(steps);

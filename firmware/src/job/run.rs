@@ -32,14 +32,12 @@ pub trait Run: Copy {
 
 /// Returns the motion of a request at its start, by the method that the type `F` computes. Returns
 /// the kernel's error if it refuses the request.
-#[inline(never)]
 pub(super) fn start<F: Form>(request: &Request) -> Result<F, Error> {
     let (parameters, state) = rounded(request)?;
     F::new(&parameters, &state, request.dt)
 }
 
 /// Returns the same by the request's method. Refuses methods that scenes are not drawn by.
-#[inline(never)]
 pub(super) fn start_drawn(request: &Request) -> Result<DrawnMotion, Error> {
     let (parameters, state) = rounded(request)?;
     DrawnMotion::new(request.method, &parameters, &state, request.dt)
@@ -57,7 +55,6 @@ fn rounded(request: &Request) -> Result<(Parameters<f64>, State<f64>), Error> {
 
 /// Every method of the kernel that is a [`Form`].
 impl<F: Form> Run for F {
-    #[inline(always)]
     fn advance(&mut self, steps: u32) {
         self.advance(steps);
     }
@@ -73,7 +70,6 @@ impl<F: Form> Run for F {
 
 /// Returns the pendulum's parameters and its initial state. Each number is rounded once to the
 /// arithmetic `R`, and checked and computed in it.
-#[inline(never)] // One copy instead of one for each row, to save flash.
 fn checked<R: Real>(request: &Request) -> Result<(Parameters<f64>, State<f64>), Error> {
     let ([a1, a2], [w1, w2]) = (request.angles, request.velocities);
     let parameters = request.parameters.cast::<R>();

@@ -77,7 +77,8 @@ impl OnBoards {
     /// refuses a pendulum without gravity.
     ///
     /// [`Pendulum::check_step`]: double_pendulum::Pendulum::check_step
-    #[inline(never)] // Inlined, the compiler would move this large value word by word.
+    // Inlined, 224 bytes of flash and a stack frame of 5,324 bytes in `begin_work` (M3).
+    #[inline(never)]
     pub fn start(request: &Request) -> Option<Result<Self, Error>> {
         Some(match request.method {
             Method::Rk4F32Direction
@@ -101,7 +102,7 @@ impl OnBoards {
 }
 
 impl Run for OnBoards {
-    // Not inlined, because a board may have this function twice, in flash and in RAM.
+    // Test `steps` finds it by its name; a board may have it twice, in flash and in RAM.
     #[inline(never)]
     fn advance(&mut self, steps: u32) {
         match self {

@@ -69,7 +69,6 @@ impl Simulation {
     /// Advances the motion by one tick, 1/60 s. It must not be [too fast](Self::is_too_fast), which
     /// is not checked. A motion that diverges is not reported here; numbers of its state are then
     /// not finite, and stay so, but its directions may look valid.
-    #[inline(never)] // Not inlined, to save flash.
     pub fn tick(&mut self) {
         // A motion that has diverged is detected by its state.
         let _is_lost = self.motion.advance(1);

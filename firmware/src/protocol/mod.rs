@@ -71,7 +71,6 @@ pub fn read<M: DeserializeOwned>(bytes: &[u8]) -> Option<M> {
 /// Frames a message of bytes for the wire: adds version, CRC, COBS and delimiters. Returns the used
 /// part of `wire`, which begins and ends with a zero; the rest of `wire` is zeros. If the message
 /// is longer than [`MAX_MESSAGE`], that part is empty, and `wire` is unchanged.
-#[inline(never)] // One copy instead of one for each kind of message, to save flash.
 pub fn frame<'wire>(message: &[u8], wire: &'wire mut [u8; MAX_WIRE]) -> &'wire [u8] {
     if message.len() > MAX_MESSAGE {
         return &[];

@@ -121,7 +121,8 @@ impl ToHost {
 /// 1. Add it here, and to `Player::frame`. If only the board knows it, such as its cycles, add it
 ///    to `App::show`, and to `Show::expected` of the host's emulator.
 /// 2. Raise [`VERSION`](super::VERSION) and, if a frame becomes longer than that, `MAX_MESSAGE`.
-///    Run the tests `firmware link:: golden::` with `BLESS=1`, and name the version in the README.
+///    Run the tests `firmware link:: golden::` with `BLESS=1`, and name the version in
+///    `firmware/README.md`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Frame {
     /// The number of frames drawn since reset before this one; wraps. A gap means that a frame was

@@ -26,7 +26,6 @@ const AMPLITUDE: f32 = 12.0;
 /// amplitude of angle 2, 12 degrees. The figure closes only if the ratio of the frequencies is
 /// rational, as in the scenes of the catalogue. Not checked: the mass ratio is positive and finite.
 /// Otherwise numbers may be infinite or NaN.
-#[inline(never)] // Not inlined, to save flash.
 pub fn closing(mass_ratio: f32) -> Settings {
     let gravity = GRAVITY as f32;
     let parameters = Parameters::equal_rods(mass_ratio, ROD, gravity);

@@ -87,7 +87,8 @@ impl Butterfly {
 
 impl Scene for Butterfly {
     const SHOWS: Shows = Shows::Motion;
-    #[inline(never)] // Inlined, the preparations of all scenes would be on the stack together.
+    // With all scenes inlined, `play_by` has a stack frame of 7,604 bytes (test `stack_guard`).
+    #[inline(never)]
     fn new(settings: &Settings, resources: &Resources) -> Result<(Self, Option<f32>), Error> {
         // A frame pays for both motions.
         let &Resources { processor, method } = resources;

@@ -110,7 +110,7 @@ impl Block {
     }
 
     /// Fills the block and its mirror image with a grey.
-    #[inline(never)] // Not inlined, to save flash.
+    #[inline(never)] // Inlined, it takes 324 bytes of flash (M3).
     fn paint(self, ink: &mut FadeLayer, grey: u8) {
         let map = &mut ink.frame;
         map.all_greys = true;
@@ -135,7 +135,6 @@ impl Flips {
     ///
     /// Refuses parameters that describe no pendulum, zero gravity, because nothing moves without
     /// it, and a pendulum out of the range of the method's numbers.
-    #[inline(never)] // Not inlined, to save flash.
     pub fn at_pace(settings: &Settings, pace: FlipsPace, in_float: bool) -> Result<Self, Error> {
         // The search lasts for a fixed number of units of time.
         let parameters = &settings.parameters;
@@ -170,7 +169,6 @@ impl Flips {
 
 /// Starts the motion from these angles, or makes at most `steps` steps of it. Returns the cost, in
 /// steps, and the flip when it is known.
-#[inline(never)] // Not inlined, to save flash.
 fn work<F: Form<Real = f32>>(
     search: &Search<F>,
     falling: &mut Option<Falling<F>>,

@@ -218,7 +218,6 @@ fn crash((cause, pc, lr, cfsr): (Cause, u32, u32, u32), report: &dyn Display) ->
 }
 
 /// Writes a report, and the scene and tick of the last frame, to the debugger's standard error.
-#[inline(never)]
 fn say(report: &dyn Display) {
     if let Ok(mut stderr) = hio::hstderr() {
         let _ = match retained::last() {

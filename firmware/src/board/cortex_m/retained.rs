@@ -22,7 +22,7 @@ fn copies() -> &'static [[AtomicU8; MAX_WIRE]; 2] {
 
 /// Writes the record in place of the earlier one, in case this frame is the last. It is stored
 /// twice, so that one copy is intact if a reset interrupts the writing.
-#[inline(never)]
+#[inline(never)] // Test `scenes` profiles it by its name.
 pub fn keep(record: &Record) {
     let bytes = record.write();
     for copy in copies() {
@@ -33,7 +33,7 @@ pub fn keep(record: &Record) {
 }
 
 /// Returns the first copy that is intact; `None` if neither is, as when the board is switched on.
-#[inline(never)]
+#[inline(never)] // Inlined, it and `main_loop::log` take 3.6 KB of flash (M0+).
 fn kept() -> Option<Record> {
     copies()
         .iter()
@@ -65,7 +65,6 @@ pub fn last() -> Option<Restarted> {
 /// Records why the program ends: the cause, the program counter, the link register and the fault
 /// status (CFSR), 0 where unknown. They replace those of an earlier call; the rest of the record
 /// stays. Does nothing if no record is intact, as before the first scene after power-on.
-#[inline(never)]
 pub fn end(cause: Cause, pc: u32, lr: u32, cfsr: u32) {
     if let Some(Record { played, end }) = kept() {
         keep(&Record {

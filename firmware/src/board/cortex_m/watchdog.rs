@@ -61,7 +61,6 @@ impl TwoStage {
 }
 
 impl Watchdog for TwoStage {
-    #[inline(never)] // Not inlined, to save flash.
     fn feed(&mut self) {
         unlock(self.0);
         self.0.register(CLEAR).write(1);

@@ -124,7 +124,6 @@ impl Ssi {
 
 /// Sends up to [`QUEUE`] bytes and waits until they are sent. The received bytes are noise, but
 /// must be read, because a full receive queue stops the bus.
-#[inline(always)]
 fn send(bytes: &[u8]) -> Result<(), ErrorKind> {
     for &byte in bytes {
         DATA.write(byte.into());
