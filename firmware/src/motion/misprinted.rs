@@ -129,10 +129,10 @@ impl Misprinted {
     }
 
     /// Returns the energy H now, J, by the correct formula, as
-    /// [`Pendulum::energy`](double_pendulum::Pendulum::energy) does:
-    /// ((q1 - q2 cos D)^2 r + q2^2/mu)/2 - (1 + mu) G cos a1 - mu G cos a2, times m1 l^2. The
-    /// potential is zero at the pivot. A lost motion has the energy of the last step. Numbers beyond
-    /// the range of `f32` give infinity or NaN.
+    /// [`Pendulum::energy`](double_pendulum::Pendulum::energy) does: ((q1 - q2 cos D)^2 r +
+    /// q2^2/mu)/2 - (1 + mu) G cos a1 - mu G cos a2, times m1 l^2. The potential is zero at the
+    /// pivot. A lost motion has the energy of the last step. Numbers beyond the range of `f32` give
+    /// infinity or NaN.
     pub fn energy(&self) -> f32 {
         let &Self {
             mass_ratio: mu,

@@ -177,8 +177,8 @@ impl Energy {
         self.relative(motion.energy_above_rest(&self.pendulum))
     }
 
-    /// Returns the same relative error of a motion that is in this state, in SI units (rad,
-    /// kg m^2/s), now. It is 0 if the start is hanging at rest, and otherwise not finite for a state
+    /// Returns the same relative error of a motion that is in this state, in SI units (rad, kg
+    /// m^2/s), now. It is 0 if the start is hanging at rest, and otherwise not finite for a state
     /// that is not finite.
     pub fn error_of_state(&self, state: &State<f32>) -> f32 {
         self.relative(self.pendulum.energy_above_rest(&state.cast()))
@@ -193,9 +193,9 @@ impl Energy {
         }
     }
 
-    /// Returns the energy E, J, that has this relative [`error`](Self::error), (E - E0)/(E0 - Emin).
-    /// The potential is zero at the pivot. An error that is not finite gives an energy that is not
-    /// finite. If the start is hanging at rest, every finite error gives Emin.
+    /// Returns the energy E, J, that has this relative [`error`](Self::error), (E - E0)/(E0 -
+    /// Emin). The potential is zero at the pivot. An error that is not finite gives an energy that
+    /// is not finite. If the start is hanging at rest, every finite error gives Emin.
     pub fn of_error(&self, error: f32) -> f32 {
         let above_rest = self.start + f64::from(error) * self.start;
         (self.pendulum.least_energy() + above_rest) as f32

@@ -26,11 +26,12 @@ const MARK_RADIUS: u8 = 112;
 const CURVE: u8 = 200;
 
 /// The two frequencies of equal rods in units of sqrt(g/l), so that they depend only on the mass
-/// ratio. The curves grow from the left, by two columns in a tick, and are complete in a second. The
-/// plot begins at the mass ratio 0, and ends at 5 or, for a mass ratio above 4, at 1.25 times it.
+/// ratio. The curves grow from the left, by two columns in a tick, and are complete in a second.
+/// The plot begins at the mass ratio 0, and ends at 5 or, for a mass ratio above 4, at 1.25 times
+/// it.
 ///
-/// Of the settings only the mass ratio matters. It is refused unless it is positive and finite, and
-/// near the limits of `f32`. A requested method is ignored. The default is an empty figure.
+/// Of the settings only the mass ratio matters. It is refused if it is not positive and finite,
+/// or near the limits of `f32`. A requested method is ignored. The default is an empty figure.
 #[derive(Clone, Debug, Default)]
 pub struct Frequencies {
     /// The mass ratio at the right edge of the plot.

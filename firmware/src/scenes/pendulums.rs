@@ -165,9 +165,9 @@ pub fn figure_7() -> Settings {
 
 /// The correct motion on the left, the misprinted one on the right, and their energies, J. The
 /// clock and a requested method belong to the correct motion. Unequal rods are refused, because the
-/// misprinted equations are for equal ones, and so is everything that [`Simulation::new`] refuses. A
-/// misprinted motion that is too fast for its steps is no longer drawn, and `book too fast` replaces
-/// its energy.
+/// misprinted equations are for equal ones, and so is everything that [`Simulation::new`] refuses.
+/// A misprinted motion that is too fast for its steps is no longer drawn, and `book too fast`
+/// replaces its energy.
 #[derive(Clone, Debug)]
 pub struct Figure7 {
     right: Simulation,

@@ -668,6 +668,34 @@ fn errors_contain_the_parameter_and_its_value() {
     ));
 }
 
+/// A frame of a Cortex-M0+ pays for finer steps in 64 bits, but planning does not. The search must
+/// name the planning budget, not the growth of rounding errors, although the steps of its reference
+/// are not the finest.
+#[test]
+fn a_horizon_that_finer_steps_would_extend_is_limited_by_planning() -> Result<(), PlanError> {
+    let heavy = Problem {
+        pendulum: Parameters {
+            m2: 9.386_063_4,
+            l2: 0.503_161_73,
+            ..Parameters::equal_rods(1.0, 1.0, 9.81)
+        },
+        start: Motion::at_rest(-1.855_815_2, 1.060_634_05),
+        tolerance: 0.03,
+        duration: 14.488_835,
+        rate: 60,
+    };
+    let budget = Budget {
+        frame: 7e5,
+        planning: 2.115_155e9,
+    };
+    let plan = Plan::search(&heavy, &Costs::CORTEX_M0PLUS, &budget)?;
+    assert_eq!(
+        (plan.method, plan.limit),
+        (Method::Extrapolation10Fixed64, Limit::Planning)
+    );
+    Ok(())
+}
+
 /// The limit without a method is the budget to raise: the planning budget if an affordable
 /// candidate has not failed yet, otherwise the frame budget.
 ///

@@ -4,11 +4,12 @@
 
 use double_pendulum::parts::DirectionF64;
 use double_pendulum::{
-    DirectionF32, ExtrapolationF64, Fixed32, Fixed64, Form, HamiltonF64, Motion, Parameters,
-    Pendulum,
+    ClosedFormF64, DirectionF32, ExtrapolationF64, Fixed32, Fixed64, Form, HamiltonF64, Motion,
+    Parameters, Pendulum,
 };
 
 use super::{EQUATIONS, assert_near};
+use crate::methods::FormOperations;
 
 /// The number of steps. It is so small that an error in one equation has not spread to the others
 /// yet.
@@ -127,4 +128,18 @@ fn every_form_is_that_of_hamiltons_equations() {
     is_that_of_hamiltons_equations::<Fixed32>(RK4);
     is_that_of_hamiltons_equations::<ExtrapolationF64<12>>(ORDER_12);
     is_that_of_hamiltons_equations::<Fixed64<12>>(ORDER_12);
+}
+
+/// A motion of the same pendulum from another start stands at that start before its first step: the
+/// directions of the closed form are those of a new motion from there, bit by bit.
+#[test]
+fn another_start_of_the_closed_form_has_its_own_directions() {
+    let (parameters, motion) = MOTIONS[0];
+    let pendulum = Pendulum::new(&parameters).expect("valid parameters");
+    let start = pendulum.to_state(&motion);
+    let other = pendulum.to_state(&Motion::at_rest(0.25, -0.125));
+
+    let new = |start| ClosedFormF64::new(&parameters, start, DT).expect("a valid motion");
+    let started = new(&start).started(&other).expect("a valid motion");
+    assert_eq!(started.directions::<f64>(), new(&other).directions());
 }
