@@ -14,7 +14,7 @@
 //! | [`emulator::link`] | the serial link: bytes to messages, and a real port |
 //! | [`console`] | the shared console interface: options, errors, progress |
 //! | [`cycles`] | the cost of a program on a Cortex-M, from QEMU's log |
-//! | [`reference`] | the exact motion |
+//! | [`reference`](mod@reference) | the exact motion |
 //! | [`vectors`] | many motions at once, in the host's vectors |
 
 #![forbid(unsafe_code)]

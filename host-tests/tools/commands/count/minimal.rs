@@ -123,7 +123,7 @@ pub struct Minimal {
 pub struct MinimalPrices {
     /// The board, for the kind of its core.
     pub board: &'static Board,
-    /// The prices of [`PROGRAMS`], in that order.
+    /// The prices of `PROGRAMS`, in that order.
     pub prices: Vec<Minimal>,
     /// The size of a program without a motion in flash, bytes.
     pub start_up: usize,
@@ -193,7 +193,7 @@ pub fn write_table(boards: &[MinimalPrices]) -> Result<()> {
 }
 
 /// Returns the table of prices for the kernel's README, in Markdown, with a newline after each
-/// line: a row for each of [`PROGRAMS`], and one for a program without a motion. There is a column
+/// line: a row for each of `PROGRAMS`, and one for a program without a motion. There is a column
 /// for the core of each board, in the order of `boards`.
 ///
 /// A cell of a core has the cycles of a step, rounded, and of a call, as in "1,234 + 56". The last
