@@ -30,8 +30,8 @@ pub struct Job<R = OnBoards> {
 impl<R: Run> Job<R> {
     /// Creates the job of a request, where `run` is its motion at the start. Of the request it uses
     /// the parameters, the method, the angles (rad), `stride` and `samples`. If the stride is 0,
-    /// every reading is the initial one. The number of samples, with the initial one, is at most
-    /// 2^32 - 1.
+    /// every reading is the initial one. The job returns the initial reading and `samples`
+    /// more, in all at most 2^32 - 1: of `u32::MAX` the last is left out.
     ///
     /// Not checked: `run` is the motion of this request, by its method, before the first step. Its
     /// angles are then finite.

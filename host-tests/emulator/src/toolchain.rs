@@ -127,9 +127,9 @@ fn check_temporary_folder() -> Result<(), Refused> {
 
 /// Returns the core library and the emulator for another target, and provides them if necessary.
 ///
-/// QEMU emulates a board for an ARM microcontroller, and Linux for RISC-V and aarch64. Node.js runs
-/// WebAssembly; if it is missing, the user is asked ([`Consent::Ask`]). Any other target counts as
-/// an ARM microcontroller. Refusals are as in [`set_up`], but the folder for temporary files is not
+/// QEMU emulates Linux for targets `riscv32imac-*` and `aarch64-*`. Node.js runs `wasm32-*`; if it
+/// is missing, the user is asked ([`Consent::Ask`]). Any other target, also another RISC-V, counts
+/// as an ARM microcontroller, and QEMU emulates a board for it. Refusals are as in [`set_up`], but the folder for temporary files is not
 /// checked.
 pub fn set_up_for(target: &str) -> Result<Toolchain, Refused> {
     let emulator = match target.split('-').next() {

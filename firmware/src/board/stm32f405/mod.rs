@@ -47,8 +47,9 @@ const UNIQUE_NUMBER: *const [u32; 3] = core::ptr::without_provenance(0x1fff_7a10
 /// The parts of this board.
 pub type Stm32f405 = Board<OledI2c<'static, Bus<I2c1>>, Outward, OneKey, IndependentWatchdog>;
 
-/// Sets the board up. The tick and the watchdog, which the emulator lacks, run from then on, and
-/// the watchdog must be fed. The panel and the button may be absent.
+/// Sets the board up. The tick runs from then on, and so does the watchdog, except in the emulator,
+/// which has none. It must be fed at least once in [`WATCHDOG_SECONDS`]. The panel and the button
+/// may be absent.
 ///
 /// A chip whose own oscillator reads as not ready counts as emulated: its log goes to the emulator,
 /// and its number is zeros. On a chip this waits for the PLL. Returns `None` the second time, or if
