@@ -129,8 +129,8 @@ fn check_temporary_folder() -> Result<(), Refused> {
 ///
 /// QEMU emulates Linux for targets `riscv32imac-*` and `aarch64-*`. Node.js runs `wasm32-*`; if it
 /// is missing, the user is asked ([`Consent::Ask`]). Any other target, also another RISC-V, counts
-/// as an ARM microcontroller, and QEMU emulates a board for it. Refusals are as in [`set_up`], but the folder for temporary files is not
-/// checked.
+/// as an ARM microcontroller, and QEMU emulates a board for it. Refusals are as in [`set_up`], but
+/// the folder for temporary files is not checked.
 pub fn set_up_for(target: &str) -> Result<Toolchain, Refused> {
     let emulator = match target.split('-').next() {
         Some("wasm32") => |installs: bool| tools::node(installs.then_some(Consent::Ask)),

@@ -156,10 +156,10 @@ pub fn error(request: &Request, exact: &[[f64; 2]]) -> Option<Error> {
 
 /// Returns the largest error, in rad and pixels of the panel, of both angles and of both bobs at
 /// all moments of `angles` (a1, a2 in rad). `exact` has the angles of these moments and possibly,
-/// equally often, of moments between them. The error of an angle is without whole turns, at most pi.
-/// With an empty list the errors are 0. They are infinite if an angle is not finite or if the
-/// kernel refuses the parameters. Not checked: with an `exact` that is shorter than `angles`,
-/// only its moments are compared.
+/// equally often, of moments between them. The error of an angle is without whole turns, at most
+/// pi. With an empty list the errors are 0. They are infinite if an angle is not finite or if the
+/// kernel refuses the parameters. Not checked: with an `exact` that is shorter than `angles`, only
+/// its moments are compared.
 pub fn worst(parameters: &Parameters<f64>, angles: &[[f64; 2]], exact: &[[f64; 2]]) -> Error {
     let Ok(pendulum) = Pendulum::new(parameters) else {
         return LOST;
