@@ -209,7 +209,7 @@ pub struct TestOptions {
 /// with the long tests.
 const LIMITS: [Duration; 2] = [Duration::from_secs(3600), Duration::from_secs(12 * 3600)];
 /// The environment variables with the numbers of concurrent tests, and of concurrent pieces of
-/// work within tests. If the user has not set one, it is three times the number of processors,
+/// work within tests. If the user has not set one, it is twice the number of processors,
 /// because many tests wait for an emulator or a clock.
 const THREADS: [&str; 2] = ["RUST_TEST_THREADS", "RAYON_NUM_THREADS"];
 
@@ -229,7 +229,7 @@ pub fn verify(options: &TestOptions) -> anyhow::Result<ExitCode> {
             .args(arguments)
             .current_dir(toolchain::workspace())
             .stdin(Stdio::null());
-        let threads = 3 * available_parallelism()?.get();
+        let threads = 2 * available_parallelism()?.get();
         for name in THREADS {
             if env::var_os(name).is_none() {
                 command.env(name, threads.to_string());
