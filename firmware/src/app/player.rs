@@ -4,7 +4,7 @@ use double_pendulum::plan::Stepping;
 use double_pendulum::{Error, Method};
 
 use crate::app::pace::Pace;
-use crate::config::{GREATEST_ANGLE, Processor, TICK_RATE};
+use crate::config::{GREATEST_ANGLE, Processor};
 use crate::display::PanelReport;
 use crate::graphics::{Anchor, Canvas, FadeLayer, LINE, label, text};
 use crate::motion::{CatchingUp, Horizon, PlanResult, Planned, Planner, Resources, Settings};
@@ -231,9 +231,9 @@ impl<'a> Player<'a> {
     /// Begins to switch to the method and step count of a plan, if that does not shorten the
     /// horizon.
     ///
-    /// A plan whose horizon is past is not followed, because its motion is as inaccurate as the
-    /// current one. A plan that costs less, but has a shorter horizon than the panel has shown, is
-    /// not followed either.
+    /// A plan whose horizon is past before its motion has caught up is not followed, because then
+    /// that motion is as inaccurate as the current one. A plan that costs less, but has a shorter
+    /// horizon than the panel has shown, is not followed either.
     fn follow(&mut self, found: &PlanResult) {
         let (MotionState::FollowsPlan, Ok(plan)) = (&self.motion, found) else {
             return;
@@ -244,12 +244,13 @@ impl<'a> Player<'a> {
 
         let current = simulation.motion.stepping();
         let planned = plan.stepping();
-        let time = self.planner.ticks as f64 / f64::from(TICK_RATE);
-        let is_longer = plan.horizon >= self.planner.horizon(current).max(time);
+        let processor = &self.planner.processor;
+        let arrival = CatchingUp::arrival(planned, processor, self.planner.ticks);
+        let is_longer = plan.horizon >= self.planner.horizon(current).max(arrival);
         if planned == current || !is_longer {
             return;
         }
-        if let Ok(next) = CatchingUp::new(&self.settings, planned, &self.planner.processor) {
+        if let Ok(next) = CatchingUp::new(&self.settings, planned, processor) {
             self.motion = MotionState::Switching(next);
         }
     }

@@ -3,7 +3,7 @@
 use double_pendulum::plan::{PlannedRun, Stepping};
 use double_pendulum::{Error, Method, Parameter, Pendulum, State};
 
-use crate::config::Processor;
+use crate::config::{Processor, TICK_RATE};
 use crate::graphics::HEIGHT;
 use crate::motion::Settings;
 
@@ -113,14 +113,24 @@ impl CatchingUp {
         stepping: Stepping,
         processor: &Processor,
     ) -> Result<Self, Error> {
-        let frame = processor.costs.of_frame(stepping).max(processor.piece());
-        let affordable = (processor.look_ahead / frame) as u32;
-
-        // With fewer frames in a tick it would never catch up.
         Ok(Self {
             motion: settings.run(0.0, stepping)?,
-            most: affordable.max(2),
+            most: Self::frames(stepping, processor),
         })
+    }
+
+    /// Returns the number of frames that a motion by `stepping` advances in a tick.
+    fn frames(stepping: Stepping, processor: &Processor) -> u32 {
+        let frame = processor.costs.of_frame(stepping).max(processor.piece());
+        let affordable = (processor.look_ahead / frame) as u32;
+        affordable.max(2) // With fewer it would never catch up.
+    }
+
+    /// Returns the time, s since the start of the scene, when a motion by `stepping` has caught up
+    /// that starts again in tick `ticks`. It may be up to two ticks later.
+    pub fn arrival(stepping: Stepping, processor: &Processor, ticks: u64) -> f64 {
+        let frames = f64::from(Self::frames(stepping, processor));
+        ticks as f64 / f64::from(TICK_RATE) * (frames / (frames - 1.0))
     }
 
     /// Advances by the frames of a tick, but not beyond `simulation`. Returns true if it has caught

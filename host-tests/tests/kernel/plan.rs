@@ -673,9 +673,9 @@ fn errors_contain_the_parameter_and_its_value() {
 /// are not the finest.
 #[test]
 fn a_horizon_that_finer_steps_would_extend_is_limited_by_planning() -> Result<(), PlanError> {
-    let heavy = Problem {
+    let problem = Problem {
         pendulum: Parameters {
-            m2: 9.386_063_4,
+            m2: 3.5,
             l2: 0.503_161_73,
             ..Parameters::equal_rods(1.0, 1.0, 9.81)
         },
@@ -686,9 +686,9 @@ fn a_horizon_that_finer_steps_would_extend_is_limited_by_planning() -> Result<()
     };
     let budget = Budget {
         frame: 7e5,
-        planning: 2.115_155e9,
+        planning: 1.6e9,
     };
-    let plan = Plan::search(&heavy, &Costs::CORTEX_M0PLUS, &budget)?;
+    let plan = Plan::search(&problem, &Costs::CORTEX_M0PLUS, &budget)?;
     assert_eq!(
         (plan.method, plan.limit),
         (Method::Extrapolation10Fixed64, Limit::Planning)
