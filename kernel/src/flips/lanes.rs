@@ -58,7 +58,6 @@ pub(super) struct DirectionLanes<const N: usize, const ROWS: usize> {
 
 impl<const N: usize, const ROWS: usize> DirectionLanes<N, ROWS> {
     /// Returns lanes that all follow `motion`.
-    #[inline(always)]
     pub fn new(motion: &DirectionF32Plain) -> Self {
         let (coefficients, half_inverse_square, z, inverse) = motion.parts();
         // The same constants for all lanes.
@@ -79,7 +78,6 @@ impl<const N: usize, const ROWS: usize> DirectionLanes<N, ROWS> {
 
     /// Puts another motion of the same pendulum and step into a lane, counted from 0 through all
     /// rows. Ignores a lane that does not exist. The pendulum and the step are not checked.
-    #[inline(always)]
     pub fn put(&mut self, lane: usize, motion: &DirectionF32Plain) {
         let (_, _, z, inverse) = motion.parts();
         let numbers = z.into_iter().chain([inverse]);
@@ -90,7 +88,6 @@ impl<const N: usize, const ROWS: usize> DirectionLanes<N, ROWS> {
 
     /// Resets a lane, counted from 0 through all rows, to its motion in `before`. Ignores a lane
     /// that does not exist.
-    #[inline(always)]
     pub fn keep(&mut self, lane: usize, before: &mut Self) {
         for (place, number) in self.lane(lane).zip(before.lane(lane)) {
             *place = *number;
@@ -117,7 +114,6 @@ impl<const N: usize, const ROWS: usize> DirectionLanes<N, ROWS> {
     }
 
     /// Restores the lengths of all directions, to first order in their errors.
-    #[inline(always)]
     pub fn restore_lengths(&mut self) {
         for (start, _) in &mut self.rows {
             self.constants.restore_lengths(start);
@@ -126,14 +122,12 @@ impl<const N: usize, const ROWS: usize> DirectionLanes<N, ROWS> {
 
     /// Returns (sin, cos) of both rods in the lanes of a row; those of rod 2 are nu times as long.
     /// Panics if `row` is not less than `ROWS`.
-    #[inline(always)]
     pub fn rods(&self, row: usize) -> [[Numbers<N>; 2]; 2] {
         let [sin1, cos1, s, c, ..] = self.rows[row].0.z;
         [[sin1, cos1], [sin1 * c - cos1 * s, cos1 * c + sin1 * s]]
     }
 
     /// Returns the numbers of one motion; none if the lane does not exist.
-    #[inline(always)]
     fn lane(&mut self, lane: usize) -> impl Iterator<Item = &mut f32> {
         let row = self
             .rows
@@ -210,7 +204,6 @@ impl<const N: usize> Constants<N> {
     }
 
     /// Restores the length 1 of direction 1 and the length nu of (S, C), to first order.
-    #[inline(always)]
     fn restore_lengths(&self, point: &mut Point<N>) {
         let one = Lanes::splat(1.0);
         let half = Lanes::splat(0.5);

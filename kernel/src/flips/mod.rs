@@ -146,7 +146,6 @@ impl<F: Form> Flips<F> {
 
 /// Returns a negative number if a rod has passed straight up between the sides `before` and
 /// `after`, (sin, cos) of each rod.
-#[inline(always)]
 fn passes(before: &[[i32; 2]; 2], after: &[[i32; 2]; 2]) -> i32 {
     // A rod passes straight up if its sine changes its sign while its cosine is negative.
     let [[upper_before, _], [lower_before, _]] = *before;

@@ -206,7 +206,6 @@ mod tests {
 
     /// Returns the flips of all starts, in the vectors that the tests are compiled for. Asserts
     /// that each start is given once.
-    #[inline(always)]
     fn any(flips: &Flips<DirectionF32Plain>) -> Result<Vec<Option<Flip<f32>>>, Error> {
         let mut found = std::vec![None; SIDE * SIDE];
         flips.of_each::<8>(starts(SIDE), |start, flip| {

@@ -37,7 +37,6 @@ use crate::pendulum::{Direction, Parameters, State};
 ///
 /// nu is `norm`. The two units, s/(kg m^2), convert the momenta: P1 = p1 `unit1`, P2 = p2 `unit2`.
 /// A state that is not finite gives NaN or infinity.
-#[inline(never)] // Not inlined, to save flash.
 pub(crate) fn quantities(state: &State<f64>, norm: f64, [unit1, unit2]: [f64; 2]) -> [f64; 6] {
     let (sin1, cos1) = state.a1.own_sin_cos();
     let (sin_d, cos_d) = (state.a1 - state.a2).own_sin_cos();
@@ -55,7 +54,6 @@ pub(crate) fn quantities(state: &State<f64>, norm: f64, [unit1, unit2]: [f64; 2]
 ///
 /// The inverse of [`quantities`], except for whole turns. The lengths of the directions do not
 /// matter. NaN in `z` gives NaN.
-#[inline(never)] // Not inlined, to save flash.
 pub(crate) fn state_of(z: [f64; 6], [unit1, unit2]: [f64; 2]) -> State<f64> {
     let [sin1, cos1, s, c, p1, p2] = z;
     let sin2 = sin1 * c - cos1 * s;
@@ -70,7 +68,6 @@ pub(crate) fn state_of(z: [f64; 6], [unit1, unit2]: [f64; 2]) -> State<f64> {
 
 /// Returns the directions of both rods for the six quantities `z`, where nu is `norm`. Each has
 /// length 1 except for the errors of `z`; it is not restored.
-#[inline]
 pub(crate) fn directions<R: Real>(z: &[R; 6], norm: R) -> [Direction<R>; 2] {
     let [sin1, cos1, s, c, ..] = *z;
     let inverse = R::ONE / norm;
@@ -275,7 +272,6 @@ impl Lead {
     /// Returns the number of steps to compute for the next `steps` steps, after which the count of
     /// steps since the start is `count`: `steps`, or one less. They must not go beyond the end of a
     /// block, and `steps` must be at least 1; neither is checked.
-    #[inline(always)]
     pub fn made(self, steps: u32, count: u64) -> u32 {
         if count as u32 % BLOCK == 0 {
             steps - u32::from(self.is_left_out(count))
@@ -287,7 +283,6 @@ impl Lead {
     /// Returns true if the last step of the block that ends at `count` steps since the start is
     /// left out, because the lead exceeded half a step within the block. `count` must be a multiple
     /// of 32; this is not checked.
-    #[inline(always)]
     pub fn is_left_out(self, count: u64) -> bool {
         let after = count.wrapping_mul(self.each) as i64;
         after < i64::MIN + (self.each * u64::from(BLOCK)) as i64
@@ -296,7 +291,6 @@ impl Lead {
     /// Returns the motion's lead over the exact time at `count` steps since the start, in steps.
     /// Its magnitude is at most half a step, plus the lead of one block. It is negative if the
     /// motion is behind.
-    #[inline(never)] // Not inlined, to save flash.
     pub fn ahead(self, count: u64) -> f64 {
         let within = count % u64::from(BLOCK);
         let before = (count - within).wrapping_mul(self.each) as i64;

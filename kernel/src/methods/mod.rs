@@ -126,7 +126,6 @@ pub trait FormOperations: Copy + Debug + PartialEq + 'static {
 
     /// Advances the motion by one step, as `advance(1)` does. A loop that reads the motion after
     /// each step uses it.
-    #[inline(always)]
     fn advance_one(&mut self) {
         self.advance(1);
     }

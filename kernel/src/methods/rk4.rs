@@ -17,7 +17,6 @@ use crate::pendulum::{Pendulum, State};
 /// The error is O(dt^5) after one step, and O(dt^4) after a fixed time. A negative `dt` steps
 /// backwards. The inputs are not checked; NaN gives NaN. The unit of time is that of f.
 #[must_use]
-#[inline]
 pub fn step<R: Real, const N: usize>(f: impl Fn(&[R; N]) -> [R; N], z: &[R; N], dt: R) -> [R; N] {
     let half = dt * R::HALF;
     let k1 = f(z);
@@ -29,7 +28,6 @@ pub fn step<R: Real, const N: usize>(f: impl Fn(&[R; N]) -> [R; N], z: &[R; N], 
 }
 
 /// Returns z + dt k.
-#[inline(always)]
 fn advanced<R: Real, const N: usize>(z: &[R; N], dt: R, k: &[R; N]) -> [R; N] {
     core::array::from_fn(|i| z[i] + dt * k[i])
 }
@@ -43,7 +41,6 @@ impl<R: Real> Pendulum<R> {
     /// [`admissible_step`](Self::admissible_step) before the first step, and [`State::finite`]
     /// after each.
     #[must_use]
-    #[inline]
     pub fn step(&self, state: &State<R>, dt: R) -> State<R> {
         step(|z| self.derivatives(z), &(*state).into(), dt).into()
     }

@@ -14,7 +14,6 @@ pub(crate) struct Lanes<R, const N: usize>(pub [R; N]);
 
 impl<R: Copy, const N: usize> Lanes<R, N> {
     /// Returns the same number in every lane.
-    #[inline(always)]
     pub fn splat(number: R) -> Self {
         Self([number; N])
     }
@@ -22,7 +21,6 @@ impl<R: Copy, const N: usize> Lanes<R, N> {
 
 impl<R: Copy + Add<Output = R>, const N: usize> Lanes<R, N> {
     /// Returns the sum of each number and itself. A sum beyond the largest number is infinite.
-    #[inline(always)]
     pub fn twice(self) -> Self {
         self + self
     }
@@ -30,7 +28,6 @@ impl<R: Copy + Add<Output = R>, const N: usize> Lanes<R, N> {
 
 impl<R: Copy + Add<Output = R>, const N: usize> Add for Lanes<R, N> {
     type Output = Self;
-    #[inline(always)]
     fn add(self, other: Self) -> Self {
         Self(from_fn(|lane| self.0[lane] + other.0[lane]))
     }
@@ -38,7 +35,6 @@ impl<R: Copy + Add<Output = R>, const N: usize> Add for Lanes<R, N> {
 
 impl<R: Copy + Sub<Output = R>, const N: usize> Sub for Lanes<R, N> {
     type Output = Self;
-    #[inline(always)]
     fn sub(self, other: Self) -> Self {
         Self(from_fn(|lane| self.0[lane] - other.0[lane]))
     }
@@ -46,7 +42,6 @@ impl<R: Copy + Sub<Output = R>, const N: usize> Sub for Lanes<R, N> {
 
 impl<R: Copy + Mul<Output = R>, const N: usize> Mul for Lanes<R, N> {
     type Output = Self;
-    #[inline(always)]
     fn mul(self, other: Self) -> Self {
         Self(from_fn(|lane| self.0[lane] * other.0[lane]))
     }
@@ -54,7 +49,6 @@ impl<R: Copy + Mul<Output = R>, const N: usize> Mul for Lanes<R, N> {
 
 impl<R: Copy + Neg<Output = R>, const N: usize> Neg for Lanes<R, N> {
     type Output = Self;
-    #[inline(always)]
     fn neg(self) -> Self {
         Self(self.0.map(R::neg))
     }

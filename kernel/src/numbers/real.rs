@@ -84,7 +84,6 @@ pub trait RealOperations:
     /// Returns the number nearest to `value`.
     fn from_i64(value: i64) -> Self;
     /// Returns the nearest number of the arithmetic `S`, as [`from_f64`](Self::from_f64) does.
-    #[inline(always)]
     fn cast<S: Real>(self) -> S {
         S::from_f64(self.to_f64())
     }
@@ -123,7 +122,6 @@ pub trait RealOperations:
 /// zero, subnormal, NaN or close to overflow.
 macro_rules! twice_by_bits {
     ($name:ident, $float:ident) => {
-        #[inline(always)]
         fn $name(x: $float) -> $float {
             const PLACE: u32 = $float::MANTISSA_DIGITS - 1;
             const LARGEST: u32 = 2 * $float::MAX_EXP as u32 - 3;
@@ -132,7 +130,6 @@ macro_rules! twice_by_bits {
             // A separate function, because otherwise the compiler would compute the sum in any
             // case.
             #[cold]
-            #[inline(never)]
             fn sum(x: $float) -> $float {
                 x + x
             }
@@ -163,11 +160,9 @@ macro_rules! real {
             const PI: Self = core::$float::consts::PI;
             const EPSILON: Self = $float::EPSILON;
 
-            #[inline(always)]
             fn from_f64(value: f64) -> Self {
                 value as $float
             }
-            #[inline(always)]
             fn twice(self) -> Self {
                 if cfg!($software) {
                     $twice(self)
@@ -179,19 +174,15 @@ macro_rules! real {
             fn side(self) -> i32 {
                 $side(self)
             }
-            #[inline(always)]
             fn from_side(side: i32) -> Self {
                 $from_side(side)
             }
-            #[inline(always)]
             fn to_f64(self) -> f64 {
                 self as f64
             }
-            #[inline(always)]
             fn from_i64(value: i64) -> Self {
                 value as $float
             }
-            #[inline(always)]
             fn abs(self) -> Self {
                 $float::abs(self)
             }
@@ -200,19 +191,15 @@ macro_rules! real {
             fn sqrt(self) -> Self {
                 $sqrt(self)
             }
-            #[inline(always)]
             fn bits(self) -> u64 {
                 self.to_bits().into()
             }
-            #[inline(always)]
             fn is_finite(self) -> bool {
                 $float::is_finite(self)
             }
-            #[inline(always)]
             fn is_normal(self) -> bool {
                 $float::is_normal(self)
             }
-            #[inline]
             fn atan2(self, x: Self) -> Self {
                 $atan2(self, x)
             }

@@ -25,7 +25,6 @@ pub(super) fn single(x: f32) -> (f32, f32) {
 
     /// Computes arguments beyond the range of the reduction, and NaN, in double precision.
     #[cold]
-    #[inline(never)]
     fn huge(x: f32) -> (f32, f32) {
         let (s, c) = double(x.into());
         (s as f32, c as f32)
@@ -44,7 +43,6 @@ pub(super) fn single(x: f32) -> (f32, f32) {
 
 /// Returns (sin x, cos x) of an `f64` in rad; NaN for infinity and NaN.
 /// [`sin_cos`](super::sin_cos) gives the errors.
-#[inline]
 pub(super) fn double(x: f64) -> (f64, f64) {
     /// pi/2 in three parts. The first two have 33 bits each, so that their products with k are
     /// exact for every k up to 2^20.
@@ -78,7 +76,6 @@ pub(super) fn double(x: f64) -> (f64, f64) {
 
     /// Computes arguments beyond the range of the reduction, and NaN.
     #[cold]
-    #[inline(never)]
     fn huge(x: f64) -> (f64, f64) {
         libm::sincos(x)
     }
@@ -101,7 +98,6 @@ pub(super) fn double(x: f64) -> (f64, f64) {
 }
 
 /// Returns (sin r, cos r) for |r| up to slightly more than pi/4.
-#[inline(always)]
 fn first_octant<R: Real, const N: usize>(r: R, sine: [R; N], cosine: [R; N]) -> (R, R) {
     let z = r * r;
     // Horner's scheme.
@@ -118,7 +114,6 @@ fn first_octant<R: Real, const N: usize>(r: R, sine: [R; N], cosine: [R; N]) -> 
 
 /// Returns the direction (sin, cos) turned by `quarters` quarter turns. Only the two lowest bits of
 /// `quarters` are used.
-#[inline]
 fn by_quarters<R: Neg<Output = R>>((sine, cosine): (R, R), quarters: u32) -> (R, R) {
     // An odd number of quarter turns exchanges sine and cosine.
     let (sine, cosine) = if quarters & 1 == 0 {

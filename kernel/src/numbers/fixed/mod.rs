@@ -10,21 +10,18 @@ macro_rules! fixed_point {
 
         impl core::ops::Add for $type {
             type Output = Self;
-            #[inline(always)]
             fn add(self, other: Self) -> Self {
                 Self($narrowed($wide::from(self.0) + $wide::from(other.0)))
             }
         }
         impl core::ops::Sub for $type {
             type Output = Self;
-            #[inline(always)]
             fn sub(self, other: Self) -> Self {
                 Self($narrowed($wide::from(self.0) - $wide::from(other.0)))
             }
         }
         impl core::ops::Neg for $type {
             type Output = Self;
-            #[inline(always)]
             fn neg(self) -> Self {
                 Self($narrowed(-$wide::from(self.0)))
             }
@@ -41,7 +38,6 @@ pub(crate) use q30::{Gravity, Q30, Slope, Torque, word};
 pub(crate) use q64::Q64;
 
 /// Returns `value` times 2^`exponent`; infinity beyond the range of `f64`.
-#[inline(never)] // Not inlined, to save flash.
 pub(crate) fn scaled(value: f64, exponent: i32) -> f64 {
     libm::scalbn(value, exponent)
 }
@@ -63,13 +59,11 @@ pub(crate) const IN_HALVES: bool = cfg!(all(
 ));
 
 /// Returns the upper word of the product of two words: `a` `b` 2^-32, rounded down.
-#[inline(always)]
 pub(crate) fn upper(a: i32, b: i32) -> i32 {
     (product(a, b) >> 32) as i32
 }
 
 /// Returns the product of two words, which always fits.
-#[inline(always)]
 pub(crate) fn product(a: i32, b: i32) -> i64 {
     if IN_HALVES {
         product_of_halves(a, b)
@@ -80,7 +74,6 @@ pub(crate) fn product(a: i32, b: i32) -> i64 {
 
 /// Returns the product of two words from four products of half words. No intermediate sum
 /// overflows.
-#[inline(always)]
 fn product_of_halves(a: i32, b: i32) -> i64 {
     // The lower half is without sign, the upper half has the sign.
     let halves = |word: i32| (word & 0xffff, word >> 16);

@@ -18,7 +18,6 @@ fixed_point! {
 }
 
 /// Returns the lower 64 bits of a sum.
-#[inline(always)]
 fn wrapped(sum: i128) -> i64 {
     sum as i64
 }
@@ -39,7 +38,6 @@ impl Q64 {
     }
 
     /// Returns the upper word, rounded to nearest, and the lower one as a signed number.
-    #[inline(always)]
     fn words(self) -> [i32; 2] {
         let lower = self.0 as i32;
         [
@@ -49,7 +47,6 @@ impl Q64 {
     }
 
     /// Returns the product with `factor` 2^-32, rounded down.
-    #[inline(always)]
     pub fn times_word(self, factor: i32) -> Self {
         let [upper, lower] = self.words().map(|word| product(word, factor));
         Self(upper + (lower >> 32))
@@ -58,7 +55,6 @@ impl Q64 {
     /// Returns zero if the number is from -2^-`places` to below 2^-`places`, and another number
     /// otherwise, so that the results of many checks can be joined by `|`. `places` is from 2 to
     /// 32.
-    #[inline(always)]
     pub fn reach(self, places: u32) -> u32 {
         (((self.0 >> 32) as u32).wrapping_add(1 << (32 - places))) >> (33 - places)
     }
@@ -68,7 +64,6 @@ impl Q64 {
     ///
     /// A quotient of words is improved by one step of Newton's method on words and one step of
     /// third order, whose residue 1 - d r has 32 bits.
-    #[inline(always)]
     pub fn inverse(self) -> Self {
         let divisor = self.0 as u64;
         let upper = (divisor >> 32) as u32;
@@ -101,7 +96,6 @@ impl Q64 {
 /// of the last digit.
 impl Mul for Q64 {
     type Output = Self;
-    #[inline(always)]
     fn mul(self, factor: Self) -> Self {
         let [a, a_lower] = self.words();
         let [b, b_lower] = factor.words();
@@ -117,19 +111,16 @@ impl Q64 {
     }
 
     /// Returns half the number, rounded down.
-    #[inline(always)]
     pub fn half(self) -> Self {
         Self(self.0 >> 1)
     }
 
     /// Returns the product with a whole number. It wraps if it does not fit.
-    #[inline(always)]
     pub fn times(self, whole: i32) -> Self {
         Self(self.0.wrapping_mul(i64::from(whole)))
     }
 
     /// Returns the number over 2^`by`, rounded to nearest. `by` is at most 31.
-    #[inline(always)]
     pub fn down(self, by: u32) -> Self {
         Self(self.0.wrapping_add(i64::from(1_u32 << by >> 1)) >> by)
     }
@@ -137,7 +128,6 @@ impl Q64 {
     /// Returns the number times 2^`by`, moved to the middle of the values that it may have had
     /// before it was rounded down, so that no bias is left. `by` is from 1 to 63. Bits that do not
     /// fit are lost; the caller checks with [`reach`](Self::reach).
-    #[inline(always)]
     pub fn up(self, by: u32) -> Self {
         Self(self.0 << by | 1 << (by - 1))
     }
