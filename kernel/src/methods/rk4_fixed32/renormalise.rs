@@ -13,7 +13,7 @@ const LENGTH_ERROR: u64 = 1 << 51;
 impl Fixed32 {
     /// Corrects what 32 steps have accumulated, and checks the energy. Marks the motion as lost if
     /// a length is far off, or if the energy exceeds [`Units::most_energy`](super::Units).
-    #[inline(never)] // Not inlined, because it is called once for 32 steps.
+    #[inline(never)] // Maps of flips take 57 instead of 53 % of a frame on an M0+ without.
     pub(super) fn renormalise(&mut self) {
         self.restore_lengths();
         self.add_missed_gravity();

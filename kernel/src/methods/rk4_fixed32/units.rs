@@ -76,7 +76,6 @@ impl Units {
     ///
     /// Refuses ratios of masses or rods that [`Scaling::in_seconds`] refuses, and a step that is
     /// too long: [`Error::TooLarge`] contains the longest possible one, s.
-    #[inline(never)]
     pub fn new(parameters: &Parameters<f64>, energy: f64, dt: f64) -> Result<Self, Error> {
         let &Parameters { m1, m2, .. } = parameters;
         let seconds = Scaling::in_seconds(parameters)?;
