@@ -188,6 +188,11 @@ pub fn periodic_mass_ratio<R: Real>(fast: u16, slow: u16, lengths: [R; 2]) -> Re
     let numerator2 = p * p * l2 - q * q * l1;
     let denominator = p * q * (l1 + l2);
 
+    // Lengths near the largest number may overflow.
+    if !(numerator1 + numerator2).is_finite() {
+        return Err(parameters.out_of_range());
+    }
+
     // At the limit bob 2 would have no mass.
     if numerator1 > R::ZERO && numerator2 > R::ZERO {
         let mass_ratio = numerator1 * numerator2 / (denominator * denominator);

@@ -85,6 +85,7 @@ impl<'a, Spi: SpiDevice, Pin: OutputPin<Error = Infallible>> Ssd0323<'a, Spi, Pi
     /// first error of the SPI device; the rest is then not sent, and the panel stays dark until a
     /// later call succeeds.
     pub fn init(&mut self) -> Result<(), Spi::Error> {
+        self.is_known = false;
         self.command(&ALL_COLUMNS)?;
         self.command(&ALL_ROWS)?;
         (0..HEIGHT).try_for_each(|_| self.data(&[0; WIDTH / 2]))?;

@@ -119,6 +119,14 @@ fn errors_contain_the_parameter_and_its_value() {
             Motion::at_rest(0.0, infinite).check(),
             not_finite(A2, infinite),
         ),
+        // Both numerators overflow.
+        (
+            periods(3, 2, [1e308, 1e308]),
+            Error::OutOfRange {
+                parameter: L1,
+                value: 1e308,
+            },
+        ),
         (
             periods(3, 0, [1.0, 1.0]),
             not_finite(FrequencyRatio, infinite),

@@ -259,11 +259,22 @@ fn play(talk: &mut Talk, name: SceneName, hertz: u32, section: &mut Section) -> 
     let mut comparison = Comparison::default();
     let mut frames = Vec::new();
     let mut compared = 0;
+    let mut of_others = 0;
 
     while compared < FRAMES && comparison.difference().is_none() {
         // The frames of this scene, and the answers about its settings.
         let frame = match talk.next(Some)? {
             ToHost::Frame(frame) if frame.scene == name => frame,
+            ToHost::Frame(frame) => {
+                of_others += 1;
+                ensure!(
+                    of_others < PATIENCE,
+                    "{}: the board still shows {} after {of_others} frames",
+                    name.name(),
+                    frame.scene.name()
+                );
+                continue;
+            }
             ToHost::Answer(_, Answer::Status(status)) => {
                 comparison.status(&status);
                 continue;
