@@ -12,11 +12,13 @@ use core::fmt;
 pub struct Fault {
     /// The registers that the processor has stacked; `None` if it could not stack them.
     pub stacked: Option<Stacked>,
-    /// The stack pointer at the time of the fault, as computed from the stacked registers. It is 4
-    /// bytes too low if the processor has aligned the stack.
+    /// The stack pointer at the time of the fault, as computed from the place of the stacked
+    /// registers, also if they could not be stacked. It is 4 bytes too low if the processor has
+    /// aligned the stack.
     pub sp: u32,
-    /// The address of the last call found on the stack; `None` if none is found. It is the only
-    /// evidence if the registers are missing, and is reported only then.
+    /// The address of the last call instruction found by its return address on the stack; `None` if
+    /// none is found. It is the only evidence if the registers are missing. The report prints it
+    /// only then.
     pub last_call: Option<u32>,
     /// The Configurable Fault Status Register.
     pub cfsr: u32,
@@ -95,12 +97,14 @@ impl Fault {
     }
 
     /// Returns the cause of the fault in a few English words, such as `division by zero`. If
-    /// several bits of CFSR are set, it is the most specific cause.
+    /// several bits of CFSR are set, usage faults come before faults of the memory protection, and
+    /// these before bus faults.
     ///
-    /// It is `stack overflow` if registers are missing on the stack, or if the memory protection
-    /// refused a data access 1 to 128 bytes below `sp`. If no bit of CFSR names a cause, HFSR is
-    /// used, and then the Thumb bit of the stacked `xpsr`, which should be set. If none of them
-    /// shows the cause, as usual on a Cortex-M0+, it is `unknown cause (a Cortex-M0+ tells none)`.
+    /// It is `stack overflow` if CFSR reports that registers are missing on the stack, whatever
+    /// `stacked` is, or if the memory protection refused a data access 1 to 128 bytes below `sp`.
+    /// If no bit of CFSR names a cause, HFSR is used, and then the Thumb bit of the stacked `xpsr`,
+    /// which should be set. If none of them shows the cause, on any processor, but usual only on a
+    /// Cortex-M0+, it is `unknown cause (a Cortex-M0+ tells none)`.
     pub fn cause(&self) -> &'static str {
         if self.is_stack_overflow() {
             return "stack overflow";

@@ -6,7 +6,7 @@ use crate::numbers::Real;
 use crate::table::Method;
 
 /// A quantity that an [`Error`] names: an input, or a number of a motion. Displays as its symbol in
-/// `[math24]`, or in words.
+/// `[math24]`, such as `m1`, or in words, such as `frequency ratio`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -86,20 +86,23 @@ impl fmt::Display for Parameter {
 }
 
 /// The reason why an input is refused, or why a motion cannot go on: the parameter and its value,
-/// in the unit of the [`Parameter`].
+/// in the unit of the [`Parameter`]. Displays as one line, such as
+/// `l1 = 0.0: must be greater than zero`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum Error {
-    /// The value is NaN or infinite, or becomes infinite in the numbers of the method.
+    /// The value is NaN or infinite. Also the error for a mass, length, gravity or start that
+    /// becomes infinite in the numbers of the method; the value is then infinite.
     NotFinite {
         /// The refused parameter.
         parameter: Parameter,
         /// The refused value.
         value: f64,
     },
-    /// The value is zero or negative, or becomes zero in the numbers of the method.
+    /// The value is zero or negative. Also the error for a mass or length that becomes zero in the
+    /// numbers of the method; the value is then 0.
     NotPositive {
         /// The refused parameter.
         parameter: Parameter,
@@ -115,7 +118,8 @@ pub enum Error {
         /// The largest possible value; of a step, which may be negative, the largest magnitude.
         limit: f64,
     },
-    /// The value is below a limit: gravity below 0, or a frequency ratio too small for the rods.
+    /// The value is below a limit: any gravity below 0, or a frequency ratio too small for the
+    /// rods.
     TooSmall {
         /// The refused parameter.
         parameter: Parameter,
@@ -136,8 +140,11 @@ pub enum Error {
     /// Each value alone is valid, but one of them or a product of them leaves the range of the
     /// arithmetic.
     ///
-    /// Also the error for a zero or subnormal step in [`Pendulum::run`](crate::Pendulum::run), for
-    /// an order that is not 2, 4 .. 16, and for a start of 2^31 - 1 turns or more.
+    /// Also the error for a step that is zero, subnormal or infinite in the numbers of the method,
+    /// for an order that is not 2, 4 .. 16, and for a start of 2^31 - 1 turns or more. Only
+    /// [`Pendulum::check_step`](crate::Pendulum::check_step) and
+    /// [`Modes::check_step`](crate::Modes::check_step), which refuse steps backwards, refuse a zero
+    /// step by `NotPositive`.
     OutOfRange {
         /// The refused parameter. If a product is out of range, the mass, length or gravity whose
         /// value is farthest from 1 as a factor.
@@ -145,7 +152,8 @@ pub enum Error {
         /// The refused value.
         value: f64,
     },
-    /// The misprinted equations of `[math24]` are for equal rods, but these rods differ.
+    /// The misprinted equations of `[math24]`, which the repository's application shows beside the
+    /// correct ones, are for equal rods, but these rods differ.
     UnequalRods {
         /// Length of rod 1, m.
         l1: f64,

@@ -70,8 +70,9 @@ const CHAOTIC: Golden = Golden {
     dt: DT,
 };
 
-/// The motions of every method: a regular and a chaotic one, each first forwards and then backwards
-/// in time, in steps of 1/240 s.
+/// The motions of every method, in the order of the file: a regular one, the same backwards in
+/// time, a chaotic one, and the same backwards in time. Each motion backwards has the start of the
+/// motion forwards, and steps of -1/240 s instead of 1/240 s.
 pub const MOTIONS: [Golden; 4] = [
     REGULAR,
     Golden {
@@ -90,8 +91,8 @@ pub const MOTIONS: [Golden; 4] = [
 /// The bits of a motion by one method.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Bits {
-    /// The FNV-1a hash, 64 bits, of all words that the method carries, little-endian, after each
-    /// step.
+    /// The FNV-1a hash, 64 bits, of all words that the method carries, after each step. A word is a
+    /// `u64`, little-endian. The number and order of the words depend on the method.
     pub checksum: u64,
     /// The bits of a1, a2, p1 and p2 at the end, as `f64` in SI units. The angles include whole
     /// turns.

@@ -24,6 +24,8 @@ pub struct Mode<R> {
 /// Here and in the methods, w1 > w2 > 0 are the angular frequencies of the fast and the slow mode,
 /// rad/s, not the angular velocities of the rods.
 ///
+/// All numbers are finite and not 0, and so are the results of the methods.
+///
 /// The same two numbers are the growth rates about the inverted position (pi, pi), because K
 /// changes its sign there.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -55,8 +57,8 @@ impl<R: Real> Modes<R> {
     ///
     /// Refuses:
     ///
-    /// - NaN, infinite, zero or negative masses and lengths, and gravity that is not positive and
-    ///   finite;
+    /// - NaN, infinite, zero or negative masses and lengths, and gravity that is NaN, infinite,
+    ///   negative ([`Error::TooSmall`]) or zero ([`Error::NotPositive`]);
     /// - by [`Error::OutOfRange`], parameters whose frequencies, shapes or exchange frequency
     ///   overflow, underflow or are subnormal in `R`.
     pub fn new(parameters: &Parameters<R>) -> Result<Self, Error> {
@@ -155,14 +157,19 @@ impl<R: Real> Pendulum<R> {
 ///
 /// which follows from (w1/w2 + w2/w1)^2 = (1 + mu)(l1 + l2)^2/(l1 l2). For equal rods it is
 /// mu = ((r^2 - 1)/(2r))^2 with r = p/q. A common period is 2 pi p/w1 = 2 pi q/w2, s, and the
-/// shortest one if p and q have no common factor.
+/// shortest one if p and q have no common factor. Close to the least possible ratio p/q a factor
+/// cancels, and mu has fewer correct digits.
 ///
 /// # Errors
 ///
-/// Refuses lengths that are not positive and finite, lengths whose terms in the formula leave the
-/// range of `R` ([`Error::OutOfRange`]), and a `slow` of 0 ([`Error::NotFinite`]). Also refuses a
-/// ratio p/q that no masses can give, such as 0, by [`Error::TooSmall`]: it must exceed the square
-/// root of the longer rod over the shorter rod.
+/// Refuses, in this order:
+///
+/// - lengths that are not positive and finite;
+/// - a `slow` of 0, by [`Error::NotFinite`];
+/// - a ratio p/q that no masses can give, such as 0, by [`Error::TooSmall`]: it must exceed the
+///   square root of the longer rod over the shorter rod;
+/// - lengths whose terms in the formula leave the range of `R`, by [`Error::OutOfRange`] or, if
+///   both terms of a difference overflow, by [`Error::TooSmall`] with a ratio above the limit.
 pub fn periodic_mass_ratio<R: Real>(fast: u16, slow: u16, lengths: [R; 2]) -> Result<R, Error> {
     // Only the lengths can be wrong here.
     let [l1, l2] = lengths;

@@ -14,7 +14,8 @@ pub enum Equations {
     Hamilton,
     /// Hamilton's equations in directions of the rods and momenta, without sines.
     Directions,
-    /// Hamilton's equations as `[math24]` prints them, not simplified: for comparison.
+    /// Hamilton's equations as `[math24]` prints them for any rods, not simplified: for comparison.
+    /// None of the misprints is in them.
     Textbook,
     /// The linear equations of small oscillations: [`SmallOscillations`](crate::SmallOscillations).
     Linear,
@@ -42,7 +43,7 @@ pub enum Numbers {
     F64,
     /// Double precision. The rounding error of each sum is carried into the next.
     CompensatedF64,
-    /// Fixed point of 32 bits. The state has 64 bits.
+    /// Fixed point of 32 bits. Each number of the state has 64 bits.
     Fixed32,
     /// Fixed point of 64 bits.
     Fixed64,
@@ -142,7 +143,7 @@ pub enum Method {
     Rk4F32Micromath,
     /// `textbook-f32`
     TextbookF32,
-    /// `rk4-f32-lagrange`, which the unit tests add.
+    /// `rk4-f32-lagrange`, only in the unit tests of this crate.
     #[cfg(test)]
     Rk4F32Lagrange,
 }

@@ -64,14 +64,16 @@ const ARROWS: [[Command; 2]; 4] = [
 /// | right | start angle counter-clockwise | next scene |
 ///
 /// An arrow that is held alone repeats after [`REPEAT_DELAY_TICKS`], and then every
-/// [`REPEAT_PERIOD_TICKS`].
+/// [`REPEAT_PERIOD_TICKS`]. With select held it acts once for each press. After that select itself
+/// has no effect until it is released, and earlier taps do not count. An arrow that was pressed
+/// before select has no effect while select is held.
 ///
 /// The select button alone can do the most important things. A tap restarts the scene when it ends:
 /// a press shorter than [`HOLD_TICKS`], in which no arrow has caused a command. Holding it for
 /// [`HOLD_TICKS`] selects the next scene, once. Holding it that long after one, two, three or four
-/// taps is a heavier bob 2, a lighter one, a turn to the right or to the left, and repeats every
-/// [`REPEAT_PERIOD_TICKS`]. After more taps it does nothing. Each of these taps has restarted the
-/// scene. Taps belong together if at most [`MOST_TICKS_BETWEEN_TAPS`] are between them.
+/// taps is instead a heavier bob 2, a lighter one, a turn to the right or to the left, and repeats
+/// every [`REPEAT_PERIOD_TICKS`]. After more taps it does nothing. Each of these taps has restarted
+/// the scene. Taps belong together if at most [`MOST_TICKS_BETWEEN_TAPS`] are between them.
 #[derive(Clone, Debug, Default)]
 pub struct Controls {
     arrows: [Button; 4],

@@ -17,7 +17,8 @@ pub enum Event<Panel, Link> {
     /// restarts in a row are too many, or if that scene cannot be played.
     Restarted(Restarted, bool),
     /// A command, of a button or from the link, has started a scene with these settings, whose
-    /// angles are in degrees. A scene that is resumed after a restart has no such event.
+    /// angles are in degrees. The first scene, and one that is resumed after a restart, have no
+    /// such event.
     Started(SceneName, Settings),
     /// The command of a button is impossible because of this field. Nothing changes. (A command
     /// from the link gets an answer instead.)
@@ -40,12 +41,14 @@ pub enum Event<Panel, Link> {
     /// The panel answers for the first time, or again.
     PanelFound(Found),
     /// A message did not reach the link: the first one, or one after a message that did. Further
-    /// failures in a row are not logged.
+    /// failures in a row are not logged, and neither is the next success.
     Link(Link),
-    /// A host has requested a motion.
+    /// A host has requested a motion, and its computation begins. A request that is refused has no
+    /// event.
     Asked,
-    /// The scene's motion is too fast for this chip, or for the method that the user has selected.
-    /// The scene does not advance until it is started again.
+    /// The scene's motion is too fast for this chip, or for the method that the user has selected:
+    /// at its start, or later, when it has left the finite numbers. The scene does not advance
+    /// until it is started again.
     Stopped,
     /// The step of the requested motion is longer than this, s: the longest step that resolves
     /// every motion of its energy. The motion is computed all the same.

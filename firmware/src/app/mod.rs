@@ -51,7 +51,8 @@ pub struct App<'a, Panel, Link, Keys> {
     pub canvas: &'a mut Canvas,
     /// The last tick of the clock that is completed; wraps.
     ticks: u32,
-    /// The number of frames drawn and sent since reset; wraps.
+    /// The number of frames drawn since reset, also those that the panel or the link did not take;
+    /// wraps.
     pub frames: u32,
     /// The number of ticks without a frame since reset.
     dropped: ThrottledCounter,
@@ -109,8 +110,9 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
     }
 
     /// Sets the clock to tick `clock`, so that [`run_to`](Self::run_to) counts from there. Sets the
-    /// count of frames, and also the count of ticks without a frame, to `frames`. The scene and the
-    /// other counts are not changed, and no event is logged.
+    /// count of frames, and also the count of ticks without a frame, to `frames`: 0 on a board, and
+    /// a number near the wrap in a test. The scene and the other counts are not changed, and no
+    /// event is logged.
     pub fn count_from(&mut self, clock: u32, frames: u32) {
         self.ticks = clock;
         self.frames = frames;
@@ -133,7 +135,8 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
 
     /// Drives the panel as this controller; `None` identifies it. From the next frame on, the panel
     /// is searched for and set up again. Returns false, and does nothing, if the board has no panel
-    /// with a choice of controllers.
+    /// with a choice of controllers. Not checked: the panel has this controller. Otherwise the
+    /// pictures may be wrong.
     pub fn choose_panel(&mut self, controller: Option<Controller>) -> bool {
         self.panel.choose(controller)
     }
@@ -155,8 +158,8 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
     ///
     /// In each tick the buttons are read, their commands are executed, and the scene advances.
     /// Every tick is integrated, however late it is. The state after n ticks does not depend on the
-    /// number of calls. A motion that has left the finite numbers stops the scene at the next
-    /// frame, which is logged ([`Event::Stopped`]).
+    /// number of calls, with one exception: a motion that has left the finite numbers stops the
+    /// scene at the next frame, which is logged ([`Event::Stopped`]).
     ///
     /// A call completes at most [`MOST_TICKS_PER_FRAME`] ticks, and the next calls complete the
     /// rest. All ticks of a call but the last count as ticks without a frame ([`Event::Dropped`]).
@@ -195,8 +198,8 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
     }
 
     /// Sends the last frame to the panel if it is still waiting for the bus and the bus is free.
-    /// Returns true if it still waits; false if it is sent, or if none waited. Does not wait for
-    /// the transfer.
+    /// Returns true if it still waits; false if its transfer has begun, or if none waited. Does not
+    /// wait for the transfer. An error is logged by a later [`run_to`](Self::run_to).
     pub fn catch_up(&mut self) -> bool {
         self.panel.catch_up(self.canvas)
     }

@@ -11,10 +11,11 @@ const WHOLE_TICK: u32 = 100;
 pub struct Pace {
     /// True if the scene advances only by `steps`.
     pub paused: bool,
-    /// The number of ticks left to advance while paused, one in each tick of the clock. It has no
-    /// effect otherwise.
+    /// The number of ticks of the scene left to advance while paused, one in each tick of the
+    /// clock. Otherwise it has no effect and stays; it acts again at the next pause unless it is
+    /// set to 0.
     pub steps: u32,
-    /// The number of ticks of the scene in [`WHOLE_TICK`] ticks of the clock.
+    /// The number of ticks of the scene in [`WHOLE_TICK`] ticks of the clock, 100.
     speed: u32,
     /// The parts of the scene's next tick that have passed.
     part: u32,
@@ -53,11 +54,11 @@ impl Pace {
         ticks
     }
 
-    /// Sets the speed, simulated time per real time, rounded to the nearest hundredth. A pause
-    /// stays.
+    /// Sets the speed, simulated time per real time, rounded to the nearest hundredth, a half
+    /// upwards. A pause stays.
     ///
     /// Returns [`Field::Speed`], and keeps the old speed, if the rounded one is below 0.01 or above
-    /// [`GREATEST_SPEED`], or is NaN.
+    /// [`GREATEST_SPEED`], 4, or is NaN.
     pub fn set_speed(&mut self, speed: f64) -> Result<(), Field> {
         let parts = (speed * f64::from(WHOLE_TICK) + 0.5) as u32;
         self.speed = (1..=GREATEST_SPEED * WHOLE_TICK)

@@ -91,8 +91,8 @@ impl<'a> Player<'a> {
     /// Returns the kernel's error if the settings describe no pendulum, a start that is not finite,
     /// numbers that no method can start with, or a pendulum that the scene cannot show, such as
     /// unequal rods in `figure-7` or zero gravity in `flips`. Then nothing is changed. Angles
-    /// beyond straight up are not refused here. Not checked: the start in a figure, which does not
-    /// use it; `frequencies` uses and checks the mass ratio alone.
+    /// beyond straight up are not refused here. Not checked: the start in `flips`, which does not
+    /// use it, and all but the mass ratio in `frequencies`.
     pub fn play(&mut self, name: SceneName, settings: Settings) -> Result<(), Error> {
         match self.play_by(self.method, name, settings) {
             Err(_) if self.method.is_some() => self.play_by(None, name, settings),
@@ -264,9 +264,9 @@ impl<'a> Player<'a> {
         !self.is_still() && !self.is_switching() && self.planner.work_ahead()
     }
 
-    /// Returns the last result of the planner, if any, and its problem; `None` if the scene shows
-    /// no planned motion or is too fast from its start. If the motion has diverged later, the
-    /// result stays.
+    /// Returns the problem of the planner and its last result, if there is one yet; `None` if the
+    /// scene shows no planned motion or is too fast from its start. If the motion has diverged
+    /// later, the result stays.
     pub fn plan(&self) -> Option<Planned> {
         self.planner.planned()
     }
@@ -306,7 +306,9 @@ impl<'a> Player<'a> {
     }
 
     /// Takes the scene's report if its angles and momenta are finite, and returns false. Otherwise
-    /// stops the scene, and returns true once; the report stays the last good one.
+    /// stops the scene, and returns true; the report stays the last good one. Of a scene that is
+    /// stopped already, also from its start, nothing is taken, and the result is false. A figure
+    /// without a moving pendulum never stops.
     ///
     /// To be called before each frame.
     #[inline(never)] // Test `scenes` profiles it by its name.
@@ -357,7 +359,8 @@ impl<'a> Player<'a> {
         );
     }
 
-    /// Returns true if the scene does not advance on its own: it is paused or stopped.
+    /// Returns true if the scene does not advance on its own: it is paused, also with ticks left of
+    /// a [`Command::Step`], or stopped.
     pub fn is_still(&self) -> bool {
         self.state() != PlayState::Playing
     }
@@ -370,7 +373,8 @@ impl<'a> Player<'a> {
         matches!(self.motion, MotionState::Switching(_))
     }
 
-    /// Returns the state of the scene's time. A stopped scene is `Stopped`, paused or not.
+    /// Returns the state of the scene's time. A stopped scene is `Stopped`, paused or not. A scene
+    /// that a [`Command::Step`] advances is `Paused`.
     pub fn state(&self) -> PlayState {
         if self.is_stopped() {
             PlayState::Stopped
@@ -382,8 +386,9 @@ impl<'a> Player<'a> {
     }
 
     /// Returns the frame message, with the report of the last [`check`](Self::check) and the start
-    /// angle of rod 1, rad. The numbers that only the clock and the link of the board know are 0:
-    /// sequence, dropped frames, lost bytes and cycles.
+    /// angle of rod 1 in the settings, rad, also in a scene that does not use it. The numbers that
+    /// only the clock and the link of the board know are 0: `sequence`, `dropped`, `lost` and the
+    /// cycles.
     pub fn frame(&self) -> Frame {
         let [start_angle, _] = self.settings.angles();
         Frame {
@@ -424,7 +429,8 @@ impl<'a> Player<'a> {
     ///
     /// If that is impossible, returns the field that is wrong; then nothing is changed. It is
     /// [`Field::Speed`] if the speed, rounded to hundredths, is not 0.01 to 4, and otherwise the
-    /// field of the settings that [`play`](Self::play) refuses.
+    /// field of the settings that [`play`](Self::play) refuses. Angles beyond straight up are
+    /// accepted.
     pub fn resume(&mut self, status: &Status) -> Result<(), Field> {
         let Status {
             scene,

@@ -37,7 +37,7 @@ pub struct Record {
 }
 
 impl Record {
-    /// Returns the bytes to keep: a message as on the wire, followed by zeros.
+    /// Returns the bytes to keep: a message as on the wire, followed by zeros. Every record fits.
     pub fn write(&self) -> Kept {
         let mut kept = [0; MAX_WIRE];
         encode(self, &mut kept);

@@ -41,8 +41,10 @@ static PATH: Shared<Path> = Shared::new(Path {
 });
 
 /// Opens the log of a chip, in memory (RTT). Earlier lines are lost. Parts of lines are also
-/// lost if no probe reads them and the 1024 bytes are full. From now on no debugger is assumed to
-/// be present (`crash::expect_no_debugger`). Panics the second time.
+/// lost if no probe reads them and the 1024 bytes are full. Panics the second time.
+///
+/// From now on no debugger is assumed to be present: a crash or a hang is recorded for the next
+/// run, but not printed. A Cortex-M4 still prints a crash if the processor's debug mode is on.
 pub fn into_memory() {
     crash::expect_no_debugger();
     let channel = rtt_init! { up: { 0: { size: 1024, name: "defmt" } } }.up.0;
@@ -50,8 +52,8 @@ pub fn into_memory() {
 }
 
 /// Opens the log of an emulated chip, on the emulator's standard output. Earlier lines are lost. If
-/// the output cannot be opened, all lines are lost; a line that it does not take is lost, too. Each
-/// line waits for the emulator.
+/// the output cannot be opened, as on a chip without a debugger, all lines are lost; a line that it
+/// does not take is lost, too. Each line waits for the emulator.
 #[cfg(feature = "stm32f405")]
 pub fn into_emulator() {
     PATH.with(|path| path.sink = hio::hstdout().map_or(Sink::Nowhere, Sink::Emulator));

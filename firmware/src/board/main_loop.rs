@@ -80,9 +80,9 @@ impl<Panel: Display<Error: fmt::Display> + 'static, Link: Write, Keys: Buttons, 
     Board<Panel, Link, Keys, Dog>
 {
     /// Runs the application for ever, and sleeps between the ticks. The application and the driver
-    /// of the panel are put at the given places, whose contents are overwritten, and draw in
-    /// `buffers`. `processor` is the class whose prices and budgets the planner uses. Not checked:
-    /// it is the class of this board.
+    /// of the panel are put at the given places, and draw in `buffers`. What these three contained
+    /// is overwritten. `processor` is the class whose prices and budgets the planner uses. Not
+    /// checked: it is the class of this board.
     ///
     /// The scene is the first of the catalogue with the default settings, or after a warm restart
     /// the scene from before it. That is not played again after more than [`MOST_RESTARTS`]
@@ -90,7 +90,8 @@ impl<Panel: Display<Error: fmt::Display> + 'static, Link: Write, Keys: Buttons, 
     /// panel is kept across every reset that leaves memory powered.
     ///
     /// Every finished frame feeds the watchdog and replaces the retained record. Received bytes
-    /// come from the interrupt of the serial port, not from `link`.
+    /// come from the interrupt of the serial port, not from `link`. Errors of the panel and of the
+    /// link are only logged. The log needs no further set-up after the board's `take`.
     pub fn play(
         self,
         place: &'static mut MaybeUninit<App<'static, Panel, Link, Keys>>,

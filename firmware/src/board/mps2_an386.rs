@@ -44,7 +44,8 @@ const INTERRUPT: Interrupt = Interrupt(0);
 pub type Mps2An386 = Board<NoDisplay, Outward, NoButtons, TwoStage>;
 
 /// Sets the board up. The tick and the watchdog run from then on, and the watchdog must be fed. No
-/// register indicates a reset by the watchdog, so `reset_by_watchdog` is always false.
+/// register indicates a reset by the watchdog, so `reset_by_watchdog` is always false. The log goes
+/// to the debugger, and needs no set-up.
 ///
 /// Returns `None` the second time, or if other code has taken the processor's peripherals.
 pub fn take() -> Option<Mps2An386> {

@@ -7,12 +7,15 @@ use super::cortex_m::clock::cycles;
 use super::cortex_m::interrupt::Shared;
 use crate::display::{Outbox, PanelBus, Sent};
 
-/// The device of a bus.
+/// The device of a bus. Its [`Bus`] calls [`reset`](Self::reset) before the first transfer, which
+/// sets the device up.
 pub trait PanelPort {
     /// Begins a transfer to this address of seven bits; the interrupt does the rest. It only waits
-    /// for the stop of the last transfer, at most [`TRIES`] polls.
+    /// for the stop of the last transfer, at most [`TRIES`] polls. A panel that does not answer is
+    /// reported by the outbox later ([`Outbox::sent`]).
     ///
-    /// Not checked: no transfer is in progress, and the interrupt owns the outbox.
+    /// Not checked: no transfer is in progress, the interrupt owns the outbox, and the address is
+    /// that of the outbox, at most 127.
     fn begin(&mut self, address: u8);
 
     /// Frees a bus that hangs, and resets the device, which ends a transfer in progress. The device
@@ -32,12 +35,14 @@ pub struct Bus<P> {
     megahertz: u32,
 }
 
-/// The largest number of polls that wait for a start or a stop of the bus. It takes 5 us, and these
-/// polls take at least 12 us. The Pico also waits this long for the bus's block to leave its reset.
+/// The largest number of polls that wait for a start or a stop on the I2C bus of the panel. It
+/// takes 5 us, and these polls take at least 12 us. The Pico also waits this long for the bus's
+/// block to leave its reset.
 ///
-/// After the last poll a transfer begins all the same; if it hangs, the driver of the panel aborts
-/// it. But if the STM32 waits in vain for the start before a further message or the answer, the
-/// transfer ends with [`ErrorKind::Other`], and the port is reset.
+/// After the last poll the set-up continues, or the transfer begins, all the same; if it hangs, the
+/// driver of the panel aborts it. But if the STM32 waits in vain for the start within a transfer,
+/// before a further message of the outbox or before the panel's answer, the transfer ends with
+/// [`ErrorKind::Other`], and the port is reset.
 pub const TRIES: u32 = 500;
 
 /// An outbox that is being sent, and the processor cycles of its begin and end.

@@ -49,7 +49,8 @@ pub(in crate::board) fn receive() {
     INBOX.with(|inbox| inbox.receive.map(|receive| receive(inbox)));
 }
 
-/// Takes the oldest received byte from the queue; `None` if the queue is empty. Does not wait.
+/// Takes the oldest received byte from the queue; `None` if the queue is empty. Does not wait. On
+/// the Pico the bytes of USB and of the UART are in this one queue, as they come.
 pub fn received() -> Option<u8> {
     INBOX.with(|inbox| inbox.received.pop_front()).flatten()
 }
@@ -63,11 +64,14 @@ pub fn lost() -> u32 {
 /// The sending direction of a port. The function sends bytes, and returns true if the port has
 /// taken all of them in time.
 ///
-/// [`Write::write`] waits for that. It returns the number of all bytes, or
+/// [`Write::write`] waits for that. It returns the number of all bytes, 0 for none, or
 /// [`ErrorKind::TimedOut`] if the port was late; a part of the bytes may then have been sent. The
-/// port is late after [`BUS_TRIES`] polls for a byte. On the Pico it is late after four times as
-/// many for the message, and then the UART has sent no part; a message longer than
-/// [`UART_QUEUE`](crate::config::UART_QUEUE) always is.
+/// port is late after [`BUS_TRIES`] polls for a byte. [`Write::flush`] does nothing.
+///
+/// On the Pico the result is that of the UART. It is late after four times [`BUS_TRIES`] tries for
+/// the whole message, at least 8 ms, and has then sent no part; a message longer than
+/// [`UART_QUEUE`](crate::config::UART_QUEUE) always is. USB gets the message before, or drops it
+/// without an error.
 pub struct Outward(pub(in crate::board) fn(&[u8]) -> bool);
 
 /// Sends bytes one by one. Each waits until the port `is_ready` for it, at most [`BUS_TRIES`]

@@ -36,11 +36,12 @@ core::arch::global_asm!(
 );
 
 /// Makes `steps` steps of a motion by the copy of the code in RAM (`in_ram`) or in flash, with
-/// interrupts off. Returns the processor cycles taken, on a Cortex-M0+ modulo 2^24; 0 without a
-/// cycle counter, as in QEMU.
+/// interrupts off. Boards with this function have both copies. Returns the processor cycles taken,
+/// modulo 2^24 on a Cortex-M0+ and 2^32 on a Cortex-M4F; 0 without a cycle counter, as in QEMU.
 ///
 /// The number of steps is not limited here. Of the ticks that end meanwhile the clock counts at
-/// most one, and received bytes may be lost. [`instruments::start`] must have started the counter.
+/// most one, and received bytes may be lost. [`instruments::start`] must have started the counter;
+/// otherwise the steps are made, and the result is meaningless.
 ///
 /// [`instruments::start`]: super::cortex_m::instruments::start
 pub fn timed(motion: &mut OnBoards, steps: u32, in_ram: bool) -> u32 {

@@ -17,7 +17,8 @@ const ANSWER: usize = 2;
 
 /// Messages to one address, and the answer to them. Each message is stored as its length and its
 /// bytes; in all there is room for 1,128 bytes. The default is empty, with the address 0 and the
-/// outcome `Ok`.
+/// outcome `Ok`. The public fields are written by the bus and by [`address_to`](Self::address_to),
+/// and only read by others.
 #[derive(Debug)]
 pub struct Outbox {
     /// The address of the panel, seven bits, set by [`address_to`](Self::address_to).
@@ -36,7 +37,7 @@ pub struct Outbox {
     answer: Vec<u8, ANSWER>,
     /// The outcome; `None` while the messages are being sent, `Ok` while nothing has been sent.
     pub sent: Option<Sent>,
-    /// The time that the messages took, us; 0 if it is not known.
+    /// The time that the messages and the answer took, us; 0 if it is not known.
     pub took: u32,
 }
 
@@ -45,7 +46,8 @@ pub struct Outbox {
 /// that another device drove the bus, and any other error that the transfer was aborted or hangs.
 pub type Sent = Result<(), ErrorKind>;
 
-/// The error of a panel that does not acknowledge.
+/// The error of a panel that does not acknowledge. An [`ErrorKind::NoAcknowledge`] of another
+/// source means the same.
 pub const SILENCE: ErrorKind = ErrorKind::NoAcknowledge(NoAcknowledgeSource::Unknown);
 
 /// A byte to send, after the address.
@@ -53,8 +55,8 @@ pub const SILENCE: ErrorKind = ErrorKind::NoAcknowledge(NoAcknowledgeSource::Unk
 pub struct OutByte {
     /// The byte itself.
     pub value: u8,
-    /// True if the byte is the last of its message: a stop follows, or the start of the next
-    /// message.
+    /// True if the byte is the last of its message. A stop follows or, if the bus prefers it, the
+    /// start of the next message or of the answer.
     pub ends_message: bool,
 }
 
@@ -76,7 +78,8 @@ impl Default for Outbox {
 
 impl Outbox {
     /// Empties the outbox, of messages and answer; messages put in from now on are for this address
-    /// of seven bits, which is not checked. The outcome becomes `Ok`, and no byte is requested.
+    /// of seven bits, which is not checked. The outcome becomes `Ok`, the time 0, and no byte is
+    /// requested.
     pub fn address_to(&mut self, address: u8) {
         self.address = address;
         self.messages.clear();
@@ -89,7 +92,7 @@ impl Outbox {
         self.took = 0;
     }
 
-    /// Appends a message: the control byte `head`, and up to 254 bytes. A longer message, or one
+    /// Appends a message: the control byte `head`, and 0 to 254 bytes. A longer message, or one
     /// that does not fit into the outbox with its length and `head`, is dropped without notice. The
     /// longest update of a panel fits (test `oled_i2c`).
     pub fn put(&mut self, head: u8, body: &[u8]) {
@@ -116,20 +119,21 @@ impl Outbox {
     }
 
     /// Takes a byte that was read; called by the bus, once for each requested byte. A third byte is
-    /// dropped.
+    /// dropped; otherwise the number requested is not checked.
     pub fn answer(&mut self, byte: u8) {
         // A byte beyond the capacity is dropped.
         let _ = self.answer.push(byte);
     }
 
-    /// Returns the bytes that were read. If the outcome is `Ok`, they are as many as requested;
-    /// before that, or after an error, they may be fewer.
+    /// Returns the bytes that were read. After a transfer with the outcome `Ok` they are as many as
+    /// requested. After an error they may be fewer, and before the transfer there are none.
     pub fn answered(&self) -> &[u8] {
         &self.answer
     }
 
     /// Returns the number of bytes on the bus for the whole contents, sent or not: the bytes of the
-    /// messages and of the requested answer, with an address for each.
+    /// messages and of the requested answer, with an address for each message and one for the
+    /// answer.
     pub fn len(&self) -> usize {
         let read = if self.asked == 0 { 0 } else { 1 + self.asked() };
         self.messages.len() + read
@@ -176,12 +180,14 @@ pub trait PanelBus {
     fn outbox(&mut self) -> Option<(&mut Outbox, Sent)>;
 
     /// Begins to send the messages in the outbox, and returns at once. Does nothing while a
-    /// transfer is in progress. Not checked: the outbox must contain a message, because an empty
-    /// transfer may never end.
+    /// transfer is in progress. Not checked: the outbox must contain a message that has not been
+    /// sent, because an empty transfer may never end.
     fn send(&mut self);
 
-    /// Aborts the transfer, and frees a bus that hangs. The outbox is then available, with the
-    /// outcome [`ErrorKind::Other`]; if no transfer was in progress, its outcome stays.
+    /// Aborts the transfer, and frees a bus that hangs, as far as that is possible, which is not
+    /// reported. It waits for the clocks of [`free_bus`]. The outbox is then available, with the
+    /// outcome [`ErrorKind::Other`], also if the transfer has ended since the last call of
+    /// [`outbox`](Self::outbox). If the outbox was available before, its outcome stays.
     fn abort(&mut self);
 }
 
@@ -193,7 +199,8 @@ const MOST_CLOCKS: u32 = 9;
 /// not, the panel is defective, or the line has no pull-up resistor.
 ///
 /// The function clocks the bus until the data line is high, at most nine times, and then makes a
-/// stop. A bus whose data line is high already is left unchanged.
+/// stop, also if the data line is still low. A bus whose data line is high already is left
+/// unchanged. A clock line that is held low is not noticed.
 ///
 /// A panel can be left in the middle of an answer, if the board is reset in the middle of a byte,
 /// or if the panel is plugged in while the bus is running. It holds the data line low for a bit

@@ -33,7 +33,7 @@ pub trait Display {
 
     /// Sends the last frame, which is the canvas, if it is still waiting for the bus. It is called
     /// in the time left until the next frame. Returns true while the frame waits; false if none
-    /// does, as by default.
+    /// does, as by default. An error is returned by a later [`flush`](Self::flush).
     fn catch_up(&mut self, _: &Canvas) -> bool {
         false
     }
@@ -125,7 +125,8 @@ pub struct Found {
     pub controller: Controller,
     /// The way in which the controller was identified.
     pub by: By,
-    /// The status byte, read with the display off; `None` if the panel acknowledges no read.
+    /// The status byte, read with the display off, which bit 6 should report; `None` if the panel
+    /// acknowledges no read.
     pub status: Option<u8>,
 }
 
@@ -137,7 +138,8 @@ pub enum PanelState {
     Unknown,
     /// The board looks for a panel, identifies it or sends the first picture.
     Starting,
-    /// The last search has ended with this error.
+    /// The last search has ended with this error, which stays during the next search. Also a panel
+    /// that has just been lost, until it is searched for, whatever the error.
     Absent(BusFault),
     /// The panel shows the frames.
     Shown(Found),
@@ -150,16 +152,18 @@ pub struct PanelReport {
     pub state: PanelState,
     /// The controller that the user chose; `None` identifies it.
     pub chosen: Option<Controller>,
-    /// The number of frames of the last [`TICK_RATE`](crate::config::TICK_RATE) that were sent to
-    /// the panel, whole or in part; 0 until the panel has taken frames for a whole second.
+    /// The number of frames of the last whole second, 60 frames
+    /// ([`TICK_RATE`](crate::config::TICK_RATE)), that were sent to the panel, whole or in part.
+    /// It is 0 until the panel has taken frames for a whole second, and if the driver does not
+    /// count them.
     pub shown: u8,
     /// The number of these that were sent whole. The others left a part to the next frame.
     pub whole: u8,
 }
 
-/// The controller that the build variable `PANEL` names: `ssd1306`, `sh1106` or `sh1107`. Another
-/// value is an error of the build. It is `None` without the variable, and then the controller is
-/// identified. A controller chosen by the host has precedence.
+/// The controller that the build variable `PANEL` names: `ssd1306`, also for an SSD1309, `sh1106`
+/// or `sh1107`. Another value is an error of the build. It is `None` without the variable, and then
+/// the controller is identified. A controller chosen by the host has precedence.
 pub const BUILT_FOR: Option<Controller> = match option_env!("PANEL") {
     None => None,
     Some(name) => match name.as_bytes() {

@@ -1,7 +1,7 @@
 //! A 128 x 64 OLED panel in one colour on I2C, with an SSD1306, SSD1309, SH1106 or SH1107.
 //!
 //! A whole picture takes 1,080 bytes, 24 ms at the bus's 400 kHz and longer than a tick. So only
-//! columns that have changed are sent, and no frame waits for the bus:
+//! columns that have changed are sent, and the program never waits for the bus:
 //!
 //! - A frame that needs more bytes than the bus carries in a tick is sent in part. The part that is
 //!   left over comes first in the next frame. The speed of the bus is measured.
@@ -164,16 +164,18 @@ const CHECK: usize = 4;
 /// take as many bytes.
 const GAP: usize = NEXT_HEAD;
 
-/// The reason why the panel does not show the frames.
+/// The reason why the panel does not show the frames, or not all of them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum OledError {
-    /// The search or the set-up has failed with this error of the bus; if that is silence, no panel
-    /// answers at either address. It is tried again after a second.
+    /// The search or the set-up has failed with this error of the bus. If that is
+    /// [`ErrorKind::NoAcknowledge`], no panel answers at either address, 0x3C or 0x3D, or a panel
+    /// answers no longer. It is tried again after a second.
     Absent(ErrorKind),
     /// The panel showed frames earlier but does not answer now, or it lost its power. The search
     /// begins again.
     Lost,
-    /// The bus is too slow for every frame. The panel shows the others.
+    /// The bus is too slow: of the last 60 frames ([`TICK_RATE`]) at least one was left out. The
+    /// panel shows the others.
     Slow {
         /// The number of frames, of the last [`TICK_RATE`], that were sent to the panel, whole or
         /// in part.

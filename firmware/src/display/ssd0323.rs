@@ -81,9 +81,11 @@ impl<'a, Spi: SpiDevice, Pin: OutputPin<Error = Infallible>> Ssd0323<'a, Spi, Pi
         }
     }
 
-    /// Blanks the panel's memory, configures the controller and switches the panel on. Returns the
-    /// first error of the SPI device; the rest is then not sent, and the panel stays dark until a
-    /// later call succeeds.
+    /// Blanks the panel's memory, configures the controller and switches the panel on. It does not
+    /// reset the controller.
+    ///
+    /// Returns the first error of the SPI device; the rest is then not sent, and a panel that was
+    /// off stays dark until a later call succeeds.
     pub fn init(&mut self) -> Result<(), Spi::Error> {
         self.is_known = false;
         self.command(&ALL_COLUMNS)?;

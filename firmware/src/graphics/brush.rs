@@ -90,7 +90,8 @@ impl Stroke {
 
 /// A disc of `radius` subpixels, surrounded by a dark gap of `gap` subpixels that separates it from
 /// the background. Edges are soft, one pixel wide, half of it outside the radius. In the gap, up to
-/// its soft edge, the background becomes black. A disc with a radius below 32 is fainter.
+/// its soft edge, the background becomes black; with a gap of 0 the background is darkened only in
+/// the soft edge of the disc. A disc with a radius below 32 is fainter.
 #[derive(Clone, Copy, Debug)]
 pub struct Disc {
     /// The middle.

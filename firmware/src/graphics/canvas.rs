@@ -18,7 +18,8 @@ pub struct Row(pub [u8; ROW]);
 
 /// The rows of pixels from the top. Drawing cannot fail: pixels outside the canvas are ignored.
 ///
-/// Not checked: greys are 0 (black) to 15. A larger one gives wrong greys or overflows.
+/// Not checked: greys are 0 (black) to 15. A larger one gives wrong greys; in
+/// [`stamp`](Self::stamp) it overflows, which panics in a build with overflow checks.
 #[derive(Debug, PartialEq, Eq)]
 pub struct Canvas {
     /// The rows from the top.
@@ -77,8 +78,8 @@ impl Canvas {
     /// black; the first column is lost.
     ///
     /// So the pixels from column `left` on scroll out at their left end, if the columns before
-    /// `left` are black, as they must be: they move, too. With a `left` of 0 the whole canvas
-    /// scrolls.
+    /// `left` are black, as they must be: they move, too. With a `left` of 0, or outside the
+    /// canvas, the whole canvas scrolls.
     #[inline(never)] // Test `scenes` profiles it by its name.
     pub fn scroll(&mut self, left: i32) {
         for row in &mut self.rows {

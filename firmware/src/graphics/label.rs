@@ -11,8 +11,9 @@ use heapless::String;
 pub type Label = String<16>;
 
 /// Returns the mass ratio m2/m1, rounded to three significant digits, from 100 on to whole numbers,
-/// and below 0.1 to four decimals: `μ 100`, `μ 31.5`, `μ 2.75`, `μ 0.315`, `μ 0.0125`. A negative
-/// ratio, which no pendulum has, has a sign and four decimals.
+/// and below 0.1 to four decimals: `μ 100`, `μ 31.5`, `μ 2.75`, `μ 0.315`, `μ 0.0125`. The number
+/// of decimals is chosen before rounding: 9.996 gives `μ 10.00`. A negative ratio, which no
+/// pendulum has, has a sign and four decimals. NaN gives `μ 0`.
 pub fn mass_ratio(ratio: f32) -> Label {
     let decimals = [100.0, 10.0, 1.0, 0.1]
         .into_iter()
@@ -22,7 +23,7 @@ pub fn mass_ratio(ratio: f32) -> Label {
 }
 
 /// Returns a start angle, degrees, after its name: `α 120°`. It is rounded to one decimal if it is
-/// not a whole number of degrees: `α 12.5°`.
+/// not a whole number of degrees: `α 12.5°`. NaN gives `0.0°`.
 pub fn degrees(name: &str, degrees: f32) -> Label {
     let decimals = if degrees == (degrees as i32) as f32 {
         0
@@ -33,8 +34,8 @@ pub fn degrees(name: &str, degrees: f32) -> Label {
 }
 
 /// Returns a number of an axis, before its unit: `10`, `0.2 s`. It is rounded to one decimal from
-/// 0.1 to below 1, to two from 0.01 to below 0.1, and otherwise to a whole number, also if it is
-/// negative.
+/// 0.1 to below 1, and to two from 0.01 to below 0.1. Every other number is rounded to a whole
+/// number, such as 2.5 to `3`, 0.005 to `0` and -0.2 to `-0`.
 pub fn tick(value: f32, unit: &str) -> Label {
     let decimals = match value {
         0.1..1.0 => 1,

@@ -12,8 +12,8 @@ pub type Height = i16;
 
 /// Returns the height of `value`, subpixels down from the top edge, where the value 0 is `zero`
 /// pixels below the top edge and a unit is `scale` pixels upwards. It is rounded towards 0, and
-/// limited to twice the height of the canvas above and below the top edge. If any of the three
-/// numbers is NaN, the result is 0, the top edge.
+/// limited to twice the height of the canvas above and below the top edge. If a number is NaN, or
+/// infinite ones combine to NaN, the result is 0, the top edge.
 pub const fn height(value: f32, zero: f32, scale: f32) -> Height {
     let limit = (2 * HEIGHT as i32 * SUBPIXELS) as f32;
     ((zero - scale * value) * SUBPIXELS as f32).clamp(-limit, limit) as Height
@@ -62,9 +62,10 @@ pub fn upright_axis(canvas: &mut Canvas, x: i32, from: i32, to: i32) {
 }
 
 /// Draws a scale bar, upright or level, from the pixel (x1, y1) to the pixel (x2, y2), which is to
-/// its right or below it, in [`AXIS_GREY`]. Either end has a foot of one pixel to both sides.
-/// Brighter pixels keep their grey. Not checked: two diagonal corners give a filled rectangle, and
-/// a second pixel to the left of or above the first gives only the feet.
+/// its right or below it, in [`AXIS_GREY`]. Either end has a foot of one pixel to both sides: left
+/// and right if x1 and x2 are equal, otherwise above and below. Brighter pixels keep their grey.
+/// Not checked: two diagonal corners give a filled rectangle, and a second pixel to the left of or
+/// above the first gives only the feet.
 #[inline(never)] // Inlined, it takes 368 bytes of flash (M3).
 pub fn bar(canvas: &mut Canvas, (x1, y1): (i32, i32), (x2, y2): (i32, i32)) {
     (x1..=x2).for_each(|x| (y1..=y2).for_each(|y| axis_dot(canvas, x, y)));

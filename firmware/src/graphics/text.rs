@@ -24,7 +24,8 @@ pub const LOWEST: i32 = HEIGHT as i32 - MARGIN - LINE;
 pub enum Anchor {
     /// The line begins at the left edge, after a margin of one pixel.
     Left(i32),
-    /// The line ends at the right edge, before a margin of one pixel.
+    /// The line ends at the right edge, before a margin of one pixel, which is the gap after the
+    /// last character.
     Right(i32),
     /// The line is centred on the canvas.
     Middle(i32),
@@ -34,8 +35,9 @@ pub enum Anchor {
     EndingAt(i32, i32),
 }
 
-/// Writes a line of text over the canvas, in grey 11. Characters have the glyphs of [`glyph`]. The
-/// pixels around the ink of the characters keep their grey.
+/// Writes a line of text over the canvas, in grey 11, which also replaces brighter pixels.
+/// Characters have the glyphs of [`glyph`]. The pixels around the ink of the characters keep their
+/// grey.
 pub fn write(canvas: &mut Canvas, text: &str, anchor: Anchor) {
     put(canvas, text, corner(anchor, text), GREY);
 }
@@ -91,8 +93,9 @@ fn put(canvas: &mut Canvas, text: &str, (mut left, top): (i32, i32), grey: u8) {
     }
 }
 
-/// Draws the mark of a paused scene: two upright bars of grey 11 on black, in columns 119 to 126
-/// and rows 10 to 16, at the right edge below the first line of text.
+/// Draws the mark of a paused scene at the right edge below the first line of text: columns 119 to
+/// 126 and rows 10 to 16 become black, with two upright bars of grey 11 in columns 121, 122 and
+/// 125, 126, rows 11 to 16.
 pub fn pause_mark(canvas: &mut Canvas) {
     for (bits, grey) in [(0xFFFF_FFFF_FFFF_FF00, 0), (0x0033_3333_3333_3300, GREY)] {
         canvas.stamp(RIGHT - 7, LINE + 2, bits, grey);

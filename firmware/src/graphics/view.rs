@@ -66,7 +66,8 @@ impl View {
     /// The bobs are spheres of one material, so that their radii are proportional to the cube root
     /// of the mass. The heavier bob has the radius [`GREATEST_RADIUS`], 3 pixels in
     /// [`Place::WHOLE`], in proportion to the reach. No radius is less than [`LEAST_RADIUS`], 1.5
-    /// pixels, or more than 255 subpixels.
+    /// pixels, or more than 255 subpixels. A ratio of masses that is NaN gives the least radius,
+    /// and a rod length that is NaN the positions of [`turn`](Self::turn) for NaN.
     pub fn new(parameters: &Parameters<f32>, place: Place, directions: RodDirections) -> Self {
         let &Parameters { m1, m2, l1, l2, .. } = parameters;
         let greatest = GREATEST_RADIUS * place.reach / REACH;
@@ -87,7 +88,8 @@ impl View {
     }
 
     /// Returns the centres that bob 1 and bob 2 have with these directions, in pixels right and
-    /// down from the top left corner of the canvas. The view is not turned.
+    /// down from the top left corner of the canvas. The view is not turned. Unlike in
+    /// [`turn`](Self::turn), the numbers are not limited, and may be NaN.
     ///
     /// A rod with the direction (sin a, cos a) from the downward vertical extends that far right
     /// and down. Pixel i covers i to i + 1.

@@ -18,8 +18,8 @@ pub struct Job<R = OnBoards> {
     turns: Option<[Turns; 2]>,
     /// The number of steps from one sample to the next.
     stride: u32,
-    /// The number of samples returned, including the initial one; wraps. A reading that is
-    /// not finite counts, too.
+    /// The number of samples returned, including the initial one, at most 2^32 - 1. A reading that
+    /// is not finite counts, too.
     pub given: u32,
     /// The number of samples left, including the initial one.
     left: u32,
@@ -38,8 +38,9 @@ impl<R: Run> Job<R> {
     ///
     /// # Errors
     ///
-    /// Refuses parameters that [`Pendulum::new`] refuses, in the precision of the method, and
-    /// angles of 2^31 - 1 turns or more if the job counts them.
+    /// Refuses parameters that [`Pendulum::new`] refuses after they are rounded to the precision of
+    /// the method. If the job counts turns, refuses angles of 2^31 - 1 turns or more, by
+    /// [`Error::OutOfRange`].
     pub fn new(run: R, request: &Request) -> Result<Self, Error> {
         let Request {
             method,
@@ -104,7 +105,8 @@ impl<R: Run> Job<R> {
     }
 
     /// Runs `advance` on the motion, so that its time can be measured, and returns its result. The
-    /// job ends, because its later samples would be wrong. It can be measured again.
+    /// job ends, because its later samples would be wrong. It can be measured again, and so can a
+    /// job that has ended otherwise, also by divergence.
     pub fn measure<T>(&mut self, advance: impl FnOnce(&mut R) -> T) -> T {
         self.left = 0;
         advance(&mut self.run)

@@ -6,12 +6,13 @@ use double_pendulum::{Error, Parameters, Pendulum};
 use libm::{cosf, sinf};
 use micromath::F32Ext;
 
-/// Hamilton's equations as the page prints them, not simplified: five sines and cosines of the
-/// `libm` crate, and four divisions.
+/// Hamilton's equations for any rods as the page prints them, not simplified: five sines and
+/// cosines of the `libm` crate, and four divisions. They are correct; none of the page's three
+/// misprints is in them.
 ///
 /// The other methods are compared with it. No device should run it. It accepts any parameters; the
-/// caller checks them. A mass or length of 0, and numbers that overflow, can give derivatives that
-/// are NaN or infinite.
+/// caller checks that they describe a pendulum, as [`Pendulum::new`] does. A mass or length of 0,
+/// and numbers that overflow, can give derivatives that are NaN or infinite.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Textbook(Parameters<f32>);
 

@@ -13,7 +13,7 @@ use super::table::{GoldenBits, visit};
 /// to each other. Every line ends with a line feed.
 ///
 /// If a method refuses a motion, or the motion diverges, the error in words takes the place of the
-/// bits. Only errors of `output` are returned, the first one at once.
+/// bits. Only errors of `output` are returned, the first one at once; then only a part is written.
 pub fn write_golden(output: &mut impl Write) -> fmt::Result {
     writeln!(output, "{HEADER}")?;
     for &method in Method::ALL {

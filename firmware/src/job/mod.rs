@@ -103,7 +103,8 @@ impl Request {
     }
 
     /// Returns the longest step, s, that resolves every motion of this energy; `None` for the
-    /// closed form, which takes any step, and for parameters that the kernel refuses.
+    /// closed form, which takes any step, and for parameters that the kernel refuses in `f64`, also
+    /// if the method is in `f32`. The method may refuse such a step as too long.
     ///
     /// For RK4 it is [`Pendulum::admissible_step`]; for extrapolation of order 2 K it is K times
     /// that step, which errs as little. The `dt` of the request is not used. The start is not

@@ -12,7 +12,7 @@ use super::{Reading, Request, Run, answer, crc};
 
 /// Calls `visitor` with the type that computes `method`: a type of the kernel or, for a comparison
 /// with the kernel, of this module. Returns the visitor's result. Every method has a type, so the
-/// visitor is always called, once.
+/// visitor is always called, once, and `visit` adds no error of its own.
 ///
 /// This links every method. Hosts and the program `measure` use it; the application of a board does
 /// not.
@@ -30,7 +30,7 @@ where
     }
 }
 
-/// The methods that every board's application links, the default first.
+/// The methods that every board's application links. The first is the default of `cargo simulate`.
 pub const ON_BOARDS: &[Method] = &[
     Method::Rk4F64,
     Method::Rk4F32,
@@ -194,11 +194,13 @@ impl Request {
         visit(self.method, Readings { request, each })
     }
 
-    /// Returns the CRC-32 of all numbers that the method carries, at every sample except the
-    /// initial one, and of the last state; without samples, of the initial state. Bit-identical
-    /// runs have the same CRC; different runs have different ones, except by a chance of 1 in 2^32.
+    /// Returns the CRC-32/ISO-HDLC of all numbers that the method carries, at every sample except
+    /// the initial one, and then of the last state, a1, a2, p1, p2 in SI units as `f64`; all are
+    /// little-endian. Without samples it is of the initial state alone. Bit-identical runs have the
+    /// same CRC; runs that differ at a sample have different ones, except by a chance of 1 in 2^32.
     ///
-    /// It makes `stride` times `samples` steps; their number is not limited.
+    /// It makes `stride` times `samples` steps; their number is not limited. A start of
+    /// too many turns for [`Job`](super::Job) is accepted.
     ///
     /// # Errors
     ///

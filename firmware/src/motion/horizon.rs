@@ -15,13 +15,12 @@ pub enum Horizon {
     /// raise it.
     AtLeast(f32),
     /// The horizon is this time, s. Planning has ended. The time may be past; it is 0 if no frame
-    /// is accurate, and for a stopped scene.
+    /// is accurate, and for a scene that is too fast from its start.
     Until(f32),
 }
 
 impl Horizon {
-    /// Returns the verified time, s after the start: 0 if none is verified, infinity if the frames
-    /// are always accurate.
+    /// Returns the verified time, s after the start: 0 for `Undecided`, infinity for `Always`.
     #[must_use]
     pub fn verified(self) -> f32 {
         match self {
@@ -49,14 +48,16 @@ impl Horizon {
         }
     }
 
-    /// Returns true while planning is in progress: for `Undecided` and `AtLeast`.
+    /// Returns true for `Undecided` and `AtLeast`: planning is in progress, or the scene is
+    /// switching to the method of the plan.
     #[must_use]
     pub fn is_open(self) -> bool {
         matches!(self, Self::Undecided | Self::AtLeast(_))
     }
 
     /// Returns true if planning has ended and frames at `time`, s after the start, are later than
-    /// the horizon. Returns false at the horizon itself, and for all variants but `Until`.
+    /// the horizon. Returns false at the horizon itself, for a `time` that is NaN, and for all
+    /// variants but `Until`.
     #[must_use]
     pub fn is_past(self, time: f64) -> bool {
         matches!(self, Self::Until(end) if time > f64::from(end))

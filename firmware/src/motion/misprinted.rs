@@ -91,7 +91,9 @@ impl Misprinted {
     }
 
     /// Advances by one tick of 1/60 s, in 2 to 8 steps that resolve the motion at both of their
-    /// ends. If no step does, the motion is lost, and the tick ends early.
+    /// ends: no rod turns by more than 0.5 rad in the step, the elbow bends by at most
+    /// 1/sqrt(1 + mu) rad, and the squared lengths of the directions are within 0.001 of 1. If no
+    /// step does, the motion is lost, and the tick ends early.
     pub fn tick(&mut self) {
         let mut left = PARTS;
         let mut parts = PARTS / STEPS_PER_TICK;
@@ -119,7 +121,8 @@ impl Misprinted {
     }
 
     /// Returns the directions (sin, cos) of both rods, from the downward vertical. A lost motion
-    /// keeps the last directions that a step reached.
+    /// keeps the last directions that a step reached; without one, those of the start, which may be
+    /// NaN.
     pub fn directions(&self) -> RodDirections {
         let [sin1, cos1, sin_d, cos_d, ..] = self.z;
         [
@@ -131,8 +134,8 @@ impl Misprinted {
     /// Returns the energy H now, J, by the correct formula, as
     /// [`Pendulum::energy`](double_pendulum::Pendulum::energy) does: ((q1 - q2 cos D)^2 r +
     /// q2^2/mu)/2 - (1 + mu) G cos a1 - mu G cos a2, times m1 l^2. The potential is zero at the
-    /// pivot. A lost motion has the energy of the last step. Numbers beyond the range of `f32` give
-    /// infinity or NaN.
+    /// pivot. A lost motion has the energy of the last step or, without one, of the start. Numbers
+    /// beyond the range of `f32` give infinity or NaN.
     pub fn energy(&self) -> f32 {
         let &Self {
             mass_ratio: mu,

@@ -50,7 +50,7 @@ impl Settings {
     }
 
     /// Returns the settings with the mass of bob 2 changed, so that the mass ratio m2/m1 is
-    /// `mass_ratio`.
+    /// `mass_ratio`, which is not checked. An m1 of 0 gives an m2 of 0, and no such ratio.
     pub fn with_mass_ratio(self, mass_ratio: f32) -> Self {
         Self {
             parameters: Parameters {
@@ -61,8 +61,10 @@ impl Settings {
         }
     }
 
-    /// Returns the settings with the next larger mass ratio of [`MASS_RATIOS`], by another m2. From
-    /// the largest one on, 100, and for NaN, they are unchanged.
+    /// Returns the settings with the next larger mass ratio of [`MASS_RATIOS`], 0.01 to 100, by
+    /// another m2. From the largest one on, 100, and for NaN, they are unchanged. Rounding counts:
+    /// a ratio just below a value of the table becomes that value. After a value that a call has
+    /// set, the next call sets the next one.
     pub fn heavier(self) -> Self {
         let next = MASS_RATIOS
             .iter()
@@ -72,8 +74,9 @@ impl Settings {
         next.unwrap_or(self)
     }
 
-    /// Returns the settings with the next smaller mass ratio of [`MASS_RATIOS`], by another m2.
-    /// From the smallest one down, 0.01, for NaN, and for an m1 of 0, they are unchanged.
+    /// Returns the settings with the next smaller mass ratio of [`MASS_RATIOS`], 0.01 to 100, by
+    /// another m2. From the smallest one down, 0.01, for NaN, and for an m1 of 0, they are
+    /// unchanged. Rounding counts as in [`heavier`](Self::heavier).
     pub fn lighter(self) -> Self {
         let next = MASS_RATIOS
             .iter()
@@ -141,13 +144,14 @@ impl Settings {
 
     /// Returns the motion at its start, by this method and step count per frame of 1/60 s. A count
     /// of 0 counts as 1, and the closed form always has 1. Angle 1 starts `apart` rad larger than
-    /// in the settings.
+    /// in the settings; the velocities are those of the settings.
     ///
     /// # Errors
     ///
     /// Refuses settings that describe no pendulum or no finite start, a step that the method cannot
     /// make, and a method that is not in [`Method::DRAWN`](double_pendulum::Method::DRAWN). Most
-    /// methods accept a step that is unstable, unlike [`Simulation::new`](super::Simulation::new).
+    /// methods accept a step that is unstable ([`PlannedRun::new`]), unlike
+    /// [`Simulation::new`](super::Simulation::new).
     pub fn run(&self, apart: f64, stepping: Stepping) -> Result<PlannedRun, Error> {
         let mut problem = self.problem(HEIGHT as f32);
         problem.start.a1 += apart;

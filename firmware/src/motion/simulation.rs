@@ -31,8 +31,9 @@ pub struct Simulation {
 
 impl Simulation {
     /// Creates a simulation at its start, computed by the requested method with the step count of
-    /// [`Stepping::of`] or, without one, by [`Stepping::initial`]. Without a requested method, a
-    /// motion that is only too fast is no error, but sets [`is_too_fast`](Self::is_too_fast).
+    /// [`Stepping::of`] or, without one, by [`Stepping::initial`]. The steps of a requested RK4
+    /// method may be too long to resolve the motion. Without a requested method, a motion that is
+    /// only too fast is no error, but sets [`is_too_fast`](Self::is_too_fast).
     ///
     /// # Errors
     ///
@@ -135,8 +136,9 @@ impl CatchingUp {
 
     /// Advances by the frames of a tick, but not beyond `simulation`. Returns true if it has caught
     /// up with `simulation`, which then continues with this motion. To be called after each
-    /// [`Simulation::tick`], until it returns true. A motion that diverges is not reported here.
-    /// Not checked: both motions have the same settings.
+    /// [`Simulation::tick`], until it returns true; at the start of `simulation` this is the first
+    /// call. A motion that diverges is not reported here. Not checked: both motions have the same
+    /// settings.
     pub fn tick(&mut self, simulation: &mut Simulation) -> bool {
         for _ in 0..self.most {
             if self.motion.frame() < simulation.motion.frame() {
@@ -181,15 +183,15 @@ impl Energy {
 
     /// Returns the relative energy error (E - E0)/(E0 - Emin) of the motion now, from its own
     /// numbers, before they are rounded for the report. E0 is the energy at the start. Returns 0 if
-    /// the start is hanging at rest, which a motion never leaves. The error of a diverged motion is
-    /// not finite. Not checked: `motion` is of the same pendulum.
+    /// the start is hanging at rest, which a motion never leaves, or if E0 is NaN. Otherwise the
+    /// error of a diverged motion is not finite. Not checked: `motion` is of the same pendulum.
     pub fn error(&self, motion: &PlannedRun) -> f32 {
         self.relative(motion.energy_above_rest(&self.pendulum))
     }
 
     /// Returns the same relative error of a motion that is in this state, in SI units (rad, kg
-    /// m^2/s), now. It is 0 if the start is hanging at rest, and otherwise not finite for a state
-    /// that is not finite.
+    /// m^2/s), now. It is 0 if the start is hanging at rest or its energy is NaN, and otherwise not
+    /// finite for a state that is not finite.
     pub fn error_of_state(&self, state: &State<f32>) -> f32 {
         self.relative(self.pendulum.energy_above_rest(&state.cast()))
     }
@@ -204,8 +206,9 @@ impl Energy {
     }
 
     /// Returns the energy E, J, that has this relative [`error`](Self::error), (E - E0)/(E0 -
-    /// Emin). The potential is zero at the pivot. An error that is not finite gives an energy that
-    /// is not finite. If the start is hanging at rest, every finite error gives Emin.
+    /// Emin). The potential is zero at the pivot. An error or an E0 that is not finite gives an
+    /// energy that is not finite, and so does an energy out of the range of `f32`. If the start is
+    /// hanging at rest, every finite error gives Emin.
     pub fn of_error(&self, error: f32) -> f32 {
         let above_rest = self.start + f64::from(error) * self.start;
         (self.pendulum.least_energy() + above_rest) as f32

@@ -15,24 +15,25 @@ use crate::scenes::SceneName;
 /// [`Answer::Refused`](super::Answer::Refused) with the field that is wrong. A command that is
 /// ignored counts as executed.
 ///
-/// A scene that starts keeps the pause, the speed and the requested method. If it cannot start by
-/// that method, it follows its plan. A motion that is too fast is not refused: its scene starts,
-/// and is [`Stopped`](super::PlayState::Stopped).
+/// A scene that starts keeps the pause, the ticks left of a [`Step`](Self::Step), the speed and the
+/// requested method. If it cannot start by that method, it follows its plan. A motion that is too
+/// fast is not refused: its scene starts, and is [`Stopped`](super::PlayState::Stopped).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(target_os = "none", derive(defmt::Format))]
 pub enum Command {
     /// Selects the next larger mass ratio m2/m1 of [`MASS_RATIOS`](crate::config::MASS_RATIOS), by
-    /// another m2, and starts the scene again. The largest one, 100, stays, and the scene starts
-    /// again all the same.
+    /// another m2, and starts the scene again. A ratio of 100, the largest of them, or more stays,
+    /// and the scene starts again all the same.
     Heavier,
-    /// Selects the next smaller mass ratio in the same way. The smallest one, 0.01, stays.
+    /// Selects the next smaller mass ratio in the same way. A ratio of 0.01, the smallest, or less
+    /// stays.
     Lighter,
     /// Turns both start angles by one [`ANGLE_STEP`](crate::config::ANGLE_STEP), 1 degree,
-    /// clockwise, to -180 degrees at most, and starts the scene again. A scene without start angles
-    /// ignores it, and continues.
+    /// clockwise, and starts the scene again. Each angle stops at -180 degrees on its own. A scene
+    /// without start angles ignores the command, and continues.
     TurnLeft,
-    /// Turns both start angles by one step counter-clockwise, to 180 degrees at most, in the same
-    /// way.
+    /// Turns both start angles by one step counter-clockwise, each to 180 degrees at most, in the
+    /// same way.
     TurnRight,
     /// Starts the scene again with the same settings.
     Restart,
@@ -71,7 +72,8 @@ pub enum Command {
     /// which ends.
     TogglePause,
     /// Advances the scene by this number of ticks, one in each tick of the clock at any speed, and
-    /// then leaves it paused; 0 pauses it at once. It replaces the rest of an earlier one.
+    /// then leaves it paused; 0 pauses it at once. It replaces the rest of an earlier one. A
+    /// stopped scene stays stopped; the next one that starts is paused, and makes these ticks.
     Step(u32),
     /// Requests the scene, its settings and its state ([`Answer::Status`](super::Answer::Status)).
     /// Changes nothing.
@@ -92,7 +94,8 @@ pub enum Command {
     /// Requests the time of this number of further steps of the last requested motion
     /// ([`Answer::Measured`](super::Answer::Measured)). They are made without a break and with
     /// interrupts off, at most [`MOST_MEASURED_STEPS`](crate::config::MOST_MEASURED_STEPS), 16. No
-    /// sample of that motion follows, but it can be measured again. Refused with [`Field::Message`]
+    /// sample of that motion follows, also after 0 steps, but it can be measured again. A motion
+    /// that has ended or diverged can be measured, too. Refused with [`Field::Message`]
     /// if no motion was requested since reset.
     Measure {
         steps: u32,

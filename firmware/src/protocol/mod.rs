@@ -38,20 +38,22 @@ pub use to_host::{
     Answer, BoardName, Cause, Frame, Identity, PlayState, Restarted, Status, ToHost,
 };
 
-/// The version of the protocol: the first byte of every message.
+/// The version of the protocol. It precedes every message, as the first byte that COBS encodes.
 pub const VERSION: u8 = 12;
 /// The largest size of a message without version and CRC, bytes.
 pub const MAX_MESSAGE: usize = 97;
 /// The largest size of a message before framing, with version and CRC, bytes.
 const MAX_BODY: usize = 1 + MAX_MESSAGE + 4;
 /// The largest size of a message on the wire, 105 bytes. Version and CRC add five bytes, COBS adds
-/// one, because bodies are below 254 bytes, and the delimiters add two.
+/// one, because these bytes are fewer than 254, and the delimiters add two.
 pub const MAX_WIRE: usize = MAX_BODY + 3;
 
 /// Encodes a message for the wire, with version, CRC and delimiters. Returns the used part of
-/// `wire`, which begins and ends with a zero; the rest of `wire` is zeros. All messages fit (test
-/// `link`); one longer than [`MAX_MESSAGE`] would be sent as an empty one. The type of the message
-/// is not encoded.
+/// `wire`, which begins and ends with a zero; the rest of `wire` is zeros. The type of the message
+/// is not encoded. Of a command only [`encode_command`] adds the mark byte and the number.
+///
+/// All messages fit (test `link`). In place of one that is longer than [`MAX_MESSAGE`], or cannot
+/// be serialised, an intact message of 0 bytes is encoded.
 pub fn encode<'wire>(message: &impl Serialize, wire: &'wire mut [u8; MAX_WIRE]) -> &'wire [u8] {
     frame(
         postcard::to_slice(message, &mut [0; MAX_MESSAGE]).unwrap_or_default(),
@@ -69,8 +71,8 @@ pub fn read<M: DeserializeOwned>(bytes: &[u8]) -> Option<M> {
 }
 
 /// Frames a message of bytes for the wire: adds version, CRC, COBS and delimiters. Returns the used
-/// part of `wire`, which begins and ends with a zero; the rest of `wire` is zeros. If the message
-/// is longer than [`MAX_MESSAGE`], that part is empty, and `wire` is unchanged.
+/// part of `wire`, which begins and ends with a zero; the rest of `wire` is zeros. The message may
+/// be empty. If it is longer than [`MAX_MESSAGE`], the result is empty, and `wire` is unchanged.
 pub fn frame<'wire>(message: &[u8], wire: &'wire mut [u8; MAX_WIRE]) -> &'wire [u8] {
     if message.len() > MAX_MESSAGE {
         return &[];
@@ -98,9 +100,10 @@ pub fn frame<'wire>(message: &[u8], wire: &'wire mut [u8; MAX_WIRE]) -> &'wire [
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(target_os = "none", derive(defmt::Format))]
 pub enum LinkError {
-    /// The bytes are not a COBS encoding, or are shorter or longer than any message.
+    /// The bytes are not a COBS encoding, or decode to fewer bytes than a CRC (4) or to more than
+    /// the longest message with version and CRC (102).
     Malformed,
-    /// The CRC does not match.
+    /// The CRC, the last four bytes, does not match. It is checked before the version.
     Checksum,
     /// The CRC matches, but the sender uses this other version of the protocol.
     Version(u8),
@@ -117,9 +120,9 @@ impl LinkError {
     }
 }
 
-/// A decoder that splits a byte stream into checked messages. After damage it resynchronises at the
-/// next delimiter. A stream that it receives from the middle of a message on begins with an error,
-/// as a rule.
+/// A decoder that splits a byte stream into checked messages. The default one expects the beginning
+/// of a message. After damage it resynchronises at the next delimiter. A stream that it receives
+/// from the middle of a message on begins with an error, as a rule.
 #[derive(Debug)]
 pub struct Decoder {
     cobs: DecoderState,

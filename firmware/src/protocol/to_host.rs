@@ -14,13 +14,13 @@ use crate::scenes::{Report, SceneName};
 /// A message to the host.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum ToHost {
-    /// A drawn frame, sent after the driver of the panel has the picture. The panel may show it a
-    /// little later, or not at all.
+    /// A drawn frame, sent after the picture was given to the driver of the panel, also if the
+    /// driver failed. The panel may show it a little later, or not at all.
     Frame(Frame),
     /// The board has restarted on its own, and plays its scene from the start. Later frames are
-    /// counted from 0 again. After more than [`MOST_RESTARTS`](crate::app::MOST_RESTARTS) restarts
-    /// in a row, or if that scene is refused, it plays the first scene instead; only the frames
-    /// show this.
+    /// counted from 0 again. After more than 3 ([`MOST_RESTARTS`](crate::app::MOST_RESTARTS))
+    /// restarts in a row, or if that scene is refused, it plays the first scene instead; only the
+    /// frames show this.
     ///
     /// Over USB no host receives this message, because a restart ends the connection. A host that
     /// opens the port asks with [`Command::AskRestart`](super::Command::AskRestart).
@@ -35,8 +35,9 @@ pub enum Answer {
     /// The command has been executed, or the scene ignores it. Commands that request something have
     /// the answers below instead.
     Done,
-    /// The field that is wrong. The command is not executed, and nothing has changed; or the
-    /// requested motion cannot be computed, or not to its end.
+    /// The field that is wrong. The command is not executed, and nothing has changed. Of a
+    /// requested motion it may also come after samples: the motion has diverged, and the field is
+    /// [`Field::Dt`].
     Refused(Field),
     /// The scene and its settings, and the state of the panel.
     Status(Status),
@@ -53,9 +54,11 @@ pub enum Answer {
     /// of the request is longer. The samples follow all the same. It is not sent if the step is
     /// short enough, or by the closed form.
     StepTooLong(f64),
-    /// The time of all `steps` steps together in processor cycles, including the call. It is 0 if
-    /// there is no cycle counter, as in QEMU, or if the code is not in that memory. `steps` is the
-    /// number that was measured, which may be less than requested.
+    /// The time of all `steps` steps together in processor cycles, including the call; on a
+    /// Cortex-M0+ modulo 2^24. `steps` is the requested number, at most 16
+    /// ([`MOST_MEASURED_STEPS`](crate::config::MOST_MEASURED_STEPS)). `cycles` is 0 if there is no
+    /// cycle counter, as in QEMU, or if the board does not have the code in the memory that the
+    /// command names, flash or RAM; then no step is made.
     Measured { steps: u32, cycles: u32 },
     /// The last restart that the board made on its own; `None` if it has made none since it was
     /// switched on or reset from outside.
@@ -145,9 +148,9 @@ pub struct Frame {
     pub start_angle: f32,
     /// The report of the scene, to the last bit. While the scene is stopped, it does not change.
     pub report: Report,
-    /// The time that the scene took for this frame, to advance and to be drawn, in counts of the
-    /// processor clock. They are cycles on a chip. QEMU does not model cycles; there they are the
-    /// time by its own clock.
+    /// The time that the scene took for this frame, to advance by all ticks since the previous
+    /// frame and to be drawn, in counts of the processor clock. They are cycles on a chip. QEMU
+    /// does not model cycles; there they are the time by its own clock.
     pub scene_cycles: u32,
     /// The same for the whole previous frame, including its transfer to the panel and over the
     /// link.
@@ -214,9 +217,11 @@ pub struct Restarted {
     pub lr: u32,
     /// The processor's Configurable Fault Status Register; 0 if it is unknown.
     pub cfsr: u32,
-    /// The scene of the last frame that was shown.
+    /// The scene of the last frame that was shown; before the first frame, the scene that was
+    /// started.
     pub scene: SceneName,
-    /// The tick of that frame: the number of ticks of the scene since its start.
+    /// The tick of that frame: the number of ticks of the scene since its start; 0 before the first
+    /// frame.
     pub step: u64,
 }
 

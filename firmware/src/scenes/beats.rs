@@ -21,11 +21,13 @@ const GAP: u8 = 12;
 /// The amplitude of angle 2 in each mode, degrees.
 const AMPLITUDE: f32 = 12.0;
 
-/// Returns the settings of equal rods of 1 m and mass ratio m2/m1 at 9.81 m/s^2, with the slow mode
-/// at its turning point, and the fast mode on its way through rest. Both modes have the same
-/// amplitude of angle 2, 12 degrees. The figure closes only if the ratio of the frequencies is
-/// rational, as in the scenes of the catalogue. Not checked: the mass ratio is positive and finite.
-/// Otherwise numbers may be infinite or NaN.
+/// Returns the settings of equal rods of 1 m, m1 = 1 kg and mass ratio m2/m1 at 9.81 m/s^2. Both
+/// modes have the same amplitude of angle 2, 12 degrees. The slow mode starts at its turning point,
+/// where both angles are positive. The fast mode starts at angle 0, and turns rod 2 to positive
+/// angles. The figure closes only if the ratio of the frequencies is rational, as in the scenes of
+/// the catalogue.
+///
+/// Not checked: the mass ratio is positive and finite. Otherwise numbers may be infinite or NaN.
 pub fn closing(mass_ratio: f32) -> Settings {
     let gravity = GRAVITY as f32;
     let parameters = Parameters::equal_rods(mass_ratio, ROD, gravity);
@@ -43,13 +45,13 @@ pub fn closing(mass_ratio: f32) -> Settings {
 /// A plot of the part of angle 2 in the fast mode (upwards) against the part in the slow mode
 /// (across): the linear motion on the left, the exact motion on the right.
 ///
-/// The clock belongs to the exact motion. The linear motion is not accurate; its difference is the
-/// subject of the scene. `±` and a number of degrees is the larger amplitude of angle 2. Where an
-/// exact angle passes straight up, its curve is interrupted.
+/// The horizon that is shown with the time is that of the exact motion. The linear motion is not
+/// accurate; its difference is the subject of the scene. `±` and a number of degrees is the larger
+/// amplitude of angle 2. Where an exact angle passes straight up, its curve is interrupted.
 ///
 /// A pendulum without gravity is refused, and so is everything that [`Simulation::new`] refuses.
-/// One that hangs at rest at the start is shown as two spots in the middles of the figures, and is
-/// not planned.
+/// Unequal rods are accepted. A pendulum that hangs at rest at the start is shown as two spots in
+/// the middles of the figures, and is not planned.
 #[derive(Clone, Debug)]
 pub struct Beats {
     simulation: Simulation,

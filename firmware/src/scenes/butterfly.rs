@@ -42,8 +42,10 @@ const fn row(e_foldings: f32) -> i32 {
 
 /// Two pendulums at one pivot, and the e-foldings of their separation over time: ln(separation/1e-6
 /// rad), 0 at the start. The separation is the distance in the plane of both angles, without whole
-/// turns. The plot has four values per second, and shows the last 15 s. The first pendulum is
-/// bright and leaves a trace; angle 1 of the second starts 1e-6 rad larger.
+/// turns. The plot has four values per second, and shows the last 15 s. The largest possible
+/// separation, 15.3 e-foldings, is in the plot; one below 1e-6 rad is drawn below its zero line, or
+/// not at all. The first pendulum is bright and leaves a trace; angle 1 of the second starts 1e-6
+/// rad larger, at the same angular velocities.
 ///
 /// Both use the initial method, the most accurate one within half the budget of a frame, or the
 /// method that the user has selected. The plan does not change it: a method that is accurate to

@@ -21,8 +21,8 @@ use crate::scenes::{Report, Scene, Shows, time};
 /// The time that is searched for a flip, in units of sqrt(l1/g).
 const LIMIT: f32 = 100.0;
 /// The number of greys for the time of the flip, 2 to 15. They are on a logarithmic scale from
-/// sqrt(l1/g) to the limit of 100 sqrt(l1/g); 15 is the soonest. Grey 1 means no flip before the
-/// limit, and black (0) means that no flip is possible.
+/// sqrt(l1/g) to the limit of 100 sqrt(l1/g); 15 is the soonest, and every flip before sqrt(l1/g).
+/// Grey 1 means no flip before the limit, and black (0) means that no flip is possible.
 pub const GREYS: u8 = 14;
 const LATER: u8 = 1;
 
@@ -42,7 +42,11 @@ enum Searching {
 /// The map of flips, with a1 across and a2 upwards, each from -180 to 180 degrees, and both rods at
 /// rest at the start. The brightness is the time of the first flip: the sooner, the brighter, grey
 /// 15 to 2 ([`GREYS`]). Grey 1 means no flip before 100 sqrt(l1/g), and black (0) that no flip is
-/// possible. Pixels that are not computed yet are black, too.
+/// possible. The start of a pixel is in its middle.
+///
+/// The map is computed coarse first. Until a pixel is computed, it has the grey of a computed start
+/// in the same block of 8 x 8, 4 x 4 or 2 x 2 pixels, and before that it is black. The corners show
+/// the progress, then the mass ratio, and the simulated time of the computation.
 ///
 /// The ink contains the map. Of the settings only the pendulum matters, not its start. Zero gravity
 /// is refused. A requested method is ignored.
@@ -124,8 +128,8 @@ impl Block {
 }
 
 impl Flips {
-    /// Creates the map as [`Scene::new`] does, with the work per tick of any processor. With a
-    /// budget of 0 steps it is never computed.
+    /// Creates the map as [`Scene::new`] does, with `pace` as the work per tick, which may be that
+    /// of another processor. With a budget of 0 steps it is never computed.
     ///
     /// On a host the map is computed in `f32` if `in_float`, and otherwise in fixed point. A board
     /// links only the method of its own processor, and uses it whatever `in_float` says. Of the
@@ -161,7 +165,8 @@ impl Flips {
         })
     }
 
-    /// Returns true if all pixels are computed. Further ticks change nothing.
+    /// Returns true if all pixels are computed. Further ticks change nothing. With a budget of 0
+    /// steps it is always false.
     pub fn is_done(&self) -> bool {
         self.block.size == 0
     }

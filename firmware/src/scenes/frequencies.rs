@@ -30,8 +30,9 @@ const CURVE: u8 = 200;
 /// The plot begins at the mass ratio 0, and ends at 5 or, for a mass ratio above 4, at 1.25 times
 /// it.
 ///
-/// Of the settings only the mass ratio matters. It is refused if it is not positive and finite,
-/// or near the limits of `f32`. A requested method is ignored. The default is an empty figure.
+/// Of the settings only the mass ratio matters. It is refused if it is not positive and finite, or
+/// above 6.8e37. A requested method is ignored. The default is an empty figure, whose labels mean
+/// nothing.
 #[derive(Clone, Debug, Default)]
 pub struct Frequencies {
     /// The mass ratio at the right edge of the plot.

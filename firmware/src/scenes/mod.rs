@@ -47,21 +47,23 @@ pub trait Scene: Sized {
     /// # Errors
     ///
     /// Returns the kernel's error if the settings describe no pendulum, or a pendulum that the
-    /// scene cannot show, such as unequal rods. A motion that is only too fast is no error
+    /// scene cannot show, such as unequal rods. A scene that shows a motion also refuses a start
+    /// that is not finite. A motion that is only too fast is no error
     /// ([`is_too_fast`](Self::is_too_fast)), unless the user has requested its method.
     fn new(settings: &Settings, resources: &Resources) -> Result<(Self, Option<f32>), Error>;
 
     /// Advances by one tick, to `ticks` ticks after the start, and adds the lasting part of the
-    /// picture to the ink. The first call has `ticks` 1, and each further one 1 more. The result is
-    /// the same if earlier ticks were not drawn.
+    /// picture to the ink. The first call has `ticks` 1, and each further one 1 more, which is not
+    /// checked. The result is the same if earlier ticks were not drawn.
     fn tick(&mut self, ticks: u64, ink: &mut FadeLayer);
 
     /// Draws the rest of the picture over the ink, which `canvas` already contains. `report` is the
     /// current report of the scene, so that its numbers need not be computed again.
     fn draw(&self, report: &Report, canvas: &mut Canvas);
 
-    /// Returns the numbers of the scene now, `ticks` ticks after the start. By default there is no
-    /// moving pendulum. Of a planned motion the horizon is `Always` here; the player sets it.
+    /// Returns the numbers of the scene now, `ticks` ticks after the start; not checked: it is the
+    /// number of the last tick. By default there is no moving pendulum. Of a planned motion the
+    /// horizon is `Always` here; the player sets it.
     fn report(&self, ticks: u64) -> Report {
         Report::at(ticks)
     }
@@ -91,7 +93,8 @@ pub struct Report {
     /// The simulated time since the start, s.
     pub time: f64,
     /// The canonical state of the first pendulum shown, in SI units (rad, kg m^2/s), with all
-    /// turns; zeros if no pendulum moves.
+    /// turns; zeros if no pendulum moves. The state of a diverged motion is not finite; the player
+    /// then stops the scene, and keeps and sends the report of the frame before.
     pub state: State<f32>,
     /// The relative energy error (E - E0)/(E0 - Emin) of that pendulum, computed before its numbers
     /// are rounded for this report; 0 for the linear motion and if no pendulum moves. An error
@@ -99,8 +102,9 @@ pub struct Report {
     pub energy_error: f32,
     /// The accuracy horizon of the scene.
     pub horizon: Horizon,
-    /// The method and its step count per tick; `None` for a figure, for a stopped scene, and for
-    /// `upright`, which shows two fixed arithmetics.
+    /// The method and its step count per tick. In the player's report it is `None` for a figure,
+    /// for `upright`, which shows two fixed arithmetics, and for a scene that is too fast from its
+    /// start.
     pub stepping: Option<Stepping>,
 }
 
@@ -115,7 +119,7 @@ impl Report {
     }
 
     /// Returns the report of a scene whose first pendulum is `simulation`. The horizon is `Always`
-    /// until the player sets it.
+    /// until the player sets it. The stepping is that of the simulation, also if it is too fast.
     pub fn of(simulation: &Simulation) -> Self {
         let motion = &simulation.motion;
         Self {
@@ -233,8 +237,9 @@ macro_rules! catalogue {
                 match self { $(Self::$row(scene) => scene.is_too_fast(),)* }
             }
 
-            /// Returns the numbers of the scene now, `ticks` ticks after the start. Of a planned
-            /// motion the horizon is `Always`; the player sets it ([`Scene::report`]).
+            /// Returns the numbers of the scene now, `ticks` ticks after the start; not checked: it
+            /// is the number of the last tick. Of a planned motion the horizon is `Always`; the
+            /// player sets it ([`Scene::report`]).
             pub fn report(&self, ticks: u64) -> Report {
                 match self { $(Self::$row(scene) => scene.report(ticks),)* }
             }
@@ -260,7 +265,8 @@ catalogue! {
 
 impl AnyScene {
     /// Returns an empty figure, which takes the place of a scene until one starts. Its ticks add
-    /// nothing to the ink.
+    /// nothing to the ink. Its picture has axes, marks and labels without meaning, and its report
+    /// has no moving pendulum.
     pub fn empty() -> Self {
         Self::Frequencies(frequencies::Frequencies::default())
     }

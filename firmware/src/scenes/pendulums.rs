@@ -163,11 +163,11 @@ pub fn figure_7() -> Settings {
     }
 }
 
-/// The correct motion on the left, the misprinted one on the right, and their energies, J. The
-/// clock and a requested method belong to the correct motion. Unequal rods are refused, because the
-/// misprinted equations are for equal ones, and so is everything that [`Simulation::new`] refuses.
-/// A misprinted motion that is too fast for its steps is no longer drawn, and `book too fast`
-/// replaces its energy.
+/// The correct motion on the left, the misprinted one on the right, and their energies, J, with the
+/// potential zero at the pivot. The horizon that is shown with the time, and a requested method,
+/// belong to the correct motion. Unequal rods are refused, because the misprinted equations are for
+/// equal ones, and so is everything that [`Simulation::new`] refuses. A misprinted motion that is
+/// too fast for its steps is no longer drawn, and `book too fast` replaces its energy.
 #[derive(Clone, Debug)]
 pub struct Figure7 {
     right: Simulation,
@@ -243,11 +243,12 @@ impl Scene for Figure7 {
 
 /// A motion in plain `f32` on the left, and the same motion in compensated `f32` on the right.
 ///
-/// The clock belongs to the left motion. It is compared with the same motion in 64 bits, which is
-/// not drawn, until a bob is half a pixel off. There is no plan, because the scene shows two given
-/// arithmetics. A requested method is ignored. The scene is too fast if a frame cannot pay for all
-/// three motions. It accepts any start, and refuses settings that describe no pendulum or no finite
-/// start, and steps that a method cannot make.
+/// The horizon that is shown with the time is that of the left motion. This is compared with the
+/// same motion in 64 bits, which is not drawn, until a bob is half a pixel off. There is no plan,
+/// because the scene shows two given arithmetics. A requested method is ignored. The scene is too
+/// fast if a frame cannot pay for all three motions. It accepts every finite start, not only the
+/// upright one. It refuses settings that describe no pendulum or no finite start, and steps that a
+/// method cannot make.
 ///
 /// The `f32` nearest to pi is too large by 8.7e-8, so that the exact motion from there falls after
 /// about 3 s. Plain `f32` drops the first tiny increments completely, so that the pendulum does not

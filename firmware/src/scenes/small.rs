@@ -41,9 +41,9 @@ pub fn example(mass_ratio: f32) -> Settings {
     }
 }
 
-/// The two angles over time, by the linear model. The clock shows the time until which the exact
-/// motion has the same angles, to half a pixel of the curves. The scale is in degrees. A requested
-/// method is ignored.
+/// The two angles over time, by the linear model. The horizon that is shown with the time is the
+/// time until which the exact motion has the same angles, to half a pixel of the curves. The scale
+/// is in degrees. A requested method is ignored.
 ///
 /// Settings that describe no pendulum or no finite start are refused, and so is a pendulum without
 /// gravity. One that hangs at rest at the start has level curves, and is not planned.

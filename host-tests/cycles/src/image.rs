@@ -37,16 +37,16 @@ pub struct Function {
     pub address: u32,
     /// The size in bytes, or 0 if the assembly code does not declare it.
     pub size: u32,
-    /// The demangled name, without a hash.
+    /// The demangled name, without a hash; the symbol itself if it is not mangled.
     pub name: String,
-    /// The mangled name, which the linker uses.
+    /// The name that the linker uses, mangled or not.
     pub symbol: String,
 }
 
 impl Image {
     /// Reads an ELF file. An error, which names the file, means that it is unreadable, damaged or
-    /// no program for ARM. A file without symbols is no error: it has no functions and no
-    /// [`words`](Self::words).
+    /// no program for a 32-bit ARM. A file without symbols is no error: it has no functions and no
+    /// [`words`](Self::words). Not checked: that the program is linked and little-endian.
     pub fn read(path: &Path) -> Result<Self> {
         Self::parse(path).with_context(|| path.display().to_string())
     }
@@ -108,8 +108,8 @@ impl Image {
         })
     }
 
-    /// Returns all functions and labels whose demangled names contain `part`, by address. An empty
-    /// `part` gives all.
+    /// Returns all functions and labels whose demangled names contain `part`, with the same
+    /// capitals, by address. All names of an address are returned. An empty `part` gives all.
     pub fn functions_named(&self, part: &str) -> impl Iterator<Item = &Function> {
         self.functions
             .iter()
@@ -147,8 +147,8 @@ impl Image {
             .any(|(start, bytes)| address.wrapping_sub(*start) < bytes.len() as u32)
     }
 
-    /// Returns the word of four bytes (little-endian) at an address, or `None` if not all of them
-    /// are loaded.
+    /// Returns the word of four bytes (little-endian) at an address, which need not be a multiple
+    /// of four, or `None` unless one segment of the file has all of them.
     pub fn word(&self, address: u32) -> Option<u32> {
         self.loaded.iter().find_map(|(start, bytes)| {
             let at = address.checked_sub(*start)? as usize;
@@ -175,8 +175,9 @@ impl Image {
     }
 
     /// Returns every instruction as its address, its first halfword, and its second halfword if it
-    /// has one. They are in the order of the sections, and by address in each. Data between code is
-    /// left out, and so is everything before the first mapping symbol `$t`.
+    /// has one and the section has not ended. They are in the order of the sections, and by address
+    /// in each. Data between code is left out, and so is everything before the first mapping symbol
+    /// `$t` of the program.
     pub fn words(&self) -> Vec<(u32, u16, Option<u16>)> {
         let mut words = Vec::new();
         for (start, bytes) in &self.code {
@@ -206,9 +207,10 @@ impl Image {
         words
     }
 
-    /// Returns the instruction at this address, which is without the Thumb bit. It is an error if
-    /// nothing is loaded there, or if the table of timings does not have the instruction. Not
-    /// checked: that it is code; data is decoded, too.
+    /// Returns the instruction at this address, which is without the Thumb bit. A second halfword
+    /// that is not loaded counts as 0. It is an error if nothing is loaded there, or if the table
+    /// of timings does not have the instruction. Not checked: that the address is even, and that it
+    /// is code; data is decoded, too.
     pub fn instruction_at(&self, address: u32) -> Result<Instruction> {
         let halfword = |address: u32| {
             self.loaded.iter().find_map(|(start, bytes)| {

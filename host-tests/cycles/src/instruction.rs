@@ -53,11 +53,12 @@ impl Instruction {
         }
     }
 
-    /// Returns the cycles of the instruction alone, without a branch, for these contents of the
-    /// registers. For a floating-point quotient or root they are the cycles of the unit, not of the
-    /// core. The effects of the neighbouring instructions are not included
-    /// ([`Pipeline`](crate::Pipeline)). The registers, before the instruction, affect a division
-    /// only. The result has no meaning if the core [lacks](Self::is_missing_on) the instruction.
+    /// Returns the cycles of the instruction alone, for these contents of the registers: with those
+    /// for each register of a list, and without the refill after a branch. For a floating-point
+    /// quotient or root they are the cycles of the unit, not of the core. The effects of the
+    /// neighbouring instructions are not included ([`Pipeline`](crate::Pipeline)). The registers,
+    /// before the instruction, affect a division only; a division by 0 takes 2 cycles. The result
+    /// has no meaning if the core [lacks](Self::is_missing_on) the instruction.
     pub fn cycles(&self, core: Core, registers: &Registers) -> u64 {
         let more = match self.row.class {
             Class::LoadList | Class::StoreList => {
@@ -70,8 +71,8 @@ impl Instruction {
         self.row.cycles(core) + more
     }
 
-    /// Returns true if it is a load, of floating-point registers, too. It is false for ldrex and
-    /// for table branches, although they read memory.
+    /// Returns true if it is a load of one word or less, a pair or a list, also of floating-point
+    /// registers. It is false for ldrex and for table branches, although they read memory.
     pub fn loads(&self) -> bool {
         match self.row.class {
             Class::Load | Class::LoadPair | Class::LoadList => true,
@@ -92,10 +93,12 @@ impl Instruction {
     }
 
     /// Returns true if its address, as a load, a store or a table branch, depends on a core
-    /// register that the instruction `before` writes. The updated base of a single access counts.
+    /// register that the instruction `before` writes, on any core. The updated base of a single
+    /// access counts.
     ///
-    /// It is false for an instruction without an address, and after loads and stores of pairs and
-    /// lists, whose written registers are not in the table.
+    /// It is false for an instruction without an address or with the program counter as its base.
+    /// It is also false after instructions whose written registers are not in the table: loads and
+    /// stores of pairs and lists, ldrex, strex, vmrs and calls.
     pub fn is_addressed_by(&self, before: &Self) -> bool {
         let registers =
             |fields: &'static [Field], word| fields.iter().map(move |field| field.register(word));
@@ -107,15 +110,19 @@ impl Instruction {
         registers(self.row.address, self.word).any(written)
     }
 
-    /// Returns the number of the floating-point register with a late result, 0 to 31 for s0 to s31,
-    /// or `None`. A late result stalls an instruction that follows at once and consumes it.
+    /// Returns the number of the floating-point register with a late result, 0 to 31 for s0 to s31:
+    /// the destination of arithmetic, a conversion, a quotient or a root. Returns `None` for other
+    /// instructions, such as loads, moves and comparisons. A late result stalls an instruction that
+    /// consumes it before it is ready: the next one or, after a quotient or a root, also a later
+    /// one.
     pub fn late_result(&self) -> Option<u32> {
         matches!(self.row.class, Class::Arithmetic(_) | Class::Aside(_))
             .then(|| Float::D.register(self.word))
     }
 
     /// Returns true if the instruction needs the floating-point register `s`, 0 to 31, at its
-    /// start. An addend is needed later and does not count.
+    /// start. A store needs the registers that it stores. An addend is needed later and does not
+    /// count, nor does the second register of a move of two to core registers.
     pub fn consumes(&self, s: u32) -> bool {
         match self.row.class {
             Class::Arithmetic(reads) | Class::Aside(reads) | Class::Move(reads) => {

@@ -39,7 +39,7 @@ pub enum Core {
 }
 
 impl Core {
-    /// Returns the name in the processor's manual.
+    /// Returns the name: `Cortex-M3`, `Cortex-M4F` or `Cortex-M0+`.
     pub fn name(self) -> &'static str {
         match self {
             Self::M3 => "Cortex-M3",

@@ -37,10 +37,11 @@
 //! instruction whose condition fails counts as if it were executed. No counts of chips were found
 //! for vmul, vsqrt, vfma, vldm, and for vldr and vstr in a row.
 //!
-//! [`ERROR_BAR`] compares these rules with 76 published kernels, which are not in this repository.
-//! The authors of the kernels measured them on chips at zero wait states. On an STM32F407 with
-//! tables in flash, the error is -2.0 to -0.5 %. On an STM32L100 it is -2.8 % at worst. An
-//! STM32L4R5 takes 3 to 5 % more than an STM32F407 for the same code, and no rule here explains it.
+//! [`ERROR_BAR`] compares these rules with 76 published kernels, which are short routines of other
+//! projects and not in this repository. The authors of the kernels measured them on chips at zero
+//! wait states. A negative error is an estimate that is too low. On an STM32F407 with tables in
+//! flash, the error is -2.0 to -0.5 %. On an STM32L100 it is -2.8 % at worst. An STM32L4R5 takes 3
+//! to 5 % more than an STM32F407 for the same code, and no rule here explains it.
 //!
 //! To repeat the comparison, run `cargo count --elf FILE --function NAME`, and add 1 cycle for each
 //! argument and 2 for the call. The 76 kernels do not include dilithium-cortexm on an ATSAM3X8E (3
@@ -111,13 +112,13 @@ impl Pipeline {
         }
     }
 
-    /// Executes the next instruction and returns its cost. A folded `it`, or a store in the second
-    /// cycle of a load, costs 0 cycles.
+    /// Executes the next instruction and returns its cost. A folded `it` costs 0 cycles, and so
+    /// does a store with an immediate offset in the second cycle of a load.
     ///
     /// `registers` are the contents of the registers before it, with its address as the program
     /// counter. `branches` is true if the instruction executed after it is not the next one in
-    /// memory. The core must have the instruction ([`Instruction::is_missing_on`]), which is not
-    /// checked.
+    /// memory, also because of an interrupt. Not checked: that the core has the instruction
+    /// ([`Instruction::is_missing_on`]); otherwise the cycles have no meaning.
     pub fn execute(
         &mut self,
         instruction: Instruction,

@@ -2,7 +2,9 @@
 
 use crate::Core;
 
-/// The additional effect on the time of an instruction. On the M0+ neighbours have no effect.
+/// The effect on the time of an instruction in addition to the cycles of its [`Row`]. On the M0+
+/// neighbours have no effect. A load or store is pipelined with the load before it if their cycles
+/// overlap: if its address does not depend on that load.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Class {
     /// No effect.
@@ -14,18 +16,21 @@ pub enum Class {
     IfThen,
     /// A division of integers. Its time depends on the lengths of the operands.
     Divide,
-    /// A single load. It takes 1 cycle less if it follows another one and is pipelined with it.
+    /// A single load. It takes 1 cycle less if it follows another one and is pipelined with it; on
+    /// the M3 it is not if it updates its base register.
     Load,
-    /// A single store. It takes 1 cycle less if it follows a load. A load after it takes 1 cycle
-    /// more, unless the address has an offset in a register.
+    /// A single store. It takes 1 cycle less if it follows a single load, as a [`Self::Load`] does.
+    /// A load of any kind after it takes 1 cycle more, unless the store has an offset in a
+    /// register.
     Store,
-    /// A load of two words, which is not pipelined.
+    /// A load of two words, which is not pipelined. A store of two words is [`Self::Fixed`].
     LoadPair,
     /// Several loads, with 1 cycle more for each core register in the list.
     LoadList,
     /// Several stores, with 1 cycle more for each core register in the list.
     StoreList,
-    /// A load or store of the floating-point registers in the list, with 1 cycle for each word.
+    /// A load or store of the floating-point registers in the list, with 1 cycle more for each
+    /// word.
     FloatList,
     /// Floating-point arithmetic and conversions. The next instruction may have to wait for the
     /// result.
@@ -44,14 +49,15 @@ pub enum Class {
 /// the addend.
 pub type Reads = &'static [Float];
 
-/// The position of a floating-point register in an encoding.
+/// The position of a single-precision register in an encoding.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Float {
     /// The destination.
     D,
     /// The first operand.
     N,
-    /// The half of a double register that the first operand's field names.
+    /// The half of a double register that the first operand's field names, in a move between it and
+    /// a core register.
     Half,
     /// The second operand, or the only one.
     M,
@@ -59,7 +65,8 @@ pub enum Float {
 
 impl Float {
     /// Returns the number of the floating-point register, 0 to 31 for s0 to s31, in the word of an
-    /// instruction ([`Row`]).
+    /// instruction ([`Row`]). For a double register, d0 to d15, it is the lower half. Not checked:
+    /// that the instruction has this position.
     pub fn register(self, word: u32) -> u32 {
         match self {
             Self::D => (word >> 12 & 0xf) << 1 | word >> 22 & 1,
@@ -79,7 +86,7 @@ pub enum Field {
     Low3,
     Low6,
     Low8,
-    /// A register of r0 to r15 whose highest bit is apart from the others.
+    /// A register of r0 to r15: bits 0 to 2 of the first halfword, and bit 7 above them.
     Any,
     /// The stack pointer, which has no bits in the encoding.
     Sp,
@@ -90,7 +97,8 @@ pub enum Field {
 }
 
 impl Field {
-    /// Returns the number of the core register, 0 to 15, in the word of an instruction.
+    /// Returns the number of the core register, 0 to 15, in the word of an instruction; 13 for
+    /// `Sp`. Not checked: that the instruction has this position.
     pub fn register(self, word: u32) -> u32 {
         match self {
             Self::Low0 => word >> 16 & 7,
@@ -119,27 +127,31 @@ pub struct Row {
     pub(super) mask: u32,
     /// The values of those bits.
     pub(super) value: u32,
-    /// The cycles on the M3, the M4 and the M0+; 0 if the core does not have the instruction, and
+    /// The cycles on the M3, the M4F and the M0+; 0 if the core does not have the instruction, and
     /// for a division.
     pub(super) cycles: [u64; 3],
     /// The additional effect.
     pub class: Class,
-    /// The core registers that it writes.
+    /// The core registers that it writes; none for loads and stores of pairs and lists, ldrex,
+    /// strex, vmrs and calls.
     pub(super) writes: &'static [Field],
-    /// The registers that form the address of a load or store.
+    /// The registers that form the address of a load, a store or a table branch, without the
+    /// program counter.
     pub(super) address: &'static [Field],
 }
 
 impl Row {
     /// Returns the cycles without the effects of the [`Class`], a refill or the previous
-    /// instruction. They are 0 if the core does not have the instruction, and for a division.
+    /// instruction; for a floating-point quotient or root, those of the unit. They are 0 if the
+    /// core does not have the instruction, and for a division.
     pub fn cycles(&self, core: Core) -> u64 {
         self.cycles[core as usize]
     }
 
     /// Returns true if the instruction writes a new address to the register of its address (pre-
-    /// and post-indexed). It is false for loads and stores of pairs and lists, whose written
-    /// registers are not in the table.
+    /// and post-indexed). It is false for a load that overwrites this register with the loaded
+    /// word, and for loads and stores of pairs and lists, whose written registers are not in the
+    /// table.
     pub fn updates_base(&self) -> bool {
         self.address.iter().any(|field| self.writes.contains(field))
     }

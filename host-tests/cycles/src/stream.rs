@@ -29,12 +29,13 @@ impl Registers {
         self.general[13]
     }
 
-    /// Returns the link register, which has the return address and its Thumb bit.
+    /// Returns the link register. Before the first instruction of a function it is the return
+    /// address with its Thumb bit.
     pub fn lr(&self) -> u32 {
         self.general[14]
     }
 
-    /// Returns the address of the instruction that is about to be executed.
+    /// Returns the address of the instruction that is about to be executed, without the Thumb bit.
     pub fn pc(&self) -> u32 {
         self.general[15]
     }
@@ -84,12 +85,13 @@ impl Read for Pieces<'_> {
 }
 
 /// Calls `each` with the registers before every instruction of a log, until the log ends or `each`
-/// returns an error, which is returned. A log that cannot be read is an error, too. An instruction
-/// whose lines are incomplete ends the log without an error. Waits for a log that is being written,
-/// and sleeps for 0.5 ms before each read of up to 1 MiB.
+/// returns an error, which is returned. A log that cannot be read is an error, too. A log ends when
+/// a read returns no bytes: a pipe when all its writers have closed it, for which this waits, and a
+/// file at its present end. An instruction whose lines are incomplete ends the log without an
+/// error. This sleeps for 0.5 ms before each read of up to 1 MiB.
 ///
 /// The first of the four lines of an instruction begins with `R00=`; other lines before it are
-/// skipped. Not checked: the format of the four lines.
+/// skipped. Not checked: the format of the four lines; others give meaningless registers.
 pub fn for_each_instruction(
     log: &mut dyn Read,
     each: &mut dyn FnMut(Registers) -> Result<()>,
@@ -116,11 +118,13 @@ pub struct Calls<'a> {
     entries: BTreeSet<u32>,
     /// The running call: the registers at its entry, its stream since then, and its cost.
     pub running: Option<(Registers, Stream<'a>, Cost)>,
-    /// The cost of each call that has returned, in order.
+    /// The cost of each call that has returned, in the order of the returns.
     pub ended: Vec<Cost>,
-    /// The instructions by address, each with the total cost of its executions.
+    /// The instructions by address, each with the total cost of its executions in calls, including
+    /// a running one.
     pub spots: BTreeMap<u32, (Instruction, Cost)>,
-    /// The largest distance of the stack pointer below its value at the entry of a call, bytes.
+    /// The largest distance of the stack pointer below its value at the entry of a call, bytes. A
+    /// running call and interrupts are included.
     pub stack_bytes: u32,
 }
 
@@ -146,8 +150,9 @@ impl<'a> Stream<'a> {
 
     /// Takes the registers before the next instruction. Returns the address, the instruction and
     /// the cost of the previous instruction, or `None` at the first call. It is an error if the
-    /// previous instruction is not in the program or has no known timing. Not checked: that the
-    /// core has the instruction.
+    /// previous instruction is not in the program or has no known timing; a further call continues
+    /// after it. Not checked: that the core has the instruction; otherwise its cycles have no
+    /// meaning.
     pub fn see(&mut self, next: Registers) -> Result<Option<(u32, Instruction, Cost)>> {
         let Some(before) = self.before.replace(next) else {
             return Ok(None);
@@ -164,7 +169,7 @@ impl<'a> Stream<'a> {
 
 impl<'a> Calls<'a> {
     /// Returns the calls of the functions that begin at these addresses, without the Thumb bit;
-    /// none so far.
+    /// none so far. Not checked: that functions begin there.
     pub fn of(image: &'a Image, core: Core, entries: BTreeSet<u32>) -> Self {
         let ended = Vec::new();
         let spots = BTreeMap::new();
@@ -181,7 +186,9 @@ impl<'a> Calls<'a> {
 
     /// Takes the registers before the next instruction. A call begins at an entry, unless another
     /// call is running. It ends at the caller's return address if the stack pointer is as at the
-    /// entry. Errors are as in [`Stream::see`], during a call only.
+    /// entry; that instruction does not begin a call, even at an entry. An interrupt handler does
+    /// not return like this, so its call never ends. Errors are as in [`Stream::see`], during a
+    /// call only.
     pub fn see(&mut self, registers: Registers) -> Result<()> {
         if self.running.is_none() && self.entries.contains(&registers.pc()) {
             self.running = Some((

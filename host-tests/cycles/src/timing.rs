@@ -8,9 +8,10 @@
 //! states.
 //!
 //! For a long product on the M3 the manuals give a range (3 to 5, with accumulation 4 to 7). The
-//! table has the upper end because it fits published measurements best. A single store takes 1
-//! cycle as measured, although table 3-1 says 2. The table assumes the same for vstr, without a
-//! measurement. The module `pipeline` contains the effects of neighbouring instructions.
+//! table has the upper end because it fits published measurements best. A single store with an
+//! immediate offset takes 1 cycle as measured, although table 3-1 says 2. The table assumes the
+//! same for vstr, without a measurement. The module `pipeline` contains the effects of neighbouring
+//! instructions.
 
 use crate::row::Class::{
     Arithmetic, Aside, Branch, Divide, Fixed, FloatList, IfThen, Load, LoadList, LoadPair, Move,
@@ -24,17 +25,18 @@ use crate::row::{Row, row};
 /// "normally 1" (DDI 0337, table 3-1 of older issues).
 pub const DIRECT_REFILL: u64 = 1;
 /// The cycles to refill the pipeline after any other instruction that is not followed by the next
-/// one in memory, such as bx or a pop of pc: "normally 2". On the M0+ only a pop of pc takes them.
+/// one in memory, such as bx, a pop of pc, or one before an interrupt: "normally 2". On the M0+
+/// only a pop of pc takes them, and the others [`DIRECT_REFILL`].
 pub const INDIRECT_REFILL: u64 = 2;
-/// The additional cycles if a taken branch leads to a 32-bit instruction off a word's boundary. The
-/// first fetch then brings only half of it. The M0+ does not take them.
+/// The additional cycles if a taken branch of any kind leads to a 32-bit instruction off a word's
+/// boundary. The first fetch then brings only half of it. The M0+ does not take them.
 pub const UNALIGNED_TARGET: u64 = 1;
 /// The additional cycles until a floating-point result can be consumed (DDI 0439, notes of table
 /// 7-1).
 pub const RESULT_USE_STALL: u64 = 1;
 
 /// The table of timings: the mnemonics, the mask and the value of the encoding, the cycles on the
-/// M3, the M4 and the M0+, and the effects on neighbours ([`Row`]). 0 cycles mean that the core
+/// M3, the M4F and the M0+, and the effects on neighbours ([`Row`]). 0 cycles mean that the core
 /// does not have the instruction, or a division. The first row that matches an instruction is used.
 #[rustfmt::skip]
 pub const TIMINGS: &[Row] = &[

@@ -20,15 +20,16 @@ pub struct Board {
     pub feature: &'static str,
     /// The number of QEMU's serial port that is the link, counted from 0.
     pub serial_port: usize,
-    /// The frequency of the clock that measures the board's time, Hz.
+    /// The frequency of the clock that measures the emulated board's time, Hz.
     pub hertz: u32,
-    /// True if the board has the OLED panel and the five buttons.
+    /// True if the emulated board has the OLED panel and the five buttons.
     pub has_panel: bool,
 }
 
 impl Board {
-    /// Returns the clock frequency of the processor that the board represents, Hz. QEMU's machine
-    /// with a Cortex-M0+ represents a Raspberry Pi Pico at 125 MHz; `hertz` is its clock in QEMU.
+    /// Returns the clock frequency of the processor that the board represents, Hz. It is `hertz`,
+    /// except for QEMU's machine with a Cortex-M0+: that represents a Raspberry Pi Pico at 125 MHz,
+    /// and `hertz` is its clock in QEMU.
     pub fn processor_hertz(&self) -> u32 {
         if self.core() == Core::M0Plus {
             125_000_000
@@ -37,11 +38,12 @@ impl Board {
         }
     }
 
-    /// Returns the duration of an instruction when the clock counts instructions, as the exponent
-    /// of a power of two in nanoseconds; QEMU allows no other durations.
+    /// Returns the duration of an instruction when QEMU's clock counts instructions, as the
+    /// exponent of a power of two in nanoseconds; QEMU allows no other durations. It has no meaning
+    /// for the Pico.
     ///
-    /// An instruction takes 1.3 cycles on the STM32F405 (8 ns), 2 cycles of 125 MHz on the
-    /// Cortex-M0+ (16 ns), and 1.6 cycles of 50 MHz on the others (32 ns).
+    /// It is 3 on the STM32F405 (8 ns, 1.3 of its cycles), 4 on the Cortex-M0+ (16 ns, 2 cycles of
+    /// 125 MHz), and 5 on the others (32 ns, 1.6 cycles of 50 MHz or 0.8 of 25 MHz).
     pub fn instruction_shift(&self) -> u32 {
         match self.processor_hertz() {
             ..=50_000_000 => 5,
@@ -50,12 +52,14 @@ impl Board {
         }
     }
 
-    /// Returns the duration of an instruction, s, when the clock counts instructions.
+    /// Returns the duration of an instruction, s, when QEMU's clock counts instructions: 2 to the
+    /// power of [`Self::instruction_shift`] ns.
     pub fn instruction(&self) -> f64 {
         f64::from(1 << self.instruction_shift()) * 1e-9
     }
 
-    /// Returns the class of the processor, with its price list and budgets.
+    /// Returns the class of the processor, with its price list and budgets. The STM32F405 has its
+    /// own; the others follow from [`Self::core`].
     pub fn processor(&self) -> Processor {
         match (self.binary, self.core()) {
             ("stm32f405", _) => config::STM32F405,
@@ -66,8 +70,8 @@ impl Board {
     }
 
     /// Returns true if the stack has a guard: a memory protection unit, and a processor that
-    /// reports the cause of a fault. An M0+ does not report the cause, and QEMU's M0+ has no memory
-    /// protection unit.
+    /// reports the cause of a fault. Only the Cortex-M0+ have none: an M0+ does not report the
+    /// cause, and QEMU's M0+ has no memory protection unit.
     pub fn is_guarded(&self) -> bool {
         self.core() != Core::M0Plus
     }
@@ -155,7 +159,8 @@ pub const STM32F405: Board = Board {
 };
 
 /// The Raspberry Pi Pico with a Cortex-M0+ at 125 MHz, a panel and buttons. It is emulated by
-/// rp2040js instead of QEMU, so its `machine`, `cpu` and `serial_port` are not for QEMU.
+/// rp2040js instead of QEMU, which does not know its `machine` and ends at once. Its `serial_port`
+/// has no meaning, and its `cpu` is for [`Board::core`].
 pub const PICO: Board = Board {
     name: "pico",
     machine: "rp2040js",
@@ -167,7 +172,8 @@ pub const PICO: Board = Board {
     ..LM3S6965EVB
 };
 
-/// Returns every board that the firmware is built for: the boards of QEMU, and the Pico.
+/// Returns every board that the firmware is built for: the [`BOARDS`] of QEMU in their order, then
+/// the [`PICO`].
 pub fn every_board() -> impl Iterator<Item = &'static Board> + Clone {
     BOARDS.iter().chain([&PICO])
 }

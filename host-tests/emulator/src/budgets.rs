@@ -2,24 +2,27 @@
 
 /// The part, 0 to 1, of a frame of 1/60 s that a scene may take.
 ///
-/// It applies to a 50 MHz Cortex-M3 in the tick that prepares a motion, and to a Cortex-M0+ at 125
-/// MHz for the map of flips. The rest is for the panel's bus, the serial link, commands, and
+/// It applies to every scene on a Cortex-M3 at 50 MHz and on a Cortex-M0+ at 125 MHz, in QEMU and
+/// after the first 6 frames. It is meant for the tick that prepares a motion on the former, and for
+/// the map of flips on the latter. The rest is for the panel's bus, the serial link, commands, and
 /// requested motions.
 pub const SCENE: f64 = 0.55;
 /// The largest cost of drawing and sending a frame of any scene on a Cortex-M3, cycles, without the
-/// computation of its motion. It is a seventh of a frame at 50 MHz. The most expensive scene,
-/// figure 7, takes 98,700.
+/// computation of its motion. It is 13 % of 1/60 s at 50 MHz. The most expensive scene, figure 7,
+/// takes 98,700.
 pub const SHOWING: u64 = 110_000;
-/// The part of a frame, 0 to 1, that must remain after the frame is on the panel and sent.
+/// The part, 0 to 1, of a frame of 1/60 s that must remain after the frame is on the panel and
+/// sent. It applies to every scene on every board, after the first 6 frames and in addition to
+/// [`SCENE`]; a scene within that limit may leave less than this.
 ///
 /// It is enough for a command in each frame, for a log line, and to compute requested motions in
 /// reasonable time. QEMU's buses take no time; the README has the times of a real board's buses.
 pub const IDLE: f64 = 0.4;
 
-/// The memory of a board, in bytes.
+/// The memory that the program of a board takes, or its limits, bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Memory {
-    /// The program and constants, in flash.
+    /// The program and constants, in flash, without `data`.
     pub text: u32,
     /// The statics with initial values, in flash and in memory.
     pub data: u32,
@@ -29,7 +32,7 @@ pub struct Memory {
     pub stack: u32,
 }
 
-/// The memory limits of each application, bytes, with the name of its board.
+/// The largest memory that each application may take, bytes, with the name of its board.
 ///
 /// - Text: the smallest chip has 256 KiB of flash. A sixteenth of it stays free; with a Cortex-M0+,
 ///   whose code is longer, 12 KiB. The F405 has 1 MiB, and three quarters of it stay free for
@@ -43,8 +46,8 @@ pub struct Memory {
 ///   eighth of that is for cases that no run has met: an interrupt at the deepest place, the report
 ///   of a crash.
 ///
-/// The Pico has 2 MiB of flash and more memory than the others. Its limits are higher because an
-/// M0+ takes more instructions and because of USB.
+/// The Pico has 2 MiB of flash and more memory than the others. Its limits of text and bss are
+/// higher because an M0+ takes more instructions and because of USB.
 pub const MEMORY: [(&str, Memory); 6] = [
     (
         "lm3s6965evb",

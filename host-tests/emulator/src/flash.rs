@@ -34,9 +34,10 @@ pub fn flash_image(elf: &[u8]) -> Result<(u32, Vec<u8>)> {
 }
 
 /// Returns the program as it is stored in flash, with `unused` between its parts: erased flash, or
-/// zeros as QEMU's loader leaves. The first element is the address of the first byte. Of parts that
-/// overlap, the last one in the file counts. An error means that the file is no 32-bit ELF file, is
-/// cut short, has nothing to load, or would fill more than 2 MiB. Not checked: the processor.
+/// zeros as QEMU's loader leaves. The first element is the address of the first byte. Each part is
+/// at its load address (`p_paddr`); parts without bytes are left out. Of parts that overlap, the
+/// last one in the file counts. An error means that the file is no 32-bit ELF file, is cut short,
+/// has nothing to load, or would fill more than 2 MiB. Not checked: the processor.
 pub fn flash_image_over(elf: &[u8], unused: u8) -> Result<(u32, Vec<u8>)> {
     let header = FileHeader32::<Endianness>::parse(elf)?;
     let endian = header.endian()?;
@@ -77,8 +78,8 @@ pub fn flash_image_over(elf: &[u8], unused: u8) -> Result<(u32, Vec<u8>)> {
 }
 
 /// Returns the UF2 file that writes `image` to an RP2040's flash at the address `start`. Each block
-/// of 512 bytes brings 256 bytes of the image; the rest of the last one is zeros. An empty image
-/// gives an empty file. Not checked: that `start` is in flash and a multiple of 256.
+/// of 512 bytes writes 256 bytes; in the last one, zeros follow the image. An empty image gives an
+/// empty file. Not checked: that the image is in flash and `start` a multiple of 256.
 pub fn uf2(start: u32, image: &[u8]) -> Vec<u8> {
     let parts = image.chunks(BROUGHT);
     let count = parts.len() as u32;

@@ -13,23 +13,24 @@ use firmware::scenes::{Report, SceneName};
 pub struct Show {
     /// The player with the scene.
     pub player: Player<'static>,
-    /// The events of the planner, each with its tick of the scene, counted from its start. At a
-    /// speed above 1 it is the first of the ticks that were made at once. They are in ascending
-    /// order and never removed.
+    /// The events of the planner, oldest first, each with its tick of the scene, counted from its
+    /// start. At a speed above 1 it is the first of the ticks that were made at once. Events are
+    /// never removed, also if a command to the player starts a scene, whose ticks begin again at 1.
     pub news: Vec<(u64, PlannerEvent)>,
 }
 
 impl Show {
-    /// Starts a scene as on a board with the default processor. `settings` have the angles in
-    /// degrees. Errors are as in [`Show::on`].
+    /// Starts a scene as [`Show::on`] does, on a board with the default processor: on a host, a
+    /// Cortex-M3. `settings` have the angles in degrees. Errors are as there.
     pub fn new(name: SceneName, settings: &Settings) -> Result<Self, Error> {
         Self::on(PROCESSOR, name, settings)
     }
 
     /// Starts a scene as on a board with this `processor`; the plan chooses the method. `settings`
-    /// have the angles in degrees. An error means that the scene cannot show them, such as a
-    /// pendulum that the kernel refuses or a number that is not finite. A motion that is too fast
-    /// is no error: the scene is stopped from its start. The memory of the scene is never freed.
+    /// have the angles in degrees, also beyond 180, and the other numbers in SI units. An error
+    /// means that the scene cannot show them, such as a pendulum that the kernel refuses or a
+    /// number that is not finite ([`Player::play`]). A motion that is too fast for every method is
+    /// no error: the scene is stopped from its start. The memory of its ink is never freed.
     pub fn on(processor: Processor, name: SceneName, settings: &Settings) -> Result<Self, Error> {
         let ink = Box::leak(Box::new(FadeLayer::NONE));
         let mut player = Player::new(processor, ink);
@@ -41,8 +42,10 @@ impl Show {
     }
 
     /// Advances the player by one tick of the clock, 1/60 s. At full speed the scene advances by
-    /// one tick, and while it is paused or stopped by none. If the motion is no longer finite, the
-    /// scene stops and the report stays the last good one.
+    /// one tick, at another speed by 0 to 4. While it is paused, it advances by one if a step of
+    /// [`Command::Step`](firmware::protocol::Command::Step) is left, and else by none; while it is
+    /// stopped, by none. If the motion is no longer finite, the scene stops and the report stays
+    /// the last good one.
     pub fn tick(&mut self) {
         let Self { player, news } = self;
         let step = player.report.step + 1;
@@ -63,8 +66,9 @@ impl Show {
     /// Advances to the tick of a board's `frame` and returns the frame that the board should have
     /// sent. The fields that only the board can know are copied from `frame`: `sequence`,
     /// `dropped`, `lost`, `scene_cycles` and `busy_cycles`. A frame of an earlier tick than the
-    /// current one gives the numbers of the current tick. A scene that has stopped or is paused
-    /// must have reached that tick; else this never returns.
+    /// current one gives the numbers of the current tick; at a speed above 1 the tick may be
+    /// passed. Not checked: that `frame` is of the same scene. If the scene is paused, or stops,
+    /// before that tick, this never returns.
     pub fn expected(&mut self, frame: &Frame) -> Frame {
         while self.report().step < frame.report.step {
             self.tick();
@@ -87,8 +91,8 @@ impl Show {
         }
     }
 
-    /// Returns the numbers of the scene at the current tick. After a stop they are those of the
-    /// last good one.
+    /// Returns the numbers of the scene at the current tick. After a stop they are the last good
+    /// ones: from the last call of [`Show::tick`] that left the motion finite, or from the start.
     pub fn report(&self) -> Report {
         self.player.report
     }

@@ -11,12 +11,13 @@ use tempfile::NamedTempFile;
 use crate::process::remove_on_interrupt;
 use console::cli::{Refused, unwritable};
 
-/// A file that is being written.
+/// A file that is being written. It implements [`Write`], without a buffer.
 ///
 /// Two commands may write to one name at the same time. The file that is completed last then has
 /// the name. If this is dropped before [`OutFile::finish`], or the process is interrupted, the
-/// temporary file is removed and an existing file of this name remains unchanged. A device or a
-/// pipe is written directly and keeps the bytes written so far.
+/// temporary file is removed and an existing file of this name remains unchanged. A process that is
+/// killed leaves the temporary file, `.double-pendulum-*`. A device or a pipe is written directly
+/// and keeps the bytes written so far.
 #[derive(Debug)]
 pub struct OutFile {
     /// The option in errors.
@@ -34,10 +35,11 @@ enum Content {
 }
 
 impl OutFile {
-    /// Begins the file that `option` names, as a temporary file in the same folder. An existing
-    /// file must be writable, and a new file's folder must exist and be writable; else this is
-    /// refused. A device or a pipe is opened and written directly; a named pipe without a reader
-    /// blocks this. From now on an interrupt ends the process ([`remove_on_interrupt`]).
+    /// Begins the file that `option` names (such as `--out`), as a temporary file in the same
+    /// folder; for a symbolic link, in that of its target. The folder must exist and be writable,
+    /// and an existing file must be writable, too, and no folder; else this is refused. A device or
+    /// a pipe is opened and written directly; a named pipe without a reader blocks this. From now
+    /// on an interrupt ends the process ([`remove_on_interrupt`]).
     pub fn create(option: &'static str, path: &Path) -> Result<Self, Refused> {
         let content = Content::create(path).map_err(|error| unwritable(option, path, &error))?;
         Ok(Self {
@@ -47,10 +49,11 @@ impl OutFile {
         })
     }
 
-    /// Gives the file its name and replaces an existing file, with the access rights of that file
-    /// as far as the umask allows. A symbolic link stays, and its target is replaced. If that is
-    /// not possible, the written file is removed and the error names the option. For a device or a
-    /// pipe it does nothing.
+    /// Gives the file its name and replaces an existing file, with the access rights that it had at
+    /// [`OutFile::create`], as far as the umask allows. A symbolic link stays, and its target is
+    /// replaced; without a target the link is. If that is not possible, the written file is removed
+    /// and the error names the option. For a device or a pipe it does nothing. It does not wait for
+    /// the disk.
     pub fn finish(self) -> anyhow::Result<()> {
         let Self {
             option,
@@ -70,15 +73,16 @@ impl OutFile {
         }
     }
 
-    /// Writes the complete file: all bytes, then [`OutFile::finish`]. An error, which names the
-    /// option and the file, leaves an existing file unchanged.
+    /// Writes the rest of the file: all bytes, after those written so far, then
+    /// [`OutFile::finish`]. An error, which names the option and the file, leaves an existing file
+    /// unchanged.
     pub fn write_whole(mut self, bytes: &[u8]) -> anyhow::Result<()> {
         self.write_all(bytes).map_err(|error| self.failed(&error))?;
         self.finish()
     }
 
-    /// Returns the error of a command whose file could not be written to the end. It names the
-    /// option and the file.
+    /// Returns the error of a command whose file could not be written to the end. It has the words
+    /// of [`unwritable`], with the option and the file, but is no refusal: its exit code is 1.
     pub fn failed(&self, error: &io::Error) -> anyhow::Error {
         anyhow!(unwritable(self.option, &self.path, error).to_string())
     }
@@ -139,14 +143,15 @@ impl Write for OutFile {
 
 /// Returns an error if a file cannot be written, before the work for it begins. An existing file
 /// remains unchanged, and a new one is not left behind. The refusal names the option and the file.
-/// It tries by [`OutFile::create`], with the same effects on a pipe and on interrupts.
+/// It tries by [`OutFile::create`], with the same effects on a pipe and on interrupts. The reader
+/// of a named pipe then sees its end.
 pub fn check_writable(option: &'static str, path: &Path) -> Result<(), Refused> {
     OutFile::create(option, path).map(drop)
 }
 
 /// Writes a complete file in the folder that `--out` names, and creates the folder and those above
-/// it. `path` is that of the file. It replaces an existing file. An error names the option and the
-/// file.
+/// it. `path` is that of the file. It replaces an existing file, as an [`OutFile`] does. An error
+/// names the option and the file. A folder or a file that cannot be created is refused.
 pub fn write(path: &Path, bytes: impl AsRef<[u8]>) -> anyhow::Result<()> {
     let made = path.parent().map_or(Ok(()), fs::create_dir_all);
     made.map_err(|error| unwritable("--out", path, &error))?;

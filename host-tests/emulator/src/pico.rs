@@ -29,9 +29,9 @@ const PATIENCE: u32 = 5000;
 /// An emulated Pico.
 ///
 /// Its time advances only while the emulator processes a command such as that of [`Self::run`], so
-/// its results are bit-identical in every run. Every method that returns a `Result` waits until the
-/// emulator has processed its command. Dropping it ends the emulator. An emulator that has ended,
-/// such as at its time limit, is an error of every such method.
+/// its results are bit-identical in every run. Every method with `&mut self` that returns a
+/// `Result` waits until the emulator has processed its command. Dropping it ends the emulator. An
+/// emulator that has ended, such as at its time limit, is an error of every such method.
 pub struct PicoMachine {
     input: ChildStdin,
     output: BufReader<ChildStdout>,
@@ -53,16 +53,18 @@ pub struct PicoMachine {
 impl PicoMachine {
     /// Starts a board with this firmware in its flash, exactly as `cargo pico` copies it. Node.js
     /// runs the emulator. `limit` is a time of the host, after which the emulator is killed. No
-    /// time passes on the board yet. An error means that the ELF file is unusable or that Node.js
-    /// cannot be started. A missing rp2040js shows as an error of the next command.
+    /// time passes on the board yet. An error means that the ELF file is unusable, that Node.js
+    /// cannot be started, or that there is no place for a temporary file ([`Scratch::new`]). A
+    /// missing rp2040js shows as an error of the next command.
     pub fn start(node: &Path, elf: &Path, limit: Duration) -> anyhow::Result<Self> {
         let (start, image) = flash_image(&std::fs::read(elf)?)?;
         Self::flashed(node, &uf2(start, &image), elf, limit)
     }
 
     /// Starts a board whose flash has been written by this UF2 file. The ELF file is used to decode
-    /// the log. `limit` and errors are as in [`Self::start`]. A wrong UF2 file ends the emulator,
-    /// which is an error of the next command.
+    /// the log. `limit` and errors are as in [`Self::start`]. A wrong or empty UF2 file ends the
+    /// emulator, which is an error of the next command. Not checked: that both files are of the
+    /// same program.
     pub fn flashed(
         node: &Path,
         blocks: &[u8],
@@ -110,21 +112,23 @@ impl PicoMachine {
     }
 
     /// Advances the board's time by `time`, in whole microseconds (a fraction is dropped), and
-    /// returns the messages that it has sent over USB since they were last fetched. An error means
-    /// that the emulator has ended.
+    /// returns the messages that it has sent over USB since they were last fetched. With no time it
+    /// only returns them. An error means that the emulator has ended.
     pub fn run(&mut self, time: Duration) -> anyhow::Result<Vec<ToHost>> {
         self.tell(&format!("run {}", time.as_micros()))?;
         Ok(std::mem::take(&mut self.heard_by_usb))
     }
 
-    /// Runs to the next frame and returns all messages up to it. It is an error if 5 s of the board
-    /// bring none, or if the emulator has ended.
+    /// Runs to the end of the millisecond in which the next frame arrives, and returns all messages
+    /// that have not been fetched. A waiting frame that has not been fetched counts as the next;
+    /// the board then runs for one millisecond. It is an error if 5 s of the board bring no frame,
+    /// or if the emulator has ended; the messages are then lost.
     pub fn run_to_frame(&mut self) -> anyhow::Result<Vec<ToHost>> {
         up_to_frame(PATIENCE, || self.run(SLICE))
     }
 
-    /// Runs to the next frame and returns it; other messages are dropped. If several are waiting,
-    /// it is the last one. Errors are as in [`Self::run_to_frame`].
+    /// Runs as [`Self::run_to_frame`] does and returns the frame, the last one if several were
+    /// waiting. All other messages are dropped. Errors are as there.
     pub fn next_frame(&mut self) -> anyhow::Result<Frame> {
         self.run_to_frame()?
             .into_iter()
@@ -133,7 +137,9 @@ impl PicoMachine {
             .context("it ends with one")
     }
 
-    /// Sends bytes over USB. The board takes them when it runs; until then they are kept.
+    /// Sends bytes over USB. The board takes them when it runs; until then they are kept, also
+    /// while the port is closed. Bytes that are sent while the board is not on USB are lost: after
+    /// the start and during a restart, until it has connected.
     pub fn send_bytes(&mut self, bytes: &[u8]) -> anyhow::Result<()> {
         self.tell(&format!("usb {}", digits(bytes))).map(drop)
     }
@@ -143,7 +149,9 @@ impl PicoMachine {
         self.send_bytes(encode_command(request, command, &mut [0; MAX_WIRE]))
     }
 
-    /// Sends a command to the UART with this request number.
+    /// Sends a command to the UART with this request number. Its bytes arrive at once, in a queue
+    /// of 32 that the board empties when it runs. Bytes that do not fit are lost, as of a longer
+    /// command such as [`Simulate`](protocol::Command::Simulate).
     pub fn send_through_uart(
         &mut self,
         request: u16,
@@ -157,14 +165,15 @@ impl PicoMachine {
     }
 
     /// Opens the USB serial port at this speed, bits per second, or closes it if `baud` is 0. The
-    /// port is open at the start. The board notices when it runs. If the port is closed at the
-    /// speed [`BAUD_OF_BOOT_LOADER`](crate::link::BAUD_OF_BOOT_LOADER), the board restarts in its
-    /// boot loader.
+    /// port is open at the start, at 460,800. The board notices when it runs, and sends nothing
+    /// over USB while the port is closed. If the port is opened at the speed
+    /// [`BAUD_OF_BOOT_LOADER`](crate::link::BAUD_OF_BOOT_LOADER) and then closed, the board
+    /// restarts in its boot loader.
     pub fn set_port(&mut self, baud: u32) -> anyhow::Result<()> {
         self.tell(&format!("port {baud}")).map(drop)
     }
 
-    /// Returns true if the program has ever handed over to the chip's boot loader.
+    /// Returns true if the program has ever handed over to the chip's boot loader; it stays true.
     pub fn is_in_boot_loader(&self) -> bool {
         self.is_in_boot_loader
     }
@@ -191,7 +200,8 @@ impl PicoMachine {
         Ok(Screenshot::from_pages(&self.tell("panel")?))
     }
 
-    /// Presses or releases a button. The board sees it when it runs.
+    /// Presses a button (`down`) or releases it. The board sees it when it runs, and obeys once two
+    /// of its readings in a row, 1/60 s apart, agree.
     pub fn set_key(&mut self, key: Key, down: bool) -> anyhow::Result<()> {
         let pin = match key {
             Key::Up => 10,
@@ -204,10 +214,11 @@ impl PicoMachine {
             .map(drop)
     }
 
-    /// Sends a command to the emulator: a line of `main.js`, without the newline. Returns the bytes
-    /// that it requests, such as the panel's memory; empty if it requests none. The messages and
-    /// log lines that arrive meanwhile are kept. An error means that the emulator has ended, as it
-    /// does after an unknown command, or has printed something else than hexadecimal digits.
+    /// Sends a command to the emulator: a line of `main.js`, without a newline, which is not
+    /// checked. Returns the bytes that it requests, such as the panel's memory; empty if it
+    /// requests none. The messages and log lines that arrive meanwhile are kept. An error means
+    /// that the emulator has ended, as it does after an unknown command, or has printed something
+    /// else than hexadecimal digits.
     pub fn tell(&mut self, command: &str) -> anyhow::Result<Vec<u8>> {
         const GONE: &str = "the emulator of the Pico no longer answers";
         writeln!(self.input, "{command}")

@@ -76,7 +76,8 @@ impl Running {
     /// Waits until the child ends, and kills the rest of its group. Closes its standard input
     /// first, if that is a pipe that was not taken. A child whose full output pipe nobody reads
     /// ends at its time limit only. Returns an error of kind `TimedOut` if the child was killed at
-    /// its time limit. Another failure of the child is a status.
+    /// its time limit. Another failure of the child is a status. A further call has the same result
+    /// at once.
     pub fn wait(&mut self) -> io::Result<ExitStatus> {
         // The child, then the warden, which kills the rest of the group.
         let status = self.child.wait()?;
@@ -100,9 +101,9 @@ impl Running {
         self.child.try_wait()?.map(|_| self.wait()).transpose()
     }
 
-    /// Returns the child's exit status if it has ended, and `None` while it runs. If all of these
-    /// [`streams`](Self::streams) have ended, or there are none, the child is about to end, and
-    /// this waits for it. Errors are as in [`Self::wait`].
+    /// Returns the child's exit status if it has ended, and `None` while it runs. If none of these
+    /// [`streams`](Self::streams) is open, the child is about to end, and this waits for it as
+    /// [`Self::wait`] does, at most until its time limit. Errors are as there.
     pub fn ended(&mut self, streams: &[Stream]) -> io::Result<Option<ExitStatus>> {
         if streams.iter().any(|stream| stream.is_open) {
             self.try_wait()
@@ -111,8 +112,9 @@ impl Running {
         }
     }
 
-    /// Returns the standard output and the standard error of the child, in this order. Both must be
-    /// pipes and can be taken only once; else this is an error.
+    /// Takes the standard output and the standard error of the child and returns them, in this
+    /// order. Both must be pipes and can be taken only once; else this is an error, and a pipe that
+    /// is there is closed.
     pub fn streams(&mut self) -> io::Result<[Stream; 2]> {
         let pipes = self.child.stdout.take().zip(self.child.stderr.take());
         let (stdout, stderr) = pipes.ok_or_else(|| io::Error::other("a child without pipes"))?;
@@ -130,8 +132,8 @@ impl Drop for Running {
     }
 }
 
-/// Returns a child's exit status as an exit code; failure if the child was ended by a signal.
-/// Numbers above 255 are failures, too.
+/// Returns a child's exit status as an exit code; failure, 1, if the child was ended by a signal or
+/// the number is above 255.
 pub fn exit_code(status: ExitStatus) -> ExitCode {
     status
         .code()
@@ -152,7 +154,7 @@ pub struct Output {
 
 /// Runs `command` to its end without input and captures its output. The command is killed after
 /// `limit` at the latest. A failure of the program is not an error, but its time limit is
-/// (`TimedOut`), and so is a program that cannot be started.
+/// (`TimedOut`, and its output is lost), and so is a program that cannot be started.
 pub fn run(command: &mut Command, limit: Duration) -> io::Result<Output> {
     run_watched(command, limit, |_| {})
 }
@@ -161,7 +163,8 @@ pub fn run(command: &mut Command, limit: Duration) -> io::Result<Output> {
 ///
 /// `watch` is called with the last line of new output, which may be incomplete. If both outputs
 /// have new bytes, it is a line of the standard error. While no output arrives, `watch` is called
-/// with `None` at least ten times a second to show that the child is alive.
+/// with `None` about ten times a second to show that the child is alive, but not while a child runs
+/// on that has closed both outputs.
 pub fn run_watched(
     command: &mut Command,
     limit: Duration,
@@ -209,15 +212,17 @@ pub fn run_watched(
 const INTERRUPTS: [i32; 4] = [SIGINT, SIGQUIT, SIGTERM, SIGHUP];
 
 /// Returns the shell's exit code for a command ended by this signal, such as 130 after Ctrl-C.
-/// Returns success for 0, which means no signal. Not checked: that the number is below 128.
+/// Returns success for 0, which means no signal. Not checked: that the number is below 128; a
+/// larger one gives a wrong code or a panic.
 pub fn interrupted_by(signal: usize) -> ExitCode {
     ExitCode::from(if signal == 0 { 0 } else { 128 + signal as u8 })
 }
 
 /// Returns a variable for the number of the signal that interrupts this process (Ctrl-C, Ctrl-\,
 /// SIGTERM, SIGHUP), the last one if there are several; it is 0 until then. The process then
-/// continues instead of ending, unless [`on_interrupt`] has been called, too. This lasts until the
-/// process ends. An error means that the system refuses the handlers.
+/// continues instead of ending, unless [`on_interrupt`] is called, too, before or after. This lasts
+/// until the process ends. Every call returns another variable for the same signals. An error means
+/// that the system refuses the handlers.
 pub fn interrupted() -> io::Result<Arc<AtomicUsize>> {
     let signal = Arc::default();
     for each in INTERRUPTS {
@@ -229,7 +234,9 @@ pub fn interrupted() -> io::Result<Arc<AtomicUsize>> {
 /// Runs `hook` when this process is interrupted (Ctrl-C, Ctrl-\, SIGTERM, SIGHUP), before it exits.
 /// It is for things that must be restored, such as the terminal's mode. The exit code is 128 plus
 /// the number of the signal. Hooks run in a thread of their own, in the order in which they were
-/// added, and are never removed. If the system refuses the handlers, no hook runs.
+/// added, and are never removed. A hook must not block, panic or add a hook: the process would
+/// not exit, and further signals would have no effect. If the system refuses the handlers, no hook
+/// runs.
 pub fn on_interrupt(hook: impl FnOnce() + Send + 'static) {
     type Hook = Box<dyn FnOnce() + Send>;
     static HOOKS: Mutex<Vec<Hook>> = Mutex::new(Vec::new());
@@ -254,8 +261,8 @@ pub fn on_interrupt(hook: impl FnOnce() + Send + 'static) {
 }
 
 /// Removes this file or folder, with its contents, when this process is interrupted, because values
-/// are not dropped then. It may be gone already; a failure is ignored. It is a hook of
-/// [`on_interrupt`], which ends the process.
+/// are not dropped then. It may be gone already; a failure is ignored. Whatever has this path then
+/// is removed, also if it was made later. It is a hook of [`on_interrupt`], which ends the process.
 pub fn remove_on_interrupt(path: &Path) {
     let path = path.to_owned();
 

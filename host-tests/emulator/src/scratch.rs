@@ -1,5 +1,5 @@
-//! Temporary folders of emulators. A folder that a killed command has left is removed when the next
-//! command starts.
+//! Temporary folders of emulators. A folder that a killed command has left is removed when a later
+//! command makes one.
 
 use std::fs::{self, File};
 use std::io;
@@ -21,7 +21,7 @@ const LOCKED_BY_THEN: Duration = Duration::from_secs(60);
 /// interrupted.
 ///
 /// A folder that a killed process has left is removed by the next process that makes a `Scratch` in
-/// the same directory, if the folder is at least 60 s old.
+/// the same directory, if the last change of the folder was at least 60 s ago.
 #[derive(Debug)]
 pub struct Scratch {
     folder: TempDir,
@@ -30,9 +30,10 @@ pub struct Scratch {
 }
 
 impl Scratch {
-    /// Makes a folder in the system's directory for temporary files (`TMPDIR`), and removes old
-    /// folders of killed processes there. An error means that the folder cannot be made or locked.
-    /// From now on an interrupt ends the process ([`remove_on_interrupt`]).
+    /// Makes a folder in the system's directory for temporary files (`TMPDIR`, or else `/tmp`), and
+    /// removes old folders of killed processes there, if it can. An error means that the folder
+    /// cannot be made or locked. From now on an interrupt ends the process
+    /// ([`remove_on_interrupt`]).
     pub fn new() -> io::Result<Self> {
         let folder = tempfile::Builder::new().prefix(PREFIX).tempdir()?;
         remove_on_interrupt(folder.path());
@@ -52,7 +53,7 @@ impl Scratch {
         })
     }
 
-    /// Returns the path of the folder.
+    /// Returns the absolute path of the folder.
     pub fn path(&self) -> &Path {
         self.folder.path()
     }

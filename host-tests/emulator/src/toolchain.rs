@@ -34,7 +34,7 @@ pub const TARGETS: [&str; 3] = [
     "thumbv7em-none-eabihf",
 ];
 
-/// The compiler's target for the page in a browser.
+/// The compiler's target for the application in a web page.
 pub const WASM: &str = "wasm32-unknown-unknown";
 
 /// The tools that build and run programs for a target.
@@ -46,7 +46,8 @@ pub const WASM: &str = "wasm32-unknown-unknown";
 pub struct Toolchain {
     /// Debian's compiler. It is used if rustup has no ready-made core library.
     from_source: Option<FromSource>,
-    /// The emulator of the core: QEMU, or Node.js for WebAssembly.
+    /// The emulator of the core: QEMU, or Node.js for WebAssembly. It is empty after
+    /// [`set_up_web`].
     pub qemu: PathBuf,
 }
 
@@ -61,9 +62,10 @@ fn missing(is_tried: bool, what: &str, why: &str, setup: &str, by_hand: &str) ->
     Refused::because(format_args!("{what} is missing: {why}; {setup}{by_hand}"))
 }
 
-/// Returns the tools for the boards in QEMU, the core library of all [`TARGETS`] and QEMU, if both
-/// are present. Installs nothing, and searches once per process: a later call repeats the first
-/// result, even after [`set_up`]. The refusal has a line for each missing tool, with the remedy.
+/// Returns the tools for the boards in QEMU, the core library of all [`TARGETS`] and QEMU 6.0 or
+/// newer, if both are present. Installs nothing, and searches once per process: a later call
+/// repeats the first result, even after [`set_up`]. The refusal has a line for each missing tool,
+/// with the remedy.
 pub fn ready() -> Result<Toolchain, Refused> {
     static READY: OnceLock<Result<Toolchain, Refused>> = OnceLock::new();
     READY.get_or_init(|| both(false, &TARGETS, arm)).clone()
@@ -71,11 +73,12 @@ pub fn ready() -> Result<Toolchain, Refused> {
 
 /// Returns the tools of [`ready`] and provides the missing ones, with a report of each on stderr.
 /// This loads packages from the network, each tool within about 20 minutes, and writes to the
-/// target folder. Two set-ups at the same time take turns: the second one waits without a limit.
+/// target folder. Two set-ups at the same time take turns: the second one waits without a limit. A
+/// later call finds the tools and loads nothing again.
 ///
-/// Refused if the folder for temporary files (`TMPDIR`) is not writable, if the target folder
-/// cannot be made or locked, or if a tool is missing and cannot be provided; the refusal has a line
-/// for each, with the remedy.
+/// Refused if the folder for temporary files (`TMPDIR`, or else `/tmp`) is not writable, or if a
+/// tool is missing and cannot be provided; the refusal has a line for each, with the remedy. While
+/// a tool is missing, it is also refused if the target folder cannot be made or locked.
 pub fn set_up() -> Result<Toolchain, Refused> {
     check_temporary_folder()?;
     ready().or_else(|_| {
@@ -87,8 +90,9 @@ pub fn set_up() -> Result<Toolchain, Refused> {
 /// Returns the tools and the application of a board, and provides what is missing.
 ///
 /// QEMU is fetched while the application is built, because the former waits for the network and the
-/// latter for the processor. The second element is the ELF file. Errors are refusals as in
-/// [`set_up`], and a build that fails.
+/// latter for the processor. It is provided for the Pico, too, which does not run in it. The second
+/// element is the ELF file, as of [`Toolchain::build_for`]. Errors are refusals as in [`set_up`],
+/// and a build that fails.
 pub fn set_up_and_build(board: &Board) -> anyhow::Result<(Toolchain, PathBuf)> {
     check_temporary_folder()?;
     if let Ok(toolchain) = ready() {
@@ -129,8 +133,11 @@ fn check_temporary_folder() -> Result<(), Refused> {
 ///
 /// QEMU emulates Linux for targets `riscv32imac-*` and `aarch64-*`. Node.js runs `wasm32-*`; if it
 /// is missing, the user is asked ([`Consent::Ask`]). Any other target, also another RISC-V, counts
-/// as an ARM microcontroller, and QEMU emulates a board for it. Refusals are as in [`set_up`], but
-/// the folder for temporary files is not checked.
+/// as an ARM microcontroller, and QEMU emulates a board for it. A target that does not exist may be
+/// noticed by the build only.
+///
+/// Refusals are as in [`set_up`], but the folder for temporary files is not checked, and the target
+/// folder is always made and locked, which waits for any other set-up.
 pub fn set_up_for(target: &str) -> Result<Toolchain, Refused> {
     let emulator = match target.split('-').next() {
         Some("wasm32") => |installs: bool| tools::node(installs.then_some(Consent::Ask)),
@@ -142,16 +149,18 @@ pub fn set_up_for(target: &str) -> Result<Toolchain, Refused> {
     both(true, &[target], emulator)
 }
 
-/// Returns the core library for the page in a browser, and provides it if necessary. The page needs
-/// no emulator. The field `qemu` is empty. Refusals are as in [`set_up_for`].
+/// Returns the core library for the application in a web page ([`WASM`]), and provides it if
+/// necessary. The page needs no emulator, and the field `qemu` is empty. Refusals are as in
+/// [`set_up_for`].
 pub fn set_up_web() -> Result<Toolchain, Refused> {
     let _turn = turn()?;
     both(true, &[WASM], |_| Ok(PathBuf::new()))
 }
 
-/// Returns the program of a Chromium that prints its version, from `PATH` or the target folder. If
-/// there is none, Debian's is unpacked into the target folder, within 3 minutes. Refused if that is
-/// impossible, or the target folder cannot be made or locked.
+/// Returns the program of a Chromium that prints its version: `chromium`, `google-chrome` or
+/// `chromium-headless-shell` from `PATH`, or the one in the target folder. If there is none,
+/// Debian's is unpacked into the target folder, within 3 minutes. Waits for any other set-up
+/// without a limit. Refused if there is none then, or the target folder cannot be made or locked.
 pub fn set_up_chromium() -> Result<PathBuf, Refused> {
     let _turn = turn()?;
     let by_hand = "install this system's package chromium";
@@ -209,21 +218,25 @@ fn qemu(installs: bool, emulator: &Emulator) -> Result<PathBuf, Refused> {
 }
 
 /// Returns the program Node.js, version 18 or newer, if it and the emulator of the Raspberry Pi
-/// Pico are present. Installs nothing. A missing tool is refused.
+/// Pico are present. Installs nothing, and searches in every call. A missing or old tool is
+/// refused, with the remedy.
 pub fn ready_for_pico() -> Result<PathBuf, Refused> {
     tools::rp2040js(None)
 }
 
 /// Returns the program Node.js and provides it and the emulator of the Pico if necessary. Asks the
-/// user before anything is installed on the system. Refusals are as in [`set_up_pico_with`].
+/// user on the terminal before anything is installed on the system; without a terminal, or if the
+/// answer is no, nothing is installed. Refusals are as in [`set_up_pico_with`].
 pub fn set_up_pico() -> Result<PathBuf, Refused> {
     set_up_pico_with(Consent::Ask)
 }
 
 /// Returns the program Node.js and provides it and the emulator of the Pico if necessary, with this
 /// consent of the user. Node.js and npm are installed on the system by apt-get, as root only. npm
-/// then fetches the emulator into `host-tests/emulator/rp2040`. A tool that cannot be provided is
-/// refused, and so is a target folder that cannot be made or locked.
+/// then fetches the emulator into `host-tests/emulator/rp2040`, for which no consent is needed,
+/// within 2 minutes. If something is missing, this waits for any other set-up without a limit. A
+/// tool that cannot be provided is refused, and so is a target folder that cannot be made or
+/// locked.
 pub fn set_up_pico_with(consent: Consent) -> Result<PathBuf, Refused> {
     ready_for_pico().or_else(|_| {
         let _turn = turn()?;
@@ -259,12 +272,12 @@ const MARKS: [&str; 3] = [
     "host-tests/Cargo.toml",
 ];
 
-/// Returns the project's folder.
+/// Returns the project's folder, the one that has `kernel`, `firmware` and `host-tests`.
 ///
 /// The folder is searched at run time, because a checkout may be moved or copied with its programs
-/// already built. The search starts at the package that cargo runs, then at the current folder,
-/// then at this program, and proceeds upwards. If it finds no folder, the process prints one line
-/// and ends with exit code 2.
+/// already built. The search starts at the package that cargo runs (`CARGO_MANIFEST_DIR`), then at
+/// the current folder, then at this program, and proceeds upwards. A later call returns the same.
+/// If it finds no folder, the process prints one line and ends with exit code 2.
 pub fn workspace() -> &'static Path {
     static FOUND: OnceLock<PathBuf> = OnceLock::new();
     FOUND.get_or_init(|| {
@@ -294,9 +307,9 @@ fn above(start: &Path) -> Option<PathBuf> {
     start.ancestors().find(is_it).map(Path::to_owned)
 }
 
-/// Returns the folder of everything built: `CARGO_TARGET_DIR` as for cargo, relative to the current
-/// folder, or else `target` in the workspace. It need not exist yet. Without the variable it may
-/// end the process as [`workspace`] does.
+/// Returns the absolute path of the folder of everything built: `CARGO_TARGET_DIR` as for cargo,
+/// relative to the current folder, or, if that is unset or empty, `target` in the workspace. It
+/// need not exist yet. Without the variable it may end the process as [`workspace`] does.
 pub fn target() -> PathBuf {
     let chosen = env::var_os("CARGO_TARGET_DIR").filter(|folder| !folder.is_empty());
     chosen

@@ -18,17 +18,18 @@ use double_pendulum::{Error, Run};
 /// it for as long as a day. This function is in this package because the package is optimised in
 /// every profile.
 ///
-/// An error means that the motion has diverged by the checks of [`Run::advance`], made once at the
-/// end: numbers that are not finite, or directions or an energy that are far off. `run` is then
-/// unchanged.
+/// An [`Error::Diverged`] means that the motion has diverged by the checks of [`Run::advance`],
+/// made once at the end: numbers that are not finite, directions shorter than 1/2 or longer than 2,
+/// or an energy far above the initial one. `run` is then unchanged.
 pub fn advance(run: &mut Run<DirectionF64, true>, steps: u32) -> Result<(), Error> {
     run.advance(steps)
 }
 
-/// Returns the time when a rod first turns over, s, by RK4 in compensated `f64`. The map of flips
-/// is compared with it. The start is at rest at `a1` and `a2`, rad. The result is [`Flip::Never`]
-/// if the energy is too low, and [`Flip::Later`] if no rod turns over within the steps of `search`.
-/// Angles that are not finite are an error.
+/// Returns the time when a rod first turns over, s, by RK4 in compensated `f64`: when it passes
+/// straight up, interpolated within a step. The map of flips is compared with it. The start is at
+/// rest at `a1` and `a2`, rad. The result is [`Flip::Never`] if the energy is too low, and
+/// [`Flip::Later`] if no rod turns over within the steps of `search`. Angles that are not finite
+/// are an error. Not checked: that the motion does not diverge ([`Flips`]).
 pub fn flip(search: &Flips<DirectionF64>, a1: f64, a2: f64) -> Result<Flip<f64>, Error> {
     search.of(a1, a2)
 }

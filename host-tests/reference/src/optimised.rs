@@ -5,7 +5,7 @@
 
 use double_pendulum::{Pendulum, Real, State};
 
-/// A number type whose classical steps are compiled here.
+/// A number type, `f32` or `f64`, whose steps of RK4 are compiled in this package.
 pub trait Step: Real {
     /// Returns the state after a step of RK4 of `dt` seconds: [`Pendulum::step`]. A negative `dt`
     /// steps backwards. Not checked: the step, and that the result is finite.

@@ -21,7 +21,8 @@ const ORDER: usize = 36;
 /// so 16 digits of it are 35 digits of the value.
 const FIRST_IN_F64: usize = 20;
 
-/// A double pendulum in exact motion, to about 30 digits.
+/// A double pendulum in exact motion. The error is about 1e-31 times the growth of a small error:
+/// about 30 digits are exact in a regular motion, and fewer in a chaotic one.
 ///
 /// A step takes about 0.1 ms. A rod of 1 m needs 20 to 50 steps a second.
 #[derive(Clone, Debug)]
@@ -70,9 +71,10 @@ impl Reference {
         }
     }
 
-    /// Uses power series of another order, at least 24, and with it other steps. It is called
-    /// before the first advance. The distance between the results of two orders shows how accurate
-    /// both are. A smaller order is not checked; below 19 the first advance panics.
+    /// Returns the reference with power series of another order, at least 24, and with it other
+    /// steps. It is called before the first advance; later, it takes effect from the next step on.
+    /// The distance between the results of two orders shows how accurate both are. A smaller order
+    /// is not checked; below 19 the advance panics.
     #[must_use]
     pub fn of_order(self, order: usize) -> Self {
         Self { order, ..self }
@@ -235,16 +237,18 @@ fn sin_cos(angle: TwoFloat) -> [TwoFloat; 2] {
 }
 
 /// Returns a/b to full precision. The quotient of twofloat 0.8.4 is accurate to 1e-16 only, so its
-/// remainder is divided as well. Not checked: that `b` is not 0; the quotient by 0 is not finite.
+/// remainder is divided as well. Not checked: that `a` and `b` are finite, and `b` not 0; otherwise
+/// the result is not finite.
 pub fn divide(a: TwoFloat, b: TwoFloat) -> TwoFloat {
     let quotient = a / b;
     quotient + (a - quotient * b) / b
 }
 
 /// Returns the states at `times` (s, ascending) of the motion that begins at `start`, one for each
-/// time. A time before an earlier one in the list gives the state at the latest time so far, and a
-/// time before 0 the start. The conditions are those of [`Reference::new`], and an infinite time
-/// never returns.
+/// time, in the units of [`Reference::state`]. A time before an earlier one in the list, or NaN,
+/// gives the state at the latest time so far; before the first advance that is the start, also for
+/// times before 0. The conditions are those of [`Reference::new`], and an infinite time never
+/// returns.
 pub fn states(
     parameters: &Parameters<f64>,
     start: &Motion<f64>,

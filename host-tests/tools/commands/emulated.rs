@@ -39,8 +39,10 @@ fn consent(yes: bool) -> Consent {
     if yes { Consent::Given } else { Consent::Ask }
 }
 
-/// Installs everything that is missing and prints where it is. Without `--yes`, system packages are
-/// installed only after a question. A tool that cannot be provided is [`Refused`].
+/// Installs everything that is missing for the emulated boards, and prints where it is. Without
+/// `--yes`, system packages are installed only if the user agrees on the terminal. A tool that
+/// cannot be provided, also for lack of that consent, is [`Refused`]; the tools before it stay
+/// installed.
 pub fn setup(options: &SetupOptions) -> anyhow::Result<()> {
     let is_ready = toolchain::ready().is_ok() && toolchain::ready_for_pico().is_ok();
     say(toolchain::set_up()?)?;
@@ -84,11 +86,16 @@ pub struct FwOptions {
 
 /// Runs a firmware and prints its log to stdout until it ends. Cargo also uses this command as the
 /// runner for the ARM targets. A name without a slash is a binary, which is built first; any other
-/// name is a file, which is run as it is. Missing tools are installed.
+/// name is a file, which is run as it is. Missing tools are installed. Not checked: the board must
+/// suit the binary, and `--seconds` must not be 0.
 ///
-/// Returns the exit code of the firmware, or success if `--seconds` ended it. An unknown binary is
-/// [`Refused`]. Without `--seconds`, it is an error if the firmware runs for an hour. With
-/// `--check` nothing is run, and a warning is an error.
+/// Returns the exit code of the firmware, or success if `--seconds`, counted from the start of
+/// QEMU, ended it. An unknown binary is [`Refused`]. It is an error if the build fails, if the file
+/// is missing or no ELF file, if QEMU ends while it starts, and, without `--seconds`, if the
+/// firmware runs for an hour.
+///
+/// With `--check` nothing is run: all binaries are checked for all targets, and a warning is an
+/// error. Clippy must then be installed, unless Debian's compiler is used.
 pub fn fw(options: &FwOptions) -> anyhow::Result<ExitCode> {
     let Some(binary) = &options.binary else {
         toolchain::set_up()?.check()?;
@@ -213,12 +220,13 @@ const LIMITS: [Duration; 2] = [Duration::from_secs(3600), Duration::from_secs(12
 /// because many tests wait for an emulator or a clock.
 const THREADS: [&str; 2] = ["RUST_TEST_THREADS", "RAYON_NUM_THREADS"];
 
-/// Runs the set-up, builds the firmware, then runs exactly `cargo test`, with its own output and
-/// exit code. If `RUST_TEST_THREADS` or `RAYON_NUM_THREADS` is not set, it is twice the number of
-/// processors for the tests.
+/// Runs the set-up, builds the firmware, then runs `cargo test`, with its own output and exit code;
+/// `--long` adds `-- --include-ignored`. Each of `RUST_TEST_THREADS` and `RAYON_NUM_THREADS` that
+/// is not set is twice the number of processors for the tests.
 ///
-/// An error means that the set-up or a build fails, or that a time limit is exceeded: 1 hour for
-/// compiling the tests and again for running them, or 12 hours each with `--long`.
+/// An error means that the set-up or a build of the firmware fails, or that a time limit is
+/// exceeded: 1 hour for compiling the tests and again for running them, or 12 hours each with
+/// `--long`. If the tests do not compile, the result is the exit code of `cargo test`.
 pub fn verify(options: &TestOptions) -> anyhow::Result<ExitCode> {
     let limit = LIMITS[usize::from(options.long)];
     // Returns a running `cargo test` with these arguments.

@@ -49,8 +49,8 @@ pub struct PicoOptions {
 
 /// Builds the firmware of the Raspberry Pi Pico and writes it to the target folder as [`FILE`], in
 /// the format UF2, over an existing file. Returns the number of bytes in the flash, and the file.
-/// The number does not include the overhead of the format. An error means that the build or the
-/// writing fails.
+/// The number includes gaps between parts of the program, but not the overhead of the format. An
+/// error means that the build or the writing fails; the file may then be incomplete.
 pub fn uf2_file(toolchain: &Toolchain) -> anyhow::Result<(usize, PathBuf)> {
     let (start, image) = flash_image(&fs::read(toolchain.build_for(&PICO)?)?)?;
     let file = target().join(FILE);
@@ -58,13 +58,14 @@ pub fn uf2_file(toolchain: &Toolchain) -> anyhow::Result<(usize, PathBuf)> {
     Ok((image.len(), file))
 }
 
-/// Builds the UF2 file and copies it to a board: to the drive of the options, else to a mounted
-/// drive, else to a board that runs this firmware and is restarted. Without any of these it prints
-/// how to copy the file by hand, which is a success. Missing tools are installed. The copy replaces
-/// a file of this name on the drive and is complete when this returns.
+/// Builds the UF2 file and copies it to a board: to the drive of the options, else to the first
+/// mounted drive of an RP2040, else to the only board that runs this firmware, which is restarted
+/// in its boot loader. Without a drive, and with no such board or several, it prints how to copy
+/// the file by hand, which is a success. Missing tools are installed. The copy replaces a file of
+/// this name on the drive and is complete when this returns.
 ///
-/// It is an error if the build or the copy fails, if the port of the running board cannot be
-/// opened, or if its drive is not mounted within 10 s of the restart.
+/// It is an error if the build or the copy fails. If the port of the running board cannot be
+/// opened, or if its drive is not mounted within 10 s of the restart, this is [`Refused`].
 pub fn pico(options: &PicoOptions) -> anyhow::Result<()> {
     let (bytes, file) = uf2_file(&toolchain::set_up()?)?;
     say(format_args!("{}: {bytes} bytes of flash", file.display()))?;
@@ -186,10 +187,12 @@ fn chip(name: &str) -> Result<String, String> {
 /// Builds the firmware of the STM32F405 and flashes it. A missing program or tool is [`Refused`];
 /// nothing is installed.
 ///
-/// With `--dfu` it writes a flat image next to the ELF file and returns when `dfu-util` has ended.
-/// It is then an error if `dfu-util` did not report success; its exit code does not count.
-/// Otherwise probe-rs replaces this process, so this function only returns if probe-rs cannot be
-/// started, which is refused. Another error means that the build fails.
+/// With `--dfu` it writes a flat image next to the ELF file, with the extension `bin`, over an
+/// existing one, and returns when `dfu-util` has ended. It is then an error if `dfu-util` has not
+/// printed that the file is downloaded, for example because no board is in its USB loader; its exit
+/// code does not count. Otherwise probe-rs replaces this process, so this function only returns if
+/// probe-rs cannot be started, which is refused. Another error means that the build fails or that
+/// the image cannot be written.
 pub fn stm32f405(options: &FlashOptions) -> anyhow::Result<()> {
     let (program, source) = if options.dfu {
         (

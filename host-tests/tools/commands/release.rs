@@ -29,17 +29,19 @@ const HASHERS: [(&str, &[&str]); 2] = [("sha256sum", &[]), ("shasum", &["-a", "2
 /// Makes target/release-files/: the Pico's UF2, the ELF file of every board, the page for a
 /// browser, the packaged kernel, and their SHA-256 sums.
 ///
-/// The files depend only on the commit and the compiler, not on folders or the machine.
+/// The files depend only on the commit and the compiler, not on folders or the machine. Uncommitted
+/// changes are included.
 #[derive(Debug, Parser)]
 #[command(name = "cargo release-files")]
 pub struct ReleaseOptions {}
 
 /// Replaces the folder `release-files` in the target folder, with everything in it, and prints the
-/// checksums and the folder. Missing tools are installed, and cargo contacts the registry if its
-/// index is not on this machine.
+/// checksums and the folder. Uncommitted changes are included. Missing tools are installed, and
+/// cargo contacts the registry if its index is not on this machine.
 ///
-/// A machine without a program for checksums, or whose tools cannot be provided, is [`Refused`]. If
-/// a build or the packaging fails, which is an error, the folder is incomplete.
+/// A machine with neither `sha256sum` nor `shasum`, or whose tools for the boards cannot be
+/// provided, is [`Refused`], and the folder remains unchanged. After any later error the folder is
+/// incomplete: a build or the packaging fails, or the tools of the page cannot be provided.
 pub fn run(_: &ReleaseOptions) -> anyhow::Result<()> {
     let hasher = HASHERS
         .iter()

@@ -11,7 +11,8 @@ pub struct Table {
 
 impl Table {
     /// Returns the table as CSV: the headings, then the rows, with commas between the cells and a
-    /// newline after each line. Not checked: no cell may contain a comma, a quote or a newline.
+    /// newline after each line. Not checked: no heading or cell may contain a comma, a quote or a
+    /// newline.
     pub fn csv(&self) -> String {
         let lines = std::iter::once(self.columns.join(","))
             .chain(self.rows.iter().map(|row| row.join(",")));
@@ -19,7 +20,7 @@ impl Table {
     }
 
     /// Returns the table in Markdown: the headings, a line of dashes, then the rows, with a newline
-    /// after each line. Not checked: no cell may contain a vertical bar or a newline.
+    /// after each line. Not checked: no heading or cell may contain a vertical bar or a newline.
     pub fn markdown(&self) -> String {
         let heads = [
             self.columns.join(" | "),
@@ -33,16 +34,16 @@ impl Table {
 }
 
 /// Returns `page` with `text` in place of everything between the first mark `start` and the next
-/// mark `end`. The marks remain, and nothing is added around `text`. Returns `None` if there is no
-/// `start`, or no `end` after it.
+/// mark `end` after it. The marks and the rest of the page remain, and nothing is added around
+/// `text`. Returns `None` if there is no `start`, or no `end` after it.
 pub fn between(page: &str, [start, end]: [&str; 2], text: &str) -> Option<String> {
     let (head, rest) = page.split_once(start)?;
     let (_, tail) = rest.split_once(end)?;
     Some(format!("{head}{start}{text}{end}{tail}"))
 }
 
-/// Returns an error or a drift with two digits in exponent form, such as "1.5e-7", or "none" if it
-/// is not finite.
+/// Returns an error or a drift in exponent form, with its sign, rounded to the nearest two digits,
+/// such as "1.5e-7" or "0.0e0". Returns "none" if it is not finite.
 pub fn small(value: f64) -> String {
     if value.is_finite() {
         format!("{value:.1e}")
@@ -51,9 +52,9 @@ pub fn small(value: f64) -> String {
     }
 }
 
-/// Returns a bound of two digits, in exponent form, that is greater than the positive `value`: 1
-/// gives 1.1e0. Zero gives 0.0e0, infinity and NaN are printed by their names. Not checked: for a
-/// negative `value` the result may be below it or above it.
+/// Returns a bound of two digits, in exponent form, that is greater than the positive `value`,
+/// usually the next one: 1 and 1.01 give 1.1e0. Zero gives 0.0e0, infinity "inf" and NaN "NaN". Not
+/// checked: for a negative `value` the result may be below it or above it.
 pub fn at_most(value: f64) -> String {
     let rounded = format!("{value:.1e}");
 

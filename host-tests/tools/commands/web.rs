@@ -23,7 +23,9 @@ pub const FILE: &str = "double-pendulum.html";
 /// The page without its facts and its module.
 const TEMPLATE: &str = include_str!("../../../firmware/web/page.html");
 
-/// The processors that the page offers, each with its name in links and a description.
+/// The processors that the page offers, each with its name in links (`#processor=m3`), a
+/// description, and its costs and budgets. The first one is the default. `cargo plan` has other
+/// names: this `m4f` is its `slow-m4f`, and `m0` is its `pico`.
 pub const PROCESSORS: [(&str, &str, Processor); 3] = [
     ("m3", "Cortex-M3 at 50 MHz", CORTEX_M3),
     ("m4f", "Cortex-M4F at 25 MHz", CORTEX_M4F),
@@ -50,17 +52,18 @@ pub struct WebOptions {
     /// Open the page in the browser
     #[arg(long)]
     open: bool,
-    /// Save a picture of the page, which Chromium makes
+    /// Save a picture of the page, which Chromium makes, as this PNG file
     #[arg(long, value_name = "FILE.png")]
     picture: Option<PathBuf>,
 }
 
 /// Writes the page, and makes the picture and opens the page if the options demand it. Existing
-/// files are replaced. The picture shows the page 8.5 s after its start.
+/// files are replaced. The picture shows the page after 8.5 s of its own time.
 ///
-/// A picture that cannot be written and a missing program are [`Refused`] before the build; a
-/// missing Chromium is installed first. Another error means that the build fails, or that Chromium
-/// fails or takes longer than 120 s. The browser is started and not waited for.
+/// If the picture cannot be written or a program is missing, this is [`Refused`] before the build,
+/// and no file is changed; a missing Chromium is installed first. Another error means that the
+/// build fails, that the page cannot be written, or, after the page is written, that Chromium fails
+/// or takes longer than 120 s. The browser is started and not waited for.
 pub fn run(options: &WebOptions) -> anyhow::Result<()> {
     // Refuse before the build.
     let picture = options.picture.as_deref();
@@ -95,8 +98,8 @@ fn opener() -> Result<PathBuf, Refused> {
 }
 
 /// Builds the application and writes the page into the target folder, over an existing one. Missing
-/// tools are installed. Returns the path of the page. An error means that a tool cannot be
-/// provided, the build fails, or the file cannot be written.
+/// tools are installed. Returns the path of the page. An error means that a tool cannot be provided
+/// ([`Refused`]), the build fails, or the file cannot be written; an existing page then remains.
 pub fn write_page() -> anyhow::Result<PathBuf> {
     let module = fs::read(toolchain::set_up_web()?.build_web()?)?;
     let page = TEMPLATE

@@ -19,17 +19,20 @@ pub struct KnownAnswer {
     /// The scene's name, its given numbers and the time, as written in the file, with commas
     /// between them. Angles are in degrees, velocities in rad/s, all other numbers in SI units.
     pub given: &'static str,
-    /// The scene at its start, in full precision.
+    /// The scene at its start, time 0, in double-double precision. A clone of it advances to
+    /// `time`.
     pub start: Reference,
-    /// The masses (kg), lengths (m), gravity (m/s^2), rounded to f64.
+    /// The masses (kg), lengths (m) and gravity (m/s^2), rounded to `f64`. The start is not
+    /// rounded.
     pub parameters: Parameters<f64>,
     /// The time, s.
     pub time: f64,
-    /// (sin a1, cos a1, sin a2, cos a2) at that time.
+    /// (sin a1, cos a1, sin a2, cos a2) at that time, as written.
     pub directions: [TwoFloat; 4],
     /// The largest error of the directions, each in turn: two units of the last digit written.
     pub radius: [f64; 4],
-    /// The growth of a small error of the start until that time, as a factor.
+    /// About the factor by which a small error of the start has grown until that time. It is an
+    /// estimate; nothing is proved about it.
     pub growth: f64,
 }
 
@@ -44,7 +47,8 @@ const GIVEN: usize = 11;
 /// program.
 ///
 /// # Errors
-/// Names the first line that cannot be read.
+/// The error contains the text of the first line that cannot be read. Not checked: the heading and
+/// the range of the numbers.
 pub fn table() -> anyhow::Result<Vec<KnownAnswer>> {
     let lines = include_str!("../../reference/known_answers.csv")
         .lines()

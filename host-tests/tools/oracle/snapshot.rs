@@ -9,13 +9,13 @@ use emulator::toolchain::workspace;
 /// The character of each of the panel's 16 greys, from black (0) to white (15).
 pub const GREYS: &[u8; 16] = b" .,:;-~=+*oaOX#@";
 
-/// The environment variable that makes [`check`] and [`check_lines`] write the files instead of
-/// comparing them. Any value has this effect, even an empty one.
+/// The name of the environment variable that makes [`check`] and [`check_lines`] write the files
+/// instead of comparing them. Any value has this effect, even an empty one.
 pub const BLESS: &str = "BLESS";
 
-/// Returns a picture as lines of `width` characters, each line with its end. `greys` are 0 to 15,
-/// row by row. Only the lower four bits of each byte count. A last row that is not complete gives a
-/// shorter line. A `width` of 0 panics.
+/// Returns a picture as lines of `width` characters of [`GREYS`], each line with a `\n` at its end.
+/// `greys` are 0 to 15, row by row. Only the lower four bits of each byte count. A last row that is
+/// not complete gives a shorter line, and no greys give an empty text. A `width` of 0 panics.
 pub fn text(greys: &[u8], width: usize) -> String {
     let line = |row: &[u8]| {
         row.iter()
@@ -26,16 +26,15 @@ pub fn text(greys: &[u8], width: usize) -> String {
     greys.chunks(width).map(line).collect()
 }
 
-/// Compares a picture with the committed one, the file `host-tests/golden/scenes/NAME.txt`. Returns
-/// `Ok` if both are the same, byte by byte.
+/// Compares a picture with the committed one, the file `host-tests/golden/scenes/NAME.txt` in the
+/// project's folder ([`workspace`]). Returns `Ok` if both are the same.
 ///
-/// The error names the file and the command that accepts the picture, and lists the rows that
-/// differ, each with the old one above the new one. Rows that only one of the two pictures has, and
-/// other ends of lines, are an error but are not listed. A file that cannot be read or written is
-/// an error, too.
+/// The error names the file and says how to accept the picture, and lists the rows that differ,
+/// each with the old one above the new one. Rows that only one of the two pictures has, and other
+/// ends of lines, are an error but are not listed. A file that cannot be read is an error, too.
 ///
-/// If [`BLESS`] is set, nothing is compared: the picture replaces the file, or creates it, and the
-/// result is `Ok`. The folder must exist.
+/// If [`BLESS`] is set, nothing is compared: the picture replaces the file, or creates it. It is
+/// then an error only if the file cannot be written. The folder must exist.
 pub fn check(name: &str, picture: &str) -> Result<(), String> {
     let path = workspace()
         .join("host-tests/golden/scenes")
@@ -71,16 +70,16 @@ pub fn check(name: &str, picture: &str) -> Result<(), String> {
     ))
 }
 
-/// Compares `text` with a committed file; `file` is its path in the project. Returns `Ok` if both
-/// are the same, byte by byte.
+/// Compares `text` with a committed file; `file` is its path from the project's folder
+/// ([`workspace`]). Returns `Ok` if both are the same, byte by byte.
 ///
-/// The error contains the command that accepts the text, the numbers of lines before and now, and
-/// the lines that differ, each with the old one above the new one. Lines that only one of the two
-/// texts has, and other ends of lines, are an error but are not listed. A file that cannot be read
-/// or written is an error, too.
+/// The error names the file and says how to accept the text. It contains the numbers of lines
+/// before and now, and the lines that differ from the old one of the same number, each with the old
+/// one above the new one. Lines that only one of the two texts has, and other ends of lines, are an
+/// error but are not listed. A file that cannot be read is an error, too.
 ///
-/// If [`BLESS`] is set, nothing is compared: the text replaces the file, or creates it, and the
-/// result is `Ok`. The folder must exist.
+/// If [`BLESS`] is set, nothing is compared: the text replaces the file, or creates it. It is then
+/// an error only if the file cannot be written. The folder must exist.
 pub fn check_lines(file: &str, text: &str) -> Result<(), String> {
     let path = workspace().join(file);
     if env::var_os(BLESS).is_some() {

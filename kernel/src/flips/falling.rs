@@ -17,13 +17,14 @@ pub struct Falling<F: Form> {
 }
 
 impl<F: Form> Falling<F> {
-    /// Returns the motion of `map` that is released at the angles `a1`, `a2`, rad; `None` if the
-    /// energy is too low for any flip.
+    /// Returns the motion of `map` that is released at rest at the angles `a1`, `a2`, rad; `None`
+    /// if the energy is too low for any flip. Without gravity the result is a motion, which stays
+    /// at rest.
     ///
     /// # Errors
     ///
-    /// Refuses angles that are not finite and, by the closed form, a start from which an angle may
-    /// exceed 2^31 - 1 turns.
+    /// Refuses angles that are not finite, by [`Error::NotFinite`], and, by the closed form, a
+    /// start from which an angle may exceed 2^31 - 1 turns, by [`Error::OutOfRange`].
     pub fn start(map: &Flips<F>, a1: F::Real, a2: F::Real) -> Result<Option<Self>, Error> {
         let state = State::at_rest(a1, a2);
         state.check()?;
@@ -45,7 +46,7 @@ impl<F: Form> Falling<F> {
     /// After exactly these steps, and for 0 `steps`, the result is `None`.
     ///
     /// `map` must be the map of the start, and the method must not be called again after a result;
-    /// neither is checked.
+    /// neither is checked. Nor is the motion: one that diverges may have any of these results.
     pub fn advance(&mut self, map: &Flips<F>, steps: u32) -> Option<Flip<F::Real>> {
         for _ in 0..steps {
             if self.steps >= map.steps {

@@ -46,9 +46,12 @@ struct Stage<const N: usize> {
 /// `ROWS` times `N` motions of one pendulum.
 ///
 /// Each stage is computed for all rows before the next stage of any row. A stage must wait for the
-/// one before it, and meanwhile the processor computes the other rows. The caller restores the
-/// lengths and leaves out steps exactly when a single motion would. `N` must not be 0, otherwise
+/// one before it, and meanwhile the processor computes the other rows. `N` must not be 0, otherwise
 /// [`put`](Self::put) and [`keep`](Self::keep) panic.
+///
+/// After every 32 steps since the start of a motion, the caller restores the lengths
+/// ([`restore_lengths`](Self::restore_lengths)). Before that it leaves out the last of these steps
+/// in the lanes where a single motion would ([`keep`](Self::keep)).
 #[derive(Clone, Copy, Debug)]
 pub(super) struct DirectionLanes<const N: usize, const ROWS: usize> {
     constants: Constants<N>,
@@ -77,7 +80,8 @@ impl<const N: usize, const ROWS: usize> DirectionLanes<N, ROWS> {
     }
 
     /// Puts another motion of the same pendulum and step into a lane, counted from 0 through all
-    /// rows. Ignores a lane that does not exist. The pendulum and the step are not checked.
+    /// rows: row 0 has the lanes 0 to `N` - 1. Ignores a lane that does not exist. The pendulum and
+    /// the step are not checked.
     pub fn put(&mut self, lane: usize, motion: &DirectionF32Plain) {
         let (_, _, z, inverse) = motion.parts();
         let numbers = z.into_iter().chain([inverse]);
@@ -86,15 +90,16 @@ impl<const N: usize, const ROWS: usize> DirectionLanes<N, ROWS> {
         }
     }
 
-    /// Resets a lane, counted from 0 through all rows, to its motion in `before`. Ignores a lane
-    /// that does not exist.
+    /// Resets a lane, counted from 0 through all rows, to its motion in `before`, a copy that was
+    /// made before the step to leave out. `before` is unchanged. Ignores a lane that does not
+    /// exist.
     pub fn keep(&mut self, lane: usize, before: &mut Self) {
         for (place, number) in self.lane(lane).zip(before.lane(lane)) {
             *place = *number;
         }
     }
 
-    /// Advances all motions by one step of RK4.
+    /// Advances all motions by one step of RK4. A motion that diverges is not reported.
     #[inline(always)]
     pub fn step(&mut self) {
         // All rows finish a stage before the next stage begins.
@@ -113,15 +118,16 @@ impl<const N: usize, const ROWS: usize> DirectionLanes<N, ROWS> {
         }
     }
 
-    /// Restores the lengths of all directions, to first order in their errors.
+    /// Restores the lengths of all directions, to first order in their errors, which must be small.
+    /// NaN stays NaN. Call it after every 32 steps.
     pub fn restore_lengths(&mut self) {
         for (start, _) in &mut self.rows {
             self.constants.restore_lengths(start);
         }
     }
 
-    /// Returns (sin, cos) of both rods in the lanes of a row; those of rod 2 are nu times as long.
-    /// Panics if `row` is not less than `ROWS`.
+    /// Returns (sin, cos) of both rods in the lanes of a row; those of rod 2 are nu = l1/l2 times
+    /// as long. Panics if `row` is not less than `ROWS`.
     pub fn rods(&self, row: usize) -> [[Numbers<N>; 2]; 2] {
         let [sin1, cos1, s, c, ..] = self.rows[row].0.z;
         [[sin1, cos1], [sin1 * c - cos1 * s, cos1 * c + sin1 * s]]

@@ -43,13 +43,14 @@ pub enum Flip<R> {
 ///
 /// A flip is detected by the signs of sine and cosine after each step. Its time is interpolated
 /// between two steps, linearly in the sine. This costs about 15 arithmetic operations per step.
+/// Whole turns of a start do not matter. A rod that starts straight up has not flipped yet.
 ///
 /// In maps of equal rods and bobs up to 10 sqrt(l/g), in steps of [`step_size`], 99.9 % of the
 /// starts that may turn over have their flip within one of 16 grey levels of that in far finer
 /// steps, on a logarithmic scale of time, in any arithmetic (the repository's test `flips`).
 ///
-/// The motions are not checked: in steps that are far too long, a flip may be missed, or
-/// reported where no rod turns over.
+/// The motions are not checked: in steps that are far too long, or after a motion has diverged, a
+/// flip may be missed, or reported where no rod turns over.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Flips<F: Form> {
     pendulum: Pendulum<F::Real>,
@@ -59,16 +60,18 @@ pub struct Flips<F: Form> {
     steps: u32,
 }
 
-/// Returns the longest step, s, that resolves the motion of every start from rest.
+/// Returns the longest step, s, that is short enough for a map of flips.
 ///
-/// It is twice the [admissible step](Pendulum::admissible_step) from straight up. With a light bob
-/// 2 it is shorter, so that [`Fixed32`] accepts it. Without gravity, where nothing moves, it is
-/// infinite; it is 0 if the energy overflows in `R`. [`Flips::new`] refuses both.
+/// It is twice the [admissible step](Pendulum::admissible_step) from straight up, which is accurate
+/// enough to find flips. If the elbow could bend by more than 0.36 rad in that step, as with a
+/// light bob 2, the step is so short that it cannot; [`Fixed32`] then accepts it. Without gravity,
+/// where nothing moves, it is infinite; it is 0 if the energy overflows in `R`. [`Flips::new`]
+/// refuses both.
 ///
 /// # Errors
 ///
 /// Refuses the parameters that [`Pendulum::new`] refuses, and those whose normal modes are out of
-/// the range of `R`.
+/// the range of `R`, by [`Error::OutOfRange`].
 ///
 /// [`Fixed32`]: crate::Fixed32
 pub fn step_size<R: Real>(parameters: &Parameters<R>) -> Result<f64, Error> {
@@ -85,14 +88,15 @@ pub fn step_size<R: Real>(parameters: &Parameters<R>) -> Result<f64, Error> {
 impl<F: Form> Flips<F> {
     /// Creates a map with steps of `dt` s and at most `steps` steps for each start. A negative `dt`
     /// runs backwards. If `steps` is 0, each start has the result [`Flip::Never`] or
-    /// [`Flip::Later`].
+    /// [`Flip::Later`]. Without gravity, which the closed form refuses, each has [`Flip::Later`].
     ///
     /// # Errors
     ///
     /// Refuses the parameters that [`Pendulum::new`] refuses, and the parameters and steps that the
-    /// method `F` refuses, among them a step that is NaN, infinite or zero and, in fixed point, a
-    /// step that is too long for the energy of the highest start. Other methods accept a step
-    /// beyond the limit of stability.
+    /// method `F` refuses. Among them are a step that is NaN or infinite ([`Error::NotFinite`]),
+    /// one that is zero or subnormal ([`Error::OutOfRange`]) and, in fixed point, one that is too
+    /// long for the energy of the highest start ([`Error::TooLarge`] contains the longest, s).
+    /// Other methods accept a step beyond the limit of stability.
     pub fn new(parameters: &Parameters<F::Real>, dt: f64, steps: u32) -> Result<Self, Error> {
         // The units must fit the start with the most energy: both rods upright.
         let highest = F::new(
@@ -113,8 +117,8 @@ impl<F: Form> Flips<F> {
     ///
     /// # Errors
     ///
-    /// Refuses angles that are not finite and, by the closed form, a start from which an angle may
-    /// exceed 2^31 - 1 turns.
+    /// Refuses angles that are not finite, by [`Error::NotFinite`], and, by the closed form, a
+    /// start from which an angle may exceed 2^31 - 1 turns, by [`Error::OutOfRange`].
     pub fn of(&self, a1: F::Real, a2: F::Real) -> Result<Flip<F::Real>, Error> {
         let Some(mut falling) = Falling::start(self, a1, a2)? else {
             return Ok(Flip::Never);

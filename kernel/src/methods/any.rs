@@ -118,23 +118,25 @@ pub enum DrawnMotion {
 }
 
 impl DrawnMotion32 {
-    /// Creates the motion of a pendulum from its start, in steps of `dt` seconds. A negative `dt`
-    /// runs backwards.
+    /// Creates the motion of a pendulum by `method` from its start, in steps of `dt` seconds. A
+    /// negative `dt` runs backwards.
     ///
     /// # Errors
     ///
     /// Refuses:
     ///
-    /// - a step that is NaN, infinite, zero or subnormal, and a start that is not finite;
+    /// - a step that is NaN or infinite or, by [`Error::OutOfRange`], zero, subnormal or too large
+    ///   in the method's numbers (`f64` for fixed point and the closed form);
+    /// - a start that is not finite;
     /// - masses and lengths that are not positive and finite, gravity that is negative or not
     ///   finite and, by the closed form, a pendulum without gravity;
-    /// - a pendulum, start or step out of the range of the method's numbers;
+    /// - a pendulum or start out of the range of the method's numbers;
     /// - by `rk4-fixed32`, a step that is too long: [`Error::TooLarge`] contains the longest, s;
     /// - by the closed form, a start from which an angle may exceed 2^31 - 1 turns;
     /// - by [`Error::NotDrawn`], methods that are not in [`Method::DRAWN`] or not in 32 bits.
     ///
-    /// Unlike [`Pendulum::run`](crate::Pendulum::run), RK4 in `f32` accepts a step beyond the limit
-    /// of stability.
+    /// Unlike [`Pendulum::run`](crate::Pendulum::run), RK4 accepts a start of any number of turns
+    /// and, in `f32`, a step beyond the limit of stability.
     #[inline(never)] // Inlined, the motions of all kinds would share a stack frame.
     pub fn new(
         method: Method,
@@ -243,10 +245,11 @@ impl DrawnMotion32 {
     }
 
     /// Returns the canonical state in SI units at the number of steps times dt. The angles are
-    /// within (-pi, pi]; by the closed form they include whole turns.
+    /// within [-pi, pi]; by the closed form they include whole turns.
     ///
-    /// All its numbers are NaN if the motion has diverged in fixed point. If it has diverged in
-    /// `f32`, some may be NaN or infinite.
+    /// In fixed point all its numbers are NaN once [`check`](Self::check) refuses the motion; until
+    /// then, a motion that has left its range may look valid. If it has diverged in `f32`, some may
+    /// be NaN or infinite.
     pub fn state(&self) -> State<f64> {
         match self {
             Self::ClosedFormF32(motion) => motion.state(),
@@ -284,23 +287,26 @@ impl DrawnMotion32 {
 }
 
 impl DrawnMotion {
-    /// Creates the motion of a pendulum from its start, in steps of `dt` seconds. A negative `dt`
-    /// runs backwards.
+    /// Creates the motion of a pendulum by `method` from its start, in steps of `dt` seconds. A
+    /// negative `dt` runs backwards.
     ///
     /// # Errors
     ///
     /// Refuses:
     ///
-    /// - a step that is NaN, infinite, zero or subnormal, and a start that is not finite;
+    /// - a step that is NaN or infinite or, by [`Error::OutOfRange`], zero, subnormal or too large
+    ///   in the method's numbers (`f64` for fixed point and the closed form);
+    /// - a start that is not finite;
     /// - masses and lengths that are not positive and finite, gravity that is negative or not
     ///   finite and, by the closed form, a pendulum without gravity;
-    /// - a pendulum, start or step out of the range of the method's numbers;
+    /// - a pendulum or start out of the range of the method's numbers;
     /// - in fixed point, a step that is too long: [`Error::TooLarge`] contains the longest, s;
     /// - by the closed form, a start from which an angle may exceed 2^31 - 1 turns;
     /// - by [`Error::NotDrawn`], methods that are not in [`Method::DRAWN`].
     ///
-    /// Unlike [`Pendulum::run`](crate::Pendulum::run), RK4 in `f32` and extrapolation accept a step
-    /// beyond the limit of stability.
+    /// Unlike [`Pendulum::run`](crate::Pendulum::run), RK4 and extrapolation accept a start of any
+    /// number of turns. RK4 in `f32`, and extrapolation up to its own limit, accept a step beyond
+    /// the limit of stability.
     #[inline(never)] // Inlined, the motions of all kinds would share a stack frame.
     pub fn new(
         method: Method,
@@ -341,8 +347,9 @@ impl DrawnMotion {
     }
 
     /// Returns the sine and cosine of both rods, `[[sin a1, cos a1], [sin a2, cos a2]]`, as words
-    /// whose highest bit is the sign. The other bits are in the format of the method's numbers. The
-    /// words of a diverged motion are arbitrary.
+    /// whose highest bit is the sign; a zero may have either. The other bits are in the format of
+    /// the method's numbers: in 64 bits they are the upper half of a number. The words of a
+    /// diverged motion are arbitrary.
     #[must_use]
     pub fn sides(&self) -> [[i32; 2]; 2] {
         match self {
@@ -368,8 +375,8 @@ impl DrawnMotion {
     /// Returns the momenta p1 and p2, kg m^2/s, at the time of the
     /// [`directions`](Self::directions).
     ///
-    /// They are NaN if the motion has diverged in fixed point, may be NaN or infinite if it has
-    /// diverged in `f32`, and are infinite if they do not fit an `f32`.
+    /// In fixed point they are NaN once [`check`](Self::check) refuses the motion. They may be NaN
+    /// or infinite if it has diverged in `f32`, and are infinite if they do not fit an `f32`.
     #[must_use]
     pub fn momenta(&self) -> [f32; 2] {
         match self {
@@ -379,10 +386,11 @@ impl DrawnMotion {
     }
 
     /// Returns the canonical state in SI units at the number of steps times dt. The angles are
-    /// within (-pi, pi]; by the closed form they include whole turns.
+    /// within [-pi, pi]; by the closed form they include whole turns.
     ///
-    /// All its numbers are NaN if the motion has diverged in fixed point. If it has diverged in
-    /// `f32`, some may be NaN or infinite.
+    /// In fixed point all its numbers are NaN once [`check`](Self::check) refuses the motion; until
+    /// then, a motion that has left its range may look valid. If it has diverged in `f32`, some may
+    /// be NaN or infinite.
     #[must_use]
     pub fn state(&self) -> State<f64> {
         match self {
@@ -394,8 +402,10 @@ impl DrawnMotion {
     /// Returns the energy above that of hanging at rest, J, as the method carries it: nothing more
     /// is rounded to `f32`. It is that at the time of the [`directions`](Self::directions).
     ///
-    /// `pendulum` must be the pendulum of this motion; this is not checked. The energy is NaN if
-    /// the motion has diverged in fixed point, and may be NaN or infinite if it has in `f32`.
+    /// `pendulum` must be the pendulum of this motion; this is not checked. The energy is never
+    /// negative. By the closed form it is that of the [`state`](Self::state), which is not
+    /// constant. In fixed point it is NaN once [`check`](Self::check) refuses the motion. It may be
+    /// NaN or infinite if the motion has diverged in `f32`.
     #[must_use]
     pub fn energy_above_rest(&self, pendulum: &Pendulum<f64>) -> f64 {
         match self {

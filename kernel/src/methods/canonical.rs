@@ -11,7 +11,8 @@ use crate::pendulum::{Direction, Parameters, Pendulum, State};
 
 /// The equations of motion of a pendulum.
 pub trait Derivatives<R: Real>: Copy + Debug + PartialEq + 'static {
-    /// Prepares the equations. Refuses the parameters that [`Pendulum::new`] refuses.
+    /// Prepares the equations. [`Hamilton`] refuses the parameters that [`Pendulum::new`] refuses;
+    /// other equations may accept any, because [`Pendulum::run`] has a checked pendulum.
     fn prepare(parameters: &Parameters<R>) -> Result<Self, Error>;
     /// Returns the time derivatives of z = (a1, a2, p1, p2), in rad/s and N m, where z is in rad
     /// and kg m^2/s. `z` is not checked: one that is not finite gives NaN or infinity.
@@ -40,7 +41,7 @@ pub trait RungeKutta: Copy + Debug + PartialEq + 'static {
     const ORDER: u32;
 
     /// The largest phase w dt, rad, of a stable step, where w is the frequency of an oscillation.
-    /// [`Pendulum::run`] refuses longer steps.
+    /// [`Pendulum::run`] refuses steps that are longer for the fast normal mode.
     const STABLE: f64;
 
     /// Computes one step for z' = f(z): returns the state a time `dt` after `z`, in the unit of

@@ -51,13 +51,14 @@ pub(crate) const fn stable(order: u32) -> f64 {
 
 /// Extrapolation of an even order, for any system of equations in the numbers `R`.
 ///
-/// The order is 2, 4 .. 16 ([`new`](Self::new) refuses others). The tests of the repository measure
-/// the orders 6, 8, 12 and 16 in this type, and order 10 in [`Fixed64`](crate::Fixed64).
+/// The order is 2, 4 .. 16 ([`new`](Self::new) refuses others). The unit tests check the stability
+/// of all orders. The tests of the repository measure the orders 6, 8, 12 and 16 in this type, and
+/// order 10 in [`Fixed64`](crate::Fixed64).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Extrapolation<R> {
     /// The number of rows, K.
     rows: usize,
-    /// The share 2/n of the step between every second midpoint, for each row.
+    /// 2/n for each row of n substeps: the share of the step from a midpoint to the next but one.
     shares: [R; ROWS],
     /// The weight w(n) of each row.
     weights: [R; ROWS],
@@ -108,9 +109,11 @@ impl<R: Real> Extrapolation<R> {
 
     /// Computes one step for z' = f(z): returns the state a time `dt` after `z`.
     ///
-    /// A negative `dt` steps backwards. The inputs are not checked; NaN gives NaN. The unit of time
-    /// is that of f. A step that is too long for f gives a meaningless state;
-    /// [`Pendulum::run`](crate::Pendulum::run) lists the limits for an oscillation.
+    /// The unit of time is that of f. A negative `dt` steps backwards. A step that is too long for
+    /// f gives a meaningless state; [`Pendulum::run`](crate::Pendulum::run) lists the limits for an
+    /// oscillation. The inputs are not checked: a component of `z` that is NaN or infinite stays
+    /// so, as may those that depend on it, and a `dt` that is NaN or infinite makes all components
+    /// so.
     ///
     /// ```
     /// use double_pendulum::Extrapolation;

@@ -37,9 +37,10 @@ type Numbers = Lanes<f64, LANES>;
 /// `f64`. Another order does not compile.
 ///
 /// The sums of the state are compensated: the rounding error of each is carried into the next. The
-/// lengths of the directions are restored after every step. Angles are within (-pi, pi];
+/// lengths of the directions are restored after every step. Angles are within [-pi, pi];
 /// [`Run`](crate::Run) counts the turns on request. [`Pendulum::run`](crate::Pendulum::run) lists
-/// the longest steps.
+/// the longest steps. A step is longer than dt by at most 4e-15 of it, which the state corrects;
+/// none is left out.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ExtrapolationF64<const ORDER: u32> {
     coefficients: Coefficients<f64>,

@@ -47,10 +47,11 @@ use rows::{EIGHTH, Rows, unit_of_time};
 /// A motion in the direction form, stepped by extrapolation of order `ORDER`, 2, 4 .. 16, in 64-bit
 /// fixed point.
 ///
-/// The method accepts any start of finite energy, and any masses and rods whose scaled ratios are
-/// below about 4,000. Other ratios are refused with an error that names the parameter. It also
-/// refuses a step of more than 15 of its units of time, or a step that would turn a rod by more
-/// than 1.5 rad at the fastest rate; the error contains the longest possible step, s.
+/// The method accepts any start of finite energy, rods with l1/l2 from 1/4096 to 4096, and masses
+/// with m1/m2 from 1/1024 to 4096. It refuses ratios far beyond these by [`Error::OutOfRange`],
+/// which names the mass, length or gravity that is farthest from 1 as a factor. It also refuses a
+/// step that is too long for the energy of the start: one in which the elbow could turn by more
+/// than 1.5 rad, or often a shorter one. [`Error::TooLarge`] contains the longest possible step, s.
 ///
 /// An order that is not 2, 4 .. 16 does not compile:
 ///
@@ -64,10 +65,15 @@ use rows::{EIGHTH, Rows, unit_of_time};
 /// # Accuracy
 ///
 /// The error in 10 s of regular motion (0.5 rad, rods of 1 m) by order 12 is below 1e-12 rad with
-/// 12 steps a second. In chaotic motion it is that of `f64` with the same steps, or 1e-12 rad after
-/// 5 s (2 rad) with steps so short that only roundings are left. The tests of the repository assert
-/// both. However short the steps, roundings alone amount to 2e-13 rad by order 8, 7e-13 by order 12
-/// and 3e-12 by order 16, and to about 1e-13 in `f64`.
+/// 12 steps a second. In 5 s of chaotic motion (2 rad) it is at most twice that of `f64` with the
+/// same steps, or 1e-12 rad with steps so short that only roundings are left. The tests of the
+/// repository assert both. However short the steps, the roundings in these 5 s alone amount to
+/// 2e-13 rad by order 8, 7e-13 by order 12 and 3e-12 by order 16, and to about 1e-13 in `f64`.
+///
+/// # Range
+///
+/// If a quantity leaves its range, because the steps were too long, the motion is *lost*.
+/// [`Run::advance`](crate::Run::advance) then returns an error, and the run keeps its state before.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fixed64<const ORDER: u32>(Fixed64State);
 
@@ -206,7 +212,7 @@ impl Fixed64State {
         [[sin1, cos1], [sin1 * c - cos1 * s, cos1 * c + sin1 * s]]
     }
 
-    /// Returns the state in SI units, with angles in (-pi, pi]; NaN if the motion is lost.
+    /// Returns the state in SI units, with angles in [-pi, pi]; NaN if the motion is lost.
     fn state(&self) -> State<f64> {
         let z = if self.lost {
             [f64::NAN; 6]

@@ -5,14 +5,18 @@ use crate::error::Error;
 use crate::numbers::Real;
 use crate::pendulum::{Motion, Parameters, Pendulum, State};
 
-/// The method `rk4-f32-lagrange`.
+/// The method `rk4-f32-lagrange`. It takes the same inputs as [`HamiltonF32`](super::HamiltonF32):
+/// a step is dt rounded to `f32`, and angles include whole turns.
 pub type LagrangeF32 = Canonical<f32, Lagrange<f32>>;
 
-/// The price of a step by this method on every processor, in cycles.
+/// The price of a step by this method on every processor, in cycles. It is chosen for the tests,
+/// not measured.
 pub const PRICE: f32 = 1e4;
 
-/// Lagrange's equations with the momenta as variables: a' = M^-1 p, p' = dL/da. The exact motion is
-/// that of Hamilton's equations.
+/// Lagrange's equations with the momenta as variables: a' = M^-1 p, p' = dL/da, where M is
+/// [`Pendulum::mass_matrix`] and L is [`Pendulum::lagrangian`]. Angles a are in rad, momenta p in
+/// kg m^2/s, and a' and p' in rad/s and N m. The exact motion is that of Hamilton's equations. A
+/// state that is not finite gives NaN or infinity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lagrange<R>(Pendulum<R>);
 

@@ -13,7 +13,7 @@ use crate::pendulum::{Direction, Parameters, Pendulum, State};
 /// # Whole turns
 ///
 /// The methods that carry directions do not know how often a rod has turned over. Their angles are
-/// within half a turn, in (-pi, pi], unless the turns are counted: [`counting_turns`] returns a
+/// within half a turn, in [-pi, pi], unless the turns are counted: [`counting_turns`] returns a
 /// `Run<F, true>`, which observes the directions after every step. By
 /// [`DirectionF32`](crate::DirectionF32) on a Cortex-M4F this takes 180 cycles, nearly as much as
 /// the step itself. A drawing needs no turns.
@@ -37,22 +37,26 @@ pub struct Run<F: Form, const COUNTS_TURNS: bool = false> {
 impl<R: Real> Pendulum<R> {
     /// Returns the motion from `start` in steps of `dt` seconds by the method `F`.
     ///
-    /// A negative `dt` runs backwards. Only the code of the method `F` is linked.
+    /// A negative `dt` runs backwards. The pendulum and the start are rounded to the numbers of the
+    /// method. Only the code of the method `F` is linked.
     ///
     /// # Errors
     ///
     /// Refuses:
     ///
-    /// - a step that is NaN or infinite or, by [`Error::OutOfRange`], zero, subnormal or too large
-    ///   in the method's numbers (`f64` for fixed point and the closed form);
-    /// - a start that is not finite;
-    /// - a start of 2^31 - 1 turns or more, if the method carries directions;
-    /// - for the closed form, a start from which an angle may exceed 2^31 - 1 turns;
-    /// - a pendulum or a start out of the range of the method's numbers;
-    /// - for the closed form, a pendulum without gravity;
+    /// - a step that is NaN or infinite, by [`Error::NotFinite`], or, by [`Error::OutOfRange`],
+    ///   zero, subnormal or too large in the method's numbers (`f64` for fixed point and the closed
+    ///   form);
+    /// - a start that is not finite, by [`Error::NotFinite`];
+    /// - a start of 2^31 - 1 turns or more, if the method carries directions, or, for the closed
+    ///   form, one from which an angle may exceed 2^31 - 1 turns, by [`Error::OutOfRange`];
+    /// - a pendulum or a start out of the range of the method's numbers, by [`Error::OutOfRange`];
+    ///   if one of its numbers becomes infinite or zero there, by [`Error::NotFinite`] or
+    ///   [`Error::NotPositive`];
+    /// - for the closed form, a pendulum without gravity, by [`Error::NotPositive`];
     /// - a step whose magnitude is beyond the limit of stability of the fast mode, of frequency w1,
     ///   or beyond that of [`Fixed32`] or [`Fixed64`](crate::Fixed64): [`Error::TooLarge`] contains
-    ///   the longest step, s. The closed form has no such limit.
+    ///   the largest magnitude, s. The closed form has no such limit.
     ///
     /// The limit of RK4 is w1 dt = 2.83 ([`check_step`](Self::check_step)). Extrapolation of the
     /// orders 2, 4 .. 16 is stable, or lets the mode grow by less than a tenth in a step, up to w1
@@ -129,9 +133,9 @@ impl<F: Form> Run<F> {
     /// [`state`](Self::state).
     ///
     /// Call it before the first step, and the turns of the start are included. Later, the count
-    /// begins at angles in (-pi, pi]. A step must not turn a rod by more than a quarter turn,
-    /// otherwise whole turns are miscounted; this is not checked. A method that carries angles
-    /// gives the same results as before.
+    /// begins at angles in [-pi, pi]. A step must not turn a rod by more than a quarter turn,
+    /// otherwise whole turns are miscounted; this is not checked. The count wraps at 2^31 turns. A
+    /// method that carries angles gives the same results as before.
     ///
     /// ```
     /// use double_pendulum::{DirectionF32, Parameters, Pendulum, State};
@@ -166,9 +170,9 @@ impl<F: Form, const COUNTS_TURNS: bool> Run<F, COUNTS_TURNS> {
     /// True if the turns are counted here, because the method does not carry them.
     const OBSERVES: bool = COUNTS_TURNS && !F::HAS_TURNS;
 
-    /// Advances the motion by `steps` steps.
+    /// Advances the motion by `steps` steps; 0 steps change nothing.
     ///
-    /// `advance(a); advance(b)` is bit-identical to `advance(a + b)`.
+    /// `advance(a); advance(b)` is bit-identical to `advance(a + b)`, if no call returns an error.
     ///
     /// # Errors
     ///
@@ -179,13 +183,14 @@ impl<F: Form, const COUNTS_TURNS: bool> Run<F, COUNTS_TURNS> {
     /// - an energy far above the initial one, because the step was too long for the motion.
     ///
     /// The limit on the energy above rest is 100 times its initial value, plus (m1 + m2) g l1 + m2
-    /// g l2. No limit applies if it is too large for the method's numbers. The limit of [`Fixed32`]
-    /// is 9/8 of the initial value, plus an allowance for rounding. [`Fixed64`](crate::Fixed64)
-    /// checks the range of its numbers instead, and the closed form keeps its own energy.
+    /// g l2. No limit applies if it is too large for the method's numbers. Energy and lengths are
+    /// checked once at the end of each call, not after every step, so that one long call may accept
+    /// a motion that several short calls refuse.
     ///
-    /// Energy and lengths are checked once at the end of each call, not after every step.
-    /// [`Fixed32`] is checked after every 32 steps since the start, [`Fixed64`](crate::Fixed64)
-    /// after every step.
+    /// Three methods differ. The limit of [`Fixed32`] is 9/8 of the initial value, plus an
+    /// allowance for rounding, and is checked after every 32 steps since the start.
+    /// [`Fixed64`](crate::Fixed64) checks the range of its numbers instead, after every step. Both
+    /// have stricter limits of the lengths. The closed form has no limit of energy or lengths.
     pub fn advance(&mut self, steps: u32) -> Result<(), Error> {
         let Self {
             mut motion,
@@ -249,7 +254,7 @@ impl<F: Form, const COUNTS_TURNS: bool> Run<F, COUNTS_TURNS> {
     /// Returns the angles a1 and a2, rad, at the time of the [`directions`](Self::directions). The
     /// cost is that of two arc tangents, unless the method carries angles.
     ///
-    /// They are within (-pi, pi], unless [whole turns](Self#whole-turns) are counted or carried.
+    /// They are within [-pi, pi], unless [whole turns](Self#whole-turns) are counted or carried.
     #[must_use]
     pub fn angles(&self) -> [F::Real; 2] {
         if F::HAS_TURNS {
@@ -269,13 +274,14 @@ impl<F: Form, const COUNTS_TURNS: bool> Run<F, COUNTS_TURNS> {
 
     /// Returns the canonical state in SI units, with all digits that the method carries.
     ///
-    /// The angles are within (-pi, pi], unless [whole turns](Self#whole-turns) are counted or
+    /// The angles are within [-pi, pi], unless [whole turns](Self#whole-turns) are counted or
     /// carried.
     ///
     /// The state is that at the number of steps times dt, even if the motion itself is ahead of
     /// that time or behind it ([`Form`]). The difference is taken back. This changes the energy by
-    /// at most a share of 1e-4 if the fastest frequency times dt is 0.2 or less (asserted over a
-    /// day). Only [`HamiltonF32`](crate::HamiltonF32) takes steps of dt rounded to `f32`.
+    /// at most 1e-4 of the energy above rest if w1 dt is 0.2 or less, where w1 is the frequency of
+    /// the fast mode (asserted over a day of regular motion). Only
+    /// [`HamiltonF32`](crate::HamiltonF32) takes steps of dt rounded to `f32`.
     #[must_use]
     pub fn state(&self) -> State<f64> {
         let state = self.motion.state();
@@ -349,11 +355,14 @@ impl Turns {
     /// result has one count for each rod.
     ///
     /// `now` is the sine and cosine of each rod as words whose highest bit is the sign
-    /// ([`sides`](super::FormOperations::sides)). The angles must not be NaN; this is not checked.
+    /// ([`sides`](super::FormOperations::sides)). By a rounding it may be on the other side of
+    /// upright than the angle; the count follows `now`. The angles must not be NaN; this is not
+    /// checked.
     ///
     /// # Errors
     ///
-    /// Refuses 2^31 - 1 turns or more in either direction, by [`Error::OutOfRange`].
+    /// Refuses 2^31 - 1 turns or more in either direction, also infinite angles, by
+    /// [`Error::OutOfRange`] with the angle, a1 or a2.
     pub fn of(start: [f64; 2], now: [[i32; 2]; 2]) -> Result<[Self; 2], Error> {
         // Count from the nearest whole turn; the rest is at most half a turn.
         let mut turns = start.map(|angle| {
@@ -381,7 +390,7 @@ impl Turns {
         Ok(turns)
     }
 
-    /// Starts the count at the angles in (-pi, pi] whose directions have the signs `now`.
+    /// Starts the count at the angles in [-pi, pi] whose directions have the signs `now`.
     fn within_half_a_turn(now: [[i32; 2]; 2]) -> [Self; 2] {
         now.map(|last| Self { whole: 0, last })
     }
@@ -401,13 +410,15 @@ impl Turns {
     }
 
     /// Returns the angle, rad, including whole turns, of the direction that was observed last,
-    /// which is the argument; this is not checked. Its length does not matter; NaN gives NaN.
+    /// which is the argument; this is not checked. Its length does not matter, unless it is 0 or
+    /// infinite, which gives a meaningless angle. NaN gives NaN.
     pub fn angle<R: Real>(&self, [s, c]: Direction<R>) -> R {
         R::from_f64(f64::from(self.whole) * core::f64::consts::TAU) + s.atan2(c)
     }
 
-    /// Returns `state` with whole turns added to its angles, rad, so that each is as close as
-    /// possible to the direction that was observed last. The momenta are unchanged; NaN gives NaN.
+    /// Returns `state` with whole turns added to its angles, rad, so that each agrees with the
+    /// direction that was observed last and its turns. The angles may already include turns. The
+    /// momenta are unchanged. An angle that is NaN or infinite gives NaN.
     ///
     /// The state may differ from that direction by less than a quarter turn. If it differs by more,
     /// the count may be wrong by a turn; this is not checked. The function needs no trigonometry,

@@ -81,7 +81,8 @@ impl Scaling {
     /// Returns the scaling with T = 1 s. The parameters must be valid; this is not checked.
     ///
     /// Refuses ratios of masses or rods that need a shift of more than 12, by
-    /// [`Error::OutOfRange`]. It names the value that is farthest from 1.
+    /// [`Error::OutOfRange`]. It names the mass, length or gravity that is farthest from 1 as a
+    /// factor. Accepts l1/l2 from 1/4096 to 4096 with m1/m2 from 1/1024 to 4096.
     pub fn in_seconds(parameters: &Parameters<f64>) -> Result<Self, Error> {
         let &Parameters { m1, m2, l1, l2, g } = parameters;
         let nu = l1 / l2;
@@ -119,11 +120,12 @@ impl Scaling {
     }
 
     /// Returns the longest units of time T for a motion within `bounds`: the longest that keeps
-    /// every rate within `rate`, and the longest that keeps every torque of gravity within
-    /// `torque`. They are in s; the two limits have no dimension.
+    /// every rate and momentum within `rate`, and the longest that keeps every torque of gravity
+    /// within `torque`. They are in s; the two limits, which must be positive, have no dimension.
     ///
-    /// The first is infinite if nothing can move, the second without gravity. The scaling must be
-    /// that [`in_seconds`](Self::in_seconds), and the bounds not NaN; neither is checked.
+    /// The first is infinite if nothing can move and 0 for infinite bounds, the second is infinite
+    /// without gravity. The scaling must be that [`in_seconds`](Self::in_seconds), and the bounds
+    /// not NaN; nothing is checked.
     pub fn longest(&self, bounds: &Bounds<f64>, [rate, torque]: [f64; 2]) -> [f64; 2] {
         let [momentum1, momentum2] = self.momenta;
         let rates = [
@@ -145,7 +147,8 @@ impl Scaling {
 }
 
 impl Shifts {
-    /// The shifts of rods and masses that are about equal.
+    /// The shifts of rods and masses that are about equal, all 0: with l1/l2 above 1/2 and at most
+    /// 1, and (m1/m2) (l1/l2)^2 from 1 to below 2.
     pub const NONE: Self = Self {
         momentum: 0,
         inverse: 0,

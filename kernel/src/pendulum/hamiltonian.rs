@@ -23,10 +23,12 @@ pub struct Pendulum<R> {
 impl<R: Real> Pendulum<R> {
     /// Checks the parameters and prepares the equations.
     ///
-    /// Refuses NaN, infinite, zero or negative masses and lengths, and NaN, infinite or negative
-    /// gravity. Also refuses, by [`Error::OutOfRange`], combinations whose products or quotients in
-    /// the equations overflow, underflow or are subnormal in `R`. The [`Error`] names the parameter
-    /// and its value.
+    /// Refuses the first parameter, in the order m1, m2, l1, l2, g, that is NaN or infinite
+    /// ([`Error::NotFinite`]), a mass or length that is zero or negative ([`Error::NotPositive`]),
+    /// or a negative gravity ([`Error::TooSmall`]). Zero gravity is allowed. Also refuses, by
+    /// [`Error::OutOfRange`], combinations whose products or quotients in the equations overflow,
+    /// underflow or are subnormal in `R`; it names the parameter that is farthest from 1 as a
+    /// factor.
     pub fn new(parameters: &Parameters<R>) -> Result<Self, Error> {
         parameters.check()?;
         let &Parameters { m1, m2, l1, l2, g } = parameters;

@@ -27,8 +27,9 @@ impl<R: Real> Parameters<R> {
     /// Returns equal rods of length `l`, m, a bob 1 of 1 kg, and a bob 2 of `mu` kg: mu = m2/m1.
     /// The gravitational acceleration is `g`, m/s^2.
     ///
-    /// If `l` and `g` are 1, the equations are the dimensionless equations of `[math24]` for equal
-    /// rods. Then the unit of time is sqrt(l/g), of momenta m1 l^2 sqrt(g/l), and of energy m1 g l.
+    /// With `l` = `g` = 1 the equations are the dimensionless equations of `[math24]` for equal
+    /// rods. For a real pendulum with m1, l and g, the unit of time is then sqrt(l/g), that of
+    /// momenta m1 l^2 sqrt(g/l), and that of energy m1 g l.
     ///
     /// The numbers are not checked; [`Pendulum::new`](crate::Pendulum::new) checks them.
     #[must_use]

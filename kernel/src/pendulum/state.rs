@@ -49,7 +49,7 @@ impl<R: Real> State<R> {
     }
 
     /// Returns the state if all its numbers are finite. Otherwise returns [`Error::Diverged`] with
-    /// the first of a1, a2, p1 and p2 that is NaN or infinite.
+    /// the name and value of the first of a1, a2, p1 and p2 that is NaN or infinite.
     ///
     /// A step that resolves the motion leads from a finite state to a finite state. A longer step
     /// can have any result ([`Modes::step_limit`](crate::Modes::step_limit) is valid for small
@@ -67,7 +67,7 @@ impl<R: Real> State<R> {
     ///         Err(error) => break error, // `state` is the last finite one
     ///     }
     /// };
-    /// assert!(matches!(stopped, Error::Diverged { .. }) && state.check().is_ok());
+    /// assert!(matches!(stopped, Error::Diverged { .. }) && state.finite().is_ok());
     /// # Ok::<(), Error>(())
     /// ```
     pub fn finite(self) -> Result<Self, Error> {

@@ -36,7 +36,8 @@ enum CandidateState {
 }
 
 impl Candidate {
-    /// Creates a candidate that takes part in its trial and has no frames yet.
+    /// Creates a candidate that takes part in its trial and has no frames yet. `stepping` is not
+    /// checked.
     pub fn new(stepping: Stepping) -> Self {
         Self {
             stepping,
@@ -48,11 +49,12 @@ impl Candidate {
     }
 
     /// Returns true if the candidate is part of the trial and every compared frame was accurate.
+    /// Before the first frame is compared, it is true as well.
     pub fn is_accurate(&self) -> bool {
         self.state == CandidateState::Accurate
     }
 
-    /// Excludes the candidate from the trial. Its accurate frames still count.
+    /// Excludes the candidate from the rest of the trial. Its accurate frames still count.
     pub fn exclude(&mut self) {
         self.state = CandidateState::Excluded;
     }
@@ -67,9 +69,9 @@ impl Candidate {
     ///
     /// `error` is an estimate of its error, and `bound` is an upper bound that is exceeded only in
     /// rare cases. Both are in units of the tolerance. The frame is accurate if the bound is at
-    /// most 1 ([`TOLERATED`]); then it is counted, and the largest `error` is kept. A NaN bound
-    /// counts as inaccurate. The first inaccurate frame makes the candidate fail. After that, or if
-    /// the candidate is excluded, nothing is recorded.
+    /// most 1 ([`TOLERATED`]); then it is counted, and the largest `error` is kept. A NaN `error`
+    /// is not kept, and a NaN `bound` counts as inaccurate. The first inaccurate frame makes the
+    /// candidate fail. After that, or if the candidate is excluded, nothing is recorded.
     pub fn note(&mut self, error: f32, bound: f32) {
         if !self.is_accurate() {
             return;

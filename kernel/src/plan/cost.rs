@@ -46,10 +46,11 @@ impl Costs {
         })
     }
 
-    /// Returns the cost of a frame by this method and step count, in the unit of the prices. It is
-    /// infinite for a method that is not in [`Method::DRAWN`], and 0 for a step count of 0, except
-    /// for the closed form, which has the cost of one frame at any step count. The prices are not
-    /// checked.
+    /// Returns the cost of a frame by this method and step count, in the unit of the prices.
+    ///
+    /// At any step count it is infinite for a method that is not in [`Method::DRAWN`], and
+    /// [`closed_form`](Self::closed_form) for the closed form. By the other methods a step count of
+    /// 0 costs 0, although a motion counts it as 1. The prices are not checked.
     #[must_use]
     pub fn of_frame(&self, Stepping { method, steps }: Stepping) -> f32 {
         let steps = if method == Method::ClosedFormF32 {
@@ -160,8 +161,9 @@ impl Pair {
 
     /// Returns the pair whose coarse run makes `steps` steps per frame.
     ///
-    /// The fine run makes a third more steps, at least one more, and in all at least `least`. Its
-    /// step count is limited to 2^32 - 1.
+    /// The fine run makes a third more steps, rounded down, but at least one more, and in all at
+    /// least `least`. Its step count is limited to 2^32 - 1, so that both are equal if `steps` is
+    /// that number. `steps` must not be 0; this is not checked.
     pub fn of_coarse(steps: u32, least: u32) -> Self {
         let more = (steps / 3).max(1);
         Self::new(steps, steps.saturating_add(more).max(least))
@@ -171,8 +173,10 @@ impl Pair {
     /// from 0.53 to 2.1 admissible steps.
     ///
     /// `rate` is the number of frames per second, and `admissible` the admissible step, s. The fine
-    /// run makes from 2 to [`MOST_STEPS`] steps per frame, and the coarse run three quarters of
-    /// them. The coarse run makes at least `least` steps, and the fine run always more than it.
+    /// run makes from 2 to 65,536 ([`MOST_STEPS`]) steps per frame: 65,536 if `rate` or
+    /// `admissible` is 0, and 2 if `admissible` is infinite or NaN. The coarse run makes three
+    /// quarters of them, rounded down, but at least `least`. The fine run always makes more than
+    /// the coarse run, even if that is more than 65,536.
     ///
     /// The coarse run makes at most `most` steps, unless `most` is less than `least`. If `most` is
     /// less than the usual number, the fine run makes a third more than `most`, and at least as
@@ -203,7 +207,8 @@ impl Pair {
     /// fine run: 16 ([`TRUST`]) times (coarse/fine)^10, but at least 1/32 ([`LEAST_SHARE`]) and at
     /// most 1. Here coarse and fine are the step counts.
     ///
-    /// If both runs resolve the motion, the order of the method gives (coarse/fine)^10.
+    /// If both runs resolve the motion, the order of the method gives (coarse/fine)^10. The step
+    /// counts must not be 0; this is not checked.
     pub fn share_of_fine(&self) -> f32 {
         let ratio = self.coarse.steps as f32 / self.fine.steps as f32;
         let fifth = ratio * ratio * ratio * ratio * ratio;
@@ -231,19 +236,21 @@ impl Stepping {
     /// They are the first of the following whose frame costs at most `frame`:
     ///
     /// 1. [`Method::Extrapolation10Fixed64`] in steps of 0.7 [admissible
-    ///    steps](Pendulum::admissible_step), whose roundings are the larger error;
+    ///    steps](Pendulum::admissible_step). Shorter steps are hardly more accurate, because then
+    ///    rounding is the larger error;
     /// 2. the same in steps of 1, 1.5, 2.1 or 4 admissible steps, the longest that a search tries;
-    /// 3. RK4 in 32 bits in admissible steps, by the method whose steps cost less, or else by the
-    ///    other one;
+    /// 3. RK4 in admissible steps, by [`Method::Rk4Fixed32`] or [`Method::Rk4F32Direction`]: first
+    ///    by the one whose steps cost less, then by the other one;
     /// 4. the same in twice as long steps. Longer ones gain or lose several percent of the energy
     ///    within seconds.
     ///
     /// These lengths are upper limits. The step count is rounded up, for RK4 to a power of two, and
-    /// increased if the method refuses the steps as too long.
+    /// increased if the method refuses the steps as too long. It is 1 if nothing can move.
     ///
-    /// `frame` is the frame budget in the unit of `costs`. Neither is checked. Returns `None` if a
-    /// frame pays for none of these, or if the methods refuse the motion, such as a start that is
-    /// not finite or a rate of 0.
+    /// `frame` is the frame budget in the unit of `costs`. Neither is checked; a NaN pays for
+    /// nothing. The tolerance and the duration are not used. Returns `None` if a frame pays for
+    /// none of these, if they take 65,536 steps per frame or more, or if the methods refuse the
+    /// motion, such as a start that is not finite or a rate of 0.
     ///
     /// # Errors
     ///
@@ -281,13 +288,14 @@ impl Stepping {
     }
 
     /// Returns `method` with the fewest steps per frame whose length is at most 4 [admissible
-    /// steps](Pendulum::admissible_step), or 0.7 by [`Method::Extrapolation10Fixed64`]. By
-    /// the other methods the count is a power of two. If the method refuses the steps as too
-    /// long, it gets more, until it accepts them. The cost of a frame does not matter.
+    /// steps](Pendulum::admissible_step), or 0.7 by [`Method::Extrapolation10Fixed64`]. By the
+    /// other methods, even by the closed form, which ignores it, the count is a power of two. If
+    /// the method refuses the steps as too long, it gets more, until it accepts them. The cost of a
+    /// frame does not matter.
     ///
-    /// If the method refuses the motion itself, is not in [`Method::DRAWN`], or refuses every step
-    /// count below 65,536, the result has the step count that was tried first, at most 65,536.
-    /// [`PlannedRun::new`] usually refuses it, too.
+    /// If the method refuses the motion itself, is not in [`Method::DRAWN`], or accepts no step
+    /// count below 65,536, the result is not checked: it has the first step count, which is 65,536
+    /// for a rate of 0. Only [`PlannedRun::new`] then shows whether the method refuses it.
     ///
     /// # Errors
     ///

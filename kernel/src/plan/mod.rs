@@ -105,14 +105,15 @@ pub struct Plan {
     pub steps: u32,
     /// The step size, s; 0 for the closed form.
     pub dt: f64,
-    /// The largest expected error until the horizon, divided by the tolerance: from 0 to 1.
+    /// The largest expected error until the horizon, divided by the tolerance: from 0 to 1, and 0
+    /// if the horizon is 0.
     pub error: f32,
     /// The cost of computing a frame, without drawing it, in the unit of the [`Costs`]. It is at
     /// most the frame budget, unless the method was fixed by the caller ([`Search::of`]).
     pub cost: f32,
     /// The accuracy horizon, s since the start: all frames until this time are predicted to be
-    /// accurate. It is the duration of the problem if all its frames are, and 0 only after
-    /// [`Search::of`].
+    /// accurate. If all frames of the problem are, it is the duration, which need not be a whole
+    /// number of frames. It is 0 only after [`Search::of`].
     ///
     /// The prediction is not a proof, because the bound on rounding errors is a measured one. A
     /// frame may be inaccurate a little earlier (the repository's test `plan_study`).
@@ -151,16 +152,17 @@ impl Plan {
     }
 
     /// Returns the motion of the planned `problem` at its start, by [`method`](Self::method) with
-    /// [`steps`](Self::steps) per frame of the problem. Other fields of the plan are not used.
+    /// [`steps`](Self::steps) per frame of the problem; 0 counts as 1. Other fields of the plan are
+    /// not used.
     ///
     /// A motion of another problem starts, too, but nothing is known of its accuracy.
     ///
     /// # Errors
     ///
-    /// Refuses a problem with an invalid pendulum, with a start that is not finite or of 2^31 - 1
-    /// turns or more, with numbers out of the range of the method, with a rate of 0 or, in fixed
-    /// point, with a step that is too long; for the closed form a pendulum without gravity; and a
-    /// method that is not in [`Method::DRAWN`].
+    /// Refuses what [`PlannedRun::new`] refuses: a problem with an invalid pendulum, with a start
+    /// that is not finite or of 2^31 - 1 turns or more, with numbers out of the range of the
+    /// method, with a rate of 0 or, in fixed point, with a step that is too long; for the closed
+    /// form a pendulum without gravity; and a method that is not in [`Method::DRAWN`].
     pub fn run(&self, problem: &Problem) -> Result<PlannedRun, Error> {
         PlannedRun::new(problem, self.stepping())
     }

@@ -1,8 +1,9 @@
 //! The price lists of three processors.
 //!
 //! The numbers are estimated cycles. The repository's `cargo count` runs the methods in an emulator
-//! and adds the published timings of the executed instructions, for memory without wait states. The
-//! code is built with all optimisations and the flags of the repository's `.cargo/config.toml`.
+//! and adds the published timings of the executed instructions, for memory without wait states and,
+//! on the Cortex-M0+, for the 1-cycle multiplier; without these a step takes longer. The code is
+//! built with all optimisations and the flags of the repository's `.cargo/config.toml`.
 //!
 //! A step is the average over a motion from rest at 0.5 rad, with equal bobs on rods of 1 m; it
 //! holds for all masses and lengths. The step in 64 bits and the preparation are the most expensive

@@ -18,7 +18,7 @@ pub struct Problem {
     /// both bobs, and to the position of bob 2 relative to bob 1.
     pub tolerance: f64,
     /// The duration of the motion, s; more than 0, and at most (2^32 - 1)/`rate`. It is rounded to
-    /// whole frames, at least one.
+    /// the nearest whole number of frames, at least one.
     pub duration: f64,
     /// The number of frames per second; at least 1.
     pub rate: u16,

@@ -27,8 +27,9 @@ pub struct PlannedRun {
 }
 
 impl PlannedRun {
-    /// Creates the motion of `problem` at its start. A step count of 0 counts as 1, and so does any
-    /// step count of the closed form. The tolerance and the duration are not used.
+    /// Creates the motion of `problem` at its start, by the method and the steps per frame of the
+    /// [`Stepping`]. A step count of 0 counts as 1, and so does any step count of the closed form.
+    /// The tolerance and the duration are not used.
     ///
     /// # Errors
     ///
@@ -37,7 +38,8 @@ impl PlannedRun {
     /// [`Method::DRAWN`]. A rate of 0 is refused as a step that is not finite. Unlike
     /// [`Pendulum::run`], it accepts steps beyond the limit of stability, except by
     /// [`Method::Rk4Fixed32`]. [`Method::Extrapolation10Fixed64`] refuses steps beyond the limit of
-    /// [`Fixed64`](crate::Fixed64) only.
+    /// [`Fixed64`](crate::Fixed64) only. For a step that is too long, [`Error::TooLarge`] contains
+    /// the longest, s.
     #[inline(never)] // Counted by its name, as the price of a preparation.
     pub fn new(
         &Problem {
@@ -81,14 +83,14 @@ impl PlannedRun {
         self.stepping
     }
 
-    /// Advances the motion by `frames` frames.
+    /// Advances the motion by `frames` frames; 0 only checks it.
     ///
     /// # Errors
     ///
     /// Returns [`Error::Diverged`] if the motion has left the finite numbers, or the range of its
-    /// fixed point. Every later call then returns it, too. The frames are counted all the same.
-    /// [`Method::Rk4Fixed32`] tests its range after every 32 steps since the start, so that the
-    /// error may come up to 32 steps late.
+    /// fixed point. Every later call then returns it, too. The call does not end early, and all
+    /// frames are counted. [`Method::Rk4Fixed32`] tests its range after every 32 steps since the
+    /// start, so that the error may come up to 32 steps late.
     ///
     /// Unlike [`Run::advance`](crate::Run::advance), it checks no energy in `f32`: a motion whose
     /// numbers are finite but meaningless is accepted.
@@ -119,7 +121,7 @@ impl PlannedRun {
     }
 
     /// Returns the directions of both rods: `[[sin a1, cos a1], [sin a2, cos a2]]`. Their lengths
-    /// are 1 up to the errors of the method.
+    /// are 1 up to the errors of the method, which reach 4e-4 by the closed form.
     ///
     /// By RK4 in `f32` they may be up to half a step ahead of the [`time`](Self::time), or behind
     /// it.
@@ -129,7 +131,8 @@ impl PlannedRun {
     }
 
     /// Returns the canonical state in SI units, rounded to `f32`, at the time of the
-    /// [`directions`](Self::directions). The angles include whole turns.
+    /// [`directions`](Self::directions). The angles include whole turns. A momentum beyond the
+    /// range of `f32` is infinite.
     ///
     /// This is enough for a picture, and costs far less than [`state`](Self::state) on a processor
     /// whose `f64` is software.
@@ -157,7 +160,8 @@ impl PlannedRun {
     }
 
     /// Returns the canonical state in SI units at the [`time`](Self::time), with all digits that
-    /// the method carries. The angles include whole turns.
+    /// the method carries. The angles include whole turns, which belong to this time even if a rod
+    /// passes upright between it and that of the directions.
     #[must_use]
     #[inline(never)] // With `advance`: 3.3 KB more flash on an M4F without.
     pub fn state(&self) -> State<f64> {

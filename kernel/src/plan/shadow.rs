@@ -76,8 +76,9 @@ impl Shadows {
     /// Creates the shadows of a motion in 64 bits that makes `steps` steps per frame. The shadows
     /// themselves are computed by `stepping`.
     ///
-    /// No motion is prepared yet ([`prepare`](Self::prepare)). A pendulum that is refused counts as
-    /// one that cannot move; it is reported by [`prepare`](Self::prepare).
+    /// No motion is prepared yet. A pendulum that is refused counts as one that cannot move; it is
+    /// reported by [`prepare`](Self::prepare). So are a `stepping` that is not in 32 bits and one
+    /// with 0 steps.
     pub fn new(stepping: Stepping, problem: &Problem, steps: u32) -> Self {
         // The fastest rate advances a phase by a radian in four admissible steps.
         let rate = super::cost::admissible_step(problem).map_or(0.0, |step| 0.25 / step);
@@ -104,7 +105,8 @@ impl Shadows {
         }
     }
 
-    /// Returns the shadows that are still needed: all four, later the one that is kept.
+    /// Returns the shadows that are still needed: all four, later the one that is kept. Some may
+    /// not be prepared yet, or may have diverged.
     pub fn runs(&mut self) -> impl Iterator<Item = &mut Run<DrawnMotion32>> {
         let kept = self.kept;
         let runs = self.runs.iter_mut().enumerate();
@@ -118,7 +120,8 @@ impl Shadows {
         self.has_begun
     }
 
-    /// Returns true if a shadow must be drawn back by [`prepare`](Self::prepare).
+    /// Returns true if a shadow must be drawn back by [`prepare`](Self::prepare). Shadows that are
+    /// not prepared yet do not count.
     pub fn must_prepare(&self) -> bool {
         self.is_far
     }
@@ -126,11 +129,13 @@ impl Shadows {
     /// Prepares one shadow close to a motion in the state `motion`, or draws one back to it. The
     /// state is that of the fine run at the same frame, in SI units.
     ///
-    /// Returns true if it has done either, and false if there is nothing to do.
+    /// Returns true if it has done either, and false if there is nothing to do. `problem` must be
+    /// that of [`new`](Self::new); this is not checked.
     ///
     /// # Errors
     ///
-    /// Returns the error of the method if it refuses the shadow on both sides of the motion.
+    /// Returns the error of the method if it refuses the shadow on both sides of the motion. A
+    /// `motion` that is not finite is refused.
     pub fn prepare(&mut self, problem: &Problem, motion: &State<f64>) -> Result<bool, Error> {
         // Select a shadow that is too far away or not yet prepared.
         let place = match self.kept {
@@ -181,9 +186,10 @@ impl Shadows {
     /// Compares the shadows with the frame `motion`. All their steps towards it must have been
     /// made; this is not checked. A shadow that is not prepared counts as diverged.
     ///
-    /// Returns the largest rounding error that is expected of a run in 64 bits, in units of the
-    /// tolerance. `rods` are the lengths of the rods in the same unit. The result is NaN if the
-    /// error is unknown: once a shadow that is still needed, or the motion itself, has diverged.
+    /// Returns the largest rounding error that is expected of the motion in 64 bits, with the steps
+    /// given to [`new`](Self::new), in units of the tolerance. `rods` are the lengths of the rods
+    /// in the same unit. The result is NaN if the error is unknown: once a shadow that is still
+    /// needed, or the motion itself, has diverged.
     pub fn compare(&mut self, rods: [f32; 2], motion: &Directions) -> f32 {
         self.has_begun = true;
 

@@ -84,7 +84,8 @@ pub(super) struct Run<M> {
 }
 
 impl<M: Motion> Run<M> {
-    /// Creates a run at a frame, whose motion is not prepared yet.
+    /// Creates a run that has made no step towards its next frame, and whose motion is not prepared
+    /// yet. `stepping` is checked when the motion is prepared, which refuses a step count of 0.
     pub fn new(stepping: Stepping) -> Self {
         Self {
             stepping,
@@ -120,7 +121,8 @@ impl<M: Motion> Run<M> {
     }
 
     /// Returns the directions at the frame, and begins the next frame. All steps towards the frame
-    /// must have been made; this is not checked.
+    /// must have been made; this is not checked. Before the next step, a second call returns the
+    /// same.
     ///
     /// The result is NaN if the motion has diverged, because its directions need not show that, or
     /// if it is not prepared.
@@ -219,12 +221,14 @@ impl Trial {
     /// Creates a trial of `stepping` that is compared with `reference`.
     ///
     /// With a `reference`, the candidates are the method of `stepping` with 1, 2 and 4 times its
-    /// steps, and both runs of the reference. Without one, `stepping` is the only one of these, and
-    /// is compared with three runs of its own in 5/4, 6/4 and 7/4 of its steps.
+    /// steps, at most 2^32 - 1, and both runs of the reference. Without one, `stepping` is the only
+    /// one of these. It is then compared with three runs of its own in 5/4, 6/4 and 7/4 of its
+    /// steps, rounded down, but at least 1, 2 and 3 more.
     ///
-    /// If `stepping` is in 64 bits, a reference is required, which is not checked, and the trial
-    /// has no candidates in 32 bits; the closed form is one in any case. Plain `f32` is a candidate
-    /// if `stepping` is compensated `f32`. `shadow` is the method and step count of the shadows.
+    /// If `stepping` is in 64 bits, a reference is required, and the trial has no candidates in 32
+    /// bits. In any case, also without a reference, the closed form is a candidate, and plain `f32`
+    /// is one if `stepping` is compensated `f32`. `stepping` must be neither of these two. `shadow`
+    /// is the method and step count of the shadows, in 32 bits. None of this is checked here.
     ///
     /// No motion is prepared yet. A pendulum that is refused is reported by
     /// [`prepare`](Self::prepare). Without normal modes the closed form fails at the first frame.
@@ -310,7 +314,8 @@ impl Trial {
     }
 
     /// Returns the cost of a frame of a trial of `stepping` that is compared with a reference, in
-    /// the unit of `costs`. The shadows, plain `f32` and the closed form are not included.
+    /// the unit of `costs`. The shadows, plain `f32` and the closed form are not included. If
+    /// `stepping` is in 64 bits, only the reference costs anything.
     pub fn cost_with_reference(
         costs: &Costs,
         stepping: Stepping,
@@ -324,7 +329,8 @@ impl Trial {
         own + second + third + costs.of_frame(coarse) + costs.of_frame(fine)
     }
 
-    /// Returns true if a candidate in 32 bits, or the closed form, is still accurate.
+    /// Returns true if a candidate in 32 bits, or the closed form, is still accurate, as it is
+    /// before the first frame is compared. Excluded candidates do not count.
     pub fn has_candidate_in_32_bits(&self) -> bool {
         self.candidates[..=CLOSED]
             .iter()
@@ -332,7 +338,8 @@ impl Trial {
     }
 
     /// Returns the largest number of accurate frames of a candidate in 32 bits or of the closed
-    /// form, including those that have failed. It is 0 if none of them is part of the trial.
+    /// form, including those that have failed or were excluded later. It is 0 if none of them ever
+    /// was part of the trial.
     pub fn frames_in_32_bits(&self) -> u32 {
         let frames = self.candidates[..=CLOSED]
             .iter()
@@ -340,7 +347,8 @@ impl Trial {
         frames.max().unwrap_or(0)
     }
 
-    /// Returns true if a candidate in 64 bits is still accurate.
+    /// Returns true if a candidate in 64 bits is still accurate, as it is before the first frame is
+    /// compared. Without a reference, or if both are excluded, there is none.
     pub fn has_candidate_in_64_bits(&self) -> bool {
         self.candidates[COARSE..].iter().any(Candidate::is_accurate)
     }
@@ -373,7 +381,8 @@ impl Trial {
     /// Prepares one motion, or draws back a shadow that is too far from the fine run. Returns true
     /// if it has done either, and false if all motions are prepared and no shadow is too far.
     ///
-    /// Runs that are no longer needed are not prepared.
+    /// Runs that are no longer needed are not prepared. `problem` must be that of
+    /// [`new`](Self::new); this is not checked.
     ///
     /// If a method refuses a perturbed start, the opposite perturbation is used. A start close to
     /// the end of the range of a method may have a neighbour outside that range on one side only.
@@ -381,7 +390,8 @@ impl Trial {
     /// # Errors
     ///
     /// Refuses a pendulum that [`Pendulum::new`] refuses. Returns the error of a method that
-    /// refuses the motion and, if it is perturbed or a shadow, its opposite.
+    /// refuses the motion and, if it is perturbed or a shadow, its opposite. The trial is unchanged
+    /// then; another call returns the same error.
     #[inline(never)] // Its motions would be on the stack of every piece.
     pub fn prepare(&mut self, problem: &Problem) -> Result<bool, Error> {
         let has_reference = self.has_reference();
@@ -421,7 +431,8 @@ impl Trial {
     }
 
     /// Returns true if a shadow must be drawn back by [`prepare`](Self::prepare) before the next
-    /// frame.
+    /// frame. Otherwise its own errors spoil the comparison. Motions that are not prepared yet do
+    /// not count.
     pub fn must_prepare(&self) -> bool {
         self.has_candidate_in_64_bits() && self.shadows.must_prepare()
     }
@@ -440,7 +451,8 @@ impl Trial {
     /// checked.
     ///
     /// Returns the cost of these steps, in the unit of `costs`; 0 if every motion has reached the
-    /// frame. `cost` has the same unit.
+    /// frame. `cost` has the same unit; an infinite one pays for all steps of a motion to the
+    /// frame. The prices must be more than 0.
     pub fn advance(&mut self, costs: &Costs, cost: f32) -> f32 {
         let mut spent = 0.0;
 
@@ -471,7 +483,7 @@ impl Trial {
     }
 
     /// Compares the frames at time `t`, s since the start. All steps towards them must have been
-    /// made; this is not checked.
+    /// made, and `t` must be their time, at which the closed form is computed; neither is checked.
     ///
     /// A candidate fails if its error may exceed the tolerance, or if it or a run that it is
     /// compared with has diverged.
@@ -521,7 +533,7 @@ impl Trial {
     }
 
     /// Excludes the candidates in 64 bits, because the steps of the reference are too coarse for
-    /// them.
+    /// them. The reference goes on without shadows.
     pub fn exclude_64_bits(&mut self) {
         for in_64_bits in &mut self.candidates[COARSE..] {
             in_64_bits.exclude();
@@ -535,8 +547,10 @@ impl Trial {
         self.by_rounding
     }
 
-    /// Excludes all candidates, because their rounding errors may be the same in all runs. Then
-    /// rounding limits the horizon ([`is_limited_by_rounding`](Self::is_limited_by_rounding)).
+    /// Excludes all candidates, because their rounding errors may be the same in all runs: in fixed
+    /// point without a reference, if a rod starts close to upright. Rounding then limits the
+    /// horizon ([`is_limited_by_rounding`](Self::is_limited_by_rounding)) until
+    /// [`compare`](Self::compare) measures it anew, as it does without a reference.
     pub fn exclude_for_rounding(&mut self) {
         self.retain(|_| false);
         self.by_rounding = true;
@@ -567,7 +581,9 @@ impl Trial {
         helps.then_some(times)
     }
 
-    /// Returns the cost of one frame of all runs that are still needed, in the unit of `costs`.
+    /// Returns the cost of one frame of all runs that are still needed, with the closed form and
+    /// the shadows, in the unit of `costs`. Preparations are not included. The runs of the
+    /// reference or, without one, those in 32 bits are always needed.
     pub fn frame_cost(&mut self, costs: &Costs) -> f32 {
         let closed = if self.candidates[CLOSED].is_accurate() {
             costs.of_frame(self.candidates[CLOSED].stepping)

@@ -54,7 +54,8 @@ const MOTIONS: [(Parameters<f64>, Motion<f64>); 2] = [
     ),
 ];
 
-/// The tolerance of RK4 for rates relative to the largest that the energy allows.
+/// The tolerance of RK4 for the rates in [`is_that_of_hamiltons_equations`], relative to the
+/// largest that the energy allows.
 ///
 /// It covers the truncation error in steps of 1/256 s and rounding to 24 bits. Measured: 1.1e-8,
 /// and 5e-9 for fixed point with 30 bits.
@@ -63,12 +64,15 @@ pub const RK4: f64 = 3e-8;
 /// rounding to 53 and 61 bits. Measured: 4e-14.
 const ORDER_12: f64 = 2e-13;
 
-/// Asserts that the average rates of change of angles and momenta in 8 steps of `F` are those of
-/// Hamilton's equations, for each of the [`MOTIONS`].
+/// Asserts that the average rates of change of angles and momenta in 8 steps of `F` of 1/256 s are
+/// those of Hamilton's equations by RK4 in `f64` in ten times finer steps, for each of the
+/// [`MOTIONS`].
 ///
-/// The allowance is `tolerance` times the largest angular velocity that the energy allows or, for
-/// the rates of the momenta, times K - min V, J, where K is the energy above rest. The message
-/// names the worst of the four equations.
+/// The allowance is `tolerance` times the largest angular velocity of the rod that the energy
+/// allows or, for the rates of the momenta, times K + |min V|, J, where K is the energy above rest.
+///
+/// Panics if the rates differ by more or are NaN; the message names the worst of the four
+/// equations. Also panics if `F` refuses a motion or it diverges.
 #[track_caller]
 pub fn is_that_of_hamiltons_equations<F: Form>(tolerance: f64) {
     let form = core::any::type_name::<F>();

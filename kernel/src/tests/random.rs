@@ -5,7 +5,7 @@ use double_pendulum::{Parameters, Pendulum, Real, State};
 use fastrand::Rng;
 
 /// Returns a random number from `low` to below `high`, uniform in its logarithm. Both must be
-/// positive.
+/// positive, and `high` the larger one; this is not checked.
 pub fn log_uniform(rng: &mut Rng, low: f64, high: f64) -> f64 {
     low * (high / low).powf(rng.f64())
 }
@@ -31,7 +31,8 @@ pub fn parameters(rng: &mut Rng) -> Parameters<f64> {
 
 /// Returns a random state, rounded to `f32`: angles from -2 pi to 2 pi rad, and momenta, kg m^2/s,
 /// up to the bounds of the energy E = g ((m1 + m2) l1 + m2 l2): |p1| <= l1 sqrt(2 (m1 + m2) E) and
-/// |p2| <= l2 sqrt(2 m2 E). All are uniformly distributed.
+/// |p2| <= l2 sqrt(2 m2 E). All are uniformly distributed. The parameters must be valid, which is
+/// not checked. Without gravity the momenta are 0.
 pub fn state(rng: &mut Rng, &Parameters { m1, m2, l1, l2, g }: &Parameters<f64>) -> State<f64> {
     // The energy of turning over is about this.
     let energy = g * ((m1 + m2) * l1 + m2 * l2);

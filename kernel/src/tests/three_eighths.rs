@@ -7,7 +7,7 @@ use core::array::from_fn;
 use double_pendulum::Real;
 use double_pendulum::parts::RungeKutta;
 
-/// The 3/8 rule, of order 4.
+/// The 3/8 rule, of order 4: a [`RungeKutta`] for the motion type `Canonical`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ThreeEighths;
 

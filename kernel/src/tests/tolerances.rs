@@ -43,8 +43,9 @@ pub const FORMULAS: PerPrecision = PerPrecision {
     double: 8e-15,
 };
 
-/// A motion run forth and back in 256 or 1024 steps: rad, and momenta relative to their bounds. It
-/// is twice the error of RK4 (measured: 6e-12), with a factor of ten.
+/// The distance from the start of a motion run forth and back in 256 or 1024 steps: rad, and
+/// momenta relative to their bounds. It covers what the truncation errors of both ways leave, with
+/// a margin of ten and more (measured: 6e-12).
 pub const RETURN: f64 = 1e-10;
 
 /// Angles of the scenes in closed form, per radian of amplitude, at any time.

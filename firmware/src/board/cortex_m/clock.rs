@@ -27,8 +27,8 @@ fn SysTick() {
 
 /// Starts a clock of [`TICK_RATE`] ticks per second. It counts while interrupts are on.
 ///
-/// `hertz` is the frequency of the processor, Hz. Not checked: it is at least [`TICK_RATE`], and at
-/// most 1 GHz, because SysTick has 24 bits.
+/// `hertz` is the frequency of the processor, Hz. Not checked: it is at least twice [`TICK_RATE`],
+/// below which no tick comes, and at most 1 GHz, because SysTick has 24 bits.
 ///
 /// The period is rounded down to whole processor cycles: at 50 MHz it is 833,333 instead of
 /// 833,333.3, so that the clock is 0.4 parts per million fast.
@@ -67,8 +67,8 @@ pub fn ticks() -> u32 {
     TICKS.load(Ordering::Relaxed)
 }
 
-/// Returns a count of processor cycles, for differences. It starts at an arbitrary number and
-/// wraps. Valid after [`start`], and while interrupts are off for less than a tick at a time. A
+/// Returns a count of processor cycles, for differences. It starts at an arbitrary number and wraps
+/// at 2^32. Valid after [`start`], and while interrupts are off for less than a tick at a time. A
 /// difference is wrong if [`Instruments::timed`] ran in between on a Cortex-M0+.
 ///
 /// [`Instruments::timed`]: crate::app::Instruments::timed

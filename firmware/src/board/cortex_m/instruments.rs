@@ -20,7 +20,7 @@ unsafe extern "C" {
 /// identification of the chip, zeros without one.
 ///
 /// Returns the measuring functions and the identity. The checksum and the size of the image in it
-/// are 0 until [`Instruments::identity()`] computes them.
+/// are 0, and stay so; only the result of [`Instruments::identity()`] contains them.
 pub fn start(core: Peripherals, board: BoardName, hertz: u32, chip: [u32; 4]) -> Instruments {
     guard_stack(core.MPU);
     clock::start(core.SYST, hertz);

@@ -1,5 +1,8 @@
 //! The retained record in memory that a reset does not clear. The main loop writes it after each
 //! frame, and a crash writes it at the end.
+//!
+//! A record is intact if its CRC matches and if a program with this version of the protocol wrote
+//! it. After power-on none is.
 
 use core::hint::black_box;
 use core::sync::atomic::{AtomicU8, Ordering};
@@ -41,10 +44,9 @@ fn kept() -> Option<Record> {
 }
 
 /// Returns the record that was kept across the last reset, with this restart counted. Returns
-/// `None` if no record is intact, if another version of the protocol wrote it, or after a reset
-/// from outside. `by_watchdog` is the board's own information about the reset
-/// ([`Record::restart`]). To be called before the first [`keep`], which replaces that record; the
-/// stored record is not changed.
+/// `None` if no record is intact, or after a reset from outside. `by_watchdog` is the board's own
+/// information about the reset ([`Record::restart`]). To be called before the first [`keep`], which
+/// replaces that record; the stored record is not changed.
 pub fn recall(by_watchdog: bool) -> Option<Record> {
     kept()?.restart(by_watchdog)
 }
@@ -55,9 +57,9 @@ pub fn chosen_panel() -> Option<Controller> {
     kept()?.played.panel.chosen
 }
 
-/// Returns the second part of the stored record: the scene and the tick of the last frame, and the
-/// cause if [`end`] has recorded one. Before the first [`keep`] it is the record of the run before
-/// the reset. Returns `None` if no record is intact.
+/// Returns the second part of the stored record: the scene of the last frame and its tick, counted
+/// from the start of that scene, and the cause if [`end`] has recorded one. Before the first
+/// [`keep`] it is the record of the run before the reset. Returns `None` if no record is intact.
 pub fn last() -> Option<Restarted> {
     kept().map(|record| record.end)
 }

@@ -2,8 +2,9 @@
 //! on the stack, which often shows where a program has crashed.
 //!
 //! The upper 32 KB of memory are for the stack, which grows downwards. The statics are at the
-//! bottom of the lower 32 KB. The memory protection unit blocks all access to the rest of these, in
-//! eighths of 4 KB. `memory.x` ensures that the rest is at least 8 KB.
+//! bottom of the lower 32 KB, and the guard is the rest of the lower 32 KB: the memory protection
+//! unit blocks all access to it. The guard begins at a multiple of 4 KB. `memory.x` ensures that it
+//! has at least 8 KB.
 //!
 //! The guard is that large because a function with kilobytes of local variables, such as a
 //! constructor of a scene, could step over a thinner one. No function of the firmware takes as
@@ -54,7 +55,7 @@ fn guard() -> Range<u32> {
 }
 
 /// Sets the guard up; from then on an access to it is a fault. If the processor has no memory
-/// protection unit, only logs a warning.
+/// protection unit, only logs a warning, which is lost if the log is not open.
 ///
 /// Source: ARM DDI 0403, B3.5.
 pub fn guard_stack(unit: MPU) {
@@ -78,10 +79,10 @@ pub fn guard_stack(unit: MPU) {
     cortex_m::asm::isb();
 }
 
-/// Returns the addresses of the calls found on the stack from `sp` upwards, the last call first. A
-/// stack pointer within the guard or below counts as the lowest address of the stack, and one above
-/// the stack gives none. Some of the calls may have returned already, because the stack is not
-/// cleared.
+/// Returns the addresses of the call instructions whose return addresses are found on the stack
+/// from `sp` upwards, the last call first. `sp` is rounded up to a multiple of 4. One within the
+/// guard or below counts as the lowest address of the stack, and one above the stack gives none.
+/// Some of the calls may have returned already, because the stack is not cleared.
 pub fn calls(sp: u32) -> impl Iterator<Item = u32> {
     let bottom = sp.max(guard().end).next_multiple_of(4);
     let words = (bottom..&raw const _stack_start as u32).step_by(4);
@@ -89,7 +90,8 @@ pub fn calls(sp: u32) -> impl Iterator<Item = u32> {
     words.filter_map(|address| call_before(unsafe { (address as *const u32).read_volatile() }))
 }
 
-/// Returns the halfword at an address of the code; `None` outside the code and at odd addresses.
+/// Returns the halfword at an address of the code in flash; `None` outside it, also in the copy of
+/// the steps in RAM, and at odd addresses.
 pub fn instruction(address: u32) -> Option<u16> {
     let code = &raw const __stext as u32..&raw const __etext as u32;
     // SAFETY: any two bytes of the code are a `u16`.

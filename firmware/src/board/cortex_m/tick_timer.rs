@@ -14,7 +14,7 @@ pub trait TickTimer {
 }
 
 /// Returns the time in counts of the timer since tick 0; wraps. `period` is the number of counts in
-/// a tick, which is a period of the timer; it must not be 0.
+/// a tick, which is a period of the timer; with 0 the result is meaningless.
 ///
 /// The reading is right at any moment: also between the reload of the counter and the interrupt,
 /// and with interrupts masked for less than a period. If they are masked for longer, whole periods

@@ -15,8 +15,9 @@ use crate::config::{TICK_RATE, WATCHDOG_SECONDS};
 
 /// A watchdog.
 pub trait Watchdog {
-    /// Restarts the watchdog's time, [`WATCHDOG_SECONDS`] (1 s). If it ends, a watchdog with an
-    /// interrupt reports a hang; after about twice the time every watchdog resets the board.
+    /// Restarts the watchdog's time, [`WATCHDOG_SECONDS`] (1 s). When it ends, a watchdog with an
+    /// interrupt reports a hang, and one without does nothing. Both reset the board after about
+    /// twice the time.
     fn feed(&mut self);
 }
 

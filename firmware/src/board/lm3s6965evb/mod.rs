@@ -34,7 +34,8 @@ use pins::{Output, Ssi};
 pub type Lm3s6965evb = Board<Ssd0323<'static, Ssi, Output>, Outward, Keys, TwoStage>;
 
 /// Sets the board up. The tick and the watchdog run from then on, and the watchdog must be fed. A
-/// panel that does not take its settings is only logged, and stays dark.
+/// panel that does not take its settings is only logged, and stays dark. The log goes to the
+/// debugger, and needs no set-up.
 ///
 /// Waits 0.13 s for the crystal. Returns `None` the second time, or if other code has taken the
 /// processor's peripherals.

@@ -49,8 +49,9 @@ const DIVIDE_BY_4: u32 = 3 << 23;
 const PLL_LOCKED: u32 = 1 << 6;
 
 /// Starts the clock and powers the peripherals: the watchdog, SSI0, UART0 and the ports A, C, D, E
-/// and F. Before that an access to them is a fault. Returns the frequency of the processor, Hz: 50
-/// MHz. If the PLL does not lock, it is the crystal's 8 MHz: slow, but running.
+/// and F. Before that an access to them is a fault. Returns the frequency of the processor, Hz:
+/// 50,000,000. If the PLL does not lock in some 5 ms, it is the crystal's 8,000,000: slow, but
+/// running.
 ///
 /// First the crystal starts, which takes 0.13 s. Without a crystal the processor stops.
 pub fn start() -> u32 {
@@ -101,8 +102,9 @@ pub fn chip() -> [u32; 4] {
     [DID0.read(), DID1.read(), 0, 0]
 }
 
-/// Returns true if the watchdog caused the last reset. Call it only once, because it clears the
-/// causes, which the register accumulates. In QEMU it always returns false.
+/// Returns true if the watchdog has caused a reset since the last call, in this run or in an
+/// earlier one: the register accumulates the causes, and the function clears them. Called once in
+/// every run, it reports the last reset. In QEMU it always returns false.
 pub fn reset_by_watchdog() -> bool {
     let causes = RESC.read();
     RESC.write(0);
@@ -118,7 +120,7 @@ const CALL: u16 = FIRST + 18;
 
 /// Starts the watchdog, which counts at `hertz`, the processor's clock, Hz. It must be fed from now
 /// on ([`TwoStage`]). It stops while a debugger halts the processor. Not checked: [`start`] has
-/// powered it.
+/// powered it and returned this `hertz`. A smaller number shortens its time, and 0 ends it at once.
 pub fn start_watchdog(hertz: u32) -> TwoStage {
     // The registers stay unlocked until the next feeding.
     watchdog::stall_by(|stalls| {

@@ -46,15 +46,17 @@ static BOOT: [u8; 256] = rp2040_boot2::BOOT_LOADER_W25Q080;
 /// The Pico's crystal, Hz.
 const CRYSTAL: u32 = 12_000_000;
 
-/// The parts of this board.
+/// The parts of this board. The watchdog, a type of `rp2040_hal`, has no interrupt: it resets the
+/// board 2 s after the last feeding.
 pub type Pico = Board<OledI2c<'static, Bus<I2c0>>, Outward, PinKeys, Watchdog>;
 
 /// Sets the board up. The tick and the watchdog run from then on, and the watchdog must be fed. The
-/// panel and the buttons may be absent.
+/// panel and the buttons may be absent. The log is opened first, in memory.
 ///
 /// Returns `None` the second time, if other code has taken the peripherals, or if the settings of
-/// the clocks, the UART or USB are refused. Waits for the crystal and the PLLs, for ever if they do
-/// not start, and 12 ms for a host to notice that USB was disconnected.
+/// the clocks, the UART or USB are refused; then the watchdog is not started. Waits for the crystal
+/// and the PLLs, for ever if they do not start, and 12 ms for a host to notice that USB was
+/// disconnected.
 pub fn take() -> Option<Pico> {
     let core = cortex_m::Peripherals::take()?;
     let mut chip = pac::Peripherals::take()?;

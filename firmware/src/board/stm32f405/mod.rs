@@ -48,12 +48,12 @@ const UNIQUE_NUMBER: *const [u32; 3] = core::ptr::without_provenance(0x1fff_7a10
 pub type Stm32f405 = Board<OledI2c<'static, Bus<I2c1>>, Outward, OneKey, IndependentWatchdog>;
 
 /// Sets the board up. The tick runs from then on, and so does the watchdog, except in the emulator,
-/// which has none. It must be fed at least once in [`WATCHDOG_SECONDS`]. The panel and the button
-/// may be absent.
+/// which has none. The watchdog resets the board 2 s after the last feeding, by its inaccurate
+/// oscillator 1.4 to 3.8 s. The panel and the button may be absent. The log is opened, in memory.
 ///
 /// A chip whose own oscillator reads as not ready counts as emulated: its log goes to the emulator,
-/// and its number is zeros. On a chip this waits for the PLL. Returns `None` the second time, or if
-/// other code has taken the peripherals.
+/// and its number is zeros. On a chip this waits for the PLL, for ever if it does not start.
+/// Returns `None` the second time, or if other code has taken the peripherals.
 pub fn take() -> Option<Stm32f405> {
     let core = cortex_m::Peripherals::take()?;
     let chip = pac::Peripherals::take()?;

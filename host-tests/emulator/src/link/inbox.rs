@@ -2,22 +2,24 @@
 
 use firmware::protocol::{Decoder, Field, Frame, LinkError, ToHost, read};
 
-/// The counts of a link since it was first opened.
+/// The counts of a link since its [`Inbox`] was made.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counts {
     /// The intact messages.
     pub messages: u64,
     /// The messages damaged in transmission: wrong CRC, framing, length, version or fields.
     pub damaged: u64,
-    /// The frames that are missing in the sequence numbers: sent by the board and not received.
-    /// Frames before a connection do not count.
+    /// The frames that are missing in the sequence numbers: sent by the board, and not received
+    /// intact. Frames before a connection do not count, nor frames before a smaller number, which
+    /// shows a restart.
     pub lost: u64,
-    /// The number of times that the board began to count its frames from 0 again.
+    /// The number of restarts: frames whose number is smaller than expected, and messages
+    /// [`ToHost::Restarted`]. A restart that shows in both counts once.
     pub restarts: u64,
 }
 
-/// Returns the name of a field that a board refuses, in words. For a message or a panel it includes
-/// the cause.
+/// Returns the name of a [`Field`] of the protocol that a board refuses, in words without a full
+/// stop. For a message or a panel it includes the cause.
 pub fn refusal(field: Field) -> &'static str {
     match field {
         // A board of this version can read every message of this host, unless the two have
@@ -29,7 +31,8 @@ pub fn refusal(field: Field) -> &'static str {
 }
 
 /// A decoder of received bytes into messages. A new one expects the start of a message;
-/// [`join`](Self::join) tolerates the middle of one.
+/// [`join`](Self::join) tolerates the middle of one. Frames before the first one that is received
+/// are not lost.
 #[derive(Debug, Default)]
 pub struct Inbox {
     /// The decoder, with the message that is incomplete.
@@ -48,10 +51,11 @@ pub struct Inbox {
 }
 
 impl Inbox {
-    /// Takes a byte and returns the message that it completes. `None` means that a message is not
-    /// complete, or that it was damaged, which is counted and stored in `damage`. If the first
-    /// message after [`Self::join`] is damaged, it is not counted, because the connection may have
-    /// begun within it.
+    /// Takes a byte and returns the message that it completes, which also updates the counts.
+    /// `None` means that a message is not complete, or that it was damaged, which is stored in
+    /// `damage` and counted. If the first message after [`Self::join`] is damaged, it is stored but
+    /// not counted, because the connection may have begun within it. After damage the next intact
+    /// message is received.
     pub fn take(&mut self, byte: u8) -> Option<ToHost> {
         // A message is complete, damaged, or not complete yet.
         let message = match self
@@ -96,10 +100,11 @@ impl Inbox {
     }
 
     /// Begins a connection to a board that may be in the middle of a message and of its count of
-    /// frames. An incomplete message is dropped, and the counts are kept.
+    /// frames. An incomplete message is dropped, `damage` becomes `None`, and the counts are kept.
     ///
     /// The expected sequence number of the previous connection is kept. A smaller number shows that
-    /// the board has restarted in between.
+    /// the board has restarted in between; a restart after which the board has counted beyond it is
+    /// not recognised.
     pub fn join(&mut self) {
         self.decoder = Decoder::default();
         self.damage = None;

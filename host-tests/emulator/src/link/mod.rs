@@ -21,11 +21,12 @@ const AUTO: &str = "auto";
 const MANUFACTURER: &str = "double-pendulum";
 const PRODUCT: &str = "Double pendulum";
 
-/// Returns the port of the only board that runs this firmware and has its own USB port.
+/// Returns the name of the port of the only board that runs this firmware and has its own USB port,
+/// without an adapter.
 ///
-/// The board is recognised by its names, because its USB ids are shared with every device that
-/// distinguishes itself by names (rule 7 of V-USB's `USB-IDs-for-free.txt`). Returns `None` if
-/// there is no such board or more than one.
+/// The board is recognised by its manufacturer and product, which must be exactly the firmware's,
+/// because its USB ids are shared with every device that distinguishes itself by names (rule 7 of
+/// V-USB's `USB-IDs-for-free.txt`). Returns `None` if no port has these names, or more than one.
 pub fn running_board(ports: &[SerialPortInfo]) -> Option<&str> {
     let is_it = |port: &&SerialPortInfo| {
         usb(port).is_some_and(|usb| {

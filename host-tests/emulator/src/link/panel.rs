@@ -3,8 +3,9 @@
 use firmware::config::TICK_RATE;
 use firmware::display::{BusFault, Controller, Found, PanelReport, PanelState};
 
-/// Returns the panel's state in one line without a newline, with the remedy for a panel that is
-/// absent or slow. Returns `None` if the board has no panel that reports its state.
+/// Returns the panel's state in one line without a newline: that it is not found yet or absent, or
+/// its controller and its frames per second. A panel that is absent, or slow with fewer than 60
+/// frames, has the remedy. Returns `None` if the board has no panel that reports its state.
 pub fn panel(report: &PanelReport) -> Option<String> {
     let line = match report.state {
         PanelState::Unknown => return None,
@@ -57,8 +58,8 @@ fn remedy(fault: BusFault) -> &'static str {
     }
 }
 
-/// Returns true if the panel works, or does not report its state. It works if it is found and shows
-/// all 60 frames of a second, or if their number is not known yet.
+/// Returns true if the panel works, or does not report its state. It works if it has been found,
+/// and shows all 60 frames of a second or has not counted them yet (0). With 59 frames it does not.
 pub fn is_well(report: &PanelReport) -> bool {
     let all = u32::from(report.shown) == TICK_RATE || report.shown == 0;
     match report.state {

@@ -34,8 +34,9 @@ const QUESTION: u16 = u16::MAX - 1;
 /// boards. The Pico obeys when the port is closed at this speed.
 pub const BAUD_OF_BOOT_LOADER: u32 = 1200;
 
-/// A serial port that is opened again whenever it is back. Problems of a port that was once open
-/// are no errors but [`notices`](Port::notices).
+/// A serial port that is opened again whenever it is back: under its name or, if it is a USB
+/// device, under a new one. Problems of a port that was once open are no errors but
+/// [`notices`](Port::notices). Dropping it closes the port.
 pub struct Port {
     /// The path of the port, which changes if a USB device returns under another name.
     pub name: String,
@@ -48,7 +49,7 @@ pub struct Port {
     /// The restarts of the board.
     pub restarts: Restarts,
     /// Reports of problems and recoveries, one line each, reported once, such as 2 s without a
-    /// message. The caller drains them.
+    /// message. The caller drains them; they are not limited.
     pub notices: Vec<String>,
     /// The time of the last intact message, of the opening of the port, or of the last attempt to
     /// open it.
@@ -60,9 +61,11 @@ pub struct Port {
 }
 
 impl Port {
-    /// Opens the port of this name at [`BAUD`] bits per second; `auto` means the only one over USB
-    /// and waits up to 3 s for it. Returns the reason as one line if the port is missing, in use,
-    /// not accessible or, with `auto`, ambiguous. Not checked: that a board is at its other end.
+    /// Opens the port of this name at [`BAUD`] (460,800) bits per second. `auto` means the only one
+    /// over USB and waits up to 3 s for it; several are an error at once, even if one of them is a
+    /// board. Returns the reason as one line if the port is missing, in use, not accessible, no
+    /// serial port or, with `auto`, ambiguous. Nothing is sent. Not checked: that a board is at its
+    /// other end.
     pub fn open(name: &str) -> Result<Self, String> {
         // A port without a name may take a moment to appear.
         let (name, open) = if name == AUTO {
@@ -94,10 +97,10 @@ impl Port {
         Ok(port)
     }
 
-    /// Returns the messages that have arrived since the last call, at most about 64 KiB of them,
-    /// oldest first. A port that has gone is opened again when it is back, at most four times a
-    /// second. The result is empty while the port is gone. This waits for at most a millisecond
-    /// after the last byte.
+    /// Returns the messages that have arrived since the last call, oldest first. It reads until no
+    /// byte has arrived for a millisecond, or about 64 KiB have; the next call reads on. A port
+    /// that has gone is opened again when it is back, with at most four attempts a second. The
+    /// result is empty while the port is gone.
     ///
     /// It also asks the board for its last restart when [`Restarts`] requires it. That question has
     /// the request number 65534, and its answer is among the messages. It is sent as by
@@ -125,16 +128,16 @@ impl Port {
         messages
     }
 
-    /// Sends a command. While the port is gone, the command is dropped. `request` is the number
-    /// that the answer will have; 65534 is used by [`Self::messages`]. Waits until the port has
-    /// taken the command. A port that does not take it within 0.5 s counts as gone, which is a
-    /// notice.
+    /// Sends a command as [`Self::send_bytes`] does; while the port is gone, it is dropped.
+    /// `request` is the number that the answer will have; 65534 is used by [`Self::messages`].
     pub fn send(&mut self, request: u16, command: Command) {
         self.send_bytes(encode_command(request, command, &mut [0; MAX_WIRE]));
     }
 
-    /// Sends bytes and waits until the port has taken them. Without a port they are dropped; a port
-    /// that takes no byte for 0.5 s counts as gone, which is a notice.
+    /// Sends bytes and waits until the system has taken them for the port. While the port is gone,
+    /// they are dropped without a notice. If the system takes none for 0.5 s, the port counts as
+    /// gone, which is a notice, and the rest is dropped. Not checked: that the bytes fit into the
+    /// system's buffer, as a command does. The wait for more bytes has no limit if the port stops.
     pub fn send_bytes(&mut self, bytes: &[u8]) {
         let Some(port) = &mut self.open else { return };
         let sent = port
@@ -303,13 +306,13 @@ fn only_one<P>(
     }
 }
 
-/// Makes a board at this port restart in its boot loader, by closing the port at
-/// [`BAUD_OF_BOOT_LOADER`]. Does not wait for the restart. Not checked: that a board is there and
-/// obeys.
+/// Makes a board at the port of this name restart in its boot loader, by opening the port at
+/// [`BAUD_OF_BOOT_LOADER`] and closing it. Does not wait for the restart. `auto` is no name here.
+/// Not checked: that a board is there and obeys.
 ///
 /// # Errors
 ///
-/// The port does not open; the reason in one line.
+/// The port does not open, also because this process has it open; the reason in one line.
 pub fn touch(name: &str) -> Result<(), String> {
     let mut port = serialport::new(name, BAUD_OF_BOOT_LOADER)
         .open()

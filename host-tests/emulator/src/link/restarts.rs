@@ -13,10 +13,11 @@ const PATIENCE: u32 = 60;
 /// The restarts that a host has observed.
 #[derive(Debug, Default)]
 pub struct Restarts {
-    /// The last restart that the board has reported, including one before the connection.
+    /// The last restart that the board has reported, including one before the connection. `None`
+    /// before its first answer, and if it has made none since it was switched on or reset.
     pub last: Option<Restarted>,
     /// The number of restarts since the host first opened the port, including those by the power
-    /// switch.
+    /// switch. Several restarts between two reports of the board count as one.
     pub count: u32,
     /// The question of the present connection.
     question: Question,
@@ -39,14 +40,18 @@ enum Question {
 }
 
 impl Restarts {
-    /// Begins a connection. The question about the last restart is due.
+    /// Begins a connection. The question about the last restart is due; everything else is kept.
     pub fn join(&mut self) {
         self.question = Question::Due;
     }
 
-    /// Takes a message. `recounted` is true if the message shows that the frames are counted from 0
-    /// again. Returns a line for the user if there is something new. `None` means that the message
-    /// adds no information about restarts.
+    /// Takes a message. `recounted` is true if the message is a frame that shows that the frames
+    /// are counted from 0 again ([`Inbox`](super::Inbox) counts these as restarts). Returns a line
+    /// for the user, without a newline, if the board reports a new restart.
+    ///
+    /// A restart that only the frames show gives `None` at first. It makes the question due, and
+    /// the board's answer gives the line and is counted. An answer that repeats the last report,
+    /// without such a frame before it, gives `None`.
     pub fn take(&mut self, message: &ToHost, recounted: bool) -> Option<String> {
         match *message {
             ToHost::Restarted(end) => {
@@ -69,9 +74,9 @@ impl Restarts {
         }
     }
 
-    /// Returns true if the question must be sent now, and counts it as sent. It is called after
-    /// each message, so that nothing is sent to a device that is not a board. An unanswered
-    /// question is due again after 60 messages.
+    /// Returns true if the question must be sent now, and counts it as sent. It is called once
+    /// after each message, so that nothing is sent to a device that is not a board. While the
+    /// question is unanswered, it is due again after every 60 further calls.
     pub fn is_question_due(&mut self) -> bool {
         let (is_due, next) = match self.question {
             Question::Due | Question::Asked(PATIENCE..) => (true, Question::Asked(0)),
@@ -97,8 +102,9 @@ impl Restarts {
     }
 }
 
-/// Returns a restart in one line without a newline: the cause, the scene and its tick, the
-/// addresses of the place if they are known, and the number of restarts in a row.
+/// Returns a restart in one line without a newline: the cause (`reset` if unknown), the scene and
+/// tick of the last frame, the program counter and the return address (hexadecimal) unless the
+/// former is 0, and the number of restarts in a row ([`Restarted`]).
 pub fn describe_restart(end: &Restarted) -> String {
     let place = match end.pc {
         0 => String::new(),

@@ -36,7 +36,7 @@ pub(super) const DESCRIBE: &str = "qXfer:features:read:target.xml:0,10";
 /// A register of the processor, with its number in GDB's protocol.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Register {
-    /// The stack pointer.
+    /// The stack pointer in use.
     Sp = 13,
     /// The link register, which has the return address.
     Lr = 14,
@@ -57,8 +57,8 @@ pub(super) struct Places {
 
 impl Machine {
     /// Starts a board that is stopped at its first instruction. Its clock counts instructions, even
-    /// if `settings` have another clock. An error means that the ELF file is unusable or that QEMU
-    /// cannot be started.
+    /// if `settings` have another clock; the other settings apply. An error means that the ELF file
+    /// is unusable, that QEMU cannot be started, or that it ends at once, as for the Pico.
     pub fn halted(settings: &Settings) -> anyhow::Result<Self> {
         let mut machine = Self::boot(&Settings {
             clock: Clock::Counted,
@@ -73,10 +73,14 @@ impl Machine {
         Ok(machine)
     }
 
-    /// Runs to the next frame and returns all messages up to it that have not been fetched. The
-    /// machine must be stopped, and is stopped again when the frame is on the panel. It is an error
-    /// if the board sleeps 1000 times without a frame, or if QEMU ends. Not checked: that the
-    /// machine is from [`Self::halted`]; another one runs to its time limit.
+    /// Runs to the first sleep of the board after which a frame has arrived, and returns all
+    /// messages that have not been fetched. The machine must be stopped, which is not checked, and
+    /// is stopped again when the frame is on the panel. A waiting frame that has not been fetched
+    /// counts; the board then runs to its next sleep.
+    ///
+    /// It is an error if the board sleeps 1000 times without a frame, as it does if the machine
+    /// does not listen, or if QEMU ends; the messages are then lost. Not checked: that the machine
+    /// is from [`Self::halted`]; another one runs to its time limit.
     pub fn run_to_frame(&mut self) -> anyhow::Result<Vec<ToHost>> {
         let sleeps = self.places.sleeps.clone();
         up_to_frame(PATIENCE, || {
@@ -88,9 +92,9 @@ impl Machine {
     /// Runs to the next frame while `read` reads QEMU's log. The log contains the processor's
     /// registers before every instruction, hundreds of bytes each time. Returns the result of
     /// `read`, which runs in a thread of its own and must read to the end of the log, because QEMU
-    /// waits while nobody does. Errors are those of `read`, and as in [`Self::run_to_frame`]. The
-    /// messages up to the frame are dropped. The machine must be from [`Self::halted`] and stopped,
-    /// and is stopped afterwards.
+    /// waits while nobody does. Errors are as in [`Self::run_to_frame`], and, if there is none,
+    /// that of `read`; its panic is passed on. The messages up to the frame are dropped. The
+    /// machine must be from [`Self::halted`] and stopped, and is stopped after the frame.
     pub fn next_frame_logged<T: Send>(
         &mut self,
         read: impl FnOnce(File) -> anyhow::Result<T> + Send,
@@ -130,22 +134,24 @@ impl Machine {
     }
 
     /// Runs until the instruction at this address, without the Thumb bit, is about to be executed.
-    /// The machine must be stopped. If it is stopped there, runs until the next time. If the
-    /// program never comes there, this ends with an error at the time limit of the machine.
+    /// The machine must be stopped, which is not checked. If a run to an address or to a frame has
+    /// stopped it there, runs until the next time. If it is there in another way, by
+    /// [`Self::divert`], [`Self::stop`] or its start, this returns at once. If the program never
+    /// comes there, as to an odd address, this ends with an error at the time limit of the machine.
     pub fn run_to(&mut self, address: u32) -> anyhow::Result<()> {
         self.run_until(&[address])
     }
 
     /// Lets the machine run freely and returns at once. This is twenty times as fast as from frame
     /// to frame, because QEMU discards its translated code whenever it is stopped at a breakpoint.
-    /// The machine must be stopped; [`Self::stop`] stops it again.
+    /// The machine must be stopped, which is not checked; [`Self::stop`] stops it again.
     pub fn run(&mut self) -> anyhow::Result<&mut Self> {
         self.leave(&[])?;
         self.say("c").map(|()| self)
     }
 
-    /// Stops the running machine at any place. The machine must be running ([`Self::run`]); else
-    /// this waits until QEMU's time limit, which is an error.
+    /// Stops the running machine at any place. The machine must be running, by [`Self::run`] or
+    /// [`Self::start`]; else this waits until QEMU's time limit, which is an error.
     pub fn stop(&mut self) -> anyhow::Result<()> {
         self.debugger.sender.write_all(b"\x03")?;
         let reply = self.hear()?;
@@ -157,8 +163,8 @@ impl Machine {
     }
 
     /// Sets some registers, which may include the program counter, before the machine continues.
-    /// The machine must be stopped. An address in the program counter is without the Thumb bit. An
-    /// error leaves the registers before it in the list set.
+    /// The machine must be stopped, which is not checked. The Thumb bit of an address in the
+    /// program counter is ignored. An error leaves the registers before it in the list set.
     pub fn divert(&mut self, registers: &[(Register, u32)]) -> anyhow::Result<()> {
         self.places.here = None;
         registers
@@ -166,8 +172,10 @@ impl Machine {
             .try_for_each(|(register, value)| self.set(*register, *value))
     }
 
-    /// Writes bytes to memory from this address on, in pieces of 512. The machine must be stopped.
-    /// An address without memory is an error; the pieces before it are then written.
+    /// Writes bytes to memory from this address on, also to flash. The machine must be stopped,
+    /// which is not checked. Bytes for addresses without memory, or for registers of the chip, are
+    /// lost without an error. An error means that QEMU refuses a piece of 512 bytes, or has ended;
+    /// the pieces before it are then written.
     pub fn write(&mut self, address: u32, bytes: &[u8]) -> anyhow::Result<()> {
         for (start, piece) in (address..)
             // A packet has a limited size.

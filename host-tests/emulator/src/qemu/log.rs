@@ -7,8 +7,8 @@ use std::path::Path;
 use anyhow::Context;
 use defmt_decoder::{DecodeError, Frame, Locations, StreamDecoder, Table};
 
-/// A line of the output of the firmware or of QEMU. It is displayed as the level, padded to 5
-/// characters and followed by a space, the text and the place, without a newline.
+/// A line of the output of the firmware or of QEMU. It is displayed as the level, if it has one,
+/// padded to 5 characters and followed by a space, the text and the place, without a newline.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct LogLine {
     /// The defmt level in lower case, or `print` for a line without a level. It is `None` for plain
@@ -32,8 +32,8 @@ impl LogLine {
         }
     }
 
-    /// Returns true if the line reports a problem: a defmt error, or plain text, which is a crash
-    /// report or a complaint of QEMU.
+    /// Returns true if the line reports a problem: a defmt error, or any plain text, which is a
+    /// crash report, a complaint of QEMU, or the report that the log is damaged.
     pub fn is_bad(&self) -> bool {
         self.level.as_deref().is_none_or(|level| level == "error")
     }
@@ -63,8 +63,8 @@ pub struct LogDecoder {
 impl LogDecoder {
     /// Makes a decoder for the firmware in the file `elf`. Its format strings stay in memory for
     /// the rest of the program. A program without a log is no error; its decoder returns no lines.
-    /// An error means that the file is unreadable or no ELF file, or that its log is of another
-    /// version of defmt.
+    /// Without debug information the lines have no place. An error means that the file is
+    /// unreadable or no ELF file, or that its log is of another version of defmt.
     pub fn new(elf: &Path) -> anyhow::Result<Self> {
         let program = std::fs::read(elf).with_context(|| elf.display().to_string())?;
         let Some(table) = Table::parse(&program)?.map(Box::new) else {
@@ -85,8 +85,9 @@ impl LogDecoder {
         })
     }
 
-    /// Takes the next bytes and returns the lines that they complete. If the stream is damaged, one
-    /// line reports it; if the stream has no marks to start again, no line follows.
+    /// Takes the next bytes and returns the lines that they complete; an incomplete one waits for
+    /// more. For each damaged line of the log, a line of plain text reports it; if the stream has
+    /// no marks to start again, no line follows.
     pub fn take(&mut self, bytes: &[u8]) -> Vec<LogLine> {
         let mut lines = Vec::new();
         let Some(stream) = &mut self.stream else {

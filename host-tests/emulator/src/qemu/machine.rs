@@ -27,7 +27,7 @@ pub enum Clock {
     /// The count of executed instructions. Every instruction takes the [same
     /// time](Board::instruction), and no time passes on the host while the board sleeps. The
     /// results are bit-identical on any host under any load, and the board is several times as fast
-    /// as a real one.
+    /// as a real one. Its watchdog acts on a hang, if QEMU emulates it.
     Counted,
 }
 
@@ -42,8 +42,9 @@ pub struct Settings<'a> {
     pub elf: &'a Path,
     /// The clock of the board.
     pub clock: Clock,
-    /// True if a debugger is attached. It answers the firmware's semihosting calls and so receives
-    /// its log.
+    /// True if the firmware sees a debugger, which answers its semihosting calls: it receives the
+    /// log, and a crash ends QEMU. If false, there is no log but QEMU's own plain text, and a crash
+    /// restarts the board. The machine can be stopped in both cases.
     pub debugger: bool,
     /// QEMU is ended after this time at the latest, by the host's clock. Waits then end with an
     /// error.
@@ -56,12 +57,16 @@ const CHATTER: [&str; 2] = ["Timer with period zero, disabling", "has no peer"];
 /// An emulated board.
 ///
 /// Every method that waits also reads all output of the board, because QEMU stops while its output
-/// is not read. Dropping the machine ends QEMU. All methods that wait return an error, with QEMU's
-/// last lines, if QEMU ends first, such as at its time limit. A command or a memory access that
-/// QEMU refuses is an error, too.
+/// is not read; between the calls nothing reads it. Dropping the machine ends QEMU. A command or a
+/// memory access that QEMU refuses is an error.
+///
+/// All methods that wait for output return an error if QEMU ends first, with its last lines that
+/// have not been fetched. At the time limit that is an [`io::Error`](std::io::Error) of kind
+/// `TimedOut`, without the lines; output that was not read before is then lost.
 pub struct Machine {
-    /// True if the link is read. If not, the board's output fills the pipe and then its serial
-    /// port, and a wait for a message that has not arrived yet lasts until QEMU ends.
+    /// True, as at the start, if the link is read. If not, the board's output fills the pipe and
+    /// then its serial port, and a wait for a message that has not arrived yet lasts until QEMU
+    /// ends.
     pub listens: bool,
     /// QEMU's control channel.
     pub(super) monitor: Channel,
@@ -86,7 +91,7 @@ pub struct Machine {
 impl Machine {
     /// Starts a board and lets it run. The host is attached before the first instruction is
     /// executed. An error means that the ELF file is unusable, that QEMU cannot be started, or that
-    /// it ends at once.
+    /// it ends at once, as for the Pico.
     pub fn start(settings: &Settings) -> anyhow::Result<Self> {
         let mut machine = Self::boot(settings)?;
         machine.run()?;
@@ -245,32 +250,36 @@ impl Machine {
         }
     }
 
-    /// Waits for the next message and returns it.
+    /// Waits for the next message and returns it: the oldest one that has not been fetched, at once
+    /// if there is one.
     pub fn receive(&mut self) -> anyhow::Result<ToHost> {
         self.wait_until(|machine| machine.messages.pop_front())
     }
 
-    /// Waits for the next message for which `kind` returns `Some`, and returns that value. The
-    /// messages before it are dropped; later ones are kept.
+    /// Waits for the next message for which `kind` returns `Some`, and returns that value. Messages
+    /// that have not been fetched count, the oldest first. The messages before it are dropped;
+    /// later ones are kept. A refusal by the board is a message like others.
     pub fn wait_for<M>(&mut self, kind: impl Fn(ToHost) -> Option<M>) -> anyhow::Result<M> {
         self.wait_until(|machine| {
             std::iter::from_fn(|| machine.messages.pop_front()).find_map(&kind)
         })
     }
 
-    /// Waits for the next frame. Other messages before it are dropped.
+    /// Waits for the next frame as [`Self::wait_for`] does: the oldest that has not been fetched.
+    /// Other messages before it are dropped.
     pub fn next_frame(&mut self) -> anyhow::Result<Frame> {
         self.wait_for(ToHost::frame)
     }
 
-    /// Waits for the next answer and returns it with the number of its request. Other messages
-    /// before it are dropped.
+    /// Waits for the next answer as [`Self::wait_for`] does, also a refusal, and returns it with
+    /// the number of its request. Other messages before it, such as frames, are dropped.
     pub fn next_answer(&mut self) -> anyhow::Result<(u16, Answer)> {
         self.wait_for(ToHost::answer)
     }
 
-    /// Returns the messages that have arrived since the last call, oldest first, without waiting.
-    /// Returns an error if QEMU has ended.
+    /// Returns the messages that have arrived and have not been fetched by any method, oldest
+    /// first, without waiting. Returns an error if QEMU has ended; [`Self::receive`] still returns
+    /// the messages.
     pub fn messages(&mut self) -> anyhow::Result<Vec<ToHost>> {
         self.take_in()?;
         Ok(self.messages.drain(..).collect())
@@ -282,7 +291,8 @@ impl Machine {
     }
 
     /// Sends all bytes. Blocks until everything is written to the pipe to QEMU, from which the
-    /// board may take it later, or until QEMU exits. QEMU's end is an error.
+    /// board may take it later, or until QEMU exits, which is an error. But bytes for which the
+    /// pipe has room, 64 KiB on Linux, are accepted without an error, even if QEMU has ended.
     pub fn send_bytes(&mut self, mut bytes: &[u8]) -> anyhow::Result<()> {
         self.wait_until(|machine| {
             bytes = &bytes[machine.serial.sender.write(bytes).unwrap_or(0)..];
@@ -290,13 +300,15 @@ impl Machine {
         })
     }
 
-    /// Returns the counts of messages, damage and restarts on the link since the start.
+    /// Returns the counts of messages, damage and restarts on the link since the start, in the
+    /// output that has been read.
     pub fn counts(&self) -> Counts {
         self.inbox.counts
     }
 
     /// Returns the lines of the log that have arrived since the last call, oldest first, without
-    /// waiting. They can be fetched after QEMU has ended, too.
+    /// waiting. They can be fetched after QEMU has ended, too; after its time limit, those that
+    /// were read before.
     pub fn lines(&mut self) -> Vec<LogLine> {
         // The lines of a machine that has ended are returned, too.
         let _ = self.take_in();
@@ -312,14 +324,15 @@ impl Machine {
             .collect()
     }
 
-    /// Returns the process ID of QEMU.
+    /// Returns the process ID of QEMU, also after its end, when another process may have it.
     pub fn id(&self) -> u32 {
         self.process.child.id()
     }
 
-    /// Waits until QEMU ends, passes every log line to `each`, and returns the exit status.
-    /// Messages of the link are dropped. An error of kind `TimedOut` means that the time limit
-    /// ended QEMU.
+    /// Waits until QEMU ends, passes every log line that has not been fetched to `each`, and
+    /// returns the exit status, which may be a failure. Messages of the link are dropped. An
+    /// [`io::Error`](std::io::Error) of kind `TimedOut` means that the time limit ended QEMU. A
+    /// further call has the same result at once.
     pub fn wait(&mut self, mut each: impl FnMut(LogLine)) -> anyhow::Result<ExitStatus> {
         // The closure never returns a value, so the wait ends with the error that QEMU has ended.
         let _: anyhow::Result<()> = self.wait_until(|machine| {

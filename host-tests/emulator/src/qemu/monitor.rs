@@ -17,15 +17,17 @@ use super::{Machine, Screenshot};
 const SINGLE_STEP: [&str; 2] = ["one-insn-per-tb", "singlestep"];
 
 impl Machine {
-    /// Returns the panel's picture. While the board runs, it may be a mixture of two frames. An
-    /// error means that QEMU has ended, or that the machine has no panel of 128 x 64 pixels.
+    /// Returns the panel's picture, also while the machine is stopped. While the board runs, it may
+    /// be a mixture of two frames. An error means that QEMU has ended, or that the machine has no
+    /// panel of 128 x 64 pixels.
     pub fn screenshot(&mut self) -> anyhow::Result<Screenshot> {
         self.execute("screendump", json!({ "filename": "panel.ppm" }))?;
         Screenshot::from_ppm(&std::fs::read(self.folder.path().join("panel.ppm"))?)
     }
 
-    /// Returns the bytes of memory at these addresses, as the processor sees them. The board may be
-    /// running. An error means that QEMU has ended or that there is no memory.
+    /// Returns the bytes of memory or registers at these addresses, as the processor sees them. The
+    /// board may be running. An error means that QEMU has ended or that there is nothing at one of
+    /// the addresses. An empty or reversed range gives no bytes.
     pub fn read(&mut self, addresses: Range<u32>) -> anyhow::Result<Vec<u8>> {
         let range =
             json!({ "val": addresses.start, "size": addresses.len(), "filename": "memory" });
@@ -33,8 +35,10 @@ impl Machine {
         Ok(std::fs::read(self.folder.path().join("memory"))?)
     }
 
-    /// Presses or releases a button. The event has no effect while the machine is stopped. Not
-    /// checked: that the board has buttons ([`Board::has_panel`](crate::boards::Board::has_panel)).
+    /// Presses (`down`) or releases a button, without waiting until the firmware has seen it. To
+    /// repeat the same has no effect. While the machine is stopped, and on a board without buttons
+    /// ([`Board::has_panel`](crate::boards::Board::has_panel)), QEMU refuses the event, which is an
+    /// error.
     pub fn set_key(&mut self, key: Key, down: bool) -> anyhow::Result<()> {
         // QEMU knows the board's select as the left control key.
         let code = if key == Key::Select {
@@ -48,9 +52,11 @@ impl Machine {
             .map(drop)
     }
 
-    /// Presses and releases every button once, so quickly that the firmware sees no command. The
-    /// emulated hardware of the LM3S6965 distinguishes a released button from a pressed one only
-    /// after that. The machine must be running, as for [`Self::set_key`].
+    /// Presses and releases every button once, so quickly that the firmware, which debounces them,
+    /// sees no command, unless the host is delayed. It is called after the start, before the first
+    /// [`Self::set_key`], because the emulated hardware of the LM3S6965 distinguishes a released
+    /// button from a pressed one only after that. A machine that is stopped or has no buttons is an
+    /// error, as for [`Self::set_key`].
     pub fn wake_keys(&mut self) -> anyhow::Result<()> {
         Key::ALL.iter().try_for_each(|&key| {
             [true, false]

@@ -13,7 +13,7 @@ use crate::process::{Output, run, run_watched};
 use console::cli::{Refused, complain};
 use console::progress::Progress;
 
-/// The time limit of a program that only prints information.
+/// The time limit of a program that only prints information. It is killed then, which is an error.
 pub const QUICK: Duration = Duration::from_secs(20);
 /// The time limit to fetch and unpack at most 400 MB, and to wait for dpkg.
 pub(super) const INSTALL: Duration = Duration::from_secs(1200);
@@ -63,8 +63,9 @@ pub(super) fn bring<T>(
 /// The user's consent to install packages on the system.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Consent {
-    /// Asks the user on the terminal and waits for the answer. Only `y` and `yes` are a consent.
-    /// Without a terminal, nothing is installed.
+    /// Asks the user on the terminal and waits for the answer without a limit. Only `y` and `yes`,
+    /// in capitals too, are a consent. After another answer, or unless standard input and standard
+    /// error are a terminal, nothing is installed, and the tool stays missing.
     Ask,
     /// The user has passed `--yes`.
     Given,

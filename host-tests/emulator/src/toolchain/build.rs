@@ -1,4 +1,10 @@
 //! Builds of the firmware. Both sources of the core library use the same flags.
+//!
+//! A build runs cargo with the tools of its [`Toolchain`] and installs none, except
+//! [`Toolchain::build_cores_ahead`]. It writes below `firmware` in the target folder, which is
+//! `CARGO_TARGET_DIR` or else `target` in the workspace, shows its progress on stderr, and ignores
+//! variables such as `RUSTFLAGS`. Cargo may load crates from the network. A build that takes more
+//! than 30 minutes is stopped, which is an error, and so is a cargo that cannot be started.
 
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
@@ -35,11 +41,14 @@ const OURS: [&str; 5] = [
     "RUSTUP_",
 ];
 
-/// An image of the golden bits: its target and, if the image is for a processor that computes
-/// `f64` in hardware, the compiler's name of that processor.
+/// An image of the golden bits: its target, and the compiler's name of the processor if the image
+/// is built with the kernel's feature `double-fpu`, for a microcontroller that computes `f64` in
+/// hardware. `None` is the image for any processor of the target.
 pub type CoreImage = (&'static str, Option<&'static str>);
 
-/// The images of the golden bits. The images that need no further tools come first.
+/// The images of the golden bits. Those of the boards' [`TARGETS`], which need no further tools,
+/// come first. The next two need the core library of their target, and the last three another
+/// emulator, too.
 pub const CORE_IMAGES: [CoreImage; 9] = [
     ("thumbv6m-none-eabi", None),
     ("thumbv7m-none-eabi", None),
@@ -100,7 +109,8 @@ impl Toolchain {
 
     /// Builds a binary of the firmware with all optimisations, and returns the ELF file,
     /// `firmware/TARGET/release/BINARY` in the target folder. An older file is replaced. It is
-    /// built once per process: later calls return the same file, also if the sources have changed.
+    /// built once per process: after a success, later calls return the same path at once, also if
+    /// the sources have changed or the file is gone.
     ///
     /// Concurrent builds take turns. An error contains the output of the compiler, also if there is
     /// no such binary or target.
@@ -123,13 +133,13 @@ impl Toolchain {
         Ok(elf)
     }
 
-    /// Builds the image of the golden bits for a target. If `double` names a processor, the image
-    /// is built for that processor, which computes `f64` in hardware. Returns the image: an ELF
-    /// file or, for WebAssembly, a module. Each target and processor has its own file, and an older
-    /// one is replaced.
+    /// Builds the image of the golden bits for a target, in each call. If `double` names a
+    /// processor, the image is built for that processor, which computes `f64` in hardware; that it
+    /// does is not checked. Returns the image: an ELF file or, for WebAssembly, a module. Each
+    /// target and processor has its own file, and an older one is replaced.
     ///
-    /// Concurrent builds take turns. The tools are those of [`set_up_for`] this target. An error
-    /// contains the output of the compiler.
+    /// Concurrent calls in this process take turns. This toolchain must be that of [`set_up_for`]
+    /// this target. An error contains the output of the compiler.
     pub fn build_cores(&self, target: &str, double: Option<&str>) -> anyhow::Result<PathBuf> {
         // Cargo gives both kinds of image the same name. Each is copied before the next build
         // replaces it.
@@ -166,9 +176,10 @@ impl Toolchain {
         self.finish(command, &format!("building cores for {names}"))
     }
 
-    /// Builds the [`CORE_IMAGES`] up to the first target whose tools cannot be provided
-    /// ([`set_up_for`]) or need another compiler: without a network, each further one would wait
-    /// for it. An error is a build that fails.
+    /// Builds the [`CORE_IMAGES`] ahead, so that [`Self::build_cores`] takes less time. It stops,
+    /// without an error, before the first target whose tools cannot be provided or need another
+    /// compiler: without a network, each further one would wait for it. [`set_up_for`] provides the
+    /// tools, and may ask the user. An error is a build that fails.
     pub fn build_cores_ahead(&self) -> anyhow::Result<()> {
         let is_ready = |target: &str| {
             set_up_for(target).is_ok_and(|other| other.from_source == self.from_source)
@@ -189,10 +200,12 @@ impl Toolchain {
     }
 
     /// Builds the programs of `kernel/minimal` for a target, as a user of the kernel would, and
-    /// returns the folder of their ELF files.
+    /// returns the folder of their ELF files, `firmware/minimal/TARGET/release` in the target
+    /// folder. Older files are replaced, in each call.
     ///
     /// Cargo runs in an empty folder, so that the settings of this repository do not apply. The
-    /// crate's own settings are passed to it. An error contains the output of the compiler.
+    /// package's own `.cargo/config.toml` is passed to it. This toolchain must have the core
+    /// library of the target. An error contains the output of the compiler.
     pub fn build_minimal(&self, target: &str) -> anyhow::Result<PathBuf> {
         let nowhere = tempfile::tempdir()?;
         let package = workspace().join("kernel/minimal");
@@ -228,8 +241,8 @@ impl Toolchain {
         Ok(folder.join(target).join("release"))
     }
 
-    /// Builds the application as a WebAssembly module, without names and debug information. Returns
-    /// its file, and replaces an older one. The tools are those of
+    /// Builds the application as a WebAssembly module, without names and debug information, in each
+    /// call. Returns its file, and replaces an older one. This toolchain must be that of
     /// [`set_up_web`](super::set_up_web). An error contains the output of the compiler.
     pub fn build_web(&self) -> anyhow::Result<PathBuf> {
         let mut command = self.for_targets("build", &[WASM])?;
@@ -241,8 +254,9 @@ impl Toolchain {
         Ok(Self::folder().join(WASM).join("release/web.wasm"))
     }
 
-    /// Builds the binaries that run on every target, concurrently, and every board's application.
-    /// An error contains the output of the compiler.
+    /// Builds the binaries that run on every target, for all [`TARGETS`] at once, so that later
+    /// builds take less time; then every board's application, one after the other. The first
+    /// failure ends it; the error contains the output of the compiler.
     pub fn build_ahead(&self) -> anyhow::Result<()> {
         let mut command = self.for_targets("build", &TARGETS)?;
         command.args(AHEAD.iter().flat_map(|binary| ["--bin", binary]));
@@ -250,9 +264,10 @@ impl Toolchain {
         every_board().try_for_each(|board| self.build_for(board).map(drop))
     }
 
-    /// Checks the firmware's binaries and its examples for microcontrollers, for all [`TARGETS`]. A
-    /// warning is an error. Clippy checks them, and must be installed, unless Debian's compiler is
-    /// used. The error contains the warnings of the first target that has any.
+    /// Checks the firmware's binaries and its examples for microcontrollers, for all [`TARGETS`],
+    /// with Clippy, which must be installed; with Debian's compiler, with that alone. A warning is
+    /// an error. The error contains the warnings of the first target that has any; the targets
+    /// after it are not checked.
     pub fn check(&self) -> anyhow::Result<()> {
         for target in TARGETS {
             // All boards of a target are checked at once, with the features of all.

@@ -299,7 +299,8 @@ fn judged_once(path: &Path) -> Result<(), String> {
 }
 
 /// Returns the program that the shell would run for this name, or `None` if no folder of `PATH` has
-/// it or `PATH` is not set. The path is relative if that folder is.
+/// it or `PATH` is not set. A file that nobody may execute is passed over. The path is relative if
+/// that folder is. Not checked: that the name has no slash, for which the shell would not search.
 pub fn find(program: &str) -> Option<PathBuf> {
     env::split_paths(&env::var_os("PATH")?).find_map(|folder| executable(folder.join(program)))
 }

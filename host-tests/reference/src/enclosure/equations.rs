@@ -15,7 +15,10 @@ use super::Fixed;
 ///
 /// - u = a1' = (P1 - c C P2)/(k + l S^2), v = a2' = P2 - n C u
 /// - P1' = -G1 sin a1 - c u v S, P2' = -G2 sin a2 + n u v S, where sin a2 = C sin a1 - S cos a1
-/// - k = m1/M, l = m2/M, n = l1/l2, c = l/n, G1 = 2^e g T^2/l1, G2 = g T^2/l2, in this order
+/// - k = m1/M, l = m2/M, n = l1/l2, c = l/n, G1 = 2^e g T^2/l1, G2 = g T^2/l2, in the order
+///   of the fields
+///
+/// [`Start::enclose`](super::Start::enclose) chooses T and e.
 #[derive(Clone, Copy, Debug)]
 pub struct Equations {
     /// k.
@@ -33,7 +36,8 @@ pub struct Equations {
 impl Equations {
     /// Returns the coefficients 0 to `order` of the power series of the six numbers (sin a1, cos
     /// a1, S, C, P1, P2) from `start`. The time of the series is in units of `step` T. The first
-    /// index is the number, the second the power. Coefficients of powers above 48 are unknown.
+    /// index is the number, the second the power. Each ball contains the coefficient for every
+    /// start and step in their balls. Coefficients of powers above 48 are unknown.
     pub fn series(&self, start: &[Fixed; 6], order: usize, step: Fixed) -> [Vec<Fixed>; 6] {
         let &Self {
             upper,
@@ -81,8 +85,8 @@ impl Equations {
     }
 
     /// Returns the energy of the six numbers `z`, divided by M l1^2/T^2. The potential energy is 0
-    /// where both bobs are level with the pivot. It is unknown if one of the numbers is, or if
-    /// their balls are so wide that k + l S^2 may be 0.
+    /// where both bobs are level with the pivot. It is unknown if one of the numbers is, if it is
+    /// out of range, or if their balls are so wide that k + l S^2 may be 0.
     pub fn energy(&self, &[sin1, cos1, s, c, p1, p2]: &[Fixed; 6]) -> Fixed {
         let &Self {
             upper,
@@ -114,11 +118,12 @@ const TRIES: usize = 12;
 /// The shortest usable time, in steps. With it, a power series of 48 terms ends at 2^-116.
 const SHORTEST: f64 = 6.0;
 
-/// Returns the longest time found, at most 24, in steps of `step` T, and the radii of discs about
-/// `middle`. No solution that starts within [`STARTS`] of the discs leaves them in complex times up
-/// to that time. `extent` is the size of the set of starts about `middle`; the radii are at least
-/// 64 times as large. Returns `None` if the time is shorter than 6 steps, as it is with unknown
-/// numbers.
+/// Returns the longest time found, 6 to 24, in steps of `step` T, and the radii of discs about
+/// `middle`. No solution that starts within [`STARTS`] of these radii leaves the discs in complex
+/// times up to that time. `extent` is the largest distance of each number of the starts from
+/// `middle`. The radius of that number is at least 64 times as large, and at least 2^-16. Returns
+/// `None` if the time is shorter than 6 steps, as it is with unknown numbers or an infinite extent.
+/// Not checked: that the extent is not NaN or negative, which counts as 0.
 ///
 /// Theorem (Picard and Lindeloef for analytic equations; Hille, Ordinary Differential Equations in
 /// the Complex Domain, 2.3): if z0 + t f(B) is in the product of discs B for |t| <= T, one solution

@@ -23,9 +23,10 @@ pub fn up(value: f64) -> f64 {
 }
 
 /// A ball: all numbers within `radius` units of the last place of `middle`, which is in the same
-/// units. Numbers are between -256 and 256. A result that leaves this range, or whose radius
-/// overflows, is unknown: its radius is infinite, and so are the radii of all results from it. `==`
-/// compares midpoints and radii, not the true numbers.
+/// units. Midpoints are between -256 and 256, without these two. A result whose midpoint leaves
+/// this range, or whose radius overflows, is unknown: its midpoint is 0, its radius is infinite,
+/// and so are the radii of all results from it. `==` compares midpoints and radii, not the true
+/// numbers, so two unknown balls are equal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fixed {
     middle: i128,
@@ -104,7 +105,7 @@ impl Fixed {
         )
     }
 
-    /// Returns the midpoint without a radius. It is 0 for an unknown ball.
+    /// Returns the midpoint without a radius. For an unknown ball that is the exact number 0.
     pub fn middle(self) -> Self {
         Self {
             radius: 0.0,
@@ -147,10 +148,12 @@ impl Fixed {
         (up(self.radius) < (self.middle as f64).abs()).then_some(self.middle > 0)
     }
 
-    /// Returns the decimal with all known digits, but no more than `most` significant ones. It is
-    /// cut, not rounded, and the last digit is accurate to two units. The digits before the point
-    /// and the point itself are always written, even if nothing follows; a minus sign precedes a
-    /// negative number. Not checked: that the ball is not unknown; an unknown one gives `0.`.
+    /// Returns the decimal with all known digits, but no more than `most` significant ones; zeros
+    /// before the first other digit do not count. It is cut, not rounded, and the last digit after
+    /// the point is accurate to two units. The digits before the point and the point itself are
+    /// always written, even if they are not known or nothing follows; a minus sign precedes a
+    /// negative midpoint. A midpoint of 0 gives zeros down to the radius, 307 if it is exact,
+    /// whatever `most` is. Not checked: that the ball is not unknown; an unknown one gives `0.`.
     pub fn decimal(self, most: f64) -> String {
         // Decimals down to the radius, but not more than `most` significant digits.
         let places = (-self.radius().log10())
@@ -200,8 +203,8 @@ impl Fixed {
     }
 
     /// Returns coefficient k of the product of two power series; `a` and `b` are their coefficients
-    /// 0 to k. It is unknown if there are more than 48, and about 0 if there are none. Not checked:
-    /// that both have the same length.
+    /// 0 to k. It is unknown if there are more than 48, and a ball about 0 if there are none. Not
+    /// checked: that both have the same length; otherwise it is another number.
     ///
     /// |a b - a0 b0| <= |a0| rb + ra (|b0| + rb). With a = a1 2^64 + a0 the sum of a1 b1 is exact:
     /// 48 terms up to 2^120. The terms a1 b0, a0 b1 and a0 b0 2^-64 are up to 2^124. Each of them

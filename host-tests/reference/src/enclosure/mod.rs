@@ -30,20 +30,22 @@ const SEGMENTS: usize = 6 * 2048;
 /// The binary logarithm of the largest number of steps in a frame.
 const MOST_HALVINGS: i32 = 24;
 
-/// The precision of the arithmetic. The ranges of the fields are not checked. The default has 48
-/// terms, tangents up to the power 10, an offset of 2^-56, and all allowances 1.
+/// The precision of the arithmetic. The ranges of the fields are not checked; outside of them
+/// nothing is proved, and [`Enclosure::advance`] may fail or panic. The default has 48 terms,
+/// tangents up to the power 10, an offset of 2^-56, and all allowances 1.
 #[derive(Clone, Copy, Debug)]
 pub struct Fineness {
     /// The largest number of terms of the midpoint's power series, 2 to 48.
     pub terms: usize,
-    /// The highest power of the derivatives' power series. At most that of the midpoint is used.
+    /// The highest power of the derivatives' power series, 0 or more. At most that of the midpoint
+    /// is used.
     pub tangents: usize,
     /// The distance from the midpoint for a difference quotient in place of a derivative, relative
-    /// to the radius of the disc; at least 2^-100.
+    /// to the radius of the disc; 2^-100 to 1/32.
     pub offset: f64,
-    /// The factors of the allowances, all 1 except in tests that remove one. They are for the
-    /// roundings of the midpoint, the remainder of its series, the errors of the derivatives, and
-    /// the roundings of the segments.
+    /// The factors of the allowances, all 1 except in tests that remove one; below 1 nothing is
+    /// proved. They are for the roundings of the midpoint, the remainder of its series, the errors
+    /// of the derivatives, and the roundings of the segments.
     pub allowances: [f64; 4],
 }
 
@@ -67,7 +69,8 @@ pub struct Enclosure {
     /// The equations of motion.
     pub equations: Equations,
     /// The number of units of time in a second, as the exponent of a power of two, and the number
-    /// of frames in a second.
+    /// of frames in a second. A frame takes 2^`frame.0`/`frame.1` units of the time of the
+    /// equations, and may be changed before an advance.
     pub frame: (i32, u16),
     middle: [Fixed; 6],
     /// The segments. The first six belong to the start.
@@ -83,7 +86,8 @@ impl Enclosure {
     /// Makes an enclosure of all motions that begin in `start`, with 2^`frame.0` units of time and
     /// `frame.1` frames, at least 1, in a second. `start` has the six numbers of the struct.
     /// Numbers that are unknown or out of range make the first [`advance`](Self::advance) fail.
-    /// With 0 frames in a second the first advance panics.
+    /// With 0 frames in a second the first advance panics. Not checked: that the unit of time is
+    /// the T of the equations.
     pub fn new(
         equations: Equations,
         frame: (i32, u16),
@@ -125,8 +129,9 @@ impl Enclosure {
             .map(up)
     }
 
-    /// Returns about the factor by which a small error of the start has grown: the largest of the
-    /// six numbers. It is 1 at the start. It is an estimate; nothing is proved about it.
+    /// Returns about the factor by which a small error of the start has grown: for each of the six
+    /// numbers, the sum of its absolute derivatives with respect to those of the start, and of
+    /// these sums the largest. It is 1 at the start. It is an estimate; nothing is proved about it.
     pub fn growth(&self) -> f64 {
         let of = |i: usize| {
             self.segments
@@ -139,7 +144,8 @@ impl Enclosure {
     }
 
     /// Returns the directions of the rods: `[[sin a1, cos a1], [sin a2, cos a2]]`. The second one
-    /// is computed from the sine and cosine of a1 - a2. They have no unit.
+    /// is computed from the sine and cosine of a1 - a2. They have no unit, and are unknown if a
+    /// number of [`hull`](Self::hull) in them is.
     pub fn directions(&self) -> [[Fixed; 2]; 2] {
         let [sin1, cos1, s, c, ..] = self.hull();
         [[sin1, cos1], [sin1 * c - cos1 * s, cos1 * c + sin1 * s]]
@@ -153,9 +159,9 @@ impl Enclosure {
         self.advance_unless(&AtomicUsize::new(0))
     }
 
-    /// Advances like [`advance`](Self::advance), and returns `None` in the middle of the frame if
-    /// `stopped` is not zero. It is read before each piece of the frame. The set must not be used
-    /// any more after either `None`.
+    /// Advances like [`advance`](Self::advance), and returns `None` if `stopped` is not zero, which
+    /// is read before each piece of the frame. The set must not be used any more after either
+    /// `None`.
     pub fn advance_unless(&mut self, stopped: &AtomicUsize) -> Option<()> {
         // The frame is divided into halves until every piece can be enclosed.
         let mut left = vec![0];

@@ -9,9 +9,9 @@ use super::fixed::Fixed;
 use super::{Enclosure, Fineness};
 
 /// Returns the fastest rate in a motion, rad/s: the fast normal frequency or the largest angular
-/// velocity that its energy allows, whichever is larger. Without gravity only the velocities count,
-/// so it is 0 at rest. It is 1 if the kernel refuses the parameters. Not checked: that the motion
-/// is finite.
+/// velocity that its energy allows, whichever is larger. Arguments are in SI units. Without gravity
+/// only the velocities count, so it is 0 at rest. It is 1 if the kernel refuses the parameters
+/// ([`Pendulum::new`]). Not checked: that the motion is finite.
 pub fn fastest_rate(parameters: &Parameters<f64>, motion: &Motion<f64>) -> f64 {
     Pendulum::new(parameters).map_or(1.0, |pendulum| {
         let Bounds { w1, w2, .. } = pendulum.bounds(&pendulum.to_state(motion));
@@ -28,16 +28,17 @@ pub fn fastest_rate(parameters: &Parameters<f64>, motion: &Motion<f64>) -> f64 {
 pub struct Start {
     /// The numbers in SI units (angles in rad, velocities in rad/s), rounded to `f64`.
     pub about: (Parameters<f64>, Motion<f64>),
-    /// The exact numbers if they were not given in `f64`: numerators and denominators of a1, a2;
-    /// w1, w2; m1, m2; l1, l2; g. A denominator of 0 makes [`enclose`](Self::enclose) panic.
+    /// The exact numbers in the same units, if they were not given in `f64`: numerators and
+    /// denominators of a1, a2; w1, w2; m1, m2; l1, l2; g. A denominator of 0 makes
+    /// [`enclose`](Self::enclose) panic. Not checked: that they agree with `about`.
     pub fractions: Option<[(i64, u64); 9]>,
-    /// True if the angles (first) and the velocities (second) of the fractions are in degrees.
-    /// Without fractions both must be false, which is not checked.
+    /// True if the angles (first) and the velocities (second) of the fractions are in degrees, and
+    /// degrees per second. Without fractions both must be false, which is not checked.
     pub degrees: [bool; 2],
 }
 
 impl Start {
-    /// Makes a start whose numbers are exactly these `f64`.
+    /// Makes a start whose numbers are exactly these `f64`, in SI units.
     pub fn of(parameters: &Parameters<f64>, motion: &Motion<f64>) -> Self {
         Self {
             about: (*parameters, *motion),
@@ -47,13 +48,14 @@ impl Start {
     }
 
     /// Returns the set that contains the start, for `rate` frames a second, at least 1
-    /// ([`Enclosure::new`]).
+    /// ([`Enclosure::new`]), with the default [`Fineness`].
     ///
     /// The unit of time is so short that no rod turns by more than 4 rad in it, and 2^e is near the
     /// root of (m1 + m2)/m1. The numbers of the equations are then neither large nor small, for
     /// masses within a factor of 1000 and lengths within a factor of 30 of each other. Outside of
     /// these, or if the motion is too fast, its first [`advance`](Enclosure::advance) may fail. Not
-    /// checked: that the numbers are finite, and masses and lengths positive.
+    /// checked: that the numbers are finite, and masses and lengths positive; otherwise it may
+    /// panic, or the result has no meaning.
     pub fn enclose(&self, rate: u16) -> Enclosure {
         let (parameters @ Parameters { m1, m2, l1, l2, g }, motion @ Motion { a1, a2, w1, w2 }) =
             self.about;

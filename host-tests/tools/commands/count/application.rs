@@ -34,18 +34,25 @@ const SHOWING: [(&str, &str); 7] = [
 /// The cost of one frame of an application: executed instructions (exact) and cycles (estimated).
 #[derive(Clone, Copy, Debug, Default)]
 pub struct FrameProfile {
-    /// The cost of everything that the board executes from the end of the frame before until the
-    /// frame is complete.
+    /// The cost of everything that the board executes until the frame is complete, from its stop
+    /// before: usually the end of the frame before. Interrupts count, the time asleep does not.
     pub whole: Cost,
-    /// The cost of the functions that show the frame, with all functions that they call.
+    /// The part of the cost in the functions that show the frame: they draw it, and send it to the
+    /// panel and over the link. All functions that they call, and interrupts meanwhile, are
+    /// included.
     pub showing: Cost,
 }
 
 impl FrameProfile {
-    /// Runs `board` to its next frame and profiles everything that it executes. The machine must be
-    /// stopped, and is stopped afterwards. `image` is the program that runs on it, and `core` its
-    /// core; neither is checked. An error means that a function that shows a frame is missing, that
-    /// an instruction has no known timing, or that QEMU ends.
+    /// Runs `board` to its next frame and profiles everything that it executes from where it is
+    /// stopped. `image` is the program that runs on it, and `core` its core. The machine is stopped
+    /// afterwards, and the messages up to the frame are dropped.
+    ///
+    /// Not checked: the machine must be from [`Machine::halted`] and stopped after a frame
+    /// ([`Machine::run_to_frame`]); elsewhere the profile is not of one frame, and another machine
+    /// runs to its time limit. An error means that `image` has no function that shows a frame, that
+    /// an instruction has no known timing, that the board sleeps 1000 times without a frame, or
+    /// that QEMU ends.
     pub fn of_next(board: &mut Machine, image: &Image, core: Core) -> Result<Self> {
         let showing = SHOWING
             .into_iter()
@@ -103,8 +110,12 @@ const MARKS: [&str; 2] = [
 
 /// Returns the price list of every method that a plan chooses from, on one board for each kind of
 /// core: a Cortex-M3, a Cortex-M4F and a Cortex-M0+, in this order. It builds the programs and runs
-/// them in QEMU. The costs are in cycles (estimated); `preparation` is per motion, all others are
-/// per step. An error means that a program cannot be built, or that QEMU fails.
+/// them in QEMU. An error means that a program cannot be built, that QEMU fails, or that an
+/// instruction has no known timing.
+///
+/// The costs are in cycles (estimated). `preparation` is per motion and `fixed64` is per step: each
+/// is the most expensive one in a frame of the application. All others are per step of 1/256 s,
+/// averages over a motion of equal rods and bobs from rest at 0.5 rad.
 pub fn prices(toolchain: &Toolchain) -> Result<Vec<(&'static Board, Costs)>> {
     let targets = Target::build_all(toolchain)?;
     targets
@@ -182,8 +193,10 @@ fn in_application(board: &'static Board, toolchain: &Toolchain) -> Result<(f32, 
 }
 
 /// Writes the price lists into the kernel's source, `kernel/src/plan/prices.rs`, in place of the
-/// lists there. Returns the path of the file. An error means that the file cannot be read or
-/// written, or that it has lost the lines around the lists.
+/// lists there, rounded to one decimal. Each is a constant named after the core of its board; not
+/// checked: there is one for each kind of core, as by [`prices`]. Returns the path of the file. An
+/// error means that the file cannot be read or written, or that it has lost the lines around the
+/// lists.
 pub fn write_prices(prices: &[(&Board, Costs)]) -> Result<PathBuf> {
     let path = workspace().join(PRICES_FILE);
     let old = std::fs::read_to_string(&path)?;

@@ -73,7 +73,7 @@ pub struct CountOptions {
         value_parser = clap::value_parser!(u32).range(1..),
     )]
     seconds: u32,
-    /// Number of steps to average over [default: 256, fewer for an expensive method]
+    /// Number of steps to average over, 1 to 65536 [default: 256, fewer for an expensive method]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=MOST_STEPS))]
     steps: Option<u32>,
     /// The mass of bob 2, kg; bob 1 has 1 kg
@@ -82,7 +82,7 @@ pub struct CountOptions {
     /// The length of rod 2, m; rod 1 has 1 m
     #[arg(long, value_name = "M", default_value_t = 1.0)]
     l2: f64,
-    /// Both starting angles, rad
+    /// Both starting angles, rad; the start is at rest, and gravity is 9.81 m/s^2
     #[arg(long, value_name = "RAD", default_value_t = 0.5)]
     angle: f64,
     /// The step is 1/2^K s
@@ -105,7 +105,7 @@ pub struct CountOptions {
         ],
     )]
     minimal: bool,
-    /// Write these prices into the kernel's README, too
+    /// With --minimal: write its prices, of one board for each core, into the kernel's README, too
     #[arg(long, requires = "minimal", conflicts_with = "on")]
     readme: bool,
     /// Count the prices of plans on each kind of core, and write them into
@@ -120,12 +120,15 @@ pub struct CountOptions {
 }
 
 /// Counts as the options demand and prints a row for each method and board, a listing, or the cost
-/// of a call. Missing tools are installed. With `--write-prices` it changes the price lists in the
-/// kernel's source, with `--readme` the table in its README.
+/// of a call. A method that does not accept the pendulum is left out. Missing tools are installed.
+/// With `--write-prices` it changes the price lists in the kernel's source, with `--readme` the
+/// table in its README.
 ///
-/// Options that cannot be served are [`Refused`] before anything is built. With `--elf` a function
-/// that cannot be counted is [`Refused`], too, and a program that fails is an error. A program that
-/// its time limit has stopped is not: the calls until then are printed.
+/// Options that cannot be served, also a pendulum that no method accepts, are [`Refused`] before
+/// anything is built. A build or a count that fails is an error after the rows before it. With
+/// `--elf` a function that cannot be counted is [`Refused`], also because no call has returned in
+/// time, and a program that fails is an error. A program that its time limit has stopped is not:
+/// the calls until then are printed.
 pub fn run(options: &CountOptions) -> anyhow::Result<()> {
     if let (Some(elf), Some(function)) = (&options.elf, &options.function) {
         return count_calls(&toolchain::set_up()?, options, elf, function);

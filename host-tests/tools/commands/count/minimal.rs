@@ -28,7 +28,7 @@ const START_UP: &str = "start_up";
 /// A program of `kernel/minimal`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Program {
-    /// The type that it passes to `Pendulum::run`.
+    /// The type that it passes to `Pendulum::run`, such as "Fixed64<12>", without a path.
     pub form: &'static str,
     /// The name of its binary.
     pub binary: &'static str,
@@ -50,7 +50,8 @@ impl fmt::Display for Program {
     }
 }
 
-/// The programs with a motion, in the order of the kernel's README.
+/// The programs with a motion, in the order of the kernel's README: one each for seven methods, and
+/// one that counts turns.
 pub const PROGRAMS: [Program; 8] = [
     Program {
         form: "DirectionF32",
@@ -102,7 +103,8 @@ pub const PROGRAMS: [Program; 8] = [
     },
 ];
 
-/// The price of a program's calls of `Run::advance`.
+/// The price of a program's calls of `Run::advance`: steps of 1/256 s from rest at 0.5 rad, with
+/// rods of 1 m and bobs of 1 kg.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Minimal {
     /// The program.
@@ -131,8 +133,9 @@ pub struct MinimalPrices {
 
 impl MinimalPrices {
     /// Builds all programs for `board` and counts them. An error means that a program cannot be
-    /// built, fails in QEMU, or does not make its three calls: with no step, with one step, and
-    /// with more. A program that runs for half an hour is stopped, which is an error, too.
+    /// built, fails in QEMU, executes an instruction without a known timing, or does not make its
+    /// three calls: with no step, with one step, and with more. Each program that runs for half an
+    /// hour is stopped, which is an error, too.
     pub fn count(toolchain: &Toolchain, board: &'static Board) -> Result<Self> {
         let folder = toolchain.build_minimal(board.target)?;
         let target = |binary| Target::of(toolchain, board, folder.join(binary));
@@ -196,8 +199,10 @@ pub fn write_table(boards: &[MinimalPrices]) -> Result<()> {
 /// line: a row for each of `PROGRAMS`, and one for a program without a motion. There is a column
 /// for the core of each board, in the order of `boards`.
 ///
-/// A cell of a core has the cycles of a step, rounded, and of a call, as in "1,234 + 56". The last
-/// column has the flash on each board, in bytes, as in "1,234 / 5,678".
+/// A cell of a core has the cycles of a step, rounded, and of a call, as in "1,234 + 56"; it is
+/// empty without a motion. The last column has the flash on each board, in bytes, as in "1,234 /
+/// 5,678": of the program without a motion the whole size, of the others the rest beyond it. Each
+/// board must have a price for each of `PROGRAMS`, else this panics.
 pub fn table(boards: &[MinimalPrices]) -> String {
     let cores: Vec<_> = boards
         .iter()

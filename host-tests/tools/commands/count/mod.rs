@@ -21,7 +21,7 @@ use trace::counted;
 const COUNTED: &str = "counted_steps";
 
 /// The number of steps whose average includes everything that a method does rarely. It is a second
-/// of steps of 2^-8 s. The direction form restores its lengths eight times in it.
+/// of steps of 2^-8 s. The direction form restores the lengths of its directions eight times in it.
 pub const FULL_CYCLE: u32 = 256;
 /// The period, in steps, of the rarest thing that a method does regularly.
 const REGULAR: u64 = 32;
@@ -32,7 +32,7 @@ const LEAST_STEPS: u64 = 4;
 const AFFORDABLE_INSTRUCTIONS: u64 = 300_000;
 
 /// The cost of one step of a method on a target. Instructions, cycles and stalls are averages over
-/// `steps` steps; the sizes are of the whole run.
+/// `steps` steps; the sizes are of the whole run, with the first step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct StepCost {
     /// The number of steps that the averages are over, all after the first step.
@@ -41,7 +41,8 @@ pub struct StepCost {
     pub instructions: f64,
     /// Cycles per step (estimated), including the stalls.
     pub cycles: f64,
-    /// The cycles per step that wait for a floating-point result or for the floating-point unit.
+    /// The cycles per step that wait for a floating-point result or for the floating-point unit; 0
+    /// without such a unit.
     pub stalls: f64,
     /// The size of the distinct executed instructions, without literal pools, in bytes.
     pub hot_bytes: u32,
@@ -54,12 +55,12 @@ pub struct StepCost {
 
 /// Runs one step in QEMU and returns the number of steps that can be counted in a few seconds:
 /// [`FULL_CYCLE`] for a cheap method, fewer for an expensive one, at least 4. From 32 on it is a
-/// multiple of 32.
+/// multiple of 32. It depends only on the number of executed instructions, not on the host.
 ///
 /// The method, the pendulum and the step size are those of `request`; its numbers of steps and
 /// samples are ignored. An error means that QEMU fails or runs for half an hour, that the program
-/// refuses the request, that it has no counted function, or that it executes an instruction without
-/// a known timing.
+/// refuses the request, that it does not call `counted_steps` ([`Target::of`]), or that it executes
+/// an instruction without a known timing there.
 pub fn affordable_steps(target: &Target, request: &Request) -> Result<u32> {
     Ok(affordable(one_step(target, request)?.instructions))
 }
@@ -88,8 +89,8 @@ pub fn affordable_cost(target: &Target, request: &Request) -> Result<StepCost> {
 /// after the first; `stride` must be from 1 to 2^32 - 2, which is not checked, and `samples` is
 /// ignored. Errors are as in [`affordable_steps`].
 ///
-/// It is the difference between a run with one step more and a run of one step, so that the costs
-/// of the call and the return cancel.
+/// It is the difference between a run of `stride` + 1 steps and a run of one step, so that the
+/// costs of the call and the return cancel.
 pub fn step_cost(target: &Target, request: &Request) -> Result<StepCost> {
     cost_after(one_step(target, request)?, target, request, request.stride)
 }

@@ -31,9 +31,10 @@ pub(super) const LIMIT: Duration = Duration::from_secs(1800);
 /// The end of a program that was traced.
 #[derive(Debug)]
 pub struct Ended {
-    /// The exit status of QEMU, which may be a failure, or an error if its time was up.
+    /// The exit status of QEMU, which may be a failure, or an error of kind `TimedOut` if its time
+    /// was up.
     pub status: io::Result<ExitStatus>,
-    /// Everything that the program printed; empty if that is not UTF-8.
+    /// Everything that the program printed to standard output; empty if that is not UTF-8.
     pub output: String,
 }
 
@@ -44,12 +45,12 @@ pub struct Target {
     pub board: &'static Board,
     qemu: PathBuf,
     elf: PathBuf,
-    /// The code and symbols of the program.
+    /// The code and symbols of the program, as the file was when this target was made.
     pub image: Image,
 }
 
-/// Returns one board for each kind of core: a Cortex-M3, a Cortex-M4F and a Cortex-M0+, in this
-/// order.
+/// Returns one board for each kind of core: the LM3S6965 with a Cortex-M3, with a Cortex-M4F and
+/// with a Cortex-M0+, in this order.
 pub fn one_of_each_core() -> impl Iterator<Item = &'static Board> {
     BOARDS.iter().filter(|board| board.has_panel)
 }
@@ -61,9 +62,9 @@ impl Target {
     }
 
     /// Returns a target with another program. A program that takes the same requests must make its
-    /// steps in a function called `counted_steps`. The file must remain where it is. The program
-    /// must suit the board, which is not checked. An error means that the file is unreadable or no
-    /// program for ARM.
+    /// steps in a function called `counted_steps`, which is not checked before they are counted.
+    /// The file must remain where it is. The program must suit the board, which is not checked. An
+    /// error means that the file is unreadable or no program for ARM.
     pub fn of(toolchain: &Toolchain, board: &'static Board, elf: PathBuf) -> Result<Self> {
         let image = Image::read(&elf)?;
         Ok(Self {
@@ -75,24 +76,25 @@ impl Target {
     }
 
     /// Returns the size of the program in the flash, bytes: code, constants and initial values, and
-    /// gaps between them. An error means that the file cannot be read, or is one of
-    /// [`flash_image`].
+    /// gaps between them. An error means that the file cannot be read, or has no program of at most
+    /// 2 MiB ([`flash_image`]).
     pub fn flash_bytes(&self) -> Result<usize> {
         Ok(flash_image(&std::fs::read(&self.elf)?)?.1.len())
     }
 
-    /// Builds the default program for one board of each kind of core: the same machine with a
-    /// Cortex-M3, a Cortex-M4F and a Cortex-M0+, in this order. An error means that a build fails.
+    /// Builds the default program for the boards of [`one_of_each_core`]: a Cortex-M3, a Cortex-M4F
+    /// and a Cortex-M0+, in this order. An error means that a build fails.
     pub fn build_all(toolchain: &Toolchain) -> Result<Vec<Self>> {
         one_of_each_core()
             .map(|board| Self::build(toolchain, board))
             .collect()
     }
 
-    /// Runs `request` at full speed. Returns its CRC and the ticks of the board's SysTick, at the
-    /// processor's clock after reset, under `-icount`, where an instruction takes 1 ns. After 2^24
-    /// ticks they begin again from 0. A program that prints anything else has failed, and the error
-    /// contains its output. Other errors are as in [`Self::output`].
+    /// Runs `request` at full speed. Returns its CRC ([`Request::crc`]) and the ticks that it took
+    /// of the board's SysTick, at the processor's clock after reset, under `-icount`, where an
+    /// instruction takes 1 ns. After 2^24 ticks they begin again from 0. A program that prints
+    /// anything else has failed, and the error contains its output. Other errors are as in
+    /// [`Self::output`].
     pub fn run(&self, request: &Request) -> Result<(u32, u64)> {
         // The program prints the CRC in hexadecimal digits and then the ticks.
         let output = self.output(request)?;
@@ -104,8 +106,9 @@ impl Target {
     }
 
     /// Runs `request` at full speed and returns everything that the program prints to standard
-    /// output, even if it fails. An error means that QEMU cannot be started or exceeds its time
-    /// limit, half an hour.
+    /// output, even if it or QEMU fails; the exit code is not returned. Bytes that are not UTF-8
+    /// are replaced. An error means that QEMU cannot be started or exceeds its time limit, half an
+    /// hour.
     pub fn output(&self, request: &Request) -> Result<String> {
         Ok(process::run(
             self.emulator(&request.to_string())
@@ -195,9 +198,9 @@ impl Target {
     }
 }
 
-/// Runs `request` on `target` and returns all calls of the counted function. An error means that
-/// the program fails or runs for half an hour, that it never calls the function, or that it
-/// executes an instruction without a known timing.
+/// Runs `request` on `target` and returns all calls of `counted_steps`, with interrupts. An error
+/// means that QEMU cannot be started, that the program fails or runs for half an hour, that no call
+/// returns, or that a call executes an instruction without a known timing.
 pub fn counted<'a>(target: &'a Target, request: &Request) -> Result<Calls<'a>> {
     // The compiler makes one copy of the function for each method.
     let entries = target
@@ -220,13 +223,15 @@ pub fn counted<'a>(target: &'a Target, request: &Request) -> Result<Calls<'a>> {
     Ok(calls)
 }
 
-/// Counts the calls of `function` until the program on `target` ends, or until `limit` has passed,
-/// which is no error ([`Ended::status`]).
+/// Counts the calls of `function` until the program on `target` ends, or until `limit` of the
+/// host's time has passed, which is no error ([`Ended::status`]). The name is mangled, demangled,
+/// or a unique part of the demangled name ([`Image::function`]).
 ///
 /// Returns the function, the cost of each call that returned, in order and with interrupts, and the
-/// end of the program. It is an error if the program has no such function or no vectors for this
-/// board, if a call executes an instruction without a known timing, and if no call has returned,
-/// unless the program failed.
+/// end of the program. A call within another one is a part of it. It is an error if the program has
+/// no such function or several, or no vectors for this board, if QEMU cannot be started, and if a
+/// call executes an instruction without a known timing. It is also an error if no call has
+/// returned, unless the program failed: then the list is empty.
 pub fn calls_of<'a>(
     target: &'a Target,
     function: &str,

@@ -12,7 +12,8 @@ use crate::oracle::textbook::misprinted_equal_rods;
 const MASS_RATIO: f64 = 2.75;
 const START: f64 = 171.0;
 const ROD: f64 = 1.0;
-/// The duration of the motion, s. The figure is accurate for this time (test `figures`).
+/// The duration of the motion, s. In this time the path by the right equations follows the exact
+/// motion (test `figures`).
 pub const DURATION: u32 = 10;
 /// The integration steps per second, and the number of steps between two points of the path.
 const STEPS: u32 = 8192;
@@ -23,7 +24,8 @@ const REACH: f64 = 2.1;
 
 /// The path of bob 2 during [`DURATION`], from its start.
 pub struct Path {
-    /// 256 points per second, the start and the end included, in m right of the pivot and above it.
+    /// 256 points per second, the start and the end included, so 2561; in m right of the pivot and
+    /// above it.
     pub points: Vec<(f64, f64)>,
     /// The smallest and the largest energy, J; the potential energy is 0 where both bobs are level
     /// with the pivot. They are by the right equations, for bob 1 of 1 kg, at the points.
@@ -31,7 +33,7 @@ pub struct Path {
 }
 
 /// Returns the pendulum of the figure: bobs of 1 kg and 2.75 kg and rods of 1 m in the gravity of
-/// the page. The kernel accepts it, so that there is no error.
+/// the page, 9.8 m/s^2. The kernel accepts it, so that there is no error.
 pub fn pendulum() -> Result<Pendulum<f64>, Error> {
     Pendulum::new(&Parameters::equal_rods(MASS_RATIO, ROD, PAGE_GRAVITY))
 }
@@ -42,8 +44,9 @@ pub fn start() -> State<f64> {
 }
 
 /// Returns the paths by the right equations and by the misprinted ones, in this order, by RK4 with
-/// `refinement` times the figure's 8192 steps a second. 1 is the figure itself. Not checked:
-/// `refinement` must be from 1 to 50,000. The points are at the same times with any `refinement`.
+/// `refinement` times the figure's 8192 steps a second. 1 is the figure itself. The points are at
+/// the same times with any `refinement`, which must be from 1 to 50,000; this is not checked. There
+/// is no error, as in [`pendulum`].
 pub fn paths(refinement: u32) -> Result<[Path; 2], Error> {
     let pendulum = pendulum()?;
     let right = path(&pendulum, refinement, |z| pendulum.derivatives(z));

@@ -34,6 +34,7 @@ pub struct FiguresOptions {
 }
 
 /// Returns the folder of the pictures that the READMEs show, `host-tests/pictures` in the project.
+/// If the project is not found, this ends the process ([`workspace`]).
 pub fn folder() -> PathBuf {
     workspace().join("host-tests/pictures")
 }
@@ -59,7 +60,8 @@ pub fn figures() -> Result<Vec<(String, String)>> {
 /// Writes the figures and, on request, the animations into the folders `figures` and `panel` of the
 /// folder of the options. Creates the folders and replaces existing files. The animations take
 /// minutes and need the emulator, which is installed if it is missing. An error means that a file
-/// cannot be written or that a recording had problems.
+/// cannot be written, that the emulator cannot be provided, or that a recording had problems, such
+/// as bits that differ from the host's; the files before it remain.
 pub fn run(options: &FiguresOptions) -> Result<()> {
     let folder = options.out.clone().unwrap_or_else(folder);
     for (name, svg) in figures()? {
@@ -78,8 +80,8 @@ pub fn run(options: &FiguresOptions) -> Result<()> {
     Ok(say(format_args!("wrote {}", folder.display()))?)
 }
 
-/// Returns the path of the animation of a scene, `panel/SCENE.gif`, if the pictures are in
-/// `folder`. The file need not exist.
+/// Returns the path of the animation of a scene, `panel/SCENE.gif` with the name of the scene, if
+/// the pictures are in `folder`. The file need not exist.
 pub fn animation(scene: SceneName, folder: &Path) -> PathBuf {
     folder.join(format!("panel/{}.gif", scene.name()))
 }

@@ -29,32 +29,36 @@ pub type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 /// A chart with two linear axes.
 pub type Axes<'a> = ChartContext<'a, SVGBackend<'a>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
 
-/// Returns a length in dots, 8 times `length`, which is in units.
+/// Returns a length in dots, 8 times `length`, which is in units. Not checked: the result must fit
+/// a `u32`.
 pub const fn units(length: u32) -> u32 {
     length * DOTS
 }
 
-/// Returns the style of a line. Its `width` is in tenths of a unit, rounded up to whole dots.
+/// Returns the style of a line or an outline, not filled. Its `width` is in tenths of a unit,
+/// rounded up to whole dots.
 pub fn line(colour: RGBColor, width: u32) -> ShapeStyle {
     colour.stroke_width(units(width).div_ceil(10))
 }
 
 /// Returns a colour with a strength from 0 to 1, as it looks on white. With 0 it is white, with 1
-/// unchanged. The strength is not checked.
+/// unchanged. The strength is not checked: beyond this range a channel ends at 0 or 255, and NaN
+/// gives black.
 pub fn pale(RGBColor(red, green, blue): RGBColor, strength: f64) -> RGBColor {
     let [red, green, blue] =
         [red, green, blue].map(|channel| (255.0 - strength * (255.0 - f64::from(channel))) as u8);
     RGBColor(red, green, blue)
 }
 
-/// Returns the style of text in the colour [`TEXT`]. Its `height`, the size of the letters, is in
+/// Returns the style of text in the colour [`TEXT`]. Its `height`, the size of the font, is in
 /// units.
 pub fn text(height: u32) -> TextStyle<'static> {
     (TYPEFACE, units(height)).into_font().color(&TEXT)
 }
 
 /// Writes a line in `style`, centred, into the top 23 units of the area and returns the rest of the
-/// area. An error means that the line cannot be drawn.
+/// area. Not checked: the area is higher than that, and the line fits its width. An error means
+/// that the line cannot be drawn.
 pub fn headed<'a>(area: &Area<'a>, line: &str, style: TextStyle<'_>) -> Result<Area<'a>> {
     let (head, rest) = area.split_vertically(units(23));
     let (width, height) = head.dim_in_pixel();
@@ -65,8 +69,8 @@ pub fn headed<'a>(area: &Area<'a>, line: &str, style: TextStyle<'_>) -> Result<A
 
 /// Draws axes. Each has a quantity with its unit (empty if the chart below names it), a range from
 /// its first to its second number, and a largest number of labels. The first quantity is
-/// horizontal, and so is the first number of labels. Not checked: the ends of a range differ. An
-/// error means that the axes cannot be drawn.
+/// horizontal, and so is the first number of labels. A range may descend. Not checked: the ends of
+/// a range differ; this panics if one is NaN. An error means that the axes cannot be drawn.
 pub fn axes<'a>(
     area: &Area<'a>,
     (across, [left, right]): (&str, [f64; 2]),
@@ -111,7 +115,7 @@ fn plain(number: &f64) -> String {
 /// Returns a figure as the text of an SVG file. It has this width and height in units, and is drawn
 /// on white below its title, the first of `lines`, and the other lines. Each line takes 23 units of
 /// the height. `draw` receives the area below them. An error is one of `draw`, or means that a line
-/// cannot be drawn.
+/// cannot be drawn. Not checked: the lines are lower than the height.
 pub fn svg<const N: usize>(
     [width, height]: [u32; 2],
     lines: [&str; N],

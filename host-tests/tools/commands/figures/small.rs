@@ -24,13 +24,14 @@ pub struct CurvePoint {
     pub time: f64,
     /// The angles of the rods, degrees.
     pub angles: [f64; 2],
-    /// The largest swing of each angle to either side, from 0 on, at this time while the modes
-    /// beat, degrees.
+    /// The amplitude of each angle at this time, degrees, 0 or more: while the modes beat, the
+    /// angle swings between plus and minus this.
     pub envelopes: [f64; 2],
 }
 
-/// Returns the normal modes of the figures: equal rods of 0.25 m in the gravity of the page.
-/// Frequencies are in rad/s. An error means that the mass ratio is not a positive number.
+/// Returns the normal modes of the figures: equal rods of 0.25 m in the gravity of the page, 9.8
+/// m/s^2. Frequencies are in rad/s. An error means that the mass ratio is not positive and finite,
+/// or so extreme that a number of the modes is out of range.
 pub fn modes(mass_ratio: f64) -> Result<Modes<f64>, Error> {
     Modes::new(&Parameters::equal_rods(mass_ratio, ROD, PAGE_GRAVITY))
 }
@@ -38,7 +39,7 @@ pub fn modes(mass_ratio: f64) -> Result<Modes<f64>, Error> {
 /// Returns the motion of `modes` from a1 = 0, a2 = 30 degrees, let go from rest: 1501 points in 5 s
 /// at equal intervals, the start and the end included. All angles are in degrees.
 ///
-/// The amplitude of A1 cos (w1 t + f1) + A2 cos (w2 t + f2) in each angle is
+/// Each angle is A1 cos (w1 t + f1) + A2 cos (w2 t + f2), the sum of both modes. Its envelope is
 /// sqrt(A1^2 + A2^2 + 2 A1 A2 cos ((w1 - w2) t + f1 - f2)).
 pub fn points(modes: Modes<f64>) -> Vec<CurvePoint> {
     let motion = SmallOscillations::new(modes, &Motion::at_rest(0.0, FRAC_PI_6));
@@ -121,7 +122,8 @@ fn at_ratio(mass_ratio: f64) -> Result<[f64; 3], Error> {
 }
 
 /// Returns figure 2 as the text of an SVG file: both frequencies of small oscillations of equal
-/// rods, in sqrt(g/l), over mass ratios from 0 to 5. It is an error if the figure cannot be drawn.
+/// rods, in sqrt(g/l), over mass ratios from 0 to 5. The curves begin at 2e-5, because there are no
+/// modes at 0. It is an error if the figure cannot be drawn.
 pub fn frequencies() -> Result<String> {
     // The points are denser towards 0, where the curves are steep.
     let [.., greatest] = MASS_RATIOS;

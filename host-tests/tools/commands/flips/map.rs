@@ -10,9 +10,10 @@ use vectors::{Search, flips};
 /// A rectangle of starts, a1 across and a2 upwards. The fields are not checked.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Map {
-    /// The pendulum. Its gravity equals its l1, so that times are in sqrt(l1/g).
+    /// The pendulum. Its gravity, m/s^2, is the same number as its l1, m, so that sqrt(l1/g) is 1
+    /// s.
     pub parameters: Parameters<f32>,
-    /// The step, sqrt(l1/g).
+    /// The step of the first search, sqrt(l1/g).
     pub dt: f64,
     /// The time limit, sqrt(l1/g), more than 1.
     pub limit: f32,
@@ -40,10 +41,10 @@ const LEAST_PORTION: usize = 64;
 const PORTION_STEPS: f64 = 1e9;
 
 impl Map {
-    /// Returns the map of all starts, from -pi to pi in both angles, with the step that suits the
-    /// pendulum, up to the time `limit`, sqrt(l1/g). An error means that the kernel refuses the
-    /// pendulum, or that `f32` cannot represent it or the step. Not checked: the gravity must equal
-    /// l1, `limit` must exceed 1, and `size` must not contain 0.
+    /// Returns the map of all starts, from -pi to pi in both angles, with the step of
+    /// [`step_size`], up to the time `limit`, sqrt(l1/g). An error means that the kernel refuses
+    /// the pendulum, or that `f32` cannot represent its modes or the step. Not checked: the gravity
+    /// must equal l1, `limit` must exceed 1 and be finite, and `size` must not contain 0.
     pub fn new(parameters: Parameters<f32>, limit: f32, size: [usize; 2]) -> Result<Self, Error> {
         let dt = step_size(&parameters)?;
         let search = |dt: f64| Search::new(&parameters, dt, (f64::from(limit) / dt).ceil() as u32);
@@ -60,13 +61,14 @@ impl Map {
     }
 
     /// Returns the largest number of steps of a start, with the step and with half of it together.
-    /// It is three times the limit over the step.
+    /// It is three times the limit over the step, not rounded to whole steps.
     pub fn steps(&self) -> f64 {
         3.0 * f64::from(self.limit) / self.dt
     }
 
-    /// Returns the number of rows to compute. The lower half of a rectangle about the hanging
-    /// position is the upper half mirrored in both directions.
+    /// Returns the number of rows to compute: all, or, if the middle of the map is the hanging
+    /// position, only the upper half, with the middle row of an odd number. The lower half is then
+    /// the upper half mirrored in both directions.
     pub fn rows(&self) -> usize {
         let [_, height] = self.size;
         if self.centre == [0.0; 2] {
@@ -103,7 +105,8 @@ impl Map {
         ]
     }
 
-    /// Returns the starts to compute: the first [`Map::rows`] rows, row by row.
+    /// Returns the starts to compute, a1, a2 in rad: the first [`Map::rows`] rows, row by row from
+    /// the top left pixel.
     pub fn starts(&self) -> Vec<[f32; 2]> {
         self.pixels(self.rows())
             .map(|pixel| self.start(pixel))
@@ -111,9 +114,9 @@ impl Map {
     }
 
     /// Returns the flips of [`Map::starts`], in that order. All processors compute, which may take
-    /// hours. `tick` is called by several threads. Each call receives the number of starts that
-    /// were completed by that thread since its last call. An error means that an angle is not
-    /// finite.
+    /// hours. `tick` is called by several threads, each time with the number of starts completed
+    /// since that thread's last call; together these are all starts. An error means that an angle
+    /// of a start is not finite.
     pub fn points(&self, tick: impl Fn(usize) + Sync) -> Result<Vec<FlipPair>, Error> {
         let starts = self.starts();
 
@@ -132,8 +135,8 @@ impl Map {
         Ok(portions.collect::<Result<Vec<_>, Error>>()?.concat())
     }
 
-    /// Returns all pixels with the flips of their starts. `points` must come from [`Map::points`]
-    /// of this map; this panics if there are fewer. The pixels are row by row from the top left.
+    /// Returns all pixels with the flips of their starts, row by row from the top left. `points`
+    /// must come from [`Map::points`] of this map; if there are fewer, the iteration panics.
     pub fn shown(&self, points: &[FlipPair]) -> impl Iterator<Item = ([usize; 2], FlipPair)> {
         let rows = self.rows();
         let [width, height] = self.size;
@@ -148,9 +151,10 @@ impl Map {
         })
     }
 
-    /// Returns true if two flips differ by more than a grey level of the panel. A flip after the
-    /// limit counts as at the limit, and a start that cannot flip differs from all others. If the
-    /// flips of the two steps differ, the start is in doubt.
+    /// Returns true if two flips differ by more than a grey level of the panel, a 14th of the scale
+    /// of [`Map::share`]. A flip after the limit, or none by then, counts as at the limit. A start
+    /// that cannot flip differs from all others, but not from another such start. If the flips of
+    /// the two steps differ, the start is in doubt.
     pub fn differ(&self, [one, other]: FlipPair) -> bool {
         // One step size finds no flip at any time, the other one may.
         if [one, other].contains(&Flip::Never) {
@@ -160,8 +164,9 @@ impl Map {
         (level(one) - level(other)).abs() > 1.0
     }
 
-    /// Returns the position of a flip on the logarithmic scale from sqrt(l1/g) to the limit, 0 to
-    /// 1, or `None` if the flip has no time. A flip before sqrt(l1/g) is at 0.
+    /// Returns the position of a flip on the logarithmic scale from sqrt(l1/g), 0, to the limit, 1.
+    /// An earlier flip is at 0, a later one at 1. Returns `None` if the flip has no time: if the
+    /// start cannot flip, and if it does not within the limit.
     pub fn share(&self, flip: Flip<f32>) -> Option<f32> {
         match flip {
             Flip::After(time) => Some((time.ln() / self.limit.ln()).clamp(0.0, 1.0)),

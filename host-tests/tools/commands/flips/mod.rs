@@ -89,9 +89,10 @@ pub struct FlipsOptions {
 /// minute or more.
 const ANNOUNCED_STEPS: f64 = 1e6;
 
-/// Computes the map, writes the file and prints how much of the map is uncertain. The file replaces
-/// an existing one when the map is complete. The computation may take hours. Options that cannot be
-/// used, and a file that cannot be written, are [`Refused`] before the computation.
+/// Computes the map, writes the file and prints how much of the map is uncertain, in starts and
+/// percent. The file replaces an existing one when the map is complete; until then, and after
+/// Ctrl-C, it is unchanged. The computation may take hours. Options that cannot be used, and a file
+/// that cannot be written, are [`Refused`] before the computation.
 pub fn run(options: &FlipsOptions) -> Result<()> {
     let map = options
         .map()

@@ -9,14 +9,15 @@ use firmware::graphics::glyph;
 
 use super::map::{FlipPair, Map};
 
-/// Returns the content of a file with this name: a table in CSV if it ends in `.csv`, in lower
+/// Returns the content of a file with this name: a table in CSV if its extension is `csv`, in lower
 /// case, or else a PNG. Nothing is written. `points` must come from `map`; this panics if there are
-/// fewer.
+/// fewer, and may if a size of the map is 0. An error means that the picture cannot be encoded.
 ///
 /// The picture is as wide as the map and has a legend below it, whose parts that do not fit are
 /// left out. With `doubt`, points of a picture whose time is uncertain ([`Map::differ`]) have their
-/// own colour. The table has the angles, rad, and both times, sqrt(l1/g), of each pixel from the
-/// top left on. A time is empty if no rod can turn over, and `inf` if no rod does within the limit.
+/// own colour. The table has a heading, then the angles, rad, and both times, sqrt(l1/g), of each
+/// pixel from the top left on; `doubt` does not change it. A time is empty if no rod can turn over,
+/// and `inf` if no rod does within the limit.
 pub fn file(name: &Path, map: &Map, points: &[FlipPair], doubt: bool) -> Result<Vec<u8>> {
     let pixels = map.shown(points);
     if name.extension().is_some_and(|end| end == "csv") {

@@ -34,10 +34,11 @@ fn finish(mut search: Search) -> Result<Plan, PlanError> {
 /// A scene, and the chip that computes it.
 #[derive(Debug, Parser)]
 pub struct SceneOptions {
+    /// What moves, without `--scene`.
     #[command(flatten)]
     pub start: StartOptions,
     /// A built-in scene, with the f32 values that the boards start it with (excludes --angles,
-    /// --velocities, --masses, --lengths, --gravity, --height, --duration and --rate)
+    /// --velocities, --degrees, --masses, --lengths, --gravity, --height, --duration and --rate)
     #[arg(
         long,
         value_name = "NAME",
@@ -90,9 +91,11 @@ const HIGHEST: f64 = 1e6;
 impl SceneOptions {
     /// Returns the scene with its plan, or with the limit that forbids any plan. Lengths are in m,
     /// angles in rad, times in s, costs in cycles. An error is one line that names the option and
-    /// the value; it is caused by a number out of range or by a built-in scene without a motion.
+    /// the value; it is caused by a number out of range, by a pendulum that the kernel refuses, or
+    /// by a built-in scene without a motion to plan.
     ///
-    /// The plan of a [linear](SceneName::is_linear) scene is the horizon of the linear motion.
+    /// The plan of a [linear](SceneName::is_linear) scene always has the closed form. Its horizon
+    /// is the time until which the linear motion is within half a pixel of the exact motion.
     pub fn plan(&self) -> anyhow::Result<(Problem, Result<Plan, Limit>)> {
         // A built-in scene defines the whole problem; otherwise the options do.
         let problem = self
@@ -115,7 +118,8 @@ impl SceneOptions {
         }
     }
 
-    /// Returns true if the scene shows the linear motion, on purpose.
+    /// Returns true if the built-in scene of the options shows the linear motion, on purpose
+    /// ([`SceneName::is_linear`]); false without a built-in scene.
     pub fn is_linear(&self) -> bool {
         self.scene.is_some_and(SceneName::is_linear)
     }
@@ -164,7 +168,7 @@ pub struct Chip {
     pub title: &'static str,
     /// The frequency of its clock, Hz.
     pub clock: f32,
-    /// The costs of its steps and its budgets.
+    /// The costs of its steps and its budgets, in cycles.
     pub processor: Processor,
 }
 
@@ -184,9 +188,10 @@ fn chip() -> impl TypedValueParser<Value = Chip> {
 }
 
 /// Every chip; the first is the default. They are `m3`, the LM3S6965 without a floating-point unit
-/// at 50 MHz; `m4f`, the STM32F405 with a floating-point unit for `f32` at 168 MHz; `slow-m4f`, the
-/// slowest board's chip with such a unit at 25 MHz; and `pico`, the chip of the Raspberry Pi Pico
-/// at 125 MHz, which multiplies 32 bits only.
+/// at 50 MHz; `m4f`, the STM32F405 with a floating-point unit for `f32` at 168 MHz; `slow-m4f`, a
+/// Cortex-M4F with the same unit at 25 MHz, as on the slowest board; and `pico`, the chip of the
+/// Raspberry Pi Pico at 125 MHz, whose products of two integers have only 32 bits. On the command
+/// line the name of a board with the chip is accepted, too.
 pub const CHIPS: [Chip; 4] = [
     Chip {
         name: "m3",

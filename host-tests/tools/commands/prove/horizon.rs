@@ -9,16 +9,16 @@ use reference::enclosure::{Fixed, Start, up};
 
 use crate::commands::table::at_most;
 
-/// A frame compared with the exact motion.
+/// A frame compared with the exact motion. The exact motion is known to be in a box: each number of
+/// the directions is known up to a radius.
 #[derive(Clone, Copy, Debug)]
 pub struct Verdict {
-    /// The directions of the rods, (sin, cos) each.
+    /// The box: the directions of the rods, (sin, cos) each, with their radii.
     exact: [[Fixed; 2]; 2],
-    /// The largest distance of a true direction from the middle of the box. It has no unit, as the
-    /// directions.
+    /// The largest radius of the box. It has no unit, as the directions.
     width: f64,
     /// True if the drawn frame is proved to be within the tolerance, false if it is proved not to
-    /// be, `None` if the enclosure is too wide to decide.
+    /// be, `None` if the box is too wide to decide.
     is_right: Option<bool>,
 }
 
@@ -29,12 +29,13 @@ pub fn time(scene: &Problem, frame: u32) -> f64 {
 
 /// Returns the frames after the start one by one, at most `scene.frames()` of them. The sequence
 /// ends after a frame that is proved wrong, when the motion can no longer be enclosed, or when
-/// `stopped` is not zero. A drawn motion that diverges counts as proved wrong.
+/// `stopped` is not zero. A drawn motion that diverges counts as proved wrong. After an undecided
+/// frame the sequence continues.
 ///
 /// Each frame is computed when it is requested. The drawn motion is that of `scene`, by the method
-/// and steps per frame of `stepping`; the exact motion begins at `start`. An error means that the
-/// method does not accept the scene or the step, so that nothing is drawn. Not checked: `start`
-/// must be the start of `scene`.
+/// and steps per frame of `stepping`, where 0 steps count as 1; the exact motion begins at `start`.
+/// An error means that the method does not accept the scene or the step, so that nothing is drawn.
+/// Not checked: `start` must be the start of `scene`.
 pub fn frames<'a>(
     scene: &Problem,
     start: &Start,
@@ -123,13 +124,13 @@ pub fn counts(frames: &[Verdict]) -> (u32, usize) {
 }
 
 impl Verdict {
-    /// Returns the row of the frame at `time`, s, without a newline. Its cells are the time, the
-    /// middles of the box that contains the exact motion (sin a1, cos a1, sin a2, cos a2), the
-    /// largest radius of the box, and the verdict: "right", "wrong", or "open" if the frame is not
-    /// decided.
+    /// Returns the row of the frame at `time`, s, without a newline. Its cells, with commas between
+    /// them, are the time, the middles of the box that contains the exact motion (sin a1, cos a1,
+    /// sin a2, cos a2), the largest radius of the box, and the verdict: "right", "wrong", or "open"
+    /// if the frame is not decided.
     ///
     /// The box refers to the printed numbers, read as decimals or as `f64`: its radius includes the
-    /// rounding of the middles and is rounded up.
+    /// rounding of the middles and is rounded up to two digits.
     pub fn row(&self, time: f64) -> String {
         let middles = self
             .exact
@@ -228,9 +229,16 @@ const WIDE: f64 = 1e-12;
 const LENGTHS: f64 = 30.0;
 const MASSES: f64 = 1000.0;
 
-/// Returns the results of the proof, one line each, without a newline at the end. Computes the
-/// motions with the same numbers on the panel, too, until `stopped`. `frames` are all frames of
-/// [`frames`], and `stopped` is its argument. Times are in s since the start.
+/// Returns the results of the proof, one line each, without a newline at the end: the method, the
+/// proved frames, the reason why the sequence ended, the undecided frames, the prediction of
+/// `plan`, and the width of the last box. Times are in s since the start. `frames` are all frames
+/// of [`frames`], and `stopped` is its argument.
+///
+/// A last line, "unknown", has the time after which the numbers on the panel do not determine the
+/// motion: two motions, whose mass ratios look the same to three digits and whose angles look the
+/// same to a degree, are then farther apart than the longer rod. To find it, this computes both
+/// motions, which may take as long as the proof. The line is absent if that does not happen within
+/// `frames`, or if `stopped` is not zero before.
 pub fn words(
     scene: &Problem,
     plan: &Result<Plan, Limit>,

@@ -57,8 +57,8 @@ pub struct ProveOptions {
     /// Print for each frame the box that encloses the exact motion, and the verdict, as CSV
     #[arg(long)]
     csv: bool,
-    /// Print a table of the horizons of all scenes on all chips, predicted and proved (takes a
-    /// minute or two)
+    /// Print a table of the horizons of all scenes that move on three chips, predicted and proved
+    /// (takes a minute or two)
     #[arg(long, conflicts_with_all = ["scene", "method", "csv"])]
     table: bool,
     /// Print the table of known answers, with every digit proved again (takes minutes)
@@ -66,9 +66,13 @@ pub struct ProveOptions {
     known_answers: bool,
 }
 
-/// Prints the proof or the table. The exit code is a success for any result of the proof. If Ctrl-C
-/// ended the proof, the frames so far are reported and it is the code of the signal, 130. Options
-/// that cannot be used are [`Refused`].
+/// Prints the proof, with `--csv` only the rows of its frames, or a table. The exit code is a
+/// success for any result of the proof, also if no method is fast enough, so that nothing is
+/// proved. If Ctrl-C ended the proof, the frames so far are reported and it is the code of the
+/// signal, 130. Options that cannot be used, also a number with too many digits, are [`Refused`].
+///
+/// A table takes neither `--scene` nor `--method` nor `--csv`, and ignores the other options.
+/// Ctrl-C ends it at once.
 pub fn run(options: &ProveOptions) -> anyhow::Result<ExitCode> {
     // Tables of many scenes, without a scene of the user.
     if options.table {

@@ -12,23 +12,25 @@ use crate::commands::plan::SceneOptions;
 use crate::oracle::known_answers::KnownAnswer;
 use console::number::Number;
 
-/// Returns the scenes that move, at least at the end: all with angles except the upright one, in
-/// the order of [`SceneName::ALL`].
+/// Returns the scenes with a motion to plan, in the order of [`SceneName::ALL`]: all with angles
+/// ([`SceneName::has_angles`]) except `upright`, which shows two given arithmetics.
 pub fn moving() -> impl Iterator<Item = &'static SceneName> {
     SceneName::ALL
         .iter()
         .filter(|name| name.has_angles() && **name != SceneName::Upright)
 }
 
-/// The heading of the table of horizons: two lines of Markdown, without a newline at the end.
+/// The heading of the table of horizons: two lines of Markdown, without a newline at the end. The
+/// columns are those of [`horizons`]; times are in s.
 pub const HEADING: &str = "\
 | scene | M3: plan | proved | M4F: plan | proved | M0+: plan | proved | open |
 | --- | --- | --- | --- | --- | --- | --- | --- |";
 
 /// Returns the table's line of one scene, in Markdown and without a newline, with its predicted and
-/// proved horizons. Times are in s; "none" means that no method is fast enough for the chip. The
-/// last cell is the number of undecided frames on all chips. It takes seconds. An error means that
-/// the scene has no motion to plan.
+/// proved horizons on the chips `m3`, `m4f` and `pico` of `cargo plan`. Times are in s; "none" in
+/// both cells means that no method is fast enough for the chip. The last cell is the number of
+/// undecided frames on all three chips. It takes seconds. An error means that the scene has no
+/// motion to plan.
 pub fn horizons(name: SceneName) -> Result<String> {
     // Each chip adds the predicted and the proved horizon.
     let mut cells = vec![name.name().to_owned()];
@@ -57,12 +59,13 @@ const RATE: u16 = 64;
 const DIGITS: f64 = 33.0;
 
 /// Returns the known answers of one scene, one line each, computed from the given numbers. The
-/// lines are as in the file, without newlines. Each number has an error of at most two units of its
-/// last digit, except the growth of a small error, which is approximate.
+/// lines are as in the file `reference/known_answers.csv`, without newlines. Each number has an
+/// error of at most two units of its last digit, except the last one, the factor by which a small
+/// error of the start has grown, which is approximate.
 ///
-/// `scene` has at least one row, else this panics; its rows have the same start and ascending
-/// times, s, which is not checked. An error means that a number has too many digits, or that the
-/// enclosure becomes too wide.
+/// `scene` has at least one row, else this panics. Not checked: its rows have the same start, and
+/// their times ascend and are multiples of 1/64 s. An error means that a number has too many
+/// digits, or that the enclosure becomes too wide.
 pub fn known_answers(scene: &[KnownAnswer]) -> Result<Vec<String>> {
     // The nine numbers after the name of the scene: the start and the pendulum.
     let exact = |text: &str| text.parse::<Number>().ok()?.exact();

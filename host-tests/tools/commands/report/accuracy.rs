@@ -8,8 +8,8 @@ use firmware::job::Request;
 use crate::oracle::trials::apart;
 use reference::taylor;
 
-/// A motion of equal rods (1 m) and bobs (1 kg) from rest. Every number can be represented in
-/// `f32`, so that all arithmetics compute the same pendulum.
+/// A motion of equal rods (1 m) and bobs (1 kg) from rest, at 9.81 m/s^2 rounded to `f32`. Every
+/// number can be represented in `f32`, so that all arithmetics compute the same pendulum.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scene {
     /// The name in tables and files.
@@ -23,7 +23,8 @@ pub struct Scene {
 /// The largest number of states that are compared with the reference in each second.
 pub const SAMPLES: u32 = 4;
 
-/// A regular motion from 0.5 rad for 10 s, and a chaotic one from 2 rad for 5 s.
+/// The regular motion from 0.5 rad for 10 s, named "regular", and a chaotic one from 2 rad for 5 s,
+/// named "chaotic".
 pub const SCENES: [Scene; 2] = [
     Scene {
         name: "regular",
@@ -36,7 +37,7 @@ pub const SCENES: [Scene; 2] = [
         duration: 5,
     },
 ];
-/// The regular motion from 0.5 rad for ten times as long, 100 s.
+/// The regular motion from 0.5 rad for ten times as long, 100 s, named "regular-long".
 pub const LONG: Scene = Scene {
     name: "regular-long",
     angle: 0.5,
@@ -49,7 +50,8 @@ pub const LONG: Scene = Scene {
 pub struct Error {
     /// The error of an angle, rad, without whole turns.
     pub angle: f64,
-    /// The distance of a bob from its exact position on the panel, pixels.
+    /// The distance of a bob from its exact position on the panel, pixels. Both rods together are
+    /// [`REACH`] long there, 28.5 pixels.
     pub pixels: f64,
 }
 
@@ -60,8 +62,9 @@ const LOST: Error = Error {
 };
 
 /// Returns the angles a1 and a2 of the exact motion after each of `steps` equal steps through a
-/// scene. The start is not among them. Angles are in rad, with their whole turns. 0 steps give an
-/// empty list.
+/// scene, by the reference, rounded to `f64`. The start is not among them. Angles are in rad, with
+/// their whole turns. 0 steps give an empty list. Not checked: `steps` times the duration must be
+/// less than 2^32.
 pub fn exact(scene: &Scene, steps: u32) -> Vec<[f64; 2]> {
     let Request {
         parameters,
@@ -85,8 +88,8 @@ fn samples(rate: u32) -> u32 {
 }
 
 /// Returns the request for `method` through `scene` with `rate` steps a second, at least 1, which
-/// is not checked. Gravity is rounded to `f32`. It requests [`SAMPLES`] states per second, or 2 or
-/// 1 if these do not fall on whole steps.
+/// is not checked. It requests [`SAMPLES`] states per second, or 2 or 1 if these do not fall on
+/// whole steps.
 pub fn request(method: Method, scene: &Scene, rate: u32) -> Request {
     Request {
         method,
@@ -100,7 +103,7 @@ pub fn request(method: Method, scene: &Scene, rate: u32) -> Request {
 }
 
 /// Returns a typical number of steps per simulated second, for counts and displays: 16 for an order
-/// above 4, 256 for others.
+/// above 4, 256 for others, also for the closed forms.
 pub fn usual_rate(method: Method) -> u32 {
     if method.order() > 4 { 16 } else { 256 }
 }
@@ -111,10 +114,10 @@ const HIGH: [u32; 21] = [
 ];
 const LOW: [u32; 3] = [16, 32, 64];
 
-/// Returns the numbers of steps a second to try with `method` in a scene: some small ones and all
-/// larger powers of two. The long scene is tried with the typical number only. The powers of two
-/// are from 2^7 to 2^`finest`, at most 31; the small numbers do not depend on `finest`. All numbers
-/// ascend.
+/// Returns the numbers of steps a second to try with `method` in a scene, ascending. They are 21
+/// numbers from 4 to 96 for an order above 4, or else 16, 32 and 64, and then all powers of two
+/// from 2^7 to 2^`finest`, none if `finest` is less than 7. Of these, [`LONG`] is tried with
+/// [`usual_rate`] only. Not checked: `finest` is at most 31.
 pub fn rates(method: Method, scene: &Scene, finest: u32) -> impl Iterator<Item = u32> {
     let few: &[u32] = if method.order() > 4 { &HIGH } else { &LOW };
     let all = few
@@ -126,7 +129,7 @@ pub fn rates(method: Method, scene: &Scene, finest: u32) -> impl Iterator<Item =
 
 /// Returns the error of `method` in `steps` equal steps through the scene, compared after each
 /// step, or `None` as in [`error`]. A second need not be a whole number of steps. 0 steps give
-/// `None`.
+/// `None`. The largest number of steps is that of [`exact`].
 pub fn error_after(method: Method, scene: &Scene, steps: u32) -> Option<Error> {
     let dt = f64::from(scene.duration) / f64::from(steps);
     let request = Request {
@@ -138,8 +141,9 @@ pub fn error_after(method: Method, scene: &Scene, steps: u32) -> Option<Error> {
     error(&request, &exact(scene, steps))
 }
 
-/// Returns the error of a request, or `None` if its method does not support the scene or the step.
-/// A motion that has diverged has an infinite error. `exact` is as in [`worst`].
+/// Returns the error of a request at its samples after the start, or `None` if its method does not
+/// support the scene or the step. A motion that has diverged has an infinite error. `exact` has the
+/// angles of these samples, as in [`worst`].
 pub fn error(request: &Request, exact: &[[f64; 2]]) -> Option<Error> {
     let mut angles = Vec::new();
     let run = request.readings::<double_pendulum::Error>(|reading| {
@@ -156,10 +160,12 @@ pub fn error(request: &Request, exact: &[[f64; 2]]) -> Option<Error> {
 
 /// Returns the largest error, in rad and pixels of the panel, of both angles and of both bobs at
 /// all moments of `angles` (a1, a2 in rad). `exact` has the angles of these moments and possibly,
-/// equally often, of moments between them. The error of an angle is without whole turns, at most
-/// pi. With an empty list the errors are 0. They are infinite if an angle is not finite or if the
-/// kernel refuses the parameters. Not checked: with an `exact` that is shorter than `angles`, only
-/// its moments are compared.
+/// equally often, of moments between them; its length is a multiple of that of `angles`, which is
+/// not checked. The error of an angle is without whole turns, at most pi.
+///
+/// The errors are infinite if a compared angle is not finite or if the kernel refuses the
+/// parameters. Otherwise, if one of the lists is empty, they are 0. With an `exact` that is shorter
+/// than `angles`, only its moments are compared.
 pub fn worst(parameters: &Parameters<f64>, angles: &[[f64; 2]], exact: &[[f64; 2]]) -> Error {
     let Ok(pendulum) = Pendulum::new(parameters) else {
         return LOST;

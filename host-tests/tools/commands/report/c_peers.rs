@@ -29,10 +29,12 @@ const LIMIT: Duration = Duration::from_secs(180);
 /// The method in Rust with the same equations.
 const TEXTBOOK: Method = Method::TextbookF32;
 
-/// Builds the programs into `target/peers-c`, runs them in QEMU, and returns the costs and errors
-/// of every program on every board, through `scenes`: each with its exact angles (rad),
-/// [`SAMPLES`](super::accuracy::SAMPLES) per second. Also returns a line for each program that
-/// cannot be built, with the reason. A program that fails on the target is an error.
+/// Builds the programs into `target/peers-c` of the project, runs them in QEMU, and returns the
+/// costs and errors of every program on every board, in 16, 32, 64, 128 and 256 steps per second
+/// through `scenes`: each with its exact angles (rad), [`SAMPLES`](super::accuracy::SAMPLES) per
+/// second. In the long scene it is 256 steps only. Also returns a line for each program and board
+/// that cannot be built, with the reason. A program that fails on the target is an error, and so is
+/// another number of exact angles.
 pub fn points(
     toolchain: &Toolchain,
     targets: &[Target],

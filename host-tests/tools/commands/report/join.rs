@@ -59,10 +59,14 @@ impl Point {
 
 /// Returns the points of every method and of every program in C, through the scenes on all targets.
 /// It runs QEMU for minutes. The closed forms are left out, because their error comes from the
-/// linear equations. The long scene has the typical number of steps only. The methods are in the
-/// order of [`Method::ALL`], and the programs in C are last. Also returns a line for each program
-/// in C that cannot be built, with the reason. An error means that QEMU or a program on a target
-/// fails.
+/// linear equations. The long scene has the typical number of steps only. A scene or a step that a
+/// method does not support has no point; a motion that diverges has infinite errors.
+///
+/// The methods are in the order of [`Method::ALL`], and the programs in C are last. The points of a
+/// method are in the order of the scenes, then of the steps, from the coarsest on, then of the
+/// targets. Also returns a line for each program in C and board that cannot be built, with the
+/// reason. An error means that QEMU or a program on a target fails, or executes an instruction
+/// without a known timing.
 pub fn join(toolchain: &Toolchain, targets: &[Target]) -> Result<(Vec<Point>, Vec<String>)> {
     let scenes = [&SCENES[0], &SCENES[1], &LONG]
         .map(|scene| (scene, accuracy::exact(scene, SAMPLES * scene.duration)));
@@ -112,8 +116,9 @@ pub fn join(toolchain: &Toolchain, targets: &[Target]) -> Result<(Vec<Point>, Ve
 }
 
 /// Returns the table of the report, a row for each point, in the order of `points`. Its titles name
-/// the units. A step is "resolved" if it is at most the admissible step of the motion. The verdict
-/// is "dominated" ([`Point::is_dominated`]) or "best".
+/// the units. Counts are rounded to whole numbers, and an infinite error is "none". A step is
+/// "resolved" ("yes" or "no") if it is at most the admissible step of the motion. The verdict is
+/// "dominated" ([`Point::is_dominated`]) or "best".
 pub fn table(points: &[Point]) -> Table {
     let row = |point: &Point| {
         let Point {
@@ -163,7 +168,9 @@ pub(super) mod tests {
     use super::*;
     use emulator::boards::BOARDS;
 
-    /// Returns a method's point in the regular scene on the first board.
+    /// Returns a point for tests: `name` in the regular scene on the first board, with 64 steps and
+    /// `cycles` cycles per simulated second, an error of `angle`, rad, and ten times as many
+    /// pixels. All other costs are 0.
     pub fn point(name: &'static str, cycles: f64, angle: f64) -> Point {
         let step = StepCost {
             cycles: cycles / 64.0,

@@ -26,12 +26,14 @@ use emulator::out_file::OutFile;
 use emulator::qemu::{Clock, Machine, Settings};
 use emulator::toolchain;
 
-/// Prints the table of methods or the motion, or writes it to the file of the options. Options that
-/// cannot be used are [`Refused`] before the first row. With a board as the place, missing tools
-/// are installed and the board is emulated.
+/// Prints the table of methods or the motion, or writes the motion to the file of the options.
+/// Options that cannot be used, also a file that cannot be written, are [`Refused`] before the
+/// first row. With a board as the place, missing tools are installed and the board is emulated.
+/// Notes and advice go to stderr.
 ///
-/// A motion that diverges later is an error after the rows before it; these are kept. The file
-/// replaces an existing one after the last row; if there is no row, it remains unchanged.
+/// A motion that diverges later, or a board that fails, is an error after the rows before it; these
+/// are kept, also in the file. The file replaces an existing one after the last of these rows; if
+/// there is no row, it remains unchanged.
 pub fn run(options: &SimulateOptions) -> anyhow::Result<()> {
     if options.list {
         return Ok(say(list())?);

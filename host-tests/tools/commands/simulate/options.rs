@@ -108,7 +108,8 @@ pub struct SimulateOptions {
     pub out: Option<PathBuf>,
 }
 
-/// A pendulum and its start.
+/// A pendulum and its start. Without these options the gravity is 9.81 m/s^2 and both angles are
+/// 120 degrees. All numbers are finite, but otherwise not checked here.
 #[derive(Args, Clone, Debug)]
 pub struct StartOptions {
     /// Masses of the bobs, kg
@@ -148,8 +149,8 @@ pub struct StartOptions {
 }
 
 impl StartOptions {
-    /// Returns the pendulum in kg, m and m/s^2, each number rounded to `f64`. The numbers are not
-    /// checked.
+    /// Returns the pendulum in kg, m and m/s^2, each number rounded to `f64`. The numbers are
+    /// finite, but otherwise not checked.
     pub fn parameters(&self) -> Parameters<f64> {
         let [[m1, m2], [l1, l2]] = [&self.masses, &self.lengths].map(Pair::values);
         Parameters {
@@ -161,8 +162,9 @@ impl StartOptions {
         }
     }
 
-    /// Returns the start in rad and rad/s, converted from the units of the options. Without
-    /// `--angles` it is the usual start angle. The numbers are not checked.
+    /// Returns the start in rad and rad/s, converted in `f64` from the units of the options.
+    /// Without `--angles` both angles are 120 degrees, also without `--degrees`. The numbers are
+    /// finite, but otherwise not checked.
     pub fn motion(&self) -> Motion<f64> {
         let radians = |angle: f64| {
             if self.degrees {
@@ -181,8 +183,9 @@ impl StartOptions {
         Motion { a1, a2, w1, w2 }
     }
 
-    /// Returns a line of advice if an angle looks like degrees: more than a turn, without
-    /// --degrees. Otherwise, and without `--angles`, returns `None`. Nothing is printed.
+    /// Returns a line of advice, without a newline, if an angle looks like degrees: more than a
+    /// turn to either side, without --degrees. Otherwise, and without `--angles`, returns `None`.
+    /// Velocities do not matter. Nothing is printed.
     pub fn advice(&self) -> Option<String> {
         let angles = self.angles.as_ref().filter(|_| !self.degrees)?;
         let largest = [&angles.0, &angles.1]
@@ -237,9 +240,10 @@ impl StartOptions {
         })
     }
 
-    /// Returns the first option, with its value, whose number has too many digits for
-    /// [`Self::exact`]. Gravity is not checked: it is the result if all others are short enough and
-    /// it is given. Otherwise the result is empty.
+    /// Returns the first option whose number has too many digits for [`Self::exact`], with its
+    /// value, as in "--masses 1,2". The order is masses, lengths, angles, velocities. Gravity is
+    /// not checked: it is the result if all others are short enough and it is given. Otherwise the
+    /// result is empty.
     pub fn too_long(&self) -> String {
         let pairs = [
             ("--masses", Some(&self.masses)),
@@ -257,8 +261,10 @@ impl StartOptions {
     }
 
     /// Returns the pendulum and its start with all given digits, or `None` if a number has too
-    /// many. That is a number that needs more than 18 digits when it is written without an
-    /// exponent.
+    /// many. Up to 18 digits, when it is written without an exponent, are never too many for a
+    /// decimal, or for each number of a fraction of whole numbers. The result also says if angles
+    /// and velocities are in degrees, and has the exact defaults of options that are not given. The
+    /// numbers are not checked.
     pub fn exact(&self) -> Option<Exact> {
         let [gravity, first] =
             // The values of options that were not given.

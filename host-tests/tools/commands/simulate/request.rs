@@ -15,7 +15,7 @@ use console::number::Number;
 pub struct Plan {
     /// The motion, accepted by the kernel in its first step.
     pub request: Request,
-    /// The time between rows: row n is at n times this.
+    /// The time between rows, s: row n is at n times this.
     pub every: Number,
     /// A note for the user, which the caller prints before the rows; one line without a newline.
     pub note: Option<String>,
@@ -36,12 +36,16 @@ struct Timing {
     samples: u32,
 }
 
-/// Checks all options before the first row, and computes the first step on this computer. An error
-/// is one line that names the option and the value.
+/// Checks the options of the motion before the first row, and computes the first step on this
+/// computer. It uses the step of the options, or else chooses one; the tolerance and the file are
+/// not considered. A time of the last row of 0 gives the start only. A step that may be too long
+/// for the motion is no error, but causes a note.
 ///
-/// It uses the step of the options, or else chooses one; the tolerance is not considered. A time of
-/// the last row of 0 gives the start only. A step that may be too long for the motion is no error,
-/// but causes a note.
+/// An error is one line that names the option and the value. It is an error if that time is
+/// negative or another time is not greater than zero, if it is no whole multiple of the time
+/// between rows, or the latter none of the step, if there are too many steps, or if the place does
+/// not have the method. It is also an error if the kernel refuses the motion, if its first step
+/// diverges, or if an angle exceeds 2^26 rad, in single precision 2^12 rad.
 pub fn plan(options: &SimulateOptions) -> anyhow::Result<Plan> {
     let until = &options.until;
     ensure!(

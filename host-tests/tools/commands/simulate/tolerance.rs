@@ -24,13 +24,15 @@ const MOST_ROWS: u32 = 10_000;
 const ROWS: u32 = 100;
 
 /// Returns the cheapest method and step that the options allow and that keep `tolerance`, rad, in
-/// every row. The second value is the largest error of an angle in any row, rad. Every trial is
-/// computed on this computer, which may take minutes.
+/// every row. The second value is the largest error of an angle in any row, rad; a missing turn is
+/// an error. Prices are cycles on the board of the options, or evaluations of the equations on this
+/// computer. Every trial is computed on this computer, which may take minutes.
 ///
 /// An error is one line that names the option and the value. It is an error if the tolerance or a
-/// time is not greater than zero, if there are more than 10,000 rows, if the kernel refuses the
-/// motion, or if no method meets the tolerance in at most 2^19 steps. A step in the options is
-/// ignored.
+/// time is not greater than zero, if the time of the last row is no whole multiple of the time
+/// between rows, if there are more than 10,000 rows, if the place does not have the method, if the
+/// kernel refuses the motion or an angle is too large ([`plan`](super::plan)), or if no method
+/// meets the tolerance in at most 2^19 steps. A step in the options is ignored.
 pub fn choose(options: &SimulateOptions, tolerance: &Number) -> anyhow::Result<(Plan, f64)> {
     // The times of the rows.
     let SimulateOptions { until, every, .. } = options;

@@ -23,7 +23,8 @@ const WITH_I2C: &[&str] = &["pico", "stm32f405"];
 /// The boards with a USB port of their own.
 const WITH_USB: &[&str] = &["pico"];
 
-/// The checks, in the order of a new board's first use.
+/// The checks, in the order of a new board's first use. Those for `WITH_USB` are for the Pico,
+/// those for `WITH_I2C` for the Pico and the STM32F405, and all others for every board.
 pub const CHECKS: &[Check] = &[
     check("enumeration at the first try", WITH_USB),
     check("control packets of 64 bytes", WITH_USB),
@@ -46,9 +47,10 @@ pub const CHECKS: &[Check] = &[
 /// A cell that the owner fills in.
 pub const BLANK: &str = "(fill in)";
 
-/// Returns the check list of the board `name`: the observed restarts, and a row for each manual
-/// check of this board. A board that this project does not know has only the checks that every
-/// board needs. Nothing is sent.
+/// Returns the check list of the board `name`: the number of restarts that `port` has observed
+/// since it was first opened, the last unplanned restart, and a row for each manual check of this
+/// board, with [`BLANK`] as its result. A board that this project does not know has only the checks
+/// that every board needs. Nothing is sent.
 pub fn section(port: &Port, name: &str) -> Section {
     let note = "The board reports its restarts itself. Please fill in the other rows as the check \
                 list in `firmware/README.md` describes; leave rows that do not apply.";

@@ -44,9 +44,10 @@ fn request(method: Method, (_, m2, angle): (&str, f64, f64)) -> Request {
     }
 }
 
-/// Compares every method of the boards in both motions, of 2 s each in steps of 1/256 s. A
-/// difference is a fault of the section. An error means that the board does not answer within 20 s,
-/// refuses a request, or loses a sample.
+/// Compares every method of the boards in two motions from rest, a regular and a chaotic one, of
+/// 2 s each in steps of 1/256 s. The board computes them on request. A motion whose samples differ
+/// in any bit from the host's is a fault of the section. An error means that the board does not
+/// answer within 20 s, refuses a request, or loses a sample.
 pub fn methods(talk: &mut Talk) -> anyhow::Result<Section> {
     let note = "Motions from rest in steps of 1/256 s, computed by the board on request.";
     let mut section = Section::new("Bits", note, &["method", "motion", "steps", "bits"]);
@@ -126,9 +127,9 @@ fn sample(talk: &mut Talk, number: u16) -> anyhow::Result<(u32, Reading)> {
 const REQUEST: u16 = u16::MAX;
 
 /// Measures on the board, and returns for every method of the boards, in the order of
-/// [`ON_BOARDS`], the average cycles of a step over the first second from rest: from flash and from
-/// RAM. `None` means that the board has no cycle counter or no copy of the method in RAM. Errors
-/// are as in [`Talk::next`].
+/// [`ON_BOARDS`], the average cycles of a step over the first second of the regular motion of
+/// [`methods`]: from flash and from RAM. `None` means that the board has no copy of the method in
+/// this memory, or no cycle counter; then all are `None`. Errors are as in [`Talk::next`].
 pub fn measured(talk: &mut Talk) -> anyhow::Result<Vec<[Option<f64>; 2]>> {
     ON_BOARDS
         .iter()
@@ -137,10 +138,12 @@ pub fn measured(talk: &mut Talk) -> anyhow::Result<Vec<[Option<f64>; 2]>> {
 }
 
 /// Returns the section of the measured cycles ([`measured`]) with the estimate of `cargo count`.
-/// Instructions are counted in QEMU, on a board with the same processor; without such a board, or
-/// without a cycle counter, the estimates are left out. `measured` is in the order of
-/// [`ON_BOARDS`]. There are no faults. Nothing is installed. An error means that the tools are
-/// missing, or that the build or QEMU fails.
+/// `measured` is in the order of [`ON_BOARDS`], and `board` is the board it comes from. There are
+/// no faults.
+///
+/// Instructions are counted in QEMU, on a board with the same processor. Without such a board, or
+/// without a cycle counter, the estimates are left out and no tools are needed. Nothing is
+/// installed. Missing tools are refused. Another error means that the build or QEMU fails.
 pub fn cycles(measured: &[[Option<f64>; 2]], board: Option<&Board>) -> anyhow::Result<Section> {
     let note = "Measured with the processor's cycle counter, interrupts off, over 256 steps of the \
                 regular motion: once with the code in flash and, if there is one, once with its \
@@ -230,9 +233,13 @@ const FRAMES: u32 = TICK_RATE;
 const PATIENCE: usize = 10 * FRAMES as usize;
 
 /// Plays every scene on the board, whose processor has a clock of `hertz` Hz, and compares a second
-/// of each. The board is left in the last scene. Faults are differences, and times that the clock
-/// cannot have measured. Dropped frames are no fault. An error means that the board is silent for
-/// 20 s, or that too few of its frames can be compared.
+/// of each. The board is left in the last scene. Faults are differences in any bit, and a frame
+/// that by this clock took longer than the whole run; 0 Hz counts as 1 Hz. Dropped frames are no
+/// fault.
+///
+/// An error means that the board is silent for 20 s, refuses a command, or that fewer than 60 of
+/// 600 frames of a scene can be compared. This waits without a limit for a board that sends frames
+/// of another scene only.
 pub fn scenes(talk: &mut Talk, hertz: u32) -> anyhow::Result<Section> {
     let columns = &[
         "scene",

@@ -79,13 +79,14 @@ fn verdict(difference: Option<String>) -> String {
     difference.unwrap_or_else(|| "identical".to_owned())
 }
 
-/// Verifies the board, which takes minutes, asks the person at it, and writes the report over an
-/// existing file. The extension of its name is replaced by `md`. Prints the faults to stderr and
-/// the result to stdout. Returns true if there was no fault.
+/// Verifies the board, which takes minutes, asks the person at it unless `no_questions` is set, and
+/// writes the report over an existing file, also if there are faults. The extension of its name is
+/// replaced by `md`. Prints the faults to stderr and the result to stdout. Returns true if there
+/// was no fault. Another program in flash than this workspace builds is reported, but is no fault.
 ///
-/// A port that cannot be opened is refused. Another error means that the board does not answer
-/// within 20 s or refuses a request, that a tool is missing or a build fails, or that the report
-/// cannot be written.
+/// A port that cannot be opened is refused, and so are missing tools. Another error means that the
+/// board does not answer within 20 s or refuses a request, that a build or QEMU fails, or that the
+/// report cannot be written, which is not checked before the end. In all these cases there is none.
 pub fn run(options: &VerifyOptions) -> anyhow::Result<bool> {
     let mut talk = Talk::new(demo::port(&options.port)?)?;
     let identity = talk.ask(protocol::Command::Identify, |answer| {

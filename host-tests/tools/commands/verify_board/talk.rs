@@ -23,15 +23,16 @@ const LOOK: Duration = Duration::from_millis(1);
 
 /// A conversation with the board at a port.
 pub struct Talk {
-    /// The port, with its counts and the restarts of the board.
+    /// The port, with its counts and the restarts of the board. Messages that are read from it
+    /// directly are lost to the conversation.
     pub port: Port,
     /// The messages that have arrived and are not yet examined.
     arrived: std::vec::IntoIter<ToHost>,
 }
 
 impl Talk {
-    /// Begins the conversation when the board has sent a frame. Waits for at most 20 s. The error
-    /// is that of [`Talk::next`].
+    /// Waits for a frame of the board, which is dropped, and begins the conversation. Errors are as
+    /// in [`Talk::next`]: no frame within 20 s, or a refusal.
     pub fn new(port: Port) -> anyhow::Result<Self> {
         let mut talk = Self {
             port,
@@ -41,9 +42,10 @@ impl Talk {
         Ok(talk)
     }
 
-    /// Returns the value of `kind` for the next message that it accepts, and drops the others. A
-    /// refusal by the board of any request is an error, and so is a wait of 20 s; that error
-    /// contains the latest notice of the port.
+    /// Returns the value of `kind` for the next message that it accepts. The messages before it are
+    /// dropped; later ones are kept. It is an error if none arrives within 20 s of the call, also
+    /// if others do; that error is the latest notice of the port, if there is one. A refusal of any
+    /// request by the board is an error, too, even if `kind` would accept it.
     pub fn next<M>(&mut self, kind: impl Fn(ToHost) -> Option<M>) -> anyhow::Result<M> {
         let since = Instant::now();
         let mut notice = None;
@@ -82,8 +84,9 @@ impl Talk {
         self.next(ToHost::frame)
     }
 
-    /// Returns the next answer to the request of this number for which `kind` returns `Some`, as
-    /// that value. Drops the other messages before it. Errors are as in [`Talk::next`].
+    /// Returns the value of `kind` for the next answer to the request of this number that `kind`
+    /// accepts, also one that has already arrived. Drops the other messages before it. Errors are
+    /// as in [`Talk::next`].
     pub fn answer<A>(
         &mut self,
         request: u16,
@@ -98,7 +101,9 @@ impl Talk {
     }
 
     /// Sends a command with the request number 0 and returns the value of `kind` for the first
-    /// answer to it that `kind` accepts. Errors are as in [`Talk::next`].
+    /// answer with this number that `kind` accepts. Not checked: that this is no late answer to an
+    /// earlier command. Errors are as in [`Talk::next`]. While the port is gone, the command is
+    /// dropped, so that no answer arrives within 20 s.
     pub fn ask<A>(
         &mut self,
         command: Command,
@@ -113,12 +118,14 @@ impl Talk {
 const UNDER_WAY: u32 = 12;
 
 /// Asks the person about the panel and the buttons of the board `name`, in the scene `Page`, which
-/// it starts. Prints the questions to stderr, reads the answers from stdin, and waits for each
-/// without limit while the board sends frames.
+/// it starts. Prints the questions to stderr, reads a line from stdin for each, and waits without
+/// limit while the board sends frames. There are questions for `lm3s6965evb`, `pico` and
+/// `stm32f405` only.
 ///
-/// A wrong panel is a fault, and so is a button whose tap does not start the motion again. A
-/// question without an answer, or a button that the board does not have, is no fault. Errors are as
-/// in [`Talk::next`].
+/// The panel is a fault if the answer is `n`, and not answered unless it is `y` or `n`. A button is
+/// a fault if a line is entered, also an empty one, and the motion has not started again shortly
+/// after; `n` means that there is no such button, which is no fault. After the end of stdin nothing
+/// is a fault. Errors are as in [`Talk::next`].
 pub fn ask_person(talk: &mut Talk, name: &str) -> anyhow::Result<Section> {
     // The panel and the keys that each board has.
     let (has_panel, keys): (_, &[Key]) = match name {

@@ -1,4 +1,4 @@
-//! The behaviour that all commands share: options, output, errors in one line, and the exit code.
+//! The behaviour that all commands share: options, output, errors, and the exit code.
 
 use std::env;
 use std::fmt::{self, Display};
@@ -13,14 +13,14 @@ use double_pendulum::{Error, Parameter};
 /// The exit code of a request that cannot be served: wrong options, missing tools.
 pub const REFUSED: u8 = 2;
 
-/// A request that cannot be served, with the reason in one line. The exit code is 2; any other
-/// error has the exit code 1.
+/// A request that cannot be served, with the reason: one line, or one for each missing tool. The
+/// exit code is 2, also if the error has a context; any other error has the exit code 1.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Refused(String);
 
 impl Refused {
-    /// Returns a refusal with the reason that [`main`] prints after `error: `. It should be one
-    /// line without a newline, which is not checked.
+    /// Returns a refusal with the reason that [`main`] prints after `error: `, with any newlines in
+    /// it. It should be one line without a newline, which is not checked.
     pub fn because(reason: impl Display) -> Self {
         Self(reason.to_string())
     }
@@ -34,16 +34,17 @@ impl Display for Refused {
     }
 }
 
-/// Runs a command with the options of the command line. If it fails, prints one line to stderr,
-/// `error: ` with the error and its causes. Returns the exit code: 2 for wrong options and
-/// [`Refused`], 1 for any other error, else that of the result of `run`. With `--help` it prints
-/// the help to stdout, returns success, and does not call `run`.
+/// Runs a command with the options of the command line. If it fails, prints `error: ` with the
+/// error and its causes to stderr: one line, or several if the error has several, such as a
+/// compiler's output. Returns the exit code: 2 for wrong options and [`Refused`], 1 for any other
+/// error, else that of the result of `run`. With `--help` it prints the help to stdout, returns
+/// success, and does not call `run`.
 ///
 /// The first argument is left out if it is the name of the command without `cargo `, because cargo
 /// passes it.
 ///
-/// The reader of the output may stop at any time (`| head`). The command then ends quietly and with
-/// success.
+/// The reader of the output may stop at any time (`| head`). If `run` returns the error of [`say`]
+/// about it, an [`io::Error`] of kind `BrokenPipe`, the command ends quietly and with success.
 pub fn main<Options: Parser, Done: Termination>(
     run: impl FnOnce(&Options) -> anyhow::Result<Done>,
 ) -> ExitCode {
@@ -75,7 +76,8 @@ pub fn verdict(well: bool) -> ExitCode {
 }
 
 /// Prints a line of the command's result to stdout, with a newline. Any failure to print is an
-/// error. If the reader has closed the output, [`main`] then ends the command quietly.
+/// error, to be returned to [`main`], which ends the command quietly if the reader has closed the
+/// output.
 pub fn say(line: impl Display) -> io::Result<()> {
     writeln!(stdout(), "{line}")
 }
@@ -86,7 +88,8 @@ pub fn complain(line: impl Display) {
     let _ = writeln!(stderr(), "{line}");
 }
 
-/// Returns the refusal of a file that cannot be written: `OPTION: cannot write PATH: ERROR`.
+/// Returns the refusal of a file that cannot be written: `OPTION: cannot write PATH: ERROR`. The
+/// option has its dashes, such as `--out`.
 pub fn unwritable(option: &str, path: &Path, error: &io::Error) -> Refused {
     Refused::because(format_args!(
         "{option}: cannot write {}: {error}",
@@ -94,8 +97,9 @@ pub fn unwritable(option: &str, path: &Path, error: &io::Error) -> Refused {
     ))
 }
 
-/// Returns a parser that accepts the names of these choices. Case matters. The names must differ,
-/// which is not checked; of equal ones the first is taken.
+/// Returns a parser that accepts the names of these choices, which the help lists. Case matters.
+/// Another text is a wrong option, and the error lists the names. The names must differ, which is
+/// not checked; of equal ones the first is taken.
 pub fn choice<Choice>(
     choices: impl IntoIterator<Item = Choice>,
     name: impl Fn(Choice) -> &'static str,
@@ -179,8 +183,9 @@ fn one_line(report: &str) -> String {
     line + &tip
 }
 
-/// Returns the option that sets the refused parameter of the pendulum or its display, such as
-/// `--masses`, or else `otherwise`. A diverged motion is no error of an option.
+/// Returns the option that sets the refused parameter of the pendulum or its display: `--masses`,
+/// `--lengths`, `--gravity`, `--angles`, `--velocities` (momenta, too), `--height` (the tolerance),
+/// `--duration` or `--rate`. Returns `otherwise` for another parameter and for a diverged motion.
 pub fn option_of(error: &Error, otherwise: &'static str) -> &'static str {
     match error.parameter() {
         _ if matches!(error, Error::Diverged { .. }) => otherwise,

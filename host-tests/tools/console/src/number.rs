@@ -3,18 +3,23 @@
 use std::fmt;
 use std::str::FromStr;
 
-/// A number with its text. A number that was parsed is finite. It is printed as it was written;
-/// after [`Number::divided_by`], as a whole number, a fraction or a decimal.
+/// A number with its text: a decimal such as `-2.5`, `.5` or `1e-3`, or two of them with a `/`
+/// between them and no spaces. A number that was parsed is finite: `inf`, `1e999` and `1/0` are
+/// refused. Numbers are equal only if their texts are, too.
+///
+/// It is printed as it was written; after [`Number::divided_by`], as a whole number or a fraction
+/// or, if the exact value is unknown, as a decimal, `inf` or `NaN`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Number {
     text: String,
     value: f64,
-    /// The exact value. It is `None` if the numerator or denominator has more than 18 digits; only
-    /// `value` is known then.
+    /// The exact value. It is `None` if this, or a number of the text, does not fit in 64 bits;
+    /// only `value` is known then.
     fraction: Option<Fraction>,
 }
 
-/// A numerator over a denominator greater than zero, in lowest terms.
+/// A numerator over a denominator greater than zero, in lowest terms; zero is (0, 1). The functions
+/// here return no other; the type does not check it.
 pub type Fraction = (i64, u64);
 
 /// The reasons why a text is not a [`Number`].
@@ -32,21 +37,22 @@ impl Number {
         }
     }
 
-    /// Returns the nearest `f64`. A fraction or a quotient may be a few units of the last place
-    /// off, if its exact value is unknown or has numbers of more than 53 bits.
+    /// Returns the number as the nearest `f64`. Only a fraction or a quotient whose exact value is
+    /// unknown or has numbers of more than 53 bits may be a few units of the last place off.
     pub fn value(&self) -> f64 {
         self.value
     }
 
-    /// Returns the exact value, in lowest terms. It is always known for a decimal and for a
-    /// fraction of whole numbers, if each number, written without exponents, has at most 18 digits.
-    /// `None` means that only [`Number::value`] is known.
+    /// Returns the exact value, in lowest terms, or `None` if only [`Number::value`] is known,
+    /// because the exact value or a number of the text does not fit in 64 bits. A decimal and a
+    /// fraction of whole numbers always fit if each number has at most 18 digits, including the
+    /// zeros that an exponent adds.
     pub fn exact(&self) -> Option<Fraction> {
         self.fraction
     }
 
-    /// Returns true if the nearest `f64` is greater than zero. A positive number that is rounded to
-    /// 0 is not.
+    /// Returns true if [`Number::value`] is greater than zero, also if it is infinite. A positive
+    /// number that is rounded to 0 is not, nor is NaN.
     pub fn is_positive(&self) -> bool {
         self.value > 0.0
     }
@@ -60,7 +66,7 @@ impl Number {
     }
 
     /// Returns the number divided by `parts`; by 0 it is infinite or NaN, without an exact value.
-    /// Otherwise the exact value stays known unless it becomes too long.
+    /// Otherwise a known exact value stays known unless it no longer fits in 64 bits.
     pub fn divided_by(&self, parts: u32) -> Number {
         let fraction = self
             .fraction
@@ -79,8 +85,9 @@ impl Number {
     }
 
     /// Returns `count` times the number. It is the nearest `f64` if the exact value is known and
-    /// its numerator times `count` and its denominator have at most 53 bits each. It is infinite if
-    /// the product exceeds the range of `f64`.
+    /// its numerator times `count` and its denominator have at most 53 bits each; otherwise it may
+    /// be a few units of the last place off. It is infinite if the product exceeds the range of
+    /// `f64`. An infinite number times 0 is NaN.
     pub fn times(&self, count: u64) -> f64 {
         let count = count as f64;
         self.fraction.map_or(self.value * count, |(above, below)| {
@@ -175,12 +182,12 @@ fn nearest((above, below): Fraction) -> f64 {
 }
 
 /// Two numbers separated by a comma: one for each bob or rod, number 1 first. Spaces around a
-/// number are accepted.
+/// number are accepted, and not printed. Any other text is refused.
 #[derive(Clone, Debug)]
 pub struct Pair(pub Number, pub Number);
 
 impl Pair {
-    /// Returns the nearest `f64` numbers, in their order.
+    /// Returns the [`Number::value`] of both, in their order.
     pub fn values(&self) -> [f64; 2] {
         [self.0.value(), self.1.value()]
     }

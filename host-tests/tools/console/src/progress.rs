@@ -16,7 +16,8 @@ const TURN: Duration = Duration::from_millis(120);
 /// The number of characters of a child's last line that the spinner shows.
 const SHOWN: usize = 60;
 
-/// Work in progress. It appears on standard error. Dropping it removes the bar or spinner.
+/// Work in progress. It appears on standard error; several at once have a line each. A failure to
+/// print is ignored. Dropping it removes the bar or spinner; a plain line stays.
 #[derive(Debug)]
 pub struct Progress {
     bar: ProgressBar,
@@ -25,9 +26,9 @@ pub struct Progress {
 }
 
 impl Progress {
-    /// Begins work of unknown length and announces it at once; `doing` names it. On a terminal it
-    /// is a spinner that turns by itself. Elsewhere it is a line, which [`Self::alive`] repeats
-    /// every 15 s.
+    /// Begins work of unknown length and announces it at once; `doing` names it. If standard error
+    /// is a terminal, it is a spinner that turns by itself. Elsewhere it is a line, which the first
+    /// call of [`Self::alive`] or [`Self::advance`] after every 15 s repeats with the time.
     pub fn start(doing: &str) -> Self {
         let progress = Self::new(
             doing,
@@ -42,9 +43,9 @@ impl Progress {
         progress
     }
 
-    /// Begins work with a known number of pieces, named `doing`. On a terminal it is a bar.
-    /// Elsewhere it is a line every 15 s, printed by the first call of [`Self::advance`] or
-    /// [`Self::alive`] after that time.
+    /// Begins work with a known number of pieces, named `doing`. If standard error is a terminal,
+    /// it is a bar. Elsewhere nothing is printed at first; the first call of [`Self::advance`] or
+    /// [`Self::alive`] after every 15 s prints a line with the completed pieces and the time.
     pub fn of(doing: &str, length: u64) -> Self {
         let style = "{prefix} {elapsed} {wide_bar} {pos}/{len}, {per_sec}, {eta} left";
         Self::new(doing, ProgressBar::new(length), style)
@@ -62,16 +63,16 @@ impl Progress {
         }
     }
 
-    /// Reports that this number of pieces was completed since the last call. It is not checked
-    /// against the length. It may be called by several threads.
+    /// Adds this number to the completed pieces. The sum is not checked against the length and is
+    /// shown as it is. Several threads may call this.
     pub fn advance(&self, pieces: u64) {
         self.bar.inc(pieces);
         self.remind();
     }
 
     /// Shows that the work continues. It is called often, with the last line of a child process, or
-    /// with `None` if there is no new line. A spinner shows the first 60 characters of the line; a
-    /// bar and a plain line do not show it.
+    /// with `None` if there is no new line; the last one then stays. A spinner shows the first 60
+    /// characters of the line; a bar and a plain line do not show it.
     pub fn alive(&self, line: Option<&str>) {
         if let Some(line) = line {
             self.bar

@@ -25,9 +25,10 @@ const PATIENCE: u32 = TICK_RATE;
 const MOST_TICKS: u32 = 2000;
 
 /// The comparison of a board with the host. The board's frames and reports of its scene go in, and
-/// frames come out in the same order once they are compared.
+/// frames come out in the same order once they are compared. Its default is empty.
 ///
 /// The counts and the first difference are of all scenes together, since the comparison was made.
+/// Later differences are only counted as skipped frames.
 #[derive(Debug, Default)]
 pub struct Comparison {
     /// The board's scene from its start, and the same scene on the host; `None` until the board has
@@ -47,18 +48,22 @@ pub struct Comparison {
     last: Option<Frame>,
     /// The number of frames that were identical.
     compared: u64,
-    /// The number of frames that did not count: their scene had ended, or may have, or they differ
-    /// after the first difference.
+    /// The number of frames that did not count: those discarded at a new start, and those that
+    /// differ and may be of an earlier scene, or are or follow the first confirmed difference.
     skipped: u64,
     /// The first difference that was confirmed, in words.
     first: Option<String>,
 }
 
 impl Comparison {
-    /// Takes a frame that has just arrived. Returns true if the host must send a request for the
-    /// board's scene: at the first frame without a known scene or with a difference in doubt, and
-    /// after every 60 more. A frame of another scene, or with a smaller step number than the one
-    /// before, discards the frames that still wait. The answer goes to [`Comparison::status`].
+    /// Takes a frame that has just arrived and waits for [`Comparison::follow`]. Returns true if
+    /// the host must send a request for the board's scene: at the first frame without a known scene
+    /// or with a difference in doubt, and after every 60 more. The answer goes to
+    /// [`Comparison::status`].
+    ///
+    /// A frame of another scene, or with a smaller step number than the one before, is a new start.
+    /// The scene is not known then until the next report, and the frames that still wait are
+    /// discarded and count as skipped.
     pub fn frame(&mut self, frame: &Frame) -> bool {
         // Another scene or a smaller step number means that a new motion has begun on the board.
         let starts =
@@ -83,8 +88,12 @@ impl Comparison {
 
     /// Takes the board's report of its scene. If no scene is known, or if a difference is in doubt
     /// and the report is of another scene, the host starts the reported one. If a difference is in
-    /// doubt and the report is of the same scene, the difference is real. A scene that cannot start
-    /// on the host counts as not known. In all other cases the report changes nothing.
+    /// doubt and the report is of the same scene, the difference is real. In all other cases the
+    /// report changes nothing. Reports are of the same scene if scene, settings, requested method
+    /// and processor are equal.
+    ///
+    /// Frames that wait when the host starts a scene may be of the one before, so a difference in
+    /// them is skipped. A scene that cannot start on the host counts as not known.
     pub fn status(&mut self, status: &Status) {
         // Only the start of the scene is compared. Its pause and speed do not matter.
         let start = Status {
@@ -110,10 +119,14 @@ impl Comparison {
         }
     }
 
-    /// Compares the oldest waiting frame and returns it; its numbers may differ from the host's.
+    /// Advances the host's scene to the oldest waiting frame, compares the frame and returns it. A
+    /// returned frame that differs from the host's counts as skipped: it may be of an earlier scene
+    /// ([`Comparison::status`]), or a difference is confirmed.
+    ///
     /// Returns `None` if no frame waits, if the board has not reported its scene, if a difference
     /// is in doubt, or if the host's scene has not reached the frame yet; then it continues in the
-    /// next call, because a call advances the host by at most 2000 ticks.
+    /// next call, because a call advances the host by at most 2000 ticks. A scene that has stopped
+    /// on the host advances no more and is compared as it is.
     pub fn follow(&mut self) -> Option<Frame> {
         let (_, show) = self.playing.as_mut().filter(|_| self.doubt.is_none())?;
         let frame = self
@@ -140,10 +153,11 @@ impl Comparison {
         Some(frame)
     }
 
-    /// Returns the panel's picture, drawn from the current state of the host's scene. `frame` only
-    /// decides if there is a pause mark, so it must be the frame that [`Comparison::follow`]
-    /// returned last. The picture is blank if no scene plays on the host: before the board has
-    /// reported its scene, at first and after each new start.
+    /// Returns the panel's picture, drawn from the current state of the host's scene, not from the
+    /// board's numbers. `frame` only decides if there is a pause mark, so it must be the frame that
+    /// [`Comparison::follow`] has just returned; a later call of that function may advance the
+    /// scene. The picture is blank, except for the mark, if no scene plays on the host: before the
+    /// board has reported its scene, at first and after each new start.
     pub fn panel(&self, frame: &Frame) -> Screenshot {
         let mut canvas = self
             .playing
@@ -155,13 +169,14 @@ impl Comparison {
         Screenshot::from(&canvas)
     }
 
-    /// Returns true if no frame waits to be compared, also before the first frame.
+    /// Returns true if no frame waits to be compared, also before the first frame. A frame with a
+    /// difference in doubt waits.
     pub fn is_settled(&self) -> bool {
         self.waiting.is_empty()
     }
 
     /// Returns the first number whose bits differ between board and host, in words, or `None` if no
-    /// difference is confirmed.
+    /// difference is confirmed. It stays the same from then on, also in later scenes.
     pub fn difference(&self) -> Option<&str> {
         self.first.as_deref()
     }

@@ -37,7 +37,8 @@ const NUMBERS: [(&str, &str); 10] = [
     ),
 ];
 
-/// Draws a page of the help over the whole terminal. With [`Help::Hidden`] it draws nothing.
+/// Draws a page of the help over the whole terminal. With [`Help::Hidden`] it draws nothing. Lines
+/// are wrapped, and those beyond the last row are cut off.
 pub fn draw(frame: &mut Frame, page: Help) {
     let (title, text) = match page {
         Help::Hidden => return,

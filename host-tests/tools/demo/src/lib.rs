@@ -54,14 +54,20 @@ const NO_TERMINAL: &str = "no terminal: running headless; --record FILE.gif or -
 /// time.
 const LIMIT: [f64; 2] = [60.0, 20.0];
 
-/// Shows the board in the terminal until the user quits, or runs it without one and prints a
-/// summary to stdout. `--seconds` limits both; without a terminal the default is 10 s. Missing
-/// tools are installed, and the files of the options are replaced.
+/// Shows the board in the terminal until the user quits, or runs it without one, and then prints a
+/// summary to stdout. It runs without a terminal by `--headless`, or if stdin or stdout is not a
+/// terminal. `--seconds` limits both; without a terminal the default is 10 s.
 ///
-/// Returns true if no bit differs from the host's and if, on an emulated board that is run frame by
-/// frame, nothing else went wrong. Options that cannot be served are [`Refused`]. It is another
-/// error if a build fails, if the emulator ends, if no frame arrives, or if a file cannot be
-/// written. Without a terminal, a board at a port may be silent for 10 s.
+/// Missing tools of an emulated board are installed, from the network, and its application is
+/// built. The files of the options are replaced, the animation already at the start; after an error
+/// it may be incomplete.
+///
+/// Returns true if no compared bit differs from the host's and if, on an emulated board that is run
+/// frame by frame, nothing else went wrong. Each problem is a line on stderr. Options that cannot
+/// be served, also by the board, are [`Refused`]. It is another error if a build fails, if the
+/// emulator ends, if no frame has arrived at the end, or if a file cannot be written. Without a
+/// terminal, it is also an error if a board at a port sends no further frame of the requested scene
+/// for 10 s.
 pub fn run(options: &DemoOptions) -> anyhow::Result<bool> {
     let is_live = !options.headless && stdout().is_terminal() && stdin().is_terminal();
     // All options are checked before anything is built.
@@ -95,7 +101,8 @@ pub fn run(options: &DemoOptions) -> anyhow::Result<bool> {
 }
 
 /// Opens a serial port by its path, or the only one over USB for `auto`, which waits up to 3 s for
-/// it. The refusal is for `--port`.
+/// it. The refusal, which names `--port`, means that the port is missing, in use, not accessible
+/// or, with `auto`, one of several. Not checked: that a board is at its other end.
 pub fn port(name: &str) -> Result<Port, Refused> {
     Port::open(name).map_err(|reason| Refused::because(format_args!("--port {reason}")))
 }

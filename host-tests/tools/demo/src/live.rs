@@ -20,9 +20,12 @@ use emulator::process;
 /// frame is no faster than a real one.
 const LOOK: Duration = Duration::from_nanos(1_000_000_000 / TICK_RATE as u64);
 
-/// Shows the board for this number of seconds of its clock, which may be infinite, or until the
-/// user quits. Ctrl-C and signals restore the terminal, too. An error means that the terminal or
-/// the board fails; the terminal is restored.
+/// Shows the board in the terminal until [`Session::seconds`] reaches `seconds`, which may be
+/// infinite, or until the user quits by q or Ctrl-C; both are `Ok`. If `seconds` is 0, negative or
+/// NaN, it returns at once. A board at a port that is silent is waited for.
+///
+/// An error means that the terminal fails, or is one of the session, such as [`Session::hear`]
+/// returns. The terminal is restored in each case. A signal restores it, too, and ends the process.
 pub fn watch(session: &mut Session, seconds: f64) -> anyhow::Result<()> {
     // Ctrl-C must leave a usable terminal.
     process::on_interrupt(|| {

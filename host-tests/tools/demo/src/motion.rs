@@ -1,4 +1,8 @@
 //! The options for the user's own motion, which replaces the start of a scene.
+//!
+//! A number is written as a decimal or a fraction such as `1/2`, and a pair as two numbers with a
+//! comma between them, number 1 first. The texts of [`OwnMotion`] are the help of the command; its
+//! ranges are checked by [`OwnMotion::settings`].
 
 use std::fmt::Display;
 
@@ -78,12 +82,15 @@ impl OwnMotion {
             .collect()
     }
 
-    /// Returns the settings to play `scene` with, or `None` if no option is given.
+    /// Returns the settings to play `scene` with, or `None` if no option is given. `--degrees`
+    /// alone counts as none.
     ///
-    /// The given values replace those of the scene, rounded to `f32`. In the settings, angles are
-    /// in degrees and velocities in rad/s. Returns an error if the scene does not use an option, if
-    /// an angle is more than half a turn, or if the scene cannot show the motion on `processor`,
-    /// which includes a motion that is too fast for it.
+    /// The given values replace those of the scene's own first settings, rounded to `f32`. In the
+    /// settings, angles are in degrees, velocities in rad/s, and all other numbers in SI units.
+    /// Returns an error if the scene does not use an option, if an angle is more than half a turn,
+    /// or if the scene cannot show the motion on `processor`: a mass or length that is not
+    /// positive, negative gravity, unequal rods in some scenes, or a motion that is too fast for
+    /// every method.
     pub fn settings(
         &self,
         scene: SceneName,

@@ -13,17 +13,20 @@ use ratatui::widgets::{Axis, Block, Chart, Dataset, GraphType, Paragraph, Sparkl
 
 use super::readings::{Readings, energy_error};
 
-/// The smallest width of the numbers, in columns.
+/// The smallest width of the numbers that [`draw`] can show, in columns.
 pub const NARROWEST: u16 = 15;
 /// The largest width, beyond which a value would be too distant from its name, in columns.
 const WIDEST: u16 = 24;
-/// The number of rows that the numbers need in the narrowest column, without the bars.
+/// The number of rows that the numbers need in the narrowest column ([`NARROWEST`]), without the
+/// bars.
 pub const ROWS: u16 = 13;
 /// The smallest scale of the bars. Smaller errors are mainly the rounding of the energy.
 const LEAST_SCALE: f32 = 1e-14;
 
 /// Draws the latest numbers in the area, of which it uses at most 24 columns, and the bars below
-/// them if frames with angles have arrived.
+/// them if the present motion has frames with angles. A number that is not known yet, or does not
+/// exist in the scene, is a dash. In an area smaller than [`NARROWEST`] by [`ROWS`] the rest is cut
+/// off.
 pub fn draw(frame: &mut Frame, area: Rect, readings: &Readings) {
     let area = Rect {
         width: area.width.min(WIDEST),
@@ -170,8 +173,9 @@ fn within_half_a_turn(degrees: f64) -> f64 {
     degrees - 2.0 * HALF_TURN * ((degrees - HALF_TURN - ROUNDING) / (2.0 * HALF_TURN)).ceil()
 }
 
-/// Draws the chart of both angles, degrees, over the last 5 s of simulated time. `past` is in
-/// ascending order of time. Angles are within half a turn. Without reports the chart has only its
+/// Draws the chart of both angles, in degrees, over the last 5 s of simulated time before the last
+/// report. `past`, whose angles are in rad, must be in ascending order of time, which is not
+/// checked. Angles with turns are drawn within half a turn. Without reports the chart has only its
 /// axes.
 pub fn draw_angles(frame: &mut Frame, area: Rect, past: &[Report]) {
     // The chart shows the last `SPAN` seconds, and from the start before that time.

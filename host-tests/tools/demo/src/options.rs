@@ -1,4 +1,10 @@
 //! The command line of `cargo demo`.
+//!
+//! The texts of [`DemoOptions`] are the help of the command. `--port` excludes `--board`.
+//! `--seconds` must be greater than 0 and at most [`MOST_SECONDS`]. The file of `--record` is a
+//! GIF, and that of `--screenshot` a PNG; their names must end so. Without a terminal at stdin and
+//! stdout the command runs as with `--headless`. A board at a port keeps its own time then, too, so
+//! that its results are not the same every time.
 
 use std::path::PathBuf;
 
@@ -89,7 +95,9 @@ fn after_help() -> String {
     )
 }
 
-/// Every key of the live view, several of them separated by ", ", with its effect.
+/// The keys of the live view with their effects, as texts for the user. Keys in one entry are
+/// separated by ", "; their effects are in the same order. Left is clockwise. While a page of the
+/// help is shown, every other key than `?` and Ctrl-C only closes it.
 pub const KEYS: [(&str, &str); 10] = [
     ("up, down", "mass ratio m2/m1: next larger, next smaller"),
     ("left, right", "start angle of both rods by 1 degree"),
@@ -104,7 +112,7 @@ pub const KEYS: [(&str, &str); 10] = [
 ];
 
 /// Returns the key of the scene at `place` in the catalogue, counted from 0: 1 to 9, then a, b, c
-/// and so on. Beyond z it is a space.
+/// and so on. Beyond z, place 34, it is a space.
 pub fn scene_key(place: usize) -> char {
     u32::try_from(place + 1)
         .ok()
@@ -112,13 +120,14 @@ pub fn scene_key(place: usize) -> char {
         .unwrap_or(' ')
 }
 
-/// Returns the scene with this key, or `None` if no scene has it. Capital letters are no such keys.
+/// Returns the scene with this key ([`scene_key`]), or `None` if no scene has it. Capital letters
+/// and the space are no such keys.
 pub fn scene_of_key(key: char) -> Option<SceneName> {
     let place = (0..SceneName::ALL.len()).find(|place| scene_key(*place) == key)?;
     SceneName::ALL.get(place).copied()
 }
 
-/// Returns what a scene shows, in one line without a newline.
+/// Returns the description of a scene for the user, in one line without a newline.
 pub fn shows(scene: SceneName) -> &'static str {
     match scene {
         SceneName::Page => "the animation of math24.net: from 120 degrees, soon chaotic",
@@ -137,16 +146,19 @@ pub fn shows(scene: SceneName) -> &'static str {
     }
 }
 
-/// A method, or none to leave it to the board's plan.
+/// A method, or `None` to leave it to the board's plan.
 pub type MethodChoice = Option<Method>;
 
-/// A controller of the panel, or none to identify it.
+/// A controller of the panel, or `None` to let the board identify it.
 pub type PanelChoice = Option<Controller>;
 
 impl DemoOptions {
     /// Refuses requests that are known to fail before anything is built: files that cannot be
-    /// written, a speed out of range, a method or a motion that the scene cannot show. The last two
-    /// are not checked for a board at a port without `--scene`, whose scene is not known yet.
+    /// written, a speed out of range, a method or a motion that the scene cannot show
+    /// ([`DemoOptions::start`]). An emulated board without `--scene` shows the page. For a board at
+    /// a port without `--scene` the last two are not checked, because its scene is not known yet.
+    /// The port is not opened.
+    ///
     /// Existing files remain unchanged, and no new ones are left behind.
     pub fn check(&self) -> Result<(), Refused> {
         // The files must be writable.
@@ -169,7 +181,8 @@ impl DemoOptions {
     }
 
     /// Returns the requested speed, simulated time per real time. `None` means that no speed is
-    /// requested. A speed outside 0.01 to 4 is refused.
+    /// requested. A speed outside 0.01 to 4, both included, is refused. The board rounds it to
+    /// hundredths.
     pub fn speed(&self) -> Result<Option<f64>, Refused> {
         let Some(speed) = &self.speed else {
             return Ok(None);
@@ -187,11 +200,13 @@ impl DemoOptions {
         }
     }
 
-    /// Returns the settings to start `scene` with, or `None` if the scene's own settings apply.
+    /// Returns the settings to start `scene` with, or `None` if the scene's own settings apply
+    /// ([`OwnMotion::settings`]). `scene` need not be that of `--scene`.
     ///
-    /// Returns an error if the scene cannot show the motion or use the method. For a board at a
-    /// port the fastest processor class is assumed, so the board may still refuse them. In the
-    /// settings, angles are in degrees and velocities in rad/s.
+    /// Returns an error if the scene cannot show the motion or use the requested method, which is
+    /// checked with the scene's own settings, too. For a board at a port the fastest processor
+    /// class is assumed, so the board may still refuse them. In the settings, angles are in
+    /// degrees, velocities in rad/s, and all other numbers in SI units.
     pub fn start(&self, scene: SceneName) -> Result<Option<Settings>, Refused> {
         let own = self.motion.settings(scene, self.processor())?;
         let settings = own.unwrap_or_else(|| scene.first_settings());
@@ -217,8 +232,9 @@ impl DemoOptions {
 }
 
 /// Starts the scene as a trial, without a board. Returns an error, the reason in words, if a scene
-/// with these settings does not use a method on this processor: it always uses another one, has no
-/// choice, is too slow with it, or refuses it.
+/// with these settings does not use this method on this processor: it always uses another one, has
+/// no choice, is too slow with it, needs shorter steps, or cannot be started with these settings at
+/// all.
 pub fn usable(
     method: Method,
     scene: SceneName,
@@ -266,7 +282,8 @@ fn ends_in(kind: &str, file: &str) -> Result<PathBuf, String> {
     }
 }
 
-/// The longest run, in seconds of the board's time.
+/// The longest run that `--seconds` accepts, in seconds of the board's clock: a day. Without
+/// `--seconds` the live view has no limit.
 pub const MOST_SECONDS: f64 = 86_400.0;
 
 /// Accepts a number of seconds greater than 0, at most [`MOST_SECONDS`].

@@ -22,7 +22,8 @@ use emulator::qemu::{HEIGHT, Screenshot, WIDTH};
 const SET: u8 = 3;
 
 /// Draws the screenshot over the area: with a pixel in half a character if the area has at least
-/// 128 columns, or else in Braille, without the three darkest greys.
+/// 128 columns, or else in Braille, without the three darkest greys, 0 to 2. The picture fills the
+/// area; its shape is right if the area has a quarter as many rows as columns.
 pub fn draw(frame: &mut Frame, area: Rect, screenshot: &Screenshot) {
     // A terminal that is wide enough shows every pixel in its grey.
     let in_greys = usize::from(area.width) >= WIDTH;
@@ -72,8 +73,8 @@ fn in_terminal(grey: u8) -> Color {
     Color::Indexed(TERMINAL[usize::from(grey.min(BRIGHTEST_GREY))])
 }
 
-/// Returns the colours of all 16 greys from black on, as 48 bytes: red, green and blue of each, in
-/// the format of image files.
+/// Returns the colours of all 16 greys from black on, as 48 bytes: red, green and blue of each, 0
+/// to 255, in the format of image files. They are ambers, from nearly black to the brightest.
 pub fn palette() -> Vec<u8> {
     let most = u32::from(BRIGHTEST_GREY);
     let mix = |grey: u32| {
@@ -100,8 +101,8 @@ const UNCHANGED: u8 = 16;
 /// The unit of time in GIF: hundredths of a second.
 const GIF_RATE: i64 = 100;
 
-/// An animation that is being written, at most 30 pictures per second of the board, repeated for
-/// ever. The file is complete only after [`Recording::finish`]; if this is dropped before, an
+/// An animation (GIF) that is being written, at most 30 pictures per second of the board, repeated
+/// for ever. The file is complete only after [`Recording::finish`]; if this is dropped before, an
 /// incomplete file remains.
 pub struct Recording {
     path: PathBuf,
@@ -110,13 +111,14 @@ pub struct Recording {
     pictures: usize,
     /// The greys of the latest picture, in pixels of the file; empty before the first.
     shown: Vec<u8>,
-    /// The tick of the next screenshot. The last one is shown until then.
+    /// The first tick of the next picture, until which the last one is shown; `None` before the
+    /// first.
     due: Option<i64>,
 }
 
 impl Recording {
-    /// Creates the GIF file, or empties an existing one. It has no picture yet. An error means that
-    /// it cannot be written.
+    /// Creates the GIF file, or empties an existing one. It has no picture yet. The folder must
+    /// exist. An error means that the file cannot be written.
     pub fn create(path: &Path) -> anyhow::Result<Self> {
         let file =
             File::create(path).with_context(|| format!("cannot write {}", path.display()))?;
@@ -134,22 +136,27 @@ impl Recording {
         })
     }
 
-    /// Returns true if a picture is to be added at this tick of the board's clock, 1/60 s, which is
-    /// every second tick; always true before the first picture.
+    /// Returns true if a picture is to be added at this tick of the board's clock, 1/60 s: from two
+    /// ticks after the last added one on, and always before the first picture.
     pub fn is_due(&self, tick: i64) -> bool {
         self.due.is_none_or(|due| tick >= due)
     }
 
-    /// Adds the panel's picture from `tick` on, unless it is not due ([`Recording::is_due`]). The
-    /// previous picture is shown longer if this one is late. Ticks are of 1/60 s and ascend. An
-    /// error means that the file cannot be written; it is then removed.
+    /// Adds the panel's picture, if it is due at `tick` ([`Recording::is_due`]), and does nothing
+    /// otherwise, also for an earlier tick. Ticks are of 1/60 s.
+    ///
+    /// The picture is shown until two ticks after `tick`. If it is late, it is shown from the tick
+    /// at which one was due, so that the animation keeps the board's time, for at most 655 s.
+    ///
+    /// An error means that the file cannot be written. It is then removed, and the recording is of
+    /// no further use.
     pub fn add(&mut self, screenshot: &Screenshot, tick: i64) -> anyhow::Result<()> {
         if !self.is_due(tick) {
             return Ok(());
         }
 
-        // The previous picture is extended to the next due tick, so that the animation keeps the
-        // board's time.
+        // This picture begins at the tick at which it was due, also if it is late, so that the
+        // animation keeps the board's time.
         let hundredths = |tick: i64| tick * GIF_RATE / i64::from(TICK_RATE);
         let next = tick + TICKS_PER_FRAME;
         let length = hundredths(next) - hundredths(self.due.replace(next).unwrap_or(tick));
@@ -188,8 +195,9 @@ impl Recording {
             .map_err(|error| unwritten(&self.path, &cause(error)))
     }
 
-    /// Writes the rest of the file. Returns the path of the file and the number of its pictures. If
-    /// that is not possible, removes the file and returns an error.
+    /// Writes the rest of the file. Returns the path of the file and the number of its pictures,
+    /// which may be 0. The last picture lasts two ticks. If the file cannot be written, removes it
+    /// and returns an error.
     pub fn finish(self) -> anyhow::Result<(PathBuf, usize)> {
         let Self {
             path,
@@ -236,8 +244,8 @@ fn magnified(screenshot: &Screenshot) -> Vec<u8> {
 
 /// Reads an animation for tests. Returns the greys of each picture, one for each pixel of the
 /// panel, row by row, and its duration in hundredths of a second. Greys are from 0, black, to 15.
-/// It must be an animation of `cargo demo`, which is not checked. An error means that the file
-/// cannot be read or is no GIF.
+/// It must be an animation of `cargo demo`, which is not checked; another one gives numbers without
+/// a meaning. An error means that the file cannot be read or is no GIF.
 pub fn played(path: &Path) -> anyhow::Result<Vec<(Vec<u8>, u16)>> {
     let mut options = DecodeOptions::new();
     options.set_color_output(ColorOutput::Indexed);
@@ -261,7 +269,8 @@ pub fn played(path: &Path) -> anyhow::Result<Vec<(Vec<u8>, u16)>> {
     Ok(played)
 }
 
-/// Returns the screenshot as the bytes of a PNG file, each pixel as a square of 3 by 3.
+/// Returns the screenshot as the bytes of a PNG file in the colours of [`palette`], each pixel as a
+/// square of 3 by 3. It writes no file. An error is one of the encoder.
 pub fn png(screenshot: &Screenshot) -> anyhow::Result<Vec<u8>> {
     let [width, height] = SIZE.map(u32::from);
     let mut file = Vec::new();

@@ -36,7 +36,8 @@ pub enum Help {
 }
 
 impl Help {
-    /// Returns the page after the key `?`: the keys, then the numbers, then no page.
+    /// Returns the page after the key `?`: after no page the keys, then the numbers, then no page
+    /// again.
     pub fn next(self) -> Self {
         match self {
             Self::Hidden => Self::Keys,
@@ -46,7 +47,8 @@ impl Help {
     }
 }
 
-/// Returns a warning of the host, as a line of the board's log.
+/// Returns a warning of the host, as a line of the board's log: with the level `warn`, the text as
+/// it is, and no place.
 pub fn warning(text: String) -> LogLine {
     LogLine {
         level: Some("warn".to_owned()),
@@ -55,22 +57,24 @@ pub fn warning(text: String) -> LogLine {
     }
 }
 
-/// The data that a board has sent since the start of the session.
+/// The data that a board has sent since the start of the session. The default is empty: no message
+/// has arrived.
 #[derive(Debug, Default)]
 pub struct Readings {
     /// The latest frame; `None` before the first.
     pub frame: Option<Frame>,
     /// The angles at the start of the motion, degrees; `None` until the board has reported them.
     pub start: Option<[f32; 2]>,
-    /// The counts of the link.
+    /// The counts of the link since it was opened, set by the session.
     pub counts: Counts,
     /// The state of the panel when the board was last asked. It is `None` before, and for an
     /// emulated board.
     pub panel: Option<PanelReport>,
     /// The reports since the start of the motion, oldest first. It is empty in scenes without
-    /// angles. At most 12 s of frames are kept.
+    /// angles. At most the latest 720 are kept, which last 12 s if no frame is dropped.
     pub past: Vec<Report>,
-    /// All lines of the log, with the warnings of the host, oldest first.
+    /// All lines of the log, with the warnings of the host, oldest first. They are kept without a
+    /// limit, except that a run without a terminal takes those of a port.
     pub lines: Vec<LogLine>,
     /// The comparison of the frames with the host's.
     pub comparison: Comparison,
@@ -93,9 +97,10 @@ pub struct Readings {
 }
 
 impl Readings {
-    /// Takes a frame that has just arrived. A frame of another scene, or of an earlier time, begins
-    /// a new motion. Returns true if the host must send a request for the board's scene
-    /// ([`Comparison::frame`]).
+    /// Takes a frame that has just arrived, and passes it to the comparison. A frame of another
+    /// scene, or of an earlier time, begins a new motion: `start` and `past` are emptied. A frame
+    /// of the same time, as in a pause, is not added to `past`. Returns true if the host must send
+    /// a request for the board's scene ([`Comparison::frame`]).
     pub fn frame(&mut self, frame: Frame) -> bool {
         let last = self.frame.replace(frame);
         let report = frame.report;
@@ -130,17 +135,22 @@ impl Readings {
         self.comparison.frame(&frame)
     }
 
-    /// Takes the board's report of its scene. It is needed because frames contain the start angle
-    /// of rod 1 only. If the scene does not use the requested method, a warning is added to the
-    /// lines, once until the scene or the method changes.
+    /// Takes the board's report of its scene: sets `start` and passes the report to
+    /// [`Comparison::status`]. It is needed because frames contain the start angle of rod 1 only.
+    /// `speed` and `panel` are not changed.
+    ///
+    /// If the scene does not use the method that the report says is requested, a warning is added
+    /// to the lines, once until the scene or the method changes.
     pub fn status(&mut self, status: &Status) {
         self.start = Some(status.settings.degrees);
         self.note_method(status);
         self.comparison.status(status);
     }
 
-    /// Takes the state of the panel. A change is added to the lines. A change is the first report,
-    /// or a panel that is found or lost, or begins or ceases to work well ([`link::is_well`]).
+    /// Takes the state of the panel, and adds a line if it has changed: at the first report, if the
+    /// panel is found, lost or identified as another one, or if it begins or ceases to show all 60
+    /// frames of a second ([`link::is_well`]). A board without a panel that reports its state
+    /// causes no line.
     pub fn panel(&mut self, report: &PanelReport) {
         let before = self.panel.replace(*report);
         // The panel has changed if it is found or lost, or begins or ceases to work well.
@@ -186,7 +196,8 @@ impl Readings {
         }
     }
 
-    /// Returns the number of frames that have arrived in the last second of the host's clock.
+    /// Returns the number of frames that have arrived in the second of the host's clock before this
+    /// call. It is 0 if the board is silent.
     pub fn rate(&self) -> usize {
         self.arrivals
             .iter()
@@ -194,9 +205,11 @@ impl Readings {
             .count()
     }
 
-    /// Returns the faults of an emulated board; empty if all is well. Faults are damaged messages,
-    /// lost and dropped frames, errors in the log, and plain text in the log, which is a crash
-    /// report or a complaint of QEMU. A difference of bits is not among them.
+    /// Returns the faults of an emulated board, a text for each kind or line; empty if all is well.
+    /// Faults are damaged messages, frames that were sent and not received (lost) or not drawn in
+    /// time (dropped), errors in the log, and plain text in the log, which is a crash report or a
+    /// complaint of QEMU. A difference of bits is not among them. For a board at a port or with the
+    /// host's clock the same numbers need not be faults.
     pub fn faults(&self) -> Vec<String> {
         // Everything that goes wrong between an emulated board and the host is a fault of the
         // program.
@@ -222,8 +235,10 @@ impl Readings {
     }
 
     /// Returns the summary, a line for each number and no newline at the end, of all scenes and
-    /// restarts together. The dropped frames, the method and the horizon are taken from the latest
-    /// frame.
+    /// restarts together: frames, simulated time (s), method and horizon, largest energy error
+    /// (relative to the energy above rest), damaged messages, lost and dropped frames, panel, and
+    /// the comparison. The dropped frames, the method and the horizon are taken from the latest
+    /// frame; without a frame they are those of an empty one.
     pub fn report(&self) -> String {
         let Self {
             frames,
@@ -265,8 +280,11 @@ impl Readings {
     }
 }
 
-/// Returns the method of a frame and the accuracy horizon, in one line. The horizon is in s of
-/// simulated time since the motion began. For a stopped scene it returns the reason and the remedy.
+/// Returns the method of a frame, with its steps per frame, and the accuracy horizon, in one line
+/// without a newline. The horizon is in s of simulated time since the motion began; the words say
+/// if it is not known yet, may still grow, or has passed, and nothing if it is infinite. A scene
+/// without a method has words instead of it. For a stopped scene it returns the reason and the
+/// remedy.
 pub fn stepping(frame: &Frame) -> String {
     if frame.state == PlayState::Stopped {
         return "this motion is too fast for this chip: change the masses or the angle, or choose \
@@ -304,7 +322,8 @@ fn computed(frame: &Frame) -> String {
 }
 
 /// Returns an energy error, relative to the energy above rest, as text, formatted by `write`. If
-/// its size is below 4e-15, which is less than `f64` can show, the result is `< 4e-15`.
+/// its size is below 4e-15, also if it is 0, the result is `< 4e-15` without a sign, because `f64`
+/// cannot resolve it. NaN and infinity are passed to `write`.
 pub fn energy_error(error: f32, write: impl Fn(f32) -> String) -> String {
     if error.abs() < LEAST_ENERGY_ERROR {
         format!("< {LEAST_ENERGY_ERROR:.0e}")

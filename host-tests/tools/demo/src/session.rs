@@ -16,7 +16,7 @@ use emulator::qemu::{LogLine, Machine, Screenshot};
 
 /// The board of a session, emulated or real, from which the messages come.
 pub enum Source {
-    /// A board in QEMU with the host's clock.
+    /// A board in QEMU that runs freely, by the host's clock.
     Live(Machine),
     /// A board in QEMU that is run from frame to frame.
     Lockstep(Machine),
@@ -49,8 +49,8 @@ impl Source {
         Ok(())
     }
 
-    /// Returns the lines of the log since the last call, or the notices of a port as warnings, and
-    /// the counts of the link.
+    /// Returns the lines of an emulated board's log since the last call, or the notices of a port
+    /// as warnings, and the counts of the link since it was opened. A board at a port sends no log.
     pub fn log_and_counts(&mut self) -> (Vec<LogLine>, Counts) {
         match self {
             Self::Live(machine) | Self::Lockstep(machine) => (machine.lines(), machine.counts()),
@@ -62,7 +62,7 @@ impl Source {
         }
     }
 
-    /// Returns true if the board is real.
+    /// Returns true if the board is at a serial port, and not emulated by this program.
     pub fn is_port(&self) -> bool {
         matches!(self, Self::Port(_))
     }
@@ -78,20 +78,24 @@ const SETUP: u16 = 1;
 /// possible one.
 pub const SPEEDS: [f32; 9] = [0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 4.0];
 
-/// Returns the smallest of [`SPEEDS`] that is larger than this speed, or `None` at the largest.
+/// Returns the smallest of [`SPEEDS`] that is larger than this speed, or `None` if no speed is
+/// larger, also for NaN.
 pub fn faster(now: f32) -> Option<f32> {
     SPEEDS.into_iter().find(|speed| *speed > now)
 }
 
-/// Returns the largest of [`SPEEDS`] that is smaller than this speed, or `None` at the smallest.
+/// Returns the largest of [`SPEEDS`] that is smaller than this speed, or `None` if no speed is
+/// smaller, also for NaN.
 pub fn slower(now: f32) -> Option<f32> {
     SPEEDS.into_iter().rev().find(|speed| *speed < now)
 }
 
-/// A session with one board: its messages are received, the user's options are sent to it after its
-/// first frame, and its panel is recorded from the first frame of the requested scene on.
+/// A session with one board: its messages are received, the user's options are sent to it once,
+/// after its first frame, and its panel is recorded from the first frame of the requested scene on.
 ///
-/// The caller calls [`Session::hear`] again and again, and [`Session::look`] for a picture.
+/// Without `--scene` every scene counts as the requested one. If the user gives a motion, the
+/// requested scene begins when the board has reported that motion. The caller calls
+/// [`Session::hear`] again and again, and [`Session::look`] for a picture.
 pub struct Session<'a> {
     options: &'a DemoOptions,
     /// The board.
@@ -114,7 +118,8 @@ pub struct Session<'a> {
 }
 
 impl<'a> Session<'a> {
-    /// Returns a session before the first message. Nothing is sent yet.
+    /// Returns a session before the first message. Nothing is sent yet. The options are not checked
+    /// here ([`DemoOptions::check`]).
     pub fn new(options: &'a DemoOptions, source: Source, recording: Option<Recording>) -> Self {
         let readings = Readings::default();
         let screenshot = Screenshot::from_pages(&[]);
@@ -132,7 +137,8 @@ impl<'a> Session<'a> {
         }
     }
 
-    /// Returns the name of the emulated board, or the path of the port.
+    /// Returns the name of the emulated board, or the path of the port, also if it was found by
+    /// `auto`.
     pub fn name(&self) -> &str {
         if let Source::Port(port) = &self.source {
             &port.name
@@ -142,12 +148,14 @@ impl<'a> Session<'a> {
     }
 
     /// Receives the board's messages; a board that is run frame by frame runs to its next frame,
-    /// others are not waited for. Asks the board for its scene whenever the comparison needs it.
-    /// Draws and records the panel of a board whose panel cannot be read.
+    /// others are not waited for. Sends the options after the first frame, and asks the board for
+    /// its scene whenever the comparison needs it. Draws and records, from the host's own scene,
+    /// the panel of a board whose panel cannot be read.
     ///
     /// An error means that the user's options do not suit the board's scene or are refused by the
-    /// board, that an emulator has ended, or that the recording cannot be written. The refusal of a
-    /// key is a line of the log.
+    /// board, that an emulator has ended or brings no further frame, or that the recording cannot
+    /// be written. A port that is gone or silent is no error: it causes a warning in the log and is
+    /// opened again when it is back. The refusal of a key is a line of the log, too.
     pub fn hear(&mut self) -> anyhow::Result<()> {
         for message in self.source.messages()? {
             match message {
@@ -242,14 +250,16 @@ impl<'a> Session<'a> {
     }
 
     /// Sends the command of a key and does not wait for its answer. Only an emulator that has ended
-    /// is an error.
+    /// is an error. While a port is gone, the command is dropped; it may take 0.5 s to notice that.
     pub fn command(&mut self, command: Command) -> anyhow::Result<()> {
         self.source.send(KEY, command)
     }
 
-    /// Sets the speed that `next` returns for the current one. Does nothing until the board has
-    /// reported the current speed. At the last speed, `next` returns `None` and nothing changes.
-    /// Only an emulator that has ended is an error.
+    /// Sets the speed, simulated time per real time, that `next` returns for the current one, and
+    /// asks the board for its status. Does nothing until the board has reported a speed, or if
+    /// `next` returns `None`, as at the last speed. The new speed counts as the current one at
+    /// once; if the board refuses it, which is a line of the log, its answer corrects that. Only an
+    /// emulator that has ended is an error.
     pub fn change_speed(&mut self, next: fn(f32) -> Option<f32>) -> anyhow::Result<()> {
         let Some(speed) = self.readings.speed.and_then(next) else {
             return Ok(());
@@ -286,14 +296,16 @@ impl<'a> Session<'a> {
         Ok(())
     }
 
-    /// Returns true if the host can read an emulated panel. Otherwise it redraws the panel itself.
+    /// Returns true if the board is emulated with a panel, which the host can read. Otherwise
+    /// [`Session::hear`] draws the panel of the host's own scene.
     pub fn has_panel(&self) -> bool {
         self.options.board.has_panel && !self.source.is_port()
     }
 
-    /// Takes a screenshot of an emulated panel and adds it to the recording if it is due. Does
-    /// nothing if the panel cannot be read. An error means that the emulator has ended or the
-    /// recording cannot be written.
+    /// Takes a screenshot of an emulated panel, also before the first frame, and adds it to the
+    /// recording if the requested scene has begun and a picture is due. Does nothing if the panel
+    /// cannot be read. An error means that the emulator has ended or the recording cannot be
+    /// written.
     pub fn look(&mut self) -> anyhow::Result<()> {
         if self.has_panel() {
             self.screenshot = match &mut self.source {
@@ -326,7 +338,7 @@ impl<'a> Session<'a> {
     }
 
     /// Returns the animation so far, to be finished; `None` if none was requested or it was taken
-    /// before.
+    /// before. Nothing is recorded afterwards.
     pub fn take_recording(&mut self) -> Option<Recording> {
         self.recording.take()
     }
@@ -337,7 +349,7 @@ impl<'a> Session<'a> {
     }
 
     /// Returns the seconds of the board's clock since the first frame of the requested scene,
-    /// including that frame; 0 before it.
+    /// including that frame, which gives 1/60; 0 before it. They go on when the board restarts.
     pub fn seconds(&self) -> f64 {
         self.begun.zip(self.now).map_or(0.0, |(begun, now)| {
             (now - begun + 1) as f64 / f64::from(TICK_RATE)

@@ -48,9 +48,10 @@ const LEAST_USED: [usize; 2] = [4, 6];
 /// A space at which a row must not break.
 const JOINT: &str = "\u{a0}";
 
-/// Draws the whole terminal: a page of the help, the readings, or a note that the terminal is
-/// smaller than 48 columns or 20 rows. `board` is the name in the title. Without `colours` the
-/// panel is drawn in Braille, and no cell has a colour.
+/// Draws the whole terminal: a page of the help, the readings, or, in any case, only a note if the
+/// terminal has fewer than 48 columns or 20 rows. `board` is the name in the title. Without
+/// `colours` the panel is drawn in Braille, and no cell has a colour. With them it is drawn in
+/// Braille, too, if there is no room for 128 columns and the numbers.
 pub fn draw(
     frame: &mut Frame,
     board: &str,

@@ -7,24 +7,27 @@ use double_pendulum::flips::{Flip, Flips};
 use double_pendulum::{DirectionF32Plain, Error};
 use multiversion::multiversion;
 
-/// The kernel's search with the method whose steps cost least. Angles are in rad, times in s.
+/// The kernel's search with the method whose steps cost least, the direction form in plain `f32`.
+/// Angles are in rad, times in s. [`Flips::new`] creates it.
 pub type Search = Flips<DirectionF32Plain>;
 
 /// The number of starts that are computed side by side: a vector of 8 with AVX2, two vectors of 4
 /// without.
 const LANES: usize = 8;
 
-/// Returns the first flip from rest at each of the starts (a1, a2 in rad), in their order, computed
-/// with the widest vectors of this processor. Times are in s. An error is one of the kernel's
-/// [`Flips`]: a start that it refuses, because an angle is not finite. There are then no results at
-/// all. No starts give an empty list. Only the calling thread computes.
+/// Returns the first flip from rest at each of the starts (a1, a2 in rad), in their order, as
+/// [`Flips::of`] does, bit-identical. Times are in s. It is computed with AVX2 on x86-64 processors
+/// that have it with FMA, BMI and LZCNT, and as by [`baseline`] on others. Only the calling thread
+/// computes.
+///
+/// It is an error, without any result, if an angle is not finite. No starts give an empty list.
 #[multiversion(targets("x86_64+avx2+bmi1+bmi2+fma+lzcnt+popcnt"))]
 pub fn flips(search: &Search, starts: &[[f32; 2]]) -> Result<Vec<Flip<f32>>, Error> {
     each(search, starts)
 }
 
-/// Returns the same as [`flips`], computed with instructions that every processor of this
-/// architecture has.
+/// Returns the same as [`flips`], bit-identical and with the same error, computed with instructions
+/// that every processor of this architecture has.
 pub fn baseline(search: &Search, starts: &[[f32; 2]]) -> Result<Vec<Flip<f32>>, Error> {
     each(search, starts)
 }

@@ -37,7 +37,7 @@ pub(super) struct Rows {
     /// The weight w(n) of each row.
     weights: [Factor; ROWS],
     shifts: Shifts,
-    /// An eighth of nu.
+    /// An eighth of nu/sigma ([`Scaling`]).
     norm: Q64,
     /// A 64th of m, divided by 2^[`Shifts::inverse`].
     inertia: Q64,
@@ -96,8 +96,8 @@ impl Rows {
     /// Prepares steps of `dt` s of the order `order`. Refuses an order that is not 2, 4 .. 16, by
     /// [`Error::OutOfRange`].
     ///
-    /// The unit of time of `scaling` must be one of [`unit_of_time`] for the same `dt`; this is not
-    /// checked.
+    /// `scaling` must have a unit of time that [`unit_of_time`] returned for the same `dt`, and
+    /// `dt` must be finite and not 0, negative if time runs backwards; this is not checked.
     pub fn new(order: u32, scaling: &Scaling, dt: f64) -> Result<Self, Error> {
         let count = rows(order)?;
         let mut shares = [Factor::ZERO; ROWS];
@@ -149,29 +149,32 @@ impl Rows {
         })
     }
 
-    /// Returns an eighth of nu.
+    /// Returns an eighth of nu/sigma ([`Scaling::norm`]), the length of (S, C).
     pub fn norm(&self) -> Q64 {
         self.norm
     }
 
-    /// Returns the amounts that a step loses by rounding down, in halves of 2^-64: in P1, and in
-    /// all other quantities.
+    /// Returns the mean amounts that a step loses by rounding down, in halves of 2^-64: of P1, and
+    /// of each other quantity. A negative amount is a gain.
     ///
-    /// A step loses one half for each weighted difference of rows, and gains one for each torque of
-    /// gravity on rod 1, which is subtracted. All other products are moved to the middle of the
-    /// values that they may have had.
+    /// Every quantity loses one half in each weighted difference of two rows. P1 also gains one
+    /// half in each torque of gravity on rod 1, times the weight of that torque in the step,
+    /// because the torque is rounded down and then subtracted. All other products are moved to the
+    /// middle of the values that they may have had.
     pub fn rounded_down(&self) -> [i16; 2] {
         let differences = self.count as i16 - 1;
         let slopes: f64 = (0..self.count).map(|row| slopes(row, self.count)).sum();
         [differences - nearest(slopes) as i16, differences]
     }
 
-    /// Returns the end of a step from `z`: an eighth of sin a1, cos a1, S and C, and P1 and P2.
-    /// Sets bits of `reach` if a quantity left its range; the end is then meaningless. It clears no
-    /// bits.
+    /// Returns the end of a step from `z`. Both are an eighth of sin a1, cos a1, S and C, and P1
+    /// and P2, in the units of the [`Scaling`].
     ///
-    /// Compiled for three kinds of pendulum, because shifts by constants are cheaper: equal rods
-    /// with a bob 2 that is at most as heavy as bob 1, a heavier bob 2, and all others.
+    /// Makes `reach` nonzero if a quantity at `z` or within the step left twice its range; the end
+    /// is then meaningless. It clears no bits, and does not check the end itself.
+    ///
+    /// Compiled for three kinds of pendulum, because shifts by constants are cheaper: without
+    /// shifts ([`Shifts::NONE`]), with a shift of r only (a heavier bob 2), and all others.
     pub fn end(&self, z: &[Q64; 6], reach: &Cell<u32>) -> [Q64; 6] {
         match self.shifts {
             Shifts::NONE => self.end_in::<false, false>(z, reach),

@@ -39,7 +39,7 @@ const LONGEST_STEP_AT_ELBOW: f64 = 0.5;
 const MOST_HALVINGS: u32 = 12;
 
 /// The constants that all steps of one motion share, without dimension, in the units of
-/// [`Scaling`]: nu and m are divided by its powers of two.
+/// [`Scaling`]: nu and m are divided by its powers of two, here in every constant.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Units {
     /// nu.
@@ -52,14 +52,15 @@ pub struct Units {
     pub reversed_gravity: [Gravity; 2],
     /// The number n such that half a step is 3 2^-n T.
     pub halvings: u32,
-    /// The torque that rounding removed from G1 and G2, times 32 steps, with 60 fractional bits.
+    /// The change of a momentum in 32 steps that the rounding of G1 and G2 leaves out, for a sine
+    /// of 1, with 60 fractional bits.
     pub missed: [i32; 2],
     /// nu^2 with 60 fractional bits.
     pub square: i64,
     /// 1/nu^2 with 29 fractional bits.
     pub inverse_square: i64,
-    /// The energy above which the motion is lost, in the format of
-    /// [`Fixed32::energy`](super::Fixed32).
+    /// The energy above rest beyond which the motion is lost, in the format of `Fixed32::energy`:
+    /// 60 fractional bits, less the shifts of momenta and rates.
     pub most_energy: i64,
     /// The units of momenta and time, and the unrounded constants.
     pub scaling: Scaling,
@@ -69,13 +70,14 @@ impl Units {
     /// Chooses the units for a motion with `energy` joules above rest and steps of `dt` seconds. A
     /// negative `dt` runs backwards.
     ///
-    /// The parameters must be valid, the energy finite and not negative, and `dt` not zero. This is
-    /// not checked.
+    /// The parameters must be valid, the energy finite and not negative, and `dt` finite and not
+    /// zero. This is not checked.
     ///
     /// # Errors
     ///
     /// Refuses ratios of masses or rods that [`Scaling::in_seconds`] refuses, and a step that is
-    /// too long: [`Error::TooLarge`] contains the longest possible one, s.
+    /// too long: [`Error::TooLarge`] contains the largest possible magnitude, s. Without energy and
+    /// gravity no step is too long.
     pub fn new(parameters: &Parameters<f64>, energy: f64, dt: f64) -> Result<Self, Error> {
         let &Parameters { m1, m2, .. } = parameters;
         let seconds = Scaling::in_seconds(parameters)?;

@@ -5,16 +5,17 @@ use core::ops::{Add, Sub};
 use crate::numbers::fixed::{Q30, Slope, Torque};
 
 /// One number for each of the six quantities sin a1, cos a1, S, C, P1 and P2: `D` for those of
-/// directions, `M` for momenta. None has a dimension: P1 and P2 are scaled by the motion's units.
+/// directions, `M` for momenta. None has a dimension. All are in the units of the motion
+/// ([`Scaling`](crate::methods::scaling::Scaling)), which also divide nu by a power of two.
 #[derive(Clone, Copy)]
 pub struct Quantities<D, M> {
     /// sin a1.
     pub sin1: D,
     /// cos a1.
     pub cos1: D,
-    /// S = nu sin (a1 - a2).
+    /// S = nu sin (a1 - a2), with the divided nu.
     pub s: D,
-    /// C = nu cos (a1 - a2).
+    /// C = nu cos (a1 - a2), with the divided nu.
     pub c: D,
     /// P1.
     pub p1: M,
@@ -22,7 +23,7 @@ pub struct Quantities<D, M> {
     pub p2: M,
 }
 
-/// The quantities themselves, rounded to words.
+/// The quantities themselves, in words of 32 bits. The state is rounded to the nearest words.
 pub type Words = Quantities<Q30, Q30>;
 
 /// The rates of change of the quantities, per unit of time T.

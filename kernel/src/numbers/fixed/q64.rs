@@ -32,7 +32,8 @@ impl Q64 {
     }
 
     /// Returns the number over `divisor` in the numbers `R`, rounded once if `divisor` is a power
-    /// of two, and otherwise a few times. A divisor of 0 gives infinity or NaN, a NaN gives NaN.
+    /// of two and the result is normal, and otherwise a few times. A result beyond the range of `R`
+    /// is infinite or 0. A divisor of 0 gives infinity or NaN, infinity gives 0, and NaN gives NaN.
     pub fn over<R: Real>(self, divisor: f64) -> R {
         R::from_i64(self.0) * R::from_f64(1.0 / (UNIT * divisor))
     }
@@ -46,7 +47,7 @@ impl Q64 {
         ]
     }
 
-    /// Returns the product with `factor` 2^-32, rounded down.
+    /// Returns the number times `factor` 2^-32, rounded down.
     pub fn times_word(self, factor: i32) -> Self {
         let [upper, lower] = self.words().map(|word| product(word, factor));
         Self(upper + (lower >> 32))
@@ -59,8 +60,9 @@ impl Q64 {
         (((self.0 >> 32) as u32).wrapping_add(1 << (32 - places))) >> (33 - places)
     }
 
-    /// Returns 1/(4 d), where d = 2^6 `self` is from 1 to 8, with a relative error of at most
-    /// 2^-56. Outside that range the result is meaningless.
+    /// Returns 1/(4 d), where d = 2^6 `self` is from 1 to 8, both included, with a relative error
+    /// of at most 2^-55. Outside that range, also for 0 and negative numbers, the result is
+    /// meaningless; the function never panics.
     ///
     /// A quotient of words is improved by one step of Newton's method on words and one step of
     /// third order, whose residue 1 - d r has 32 bits.
@@ -120,7 +122,7 @@ impl Q64 {
         Self(self.0.wrapping_mul(i64::from(whole)))
     }
 
-    /// Returns the number over 2^`by`, rounded to nearest. `by` is at most 31.
+    /// Returns the number over 2^`by`, rounded to nearest, and a tie up. `by` is from 0 to 31.
     pub fn down(self, by: u32) -> Self {
         Self(self.0.wrapping_add(i64::from(1_u32 << by >> 1)) >> by)
     }
