@@ -11,7 +11,7 @@ use crate::pendulum::{Direction, Parameters, Pendulum, State};
 
 /// The equations of motion of a pendulum.
 pub trait Derivatives<R: Real>: Copy + Debug + PartialEq + 'static {
-    /// Prepares the equations. [`Hamilton`] refuses the parameters that [`Pendulum::new`] refuses;
+    /// Prepares the equations. `Hamilton` refuses the parameters that [`Pendulum::new`] refuses;
     /// other equations may accept any, because [`Pendulum::run`] has a checked pendulum.
     fn prepare(parameters: &Parameters<R>) -> Result<Self, Error>;
     /// Returns the time derivatives of z = (a1, a2, p1, p2), in rad/s and N m, where z is in rad
