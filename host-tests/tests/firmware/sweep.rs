@@ -22,11 +22,6 @@ const ENERGY: f32 = 1e-2;
 /// The number of settings between two lines of progress. The long tests run for an hour.
 const CHUNK: usize = 500;
 
-/// A scene of every 2,000 may be inaccurate a little before its predicted horizon. Planning
-/// compares computed motions with each other, and roundings may be alike by chance (test
-/// `plan_study`).
-const SCENES_TO_A_VIOLATION: usize = 2_000;
-
 /// A scene, with a setting that keys reach from its start.
 #[derive(Clone, Copy, Debug)]
 struct Case {
@@ -260,7 +255,7 @@ fn faults(case: &Case) -> Vec<(Case, u8, Fault)> {
     faults
 }
 
-/// Plays all `cases`. A few violations are allowed.
+/// Plays all `cases`. None may have a fault.
 fn sweep(cases: &[Case]) {
     let mut found = Vec::new();
     for (chunk, some) in cases.chunks(CHUNK).enumerate() {
@@ -272,13 +267,7 @@ fn sweep(cases: &[Case]) {
         println!("{done} scenes, {} faults", found.len());
     }
 
-    // Only a few violations are allowed, and no other fault.
-    let is_violation =
-        |(_, _, fault): &&(Case, u8, Fault)| matches!(fault, Fault::Violation { .. });
-    let violations = found.iter().filter(is_violation).count();
-    let scenes = cases.len() * PROCESSORS.len();
-    assert_eq!(violations, found.len());
-    assert!(violations <= scenes / SCENES_TO_A_VIOLATION, "{violations}");
+    assert!(found.is_empty());
 }
 
 /// The scenes, other than the page, that show a motion from two angles.
@@ -301,7 +290,6 @@ const OTHERS: [SceneName; 10] = [
 ///
 /// No scene may stop, except `upright` at once. No frame may be off by more than half a pixel
 /// before the horizon that was claimed, and no energy by more than 1 %, except that of `upright`.
-/// With this small number of settings no violation is allowed ([`SCENES_TO_A_VIOLATION`]).
 #[test]
 fn settings_of_all_kinds_are_shown_as_claimed() {
     let mut cases = Vec::new();
@@ -342,8 +330,7 @@ fn some_degrees() -> Vec<f32> {
 }
 
 /// Has the conditions of `settings_of_all_kinds_are_shown_as_claimed`, for every scene with a
-/// motion, all mass ratios of the buttons and every 15th degree. In one of 2,000 scenes a frame may
-/// be off by more than half a pixel before the claimed horizon.
+/// motion, all mass ratios of the buttons and every 15th degree.
 #[test]
 #[ignore = "an hour"]
 fn all_mass_ratios_and_every_15th_degree_are_shown_as_claimed() {
