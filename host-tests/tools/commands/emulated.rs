@@ -4,7 +4,7 @@
 use std::io::{self, Write, stdout};
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode, Stdio};
-use std::thread::available_parallelism;
+use std::thread::{self, available_parallelism};
 use std::time::Duration;
 use std::{env, fs};
 
@@ -220,12 +220,26 @@ const LIMITS: [Duration; 2] = [Duration::from_secs(3600), Duration::from_secs(12
 /// because many tests wait for an emulator or a clock.
 const THREADS: [&str; 2] = ["RUST_TEST_THREADS", "RAYON_NUM_THREADS"];
 
-/// Runs the set-up, builds the firmware, then runs `cargo test`, with its own output and exit code;
-/// `--long` adds `-- --include-ignored`. Each of `RUST_TEST_THREADS` and `RAYON_NUM_THREADS` that
-/// is not set is twice the number of processors for the tests.
+/// The tests that need no firmware, as arguments of `cargo test`.
+const ON_HOST: [&str; 5] = [
+    "--lib",
+    "--test=firmware",
+    "--test=kernel",
+    "--test=prove",
+    "--test=traits",
+];
+/// The tests that need the firmware or its tools.
+const ON_BOARDS: [&str; 2] = ["--test=boards", "--test=commands"];
+/// The examples of the documentation, which cargo does not run together with other tests.
+const IN_DOCUMENTATION: [&str; 1] = ["--doc"];
+
+/// Runs the set-up, builds the firmware, and runs `cargo test` in three parts, with its own output
+/// and the exit code of the first part that fails; the parts after it are not run. `--long` adds
+/// `-- --include-ignored`. Each of `RUST_TEST_THREADS` and `RAYON_NUM_THREADS` that is not set is
+/// twice the number of processors for the tests.
 ///
 /// An error means that the set-up or a build of the firmware fails, or that a time limit is
-/// exceeded: 1 hour for compiling the tests and again for running them, or 12 hours each with
+/// exceeded: 1 hour for compiling the tests and again for each part, or 12 hours each with
 /// `--long`. If the tests do not compile, the result is the exit code of `cargo test`.
 pub fn verify(options: &TestOptions) -> anyhow::Result<ExitCode> {
     let limit = LIMITS[usize::from(options.long)];
@@ -251,25 +265,69 @@ pub fn verify(options: &TestOptions) -> anyhow::Result<ExitCode> {
         "note: all tests take about ten minutes"
     });
 
-    // The tests are compiled while the tools are fetched and the firmware is compiled, because none
-    // of the three keeps all processors busy alone.
-    let mut compiling = test(&["--no-run", "--quiet"])?;
-    let toolchain = toolchain::set_up()?;
-    toolchain::set_up_pico_with(consent(options.yes))?;
-    toolchain.build_ahead()?;
-    toolchain.build_cores_ahead()?;
-    compiling.wait()?;
-
-    let arguments: &[&str] = if options.long {
+    let ignored: &[&str] = if options.long {
         &["--", "--include-ignored"]
     } else {
         &[]
     };
-    let status = test(arguments)?.wait()?;
+    let run = |tests: &[&str]| test(&[tests, ignored].concat());
+
+    // The tests are compiled, and those that need no firmware are run, while the tools are fetched
+    // and the firmware is compiled, because none of these keeps all processors busy alone.
+    let on_host = thread::scope(|scope| {
+        let on_host = scope.spawn(|| {
+            let compiled = test(&["--no-run", "--quiet"])?.wait()?;
+            if !compiled.success() {
+                return Ok(compiled);
+            }
+            run(&ON_HOST)?.wait()
+        });
+
+        let toolchain = toolchain::set_up()?;
+        toolchain::set_up_pico_with(consent(options.yes))?;
+        toolchain.build_ahead()?;
+        toolchain.build_cores_ahead()?;
+        // Without the tools the test says that it is skipped.
+        if let Ok(web) = toolchain::set_up_web() {
+            web.build_web()?;
+        }
+        let status = on_host.join().expect("it does not panic")?;
+        anyhow::Ok(status)
+    })?;
+
+    // The other tests run only if these have passed.
+    let mut status = on_host;
+    for tests in [&ON_BOARDS[..], &IN_DOCUMENTATION] {
+        if status.success() {
+            status = run(tests)?.wait()?;
+        }
+    }
     if status.success() {
         say("all tests passed")?;
     }
     Ok(process::exit_code(status))
+}
+
+/// Every test program is in one of the lists, so that `cargo verify` leaves none out.
+#[test]
+fn every_test_program_is_run() {
+    let listed = |name: &str| {
+        let test = format!("--test={name}");
+        ON_HOST.contains(&&*test) || ON_BOARDS.contains(&&*test)
+    };
+    let mut found = 0;
+    for folder in ["kernel/tests", "host-tests/tests"] {
+        let entries = fs::read_dir(toolchain::workspace().join(folder)).expect("the sources");
+        for entry in entries.flatten() {
+            let path = entry.path();
+            if path.extension().is_some_and(|end| end == "rs") || path.join("main.rs").exists() {
+                let name = path.file_stem().expect("it has a name").to_string_lossy();
+                assert!(listed(&name), "{name}");
+                found += 1;
+            }
+        }
+    }
+    assert!(found >= 6, "{found}");
 }
 
 /// `cargo fw` without `--board` takes the first board whose application the binary is, or else the
