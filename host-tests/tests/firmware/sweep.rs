@@ -316,6 +316,7 @@ fn settings_of_all_kinds_are_shown_as_claimed() {
     // With a heavy bob 2 the errors in 64 bits grow by more than their bound would without a margin.
     cases.push(Case::new(SceneName::Beats3To2, 25.0, -135.0));
     cases.push(Case::new(SceneName::Butterfly, 16.0, 136.0));
+    cases.push(Case::new(SceneName::Page, 5.0, -129.0));
     // Here an M4F at 25 MHz finds a plan so late that its horizon is past before it can be followed.
     cases.push(Case::new(SceneName::Beats3To1, 5.0, -180.0));
     // So light a bob 2 makes the curve so small that the chord of an error matters.

@@ -17,7 +17,7 @@
 //! | 32 bits, closed form | the distance to the fine run, plus its truncation error |
 //!
 //! Rounding means all rounding errors since the start, with their growth. A distance to the fine
-//! run has a margin of a tenth. With a heavy bob 2 the bounds of the runs in 64 bits are three times
+//! run has a margin of a tenth. With a heavy bob 2 the bounds of the runs in 64 bits are four times
 //! as large.
 //!
 //! # The errors of a trial without one
@@ -145,10 +145,10 @@ const HEAVY_BOB_2: f64 = 4.0;
 ///
 /// A heavy bob 2 drives rod 1 so fast, for moments, that some errors grow several times as much as
 /// the shadows show. The value is measured: without it, the error exceeded its bound in 8 of 17,864
-/// scenes at mass ratios of 5 to 100, by a factor of up to 1.7, and in one between them by 2.0. It
-/// costs 1 to 4 % of the horizon. Test `all_mass_ratios_and_every_15th_degree_are_shown_as_claimed`
+/// scenes at mass ratios of 5 to 100, and in single ones between them by a factor of up to 3.6. It
+/// costs 1 to 5 % of the horizon. Test `all_mass_ratios_and_every_15th_degree_are_shown_as_claimed`
 /// checks it against the exact motion.
-const BESIDE_HEAVY_BOB_2: f32 = 3.0;
+const BESIDE_HEAVY_BOB_2: f32 = 4.0;
 
 /// The factor on the largest distance to three runs in finer steps in the bound of an error.
 ///
