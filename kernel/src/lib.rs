@@ -104,10 +104,9 @@
 //! A change of any bit of a step is a major version. The file `golden/bits.csv` of the package
 //! stores the bits of every method. A test compares them, and another test requires an entry in the
 //! change log for every new version of the file. Steps use only IEEE 754 arithmetic, and the
-//! correctly rounded `sqrt` and `rint`, for angles up to 12,867 rad in `f32` and 1,647,098 rad in
-//! `f64`. The sines of larger angles, and the `atan2` in [`Run::state`], are computed by the `libm`
-//! crate in your lock file (0.2.16 or later). To compare machines, build for both with the same
-//! `libm`.
+//! correctly rounded `sqrt` and `rint`, for angles up to 1,647,098 rad. The sines of larger angles,
+//! and the `atan2` in [`Run::state`], are computed by the `libm` crate in your lock file (0.2.16 or
+//! later). To compare machines, build for both with the same `libm`.
 //!
 //! # References
 //!

@@ -18,7 +18,7 @@ pub trait Run: Copy {
     /// Returns the canonical state now, in SI units (rad, kg m^2/s), with all digits that are
     /// carried.
     ///
-    /// If [`sides`](Self::sides) returns a value, the angles are in (-pi, pi], without whole turns.
+    /// If [`sides`](Self::sides) returns a value, the angles are in [-pi, pi], without whole turns.
     fn state(&self) -> State<f64>;
 
     /// Returns (sin, cos) of rod 1 and of rod 2 as words whose highest bit is the sign, if the

@@ -46,7 +46,7 @@ pub enum Flip<R> {
 /// Whole turns of a start do not matter. A rod that starts straight up has not flipped yet.
 ///
 /// In maps of equal rods and bobs up to 10 sqrt(l/g), in steps of [`step_size`], 99.9 % of the
-/// starts that may turn over have their flip within one of 16 grey levels of that in far finer
+/// starts that may turn over have their flip within one of 14 grey levels of that in far finer
 /// steps, on a logarithmic scale of time, in any arithmetic (the repository's test `flips`).
 ///
 /// The motions are not checked: in steps that are far too long, or after a motion has diverged, a
