@@ -58,8 +58,8 @@ const WAKE: [&[u8]; 19] = [
 ///
 /// [`Ssd0323::init`] must be called before the first frame, which is not checked. A frame is sent
 /// before [`flush`](Display::flush) returns. After an error of the SPI device, the next frame is
-/// sent whole. The panel takes at most 4 MHz. It cannot be read, so that an absent panel is no
-/// error.
+/// sent whole. The panel takes SPI mode 2 at up to 4 MHz; another mode gives no error and no
+/// picture. It cannot be read, so that an absent panel is no error.
 #[derive(Debug)]
 pub struct Ssd0323<'a, Spi, Pin> {
     spi: Spi,

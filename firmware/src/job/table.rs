@@ -178,8 +178,9 @@ impl FormVisitor for CrcOf<'_> {
 }
 
 impl Request {
-    /// Calls `each` with every reading, the initial one first, until it returns an error. This
-    /// makes `stride` times `samples` steps; their number is not limited.
+    /// Calls `each` with every reading, the initial one first, until it returns an error. These are
+    /// `samples` + 1 readings, of `u32::MAX` samples one fewer, and `stride` times `samples` steps;
+    /// their number is not limited. Every method is computed, also one that boards lack.
     ///
     /// # Errors
     ///

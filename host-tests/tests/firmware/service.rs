@@ -293,3 +293,16 @@ fn a_new_request_replaces_the_one_under_way() {
     let answers = answers_to(&[REQUEST; 2]);
     assert_eq!((answers.len(), samples(&answers, 2)), (6, 6));
 }
+
+/// The longest request, whose numbers take all their bytes, has a text form, too.
+#[test]
+fn the_longest_request_equals_its_parsed_text() {
+    let request = Request {
+        stride: u32::MAX,
+        samples: u32::MAX,
+        ..REQUEST
+    };
+    let text = request.to_string();
+    assert_eq!(text.len(), 2 * 91);
+    assert_eq!(Request::parse(&text), Some(request));
+}

@@ -183,7 +183,9 @@ fn reported_energy_is_that_of_one_instant_all_day() -> Result<(), Error> {
                 advance(&mut exact, ticks * steps)?;
                 pendulum.energy_above_rest(&exact.state()) / energy - 1.0
             };
-            worst = worst.max((f64::from(Report::of(&simulation).energy_error) - lost).abs());
+            let error = (f64::from(Report::of(&simulation).energy_error) - lost).abs();
+            assert!(error.is_finite(), "{}", method.name());
+            worst = worst.max(error);
         }
 
         println!("{}, {steps} steps a frame: {worst:.1e}", method.name());

@@ -42,8 +42,9 @@ impl<F: Form> Falling<F> {
     }
 
     /// Computes at most `steps` steps. Returns the result once it is known, and `None` until then:
-    /// [`Flip::After`], or [`Flip::Later`] in the first call that would exceed the steps of `map`.
-    /// After exactly these steps, and for 0 `steps`, the result is `None`.
+    /// [`Flip::After`], whose time is negative if the map runs backwards, or [`Flip::Later`] in the
+    /// first call that would exceed the steps of `map`. After exactly these steps, and for 0
+    /// `steps`, the result is `None`.
     ///
     /// `map` must be the map of the start, and the method must not be called again after a result;
     /// neither is checked. Nor is the motion: one that diverges may have any of these results.

@@ -94,9 +94,10 @@ impl<F: Form> Flips<F> {
     ///
     /// Refuses the parameters that [`Pendulum::new`] refuses, and the parameters and steps that the
     /// method `F` refuses. Among them are a step that is NaN or infinite ([`Error::NotFinite`]),
-    /// one that is zero or subnormal ([`Error::OutOfRange`]) and, in fixed point, one that is too
-    /// long for the energy of the highest start ([`Error::TooLarge`] contains the longest, s).
-    /// Other methods accept a step beyond the limit of stability.
+    /// one that is zero, subnormal or infinite in the numbers of the method ([`Error::OutOfRange`];
+    /// fixed point checks it as an `f64`) and, in fixed point, one that is too long for the energy
+    /// of the highest start ([`Error::TooLarge`] contains the longest, s). Other methods accept a
+    /// step beyond the limit of stability.
     pub fn new(parameters: &Parameters<F::Real>, dt: f64, steps: u32) -> Result<Self, Error> {
         // The units must fit the start with the most energy: both rods upright.
         let highest = F::new(

@@ -167,8 +167,9 @@ impl Rows {
         [differences - nearest(slopes) as i16, differences]
     }
 
-    /// Returns the end of a step from `z`. Both are an eighth of sin a1, cos a1, S and C, and P1
-    /// and P2, in the units of the [`Scaling`].
+    /// Returns the end of a step from `z`. The order of both is sin a1, cos a1, S, C, P1, P2. The
+    /// first four are stored as an eighth: (sin a1, cos a1) of length 1, and (S, C) = nu/sigma
+    /// (sin D, cos D), where D = a1 - a2. P1 and P2 are whole, in the unit of the [`Scaling`].
     ///
     /// Makes `reach` nonzero if a quantity at `z` or within the step left twice its range; the end
     /// is then meaningless. It clears no bits, and does not check the end itself.
