@@ -4,7 +4,6 @@
 use std::io::{self, Write, stdout};
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode, Stdio};
-use std::sync::mpsc;
 use std::thread::{self, available_parallelism};
 use std::time::Duration;
 use std::{env, fs};
@@ -229,14 +228,12 @@ const ON_HOST: [&str; 5] = [
     "--test=prove",
     "--test=traits",
 ];
-/// The tests that need only the applications of the boards.
-const WITH_APPLICATIONS: [&str; 1] = ["--test=commands"];
-/// The tests that need all firmware and its tools.
-const ON_BOARDS: [&str; 1] = ["--test=boards"];
+/// The tests that need the firmware or its tools.
+const ON_BOARDS: [&str; 2] = ["--test=boards", "--test=commands"];
 /// The examples of the documentation, which cargo does not run together with other tests.
 const IN_DOCUMENTATION: [&str; 1] = ["--doc"];
 
-/// Runs the set-up, builds the firmware, and runs `cargo test` in four parts, with its own output
+/// Runs the set-up, builds the firmware, and runs `cargo test` in three parts, with its own output
 /// and the exit code of the first part that fails; the parts after it are not run. `--long` adds
 /// `-- --include-ignored`. Each of `RUST_TEST_THREADS` and `RAYON_NUM_THREADS` that is not set is
 /// twice the number of processors for the tests.
@@ -247,7 +244,7 @@ const IN_DOCUMENTATION: [&str; 1] = ["--doc"];
 pub fn verify(options: &TestOptions) -> anyhow::Result<ExitCode> {
     let limit = LIMITS[usize::from(options.long)];
     // Returns a running `cargo test` with these arguments.
-    let test = &|arguments: &[&str]| {
+    let test = |arguments: &[&str]| {
         let mut command = Command::new("cargo");
         command
             .arg("test")
@@ -273,32 +270,33 @@ pub fn verify(options: &TestOptions) -> anyhow::Result<ExitCode> {
     } else {
         &[]
     };
-    let run = &|tests: &[&str]| test(&[tests, ignored].concat());
+    let run = |tests: &[&str]| test(&[tests, ignored].concat());
 
-    // While the tools are fetched and the firmware is compiled, the tests are compiled and run in
-    // the order of what they need, because none of these keeps all processors busy alone.
-    let (boards_are_built, applications) = mpsc::channel();
-    let (status, built) = thread::scope(|scope| {
-        let tests = scope.spawn(move || {
-            let mut status = test(&["--no-run", "--quiet"])?.wait()?;
-            if status.success() {
-                status = run(&ON_HOST)?.wait()?;
+    // The tests are compiled, and those that need no firmware are run, while the tools are fetched
+    // and the firmware is compiled, because none of these keeps all processors busy alone.
+    let on_host = thread::scope(|scope| {
+        let on_host = scope.spawn(|| {
+            let compiled = test(&["--no-run", "--quiet"])?.wait()?;
+            if !compiled.success() {
+                return Ok(compiled);
             }
-            // If a build fails, nothing is received.
-            if status.success() && applications.recv().is_ok() {
-                status = run(&WITH_APPLICATIONS)?.wait()?;
-            }
-            anyhow::Ok(status)
+            run(&ON_HOST)?.wait()
         });
 
-        let built = build(consent(options.yes), boards_are_built);
-        let status = tests.join().expect("it does not panic");
-        (status, built)
-    });
-    built?;
+        let toolchain = toolchain::set_up()?;
+        toolchain::set_up_pico_with(consent(options.yes))?;
+        toolchain.build_ahead()?;
+        toolchain.build_cores_ahead()?;
+        // Without the tools the test says that it is skipped.
+        if let Ok(web) = toolchain::set_up_web() {
+            web.build_web()?;
+        }
+        let status = on_host.join().expect("it does not panic")?;
+        anyhow::Ok(status)
+    })?;
 
     // The other tests run only if these have passed.
-    let mut status = status?;
+    let mut status = on_host;
     for tests in [&ON_BOARDS[..], &IN_DOCUMENTATION] {
         if status.success() {
             status = run(tests)?.wait()?;
@@ -310,31 +308,12 @@ pub fn verify(options: &TestOptions) -> anyhow::Result<ExitCode> {
     Ok(process::exit_code(status))
 }
 
-/// Sets the tools up and builds the firmware. Sends a message once the applications of the boards
-/// are built.
-fn build(consent: Consent, boards_are_built: mpsc::Sender<()>) -> anyhow::Result<()> {
-    let toolchain = toolchain::set_up()?;
-    toolchain::set_up_pico_with(consent)?;
-    toolchain.build_ahead()?;
-    // Nobody receives it if a test has failed.
-    let _is_received = boards_are_built.send(());
-
-    toolchain.build_cores_ahead()?;
-    // Without the tools the test says that it is skipped.
-    if let Ok(web) = toolchain::set_up_web() {
-        web.build_web()?;
-    }
-    Ok(())
-}
-
 /// Every test program is in one of the lists, so that `cargo verify` leaves none out.
 #[test]
 fn every_test_program_is_run() {
     let listed = |name: &str| {
         let test = format!("--test={name}");
-        ON_HOST.contains(&&*test)
-            || WITH_APPLICATIONS.contains(&&*test)
-            || ON_BOARDS.contains(&&*test)
+        ON_HOST.contains(&&*test) || ON_BOARDS.contains(&&*test)
     };
     let mut found = 0;
     for folder in ["kernel/tests", "host-tests/tests"] {
