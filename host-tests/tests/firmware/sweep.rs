@@ -353,6 +353,10 @@ fn all_mass_ratios_and_every_15th_degree_are_shown_as_claimed() {
 
 /// Has the conditions of `all_mass_ratios_and_every_15th_degree_are_shown_as_claimed`, for the page
 /// alone, all mass ratios of the buttons and every degree.
+///
+/// It is known to fail: at least five of 59,204 scenes are wrong early, all with a heavy bob 2. Two
+/// are on an M4F at 168 MHz, where rounding errors exceed their bound by up to 20 times, and three
+/// at 25 MHz.
 #[test]
 #[ignore = "an hour"]
 fn all_mass_ratios_and_degrees_of_the_page_are_shown_as_claimed() {
