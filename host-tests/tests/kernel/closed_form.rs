@@ -3,7 +3,7 @@
 
 use std::f64::consts::{FRAC_PI_6, PI, TAU};
 
-use double_pendulum::{Modes, SmallOscillations};
+use double_pendulum::{Modes, Motion, Parameters, Pendulum, SmallOscillations};
 use emulator::host::Show;
 use firmware::config::TICK_RATE;
 use firmware::scenes::SceneName;
@@ -147,4 +147,39 @@ fn beats_follow_the_formulas_and_only_the_linear_figure_closes() {
             "{name:?}: the exact motion closes to {missed} pixels"
         );
     }
+}
+
+/// The numbers in the documentation of [`SmallOscillations`]: equal rods of 0.25 m and equal
+/// masses, released at rest with only rod 2 turned.
+#[test]
+fn the_linear_motion_is_near_the_exact_one_as_documented() {
+    let pendulum = Pendulum::new(&Parameters::equal_rods(1.0, 0.25, 9.81)).expect("good numbers");
+    let parameters = pendulum.parameters();
+    let modes = Modes::new(parameters).expect("it hangs stably");
+
+    // Returns the largest distances until a time: of the angles, rad, and of bob 2, m.
+    let farthest = |degrees: f64, seconds: f64| {
+        let start = Motion::at_rest(0.0, degrees.to_radians());
+        let linear = SmallOscillations::<f64>::new(modes, &start);
+        let mut exact = Reference::new(parameters, &start);
+        let mut farthest = [0.0_f64; 2];
+        for step in 1..=(200.0 * seconds) as u32 {
+            let t = f64::from(step) / 200.0;
+            exact.advance_to(t);
+            let [angles, other] = [linear.at(t).angles(), exact.motion().angles()];
+            let [[_, bob], [_, other_bob]] = [angles, other].map(|both| pendulum.positions(both));
+            for (angle, other) in angles.into_iter().zip(other) {
+                farthest[0] = farthest[0].max((angle - other).abs());
+            }
+            farthest[1] = farthest[1].max((bob.x - other_bob.x).hypot(bob.y - other_bob.y));
+        }
+        farthest
+    };
+
+    let [_, bob2] = farthest(5.0, 10.0);
+    assert!((5e-4..=7e-4).contains(&bob2), "{bob2} m");
+    let [before, _] = farthest(30.0, 0.06);
+    let [after, _] = farthest(30.0, 0.07);
+    let degree = 1_f64.to_radians();
+    assert!(before < degree && degree <= after, "{before}, {after}");
 }
