@@ -1,7 +1,7 @@
 //! Every board plays every scene like the host. Each frame is on time and bit-identical, on the
 //! panel too, and within the board's budgets of memory and time. The scenes are played twice: in
 //! the second round the stack may be deeper only by one interrupt, so that drift, leaks and
-//! overflows of counters are detected. The second round of the short test is shorter.
+//! overflows of counters are detected.
 //!
 //! The clock of an emulated board counts instructions, so that an hour of it takes minutes. The
 //! long test is run by `cargo test -p host-tests --test boards scenes:: -- --ignored` or `cargo
@@ -44,15 +44,13 @@ const NO_PANEL: &str = "panel: absent";
 /// The largest number of cycles per instruction, averaged over a frame; 1.3 to 1.7 were found.
 const MOST_CYCLES: f64 = 3.0;
 
-/// Returns the number of frames of a scene in round 0 or 1 of a short run.
+/// Returns the number of frames of a scene in a short run.
 ///
 /// Within 1.1 s the stack has been as deep as in an hour, except for an interrupt, at whatever tick
 /// the scene is left. On the M3 the butterfly's curve grows, and the most expensive frame is after
-/// 10 s. In round 1 every scene starts once more, and what a start leaves behind adds up.
-fn short(board: &Board, name: SceneName, round: u32) -> u32 {
-    if round > 0 {
-        EVERY
-    } else if (board.core(), name) == (Core::M3, SceneName::Butterfly) {
+/// 10 s.
+fn short(board: &Board, name: SceneName) -> u32 {
+    if (board.core(), name) == (Core::M3, SceneName::Butterfly) {
         10 * TICK_RATE
     } else {
         3 * EVERY
@@ -60,7 +58,7 @@ fn short(board: &Board, name: SceneName, round: u32) -> u32 {
 }
 
 /// The short run of what the module describes: 75 frames of each scene, or 10 s of the most
-/// expensive one, and then 25 of each.
+/// expensive one.
 #[test]
 fn every_board_plays_every_scene_as_the_host_does_within_its_budgets() -> anyhow::Result<()> {
     every_board_plays(LIMIT, short)
@@ -70,13 +68,10 @@ fn every_board_plays_every_scene_as_the_host_does_within_its_budgets() -> anyhow
 #[test]
 #[ignore = "an hour of five boards"]
 fn every_board_plays_every_scene_for_an_hour() -> anyhow::Result<()> {
-    every_board_plays(LONG_LIMIT, |_, _, _| LONG)
+    every_board_plays(LONG_LIMIT, |_, _| LONG)
 }
 
-fn every_board_plays(
-    limit: Duration,
-    ticks: fn(&Board, SceneName, u32) -> u32,
-) -> anyhow::Result<()> {
+fn every_board_plays(limit: Duration, ticks: fn(&Board, SceneName) -> u32) -> anyhow::Result<()> {
     println!(
         "| board | text | data | bss | stack | idle (estimated) |\n\
         | --- | ---: | ---: | ---: | ---: | ---: |"
@@ -167,7 +162,7 @@ impl<'a> SceneRun<'a> {
 fn plays(
     board: &'static Board,
     limit: Duration,
-    ticks: fn(&Board, SceneName, u32) -> u32,
+    ticks: fn(&Board, SceneName) -> u32,
 ) -> anyhow::Result<Vec<String>> {
     // The unused stack is painted, so that its depth can be read at the end.
     let elf = application(board);
@@ -191,7 +186,7 @@ fn plays(
             // The current scene is never chosen again.
             name = name.next();
             let mut run = SceneRun::new(board, name);
-            for until in (EVERY..=ticks(board, name, round)).step_by(EVERY as usize) {
+            for until in (EVERY..=ticks(board, name)).step_by(EVERY as usize) {
                 machine.run()?;
                 run.to(until, &mut |words| messages_after(&mut machine, words))?;
                 machine.stop()?;
