@@ -5,6 +5,9 @@ use crate::error::{Error, Parameter};
 use crate::pendulum::{Motion, Parameters, State};
 use crate::table::{Method, Numbers};
 
+/// The mass ratio m2/m1 above which bob 2 counts as heavy.
+const HEAVY_BOB_2: f64 = 4.0;
+
 /// A pendulum and its start, the frames that show it, and the tolerance.
 ///
 /// The fields are not checked until a [`Search`](super::Search) starts.
@@ -80,6 +83,12 @@ impl Problem {
     pub fn frames(&self) -> u32 {
         let frames = libm::rint(self.duration * f64::from(self.rate)) as u32;
         if frames == 0 { 1 } else { frames }
+    }
+
+    /// Returns true if bob 2 is so heavy, relative to bob 1, that it drives rod 1 very fast for
+    /// moments.
+    pub(super) fn has_heavy_bob_2(&self) -> bool {
+        self.pendulum.m2 > HEAVY_BOB_2 * self.pendulum.m1
     }
 
     /// Returns the time of frame `frame` since the start, s. Frame 0 is the start. A rate of 0

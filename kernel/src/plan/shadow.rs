@@ -15,6 +15,10 @@
 //! does not prove this: even without any instability, a push moves a bob by more and more every
 //! second.
 //!
+//! With a heavy bob 2 no growth proves it, and all four are kept. Rod 1 is then so light that any
+//! push moves it far at once. The farthest shadow may lack the direction in which errors grow
+//! later: in some motions these became 200 times as large as it showed.
+//!
 //! Let G(t) be the growth of the farthest shadow since the start. An error e that arises at time s
 //! has the size e G(t)/G(s) at time t. The rounding errors of different frames are independent, so
 //! that the squares of e/G(s) add up.
@@ -30,11 +34,11 @@ use crate::pendulum::{Parameters, State};
 
 /// The initial distance of a shadow, rad.
 const NEAR: f64 = 1.0 / (1 << 16) as f64;
-/// The largest distance of a kept shadow, rad. Beyond it the shadow is drawn back.
+/// The largest distance of a shadow, rad. Beyond it the shadow is drawn back.
 const FAR: f32 = 1.0 / (1 << 6) as f32;
 /// The factor on the distance when a shadow is drawn back.
 const BACK: f32 = 1.0 / (1 << 10) as f32;
-/// The growth after which only the farthest shadow is kept.
+/// The growth after which only the farthest shadow is kept, unless bob 2 is heavy.
 const ALIGNED: f32 = 1000.0;
 
 /// The rounding error of a run in 64 bits, rad: of its start, of each radian of phase at the
@@ -46,18 +50,26 @@ const ALIGNED: f32 = 1000.0;
 /// exact motion.
 const ROUNDING: [f32; 3] = [2.4e-16, 3.2e-16, 6.4e-17];
 
-/// Four motions close to another one. Later only the farthest is kept.
+/// A motion close to another one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Shadow {
+    run: Run<DrawnMotion32>,
+    /// True if the shadow must be drawn back.
+    is_far: bool,
+    /// The product of the factors 1/[`BACK`] of all times that the shadow was drawn back.
+    drawn_back: f32,
+}
+
+/// Four motions close to another one. Later only the farthest may be kept.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Shadows {
-    runs: [Run<DrawnMotion32>; 4],
+    shadows: [Shadow; 4],
     /// The index of the shadow that is kept; `None` while all four are kept.
     kept: Option<usize>,
-    /// True if the kept shadow must be drawn back.
-    is_far: bool,
+    /// The growth after which only the farthest shadow is kept.
+    aligned: f32,
     /// True after the first frame has been compared.
     has_begun: bool,
-    /// The product of the factors 1/[`BACK`] of all times that the kept shadow was drawn back.
-    drawn_back: f32,
     /// The largest growth of a distance since the start, rad per radian at the start.
     growth: f32,
     /// The largest growth of a distance of the bobs since the start, in units of the tolerance per
@@ -90,11 +102,18 @@ impl Shadows {
         let short = if l2 < l1 { (l1 / l2) as f32 } else { 1.0 };
         let coarser = short * short * short;
         Self {
-            runs: [Run::new(stepping); 4],
+            shadows: [Shadow {
+                run: Run::new(stepping),
+                is_far: false,
+                drawn_back: 1.0,
+            }; 4],
             kept: None,
-            is_far: false,
+            aligned: if problem.has_heavy_bob_2() {
+                f32::INFINITY
+            } else {
+                ALIGNED
+            },
             has_begun: false,
-            drawn_back: 1.0,
             growth: 1.0,
             shown: 0.0,
             roundings: of_start,
@@ -105,13 +124,17 @@ impl Shadows {
         }
     }
 
-    /// Returns the shadows that are still needed: all four, later the one that is kept. Some may
-    /// not be prepared yet, or may have diverged.
+    /// Returns the shadows that are still needed: all four, or the one that is kept. Some may not
+    /// be prepared yet, or may have diverged.
     pub fn runs(&mut self) -> impl Iterator<Item = &mut Run<DrawnMotion32>> {
+        self.needed().map(|(_, shadow)| &mut shadow.run)
+    }
+
+    /// Returns the shadows that are still needed, with their indices.
+    fn needed(&mut self) -> impl Iterator<Item = (usize, &mut Shadow)> {
         let kept = self.kept;
-        let runs = self.runs.iter_mut().enumerate();
-        runs.filter(move |(place, _)| kept.is_none_or(|kept| kept == *place))
-            .map(|(_, run)| run)
+        let shadows = self.shadows.iter_mut().enumerate();
+        shadows.filter(move |(number, _)| kept.is_none_or(|kept| kept == *number))
     }
 
     /// Returns true after the first frame has been compared. Until then shadows are prepared at the
@@ -122,8 +145,8 @@ impl Shadows {
 
     /// Returns true if a shadow must be drawn back by [`prepare`](Self::prepare). Shadows that are
     /// not prepared yet do not count.
-    pub fn must_prepare(&self) -> bool {
-        self.is_far
+    pub fn must_prepare(&mut self) -> bool {
+        self.needed().any(|(_, shadow)| shadow.is_far)
     }
 
     /// Prepares one shadow close to a motion in the state `motion`, or draws one back to it. The
@@ -138,30 +161,29 @@ impl Shadows {
     /// `motion` that is not finite is refused.
     pub fn prepare(&mut self, problem: &Problem, motion: &State<f64>) -> Result<bool, Error> {
         // Select a shadow that is too far away or not yet prepared.
-        let place = match self.kept {
-            Some(place) if self.is_far => place,
-            _ => match self.runs.iter().position(|run| run.motion.is_none()) {
-                Some(place) if self.kept.is_none() => place,
-                _ => return Ok(false),
-            },
+        let rate = self.rate;
+        let mut shadows = self.needed();
+        let Some((number, shadow)) =
+            shadows.find(|(_, shadow)| shadow.is_far || shadow.run.motion.is_none())
+        else {
+            return Ok(false);
         };
 
         // Compute its difference from the motion.
-        let run = &mut self.runs[place % 4];
-        let by = match &run.motion {
+        let by = match &shadow.run.motion {
             Some(shadow) => {
                 let factor = f64::from(BACK);
                 difference(&shadow.state(), motion).map(|by| by * factor)
             }
             None => {
                 let mut by = [0.0; 4];
-                by[place % 4] = NEAR * scales(&problem.pendulum, self.rate)[place % 4];
+                by[number % 4] = NEAR * scales(&problem.pendulum, rate)[number % 4];
                 by
             }
         };
 
         // Create it on one side of the motion or, if the method refuses that, on the other.
-        let Stepping { method, steps } = run.stepping;
+        let Stepping { method, steps } = shadow.run.stepping;
         let dt = 1.0 / (f64::from(problem.rate) * f64::from(steps));
         let prepared = |sign: f64| {
             let [a1, a2, p1, p2] = <[f64; 4]>::from(*motion);
@@ -174,11 +196,11 @@ impl Shadows {
             };
             DrawnMotion32::new(method, &problem.pendulum, &state, dt)
         };
-        run.motion = Some(prepared(1.0).or_else(|_| prepared(-1.0))?);
+        shadow.run.motion = Some(prepared(1.0).or_else(|_| prepared(-1.0))?);
 
-        if self.is_far {
-            self.is_far = false;
-            self.drawn_back /= BACK;
+        if shadow.is_far {
+            shadow.is_far = false;
+            shadow.drawn_back /= BACK;
         }
         Ok(true)
     }
@@ -194,37 +216,34 @@ impl Shadows {
         self.has_begun = true;
 
         // Find the farthest shadow.
-        let frames = self.runs.each_mut().map(Run::frame);
-        let is_kept = |place: usize| self.kept.is_none_or(|kept| kept == place);
         let mut farthest = 0;
-        let mut largest = 0.0;
-        let mut greatest_shown = 0.0;
-        for (place, frame) in frames
-            .iter()
-            .enumerate()
-            .filter(|&(place, _)| is_kept(place))
-        {
-            let off = distance([1.0; 2], frame, motion);
-            if off > largest || off.is_nan() {
-                farthest = place;
-                largest = off;
+        let mut growth = 0.0;
+        let mut shown = 0.0;
+        for (number, shadow) in self.needed() {
+            let frame = shadow.run.frame();
+            let off = distance([1.0; 2], &frame, motion);
+            shadow.is_far = off > FAR;
+
+            let drawn_back = shadow.drawn_back / NEAR as f32;
+            if off * drawn_back > growth {
+                farthest = number;
             }
-            greatest_shown = greater(greatest_shown, distance(rods, frame, motion));
+            growth = greater(off * drawn_back, growth);
+            shown = greater(distance(rods, &frame, motion) * drawn_back, shown);
         }
 
-        // Update the growth, and add the rounding error of this frame.
-        let growth = largest * self.drawn_back / NEAR as f32;
-        let shown = greatest_shown * self.drawn_back / NEAR as f32;
-        self.growth = greater(growth, self.growth);
-        self.shown = greater(shown, self.shown);
-        let of_frame = self.of_frame / self.growth;
-        self.roundings = libm::sqrtf(self.roundings * self.roundings + of_frame * of_frame);
-
-        // Keep the farthest shadow only, once it has grown enough.
-        if self.kept.is_none() && growth >= ALIGNED {
+        // Keep only that, once it has grown enough.
+        if growth >= self.aligned {
             self.kept = Some(farthest);
         }
-        self.is_far = self.kept.is_some() && largest > FAR;
+
+        // Update the growth.
+        self.growth = greater(growth, self.growth);
+        self.shown = greater(shown, self.shown);
+
+        // Add the rounding error of this frame.
+        let of_frame = self.of_frame / self.growth;
+        self.roundings = libm::sqrtf(self.roundings * self.roundings + of_frame * of_frame);
         self.shown * self.roundings
     }
 }
