@@ -124,7 +124,7 @@
 
 /// Defines an enum of named choices. Each row gives a variant and its name for people. The first
 /// variant is the default.
-#[cfg(not(feature = "cores"))]
+#[cfg(feature = "application")]
 macro_rules! choice {
     ($(#[$doc:meta])* $name:ident { $($(#[$row_doc:meta])* $row:ident = $text:literal;)* }) => {
         $(#[$doc])*
@@ -152,23 +152,23 @@ macro_rules! choice {
     };
 }
 
-// The image for other cores needs the jobs alone, and is compiled for many of them.
-#[cfg(not(feature = "cores"))]
+// The image `cores` needs the jobs alone, and is compiled for many cores.
+#[cfg(feature = "application")]
 pub mod app;
-#[cfg(all(target_arch = "arm", target_os = "none", not(feature = "cores")))]
+#[cfg(all(target_arch = "arm", target_os = "none", feature = "application"))]
 #[allow(unsafe_code, reason = "here the hardware is reached")]
 pub mod board;
 pub mod config;
-#[cfg(not(feature = "cores"))]
+#[cfg(feature = "application")]
 pub mod display;
-#[cfg(not(feature = "cores"))]
+#[cfg(feature = "application")]
 pub mod fault;
-#[cfg(not(feature = "cores"))]
+#[cfg(feature = "application")]
 pub mod graphics;
 pub mod job;
-#[cfg(not(feature = "cores"))]
+#[cfg(feature = "application")]
 pub mod motion;
-#[cfg(not(feature = "cores"))]
+#[cfg(feature = "application")]
 pub mod protocol;
-#[cfg(not(feature = "cores"))]
+#[cfg(feature = "application")]
 pub mod scenes;

@@ -15,13 +15,11 @@ mod comparison;
 mod golden;
 mod run;
 mod table;
-
-use core::fmt;
+#[cfg(feature = "application")]
+mod text;
 
 use crc::{CRC_32_ISO_HDLC, Crc, Table};
 use double_pendulum::{Form, Integrator, Method, Motion, Parameters, Pendulum};
-use heapless::Vec;
-use serde::{Deserialize, Serialize};
 
 use crate::config::GRAVITY;
 
@@ -34,15 +32,13 @@ pub use table::{ON_BOARDS, OnBoards, visit};
 /// Ethernet.
 pub const CRC: Crc<u32, Table<1>> = Crc::<u32, Table<1>>::new(&CRC_32_ISO_HDLC);
 
-/// The largest size of a request in the postcard format, bytes.
-const MAX_BYTES: usize = 1 + 10 * 8 + 2 * 5;
-
 /// A motion to compute. Any values can be stored; the start of the motion checks them
 /// ([`OnBoards::start`], [`Request::readings`]). The application of a board may lack the method
 /// ([`ON_BOARDS`]).
 ///
 /// The text form of a request is also read by the C programs (`host-tests/peers/c/measure.c`).
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "application", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(target_os = "none", derive(defmt::Format))]
 pub struct Request {
     /// The method that computes the motion.
@@ -67,7 +63,8 @@ pub struct Request {
 /// The state has all digits that the method carries; `f32` is widened to `f64` without loss. The
 /// other numbers are computed from the state in double precision. The numbers of a [`Job`] are
 /// finite.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "application", derive(serde::Serialize, serde::Deserialize))]
 pub struct Reading {
     /// The state a1, a2 (rad, including whole turns), p1, p2 (kg m^2/s).
     pub state: [f64; 4],
@@ -121,33 +118,6 @@ impl Request {
         let pendulum = Pendulum::<f64>::new(&self.parameters).ok()?;
         let step = pendulum.admissible_step(&pendulum.to_state(&Motion { a1, a2, w1, w2 }));
         Some(f64::from(share) * step.ok()?)
-    }
-
-    /// Returns the request in `text`: its bytes in the postcard format, each as two hexadecimal
-    /// digits of either case, without separators. Returns `None` if the bytes are not exactly one
-    /// request, or for any other character, such as a final line feed. The values of the request
-    /// are not checked. Of a byte below 16 the digit 0 may be a plus sign, and may be missing at
-    /// the end of the text.
-    pub fn parse(text: &str) -> Option<Self> {
-        let mut bytes = Vec::<u8, MAX_BYTES>::new();
-        let byte = |digits: &[u8]| u8::from_str_radix(core::str::from_utf8(digits).ok()?, 16).ok();
-        for digits in text.as_bytes().chunks(2) {
-            bytes.push(byte(digits)?).ok()?;
-        }
-
-        postcard::take_from_bytes(&bytes)
-            .ok()
-            .filter(|(_, rest)| rest.is_empty())
-            .map(|(request, _)| request)
-    }
-}
-
-/// Writes the text that [`Request::parse`] reads, in lower case, without a line feed.
-impl fmt::Display for Request {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let bytes = &mut [0; MAX_BYTES];
-        let bytes = postcard::to_slice(self, bytes).map_err(|_| fmt::Error)?;
-        bytes.iter().try_for_each(|byte| write!(f, "{byte:02x}"))
     }
 }
 

@@ -160,17 +160,15 @@ impl Toolchain {
     /// Builds the image of the golden bits for several targets concurrently.
     fn build_core_images(&self, targets: &[&str], double: Option<&str>) -> anyhow::Result<()> {
         let mut command = self.for_targets("build", targets)?;
-        command.args(["--bin", "cores", "--features", "cores"]);
+        command
+            .args(["--bin", "cores", "--no-default-features"])
+            .args(["--features", "cores"])
+            // Nobody debugs these images, and debug information would double the time.
+            .env("CARGO_PROFILE_RELEASE_DEBUG", "false");
         if let Some(cpu) = double {
             // These flags replace the flags of the configuration, which are for a Cortex-M4F.
             command.args(["--features", "double-pendulum-kernel/double-fpu"]);
-            command.env("RUSTFLAGS", format!("-Ctarget-cpu={cpu} -Cdebuginfo=0"));
-        }
-        for target in targets.iter().filter(|target| !TARGETS.contains(target)) {
-            // Nobody debugs these images. Images for the boards' targets share the crates of the
-            // boards' images.
-            let flags = format!("target.'{target}'.rustflags=['-Cdebuginfo=0']");
-            command.args(["--config", &flags]);
+            command.env("RUSTFLAGS", format!("-Ctarget-cpu={cpu}"));
         }
         let names = double.map_or_else(|| targets.join(", "), str::to_owned);
         self.finish(command, &format!("building cores for {names}"))
@@ -200,16 +198,17 @@ impl Toolchain {
     }
 
     /// Builds the programs of `kernel/minimal` for a target, as a user of the kernel would, and
-    /// returns the folder of their ELF files, `firmware/minimal/TARGET/release` in the target
-    /// folder. Older files are replaced, in each call.
+    /// returns the folder of their ELF files, `firmware/TARGET/release` in the target folder. Older
+    /// files are replaced, in each call.
     ///
     /// Cargo runs in an empty folder, so that the settings of this repository do not apply. The
     /// package's own `.cargo/config.toml` is passed to it. This toolchain must have the core
-    /// library of the target. An error contains the output of the compiler.
+    /// library of the target. The build takes turns with those of the firmware. An error contains
+    /// the output of the compiler.
     pub fn build_minimal(&self, target: &str) -> anyhow::Result<PathBuf> {
         let nowhere = tempfile::tempdir()?;
         let package = workspace().join("kernel/minimal");
-        let folder = Self::folder().join("minimal");
+        let folder = Self::folder();
         let rustc = self.rustc();
         let flags = remap::flags(rustc).map_err(|error| anyhow!(error))?;
 
@@ -233,7 +232,11 @@ impl Toolchain {
             .arg("--config")
             .arg(package.join(".cargo/config.toml"))
             .args(["--config", &format!("target.{target}.rustflags={flags:?}")])
-            .env("CARGO_TARGET_DIR", &folder);
+            .env("CARGO_TARGET_DIR", &folder)
+            // With these settings of the workspace, cargo finds the macros of the firmware's builds
+            // there, and compiles none again. They are no part of the programs.
+            .env("CARGO_PROFILE_RELEASE_BUILD_OVERRIDE_DEBUG", "none")
+            .env("CARGO_PROFILE_RELEASE_BUILD_OVERRIDE_CODEGEN_UNITS", "4");
         self.finish(
             command,
             &format!("building the minimal programs for {target}"),
@@ -255,13 +258,17 @@ impl Toolchain {
     }
 
     /// Builds the binaries that run on every target, for all [`TARGETS`] at once, so that later
-    /// builds take less time; then every board's application, one after the other. The first
-    /// failure ends it; the error contains the output of the compiler.
+    /// builds take less time; then every board's application, and the programs of
+    /// [`Self::build_minimal`], one after the other. The first failure ends it; the error contains
+    /// the output of the compiler.
     pub fn build_ahead(&self) -> anyhow::Result<()> {
         let mut command = self.for_targets("build", &TARGETS)?;
         command.args(AHEAD.iter().flat_map(|binary| ["--bin", binary]));
         self.finish(command, "building the firmware for all targets")?;
-        every_board().try_for_each(|board| self.build_for(board).map(drop))
+        every_board().try_for_each(|board| self.build_for(board).map(drop))?;
+        TARGETS
+            .iter()
+            .try_for_each(|target| self.build_minimal(target).map(drop))
     }
 
     /// Checks the firmware's binaries and its examples for microcontrollers, for all [`TARGETS`],
