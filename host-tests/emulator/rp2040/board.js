@@ -1,6 +1,7 @@
 // The chip with all that is wired to it, and its restarts.
 
 import { RP2040 } from 'rp2040js';
+import { quicken } from './dispatch.js';
 import { Panel } from './panel.js';
 import { BOOT, addRom } from './rom.js';
 import { addTime } from './uart.js';
@@ -61,6 +62,7 @@ export class Board {
     this.addRegisters(chip.ppb);
     this.shortenWrites(chip);
     this.mendEntry(chip.core);
+    quicken(chip.core);
     this.isInBootLoader = false;
     addRom(chip);
     chip.onBreak = (code) => code === BOOT && this.enterBootLoader();
