@@ -5,13 +5,15 @@
 // The first difference ends it with an error. Without one, it prints the number of instructions.
 
 import { readFileSync } from 'node:fs';
-import { Board } from './board.js';
+import { Board, NOWHERE } from './board.js';
 import { withTable } from './dispatch.js';
 
 /** The microseconds between two comparisons of a run. */
 const SLICE = 10;
 /** Second halfwords: of BL, DMB, DSB, ISB, MRS, MSR, UDF, and of no instruction. */
 const SECONDS = [0xf800, 0xd000, 0x8f5f, 0x8f4f, 0x8f6f, 0x8010, 0x8809, 0xa000, 0x8ff0, 0xc000];
+/** The microseconds of a hang. */
+const HANG = 50_000;
 /** The address of the single instructions, in memory. */
 const PLACE = 0x20000100;
 
@@ -52,6 +54,11 @@ function run() {
     if (fast.chip.clock.nanos !== plain.chip.clock.nanos) throw new Error('the clocks differ');
   };
   while (executed < instructions) both(SLICE);
+
+  // A hang, in which the plain board executes every jump.
+  [fast, plain].forEach((board) => board.hang());
+  plain.hungAt = NOWHERE;
+  both(HANG);
   if (Buffer.compare(fast.chip.sram, plain.chip.sram)) throw new Error('the memories differ');
   if (JSON.stringify(sent[0]) !== JSON.stringify(sent[1])) throw new Error('they sent differently');
   return executed;

@@ -85,7 +85,7 @@ const COMPARED: u32 = 200_000;
 
 /// The emulator's own function that executes an instruction takes more time than the one that is
 /// made from it, and has the same results: registers, flags, cycles, memory and output are equal in
-/// the first instructions of the firmware, and after each of all opcodes.
+/// the first instructions of the firmware and in a hang, and after each of all opcodes.
 #[test]
 fn faster_execution_has_the_results_of_the_emulators_own() -> anyhow::Result<()> {
     let node = toolchain::ready_for_pico().unwrap_or_else(|missing| panic!("{missing}"));
