@@ -1,6 +1,7 @@
 // The chip with all that is wired to it, and its restarts.
 
 import { RP2040 } from 'rp2040js';
+import { quicken } from './dispatch.js';
 import { Panel } from './panel.js';
 import { BOOT, addRom } from './rom.js';
 import { addTime } from './uart.js';
@@ -22,6 +23,10 @@ const [ALL, BY_ROM] = [0x1ffffff, (1 << 6) | (1 << 9) | (1 << 21)];
 const CHIP_ID = 0x20002927;
 /** The number of the exception. */
 const HARD_FAULT = 3;
+/** The instruction `b .`, a jump to itself, and its cycles. */
+const [SELF_JUMP, JUMP_CYCLES] = [0xe7fe, 2];
+/** No address of an instruction. */
+export const NOWHERE = -1;
 /** Registers of the processor that the emulator lacks: reset (bit 2), what protects memory, and whether a debugger is there. */
 const [AIRCR, MPU_TYPE, MPU_LAST, DHCSR] = [0xd0c, 0xd90, 0xda0, 0xdf0];
 
@@ -61,6 +66,7 @@ export class Board {
     this.addRegisters(chip.ppb);
     this.shortenWrites(chip);
     this.mendEntry(chip.core);
+    quicken(chip.core);
     this.isInBootLoader = false;
     addRom(chip);
     chip.onBreak = (code) => code === BOOT && this.enterBootLoader();
@@ -70,6 +76,7 @@ export class Board {
     addTime(chip.uart[0], chip.clock, (byte) => this.sent.push(byte));
     BUTTONS.forEach((pin) => chip.gpio[pin].setInputValue(!this.pressed.has(pin)));
     this.due = null;
+    this.hungAt = NOWHERE;
     chip.core.VTOR = VECTORS;
     chip.core.reset();
   }
@@ -112,7 +119,10 @@ export class Board {
       const cycle = 1e9 / clkSys;
       while (clock.nanos < end && this.due === null) {
         if (this.isInBootLoader) clock.tick(end - clock.nanos);
-        else if (!core.waiting) this.execute(end, cycle);
+        else if (!core.waiting) {
+          this.skipJumps(end, cycle);
+          this.execute(end, cycle);
+        }
         else if (core.checkForInterrupts()) core.waiting = false;
         else clock.tick(Math.max(1, Math.min(clock.nanosToNextAlarm, end - clock.nanos)));
         if (this.chip.clkSys !== clkSys) break;
@@ -122,9 +132,24 @@ export class Board {
     this.tell();
   }
 
-  /** Executes instructions up to the next event: an alarm, the end, a sleep, a restart, another clock. */
+  /**
+   * Advances the time of a board that hangs to shortly before the next event. Nothing else changes
+   * until then, so this has the result of millions of jumps. The sum of their times is exact if a
+   * cycle is a whole number of nanoseconds.
+   */
+  skipJumps(end, cycle) {
+    const { core, clock } = this.chip;
+    if (core.PC !== this.hungAt || core.interruptsUpdated || !Number.isInteger(cycle)) return;
+    const next = Math.min(end, clock.nextAlarm?.nanos ?? end);
+    const jumps = Math.floor((next - clock.nanos) / (JUMP_CYCLES * cycle)) - 1;
+    if (jumps <= 0) return;
+    core.cycles += JUMP_CYCLES * jumps;
+    clock.nanosCounter += JUMP_CYCLES * jumps * cycle;
+  }
+
+  /** Executes instructions up to an event: an alarm, the end, a sleep, a restart, a hang, another clock. */
   execute(end, cycle) {
-    const { chip } = this;
+    const { chip, hungAt } = this;
     const { core, clock, clkSys } = chip;
     do {
       const time = core.executeInstruction() * cycle;
@@ -132,7 +157,14 @@ export class Board {
       const alarm = clock.nextAlarm;
       if (alarm !== null && alarm.nanos <= now) return clock.tick(time);
       clock.nanosCounter = now;
-    } while (clock.nanosCounter < end && !core.waiting && this.due === null && chip.clkSys === clkSys && !this.isInBootLoader);
+    } while (
+      clock.nanosCounter < end &&
+      !core.waiting &&
+      this.due === null &&
+      chip.clkSys === clkSys &&
+      !this.isInBootLoader &&
+      core.PC !== hungAt
+    );
   }
 
   restart() {
@@ -180,7 +212,8 @@ export class Board {
   }
 
   hang() {
-    this.chip.writeUint16((this.chip.core.PC & ~1) >>> 0, 0xe7fe); // b .
+    this.hungAt = (this.chip.core.PC & ~1) >>> 0;
+    this.chip.writeUint16(this.hungAt, SELF_JUMP);
   }
 
   memory(address, length) {

@@ -1,6 +1,7 @@
 //! The file that `cargo pico` makes, in an emulated Raspberry Pi Pico with a panel, buttons, a USB
 //! host and a serial adapter.
 
+use std::process::Command as Program;
 use std::time::Duration;
 
 use crate::support::code::Code;
@@ -8,10 +9,12 @@ use crate::support::{LIMIT, application, show};
 use cycles::Core;
 use double_pendulum::Method;
 use emulator::boards::{BOARDS, PICO};
-use emulator::flash::flash_image;
+use emulator::flash::{flash_image, uf2};
 use emulator::link::{BAUD_OF_BOOT_LOADER, Restarts};
 use emulator::pico::PicoMachine;
-use emulator::toolchain;
+use emulator::process;
+use emulator::scratch::Scratch;
+use emulator::toolchain::{self, workspace};
 use firmware::app::Key;
 use firmware::config::{
     BAUD, HOLD_TICKS, MOST_MEASURED_STEPS, RECEIVE_QUEUE, TICK_RATE, WATCHDOG_SECONDS,
@@ -74,6 +77,36 @@ fn the_file_is_for_the_chips_flash_and_its_boot_rom() -> anyhow::Result<()> {
         (0..8).fold(crc ^ u32::from(*byte) << 24, bit)
     });
     assert_eq!(crc, u32::from_le_bytes(sum.try_into()?));
+    Ok(())
+}
+
+/// The instructions of the firmware after which the two ways of executing them are compared.
+const COMPARED: u32 = 200_000;
+
+/// The emulator's own function that executes an instruction takes more time than the one that is
+/// made from it, and has the same results: registers, flags, cycles, memory and output are equal in
+/// the first instructions of the firmware and in a hang, and after each of all opcodes.
+#[test]
+fn faster_execution_has_the_results_of_the_emulators_own() -> anyhow::Result<()> {
+    let node = toolchain::ready_for_pico().unwrap_or_else(|missing| panic!("{missing}"));
+    let (start, image) = flash_image(&std::fs::read(application(&PICO))?)?;
+    let folder = Scratch::new()?;
+    let file = folder.path().join("pico.uf2");
+    std::fs::write(&file, uf2(start, &image))?;
+
+    let mut compare = Program::new(node);
+    compare
+        .arg("--single-threaded")
+        .arg(workspace().join("host-tests/emulator/rp2040/compare.js"))
+        .arg(&file)
+        .arg(COMPARED.to_string());
+    let output = process::run(&mut compare, LIMIT)?;
+    assert!(output.status.success(), "{}", output.stderr);
+    assert!(
+        output.stdout.ends_with("single ones are the same\n"),
+        "{}",
+        output.stdout
+    );
     Ok(())
 }
 

@@ -178,7 +178,11 @@ fn plays(
     let mut too_much = Vec::new();
     let mut reached = Vec::new();
     let mut least_idle = 1.0_f64;
-    let mut profile = FrameProfile::of_next(&mut machine, &image, board.core())?;
+    // On the M3 every scene has a profile of its own.
+    let mut profile = None;
+    if board.core() != Core::M3 {
+        profile = Some(FrameProfile::of_next(&mut machine, &image, board.core())?);
+    }
 
     for round in 0..2 {
         let mut name = SceneName::Page;
@@ -223,8 +227,9 @@ fn plays(
                 Core::M4F => false,
             };
             if is_profiled {
-                profile = FrameProfile::of_next(&mut machine, &image, board.core())?;
+                profile = Some(FrameProfile::of_next(&mut machine, &image, board.core())?);
             }
+            let profile = profile.expect("of this scene or an earlier frame");
 
             // The board's clock counts instructions. The number of cycles per instruction is
             // estimated from one frame that QEMU logs completely.

@@ -9,7 +9,7 @@
 //! manual, appendix E (Remote Serial Protocol): `$text#checksum`, each acknowledged with `+`.
 
 use std::fs::File;
-use std::io::Write;
+use std::io::{self, Write};
 use std::path::Path;
 use std::{panic, thread};
 
@@ -251,24 +251,34 @@ impl Machine {
 
     /// Sends a packet.
     fn say(&mut self, packet: &str) -> anyhow::Result<()> {
-        let checksum = packet.bytes().fold(0, u8::wrapping_add);
-        Ok(write!(self.debugger.sender, "${packet}#{checksum:02x}")?)
+        Ok(send_packet(&mut self.debugger.sender, packet)?)
     }
 
     /// Waits for a reply, acknowledges it and returns its text.
     fn hear(&mut self) -> anyhow::Result<String> {
-        let reply = self.wait_until(|machine| {
-            // A reply is complete if its checksum of two digits has arrived.
-            let bytes = &mut machine.debugger.stream.bytes;
-            let [start, end] = [b'$', b'#'].map(|mark| bytes.iter().position(|byte| *byte == mark));
-            let (start, end) = start.zip(end.filter(|end| end + 2 < bytes.len()))?;
-            let reply = String::from_utf8_lossy(&bytes[start + 1..end]).into_owned();
-            bytes.drain(..end + 3);
-            Some(reply)
-        })?;
+        let reply = self.wait_until(|machine| take_reply(&mut machine.debugger.stream.bytes))?;
         self.debugger.sender.write_all(b"+")?;
         Ok(reply)
     }
+}
+
+/// Sends a packet of GDB's protocol with its checksum. An error means that it does not fit into the
+/// pipe, or that nobody has the other end.
+pub fn send_packet(sender: &mut File, packet: &str) -> io::Result<()> {
+    let checksum = packet.bytes().fold(0, u8::wrapping_add);
+    write!(sender, "${packet}#{checksum:02x}")
+}
+
+/// Removes the first packet of GDB's protocol, and acknowledgements before it, from the bytes that
+/// have arrived. Returns the text of the packet, or `None` if it is not complete. Its checksum is
+/// not checked.
+pub fn take_reply(bytes: &mut Vec<u8>) -> Option<String> {
+    // A packet is complete if its checksum of two digits has arrived.
+    let [start, end] = [b'$', b'#'].map(|mark| bytes.iter().position(|byte| *byte == mark));
+    let (start, end) = start.zip(end.filter(|end| end + 2 < bytes.len()))?;
+    let reply = String::from_utf8_lossy(&bytes[start + 1..end]).into_owned();
+    bytes.drain(..end + 3);
+    Some(reply)
 }
 
 /// Returns the error of a reply that was not expected.

@@ -9,7 +9,7 @@ mod machine;
 mod monitor;
 mod screenshot;
 
-pub use debugger::Register;
+pub use debugger::{Register, send_packet, take_reply};
 pub use log::{LogDecoder, LogLine};
 pub use machine::{Clock, Machine, Settings};
 pub use screenshot::{HEIGHT, Screenshot, WIDTH};

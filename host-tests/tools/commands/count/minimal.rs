@@ -248,11 +248,12 @@ fn grouped(number: u64) -> String {
 impl Minimal {
     fn count(program: &'static Program, target: &Target, flash: usize) -> Result<Self> {
         let entry = target.image.function(COUNTED)?.address;
-        let mut calls = Calls::of(&target.image, target.board.core(), BTreeSet::from([entry]));
+        let entries = BTreeSet::from([entry]);
+        let mut calls = Calls::of(&target.image, target.board.core(), entries.clone());
 
         // The number of steps of each call is in a register at its entry.
         let mut steps = Vec::new();
-        let ended = target.trace("", LIMIT, &mut |registers| {
+        let ended = target.trace("", &entries, LIMIT, &mut |registers| {
             calls.see(registers)?;
             if let Some((entry, ..)) = &calls.running
                 && steps.len() == calls.ended.len()

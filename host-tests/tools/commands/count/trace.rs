@@ -7,7 +7,7 @@
 //! a pipe, with a few hundred thousand instructions per second.
 
 use std::collections::BTreeSet;
-use std::io;
+use std::io::{self, Write};
 use std::path::PathBuf;
 use std::process::{Command, ExitStatus, Stdio};
 use std::sync::{Mutex, PoisonError};
@@ -22,11 +22,19 @@ use super::COUNTED;
 use console::progress::Progress;
 use emulator::boards::{BOARDS, Board};
 use emulator::flash::flash_image;
-use emulator::process;
+use emulator::process::{self, Running};
+use emulator::qemu::{send_packet, take_reply};
+use emulator::scratch::Scratch;
+use emulator::stream::{self, Channel};
 use emulator::toolchain::{QUICK, Toolchain};
 
 /// The time limit of a run in QEMU, after which QEMU is killed.
 pub(super) const LIMIT: Duration = Duration::from_secs(1800);
+
+/// The items of QEMU's log: the registers before each instruction.
+const LOGGED: &str = "cpu,nochain";
+/// The size of an instruction with a breakpoint, bytes. QEMU does not use it.
+const SIZE: u32 = 2;
 
 /// The end of a program that was traced.
 #[derive(Debug)]
@@ -119,11 +127,13 @@ impl Target {
     }
 
     /// Runs the program with `argument` on its semihosting command line and calls `each` before
-    /// every instruction, in order. `argument` may be empty. An error of `each` ends the program
-    /// and is returned.
+    /// every instruction, in order. `argument` may be empty. If `entries` has addresses, the
+    /// instructions before the first one at any of these addresses are left out, which saves most
+    /// of the time of a short run. An error of `each` ends the program and is returned.
     pub(super) fn trace(
         &self,
         argument: &str,
+        entries: &BTreeSet<u32>,
         limit: Duration,
         each: &mut dyn FnMut(Registers) -> Result<()>,
     ) -> Result<Ended> {
@@ -131,11 +141,23 @@ impl Target {
         let mut command = self.emulator(argument);
         command
             .args(self.single_step()?)
-            .args(["-d", "cpu,nochain", "-D", "/dev/stderr"]);
-        command
+            .args(["-D", "/dev/stderr"])
             .stdin(Stdio::null())
             .stdout(Stdio::piped())
             .stderr(Stdio::piped());
+
+        // A debugger switches the log on later, or it is on from the start.
+        let folder = Scratch::new()?;
+        let debugger = if entries.is_empty() {
+            command.args(["-d", LOGGED]);
+            None
+        } else {
+            let path = folder.path().join("debugger");
+            command
+                .args(["-S", "-gdb", "chardev:debugger", "-chardev"])
+                .arg(format!("pipe,id=debugger,path={}", path.display()));
+            Some(Channel::make(&path)?)
+        };
 
         // The output is read by a thread, because a full pipe would stop the program.
         let mut child = process::spawn(&mut command, limit)?;
@@ -144,6 +166,9 @@ impl Target {
             .stdout
             .take()
             .map(|stdout| thread::spawn(move || io::read_to_string(stdout)));
+        if let Some(mut debugger) = debugger {
+            log_from(entries, &mut debugger, &mut child)?;
+        }
         if let Some(mut log) = child.child.stderr.take() {
             for_each_instruction(&mut log, each)?;
         }
@@ -198,20 +223,68 @@ impl Target {
     }
 }
 
+/// Lets QEMU, which waits for its debugger, run to the first of these addresses, switches its log
+/// on and lets it run on. If the program ends before, this does nothing more. An error means that
+/// QEMU refuses the debugger.
+fn log_from(entries: &BTreeSet<u32>, debugger: &mut Channel, child: &mut Running) -> Result<()> {
+    // Sends a packet and returns the reply, or nothing if QEMU has ended.
+    let mut ask = |packet: &str| -> Result<Option<String>> {
+        send_packet(&mut debugger.sender, packet)?;
+        loop {
+            debugger.stream.take_in();
+            if let Some(reply) = take_reply(&mut debugger.stream.bytes) {
+                debugger.sender.write_all(b"+")?;
+                return Ok(Some(reply));
+            }
+            if child.try_wait()?.is_some() {
+                return Ok(None);
+            }
+            stream::wait([&debugger.stream].into_iter());
+        }
+    };
+    let log: String = format!("log {LOGGED}")
+        .bytes()
+        .map(|byte| format!("{byte:02x}"))
+        .collect();
+
+    // The steps, each with the beginning of its reply.
+    let breakpoints = |change| {
+        let packet = move |entry| (format!("{change}0,{entry:x},{SIZE}"), "OK");
+        entries.iter().map(packet)
+    };
+    let steps = breakpoints('Z')
+        .chain([("c".to_owned(), "T05")])
+        .chain(breakpoints('z'))
+        .chain([(format!("qRcmd,{log}"), "OK")]);
+    for (packet, expected) in steps {
+        match ask(&packet)? {
+            // The program has ended: QEMU is gone, or says so before it goes.
+            None => return Ok(()),
+            Some(reply) if reply.starts_with('W') => return Ok(()),
+            Some(reply) => ensure!(
+                reply.starts_with(expected),
+                "QEMU refuses the debugger: {packet} was answered with {reply:?}"
+            ),
+        }
+    }
+    Ok(send_packet(&mut debugger.sender, "c")?)
+}
+
 /// Runs `request` on `target` and returns all calls of `counted_steps`, with interrupts. An error
 /// means that QEMU cannot be started, that the program fails or runs for half an hour, that no call
 /// returns, or that a call executes an instruction without a known timing.
 pub fn counted<'a>(target: &'a Target, request: &Request) -> Result<Calls<'a>> {
     // The compiler makes one copy of the function for each method.
-    let entries = target
+    let entries: BTreeSet<_> = target
         .image
         .functions_named(COUNTED)
         .map(|function| function.address)
         .collect();
 
     // Every call of any copy is counted.
-    let mut calls = Calls::of(&target.image, target.board.core(), entries);
-    let ended = target.trace(&request.to_string(), LIMIT, &mut |registers| {
+    let mut calls = Calls::of(&target.image, target.board.core(), entries.clone());
+    let argument = request.to_string();
+    let ended = target.trace(&argument, &entries, LIMIT, &mut |registers| {
         calls.see(registers)
     })?;
     ensure!(
@@ -255,7 +328,8 @@ pub fn calls_of<'a>(
     // The first instruction that the core does not have is the likely cause if nothing is called.
     let mut instructions = 0_u64;
     let mut unknown = None;
-    let ended = target.trace("", limit, &mut |registers| {
+    // The log is complete, so that it has that instruction.
+    let ended = target.trace("", &BTreeSet::new(), limit, &mut |registers| {
         instructions += 1;
         if instructions.is_multiple_of(TELL) {
             progress.alive(Some(&format!(
