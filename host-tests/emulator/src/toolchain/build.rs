@@ -310,8 +310,9 @@ impl Toolchain {
             .env("CARGO_TARGET_DIR", Self::folder());
         for target in targets {
             // These flags are added to the configured flags. A TOML string has the same escapes as
-            // a Rust string. The name of a target may contain a dot, so it is quoted.
-            let flags = format!("target.'{target}'.rustflags={flags:?}");
+            // a Rust string. The name of a target may contain a dot; cargo does not find the flags
+            // if it is quoted.
+            let flags = format!("target.{target}.rustflags={flags:?}");
             command.args(["--target", target, "--config", &flags]);
         }
         Ok(command)
