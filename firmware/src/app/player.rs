@@ -342,7 +342,8 @@ impl<'a> Player<'a> {
 
     /// Writes that the motion is too fast, and the numbers that a user can change by the buttons.
     fn draw_stopped(&self, canvas: &mut Canvas) {
-        canvas.clone_from(&Canvas::BLACK);
+        // A copy, by `clone_from`, would take 4 KB of flash for the zeros.
+        *canvas = Canvas::BLACK;
         let of = match self.method {
             None => "for this chip",
             Some(_) => "for this method",
