@@ -215,7 +215,8 @@ impl Scale {
     #[inline(never)] // 2.0 KB more flash on an M4F without.
     pub fn state<R: Real>(
         &self,
-        rates: impl Fn(&[R; 6]) -> [R; 6],
+        // A pointer, so that the rates are compiled once and not in each stage.
+        rates: &dyn Fn(&[R; 6]) -> [R; 6],
         z: &[R; 6],
         lost: [R; 6],
         count: u64,

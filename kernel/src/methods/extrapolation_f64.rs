@@ -361,7 +361,7 @@ impl<const ORDER: u32> FormOperations for ExtrapolationF64<ORDER> {
 
     fn state(&self) -> State<f64> {
         self.scale
-            .state(|z| self.rates(z), &self.z, self.lost, self.steps)
+            .state(&|z| self.rates(z), &self.z, self.lost, self.steps)
     }
 
     fn bits(&self, mut feed: impl FnMut(u64)) {
