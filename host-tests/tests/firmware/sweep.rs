@@ -309,15 +309,21 @@ fn settings_of_all_kinds_are_shown_as_claimed() {
             cases.push(Case::new(name, ratio, degrees));
         }
     }
-    // Here the plan of an M4F at 25 MHz ends early, in steps so long that the energy error would be
+    // Here a plan of a slow processor ends early, in steps so long that the energy error would be
     // 2.6 % and 6.3 %.
     cases.push(Case::new(SceneName::Page, 100.0, 105.0));
     cases.push(Case::new(SceneName::Beats3To1, 63.0, -90.0));
-    // With a heavy bob 2 the errors in 64 bits grow by more than their bound would without a margin.
+    // With a heavy bob 2 the shadow that is the farthest at first does not show how rounding errors
+    // in 64 bits grow later.
+    cases.push(Case::new(SceneName::Page, 20.0, 123.0));
     cases.push(Case::new(SceneName::Beats3To2, 25.0, -135.0));
     cases.push(Case::new(SceneName::Butterfly, 16.0, 136.0));
     cases.push(Case::new(SceneName::Page, 5.0, -129.0));
-    // Here an M4F at 25 MHz finds a plan so late that its horizon is past before it can be followed.
+    // Here two runs in 64 bits, in long steps, are closer to each other than to the exact motion.
+    cases.push(Case::new(SceneName::Page, 8.0, 171.0));
+    // Here the errors of runs in 32 bits of fixed point have the same sign.
+    cases.push(Case::new(SceneName::Page, 50.0, -134.0));
+    // Here a slow processor finds a plan so late that its horizon is past before it can be followed.
     cases.push(Case::new(SceneName::Beats3To1, 5.0, -180.0));
     // So light a bob 2 makes the curve so small that the chord of an error matters.
     cases.push(Case::new(SceneName::SmallLight, 0.01, -165.0));
@@ -353,13 +359,8 @@ fn all_mass_ratios_and_every_15th_degree_are_shown_as_claimed() {
 
 /// Has the conditions of `all_mass_ratios_and_every_15th_degree_are_shown_as_claimed`, for the page
 /// alone, all mass ratios of the buttons and every degree.
-///
-/// It is known to fail: at least five of 59,204 scenes are wrong early, all with a heavy bob 2. Two
-/// are on an M4F at 168 MHz, where rounding errors exceed their bound by up to 20 times, and three
-/// at 25 MHz.
 #[test]
 #[ignore = "an hour"]
-#[should_panic(expected = "assertion failed: found.is_empty()")]
 fn all_mass_ratios_and_degrees_of_the_page_are_shown_as_claimed() {
     let mut cases = Vec::new();
     for ratio in MASS_RATIOS {

@@ -17,8 +17,8 @@
 //! | 32 bits, closed form | the distance to the fine run, plus its truncation error |
 //!
 //! Rounding means all rounding errors since the start, with their growth. A distance to the fine
-//! run has a margin of a tenth. With a heavy bob 2 the bounds of truncation errors are four times as
-//! large.
+//! run has a margin of a tenth. With a heavy bob 2 the bounds of truncation errors are four times
+//! as large.
 //!
 //! # The errors of a trial without one
 //!
