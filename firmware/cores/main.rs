@@ -20,7 +20,8 @@ mod machine {
         end(hio::hstdout().is_ok_and(|mut output| super::write_golden(&mut output).is_ok()))
     }
 
-    /// Ends the program with an exit status of success or failure.
+    /// Ends the program with an exit status of success or failure. Without a debugger, the call is
+    /// a fault.
     pub fn end(is_success: bool) -> ! {
         loop {
             debug::exit(if is_success {

@@ -71,7 +71,8 @@ pub struct Processor {
     /// The price list: the cost of a step by each drawn method, cycles.
     pub costs: Costs,
     /// The budget for computing one tick of the scene, cycles. The rest of the time is for drawing
-    /// and sending the frame. At a higher speed, a tick of the clock spends it several times.
+    /// and sending the frame. At a higher speed, a tick of the clock spends it several times. If it
+    /// pays for no method, the motion counts as too fast.
     pub frame: f32,
     /// The budget for planning in each tick of the scene, cycles of the price list. The comparison
     /// of frames takes up to a quarter more in addition, which is not counted.
@@ -216,8 +217,8 @@ pub const PAGE_GRAVITY: f64 = 9.8;
 /// The mass ratio mu = m2/m1 at power-on, with m1 = 1 kg. It is also in the initial settings of
 /// `frequencies`, `butterfly` and `flips`; the other scenes have their own.
 pub const FIRST_MASS_RATIO: f32 = 1.0;
-/// The start angle of both rods at power-on, degrees. It is well in the chaotic regime. The scenes
-/// that share it are those of [`FIRST_MASS_RATIO`].
+/// The start angle of both rods at power-on, degrees from the downward vertical. It is well in the
+/// chaotic regime. The scenes that share it are those of [`FIRST_MASS_RATIO`].
 pub const FIRST_ANGLE: f32 = 120.0;
 /// The mass ratios that the buttons select, in ascending order.
 ///
@@ -262,10 +263,11 @@ pub const PIVOT: (f32, f32) = (64.0, 32.0);
 /// The length of both rods together, pixels: half the height less the largest bob and its soft
 /// edge, 32 - 3 - 0.5.
 pub const REACH: f32 = 28.5;
-/// The radius of the heavier bob, pixels, at a reach of [`REACH`]. The radius of the lighter one is
-/// smaller by the cube root of the ratio of their masses.
+/// The radius of the heavier bob, pixels, at a reach of [`REACH`]; at another reach it is in
+/// proportion. The radius of the lighter one is smaller by the cube root of the ratio of their
+/// masses.
 pub const GREATEST_RADIUS: f32 = 3.0;
-/// The smallest radius of a bob, pixels. A lighter one is not drawn smaller.
+/// The smallest radius of a bob, pixels, at any reach. A lighter one is not drawn smaller.
 pub const LEAST_RADIUS: f32 = 1.5;
 /// Half the width of a rod, pixels.
 pub const ROD_HALF_WIDTH: f32 = 0.6;
@@ -286,9 +288,10 @@ pub const BAUD: u32 = 460_800;
 /// number. With order 16 in 64 bits of fixed point they block a Cortex-M3 at 50 MHz for
 /// 16 x 46,450/50e6 = 15 ms.
 pub const MOST_MEASURED_STEPS: u32 = 16;
-/// The number of times that a serial port or an SPI bus is polled before it counts as stuck and the
-/// transfer fails. A try takes at least 4 processor cycles, so that the tries last 0.24 ms on the
-/// fastest board. The longest wait is for a byte of the serial port, 10/460,800 s = 22 us.
+/// The number of times in a row that a serial port or an SPI bus is polled before it counts as
+/// stuck and the transfer fails. After each byte of the serial port the count begins again. A try
+/// takes at least 4 processor cycles, so that the tries last 0.24 ms on the fastest board. The
+/// longest wait is for a byte of the serial port, 10/460,800 s = 22 us.
 pub const BUS_TRIES: u32 = 10_000;
 /// The size, bytes, of the queue of received bytes that wait for the application. When it is full,
 /// further ones are lost; over USB the host waits instead. A tick of the serial port brings at most

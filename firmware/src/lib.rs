@@ -1,7 +1,8 @@
 //! The double-pendulum application for Cortex-M microcontrollers.
 //!
 //! All modules except `board` are portable: they are built and tested on the host as well as on the
-//! chips. A module of this table imports only from the modules below it.
+//! chips. A module of this table imports only from the modules below it. Without the feature
+//! `application` there are only [`job`] and [`config`].
 //!
 //! | module | contents |
 //! |---|---|

@@ -123,7 +123,9 @@ macro_rules! exports {
 
 exports! {
     /// Switches the board on, with a processor of this class, an index of [`PROCESSORS`]; any other
-    /// number is a Cortex-M3. Later calls do nothing and return 0.
+    /// number is a Cortex-M3. The scene `page` starts at tick 0; the first frame is drawn by
+    /// [`run_to`]. Returns the length of the readings ([`text`]). Later calls do nothing and
+    /// return 0.
     start(processor: usize) => if with(|_| true) { 0 } else {
         static mut BUFFERS: FrameBuffers = FrameBuffers::BLANK;
         static mut PANEL: NoDisplay = NoDisplay;
@@ -140,24 +142,33 @@ exports! {
         run(|app| pass(app, Command::Choose(SceneName::Page)))
     };
     /// Runs the board to this tick of 1/60 s since the start, at most 15 ticks at once, and draws a
-    /// frame. The ticks that are left are run by the next call. The tick must not be less than that
-    /// of the call before; if it is the same, nothing is done.
+    /// frame. The ticks that are left are run by the next call, also if its tick is the same; if
+    /// none is left, no frame is drawn. The tick wraps at 2^32. It must not be less than that of
+    /// the call before: that counts as a wrap, and 15 ticks are run. Returns the length of the
+    /// readings ([`text`]), 0 if the board has not started.
     run_to(tick: u32) => run(|app| _ = app.run_to(tick, |_| ()));
-    /// Sends the [`Command`] in the first `length` bytes at [`text`]. Returns 0 if they are none.
+    /// Sends the [`Command`] in the first `length` bytes at [`text`], as JSON, and replaces it by
+    /// the readings. Returns their length, also for a command that the board refuses: then the
+    /// readings name the field that is wrong. Returns 0, and sends nothing, if the bytes are no
+    /// command or the board has not started. The samples of a [`Command::Simulate`] are never
+    /// computed.
     command(length: usize) => {
         let command = with(|board| serde_json_core::from_slice(board.text.get(..length)?).ok());
         command.map_or(0, |(command, _)| run(|app| pass(app, command)))
     };
 
-    /// Returns the address of 2,048 bytes for a command. The functions above write the [`Readings`]
-    /// there, and return their length. Returns 0 if the board has not started.
+    /// Returns the address of 2,048 bytes for a command, which stays the same. The functions above
+    /// write the [`Readings`] there, as JSON, and return their length, bytes. Returns 0 if the
+    /// board has not started.
     text() => with(|board| board.text.as_ptr() as usize);
     /// Returns the address of the canvas, 64 rows of 128 pixels from the top: two greys of 0 to 15
-    /// in a byte, the left one high. Returns 0 if the board has not started.
+    /// in a byte, the left one high. It stays the same. Returns 0 if the board has not started.
     canvas() => with(|board| board.app.canvas.rows.as_ptr() as usize);
-    /// Returns the address of the bytes that the board has sent in the last call: its messages, the
-    /// status at the end. Bytes beyond 1,024 are lost.
+    /// Returns the address of the bytes that the board has sent in the last call of [`start`],
+    /// [`run_to`] or [`command`] that did not return 0: its messages, the status at the end. A
+    /// message that would exceed 1,024 bytes in all is lost. Returns 0 if the board has not
+    /// started.
     sent() => with(|board| board.app.link.as_ptr() as usize);
-    /// Returns the number of these bytes.
+    /// Returns the number of the bytes at [`sent`]; 0 if the board has not started.
     sent_length() => with(|board| board.app.link.len());
 }

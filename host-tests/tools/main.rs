@@ -1,5 +1,5 @@
-//! The program of all commands. `.cargo/config.toml` runs each with its name as the first argument;
-//! without a name it is the demo.
+//! The program of all commands. `.cargo/config.toml` runs each with its name as the first argument.
+//! Without a name, or with another first argument, it is the demo.
 
 use std::process::ExitCode;
 

@@ -31,7 +31,8 @@ pub struct Bounds<R> {
 }
 
 impl<R: Real> Bounds<R> {
-    /// Returns the bounds for K = `energy_above_rest`, J, which is not negative.
+    /// Returns the bounds for K = `energy_above_rest`, J, of a pendulum with valid `parameters`.
+    /// Neither is checked. A negative or NaN energy gives NaN, an infinite one infinity or NaN.
     pub(crate) fn new(parameters: &Parameters<R>, energy_above_rest: R) -> Self {
         let &Parameters { m1, m2, l1, l2, .. } = parameters;
         let twice = R::TWO * energy_above_rest;
@@ -85,8 +86,8 @@ impl<R: Real> Modes<R> {
 
 impl<R: Real> Pendulum<R> {
     /// Returns the bounds of the motion through `state`, forwards and backwards in time. They are 0
-    /// for the state that hangs at rest. A state that is not finite, or an overflow, gives bounds
-    /// that are NaN or infinite.
+    /// if K is 0: hanging at rest, or at rest without gravity. A state that is not finite, or an
+    /// overflow, gives bounds that are NaN or infinite.
     #[must_use]
     pub fn bounds(&self, state: &State<R>) -> Bounds<R> {
         Bounds::new(self.parameters(), self.energy_above_rest(state))
@@ -117,8 +118,10 @@ impl<R: Real> Pendulum<R> {
         self.energy_above_rest(state) * margin < self.turnover_energy()
     }
 
-    /// Refuses the steps `dt` (s) that [`Modes::check_step`] refuses: steps that are not positive
-    /// and finite, out of the range of `R`, or longer than [`Modes::step_limit`].
+    /// Refuses the steps `dt` (s) that [`Modes::check_step`] refuses: a step that is NaN or
+    /// infinite, by [`Error::NotFinite`], zero or negative, by [`Error::NotPositive`], subnormal,
+    /// zero or infinite in `R`, by [`Error::OutOfRange`], or longer than [`Modes::step_limit`], by
+    /// [`Error::TooLarge`] with the limit, s, which `dt` may equal.
     ///
     /// Without gravity, where no modes exist, there is no longest step. With gravity, parameters
     /// whose modes are out of range are refused first ([`Error::OutOfRange`]). For a step
@@ -183,7 +186,8 @@ impl<R: Real> Pendulum<R> {
     /// # Errors
     ///
     /// Refuses parameters whose modes are out of range ([`Error::OutOfRange`]). The state is not
-    /// checked; one that is not finite, or whose bounds overflow, gives NaN or 0.
+    /// checked; one that is not finite, or whose bounds overflow, gives NaN or 0. The result is
+    /// also 0 if W^2 overflows in `R`, and infinite if it underflows to 0.
     pub fn admissible_step(&self, state: &State<R>) -> Result<R, Error> {
         Ok(R::from_f64(RESOLVED) / self.fastest_rate(state)?)
     }
@@ -197,7 +201,8 @@ pub(crate) const RK4_STABLE: f64 = 2.828_427_124_746_190_3;
 
 /// Returns the longest step, s, whose phase of the fast mode is at most `phase` rad.
 ///
-/// It is infinite if a pendulum has no modes: without gravity, or out of the range of `f64`.
+/// It is infinite if a pendulum has no modes: without gravity, out of the range of `f64`, or with
+/// parameters that are not valid.
 pub(crate) fn stable_step(parameters: &Parameters<f64>, phase: f64) -> f64 {
     Modes::new(parameters).map_or(f64::INFINITY, |modes| phase / modes.fast.frequency)
 }
@@ -213,7 +218,8 @@ fn check_forward<R: Real>(dt: f64) -> Result<(), Error> {
     check_step::<R>(dt)
 }
 
-/// Refuses a step of `dt` s that is NaN, infinite, zero or out of the range of `R`.
+/// Refuses a step of `dt` s that is NaN or infinite, by [`Error::NotFinite`], or zero, subnormal or
+/// infinite in `R`, by [`Error::OutOfRange`]. A negative `dt` is accepted.
 pub(crate) fn check_step<R: Real>(dt: f64) -> Result<(), Error> {
     let parameter = Parameter::Dt;
     let value = dt;

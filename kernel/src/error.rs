@@ -34,13 +34,13 @@ pub enum Parameter {
     P1,
     /// Momentum conjugate to `a2`, kg m^2/s.
     P2,
-    /// Step size, s.
+    /// Step size, s; negative if time runs backwards.
     Dt,
     /// Order of an extrapolation.
     Order,
     /// Ratio of the normal frequencies, fast over slow.
     FrequencyRatio,
-    /// Energy H of a motion, J.
+    /// Energy H of a motion ([`Pendulum::energy`](crate::Pendulum::energy)), J.
     Energy,
     /// The method itself, which is not a number.
     Method,
@@ -86,8 +86,8 @@ impl fmt::Display for Parameter {
 }
 
 /// The reason why an input is refused, or why a motion cannot go on: the parameter and its value,
-/// in the unit of the [`Parameter`]. Displays as one line, such as
-/// `l1 = 0.0: must be greater than zero`.
+/// in the unit of the [`Parameter`], except for [`Diverged`](Self::Diverged). Displays as one line,
+/// such as `l1 = 0.0: must be greater than zero`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -102,7 +102,8 @@ pub enum Error {
         value: f64,
     },
     /// The value is zero or negative. Also the error for a mass or length that becomes zero in the
-    /// numbers of the method; the value is then 0.
+    /// numbers of the method; the value is then 0. Gravity is refused by it only if it is 0 and
+    /// normal modes are needed.
     NotPositive {
         /// The refused parameter.
         parameter: Parameter,
@@ -118,7 +119,7 @@ pub enum Error {
         /// The largest possible value; of a step, which may be negative, the largest magnitude.
         limit: f64,
     },
-    /// The value is below a limit: any gravity below 0, or a frequency ratio too small for the
+    /// The value is below a limit: a finite gravity below 0, or a frequency ratio too small for the
     /// rods.
     TooSmall {
         /// The refused parameter.
@@ -128,10 +129,11 @@ pub enum Error {
         /// The smallest possible value. A frequency ratio must exceed it.
         limit: f64,
     },
-    /// Every input was valid, but a step was too long for the motion, which left the finite numbers
-    /// or the range of its method.
+    /// Every input was valid, but the motion has left the finite numbers or the range of its
+    /// method. A step was too long for it or, by the closed form, the time since the start.
     Diverged {
-        /// The first quantity that is out of range; `A1` in fixed point, whichever it is.
+        /// The first quantity that is out of range. `A1` and `A2` also represent the direction of
+        /// their rod. In fixed point it is always `A1`.
         parameter: Parameter,
         /// A number that is out of range: NaN or infinite, the length of a direction, or an energy,
         /// J. NaN in fixed point.
@@ -147,7 +149,8 @@ pub enum Error {
     /// step by `NotPositive`.
     OutOfRange {
         /// The refused parameter. If a product is out of range, the mass, length or gravity whose
-        /// value is farthest from 1 as a factor.
+        /// value is farthest from 1 as a factor. For a start that the closed form cannot compute,
+        /// always `A1`.
         parameter: Parameter,
         /// The refused value.
         value: f64,
@@ -244,7 +247,8 @@ impl Error {
 
 impl core::error::Error for Error {}
 
-/// Refuses the first of `values` that is NaN or infinite, by [`Error::NotFinite`].
+/// Refuses the first of `values` that is NaN or infinite, by [`Error::NotFinite`]. Accepts an empty
+/// sequence.
 pub(crate) fn check_finite<R: Real>(
     values: impl IntoIterator<Item = (Parameter, R)>,
 ) -> Result<(), Error> {

@@ -1,7 +1,11 @@
 //! The golden bits: the bits of motions that are stored in `golden/bits.csv`.
 //!
-//! The tests of this crate compare every method with that file, and so does every emulated core of
-//! the repository. A change of a bit therefore shows as a change of the file.
+//! The tests of this crate compare every method whose type is in this crate with that file. The
+//! repository's tests also compare the two other methods of the table, and all methods on every
+//! emulated core. A change of a bit therefore shows as a change of the file.
+//!
+//! The file begins with the [`HEADER`]. For each method, in the order of [`Method::ALL`], it has a
+//! [`Line`] for each of the [`MOTIONS`], in their order.
 
 use core::fmt;
 
@@ -91,8 +95,9 @@ pub const MOTIONS: [Golden; 4] = [
 /// The bits of a motion by one method.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Bits {
-    /// The FNV-1a hash, 64 bits, of all words that the method carries, after each step. A word is a
-    /// `u64`, little-endian. The number and order of the words depend on the method.
+    /// The FNV-1a hash, 64 bits, of all words that the method carries, after each step, without
+    /// those of the start. A word is a `u64`, little-endian. The number and order of the words
+    /// depend on the method.
     pub checksum: u64,
     /// The bits of a1, a2, p1 and p2 at the end, as `f64` in SI units. The angles include whole
     /// turns.
@@ -147,7 +152,8 @@ const FNV_PRIME: u64 = 0x0000_0100_0000_01b3;
 pub const FNV_OFFSET: u64 = 0xcbf2_9ce4_8422_2325;
 
 /// Returns the FNV-1a hash of a sequence: `hash` is the hash of its earlier bytes, at first
-/// [`FNV_OFFSET`], and `bytes` are the next ones (G. Fowler, L. C. Noll, K.-P. Vo).
+/// [`FNV_OFFSET`], and `bytes` are the next ones (G. Fowler, L. C. Noll, K.-P. Vo). Without bytes
+/// it returns `hash`.
 #[must_use]
 pub fn fnv_1a(hash: u64, bytes: &[u8]) -> u64 {
     bytes.iter().fold(hash, |hash, &byte| {

@@ -97,9 +97,10 @@
 //!
 //! # Versions
 //!
-//! Semantic versioning. [`Error`] and [`Parameter`] may get new variants, and the traits are sealed
-//! and may get new methods; both are minor versions, as is a higher least Rust version (1.85 now).
-//! Items that are hidden from the documentation may change at any time.
+//! Semantic versioning. [`Error`], [`Parameter`], [`plan::PlanError`] and [`plan::Limit`] may get
+//! new variants, and the traits [`Real`] and [`Form`] are sealed and may get new methods; both are
+//! minor versions, as is a higher least Rust version (1.85 now). Items that are hidden from the
+//! documentation may change at any time.
 //!
 //! A change of any bit of a step is a major version. The file `golden/bits.csv` of the package
 //! stores the bits of every method. A test compares them, and another test requires an entry in the

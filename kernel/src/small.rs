@@ -57,8 +57,10 @@ impl<R: Real> Modes<R> {
     ///
     /// Refuses:
     ///
-    /// - NaN, infinite, zero or negative masses and lengths, and gravity that is NaN, infinite,
-    ///   negative ([`Error::TooSmall`]) or zero ([`Error::NotPositive`]);
+    /// - the first mass, length or gravity, in the order m1, m2, l1, l2, g, that is NaN or infinite
+    ///   ([`Error::NotFinite`]), a mass or length that is zero or negative
+    ///   ([`Error::NotPositive`]), or a negative gravity ([`Error::TooSmall`]);
+    /// - zero gravity, by [`Error::NotPositive`];
     /// - by [`Error::OutOfRange`], parameters whose frequencies, shapes or exchange frequency
     ///   overflow, underflow or are subnormal in `R`.
     pub fn new(parameters: &Parameters<R>) -> Result<Self, Error> {
@@ -164,12 +166,16 @@ impl<R: Real> Pendulum<R> {
 ///
 /// Refuses, in this order:
 ///
-/// - lengths that are not positive and finite;
+/// - lengths that are NaN or infinite, by [`Error::NotFinite`], or zero or negative, by
+///   [`Error::NotPositive`];
 /// - a `slow` of 0, by [`Error::NotFinite`];
+/// - lengths whose terms in the numerator of the formula overflow in `R`, by [`Error::OutOfRange`];
 /// - a ratio p/q that no masses can give, such as 0, by [`Error::TooSmall`]: it must exceed the
 ///   square root of the longer rod over the shorter rod;
-/// - lengths whose terms in the formula leave the range of `R`, by [`Error::OutOfRange`] or, if
-///   both terms of a difference overflow, by [`Error::TooSmall`] with a ratio above the limit.
+/// - lengths for which the numerator or denominator overflows or becomes 0, or mu is subnormal in
+///   `R`, by [`Error::OutOfRange`].
+///
+/// A subnormal numerator or denominator is accepted, but mu then has fewer correct digits.
 pub fn periodic_mass_ratio<R: Real>(fast: u16, slow: u16, lengths: [R; 2]) -> Result<R, Error> {
     // Only the lengths can be wrong here.
     let [l1, l2] = lengths;

@@ -6,7 +6,8 @@
 
 use core::fmt;
 
-/// The equations that a method integrates.
+/// The equations that a method integrates. Displays as `Hamilton`, `directions`, `textbook` or
+/// `linear`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Equations {
     /// Hamilton's equations in angles and momenta:
@@ -32,7 +33,8 @@ impl fmt::Display for Equations {
     }
 }
 
-/// The numbers that a method computes in.
+/// The numbers that a method computes in. Displays as `f32`, `compensated f32`, `f64`,
+/// `compensated f64`, `fixed32` or `fixed64`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Numbers {
     /// Single precision.
@@ -62,7 +64,7 @@ impl fmt::Display for Numbers {
     }
 }
 
-/// The integrator that computes a step.
+/// The integrator that computes a step. Displays as `RK4`, `extrapolation` or `closed form`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Integrator {
     /// The classical Runge-Kutta method.
@@ -108,7 +110,7 @@ impl fmt::Display for Integrator {
 /// the sines of the `micromath` crate.
 ///
 /// Binary formats of `serde` store the position of the variant. A new method is therefore the last
-/// one.
+/// one. Text formats store the name of the variant, such as `Rk4F64`, not that of the table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]

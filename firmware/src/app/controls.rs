@@ -6,7 +6,7 @@ use crate::config::{
 use crate::protocol::Command;
 
 choice! {
-    /// A button.
+    /// The name of a button. [`Pressed`] is a reading of all five.
     Key {
         Up = "up";
         Down = "down";

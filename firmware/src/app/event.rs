@@ -47,8 +47,9 @@ pub enum Event<Panel, Link> {
     /// event.
     Asked,
     /// The scene's motion is too fast for this chip, or for the method that the user has selected:
-    /// at its start, or later, when it has left the finite numbers. The scene does not advance
-    /// until it is started again.
+    /// at its start by a command, or later, when it has left the finite numbers. The scene does not
+    /// advance until it is started again. The first scene, and one that is resumed after a restart,
+    /// have no such event at their start.
     Stopped,
     /// The step of the requested motion is longer than this, s: the longest step that resolves
     /// every motion of its energy. The motion is computed all the same.
@@ -70,7 +71,7 @@ impl<Panel: Display, Link: ErrorType, F: FnMut(Event<Panel::Error, Link::Error>)
 /// A count that wraps, and whose growth is reported at most once a second.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct ThrottledCounter {
-    /// The count itself.
+    /// The count itself, which may also be set.
     pub(super) total: u32,
     /// The total at the last report, and the tick of that report.
     reported: u32,
@@ -78,7 +79,8 @@ pub(super) struct ThrottledCounter {
 }
 
 impl ThrottledCounter {
-    /// Creates a count that is `total` at this tick.
+    /// Creates a count that is `total` at this tick of the clock, as if it were reported now. The
+    /// default is `total` 0 at tick 0.
     pub(super) fn starting(total: u32, tick: u32) -> Self {
         Self {
             total,
@@ -92,8 +94,9 @@ impl ThrottledCounter {
         self.total = self.total.wrapping_add(count);
     }
 
-    /// Returns the growth since the last report, if it is not zero and a second has passed since
-    /// then; this is the next report. Otherwise returns `None`, and the growth is kept.
+    /// Returns the growth since the last report, if it is not zero and a second, 60 ticks, has
+    /// passed since then; this is the next report. Otherwise returns `None`, and the growth is
+    /// kept. `tick` is the present tick of the clock, which may wrap.
     pub(super) fn news(&mut self, tick: u32) -> Option<u32> {
         let grown = self.total.wrapping_sub(self.reported);
         let is_time = grown != 0 && tick.wrapping_sub(self.tick) >= TICK_RATE;
@@ -104,8 +107,8 @@ impl ThrottledCounter {
     }
 }
 
-/// The state of a repeated operation: true if its last attempt failed. Only the first failure in a
-/// row is reported.
+/// The state of a repeated operation: true if its last attempt failed; the default is false. Only
+/// the first failure in a row is reported.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct FaultEdge(bool);
 

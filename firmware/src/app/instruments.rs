@@ -18,7 +18,8 @@ pub struct Instruments {
     pub timed: fn(&mut OnBoards, u32, bool) -> u32,
     /// Returns the bytes of the program in flash; none by default.
     pub image: fn() -> &'static [u8],
-    /// The identity, without the checksum and the size of the image.
+    /// The identity. The checksum and the size of the image in it are not used;
+    /// [`identity()`](Self::identity()) computes them.
     pub identity: Identity,
 }
 

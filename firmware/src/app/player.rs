@@ -18,7 +18,7 @@ pub enum PlannerEvent {
     Found(PlanResult),
     /// The motion is now computed by this method and step count, at this cost of a frame, cycles of
     /// the price list. [`Player::tick`] reports it when a plan takes over. The application also
-    /// logs it when a command has started a scene.
+    /// logs it when a command has started a scene whose report names a method.
     Shown(Stepping, f32),
 }
 
@@ -83,8 +83,9 @@ impl<'a> Player<'a> {
 
     /// Plays a scene with `settings`, whose angles are in degrees, from its start, at the present
     /// pace: a pause stays. A scene that cannot use the requested method follows its plan, also if
-    /// a frame by that method costs more than the scene's budget. A motion that is too fast for
-    /// every method does not advance: the result is `Ok`, and the state [`PlayState::Stopped`].
+    /// a frame by that method costs more than the scene's budget; later scenes try the method
+    /// again. A motion that is too fast for every method does not advance: the result is `Ok`, and
+    /// the state [`PlayState::Stopped`].
     ///
     /// # Errors
     ///
@@ -145,8 +146,9 @@ impl<'a> Player<'a> {
     /// If the command is impossible, nothing is changed, and the result is the field that is wrong:
     /// for [`Command::Set`] its own field, or [`Field::Field`] if that cannot be set; for
     /// [`Command::Method`] it is [`Field::Method`], also if a frame by the method costs too much;
-    /// for the others a field of the settings. A motion that is too fast for every method is not
-    /// impossible: its scene starts, and is stopped.
+    /// for the others a field of the settings, or [`Field::Dt`] if even the shortest steps are too
+    /// long for extreme masses or lengths. Any other motion that is too fast for every method is
+    /// not impossible: its scene starts, and is stopped.
     pub fn execute(&mut self, command: Command) -> Result<bool, Field> {
         match command {
             Command::Heavier => return self.start(self.name, self.settings.heavier()),
@@ -326,8 +328,9 @@ impl<'a> Player<'a> {
     }
 
     /// Draws the scene in place of the last frame, with the numbers of the last
-    /// [`check`](Self::check), and a mark if it is paused. If the scene is stopped, writes the
-    /// reason instead, with the mass ratio and the start angle of rod 1.
+    /// [`check`](Self::check), and a mark if it is paused. If the scene is stopped, writes instead
+    /// that it is too fast, for this method if one is requested and otherwise for this chip, and
+    /// the mass ratio and the start angle of rod 1.
     #[inline(never)] // Test `scenes` profiles it by its name.
     pub fn draw(&self, canvas: &mut Canvas) {
         match self.state() {
@@ -430,8 +433,8 @@ impl<'a> Player<'a> {
     ///
     /// If that is impossible, returns the field that is wrong; then nothing is changed. It is
     /// [`Field::Speed`] if the speed, rounded to hundredths, is not 0.01 to 4, and otherwise the
-    /// field of the settings that [`play`](Self::play) refuses. Angles beyond straight up are
-    /// accepted.
+    /// field of the error of [`play`](Self::play), as in [`execute`](Self::execute). Angles beyond
+    /// straight up are accepted.
     pub fn resume(&mut self, status: &Status) -> Result<(), Field> {
         let Status {
             scene,

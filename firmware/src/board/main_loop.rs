@@ -54,7 +54,9 @@ impl<Panel: 'static, Link: 'static, Keys: 'static, Dog> Plays for Board<Panel, L
 
 /// Defines the program of a board, `main`, with the statics of its application. The arguments are
 /// the module of the board, its type there, and the class of its processor, a constant of
-/// [`config`](crate::config). The program panics if the module's `take` returns `None`.
+/// [`config`](crate::config): `program!(pico::Pico on PROCESSOR);`. The crate must be `no_std` and
+/// `no_main`, and depend on `cortex-m-rt`. The program panics if the module's `take` returns
+/// `None`.
 #[macro_export]
 macro_rules! program {
     ($module:ident::$board:ident on $processor:ident) => {
@@ -86,8 +88,10 @@ impl<Panel: Display<Error: fmt::Display> + 'static, Link: Write, Keys: Buttons, 
     ///
     /// The scene is the first of the catalogue with the default settings, or after a warm restart
     /// the scene from before it. That is not played again after more than [`MOST_RESTARTS`]
-    /// restarts in a row, or if its settings are refused. A controller that was chosen for the
-    /// panel is kept across every reset that leaves memory powered.
+    /// restarts in a row, or if its settings are refused; then the first scene is. A controller
+    /// that was chosen for the panel is kept across every reset that leaves memory powered. The
+    /// choice to identify it is not: the reset restores
+    /// [`BUILT_FOR`](crate::display::BUILT_FOR).
     ///
     /// Every finished frame feeds the watchdog and replaces the retained record. Received bytes
     /// come from the interrupt of the serial port, not from `link`. Errors of the panel and of the

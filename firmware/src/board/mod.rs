@@ -10,6 +10,9 @@
 //! | `panel_bus` | a panel's bus that is driven by an interrupt |
 //! | `serial` | the bytes received and sent by a serial port |
 //! | `register` | a device register |
+//!
+//! The modules `stm32f405` and `pico` exist only with the features of these names; `log`, `steps`
+//! and `panel_bus` with either of them.
 
 pub mod cortex_m;
 pub mod lm3s6965evb;

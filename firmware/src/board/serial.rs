@@ -1,4 +1,5 @@
-//! The bytes of a board's serial port.
+//! The bytes of a board's serial port: 8 data bits, no parity and 1 stop bit, at
+//! [`BAUD`](crate::config::BAUD).
 //!
 //! An interrupt puts received bytes into a queue, and the application takes them from it. Bytes to
 //! send wait until the port takes them, but not without a limit.
@@ -39,7 +40,8 @@ impl Inbox {
 }
 
 /// Sets the function that receives. It must end the port's interrupt before it takes the bytes, so
-/// that a byte that comes meanwhile interrupts again.
+/// that a byte that comes meanwhile interrupts again. A later call replaces it. The interrupt must
+/// be unmasked separately.
 pub(in crate::board) fn receive_by(receive: fn(&mut Inbox)) {
     INBOX.with(|inbox| inbox.receive = Some(receive));
 }

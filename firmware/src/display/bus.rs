@@ -37,7 +37,8 @@ pub struct Outbox {
     answer: Vec<u8, ANSWER>,
     /// The outcome; `None` while the messages are being sent, `Ok` while nothing has been sent.
     pub sent: Option<Sent>,
-    /// The time that the messages and the answer took, us; 0 if it is not known.
+    /// The time that the messages and the answer took, us; 0 if it is not known, as before the end
+    /// of the transfer and after it was aborted.
     pub took: u32,
 }
 

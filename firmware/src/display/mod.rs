@@ -27,8 +27,8 @@ pub trait Display {
 
     /// Sends a frame to the panel, or prepares its transfer.
     ///
-    /// Returns an error if this frame has failed, or if the panel does not show the frames at
-    /// present. The next frame may be sent all the same.
+    /// Returns an error if this frame has failed, or if the panel at present does not show the
+    /// frames, or not all of them. The next frame may be sent all the same.
     fn flush(&mut self, canvas: &Canvas) -> Result<(), Self::Error>;
 
     /// Sends the last frame, which is the canvas, if it is still waiting for the bus. It is called
@@ -51,7 +51,7 @@ pub trait Display {
 
     /// Drives the panel as this controller, from the next frame on; `None` identifies it. Returns
     /// false, and does nothing, if the board has no panel with a choice of controllers, as by
-    /// default.
+    /// default. Not checked: the panel has this controller. Otherwise the picture may be wrong.
     fn choose(&mut self, _: Option<Controller>) -> bool {
         false
     }
@@ -84,7 +84,8 @@ choice! {
 choice! {
     /// The method of identifying a controller.
     By {
-        /// The panel returned the bytes that were written into its memory, or did not return them.
+        /// The panel returned the bytes that were written into its memory (SH1106, SH1107), or
+        /// other bytes (SSD1306).
         Memory = "by reading its memory back";
         /// Reading the memory failed, and only the status byte was available.
         Status = "by its status byte";
@@ -98,7 +99,7 @@ choice! {
 choice! {
     /// An error of the bus that makes a panel absent.
     BusFault {
-        /// The panel acknowledges neither address.
+        /// No panel acknowledges at either address, or the panel acknowledges no longer.
         NoAnswer = "no answer at 0x3C and 0x3D";
         /// Another device drove the data line, so that the bus lost its arbitration.
         Disturbed = "the data line was driven by another device";
@@ -139,9 +140,10 @@ pub enum PanelState {
     /// The board looks for a panel, identifies it or sends the first picture.
     Starting,
     /// The last search has ended with this error, which stays during the next search. Also a panel
-    /// that has just been lost, until it is searched for, whatever the error.
+    /// that has just been lost, until it is searched for: with [`BusFault::NoAnswer`], whatever the
+    /// error.
     Absent(BusFault),
-    /// The panel shows the frames.
+    /// The panel shows the frames, or as many as the bus carries ([`PanelReport::shown`]).
     Shown(Found),
 }
 
@@ -150,20 +152,22 @@ pub enum PanelState {
 pub struct PanelReport {
     /// The state of the search.
     pub state: PanelState,
-    /// The controller that the user chose; `None` identifies it.
+    /// The controller that the user chose, by a command or by [`BUILT_FOR`]; `None` identifies it.
     pub chosen: Option<Controller>,
     /// The number of frames of the last whole second, 60 frames
-    /// ([`TICK_RATE`](crate::config::TICK_RATE)), that were sent to the panel, whole or in part.
-    /// It is 0 until the panel has taken frames for a whole second, and if the driver does not
-    /// count them.
+    /// ([`TICK_RATE`](crate::config::TICK_RATE)), that were sent to the panel, whole or in part. A
+    /// frame without a change counts as sent. It is 0 until the panel has taken frames for a whole
+    /// second, also after a loss, and if the driver does not count them.
     pub shown: u8,
-    /// The number of these that were sent whole. The others left a part to the next frame.
+    /// The number of these that were sent whole, or had no change. The others left a part to the
+    /// next frame.
     pub whole: u8,
 }
 
 /// The controller that the build variable `PANEL` names: `ssd1306`, also for an SSD1309, `sh1106`
 /// or `sh1107`. Another value is an error of the build. It is `None` without the variable, and then
-/// the controller is identified. A controller chosen by the host has precedence.
+/// the controller is identified. A controller chosen by the host has precedence, and so has the
+/// controller chosen before a reset that leaves memory powered.
 pub const BUILT_FOR: Option<Controller> = match option_env!("PANEL") {
     None => None,
     Some(name) => match name.as_bytes() {

@@ -171,8 +171,9 @@ pub enum OledError {
     /// [`ErrorKind::NoAcknowledge`], no panel answers at either address, 0x3C or 0x3D, or a panel
     /// answers no longer. It is tried again after a second.
     Absent(ErrorKind),
-    /// The panel showed frames earlier but does not answer now, or it lost its power. The search
-    /// begins again.
+    /// The panel showed frames earlier, but the bus has failed since, as when the panel does not
+    /// answer; the search begins again after a second. Or the panel lost its power, and the search
+    /// begins again at once.
     Lost,
     /// The bus is too slow: of the last 60 frames ([`TICK_RATE`]) at least one was left out. The
     /// panel shows the others.
@@ -639,7 +640,8 @@ impl<Bus: PanelBus> Display for OledI2c<'_, Bus> {
         }
     }
 
-    /// Always returns true. The panel is searched for and set up again.
+    /// Always returns true. From the next frame on the panel is searched for and set up again;
+    /// until that ends, the result of [`flush`](Display::flush) stays.
     fn choose(&mut self, chosen: Option<Controller>) -> bool {
         self.chosen = chosen;
         // The next frame begins the search and the set-up.

@@ -57,8 +57,8 @@ const WAKE: [&[u8]; 19] = [
 /// The driver of a panel: an SPI device, and the pin that is high for data and low for commands.
 ///
 /// [`Ssd0323::init`] must be called before the first frame, which is not checked. A frame is sent
-/// before [`flush`](Display::flush) returns. After an error of the SPI device, the next frame is
-/// sent whole. The panel takes SPI mode 2 at up to 4 MHz; another mode gives no error and no
+/// before [`flush`](Display::flush) returns. After an error in a frame, the next frame is sent
+/// whole. The panel takes SPI mode 2 at up to 4 MHz; another mode gives no error and no
 /// picture. It cannot be read, so that an absent panel is no error.
 #[derive(Debug)]
 pub struct Ssd0323<'a, Spi, Pin> {
@@ -84,8 +84,8 @@ impl<'a, Spi: SpiDevice, Pin: OutputPin<Error = Infallible>> Ssd0323<'a, Spi, Pi
     /// Blanks the panel's memory, configures the controller and switches the panel on. It does not
     /// reset the controller.
     ///
-    /// Returns the first error of the SPI device; the rest is then not sent, and a panel that was
-    /// off stays dark until a later call succeeds.
+    /// Returns the first error of the SPI device; the rest is then not sent. A panel that was off
+    /// stays dark until a later call succeeds, and one that was on may go dark.
     pub fn init(&mut self) -> Result<(), Spi::Error> {
         self.is_known = false;
         self.command(&ALL_COLUMNS)?;

@@ -177,7 +177,8 @@ pub struct Fading {
 impl Fading {
     /// The traces stay as they are.
     pub const NEVER: Self = Self { rows: 0, last: 15 };
-    /// The fading of a trace that remains visible. It loses a grey in about a second.
+    /// The fading of a trace that remains visible. It loses a grey in about a second, down to grey
+    /// 4.
     pub const TRACE: Self = Self { rows: 1, last: 4 };
 }
 
@@ -220,8 +221,9 @@ impl FadeLayer {
 /// The number 1 in every other nibble.
 const ONES: u32 = 0x0101_0101;
 
-/// Returns a 1 for every other grey of eight, from the lowest, if adding `room` to it carries out
-/// of its nibble; otherwise 0.
+/// Returns the carries of the greys in the low nibbles of the four bytes of `greys`: bit 0 of a
+/// byte is 1 if the grey plus the summand in the same byte of `room`, 0 to 15, is at least 16. All
+/// other bits are 0. The high nibbles are ignored.
 pub(super) fn carried(greys: u32, room: u32) -> u32 {
     (((greys & (15 * ONES)) + room) >> 4) & ONES
 }

@@ -7,7 +7,7 @@ use crate::graphics::{Canvas, HEIGHT, SUBPIXELS};
 /// Half the thickness of a curve, subpixels.
 const HALF_THICKNESS: i32 = 38;
 
-/// A height on the canvas: subpixels down from the top edge.
+/// A height on the canvas: subpixels of 1/64 pixel down from the top edge, negative above it.
 pub type Height = i16;
 
 /// Returns the height of `value`, subpixels down from the top edge, where the value 0 is `zero`

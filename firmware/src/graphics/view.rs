@@ -13,7 +13,8 @@ pub type RodDirections = [[f32; 2]; 2];
 const ROD_BRIGHTNESS: u8 = 190;
 /// The width of the dark gap between a bob and its background, subpixels.
 const GAP: u8 = SUBPIXELS as u8;
-/// Half the width of a trace that remains visible, subpixels.
+/// Half the width of a trace that fades as [`Fading::TRACE`](crate::graphics::Fading::TRACE) and so
+/// remains visible, subpixels.
 pub const TRACE_HALF_WIDTH: u8 = 30;
 
 /// The place of a pendulum on the frame.

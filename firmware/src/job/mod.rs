@@ -45,7 +45,8 @@ pub struct Request {
     pub method: Method,
     /// m1, m2 (kg), l1, l2 (m), g (m/s^2), in this order.
     pub parameters: Parameters<f64>,
-    /// The initial angles a1 and a2, rad (not degrees), from the downward vertical.
+    /// The initial angles a1 and a2, rad (not degrees), from the downward vertical, positive
+    /// counter-clockwise.
     pub angles: [f64; 2],
     /// The initial angular velocities w1 and w2, rad/s.
     pub velocities: [f64; 2],

@@ -30,14 +30,15 @@ pub trait Run: Copy {
     }
 }
 
-/// Returns the motion of a request at its start, by the method that the type `F` computes. Returns
-/// the kernel's error if it refuses the request.
+/// Returns the motion of a request at its start, by the method that the type `F` computes. Not
+/// checked: it is the method of the request. Returns the kernel's error if it refuses the request.
 pub(super) fn start<F: Form>(request: &Request) -> Result<F, Error> {
     let (parameters, state) = rounded(request)?;
     F::new(&parameters, &state, request.dt)
 }
 
-/// Returns the same by the request's method. Refuses methods that scenes are not drawn by.
+/// Returns the same by the request's method. Refuses, by [`Error::NotDrawn`], methods that scenes
+/// are not drawn by.
 pub(super) fn start_drawn(request: &Request) -> Result<DrawnMotion, Error> {
     let (parameters, state) = rounded(request)?;
     DrawnMotion::new(request.method, &parameters, &state, request.dt)

@@ -2,8 +2,11 @@
 
 use crate::graphics::label::{self, Label};
 
-/// The time until which the frames of a scene are within [half a
-/// pixel](crate::config::HALF_PIXEL) of the exact motion, s after the start.
+/// The time until which the frames of a scene are within [half a pixel](crate::config::HALF_PIXEL)
+/// of the exact motion, s after the start.
+///
+/// Below, planning includes the switch to the method of the plan. In the scene `upright`, which has
+/// no plan, it is the comparison with a motion in 64 bits.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub enum Horizon {
     /// Every frame is accurate, because the scene draws nothing inaccurate.

@@ -12,7 +12,8 @@ use crate::graphics::HEIGHT;
 /// A double pendulum, its initial angles and its initial angular velocities.
 ///
 /// Any numbers can be stored, and the methods that change them check nothing.
-/// [`start`](Self::start) checks them.
+/// [`start`](Self::start) checks them. The default is [`equal_rods`](Self::equal_rods) with a mass
+/// ratio of 1 and 120 degrees, the settings at power-on.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 #[cfg_attr(target_os = "none", derive(defmt::Format))]
 pub struct Settings {
@@ -148,10 +149,11 @@ impl Settings {
     ///
     /// # Errors
     ///
-    /// Refuses settings that describe no pendulum or no finite start, a step that the method cannot
-    /// make, and a method that is not in [`Method::DRAWN`](double_pendulum::Method::DRAWN). Most
-    /// methods accept a step that is unstable ([`PlannedRun::new`]), unlike
-    /// [`Simulation::new`](super::Simulation::new).
+    /// Refuses settings that describe no pendulum or no finite start, a start of 2^31 - 1 turns or
+    /// more, numbers out of the range of the method, a step that the method cannot make, for the
+    /// closed form a gravity of 0, and a method that is not in
+    /// [`Method::DRAWN`](double_pendulum::Method::DRAWN). Most methods accept a step that is
+    /// unstable ([`PlannedRun::new`]), unlike [`Simulation::new`](super::Simulation::new).
     pub fn run(&self, apart: f64, stepping: Stepping) -> Result<PlannedRun, Error> {
         let mut problem = self.problem(HEIGHT as f32);
         problem.start.a1 += apart;
@@ -160,7 +162,8 @@ impl Settings {
 }
 
 /// Returns [`HALF_PIXEL`] in metres on a display `height` pixels high, (l1 + l2)/`height`. The
-/// length of both rods together is half of that height. Nothing is checked.
+/// length of both rods together is half of that height. Nothing is checked; a height of 0 gives
+/// infinity or NaN.
 pub fn half_pixel(&Parameters { l1, l2, .. }: &Parameters<f64>, height: f64) -> f64 {
     f64::from(HALF_PIXEL) * (l1 + l2) / (0.5 * height)
 }

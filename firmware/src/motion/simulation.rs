@@ -69,7 +69,8 @@ impl Simulation {
 
     /// Advances the motion by one tick, 1/60 s. It must not be [too fast](Self::is_too_fast), which
     /// is not checked. A motion that diverges is not reported here; numbers of its state are then
-    /// not finite, and stay so, but its directions may look valid.
+    /// not finite, by `rk4-fixed32` up to 32 steps late, and stay so, but its directions may look
+    /// valid.
     pub fn tick(&mut self) {
         // A motion that has diverged is detected by its state.
         let _is_lost = self.motion.advance(1);
@@ -136,9 +137,9 @@ impl CatchingUp {
 
     /// Advances by the frames of a tick, but not beyond `simulation`. Returns true if it has caught
     /// up with `simulation`, which then continues with this motion. To be called after each
-    /// [`Simulation::tick`], until it returns true; at the start of `simulation` this is the first
-    /// call. A motion that diverges is not reported here. Not checked: both motions have the same
-    /// settings.
+    /// [`Simulation::tick`], until it returns true, as it does after the first tick of
+    /// `simulation`. A motion that diverges is not reported here. Not checked: both motions have
+    /// the same settings.
     pub fn tick(&mut self, simulation: &mut Simulation) -> bool {
         for _ in 0..self.most {
             if self.motion.frame() < simulation.motion.frame() {
@@ -182,9 +183,10 @@ impl Energy {
     }
 
     /// Returns the relative energy error (E - E0)/(E0 - Emin) of the motion now, from its own
-    /// numbers, before they are rounded for the report. E0 is the energy at the start. Returns 0 if
-    /// the start is hanging at rest, which a motion never leaves, or if E0 is NaN. Otherwise the
-    /// error of a diverged motion is not finite. Not checked: `motion` is of the same pendulum.
+    /// numbers, before they are rounded for the report. E0 is the energy at the start, and Emin
+    /// that of hanging at rest. Returns 0 if the start is hanging at rest, which a motion never
+    /// leaves, or if E0 is NaN. Otherwise the error of a diverged motion is not finite, by
+    /// `rk4-fixed32` up to 32 steps late. Not checked: `motion` is of the same pendulum.
     pub fn error(&self, motion: &PlannedRun) -> f32 {
         self.relative(motion.energy_above_rest(&self.pendulum))
     }

@@ -13,7 +13,9 @@ use crate::scenes::SceneName;
 ///
 /// An impossible command changes nothing. Over the link its answer is
 /// [`Answer::Refused`](super::Answer::Refused) with the field that is wrong. A command that is
-/// ignored counts as executed.
+/// ignored counts as executed. A command that starts a scene is impossible if the scene cannot
+/// start with the settings. Unless stated below, the field is then that of the settings that the
+/// kernel refuses ([`Field::from`]).
 ///
 /// A scene that starts keeps the pause, the ticks left of a [`Step`](Self::Step), the speed and the
 /// requested method. If it cannot start by that method, it follows its plan. A motion that is too
@@ -53,6 +55,7 @@ pub enum Command {
     /// rad either way), and a speed that is not 0.01 to 4 after rounding to hundredths, are refused
     /// with their own field.
     Set {
+        /// The parameter.
         field: Field,
         /// The value, in the unit of the field; an angle in rad, not in degrees. All but the speed
         /// are stored in `f32`.
@@ -89,26 +92,28 @@ pub enum Command {
     /// replaced, and sends no more samples.
     ///
     /// Refused with [`Field::Method`] if the application lacks the method, and otherwise with the
-    /// field that the kernel refuses, such as [`Field::Dt`]; then the earlier job continues.
+    /// field that the kernel refuses, such as [`Field::Dt`]; then an earlier job continues.
     Simulate(Request),
     /// Requests the time of this number of further steps of the last requested motion
     /// ([`Answer::Measured`](super::Answer::Measured)). They are made without a break and with
-    /// interrupts off, at most [`MOST_MEASURED_STEPS`](crate::config::MOST_MEASURED_STEPS), 16. No
-    /// sample of that motion follows, also after 0 steps, but it can be measured again. A motion
-    /// that has ended or diverged can be measured, too. Refused with [`Field::Message`]
-    /// if no motion was requested since reset.
+    /// interrupts off. A number above
+    /// [`MOST_MEASURED_STEPS`](crate::config::MOST_MEASURED_STEPS), 16, counts as 16. No sample of
+    /// that motion follows, also after 0 steps, but it can be measured again. A motion that has
+    /// ended or diverged can be measured, too. Refused with [`Field::Message`] if no
+    /// [`Simulate`](Self::Simulate) has been executed since reset.
     Measure {
+        /// The number of steps.
         steps: u32,
         /// True to run the code of the steps in RAM, false to run it in flash.
         in_ram: bool,
     },
-    /// Drives the panel as this controller; `None` identifies it. The choice is kept across every
-    /// reset that leaves memory powered. Refused with [`Field::Panel`] if the panel has no choice
-    /// of controllers.
+    /// Drives the panel as this controller from the next frame on; `None` identifies it. The choice
+    /// is kept across every reset that leaves memory powered. Refused with [`Field::Panel`] if the
+    /// panel has no choice of controllers. Not checked: the panel has this controller.
     Panel(Option<Controller>),
     /// Plays a scene with these settings, whose angles are in degrees. They are set all at once,
-    /// because a part of them alone may be impossible. Angles beyond 180 degrees either way are
-    /// refused.
+    /// because a part of them alone may be impossible. Angles beyond 180 degrees either way, and
+    /// NaN, are refused with [`Field::A1`] or [`Field::A2`].
     Play(SceneName, Settings),
     /// Requests the last restart that the board made on its own
     /// ([`Answer::Restart`](super::Answer::Restart)). Changes nothing.
@@ -119,9 +124,10 @@ pub enum Command {
 /// its kind.
 const TO_CHIP: u8 = 0x80;
 
-/// Encodes a command for the wire, with its delimiters. Returns the used part of `wire`; every
-/// command fits. `request` is a number that every answer to it repeats; any number is allowed. The
-/// values of the command are not checked.
+/// Encodes a command for the wire, with mark byte, version, CRC and delimiters. Returns the used
+/// part of `wire`, as [`encode`](super::encode) does; every command fits. `request` is a number
+/// that every answer to it repeats; any number is allowed. The values of the command are not
+/// checked.
 pub fn encode_command(request: u16, command: Command, wire: &mut [u8; MAX_WIRE]) -> &[u8] {
     encode(&(TO_CHIP, request, command), wire)
 }
@@ -131,7 +137,8 @@ pub fn encode_command(request: u16, command: Command, wire: &mut [u8; MAX_WIRE])
 ///
 /// The command is `None` if it is unknown, incomplete, or followed by further bytes. If not even
 /// the number can be read, it is 0. The whole result is `None` if the message is not a command,
-/// that is if it does not begin with the mark byte 0x80.
+/// that is if it does not begin with the mark byte 0x80. The values of the command are not checked:
+/// they may be NaN.
 pub fn decode_command(message: &[u8]) -> Option<(u16, Option<Command>)> {
     let numbered = message.strip_prefix(&[TO_CHIP])?;
     Some(
@@ -141,7 +148,8 @@ pub fn decode_command(message: &[u8]) -> Option<(u16, Option<Command>)> {
 }
 
 choice! {
-    /// A field that a command sets, or that is wrong in a command.
+    /// A field that a command sets, or that is wrong in a command. Angles are from the downward
+    /// vertical, positive counter-clockwise.
     Field {
         /// The requested method.
         Method = "method";
@@ -163,7 +171,8 @@ choice! {
         W1 = "w1";
         /// The angular velocity of rod 2 at the start, rad/s.
         W2 = "w2";
-        /// The step size of a requested motion, s; also a motion that diverged.
+        /// The step size of a requested motion, s. Also a scene whose steps are too long for its
+        /// motion, a motion that diverged, and every error that is about no other field.
         Dt = "step size";
         /// The mass ratio m2/m1; m2 is set.
         MassRatio = "mu";
@@ -182,8 +191,9 @@ choice! {
 }
 
 impl From<Error> for Field {
-    /// Returns the field that an error of the kernel is about. An error without such a field, and a
-    /// motion that diverged, count as a wrong step size.
+    /// Returns the field that an error of the kernel is about. A momentum counts as the angular
+    /// velocity of the same number. An error without such a field, and a motion that diverged,
+    /// count as a wrong step size, [`Field::Dt`].
     fn from(error: Error) -> Self {
         if let Error::Diverged { .. } = error {
             return Field::Dt;

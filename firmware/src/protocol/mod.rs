@@ -38,7 +38,8 @@ pub use to_host::{
     Answer, BoardName, Cause, Frame, Identity, PlayState, Restarted, Status, ToHost,
 };
 
-/// The version of the protocol. It precedes every message, as the first byte that COBS encodes.
+/// The version of the protocol. It precedes every message, as the first byte that COBS encodes. A
+/// receiver refuses messages with any other version ([`LinkError::Version`]).
 pub const VERSION: u8 = 12;
 /// The largest size of a message without version and CRC, bytes.
 pub const MAX_MESSAGE: usize = 97;
@@ -61,8 +62,9 @@ pub fn encode<'wire>(message: &impl Serialize, wire: &'wire mut [u8; MAX_WIRE]) 
     )
 }
 
-/// Returns the message in `bytes`, which are without version and CRC; `None` unless they are
-/// exactly one message of type `M`. Its numbers are not checked: they may be NaN.
+/// Returns the message in `bytes`, which are without version and CRC, as [`Decoder::push`] returns
+/// them; `None` unless they are exactly one message of type `M`. Its numbers are not checked: they
+/// may be NaN. Commands, with their mark byte and number, are read by [`decode_command`].
 pub fn read<M: DeserializeOwned>(bytes: &[u8]) -> Option<M> {
     postcard::take_from_bytes(bytes)
         .ok()
@@ -100,8 +102,8 @@ pub fn frame<'wire>(message: &[u8], wire: &'wire mut [u8; MAX_WIRE]) -> &'wire [
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(target_os = "none", derive(defmt::Format))]
 pub enum LinkError {
-    /// The bytes are not a COBS encoding, or decode to fewer bytes than a CRC (4) or to more than
-    /// the longest message with version and CRC (102).
+    /// The bytes are not a COBS encoding, or decode to fewer bytes than a CRC (4), to nothing but a
+    /// matching CRC, or to more bytes than the longest message with version and CRC (102).
     Malformed,
     /// The CRC, the last four bytes, does not match. It is checked before the version.
     Checksum,

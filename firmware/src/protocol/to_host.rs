@@ -58,7 +58,7 @@ pub enum Answer {
     /// Cortex-M0+ modulo 2^24. `steps` is the requested number, at most 16
     /// ([`MOST_MEASURED_STEPS`](crate::config::MOST_MEASURED_STEPS)). `cycles` is 0 if there is no
     /// cycle counter, as in QEMU, or if the board does not have the code in the memory that the
-    /// command names, flash or RAM; then no step is made.
+    /// command names, flash or RAM; in the latter case no step is made.
     Measured { steps: u32, cycles: u32 },
     /// The last restart that the board made on its own; `None` if it has made none since it was
     /// switched on or reset from outside.
@@ -104,8 +104,8 @@ impl ToHost {
 /// | 1, before COBS | [`VERSION`](super::VERSION) of the protocol |
 /// | 1 | 0, the number of [`ToHost::Frame`] |
 /// | varint, 1 to 5 each | `sequence`, `dropped`, `lost` |
-/// | 1 | `scene`, the number in the table of [`scenes`](crate::scenes) |
-/// | 1 | `state` |
+/// | 1 | `scene`, its place in [`SceneName::ALL`], from 0 |
+/// | 1 | `state`, its place in [`PlayState::ALL`], from 0 |
 /// | 4, 4 | `mass_ratio`, `start_angle` |
 /// | varint, 1 to 10 | `report.step` |
 /// | 8 | `report.time` |
@@ -143,17 +143,17 @@ pub struct Frame {
     pub state: PlayState,
     /// The mass ratio m2/m1 of the settings.
     pub mass_ratio: f32,
-    /// The start angle of rod 1 in the settings, rad (not degrees). In the page's settings both
-    /// rods have it.
+    /// The start angle of rod 1 in the settings, rad (not degrees), from the downward vertical,
+    /// positive counter-clockwise. In the page's settings both rods have it.
     pub start_angle: f32,
     /// The report of the scene, to the last bit. While the scene is stopped, it does not change.
     pub report: Report,
     /// The time that the scene took for this frame, to advance by all ticks since the previous
     /// frame and to be drawn, in counts of the processor clock. They are cycles on a chip. QEMU
-    /// does not model cycles; there they are the time by its own clock.
+    /// does not model cycles; there they are the time by its own clock. It is 0 on a host.
     pub scene_cycles: u32,
     /// The same for the whole previous frame, including its transfer to the panel and over the
-    /// link.
+    /// link; 0 in the first frame since reset.
     pub busy_cycles: u32,
 }
 
@@ -182,19 +182,21 @@ choice! {
     PlayState {
         /// The scene advances.
         Playing = "playing";
-        /// The scene is paused until a command lets it continue.
+        /// The scene is paused until a command lets it continue. It is also paused while a
+        /// [`Step`](super::Command::Step) advances it.
         Paused = "paused";
         /// The scene has stopped because the motion is too fast for this chip, or for the method
-        /// that the user has selected. Other settings or another scene start again.
+        /// that the user has selected. Other settings or another scene start again. It is stopped
+        /// whether it is paused or not.
         Stopped = "stopped";
     }
 }
 
 choice! {
-    /// Why the board restarted.
+    /// The reason why a board restarted.
     Cause {
         /// The board finished no frame for
-        /// [`WATCHDOG_SECONDS`](crate::config::WATCHDOG_SECONDS).
+        /// [`WATCHDOG_SECONDS`](crate::config::WATCHDOG_SECONDS), 1 s, or longer.
         Hang = "hang";
         /// The program reached a state that should be impossible.
         Panic = "panic";
@@ -259,7 +261,7 @@ pub struct Identity {
     /// of a Pico, IDCODE and the three words of the number of an STM32F405. The other words are
     /// zeros, and so are all of an emulated STM32F405 and of an MPS2.
     pub chip: [u32; 4],
-    /// The CRC-32 of the program in flash, code and constants; 0 if it is not known.
+    /// The CRC-32/ISO-HDLC of the program in flash, code and constants; 0 if it is not known.
     pub image: u32,
     /// The size of the program, bytes; 0 if it is not known.
     pub image_bytes: u32,

@@ -25,10 +25,10 @@ const COLUMNS_PER_TICK: u32 = 2;
 const MARK_RADIUS: u8 = 112;
 const CURVE: u8 = 200;
 
-/// The two frequencies of equal rods in units of sqrt(g/l), so that they depend only on the mass
-/// ratio. The curves grow from the left, by two columns in a tick, and are complete in a second.
-/// The plot begins at the mass ratio 0, and ends at 5 or, for a mass ratio above 4, at 1.25 times
-/// it.
+/// The two angular frequencies of equal rods in units of sqrt(g/l), so that they depend only on the
+/// mass ratio: ω₁ is the fast one, ω₂ the slow one. The curves grow from the left, by two columns
+/// in a tick, and are complete in a second. The plot begins at the mass ratio 0, and ends at 5 or,
+/// for a mass ratio above 4, at 1.25 times it.
 ///
 /// Of the settings only the mass ratio matters. It is refused if it is not positive and finite, or
 /// above 6.8e37. A requested method is ignored. The default is an empty figure, whose labels mean

@@ -35,7 +35,8 @@ pub enum Shows {
 pub trait Scene: Sized {
     /// The subject of the scene.
     const SHOWS: Shows;
-    /// The fading of the ink in a tick. By default it is the fading of a trace.
+    /// The fading of the ink in a tick, which the caller applies after each [`tick`](Self::tick).
+    /// By default it is the fading of a trace, which stays visible.
     const FADING: Fading = Fading::TRACE;
 
     /// Creates the scene at its start. Returns also the height of the display for the plan, pixels.
@@ -58,7 +59,7 @@ pub trait Scene: Sized {
     fn tick(&mut self, ticks: u64, ink: &mut FadeLayer);
 
     /// Draws the rest of the picture over the ink, which `canvas` already contains. `report` is the
-    /// current report of the scene, so that its numbers need not be computed again.
+    /// current report of the scene, so that its numbers need not be computed again; not checked.
     fn draw(&self, report: &Report, canvas: &mut Canvas);
 
     /// Returns the numbers of the scene now, `ticks` ticks after the start; not checked: it is the
@@ -97,8 +98,10 @@ pub struct Report {
     /// then stops the scene, and keeps and sends the report of the frame before.
     pub state: State<f32>,
     /// The relative energy error (E - E0)/(E0 - Emin) of that pendulum, computed before its numbers
-    /// are rounded for this report; 0 for the linear motion and if no pendulum moves. An error
-    /// smaller than [`LEAST_ENERGY_ERROR`] is rounding of the energy itself.
+    /// are rounded for this report. E is the energy now, E0 that of the start, and Emin that of
+    /// hanging at rest. It is 0 for the linear motion, if no pendulum moves, and if the start is
+    /// hanging at rest. An error smaller than [`LEAST_ENERGY_ERROR`] is rounding of the energy
+    /// itself.
     pub energy_error: f32,
     /// The accuracy horizon of the scene.
     pub horizon: Horizon,
@@ -153,7 +156,19 @@ fn draw_clock(canvas: &mut Canvas, report: &Report, time_at: Anchor, trust_at: A
 macro_rules! catalogue {
     ($($number:literal $row:ident = $name:literal, $scene:ty, $first:expr;)*) => {
         choice! {
-            /// The name of a scene of the catalogue.
+            /// The name of a scene of the catalogue:
+            ///
+            /// - `page`: a pendulum with the trail of bob 2;
+            /// - `small-0.2`, `small-1`, `small-5`: both angles of small oscillations over time, by
+            ///   the linear model, initially with this mass ratio m2/m1;
+            /// - `frequencies`: both frequencies of small oscillations over the mass ratio;
+            /// - `beats-3-2`, `beats-2-1`, `beats-5-2`, `beats-3-1`: the parts of angle 2 in the
+            ///   fast and in the slow mode, plotted against each other, by the linear and by the
+            ///   exact motion, initially with this ratio of the two frequencies;
+            /// - `figure-7`: a chaotic motion by the correct equations and by the page's misprints;
+            /// - `butterfly`: two pendulums that start a millionth of a radian apart;
+            /// - `upright`: a start with both rods straight up, in plain and in compensated `f32`;
+            /// - `flips`: the map of all starts from rest, with the time until a rod turns over.
             SceneName { $($row = $name;)* }
         }
 
@@ -161,7 +176,8 @@ macro_rules! catalogue {
         $(const _: () = assert!(SceneName::$row as u32 == $number);)*
 
         impl SceneName {
-            /// Returns the initial settings of the scene.
+            /// Returns the initial settings of the scene, with the angles in degrees. Those of a
+            /// figure have a start, too, which the figure does not use.
             pub fn first_settings(self) -> Settings {
                 match self { $(Self::$row => $first,)* }
             }
@@ -191,7 +207,8 @@ macro_rules! catalogue {
             /// Refuses settings that describe no pendulum or no finite start, or a pendulum that
             /// the scene cannot show, such as one without gravity or with unequal rods. A scene
             /// that uses the requested method refuses it if it cannot compute the motion, or if a
-            /// frame costs more than the budget. After an error this scene continues.
+            /// frame costs more than the budget. After an error this scene continues. Not checked:
+            /// the start in `flips`, and all but the mass ratio in `frequencies`.
             pub fn start(
                 &mut self,
                 name: SceneName,

@@ -29,13 +29,14 @@ pub struct Image {
     marks: BTreeMap<u32, bool>,
 }
 
-/// A function, including its literal pools and the paths that are never taken. It may also be a
-/// label in assembly code that is not declared as a function.
+/// A function, including its literal pools and the paths that are never taken. It may also be any
+/// other symbol in a section with code: a label that is not declared as a function, a constant, or
+/// the beginning of the section, which has no name.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Function {
     /// The address of its first instruction, without the Thumb bit.
     pub address: u32,
-    /// The size in bytes, or 0 if the assembly code does not declare it.
+    /// The size in bytes, or 0 if the file does not declare it.
     pub size: u32,
     /// The demangled name, without a hash; the symbol itself if it is not mangled.
     pub name: String,
@@ -157,13 +158,15 @@ impl Image {
         })
     }
 
-    /// Returns the error that the program has no such function. It names the program's file.
+    /// Returns the error that the program has no such function. It names the program's file and the
+    /// function. Not checked: that the function is missing.
     pub fn lacks(&self, function: &str) -> anyhow::Error {
         anyhow!("{}: no function {function}", self.path.display())
     }
 
-    /// Returns the function that contains this address, or `None`. A label without a size contains
-    /// no address. Of several functions, it is the one that begins last and, of these, the largest.
+    /// Returns the function that contains this address, even or odd, or `None`. A label without a
+    /// size contains no address. Of several functions, it is the one that begins last and, of
+    /// these, the largest.
     pub fn function_at(&self, address: u32) -> Option<&Function> {
         let before = self
             .functions

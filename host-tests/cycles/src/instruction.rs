@@ -87,7 +87,8 @@ impl Instruction {
     }
 
     /// Returns true if the core does not have this instruction. A division is missing on the M0+
-    /// only.
+    /// only. Some instructions that share a row with others are not recognised as missing, such as
+    /// smmul and others for signal processing on the M3, and b.w on the M0+.
     pub fn is_missing_on(&self, core: Core) -> bool {
         self.row.cycles(core) == 0 && (self.row.class != Class::Divide || core == Core::M0Plus)
     }
@@ -96,9 +97,10 @@ impl Instruction {
     /// register that the instruction `before` writes, on any core. The updated base of a single
     /// access counts.
     ///
-    /// It is false for an instruction without an address or with the program counter as its base.
-    /// It is also false after instructions whose written registers are not in the table: loads and
-    /// stores of pairs and lists, ldrex, strex, vmrs and calls.
+    /// It is false for an instruction without an address. The program counter as a base does not
+    /// count, but the index of a table branch does. It is also false after instructions whose
+    /// written registers are not in the table: loads and stores of pairs and lists, ldrex, strex,
+    /// vmrs and calls. After msr or nop.w, which write none, it may be true.
     pub fn is_addressed_by(&self, before: &Self) -> bool {
         let registers =
             |fields: &'static [Field], word| fields.iter().map(move |field| field.register(word));

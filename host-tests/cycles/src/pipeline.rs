@@ -112,13 +112,14 @@ impl Pipeline {
         }
     }
 
-    /// Executes the next instruction and returns its cost. A folded `it` costs 0 cycles, and so
-    /// does a store with an immediate offset in the second cycle of a load.
+    /// Executes the next instruction and returns its cost, which counts 1 instruction. A folded
+    /// `it` costs 0 cycles, and so does a store with an immediate offset in the second cycle of a
+    /// load.
     ///
     /// `registers` are the contents of the registers before it, with its address as the program
     /// counter. `branches` is true if the instruction executed after it is not the next one in
     /// memory, also because of an interrupt. Not checked: that the core has the instruction
-    /// ([`Instruction::is_missing_on`]); otherwise the cycles have no meaning.
+    /// ([`Instruction::is_missing_on`]); otherwise the cycles have no meaning, or it may panic.
     pub fn execute(
         &mut self,
         instruction: Instruction,

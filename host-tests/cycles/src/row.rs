@@ -7,10 +7,11 @@ use crate::Core;
 /// overlap: if its address does not depend on that load.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Class {
-    /// No effect.
-    Fixed,
-    /// A branch to an address in the instruction. It refills the pipeline sooner than a branch to
+    /// No effect of its own. It may write an address register of the next instruction, or branch to
     /// an address in a register.
+    Fixed,
+    /// A branch to an address in the instruction. On the M3 and the M4F it refills the pipeline
+    /// sooner than a branch to an address in a register.
     Branch,
     /// An `it` instruction, which takes no time after a 16-bit instruction.
     IfThen,
@@ -52,7 +53,8 @@ pub type Reads = &'static [Float];
 /// The position of a single-precision register in an encoding.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Float {
-    /// The destination.
+    /// The destination. In a comparison it is the first operand, and in a conversion from or to
+    /// fixed point also the operand.
     D,
     /// The first operand.
     N,
@@ -65,8 +67,8 @@ pub enum Float {
 
 impl Float {
     /// Returns the number of the floating-point register, 0 to 31 for s0 to s31, in the word of an
-    /// instruction ([`Row`]). For a double register, d0 to d15, it is the lower half. Not checked:
-    /// that the instruction has this position.
+    /// instruction ([`Row`]). For a double register, d0 to d15, it is the lower half, except by
+    /// [`Self::Half`]. Not checked: that the instruction has this position.
     pub fn register(self, word: u32) -> u32 {
         match self {
             Self::D => (word >> 12 & 0xf) << 1 | word >> 22 & 1,
@@ -133,10 +135,10 @@ pub struct Row {
     /// The additional effect.
     pub class: Class,
     /// The core registers that it writes; none for loads and stores of pairs and lists, ldrex,
-    /// strex, vmrs and calls.
+    /// strex, vmrs and calls. In a 32-bit comparison such a field has 15, which is not written.
     pub(super) writes: &'static [Field],
-    /// The registers that form the address of a load, a store or a table branch, without the
-    /// program counter.
+    /// The registers that form the address of a load, a store or a table branch. If the number in
+    /// such a field is 15, the program counter, it does not count.
     pub(super) address: &'static [Field],
 }
 

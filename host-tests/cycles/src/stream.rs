@@ -87,8 +87,8 @@ impl Read for Pieces<'_> {
 /// Calls `each` with the registers before every instruction of a log, until the log ends or `each`
 /// returns an error, which is returned. A log that cannot be read is an error, too. A log ends when
 /// a read returns no bytes: a pipe when all its writers have closed it, for which this waits, and a
-/// file at its present end. An instruction whose lines are incomplete ends the log without an
-/// error. This sleeps for 0.5 ms before each read of up to 1 MiB.
+/// file at its present end. An instruction whose lines are incomplete, or cannot be read to their
+/// end, is left out without an error. This sleeps for 0.5 ms before each read of up to 1 MiB.
 ///
 /// The first of the four lines of an instruction begins with `R00=`; other lines before it are
 /// skipped. Not checked: the format of the four lines; others give meaningless registers.
@@ -116,7 +116,8 @@ pub struct Calls<'a> {
     image: &'a Image,
     core: Core,
     entries: BTreeSet<u32>,
-    /// The running call: the registers at its entry, its stream since then, and its cost.
+    /// The running call: the registers at its entry, its stream since then, and its cost so far.
+    /// `None` between calls.
     pub running: Option<(Registers, Stream<'a>, Cost)>,
     /// The cost of each call that has returned, in the order of the returns.
     pub ended: Vec<Cost>,
@@ -152,7 +153,7 @@ impl<'a> Stream<'a> {
     /// the cost of the previous instruction, or `None` at the first call. It is an error if the
     /// previous instruction is not in the program or has no known timing; a further call continues
     /// after it. Not checked: that the core has the instruction; otherwise its cycles have no
-    /// meaning.
+    /// meaning, or this may panic ([`Pipeline::execute`]).
     pub fn see(&mut self, next: Registers) -> Result<Option<(u32, Instruction, Cost)>> {
         let Some(before) = self.before.replace(next) else {
             return Ok(None);
@@ -187,8 +188,9 @@ impl<'a> Calls<'a> {
     /// Takes the registers before the next instruction. A call begins at an entry, unless another
     /// call is running. It ends at the caller's return address if the stack pointer is as at the
     /// entry; that instruction does not begin a call, even at an entry. An interrupt handler does
-    /// not return like this, so its call never ends. Errors are as in [`Stream::see`], during a
-    /// call only.
+    /// not return like this, so its call never ends. Errors and panics are as in [`Stream::see`],
+    /// during a call only. After an error the call is still running, without the instruction that
+    /// failed, and these registers do not end it.
     pub fn see(&mut self, registers: Registers) -> Result<()> {
         if self.running.is_none() && self.entries.contains(&registers.pc()) {
             self.running = Some((

@@ -12,15 +12,17 @@ pub struct Board {
     pub machine: &'static str,
     /// QEMU's `-cpu`.
     pub cpu: &'static str,
-    /// The compiler's target.
+    /// The compiler's target, one of [`TARGETS`](crate::toolchain::TARGETS).
     pub target: &'static str,
-    /// The binary of the firmware that is its application.
+    /// The binary of the firmware that is its application. Boards with the same binary differ in
+    /// their target.
     pub binary: &'static str,
-    /// The cargo feature that this binary needs; empty if none.
+    /// The feature of the package `firmware` that this binary needs; empty if none.
     pub feature: &'static str,
     /// The number of QEMU's serial port that is the link, counted from 0.
     pub serial_port: usize,
-    /// The frequency of the clock that measures the emulated board's time, Hz.
+    /// The frequency of the clock that measures the emulated board's time, Hz: the unit of the
+    /// `scene_cycles` and `busy_cycles` of its frames.
     pub hertz: u32,
     /// True if the emulated board has the OLED panel and the five buttons.
     pub has_panel: bool,
@@ -53,7 +55,7 @@ impl Board {
     }
 
     /// Returns the duration of an instruction, s, when QEMU's clock counts instructions: 2 to the
-    /// power of [`Self::instruction_shift`] ns.
+    /// power of [`Self::instruction_shift`] ns. It has no meaning for the Pico.
     pub fn instruction(&self) -> f64 {
         f64::from(1 << self.instruction_shift()) * 1e-9
     }

@@ -1,6 +1,7 @@
 //! The table of budgets: the limits of time and memory for each board, and their reasons.
 
-/// The part, 0 to 1, of a frame of 1/60 s that a scene may take.
+/// The largest part, 0 to 1, of a frame of 1/60 s that a scene may take to advance and to be drawn.
+/// This value itself is allowed.
 ///
 /// It applies to every scene on a Cortex-M3 at 50 MHz and on a Cortex-M0+ at 125 MHz, in QEMU and
 /// after the first 6 frames. It is meant for the tick that prepares a motion on the former, and for
@@ -9,11 +10,11 @@
 pub const SCENE: f64 = 0.55;
 /// The largest cost of drawing and sending a frame of any scene on a Cortex-M3, cycles, without the
 /// computation of its motion. It is 13 % of 1/60 s at 50 MHz. The most expensive scene, figure 7,
-/// takes 98,700.
+/// takes 98,700. The value itself is allowed.
 pub const SHOWING: u64 = 110_000;
-/// The part, 0 to 1, of a frame of 1/60 s that must remain after the frame is on the panel and
-/// sent. It applies to every scene on every board, after the first 6 frames and in addition to
-/// [`SCENE`]; a scene within that limit may leave less than this.
+/// The smallest part, 0 to 1, of a frame of 1/60 s that must remain after the frame is on the panel
+/// and sent. The value itself is allowed. It applies to every scene on every board, after the first
+/// 6 frames and in addition to [`SCENE`]; a scene within that limit may leave less than this.
 ///
 /// It is enough for a command in each frame, for a log line, and to compute requested motions in
 /// reasonable time. QEMU's buses take no time; the README has the times of a real board's buses.
@@ -32,7 +33,9 @@ pub struct Memory {
     pub stack: u32,
 }
 
-/// The largest memory that each application may take, bytes, with the name of its board.
+/// The largest memory that each application may take, bytes, with the name of its board. The values
+/// themselves are allowed. The rows are in the order of
+/// [`every_board`](crate::boards::every_board).
 ///
 /// - Text: the smallest chip has 256 KiB of flash. A sixteenth of it stays free; with a Cortex-M0+,
 ///   whose code is longer, 12 KiB. The F405 has 1 MiB, and three quarters of it stay free for

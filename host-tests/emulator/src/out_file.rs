@@ -36,10 +36,10 @@ enum Content {
 
 impl OutFile {
     /// Begins the file that `option` names (such as `--out`), as a temporary file in the same
-    /// folder; for a symbolic link, in that of its target. The folder must exist and be writable,
-    /// and an existing file must be writable, too, and no folder; else this is refused. A device or
-    /// a pipe is opened and written directly; a named pipe without a reader blocks this. From now
-    /// on an interrupt ends the process ([`remove_on_interrupt`]).
+    /// folder; for a symbolic link, in that of its target, if there is one. The folder must exist
+    /// and be writable, and an existing file must be writable, too, and no folder; else this is
+    /// refused. A device or a pipe is opened and written directly; a named pipe without a reader
+    /// blocks this. From now on an interrupt ends the process ([`remove_on_interrupt`]).
     pub fn create(option: &'static str, path: &Path) -> Result<Self, Refused> {
         let content = Content::create(path).map_err(|error| unwritable(option, path, &error))?;
         Ok(Self {
@@ -50,10 +50,10 @@ impl OutFile {
     }
 
     /// Gives the file its name and replaces an existing file, with the access rights that it had at
-    /// [`OutFile::create`], as far as the umask allows. A symbolic link stays, and its target is
-    /// replaced; without a target the link is. If that is not possible, the written file is removed
-    /// and the error names the option. For a device or a pipe it does nothing. It does not wait for
-    /// the disk.
+    /// [`OutFile::create`]. A new file can be read and written by everybody. The umask reduces
+    /// both. A symbolic link stays, and its target is replaced; without a target the link is. If
+    /// that is not possible, the written file is removed and the error names the option. For a
+    /// device or a pipe it does nothing. It does not wait for the disk.
     pub fn finish(self) -> anyhow::Result<()> {
         let Self {
             option,

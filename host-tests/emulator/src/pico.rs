@@ -55,7 +55,8 @@ impl PicoMachine {
     /// runs the emulator. `limit` is a time of the host, after which the emulator is killed. No
     /// time passes on the board yet. An error means that the ELF file is unusable, that Node.js
     /// cannot be started, or that there is no place for a temporary file ([`Scratch::new`]). A
-    /// missing rp2040js shows as an error of the next command.
+    /// missing rp2040js shows as an error of the next command. If the project's folder is not
+    /// found, this ends the process ([`workspace`]).
     pub fn start(node: &Path, elf: &Path, limit: Duration) -> anyhow::Result<Self> {
         let (start, image) = flash_image(&std::fs::read(elf)?)?;
         Self::flashed(node, &uf2(start, &image), elf, limit)
@@ -112,17 +113,17 @@ impl PicoMachine {
     }
 
     /// Advances the board's time by `time`, in whole microseconds (a fraction is dropped), and
-    /// returns the messages that it has sent over USB since they were last fetched. With no time it
-    /// only returns them. An error means that the emulator has ended.
+    /// returns the messages that it has sent over USB since they were last fetched, oldest first.
+    /// With no time it only returns them. An error means that the emulator has ended.
     pub fn run(&mut self, time: Duration) -> anyhow::Result<Vec<ToHost>> {
         self.tell(&format!("run {}", time.as_micros()))?;
         Ok(std::mem::take(&mut self.heard_by_usb))
     }
 
-    /// Runs to the end of the millisecond in which the next frame arrives, and returns all messages
-    /// that have not been fetched. A waiting frame that has not been fetched counts as the next;
-    /// the board then runs for one millisecond. It is an error if 5 s of the board bring no frame,
-    /// or if the emulator has ended; the messages are then lost.
+    /// Runs to the end of the millisecond in which the next frame arrives over USB, and returns all
+    /// messages of USB that have not been fetched, oldest first. A waiting frame that has not been
+    /// fetched counts as the next; the board then runs for one millisecond. It is an error if 5 s
+    /// of the board bring no frame, or if the emulator has ended; the messages are then lost.
     pub fn run_to_frame(&mut self) -> anyhow::Result<Vec<ToHost>> {
         up_to_frame(PATIENCE, || self.run(SLICE))
     }
@@ -165,10 +166,10 @@ impl PicoMachine {
     }
 
     /// Opens the USB serial port at this speed, bits per second, or closes it if `baud` is 0. The
-    /// port is open at the start, at 460,800. The board notices when it runs, and sends nothing
-    /// over USB while the port is closed. If the port is opened at the speed
-    /// [`BAUD_OF_BOOT_LOADER`](crate::link::BAUD_OF_BOOT_LOADER) and then closed, the board
-    /// restarts in its boot loader.
+    /// port is open at the start, at 460,800. A restart of the board keeps the setting. The board
+    /// notices when it runs, and sends nothing over USB while the port is closed. If the port is
+    /// opened at the speed [`BAUD_OF_BOOT_LOADER`](crate::link::BAUD_OF_BOOT_LOADER) and then
+    /// closed, the board restarts in its boot loader.
     pub fn set_port(&mut self, baud: u32) -> anyhow::Result<()> {
         self.tell(&format!("port {baud}")).map(drop)
     }

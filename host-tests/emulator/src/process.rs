@@ -45,8 +45,8 @@ pub struct Running {
 /// `limit` at the latest, even if nothing waits for it.
 ///
 /// A child in the background must not read the terminal, so give it `Stdio::null()` or a pipe as
-/// its standard input. An error means that the program or the shell cannot be started; it names the
-/// program.
+/// its standard input. An error means that the program or the shell cannot be started. It names the
+/// program, and its kind is always `Other`.
 pub fn spawn(command: &mut Command, limit: Duration) -> io::Result<Running> {
     let program = command.get_program().to_string_lossy().into_owned();
     let failed = |error: io::Error| io::Error::other(format!("cannot run {program}: {error}"));

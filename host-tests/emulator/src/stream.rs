@@ -20,7 +20,7 @@ pub struct Stream {
     pipe: File,
     /// The bytes that have arrived and have not been consumed.
     pub bytes: Vec<u8>,
-    /// True if more bytes may arrive.
+    /// True if more bytes may arrive, as of the last [`Stream::take_in`]; true before the first.
     pub is_open: bool,
 }
 
@@ -88,7 +88,7 @@ pub struct Channel {
     /// The pipe to QEMU, which holds 64 KiB on Linux. A write that does not fit is an error of kind
     /// `WouldBlock`; one of more than 4 KiB may write a part. It is no error if QEMU has ended.
     pub sender: File,
-    /// The pipe from QEMU.
+    /// The pipe from QEMU. It stays open after QEMU's end, so its `is_open` does not show the end.
     pub stream: Stream,
 }
 

@@ -6,6 +6,9 @@
 //! compiler and sources into `rust` in the target folder. It unpacks QEMU from Debian's packages
 //! into `qemu` there. Both ways build the same firmware with the same flags. Only Node.js, which
 //! runs rp2040js, is installed on the system, and only after the user has agreed ([`Consent`]).
+//!
+//! All functions but [`find`] may end the process if the project's folder is not found, as
+//! [`workspace`] does.
 
 mod bring;
 mod build;
@@ -27,7 +30,7 @@ use tools::{CORE_PACKAGES, Emulator, FromSource, QEMU, QEMU_AARCH64, QEMU_RISCV}
 use crate::boards::Board;
 use console::cli::{REFUSED, Refused, complain};
 
-/// The compiler's targets, one for each kind of core.
+/// The compiler's targets, one for each kind of core: Cortex-M0+, Cortex-M3 and Cortex-M4F.
 pub const TARGETS: [&str; 3] = [
     "thumbv6m-none-eabi",
     "thumbv7m-none-eabi",

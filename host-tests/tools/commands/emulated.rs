@@ -87,12 +87,16 @@ pub struct FwOptions {
 /// Runs a firmware and prints its log to stdout until it ends. Cargo also uses this command as the
 /// runner for the ARM targets. A name without a slash is a binary, which is built first; any other
 /// name is a file, which is run as it is. Missing tools are installed. Not checked: the board must
-/// suit the binary, and `--seconds` must not be 0.
+/// suit the binary, and `--seconds` must not be 0, which usually ends QEMU while it starts.
 ///
-/// Returns the exit code of the firmware, or success if `--seconds`, counted from the start of
-/// QEMU, ended it. An unknown binary is [`Refused`]. It is an error if the build fails, if the file
-/// is missing or no ELF file, if QEMU ends while it starts, and, without `--seconds`, if the
-/// firmware runs for an hour.
+/// Without `--board` the firmware runs on the first board whose application has the name of the
+/// binary, or else on the first board. If the path of a file has a folder named after a target,
+/// only boards of that target are considered.
+///
+/// Returns the exit code of the firmware, 1 if a signal ended QEMU, or success if `--seconds`,
+/// counted from the start of QEMU, ended it. An unknown binary, and a tool that cannot be provided,
+/// is [`Refused`]. It is an error if the build fails, if the file is missing or no ELF file, if
+/// QEMU ends while it starts, and, without `--seconds`, if the firmware runs for an hour.
 ///
 /// With `--check` nothing is run: all binaries are checked for all targets, and a warning is an
 /// error. Clippy must then be installed, unless Debian's compiler is used.
@@ -238,9 +242,10 @@ const IN_DOCUMENTATION: [&str; 1] = ["--doc"];
 /// `-- --include-ignored`. Each of `RUST_TEST_THREADS` and `RAYON_NUM_THREADS` that is not set is
 /// twice the number of processors for the tests.
 ///
-/// An error means that the set-up or a build of the firmware fails, or that a time limit is
-/// exceeded: 1 hour for compiling the tests and again for each part, or 12 hours each with
-/// `--long`. If the tests do not compile, the result is the exit code of `cargo test`.
+/// An error means that the set-up ([`Refused`]) or a build of the firmware fails, or that a time
+/// limit is exceeded: 1 hour for compiling the tests and again for each part, or 12 hours each with
+/// `--long`. If the tests do not compile, the result is the exit code of `cargo test`. If the tools
+/// of the page for a browser cannot be provided, its tests are skipped, which is no error.
 pub fn verify(options: &TestOptions) -> anyhow::Result<ExitCode> {
     let limit = LIMITS[usize::from(options.long)];
     // Returns a running `cargo test` with these arguments.

@@ -59,13 +59,15 @@ pub fn uf2_file(toolchain: &Toolchain) -> anyhow::Result<(usize, PathBuf)> {
 }
 
 /// Builds the UF2 file and copies it to a board: to the drive of the options, else to the first
-/// mounted drive of an RP2040, else to the only board that runs this firmware, which is restarted
-/// in its boot loader. Without a drive, and with no such board or several, it prints how to copy
-/// the file by hand, which is a success. Missing tools are installed. The copy replaces a file of
-/// this name on the drive and is complete when this returns.
+/// mounted drive of an RP2040, else to the only board that runs this firmware at a USB port, which
+/// is restarted in its boot loader. Mounted drives are found on Linux only. Without a drive, and
+/// with no such board or several, it prints how to copy the file by hand, which is a success.
+/// Missing tools are installed. The copy replaces a file of this name on the drive and is complete
+/// when this returns.
 ///
-/// It is an error if the build or the copy fails. If the port of the running board cannot be
-/// opened, or if its drive is not mounted within 10 s of the restart, this is [`Refused`].
+/// It is an error if the build or the copy fails. If a tool cannot be provided, if the port of the
+/// running board cannot be opened, or if its drive is not mounted within 10 s of the restart, this
+/// is [`Refused`].
 pub fn pico(options: &PicoOptions) -> anyhow::Result<()> {
     let (bytes, file) = uf2_file(&toolchain::set_up()?)?;
     say(format_args!("{}: {bytes} bytes of flash", file.display()))?;

@@ -36,8 +36,9 @@ const HASHERS: [(&str, &[&str]); 2] = [("sha256sum", &[]), ("shasum", &["-a", "2
 pub struct ReleaseOptions {}
 
 /// Replaces the folder `release-files` in the target folder, with everything in it, and prints the
-/// checksums and the folder. Uncommitted changes are included. Missing tools are installed, and
-/// cargo contacts the registry if its index is not on this machine.
+/// checksums and the folder. It has `BOARD.elf` for every board, `pico.uf2`, the page of `cargo
+/// web`, the kernel's package, and `SHA256SUMS`. Uncommitted changes are included. Missing tools
+/// are installed, and cargo contacts the registry if its index is not on this machine.
 ///
 /// A machine with neither `sha256sum` nor `shasum`, or whose tools for the boards cannot be
 /// provided, is [`Refused`], and the folder remains unchanged. After any later error the folder is

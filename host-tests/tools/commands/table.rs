@@ -42,8 +42,8 @@ pub fn between(page: &str, [start, end]: [&str; 2], text: &str) -> Option<String
     Some(format!("{head}{start}{text}{end}{tail}"))
 }
 
-/// Returns an error or a drift in exponent form, with its sign, rounded to the nearest two digits,
-/// such as "1.5e-7" or "0.0e0". Returns "none" if it is not finite.
+/// Returns an error or a drift in exponent form, rounded to the nearest two digits, such as
+/// "1.5e-7", "-2.0e-3" or "0.0e0". Returns "none" if it is not finite.
 pub fn small(value: f64) -> String {
     if value.is_finite() {
         format!("{value:.1e}")

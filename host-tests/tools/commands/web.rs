@@ -57,13 +57,15 @@ pub struct WebOptions {
     picture: Option<PathBuf>,
 }
 
-/// Writes the page, and makes the picture and opens the page if the options demand it. Existing
-/// files are replaced. The picture shows the page after 8.5 s of its own time.
+/// Writes the page, and makes the picture and opens the page if the options demand it. Prints the
+/// path of each file. Existing files are replaced. The picture shows the page after 8.5 s of its
+/// own time.
 ///
 /// If the picture cannot be written or a program is missing, this is [`Refused`] before the build,
-/// and no file is changed; a missing Chromium is installed first. Another error means that the
-/// build fails, that the page cannot be written, or, after the page is written, that Chromium fails
-/// or takes longer than 120 s. The browser is started and not waited for.
+/// and no file is changed; a missing Chromium is installed first. Other errors before the page is
+/// written are those of [`write_page`]. After that, an error means that Chromium fails or takes
+/// longer than 120 s, or that the browser cannot be started; the page remains. The browser is not
+/// waited for.
 pub fn run(options: &WebOptions) -> anyhow::Result<()> {
     // Refuse before the build.
     let picture = options.picture.as_deref();
@@ -99,7 +101,8 @@ fn opener() -> Result<PathBuf, Refused> {
 
 /// Builds the application and writes the page into the target folder, over an existing one. Missing
 /// tools are installed. Returns the path of the page. An error means that a tool cannot be provided
-/// ([`Refused`]), the build fails, or the file cannot be written; an existing page then remains.
+/// or the file cannot be created ([`Refused`]), that the build fails, or that writing fails; an
+/// existing page then remains.
 pub fn write_page() -> anyhow::Result<PathBuf> {
     let module = fs::read(toolchain::set_up_web()?.build_web()?)?;
     let page = TEMPLATE

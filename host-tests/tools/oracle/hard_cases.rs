@@ -8,7 +8,7 @@ use crate::oracle::trials::Trial;
 /// A motion, and starts near it, each a little further from it. The typical error of many starts is
 /// meaningful, while that of one start can be accidental. It is the geometric mean of the largest
 /// errors of the starts: 24 starts in compensated `f32`, 8 in plain `f32` and 32-bit fixed point,
-/// and 1 otherwise.
+/// and 1 otherwise. The steps are 2^-4 s, 2^-5 s and so on; the finest are 2^-13 s.
 #[derive(Clone, Copy, Debug)]
 pub struct HardCase {
     /// The name, for messages.
@@ -41,7 +41,9 @@ pub struct HardCase {
     /// place of an angle is coarse many turns away, and an error grows while the pendulum falls.
     pub in_angles: f64,
     /// The largest allowed ratio of the typical errors with a halved step and with the whole step.
-    /// In plain `f32` it is twice this, and in fixed point 1.5.
+    /// In plain `f32` it is twice this, and in fixed point 1.5. It does not apply if the error with
+    /// the whole step is above 0.1 rad or, except in compensated `f32`, if the error with the
+    /// halved step is allowed for the finest steps.
     pub growth: f64,
     /// The reason why the case is hard, and the reasons for the allowed errors.
     pub reason: &'static str,

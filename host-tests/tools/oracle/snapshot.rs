@@ -30,8 +30,9 @@ pub fn text(greys: &[u8], width: usize) -> String {
 /// project's folder ([`workspace`]). Returns `Ok` if both are the same.
 ///
 /// The error names the file and says how to accept the picture, and lists the rows that differ,
-/// each with the old one above the new one. Rows that only one of the two pictures has, and other
-/// ends of lines, are an error but are not listed. A file that cannot be read is an error, too.
+/// numbered from 0, each with the old one above the new one. Rows that only one of the two pictures
+/// has, and other ends of lines, are an error but are not listed. A file that cannot be read is an
+/// error, too.
 ///
 /// If [`BLESS`] is set, nothing is compared: the picture replaces the file, or creates it. It is
 /// then an error only if the file cannot be written. The folder must exist.

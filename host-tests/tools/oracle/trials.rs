@@ -22,7 +22,8 @@ pub fn exact_methods() -> impl Iterator<Item = Method> {
 }
 
 /// A [`Run`] that counts turns, whose method is chosen at run time. Its numbers are widened to
-/// `f64`. Before the first step they are those of the start, as the method holds it.
+/// `f64`. Before the first step they are those of the start, as the method holds it. Whole turns
+/// may be miscounted if a step turns a rod by more than a quarter turn.
 pub trait AnyRun: Debug {
     /// Advances by `steps` steps. 0 steps are possible. An error means that the motion has diverged
     /// ([`Run::advance`]); the run is then unchanged.
@@ -164,8 +165,8 @@ impl Trial {
 
     /// Returns the trial with its numbers rounded once to `f32`, if the numbers of `method` are
     /// `f32`, plain or compensated ([`Method::is_single`]). A number beyond the range of `f32`
-    /// becomes infinite. For all other methods, also in 32-bit fixed point, the trial is unchanged.
-    /// The duration is never rounded.
+    /// becomes infinite, and one that is too small 0. For all other methods, also in 32-bit fixed
+    /// point, the trial is unchanged. The duration is never rounded.
     pub fn held_by(&self, method: Method) -> Self {
         if !method.is_single() {
             return *self;

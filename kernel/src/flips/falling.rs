@@ -8,6 +8,7 @@ use crate::pendulum::State;
 /// A motion that has not flipped yet.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Falling<F: Form> {
+    /// The motion after [`steps`](Self::steps) steps; one step later once a rod has flipped.
     pub(super) motion: F,
     /// The sides of the rods after the last step
     /// ([`sides`](crate::methods::FormOperations::sides)).

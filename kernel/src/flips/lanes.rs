@@ -81,7 +81,8 @@ impl<const N: usize, const ROWS: usize> DirectionLanes<N, ROWS> {
 
     /// Puts another motion of the same pendulum and step into a lane, counted from 0 through all
     /// rows: row 0 has the lanes 0 to `N` - 1. Ignores a lane that does not exist. The pendulum and
-    /// the step are not checked.
+    /// the step are not checked. Call it only before the first step or after the lengths are
+    /// restored, because they are restored in all lanes at once.
     pub fn put(&mut self, lane: usize, motion: &DirectionF32Plain) {
         let (_, _, z, inverse) = motion.parts();
         let numbers = z.into_iter().chain([inverse]);
@@ -92,7 +93,7 @@ impl<const N: usize, const ROWS: usize> DirectionLanes<N, ROWS> {
 
     /// Resets a lane, counted from 0 through all rows, to its motion in `before`, a copy that was
     /// made before the step to leave out. `before` is unchanged. Ignores a lane that does not
-    /// exist.
+    /// exist. Call it before the lengths are restored.
     pub fn keep(&mut self, lane: usize, before: &mut Self) {
         for (place, number) in self.lane(lane).zip(before.lane(lane)) {
             *place = *number;

@@ -31,8 +31,8 @@ struct Lane {
 }
 
 impl Flips<DirectionF32Plain> {
-    /// Computes the first flip of each of `starts`, the angles a1 and a2, rad, and passes it to
-    /// `give` with the index of the start.
+    /// Computes the first flip of each of `starts`, the angles a1 and a2, rad, at rest, and passes
+    /// it to `give` with the index of the start, counted from 0.
     ///
     /// Each start has exactly one result, in any order. The results are bit-identical to those of
     /// [`of`](Self::of). Three times `N` starts are computed at a time; a lane whose motion has
@@ -42,7 +42,9 @@ impl Flips<DirectionF32Plain> {
     ///
     /// # Errors
     ///
-    /// Refuses angles that are not finite. The starts before these may then lack their results.
+    /// Refuses the first start whose angles are not finite, by [`Error::NotFinite`], when it is
+    /// taken. Some of the starts before it may then lack their results, and the later ones have
+    /// none.
     #[inline(always)]
     #[doc(hidden)] // For hosts with vectors only.
     pub fn of_each<const N: usize>(

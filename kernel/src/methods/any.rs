@@ -169,8 +169,8 @@ impl DrawnMotion32 {
         })
     }
 
-    /// Advances the motion by `steps` steps. A motion that diverges is not reported;
-    /// [`check`](Self::check) it afterwards.
+    /// Advances the motion by `steps` steps; 0 steps change nothing. A motion that diverges is not
+    /// reported, and goes on without meaning or stops; [`check`](Self::check) it afterwards.
     ///
     /// `advance(a); advance(b)` is bit-identical to `advance(a + b)`.
     #[inline(never)] // Boards find the step by this name, to run it in memory.
@@ -321,8 +321,8 @@ impl DrawnMotion {
         }
     }
 
-    /// Advances the motion by `steps` steps. A motion that diverges is not reported;
-    /// [`check`](Self::check) it afterwards.
+    /// Advances the motion by `steps` steps; 0 steps change nothing. A motion that diverges is not
+    /// reported, and goes on without meaning or stops; [`check`](Self::check) it afterwards.
     ///
     /// `advance(a); advance(b)` is bit-identical to `advance(a + b)`.
     #[inline(never)] // Boards find the step by this name, to run it in memory.
@@ -347,9 +347,10 @@ impl DrawnMotion {
     }
 
     /// Returns the sine and cosine of both rods, `[[sin a1, cos a1], [sin a2, cos a2]]`, as words
-    /// whose highest bit is the sign; a zero may have either. The other bits are in the format of
-    /// the method's numbers: in 64 bits they are the upper half of a number. The words of a
-    /// diverged motion are arbitrary.
+    /// whose highest bit is the sign; a zero may have either. They are those at the time of the
+    /// [`directions`](Self::directions). The other bits are in the format of the method's numbers:
+    /// in 64 bits they are the upper half of a number. The words of a diverged motion are
+    /// arbitrary.
     #[must_use]
     pub fn sides(&self) -> [[i32; 2]; 2] {
         match self {

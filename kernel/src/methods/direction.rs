@@ -53,7 +53,8 @@ pub(crate) fn quantities(state: &State<f64>, norm: f64, [unit1, unit2]: [f64; 2]
 /// Returns the state of the six quantities, with angles in [-pi, pi].
 ///
 /// The inverse of [`quantities`], except for whole turns. The lengths of the directions do not
-/// matter. NaN in `z` gives NaN.
+/// matter, unless one is 0, which gives an arbitrary angle. The units, s/(kg m^2), must not be 0;
+/// this is not checked. NaN in `z` gives NaN in the numbers that depend on it.
 pub(crate) fn state_of(z: [f64; 6], [unit1, unit2]: [f64; 2]) -> State<f64> {
     let [sin1, cos1, s, c, p1, p2] = z;
     let sin2 = sin1 * c - cos1 * s;
@@ -90,7 +91,7 @@ pub(crate) struct Coefficients<R> {
 /// The units of a motion in floating point, in SI units. Used at input and output only.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Scale {
-    /// P1/p1 and P2/p2, s/(kg m^2).
+    /// P1/p1 and P2/p2, s/(kg m^2). Negative if time runs backwards.
     pub momentum: f64,
     /// The length of a step in the unit of time tau.
     step: f64,
@@ -98,10 +99,12 @@ pub(crate) struct Scale {
     pub lead: Lead,
 }
 
-/// Returns the constants for steps of `dt` seconds that are `step` units of time long.
+/// Returns the constants for steps of about `dt` seconds that are `step` units of time long.
 ///
 /// A negative `dt` runs backwards. The unit of time is chosen so that the products of the rounded
-/// constants are as exact as possible; it can be up to 32 ulp of G2 longer than dt/`step`.
+/// constants are as exact as possible. It is up to 2e-6 (`f32`) or 4e-15 (`f64`) of itself longer
+/// than `dt` divided by `step` rounded to a whole number, which must not be 0; this is not checked.
+/// [`Scale::lead`] is the excess of `step` units of time over `dt`.
 ///
 /// # Errors
 ///

@@ -64,7 +64,8 @@ pub struct Extrapolation<R> {
     weights: [R; ROWS],
 }
 
-/// Returns the number of rows of a method of `order` 2, 4 .. 16. Refuses any other order.
+/// Returns the number of rows of a method of `order` 2, 4 .. 16. Refuses any other order, by
+/// [`Error::OutOfRange`].
 pub(super) fn rows(order: u32) -> Result<usize, Error> {
     if is_order(order) {
         Ok(order as usize / 2)
@@ -82,7 +83,8 @@ pub(super) fn half_substeps(row: usize) -> f64 {
     (row + 1) as f64
 }
 
-/// Returns the weight w(n) of the row `row`, counted from 0, of `rows` rows.
+/// Returns the weight w(n) of the row `row`, counted from 0, of `rows` rows. `row` must be less
+/// than `rows`; this is not checked.
 pub(super) fn weight(row: usize, rows: usize) -> f64 {
     let square = half_substeps(row) * half_substeps(row);
     let mut weight = 1.0;
@@ -161,7 +163,8 @@ impl<R: Real> Extrapolation<R> {
         core::array::from_fn(|i| z[i] + sum[i])
     }
 
-    /// Returns the shares 2/n and the weights of all rows, and the number of rows.
+    /// Returns the shares 2/n and the weights of all rows, n = 2 first, and the number of rows.
+    /// Beyond that number the weights are 0, and the shares continue.
     pub(super) fn parts(&self) -> (&[R; ROWS], &[R; ROWS], usize) {
         (&self.shares, &self.weights, self.rows)
     }

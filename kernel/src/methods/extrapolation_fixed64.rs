@@ -53,6 +53,9 @@ use rows::{EIGHTH, Rows, unit_of_time};
 /// step that is too long for the energy of the start: one in which the elbow could turn by more
 /// than 1.5 rad, or often a shorter one. [`Error::TooLarge`] contains the longest possible step, s.
 ///
+/// Directions, angles and the energy are returned in `f32`, the state in `f64`. Angles are within
+/// [-pi, pi]; [`Run`](crate::Run) counts the turns on request.
+///
 /// An order that is not 2, 4 .. 16 does not compile:
 ///
 /// ```compile_fail

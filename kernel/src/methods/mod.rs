@@ -46,7 +46,8 @@ pub type HamiltonF32 = Canonical<f32>;
 /// RK4 on Hamilton's equations in angles and momenta, in `f64`: `rk4-f64`. A step is dt exactly.
 /// Angles include whole turns.
 pub type HamiltonF64 = Canonical<f64>;
-/// RK4 in the direction form, in `f32` with compensated sums: `rk4-f32-direction`.
+/// RK4 in the direction form, in `f32` with compensated sums: `rk4-f32-direction`. Angles are
+/// within [-pi, pi]; [`Run`] counts the turns on request.
 ///
 /// A step takes 206 cycles on a Cortex-M4F. The error is within 5e-8 rad in 10 s of a regular
 /// motion, as the root mean square over neighbouring starts: 256 steps per second, from rest with
@@ -58,9 +59,12 @@ pub type DirectionF32Plain = Rk4Direction<f32, false>;
 /// RK4 in the direction form, in `f64` with compensated sums. It is not in the table of methods: it
 /// has no name, and no plan uses it.
 pub type DirectionF64 = Rk4Direction<f64, true>;
-/// Small oscillations in closed form, in `f32`: `closed-form-f32`.
+/// [`SmallOscillations`] in closed form, in `f32`: `closed-form-f32`.
+///
+/// Each step is computed from the start, so that its length does not matter and errors do not add
+/// up. Angles include whole turns. The pendulum must have gravity.
 pub type ClosedFormF32 = ClosedForm<f32>;
-/// Small oscillations in closed form, in `f64`: `closed-form-f64`.
+/// [`ClosedFormF32`] in `f64`: `closed-form-f64`.
 pub type ClosedFormF64 = ClosedForm<f64>;
 
 /// A method: its equations, its numbers and its integrator. A value is a motion of a pendulum.
@@ -73,7 +77,7 @@ pub type ClosedFormF64 = ClosedForm<f64>;
 ///
 /// In the direction form in floating point, rounded constants make a step longer than dt by a known
 /// share, up to 2e-6 in `f32` and 4e-15 in `f64`, never shorter by more than a rounding of `f64`.
-/// If the motion would be more than half a step ahead of the time, one step is left out, and the
+/// If the motion would be more than half a step ahead of the time, RK4 leaves out one step, and the
 /// motion is about half a step behind. [`Run::state`] takes back the difference, so that a step of
 /// 1/240 s is as accurate as one of 1/256 s, although no `f32` is 1/240. The directions, angles and
 /// the energy may be up to half a step ahead or behind.
@@ -89,7 +93,7 @@ impl<F: FormOperations> Form for F {}
 /// No other crate can name this trait, so that [`Form`] is sealed and may get new operations.
 /// Generic code can call them.
 pub trait FormOperations: Copy + Debug + PartialEq + 'static {
-    /// The numbers that [`Run::directions`] and [`Run::angles`] return.
+    /// The numbers that [`Run::directions`], [`Run::angles`] and [`Run::energy`] return.
     type Real: Real;
 
     /// The largest phase w1 dt, rad, of a stable step; w1 is the frequency of the fast normal mode.
@@ -98,8 +102,9 @@ pub trait FormOperations: Copy + Debug + PartialEq + 'static {
     /// sqrt(2).
     const STABLE: f64 = RK4_STABLE;
 
-    /// True if [`check`](Self::check) refuses every energy that is far too large, and every
-    /// direction that is far too long. If it is false, [`Run`] checks both.
+    /// True if [`Run`] need not check the energy and the lengths of the directions: if
+    /// [`check`](Self::check) refuses those that are far too large or, by the closed form, they
+    /// cannot grow. If it is false, [`Run`] checks both.
     const CHECKS_ENERGY: bool = false;
 
     /// Checks the parameters and prepares the motion from `start`, in steps of `dt` seconds.
@@ -114,8 +119,9 @@ pub trait FormOperations: Copy + Debug + PartialEq + 'static {
     fn new(parameters: &Parameters<f64>, start: &State<f64>, dt: f64) -> Result<Self, Error>;
 
     /// Returns a motion of the same pendulum from another start, in the same units and steps,
-    /// counted from 0. In fixed point its energy must not exceed the energy of the start in
-    /// [`new`](Self::new), otherwise the numbers may leave their range; this is not checked.
+    /// counted from 0. This motion may have diverged. In fixed point the energy must not exceed
+    /// the energy of the start in [`new`](Self::new), otherwise the numbers may leave their range;
+    /// this is not checked.
     ///
     /// # Errors
     ///
@@ -147,9 +153,10 @@ pub trait FormOperations: Copy + Debug + PartialEq + 'static {
 
     /// Returns the sine and cosine of both rods as words whose highest bit is the sign.
     ///
-    /// The order is `[[sin a1, cos a1], [sin a2, cos a2]]`. The signs show when a rod turns over.
-    /// The other bits are in the format of the method's numbers. A diverged motion has arbitrary
-    /// words.
+    /// The order is `[[sin a1, cos a1], [sin a2, cos a2]]`, at the time of the
+    /// [`directions`](Self::directions). The signs show when a rod turns over; a zero may have
+    /// either. The other bits are in the format of the method's numbers. A diverged motion has
+    /// arbitrary words.
     fn sides(&self) -> [[i32; 2]; 2];
 
     /// Returns the number that a word of [`sides`](Self::sides) represents, in a unit that may
@@ -166,7 +173,8 @@ pub trait FormOperations: Copy + Debug + PartialEq + 'static {
 
     /// Returns the momenta p1 and p2, kg m^2/s, at the time of the
     /// [`directions`](Self::directions). They are NaN if the motion has diverged in fixed point,
-    /// and infinite beyond the range of `Q`.
+    /// can be any numbers if it has diverged in floating point, and are infinite beyond the range
+    /// of `Q`.
     fn momenta<Q: Real>(&self) -> [Q; 2];
 
     /// Returns the [`momenta`](Self::momenta) with a relative error of a few units in the last
@@ -186,7 +194,8 @@ pub trait FormOperations: Copy + Debug + PartialEq + 'static {
     ///
     /// `pendulum` must be the pendulum of this motion; this is not checked. The energy follows from
     /// the directions and momenta, which may be up to half a step ahead of the
-    /// [`state`](Self::state) or behind it. It is NaN if the motion has diverged in fixed point.
+    /// [`state`](Self::state) or behind it. It is NaN if the motion has diverged in fixed point,
+    /// and can be any number if it has diverged in floating point.
     fn energy_above_rest(&self, pendulum: &Pendulum<f64>) -> f64 {
         let [upper, lower] = self.directions();
         pendulum.energy_above_rest_at([unit(upper), unit(lower)], self.momenta())
@@ -196,11 +205,13 @@ pub trait FormOperations: Copy + Debug + PartialEq + 'static {
     const HAS_TURNS: bool = false;
 
     /// Passes the words that the motion carries from step to step to `feed`, one at a time and
-    /// always in the same order, to compare machines.
+    /// always in the same order, to compare machines. The bits of an `f32` are the lower 32 of a
+    /// word.
     fn bits(&self, feed: impl FnMut(u64));
 }
 
-/// Returns the same direction with length 1; NaN if its length is 0.
+/// Returns the same direction with length 1; NaN if its length is 0. A length whose square
+/// overflows or underflows gives a meaningless direction.
 pub(crate) fn unit([sin, cos]: Direction<f64>) -> Direction<f64> {
     let inverse = 1.0 / libm::sqrt(sin * sin + cos * cos);
     [sin * inverse, cos * inverse]

@@ -301,7 +301,8 @@ impl<F: Form, const COUNTS_TURNS: bool> Run<F, COUNTS_TURNS> {
             .energy_at(self.directions(), self.motion.momenta())
     }
 
-    /// Passes all words that the method carries from step to step to `feed`.
+    /// Passes all words that the method carries from step to step to `feed`, one at a time and
+    /// always in the same order. The count of turns is not included.
     pub(crate) fn bits(&self, feed: impl FnMut(u64)) {
         self.motion.bits(feed);
     }

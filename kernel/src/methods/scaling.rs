@@ -27,11 +27,11 @@ const MOST: i32 = 12;
 pub(crate) struct Scaling {
     /// T, s. Negative if time runs backwards.
     pub time: f64,
-    /// P1/p1 and P2/p2, s/(kg m^2).
+    /// P1/p1 and P2/p2, s/(kg m^2). Negative if time runs backwards.
     pub momenta: [f64; 2],
-    /// nu/sigma.
+    /// nu/sigma, above 1/2 and, up to a rounding, at most 1.
     pub norm: f64,
-    /// m, in the unit of the divided (S, C) and r.
+    /// m, in the unit of the divided (S, C) and r; from 1 to 2.
     pub inertia: f64,
     /// G1 and G2.
     pub gravity: [f64; 2],
@@ -39,7 +39,8 @@ pub(crate) struct Scaling {
     pub shifts: Shifts,
 }
 
-/// The differences between the units of the quantities, as powers of two.
+/// The differences between the units of the quantities, as powers of two: numbers of bits from 0 to
+/// 12.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Shifts {
     /// The shift to the right of C P2 in P1 - C P2.

@@ -7,6 +7,9 @@ use crate::pendulum::{Parameters, State};
 /// A double pendulum: validated parameters, and the products of them that the equations use.
 ///
 /// It has no state of motion. One pendulum serves any number of [`State`]s.
+///
+/// Unless stated otherwise, the functions do not check the angles, momenta and velocities that they
+/// are called with. Numbers that are not finite, or that overflow, give NaN or infinity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pendulum<R> {
     parameters: Parameters<R>,
@@ -16,7 +19,8 @@ pub struct Pendulum<R> {
     total_over_m2: R,
     /// m2 l1 l2.
     coupling: R,
-    /// The largest torques of gravity on the joints, (m1 + m2) g l1 and m2 g l2, N m.
+    /// The largest torques of gravity on the joints, (m1 + m2) g l1 and m2 g l2, N m. Both are 0
+    /// without gravity.
     pub(crate) torque: [R; 2],
 }
 
@@ -141,7 +145,8 @@ impl<R: Real> Pendulum<R> {
     /// Returns the [`energy`](Self::energy) H, J, for known directions (sin, cos) of both rods and
     /// momenta (p1, p2), kg m^2/s. It needs no trigonometry.
     ///
-    /// The directions must be of length 1; this is not checked.
+    /// The directions must be of length 1; this is not checked. Arguments that are not finite, or
+    /// an overflow, give NaN or infinity.
     pub(crate) fn energy_at(
         &self,
         [[sin1, cos1], [sin2, cos2]]: [[R; 2]; 2],
@@ -170,7 +175,8 @@ impl<R: Real> Pendulum<R> {
     /// Returns the [energy above rest](Self::energy_above_rest), J, for known directions (sin, cos)
     /// of both rods and momenta (p1, p2), kg m^2/s. It needs no trigonometry.
     ///
-    /// The directions must be of length 1; this is not checked.
+    /// The directions must be of length 1; this is not checked. Arguments that are not finite, or
+    /// an overflow, give NaN or infinity.
     pub(crate) fn energy_above_rest_at(
         &self,
         [[sin1, cos1], [sin2, cos2]]: [[R; 2]; 2],

@@ -61,8 +61,9 @@ impl<R: Real> Parameters<R> {
         Parameters { m1, m2, l1, l2, g }
     }
 
-    /// Refuses NaN, infinite, zero or negative masses and lengths, and NaN, infinite or negative
-    /// gravity.
+    /// Refuses the first number, in the order m1, m2, l1, l2, g, that is NaN or infinite
+    /// ([`Error::NotFinite`]), a mass or length that is zero or negative ([`Error::NotPositive`]),
+    /// or a negative gravity ([`Error::TooSmall`]). Accepts zero gravity.
     pub(crate) fn check(&self) -> Result<(), Error> {
         for (parameter, value) in self.named() {
             if !value.is_finite() {
@@ -84,8 +85,9 @@ impl<R: Real> Parameters<R> {
         Ok(())
     }
 
-    /// Returns the error for parameters whose products overflow or underflow. It names the value
-    /// that is farthest from 1.
+    /// Returns [`Error::OutOfRange`] for parameters whose products overflow or underflow. It names
+    /// the value that is farthest from 1 as a factor, the first of equals; never a gravity of 0.
+    /// The parameters are not checked.
     pub(crate) fn out_of_range(&self) -> Error {
         // Factors above and below 1 count alike.
         let distance = |value: f64| if value < 1.0 { 1.0 / value } else { value };

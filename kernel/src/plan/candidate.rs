@@ -15,9 +15,10 @@ const WORTH: f64 = 1.1;
 pub(super) struct Candidate {
     /// The method and its number of steps per frame.
     pub stepping: Stepping,
-    /// The number of frames from the start that are within the tolerance.
+    /// The number of frames from the start that are within the tolerance. The start itself, frame
+    /// 0, is not counted, so that this is also the index of the last accurate frame.
     pub accurate_frames: u32,
-    /// The largest error in these frames, divided by the tolerance.
+    /// The largest estimated error in these frames, divided by the tolerance; 0 if there are none.
     pub error: f32,
     state: CandidateState,
     /// The steps per frame of the fine run of the reference; `u32::MAX` without a reference.

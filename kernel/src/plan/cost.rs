@@ -114,14 +114,17 @@ pub(super) const FIRST_STEP: f64 = 4.0;
 /// large.
 const RESOLVING_RK4: [f64; 2] = [1.0, 2.0];
 
-/// The largest number of steps per frame. Finer steps are never tried.
+/// The largest number of steps per frame that a search begins a trial with. Other candidates of
+/// that trial may take up to 4 times as many. A [`Search::of`](super::Search::of) takes any number.
 pub(super) const MOST_STEPS: u32 = 1 << 16;
 
 /// Returns the smallest number of steps per frame that makes steps of at most `longest` s, at
 /// `rate` frames per second.
 ///
 /// Except in 64 bits it is a power of two, because steps are refined by powers of two. The result
-/// is from 1 to [`MOST_STEPS`]; at the largest number the steps may be longer than `longest`.
+/// is from 1 to [`MOST_STEPS`], 65,536; at the largest number the steps may be longer than
+/// `longest`. A `longest` that is infinite, NaN or negative gives 1. Otherwise, a `longest` or a
+/// `rate` of 0 gives the largest number.
 #[inline(never)] // 0.4 KB more flash on an M4F without.
 pub(super) fn steps_to_frame(method: Method, rate: u16, longest: f64) -> u32 {
     let fewest = libm::ceil(1.0 / (longest * f64::from(rate)));
@@ -216,7 +219,7 @@ impl Pair {
     }
 }
 
-/// The index of the finest of the [`FINE`] steps for a pair that contains no candidates.
+/// The index in [`Pair::all`] of the finest pair that is used if its runs are no candidates.
 pub(super) const JUDGING: usize = 4;
 
 /// Returns the longest step that resolves every motion of the problem's energy, s.
@@ -336,8 +339,11 @@ impl Stepping {
         })
     }
 
-    /// Returns [`Method::Extrapolation10Fixed64`] in steps of `longest` s or less, as
-    /// [`affordable`](Self::affordable).
+    /// Returns [`Method::Extrapolation10Fixed64`] in steps of `longest` s or less, with the fewest
+    /// steps per frame that it accepts.
+    ///
+    /// Returns `None` if a frame then costs more than `frame`, in the unit of `costs`, if it takes
+    /// 65,536 steps or more, or if the method refuses the motion.
     pub(super) fn fixed64(
         problem: &Problem,
         longest: f64,

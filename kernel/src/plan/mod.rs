@@ -111,9 +111,9 @@ pub struct Plan {
     /// The cost of computing a frame, without drawing it, in the unit of the [`Costs`]. It is at
     /// most the frame budget, unless the method was fixed by the caller ([`Search::of`]).
     pub cost: f32,
-    /// The accuracy horizon, s since the start: all frames until this time are predicted to be
-    /// accurate. If all frames of the problem are, it is the duration, which need not be a whole
-    /// number of frames. It is 0 only after [`Search::of`].
+    /// The accuracy horizon, s since the start: all frames up to this time, included, are predicted
+    /// to be accurate. If all frames of the problem are, it is the duration, which need not be a
+    /// whole number of frames. It is 0 only after [`Search::of`].
     ///
     /// The prediction is not a proof, because the bound on rounding errors is a measured one. A
     /// frame may be inaccurate a little earlier (the repository's test `plan_study`).

@@ -61,6 +61,9 @@ struct Shadow {
 }
 
 /// Four motions close to another one. Later only the farthest may be kept.
+///
+/// For each frame, [`prepare`](Self::prepare) is called until it returns false, all
+/// [`runs`](Self::runs) are advanced to the frame, and it is [compared](Self::compare).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Shadows {
     shadows: [Shadow; 4],
@@ -158,7 +161,7 @@ impl Shadows {
     /// # Errors
     ///
     /// Returns the error of the method if it refuses the shadow on both sides of the motion. A
-    /// `motion` that is not finite is refused.
+    /// `motion` that is not finite is refused. The shadows are unchanged then.
     pub fn prepare(&mut self, problem: &Problem, motion: &State<f64>) -> Result<bool, Error> {
         // Select a shadow that is too far away or not yet prepared.
         let rate = self.rate;
@@ -205,8 +208,10 @@ impl Shadows {
         Ok(true)
     }
 
-    /// Compares the shadows with the frame `motion`. All their steps towards it must have been
-    /// made; this is not checked. A shadow that is not prepared counts as diverged.
+    /// Compares the shadows with the frame `motion`, the directions of the fine run. Every frame
+    /// after the start must be compared once, in order, because rounding errors add up. All steps
+    /// towards it must have been made. Neither is checked. A shadow that is not prepared counts as
+    /// diverged.
     ///
     /// Returns the largest rounding error that is expected of the motion in 64 bits, with the steps
     /// given to [`new`](Self::new), in units of the tolerance. `rods` are the lengths of the rods

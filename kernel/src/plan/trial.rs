@@ -39,11 +39,13 @@ use crate::table::Method;
 
 /// A motion that a trial advances.
 pub(super) trait Motion {
-    /// Advances the motion by `steps` steps.
+    /// Advances the motion by `steps` steps. A motion that diverges is not reported.
     fn advance(&mut self, steps: u32);
-    /// Returns [`Error::Diverged`] if the motion has left the finite numbers or its range.
+    /// Returns [`Error::Diverged`] if the motion has left the finite numbers or its range. In 32
+    /// bits of fixed point the range is tested after every 32 steps since the start.
     fn check(&self) -> Result<(), Error>;
-    /// Returns the directions of both rods, (sin, cos) each.
+    /// Returns the directions of rod 1 and rod 2, (sin, cos) each. Those of a diverged motion may
+    /// look valid; call [`check`](Self::check).
     fn directions(&self) -> Directions;
 }
 
@@ -149,8 +151,8 @@ const UNRESOLVED: f32 = 4.0;
 /// The factor on the bound of the error of a candidate that is compared with runs in finer steps,
 /// if bob 2 is heavy.
 ///
-/// In 32 bits of fixed point the inverse 1/(m + S^2), with m = m1/m2, then has few digits while S is
-/// large. It is always rounded down, so that the errors of all these runs have the same sign.
+/// In 32 bits of fixed point the inverse 1/(m + S^2), with m = m1/m2, then has few digits while S
+/// is large. It is always rounded down, so that the errors of all these runs have the same sign.
 const ROUNDED_ALIKE: f32 = 2.0;
 
 /// The factor on the largest distance to three runs in finer steps in the bound of an error.
@@ -190,6 +192,9 @@ const COARSE: usize = 5;
 const FINE: usize = 6;
 
 /// Several methods and step counts, run side by side and compared frame by frame.
+///
+/// For each frame, [`prepare`](Self::prepare) is called until it returns false,
+/// [`advance`](Self::advance) until it returns 0, and then [`compare`](Self::compare).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Trial {
     /// The runs in 32 bits.
@@ -204,14 +209,15 @@ pub(super) struct Trial {
     pub reference: Option<Pair>,
     /// The shadows of the fine run. Unused while no candidate in 64 bits is accurate.
     shadows: Shadows,
-    /// True if the trial began with a candidate in 64 bits.
+    /// True if the trial began with a candidate in 64 bits. False until the caller sets it, because
+    /// the caller excludes candidates after [`new`](Self::new).
     pub tries_64_bits: bool,
     /// The closed form; `None` if the pendulum has no normal modes or the start is out of range.
     closed: Option<SmallOscillations<f32>>,
     /// The lengths of the rods divided by the tolerance. Distances in this unit may be up to 1.
     rods: [f32; 2],
     /// The candidates: the first three runs, plain `f32`, the closed form, and the coarse and the
-    /// fine run in 64 bits.
+    /// fine run in 64 bits. Those that are not part of the trial are excluded.
     pub candidates: [Candidate; 7],
     /// True if the rounding error is larger than the truncation error, of the single candidate or
     /// of the fine run.
@@ -481,8 +487,9 @@ impl Trial {
         spent
     }
 
-    /// Compares the frames at time `t`, s since the start. All steps towards them must have been
-    /// made, and `t` must be their time, at which the closed form is computed; neither is checked.
+    /// Compares the frames at time `t`, s since the start. Every frame after the start must be
+    /// compared once, in order. All steps towards it must have been made, and `t` must be its time,
+    /// at which the closed form is computed. Nothing of this is checked.
     ///
     /// A candidate fails if its error may exceed the tolerance, or if it or a run that it is
     /// compared with has diverged.
@@ -543,7 +550,8 @@ impl Trial {
 
     /// Returns true if rounding was the larger error, in the last frame where this was compared:
     /// of the single candidate, of the fine run or, once that has failed, of the coarse run. Finer
-    /// steps do not reduce it. False before the first such frame.
+    /// steps do not reduce it. False before the first such frame, unless
+    /// [`exclude_for_rounding`](Self::exclude_for_rounding) was called.
     pub fn is_limited_by_rounding(&self) -> bool {
         self.by_rounding
     }
@@ -584,7 +592,8 @@ impl Trial {
 
     /// Returns the cost of one frame of all runs that are still needed, with the closed form and
     /// the shadows, in the unit of `costs`. Preparations are not included. The runs of the
-    /// reference or, without one, those in 32 bits are always needed.
+    /// reference or, without one, those of the single candidate and in finer steps are always
+    /// needed.
     pub fn frame_cost(&mut self, costs: &Costs) -> f32 {
         let closed = if self.candidates[CLOSED].is_accurate() {
             costs.of_frame(self.candidates[CLOSED].stepping)

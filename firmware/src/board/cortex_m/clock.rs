@@ -62,14 +62,16 @@ pub fn wait_after(last: u32) -> u32 {
 }
 
 /// Returns the number of the current tick of 1/60 s. It starts at an arbitrary number, and wraps.
-/// It stays the same before [`start`], and while interrupts are off.
+/// It stays the same before [`start`], and while interrupts are off. Of the ticks that end
+/// meanwhile, at most one is counted when interrupts are on again.
 pub fn ticks() -> u32 {
     TICKS.load(Ordering::Relaxed)
 }
 
 /// Returns a count of processor cycles, for differences. It starts at an arbitrary number and wraps
-/// at 2^32. Valid after [`start`], and while interrupts are off for less than a tick at a time. A
-/// difference is wrong if [`Instruments::timed`] ran in between on a Cortex-M0+.
+/// at 2^32. Before [`start`] it is meaningless. After interrupts were off for a tick or longer, it
+/// may lack whole ticks. A difference is wrong if [`Instruments::timed`] ran in between on a
+/// Cortex-M0+.
 ///
 /// [`Instruments::timed`]: crate::app::Instruments::timed
 pub fn cycles() -> u32 {

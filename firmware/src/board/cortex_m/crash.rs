@@ -165,10 +165,13 @@ fn step_over_debugger_call(frame: &mut ExceptionFrame) -> bool {
     is_call
 }
 
-/// Handles a hang: no frame was finished for too long. `interrupted` is the place of the program.
+/// Handles a hang: no frame was finished for [`WATCHDOG_SECONDS`]. `interrupted` holds the program
+/// counter and the link register of the program. Records them with [`Cause::Hang`], and returns, so
+/// that the program continues.
 ///
-/// It does nothing during a report, which may take this long. The interrupt that cannot be masked
-/// interrupts it all the same.
+/// In between it writes a report to the debugger, unless none is assumed to be present or the clock
+/// has not counted this time ([`watchdog::has_ticked`]). After the start of a crash report it does
+/// nothing: the report may take this long, and the interrupt that cannot be masked interrupts it.
 pub(super) fn hang(interrupted: &ExceptionFrame) {
     if CRASHED.load(Ordering::Relaxed) {
         return;
@@ -186,8 +189,9 @@ pub(super) fn hang(interrupted: &ExceptionFrame) {
     }
 }
 
-/// Assumes that no debugger is present until the processor's debug mode is seen on. An M0+ cannot
-/// see it, so that its crashes are recorded and never reported.
+/// Assumes from now on that no debugger is present: crashes and hangs are recorded, but not
+/// reported. The exception is a crash while the processor's debug mode is on, which is reported. An
+/// M0+ cannot see this mode, so that its crashes are never reported.
 ///
 /// On a chip a debugger can be recognised. A call to an absent one is better avoided, because
 /// within a fault handler it would be fatal.

@@ -69,8 +69,9 @@ fn start_counter(mut dcb: DCB, mut dwt: DWT) {
     dwt.enable_cycle_counter();
 }
 
-/// Returns the cycles of `work`, with interrupts off. QEMU has no cycle counter; there the result
-/// is 0.
+/// Calls `work` once with interrupts off, and returns the processor cycles that it took, modulo
+/// 2^32. QEMU has no cycle counter; there the result is 0, and so it is before [`start`]. Of the
+/// ticks that end meanwhile, the clock counts at most one.
 #[cfg(not(armv6m))]
 pub(in crate::board) fn cycles_of(work: impl FnOnce()) -> u32 {
     cortex_m::interrupt::free(|_| {
@@ -83,11 +84,12 @@ pub(in crate::board) fn cycles_of(work: impl FnOnce()) -> u32 {
 #[cfg(armv6m)]
 fn start_counter(_: DCB, _: DWT) {}
 
-/// Returns the cycles of `work`, with interrupts off, up to 2^24 cycles, 134 ms at 125 MHz. A
-/// longer time is returned modulo 2^24.
+/// Calls `work` once with interrupts off, and returns the processor cycles that it took, up to 2^24
+/// cycles, 134 ms at 125 MHz. A longer time is returned modulo 2^24. Before [`start`] the result is
+/// meaningless.
 ///
 /// The only counter of a Cortex-M0+ is the tick's. The function uses it; the current tick begins
-/// again afterwards.
+/// again afterwards. Of the ticks that end meanwhile, the clock counts at most one.
 #[cfg(armv6m)]
 pub(in crate::board) fn cycles_of(work: impl FnOnce()) -> u32 {
     use cortex_m::peripheral::SYST;

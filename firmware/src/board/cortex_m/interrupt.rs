@@ -1,5 +1,6 @@
-//! The handler of every interrupt except the tick: received bytes, and the first interrupt of a
-//! watchdog. Also the type for data that an interrupt shares.
+//! The handler of every interrupt that has no handler of its own: it receives bytes of the serial
+//! port, or reports the first interrupt of a watchdog. Also the type for data that an interrupt
+//! shares.
 
 use core::arch::naked_asm;
 use core::cell::RefCell;
@@ -64,7 +65,8 @@ extern "C" fn interrupt(interrupted: &ExceptionFrame, number: u32) {
     }
 }
 
-/// An interrupt of the chip, by its number in the data sheet.
+/// An interrupt of the chip, by its number in the data sheet, from 0: 16 less than the processor's
+/// number. Not checked: the chip has it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::board) struct Interrupt(pub u16);
 
@@ -75,7 +77,9 @@ unsafe impl InterruptNumber for Interrupt {
     }
 }
 
-/// Enables an interrupt of the chip in the processor.
+/// Enables an interrupt of the chip in the processor. If it is pending already, it comes at once.
+/// An interrupt without a handler of its own receives bytes ([`serial::receive`]), or reports a
+/// hang if it is the watchdog's.
 pub(in crate::board) fn unmask(interrupt: impl InterruptNumber) {
     // SAFETY: no critical section relies on a masked interrupt.
     unsafe { NVIC::unmask(interrupt) };

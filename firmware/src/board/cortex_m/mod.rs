@@ -24,9 +24,9 @@ pub(super) use instruments::start;
 /// is an empty string.
 ///
 /// Returns `None` if the line does not fit, if it is not UTF-8, or at once if there is no debugger:
-/// the fault of the call shows that. On a chip whose debug mode (C_DEBUGEN) is on, the processor
-/// halts here until a debugger answers: for good if the probe was unplugged without switching debug
-/// mode off.
+/// the fault of the call shows that, and later crashes are then recorded but not printed. On a chip
+/// whose debug mode (C_DEBUGEN) is on, the processor halts here until a debugger answers: for good
+/// if the probe was unplugged without switching debug mode off.
 pub fn command_line(buffer: &mut [u8]) -> Option<&str> {
     let mut block = [buffer.as_mut_ptr() as usize, buffer.len()];
     // SAFETY: SYS_GET_CMDLINE takes the address and length of a buffer. It writes a string of at

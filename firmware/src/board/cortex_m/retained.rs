@@ -44,15 +44,18 @@ fn kept() -> Option<Record> {
 }
 
 /// Returns the record that was kept across the last reset, with this restart counted. Returns
-/// `None` if no record is intact, or after a reset from outside. `by_watchdog` is the board's own
-/// information about the reset ([`Record::restart`]). To be called before the first [`keep`], which
-/// replaces that record; the stored record is not changed.
+/// `None` if no record is intact, or after a reset from outside: the record has no cause and
+/// `by_watchdog` is false. `by_watchdog` is the board's own information that the watchdog caused
+/// the reset, which counts as a hang if the record has no cause ([`Record::restart`]). To be called
+/// before the first [`keep`], which replaces that record; the stored record is not changed.
 pub fn recall(by_watchdog: bool) -> Option<Record> {
     kept()?.restart(by_watchdog)
 }
 
-/// Returns the controller that was chosen for the panel, after any reset that left memory powered;
-/// `None` if no record is intact, or none was chosen.
+/// Returns the controller that was chosen for the panel, as the stored record has it, after any
+/// reset that left memory powered; `None` if no record is intact, or none was chosen. The
+/// controller that the program before the reset was built for
+/// ([`BUILT_FOR`](crate::display::BUILT_FOR)) counts as chosen.
 pub fn chosen_panel() -> Option<Controller> {
     kept()?.played.panel.chosen
 }

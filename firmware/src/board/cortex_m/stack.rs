@@ -82,7 +82,8 @@ pub fn guard_stack(unit: MPU) {
 /// Returns the addresses of the call instructions whose return addresses are found on the stack
 /// from `sp` upwards, the last call first. `sp` is rounded up to a multiple of 4. One within the
 /// guard or below counts as the lowest address of the stack, and one above the stack gives none.
-/// Some of the calls may have returned already, because the stack is not cleared.
+/// Some of the calls may have returned already, because the stack is not cleared. Calls within the
+/// steps are missing on a board that has them twice ([`instruction`]).
 pub fn calls(sp: u32) -> impl Iterator<Item = u32> {
     let bottom = sp.max(guard().end).next_multiple_of(4);
     let words = (bottom..&raw const _stack_start as u32).step_by(4);
@@ -90,8 +91,8 @@ pub fn calls(sp: u32) -> impl Iterator<Item = u32> {
     words.filter_map(|address| call_before(unsafe { (address as *const u32).read_volatile() }))
 }
 
-/// Returns the halfword at an address of the code in flash; `None` outside it, also in the copy of
-/// the steps in RAM, and at odd addresses.
+/// Returns the halfword at an address of the code in flash; `None` outside it and at odd addresses.
+/// On a board that has the steps twice, in flash and in RAM, it is `None` in both copies.
 pub fn instruction(address: u32) -> Option<u16> {
     let code = &raw const __stext as u32..&raw const __etext as u32;
     // SAFETY: any two bytes of the code are a `u16`.

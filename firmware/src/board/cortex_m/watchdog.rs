@@ -39,14 +39,17 @@ const ENABLE: u32 = 1 << 1 | 1 << 0;
 const UNLOCK: u32 = 0x1ACC_E551;
 const LOCKED: u32 = 1;
 
-/// Unlocks the registers of a watchdog until it is fed.
+/// Unlocks the registers of a watchdog ([`TwoStage`]) until it is fed. Without that, writing them
+/// has no effect.
 pub(in crate::board) fn unlock(device: Device) {
     device.register(LOCK).write(UNLOCK);
 }
 
 impl TwoStage {
-    /// Starts the watchdog, and feeds it. It counts at `hertz`, and `call` is the processor's
-    /// number of its interrupt: [`NMI`], or [`FIRST`] plus the number in the chip's data sheet.
+    /// Starts the watchdog, feeds it, and unmasks its interrupt. Not checked: the device is such a
+    /// watchdog, powered, and counts at `hertz`, Hz. A smaller number shortens its time, and 0 ends
+    /// it at once. `call` is the processor's number of its interrupt: [`NMI`], or [`FIRST`] plus
+    /// the number in the chip's data sheet.
     pub(in crate::board) fn start(device: Device, hertz: u32, call: u16) -> Self {
         CALL.store(call, Ordering::Relaxed);
         unlock(device);
@@ -82,7 +85,8 @@ pub(in crate::board) const FIRST: u16 = 16;
 /// The processor's number of the watchdog's interrupt.
 static CALL: AtomicU16 = AtomicU16::new(NMI);
 
-/// Returns true if the watchdog's interrupt has this number.
+/// Returns true if the watchdog's interrupt has this processor's number. It is [`NMI`] until a
+/// [`TwoStage`] is started.
 pub(super) fn is_call(number: u32) -> bool {
     number == CALL.load(Ordering::Relaxed).into()
 }
@@ -97,9 +101,9 @@ fn own() -> Option<Interrupt> {
 /// The tick of the last feeding.
 static FED: AtomicU32 = AtomicU32::new(0);
 
-/// Returns true if the clock has also counted the watchdog's time, less one tick, since the last
-/// feeding. If not, the processor was stopped from outside, such as an emulator that is paused, or
-/// has its interrupts off.
+/// Returns true if the clock has also counted the watchdog's time, less one tick (59 ticks), since
+/// the last feeding of a [`TwoStage`]. If not, the processor was stopped from outside, such as an
+/// emulator that is paused, or has its interrupts off.
 pub(super) fn has_ticked() -> bool {
     ticks().wrapping_sub(FED.load(Ordering::Relaxed)) >= WATCHDOG_SECONDS * TICK_RATE - 1
 }
@@ -109,14 +113,16 @@ pub(super) fn has_ticked() -> bool {
 type Stall = fn(bool);
 static STALL: Shared<Stall> = Shared::new(|_| ());
 
-/// Sets the function that stops the watchdog while a debugger halts the processor, and stops it so
-/// until a report.
+/// Sets the function that [`stall`] calls, and calls it with `true`. With `true` it makes the
+/// watchdog stop while a debugger halts the processor; with `false` it lets the watchdog run on,
+/// which a report does. A later call replaces the function.
 pub(in crate::board) fn stall_by(by: Stall) {
     STALL.with(|stall| *stall = by);
     by(true);
 }
 
-/// Calls the function of [`stall_by`]; without one does nothing.
+/// Makes the watchdog stop while a debugger halts the processor (`true`), or lets it run on
+/// (`false`), by the function of [`stall_by`]; without one does nothing.
 pub(super) fn stall(stalls: bool) {
     if let Some(stall) = STALL.with(|stall| *stall) {
         stall(stalls);

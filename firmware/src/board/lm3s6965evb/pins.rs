@@ -17,11 +17,15 @@ use crate::config::BUS_TRIES;
 #[derive(Clone, Copy, Debug)]
 pub struct Pins(Device);
 
-/// Port A. The next four constants are the ports C, D, E and F.
+/// Port A, pins PA0 to PA7.
 pub const A: Pins = port(0x4000_4000);
+/// Port C, pins PC0 to PC7.
 pub const C: Pins = port(0x4000_6000);
+/// Port D, pins PD0 to PD7.
 pub const D: Pins = port(0x4000_7000);
+/// Port E, pins PE0 to PE7.
 pub const E: Pins = port(0x4002_4000);
+/// Port F, pins PF0 to PF7.
 pub const F: Pins = port(0x4002_5000);
 
 /// Returns the port whose registers begin at this address.
@@ -113,7 +117,9 @@ const MODE_2_BYTES: u32 = 1 << 6 | 7;
 pub struct Ssi(());
 
 impl Ssi {
-    /// Starts the bus at the largest clock up to [`FASTEST`]; `hertz` is the processor's clock.
+    /// Starts the bus at the largest possible clock up to 4 MHz ([`FASTEST`]). `hertz` is the
+    /// processor's clock, Hz. Not checked: [`system::start`](super::system::start) has powered the
+    /// bus and returned this `hertz`.
     pub(super) fn start(hertz: u32) -> Self {
         A.use_for_device(1 << 2 | 1 << 3 | 1 << 5);
         CONTROL1.write(0);

@@ -30,7 +30,11 @@ const TRIES: u32 = 4 * BUS_TRIES;
 /// The bytes that the UART has not taken yet.
 static QUEUE: Shared<Deque<u8, UART_QUEUE>> = Shared::new(Deque::new());
 
-/// Starts the UART. Returns `None` if no divisor of the clock gives its speed.
+/// Starts the UART, and returns the sending direction of UART and USB. `clock` is the clock of the
+/// peripherals. Returns `None` if no divisor of it gives the UART's speed ([`BAUD`]).
+///
+/// No byte is received or sent before [`enable_interrupts`], and none over USB before
+/// [`usb::start`].
 pub(super) fn start(
     device: UART0,
     pins: SerialPins,
@@ -107,7 +111,8 @@ fn receive(inbox: &mut Inbox) {
     }
 }
 
-/// Unmasks the interrupts of the UART and of the USB port.
+/// Unmasks the interrupts of the UART and of the USB port, which receive bytes and send the queues;
+/// to be called after [`start`] and [`usb::start`].
 pub(super) fn enable_interrupts() {
     [Interrupt::UART0_IRQ, Interrupt::USBCTRL_IRQ]
         .into_iter()

@@ -58,7 +58,9 @@ struct Usb {
 
 static USB: Shared<Option<&'static mut Usb>> = Shared::new(None);
 
-/// Connects the board to a host, after 12 ms without the pull-up. Returns `None` the second time.
+/// Connects the board to a host, after 12 ms without the pull-up (at 125 MHz), for which it waits.
+/// The device answers the host only while its interrupt is unmasked and calls [`poll`]; this
+/// function does not unmask it. Returns `None` the second time.
 pub(super) fn start(
     registers: USBCTRL_REGS,
     memory: USBCTRL_DPRAM,
@@ -101,8 +103,8 @@ fn with<T>(act: impl FnOnce(&mut Usb) -> T) -> Option<T> {
 }
 
 /// Sends a message if a program has the port open and the queue has room for the whole message.
-/// Otherwise the message is dropped; while the port is closed, so are the bytes in the queue. Never
-/// waits.
+/// Otherwise the message is dropped; while the port is closed, so are the bytes in the queue.
+/// Before [`start`] it does nothing. Never waits.
 #[inline(never)] // The libraries may panic; the main loop must not (test `no_panic`).
 pub(super) fn send(message: &[u8]) {
     with(|usb| {
@@ -118,7 +120,9 @@ pub(super) fn send(message: &[u8]) {
 /// Handles the device's interrupt. Takes a packet only if the queue has room for it.
 ///
 /// Returns true if the interrupt may stay enabled: the queue had room, and the interrupt does not
-/// repeat without effect.
+/// repeat without effect. If it returns false, the caller masks the interrupt and calls this
+/// function again later. It does not return if the host has closed the port at 1200 baud: that
+/// restarts the chip in its boot loader.
 pub(super) fn poll(inbox: &mut Inbox) -> bool {
     let has_room = room(&inbox.received) >= PACKET;
     let is_served = with(|usb| {

@@ -5,16 +5,17 @@ use firmware::protocol::{Decoder, Field, Frame, LinkError, ToHost, read};
 /// The counts of a link since its [`Inbox`] was made.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counts {
-    /// The intact messages.
+    /// The intact messages of any kind.
     pub messages: u64,
-    /// The messages damaged in transmission: wrong CRC, framing, length, version or fields.
+    /// The messages damaged in transmission: wrong CRC, framing, length, version or fields. A first
+    /// message after [`Inbox::join`] that is damaged does not count.
     pub damaged: u64,
     /// The frames that are missing in the sequence numbers: sent by the board, and not received
     /// intact. Frames before a connection do not count, nor frames before a smaller number, which
     /// shows a restart.
     pub lost: u64,
     /// The number of restarts: frames whose number is smaller than expected, and messages
-    /// [`ToHost::Restarted`]. A restart that shows in both counts once.
+    /// [`ToHost::Restarted`]. Such a message and the frames from 0 after it count once.
     pub restarts: u64,
 }
 
@@ -35,7 +36,7 @@ pub fn refusal(field: Field) -> &'static str {
 /// are not lost.
 #[derive(Debug, Default)]
 pub struct Inbox {
-    /// The decoder, with the message that is incomplete.
+    /// The decoder, with the message that is incomplete. A new decoder in its place drops that.
     pub decoder: Decoder,
     /// The counts since this was made.
     pub counts: Counts,
@@ -44,7 +45,8 @@ pub struct Inbox {
     /// True if the next frame is the first of a connection. Frames before it were not sent to this
     /// host, so they are not lost.
     is_joining: bool,
-    /// The last damage since the connection began, if there was any.
+    /// The last damage since the connection began, if there was any. An intact message does not
+    /// remove it. It is `Malformed` also if the fields are wrong.
     pub damage: Option<LinkError>,
     /// True if the next bytes may begin in the middle of a message.
     joins: bool,

@@ -4,8 +4,9 @@ use firmware::config::TICK_RATE;
 use firmware::display::{BusFault, Controller, Found, PanelReport, PanelState};
 
 /// Returns the panel's state in one line without a newline: that it is not found yet or absent, or
-/// its controller and its frames per second. A panel that is absent, or slow with fewer than 60
-/// frames, has the remedy. Returns `None` if the board has no panel that reports its state.
+/// its controller and its frames per second, or that these are not known yet (0). A panel that is
+/// absent, or slow with 1 to 59 frames, has the remedy. Returns `None` if the board has no panel
+/// that reports its state.
 pub fn panel(report: &PanelReport) -> Option<String> {
     let line = match report.state {
         PanelState::Unknown => return None,

@@ -44,12 +44,14 @@ pub struct Port {
     open: Option<Box<dyn SerialPort>>,
     /// The USB device at the port. By it, the device is found under another name.
     device: Option<Device>,
-    /// The decoder of the received bytes, with the counts of the link.
+    /// The decoder of the received bytes, with the counts of the link since [`Port::open`], over
+    /// all connections.
     pub inbox: Inbox,
     /// The restarts of the board.
     pub restarts: Restarts,
-    /// Reports of problems and recoveries, one line each, reported once, such as 2 s without a
-    /// message. The caller drains them; they are not limited.
+    /// Reports of problems, recoveries and restarts of the board, oldest first, one line each
+    /// without a newline, reported once, such as 2 s without a message. The caller drains them;
+    /// they are not limited.
     pub notices: Vec<String>,
     /// The time of the last intact message, of the opening of the port, or of the last attempt to
     /// open it.
@@ -62,10 +64,10 @@ pub struct Port {
 
 impl Port {
     /// Opens the port of this name at [`BAUD`] (460,800) bits per second. `auto` means the only one
-    /// over USB and waits up to 3 s for it; several are an error at once, even if one of them is a
-    /// board. Returns the reason as one line if the port is missing, in use, not accessible, no
-    /// serial port or, with `auto`, ambiguous. Nothing is sent. Not checked: that a board is at its
-    /// other end.
+    /// over USB and waits up to 3 s for it, and for the access rights of a port that appears
+    /// meanwhile; several are an error at once, even if one of them is a board. Returns the reason
+    /// as one line if the port is missing, in use, not accessible, no serial port or, with `auto`,
+    /// ambiguous. Nothing is sent. Not checked: that a board is at its other end.
     pub fn open(name: &str) -> Result<Self, String> {
         // A port without a name may take a moment to appear.
         let (name, open) = if name == AUTO {

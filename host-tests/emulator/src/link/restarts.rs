@@ -10,7 +10,8 @@ use firmware::protocol::{Answer, Cause, Restarted, ToHost};
 /// a second.
 const PATIENCE: u32 = 60;
 
-/// The restarts that a host has observed.
+/// The restarts that a host has observed. The default is the start of the first connection: none
+/// observed, and the question due.
 #[derive(Debug, Default)]
 pub struct Restarts {
     /// The last restart that the board has reported, including one before the connection. `None`
@@ -50,8 +51,9 @@ impl Restarts {
     /// for the user, without a newline, if the board reports a new restart.
     ///
     /// A restart that only the frames show gives `None` at first. It makes the question due, and
-    /// the board's answer gives the line and is counted. An answer that repeats the last report,
-    /// without such a frame before it, gives `None`.
+    /// the board's answer gives the line and is counted. Without such a frame before it, a restart
+    /// that the first answer reports gives the line, but is not counted, because it was before the
+    /// connection; and an answer that repeats the last report gives `None`.
     pub fn take(&mut self, message: &ToHost, recounted: bool) -> Option<String> {
         match *message {
             ToHost::Restarted(end) => {
@@ -76,7 +78,7 @@ impl Restarts {
 
     /// Returns true if the question must be sent now, and counts it as sent. It is called once
     /// after each message, so that nothing is sent to a device that is not a board. While the
-    /// question is unanswered, it is due again after every 60 further calls.
+    /// question is unanswered, the next 60 calls return false, and the one after them true again.
     pub fn is_question_due(&mut self) -> bool {
         let (is_due, next) = match self.question {
             Question::Due | Question::Asked(PATIENCE..) => (true, Question::Asked(0)),

@@ -58,7 +58,9 @@ pub(super) struct Places {
 impl Machine {
     /// Starts a board that is stopped at its first instruction. Its clock counts instructions, even
     /// if `settings` have another clock; the other settings apply. An error means that the ELF file
-    /// is unusable, that QEMU cannot be started, or that it ends at once, as for the Pico.
+    /// is unusable, that QEMU cannot be started, that it ends at once, as for the Pico, or that
+    /// there is no place for temporary files ([`Scratch::new`](crate::scratch::Scratch::new)). A
+    /// program without symbols is no error, but [`Self::run_to_frame`] then runs to the time limit.
     pub fn halted(settings: &Settings) -> anyhow::Result<Self> {
         let mut machine = Self::boot(&Settings {
             clock: Clock::Counted,
@@ -74,13 +76,14 @@ impl Machine {
     }
 
     /// Runs to the first sleep of the board after which a frame has arrived, and returns all
-    /// messages that have not been fetched. The machine must be stopped, which is not checked, and
-    /// is stopped again when the frame is on the panel. A waiting frame that has not been fetched
-    /// counts; the board then runs to its next sleep.
+    /// messages that have not been fetched, oldest first. The machine must be stopped, which is not
+    /// checked, and is stopped again when the frame is on the panel. A waiting frame that has not
+    /// been fetched counts; the board then runs to its next sleep.
     ///
     /// It is an error if the board sleeps 1000 times without a frame, as it does if the machine
-    /// does not listen, or if QEMU ends; the messages are then lost. Not checked: that the machine
-    /// is from [`Self::halted`]; another one runs to its time limit.
+    /// does not listen, or if QEMU ends; the messages are then lost. After 1000 sleeps the machine
+    /// is stopped at a sleep. Not checked: that the machine is from [`Self::halted`]; another one
+    /// runs to its time limit.
     pub fn run_to_frame(&mut self) -> anyhow::Result<Vec<ToHost>> {
         let sleeps = self.places.sleeps.clone();
         up_to_frame(PATIENCE, || {
@@ -243,7 +246,8 @@ impl Machine {
         }
     }
 
-    /// Sends a packet and returns the text of the reply.
+    /// Sends a packet, waits for the reply and returns its text, which may be a refusal. An error
+    /// means that QEMU has ended, or that the packet does not fit into the pipe.
     pub(super) fn ask(&mut self, packet: &str) -> anyhow::Result<String> {
         self.say(packet)?;
         self.hear()
@@ -262,16 +266,18 @@ impl Machine {
     }
 }
 
-/// Sends a packet of GDB's protocol with its checksum. An error means that it does not fit into the
-/// pipe, or that nobody has the other end.
+/// Sends a packet of GDB's protocol with its checksum, and does not wait for the acknowledgement.
+/// An error means that it does not fit into the pipe, or that nobody has the other end; a part may
+/// then be sent. Not checked: that the text has none of the characters `$`, `#` and `}`.
 pub fn send_packet(sender: &mut File, packet: &str) -> io::Result<()> {
     let checksum = packet.bytes().fold(0, u8::wrapping_add);
     write!(sender, "${packet}#{checksum:02x}")
 }
 
 /// Removes the first packet of GDB's protocol, and acknowledgements before it, from the bytes that
-/// have arrived. Returns the text of the packet, or `None` if it is not complete. Its checksum is
-/// not checked.
+/// have arrived. Returns the text of the packet, in which bytes that are not UTF-8 are replaced. If
+/// it is not complete, returns `None` and removes nothing. Its checksum is not checked. Panics at a
+/// `#` before its `$`, which QEMU does not send.
 pub fn take_reply(bytes: &mut Vec<u8>) -> Option<String> {
     // A packet is complete if its checksum of two digits has arrived.
     let [start, end] = [b'$', b'#'].map(|mark| bytes.iter().position(|byte| *byte == mark));

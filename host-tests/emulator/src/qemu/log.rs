@@ -85,9 +85,9 @@ impl LogDecoder {
         })
     }
 
-    /// Takes the next bytes and returns the lines that they complete; an incomplete one waits for
-    /// more. For each damaged line of the log, a line of plain text reports it; if the stream has
-    /// no marks to start again, no line follows.
+    /// Takes the next bytes and returns the lines that they complete, oldest first; an incomplete
+    /// one waits for more. For each damaged line of the log, a line of plain text reports it; if
+    /// the stream has no marks to start again, no line follows.
     pub fn take(&mut self, bytes: &[u8]) -> Vec<LogLine> {
         let mut lines = Vec::new();
         let Some(stream) = &mut self.stream else {

@@ -34,11 +34,12 @@ pub enum Clock {
 /// Everything that a machine needs at its start.
 #[derive(Clone, Copy, Debug)]
 pub struct Settings<'a> {
-    /// The program QEMU.
+    /// The program QEMU: an absolute path, or a name that is found by `PATH`. QEMU runs in another
+    /// folder, so a relative path does not find it.
     pub qemu: &'a Path,
     /// The board to emulate.
     pub board: &'a Board,
-    /// The program of the board.
+    /// The ELF file of the board's program.
     pub elf: &'a Path,
     /// The clock of the board.
     pub clock: Clock,
@@ -58,7 +59,8 @@ const CHATTER: [&str; 2] = ["Timer with period zero, disabling", "has no peer"];
 ///
 /// Every method that waits also reads all output of the board, because QEMU stops while its output
 /// is not read; between the calls nothing reads it. Dropping the machine ends QEMU. A command or a
-/// memory access that QEMU refuses is an error.
+/// memory access that QEMU refuses is an error. While the machine is stopped, a wait for a message
+/// that has not arrived yet lasts until QEMU's time limit.
 ///
 /// All methods that wait for output return an error if QEMU ends first, with its last lines that
 /// have not been fetched. At the time limit that is an [`io::Error`](std::io::Error) of kind
@@ -90,15 +92,17 @@ pub struct Machine {
 
 impl Machine {
     /// Starts a board and lets it run. The host is attached before the first instruction is
-    /// executed. An error means that the ELF file is unusable, that QEMU cannot be started, or that
-    /// it ends at once, as for the Pico.
+    /// executed. An error means that the ELF file is unusable, that QEMU cannot be started, that it
+    /// ends at once, as for the Pico, or that there is no place for temporary files
+    /// ([`Scratch::new`]).
     pub fn start(settings: &Settings) -> anyhow::Result<Self> {
         let mut machine = Self::boot(settings)?;
         machine.run()?;
         Ok(machine)
     }
 
-    /// Starts a board that is stopped at its first instruction.
+    /// Starts a board that is stopped at its first instruction. Its `places` are empty. Errors are
+    /// as in [`Self::start`].
     pub(super) fn boot(settings: &Settings) -> anyhow::Result<Self> {
         let elf = settings
             .elf
@@ -232,7 +236,9 @@ impl Machine {
             }))
     }
 
-    /// Waits until `found` returns a value from the output. Returns an error if QEMU ends before.
+    /// Waits until `found` returns a value from the output, and returns it. `found` is called after
+    /// each reading of the output, the first time at once and the last time after QEMU's end.
+    /// Returns an error if QEMU ends before it returns a value.
     pub(super) fn wait_until<T>(
         &mut self,
         mut found: impl FnMut(&mut Self) -> Option<T>,

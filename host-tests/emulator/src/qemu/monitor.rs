@@ -65,14 +65,16 @@ impl Machine {
         })
     }
 
-    /// Switches QEMU's mode of one instruction per translation block; `switch` is `on` or `off`.
+    /// Switches QEMU's mode of one instruction per translation block; `switch` is `on` or `off`. An
+    /// error means that QEMU refuses it, or has ended.
     pub(super) fn single_step(&mut self, switch: &str) -> anyhow::Result<()> {
         let [name, name_before] = SINGLE_STEP.map(|name| format!("{name} {switch}"));
         // An old QEMU refuses the new name.
         self.console(&name).or_else(|_| self.console(&name_before))
     }
 
-    /// Sends a line to QEMU's own console. Any reply is an error.
+    /// Sends a line to QEMU's own console and waits until it is executed. Any text that it replies
+    /// is an error, so a command that prints something cannot be used. The error contains the text.
     pub(super) fn console(&mut self, line: &str) -> anyhow::Result<()> {
         let said = self.execute("human-monitor-command", json!({ "command-line": line }))?;
         let reason = said.as_str().unwrap_or_default().trim();
@@ -83,7 +85,9 @@ impl Machine {
         }
     }
 
-    /// Executes a command of QMP and returns its result. A refusal by QEMU is an error.
+    /// Executes a command of QMP, waits for its result and returns it, such as `{}`. An error means
+    /// that QEMU refuses the command, and has its reason, or that QEMU has ended. Events before the
+    /// result are dropped.
     pub(super) fn execute(&mut self, command: &str, arguments: Value) -> anyhow::Result<Value> {
         writeln!(
             self.monitor.sender,

@@ -13,13 +13,16 @@ use crate::process::{Output, run, run_watched};
 use console::cli::{Refused, complain};
 use console::progress::Progress;
 
-/// The time limit of a program that only prints information. It is killed then, which is an error.
+/// The time limit of a program that only prints information, 20 s. It is killed then, which is an
+/// error.
 pub const QUICK: Duration = Duration::from_secs(20);
-/// The time limit to fetch and unpack at most 400 MB, and to wait for dpkg.
+/// The time limit to fetch and unpack at most 400 MB, and to wait for dpkg: 20 minutes.
 pub(super) const INSTALL: Duration = Duration::from_secs(1200);
 
-/// Waits until no other process runs a set-up, and locks set-ups. The lock ends when it is dropped
-/// or when the process ends in any way.
+/// Waits until no other set-up runs, without a limit, and locks set-ups. The lock ends when it is
+/// dropped or when the process ends in any way. Another call in this process waits, too, so a
+/// thread that has the lock must not call this. Makes the target folder, which has the lock;
+/// refused if it cannot be made or locked.
 pub(super) fn turn() -> Result<Flock<File>, Refused> {
     let refuse = |error: io::Error| {
         Refused::because(format_args!("cannot lock {}: {error}", target().display()))
@@ -30,13 +33,13 @@ pub(super) fn turn() -> Result<Flock<File>, Refused> {
     Flock::lock(folder, FlockArg::LockExclusive).map_err(|(_, error)| refuse(error.into()))
 }
 
-/// A way to install something: the report of success, and the function that installs it. The tool
-/// must be found afterwards, too.
+/// A way to install something: the report of success, and the function that installs it, whose
+/// error is the reason in one line. The tool must be found afterwards, too.
 pub(super) type Way<'a> = (String, &'a dyn Fn() -> Result<(), String>);
 
 /// Returns the result of `find`. If `find` fails and `installs` is true, tries the `ways` in order
-/// until `find` succeeds. Returns the reasons of all failures if none succeeds. Each success of a
-/// way is reported on stderr.
+/// until `find` succeeds. If none succeeds, the error is the reasons of all failures, in one line
+/// and each once. The success of a way is reported on stderr, with the failures before it.
 pub(super) fn bring<T>(
     installs: bool,
     find: impl Fn() -> Result<T, String>,
@@ -67,7 +70,7 @@ pub enum Consent {
     /// in capitals too, are a consent. After another answer, or unless standard input and standard
     /// error are a terminal, nothing is installed, and the tool stays missing.
     Ask,
-    /// The user has passed `--yes`.
+    /// The user has passed `--yes`. Nothing is asked.
     Given,
 }
 
@@ -103,7 +106,8 @@ impl Consent {
 }
 
 /// Installs Debian packages on the system. The lists of packages are updated first, because old
-/// ones may contain packages that no longer exist.
+/// ones may contain packages that no longer exist. An error is the reason in one line: no apt-get,
+/// not root, no consent, or a failed installation. Does not check that the programs work.
 pub(super) fn install_packages(packages: &[&str], consent: Consent) -> Result<(), String> {
     if find("apt-get").is_none() {
         return Err(
@@ -154,18 +158,21 @@ fn apt_get(action: &str) -> Command {
     command
 }
 
-/// Runs a command to its end and shows progress. If it fails, returns the line with the reason.
+/// Runs a command to its end and shows progress on stderr, with `doing` as its name. An error is
+/// the reason in one line: the command cannot be started, fails, or is killed after `limit`.
 pub(super) fn attempt(command: &mut Command, limit: Duration, doing: &str) -> Result<(), String> {
     output_or_reason(command, |command| run_shown(command, limit, doing)).map(drop)
 }
 
-/// Runs a command to its end within the time limit and shows progress meanwhile.
+/// Runs a command as [`run_watched`] does, and shows progress on stderr meanwhile, with `doing` as
+/// its name. A failure of the program is not an error; its time limit is.
 pub(super) fn run_shown(command: &mut Command, limit: Duration, doing: &str) -> io::Result<Output> {
     let progress = Progress::start(doing);
     run_watched(command, limit, |line| progress.alive(line))
 }
 
-/// Returns the output of a quick command, or the reason of its failure.
+/// Returns the standard output of a quick command. An error is the reason in one line: it cannot be
+/// started, fails, or is killed after [`QUICK`].
 pub(super) fn quick_output(command: &mut Command) -> Result<String, String> {
     output_or_reason(command, |command| run(command, QUICK))
 }

@@ -107,10 +107,11 @@ impl Toolchain {
         self.build(board.binary, board.target)
     }
 
-    /// Builds a binary of the firmware with all optimisations, and returns the ELF file,
-    /// `firmware/TARGET/release/BINARY` in the target folder. An older file is replaced. It is
-    /// built once per process: after a success, later calls return the same path at once, also if
-    /// the sources have changed or the file is gone.
+    /// Builds a binary of the firmware with all optimisations and, if it is the application of a
+    /// board, that board's feature. Returns the ELF file, `firmware/TARGET/release/BINARY` in the
+    /// target folder. An older file is replaced. It is built once per process: after a success,
+    /// later calls return the same path at once, also if the sources have changed or the file is
+    /// gone.
     ///
     /// Concurrent builds take turns. An error contains the output of the compiler, also if there is
     /// no such binary or target.
@@ -139,7 +140,7 @@ impl Toolchain {
     /// target and processor has its own file, and an older one is replaced.
     ///
     /// Concurrent calls in this process take turns. This toolchain must be that of [`set_up_for`]
-    /// this target. An error contains the output of the compiler.
+    /// this target. An error of the build contains the output of the compiler.
     pub fn build_cores(&self, target: &str, double: Option<&str>) -> anyhow::Result<PathBuf> {
         // Cargo gives both kinds of image the same name. Each is copied before the next build
         // replaces it.
@@ -272,9 +273,9 @@ impl Toolchain {
     }
 
     /// Checks the firmware's binaries and its examples for microcontrollers, for all [`TARGETS`],
-    /// with Clippy, which must be installed; with Debian's compiler, with that alone. A warning is
-    /// an error. The error contains the warnings of the first target that has any; the targets
-    /// after it are not checked.
+    /// with Clippy, which must be installed. If the core library is built by Debian's compiler, the
+    /// check is `cargo check`, without Clippy. A warning is an error. The error contains the
+    /// warnings of the first target that has any; the targets after it are not checked.
     pub fn check(&self) -> anyhow::Result<()> {
         for target in TARGETS {
             // All boards of a target are checked at once, with the features of all.

@@ -12,8 +12,9 @@ use std::{env, fs};
 use super::bring::quick_output;
 use super::{target, workspace};
 
-/// Returns the flags for builds by this compiler. If several prefixes match, the compiler uses the
-/// last one.
+/// Returns the flags for builds by this compiler, each `--remap-path-prefix=FOLDER=NAME`. If
+/// several prefixes match, the compiler uses the last one, so the order matters. An error is the
+/// reason why the compiler does not print its folder or version.
 pub(super) fn flags(rustc: &Path) -> Result<Vec<String>, String> {
     // The workspace and the folder of everything built.
     let mut renamed = vec![

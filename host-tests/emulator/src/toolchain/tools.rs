@@ -33,7 +33,7 @@ pub(super) struct FromSource {
     pub rustc: PathBuf,
     /// Its cargo.
     pub cargo: PathBuf,
-    /// The folder of rustup's `rust-lld`, which Debian's packages do not have.
+    /// The folder that has rustup's `rust-lld`, which Debian's packages do not have.
     pub linker: PathBuf,
 }
 
@@ -78,7 +78,8 @@ pub(super) const QEMU_AARCH64: Emulator = Emulator {
 };
 
 /// Finds or provides the core library for these targets. It is either the ready-made one of rustup
-/// for the compiler in use (`None`), or Debian's sources with their compiler.
+/// for the compiler in use (`None`), or Debian's sources with their compiler. Only searches unless
+/// `installs`. The error is the reasons of all failures, in one line.
 pub(super) fn core(installs: bool, targets: &[&str]) -> Result<Option<FromSource>, String> {
     // The first way: rustup's ready-made library. It needs the network.
     let rustup = || {
@@ -240,7 +241,8 @@ fn number(version: &str, part: usize) -> Option<u32> {
 /// Finds an emulator, or unpacks Debian's package of it for this project.
 ///
 /// The project's own emulator has priority: it was unpacked because the system's emulator was not
-/// usable.
+/// usable. Only searches unless `installs`. The error is the reasons of all failures, in one line,
+/// such as a version before 6.0.
 pub(super) fn qemu(installs: bool, emulator: &Emulator) -> Result<PathBuf, String> {
     let Emulator {
         program,
@@ -317,7 +319,8 @@ const BROWSER: &str = "chromium-headless-shell";
 /// The time limit to fetch and unpack 100 MB.
 const FETCH_BROWSER: Duration = Duration::from_secs(180);
 
-/// Finds a Chromium that prints its version, or unpacks Debian's for this project.
+/// Finds a Chromium that prints its version, on `PATH` first, or unpacks Debian's for this project.
+/// The error is the reasons of all failures, in one line.
 pub(super) fn chromium() -> Result<PathBuf, String> {
     let folder = target().join("chromium");
     let packages = [BROWSER, "chromium-common"];
@@ -342,8 +345,9 @@ const ASK: &str = "const [{ dependencies }, { version }] = ['.', './node_modules
     .map((folder) => require(folder + '/package.json'));
     if (version !== dependencies.rp2040js) throw 'another version'";
 
-/// Finds a version of Node.js that runs the emulator of the Pico and WebAssembly modules, or
-/// installs it with the user's consent.
+/// Finds a version of Node.js that runs the emulator of the Pico and WebAssembly modules, 18 or
+/// newer, or installs it with the user's consent. Without a `consent` it only searches. If there is
+/// none, it is refused, with the remedy.
 pub(super) fn node(consent: Option<Consent>) -> Result<PathBuf, Refused> {
     let installs = consent.is_some();
     let install = |packages: &[&str]| install_packages(packages, consent.unwrap_or(Consent::Ask));
@@ -379,7 +383,8 @@ pub(super) fn node(consent: Option<Consent>) -> Result<PathBuf, Refused> {
 }
 
 /// Returns Node.js with the emulator of the Raspberry Pi Pico, an npm package with a fixed version.
-/// With a `consent`, provides them if they are missing.
+/// With a `consent`, provides them if they are missing; npm needs none to fetch the emulator. If
+/// one is missing in the end, it is refused, with the remedy.
 pub(super) fn rp2040js(consent: Option<Consent>) -> Result<PathBuf, Refused> {
     let node = node(consent)?;
     let installs = consent.is_some();

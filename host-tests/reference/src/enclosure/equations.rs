@@ -37,7 +37,8 @@ impl Equations {
     /// Returns the coefficients 0 to `order` of the power series of the six numbers (sin a1, cos
     /// a1, S, C, P1, P2) from `start`. The time of the series is in units of `step` T. The first
     /// index is the number, the second the power. Each ball contains the coefficient for every
-    /// start and step in their balls. Coefficients of powers above 48 are unknown.
+    /// start and step in their balls. Coefficients of powers above 48 are unknown. All of powers
+    /// above 0 are if the balls are so wide that k + l S^2 may be 0.
     pub fn series(&self, start: &[Fixed; 6], order: usize, step: Fixed) -> [Vec<Fixed>; 6] {
         let &Self {
             upper,
@@ -85,8 +86,8 @@ impl Equations {
     }
 
     /// Returns the energy of the six numbers `z`, divided by M l1^2/T^2. The potential energy is 0
-    /// where both bobs are level with the pivot. It is unknown if one of the numbers is, if it is
-    /// out of range, or if their balls are so wide that k + l S^2 may be 0.
+    /// where both bobs are level with the pivot. It is unknown if one of the numbers is, if it or
+    /// a term of it is out of range, or if their balls are so wide that k + l S^2 may be 0.
     pub fn energy(&self, &[sin1, cos1, s, c, p1, p2]: &[Fixed; 6]) -> Fixed {
         let &Self {
             upper,
@@ -122,8 +123,9 @@ const SHORTEST: f64 = 6.0;
 /// `middle`. No solution that starts within [`STARTS`] of these radii leaves the discs in complex
 /// times up to that time. `extent` is the largest distance of each number of the starts from
 /// `middle`. The radius of that number is at least 64 times as large, and at least 2^-16. Returns
-/// `None` if the time is shorter than 6 steps, as it is with unknown numbers or an infinite extent.
-/// Not checked: that the extent is not NaN or negative, which counts as 0.
+/// `None` if the time is shorter than 6 steps, as it is with unknown numbers or with some infinite
+/// extents. If all extents are infinite, which is not checked, so are the radii, and nothing is
+/// proved. An extent that is NaN or negative counts as 0, which is not checked, either.
 ///
 /// Theorem (Picard and Lindeloef for analytic equations; Hille, Ordinary Differential Equations in
 /// the Complex Domain, 2.3): if z0 + t f(B) is in the product of discs B for |t| <= T, one solution

@@ -25,7 +25,8 @@ pub fn up(value: f64) -> f64 {
 /// A ball: all numbers within `radius` units of the last place of `middle`, which is in the same
 /// units. Midpoints are between -256 and 256, without these two. A result whose midpoint leaves
 /// this range, or whose radius overflows, is unknown: its midpoint is 0, its radius is infinite,
-/// and so are the radii of all results from it. `==` compares midpoints and radii, not the true
+/// and so are the radii of all results from it. `+`, `-` and `*` give a ball that contains the
+/// result for every two numbers in the balls. `==` compares midpoints and radii, not the true
 /// numbers, so two unknown balls are equal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fixed {
@@ -82,8 +83,8 @@ impl Fixed {
     }
 
     /// Makes a ball of a fraction times 2^`exponent`, computed bit by bit. Bits below 2^-116 are
-    /// cut and covered by the radius. A denominator of 0 panics. A value outside the range, or an
-    /// exponent below -116, gives an unknown ball.
+    /// cut and covered by the radius. A value outside the range, or an exponent below -116, gives
+    /// an unknown ball. With any other exponent a denominator of 0 panics.
     pub fn fraction(numerator: i64, denominator: u64, exponent: i32) -> Self {
         let above = u128::from(numerator.unsigned_abs());
         let below = u128::from(denominator);
@@ -139,8 +140,8 @@ impl Fixed {
         Self::new(self.middle, self.radius + up(radius / ULP))
     }
 
-    /// Returns true if every number in the ball is above zero, and false if every number is below
-    /// zero. Returns `None` if the ball may contain 0 or is unknown.
+    /// Returns `Some(true)` if every number in the ball is above zero, and `Some(false)` if every
+    /// number is below zero. Returns `None` if the ball may contain 0 or is unknown.
     ///
     /// The midpoint is compared as an `f64`, which may exceed it by 2^-53 of itself. [`up`]
     /// enlarges the radius by more than that, so the result is proved.
@@ -172,7 +173,8 @@ impl Fixed {
         )
     }
 
-    /// Returns the ball divided by a whole number. A divisor of 0 panics.
+    /// Returns a ball that contains every number of this one divided by a whole number. A divisor
+    /// of 0 panics.
     pub fn over(self, whole: u32) -> Self {
         Self::new(
             self.middle / i128::from(whole),
@@ -180,8 +182,9 @@ impl Fixed {
         )
     }
 
-    /// Returns the inverse. It is unknown if the ball may contain 0, if its radius is about half
-    /// its midpoint or more, or if the inverse is out of range.
+    /// Returns a ball that contains the inverse of every number of this one. It is unknown if this
+    /// one may contain 0, if its radius is about half its midpoint or more, or if the inverse is
+    /// out of range.
     ///
     /// For any x about 1/b: |1/b - x| = |x| |1 - b x|/|b x|, and |b x| >= 1 - |1 - b x|. Newton's
     /// iteration makes x accurate.

@@ -131,7 +131,8 @@ impl Enclosure {
 
     /// Returns about the factor by which a small error of the start has grown: for each of the six
     /// numbers, the sum of its absolute derivatives with respect to those of the start, and of
-    /// these sums the largest. It is 1 at the start. It is an estimate; nothing is proved about it.
+    /// these sums the largest. It is 1 at the start. It is an estimate; nothing is proved about it,
+    /// and it has no meaning if a number of the start is unknown.
     pub fn growth(&self) -> f64 {
         let of = |i: usize| {
             self.segments

@@ -124,11 +124,11 @@ pub struct CountOptions {
 /// With `--write-prices` it changes the price lists in the kernel's source, with `--readme` the
 /// table in its README.
 ///
-/// Options that cannot be served, also a pendulum that no method accepts, are [`Refused`] before
-/// anything is built. A build or a count that fails is an error after the rows before it. With
-/// `--elf` a function that cannot be counted is [`Refused`], also because no call has returned in
-/// time, and a program that fails is an error. A program that its time limit has stopped is not:
-/// the calls until then are printed.
+/// Options that cannot be served, also a pendulum that no method accepts, and tools that cannot be
+/// provided, are [`Refused`] before anything is built. A build or a count that fails is an error
+/// after the rows before it. With `--elf` a function that cannot be counted is [`Refused`], also
+/// because no call has returned in time, and a program that fails is an error. A program that its
+/// time limit has stopped is not: the calls until then are printed.
 pub fn run(options: &CountOptions) -> anyhow::Result<()> {
     if let (Some(elf), Some(function)) = (&options.elf, &options.function) {
         return count_calls(&toolchain::set_up()?, options, elf, function);

@@ -38,7 +38,8 @@ pub struct Program {
     pub counts_turns: bool,
 }
 
-/// Writes the type, as the kernel's README does.
+/// Writes the type as the kernel's README does: in backquotes, and ", counting turns" after it if
+/// the program counts turns.
 impl fmt::Display for Program {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let turns = if self.counts_turns {

@@ -86,8 +86,8 @@ pub fn affordable_cost(target: &Target, request: &Request) -> Result<StepCost> {
 }
 
 /// Returns the cost of one step of `request` on `target`, averaged over `request.stride` steps
-/// after the first; `stride` must be from 1 to 2^32 - 2, which is not checked, and `samples` is
-/// ignored. Errors are as in [`affordable_steps`].
+/// after the first; `stride` must be from 1 to 2^32 - 2, which is not checked (0 makes the averages
+/// NaN), and `samples` is ignored. Errors are as in [`affordable_steps`].
 ///
 /// It is the difference between a run of `stride` + 1 steps and a run of one step, so that the
 /// costs of the call and the return cancel.

@@ -127,9 +127,15 @@ impl Target {
     }
 
     /// Runs the program with `argument` on its semihosting command line and calls `each` before
-    /// every instruction, in order. `argument` may be empty. If `entries` has addresses, the
-    /// instructions before the first one at any of these addresses are left out, which saves most
-    /// of the time of a short run. An error of `each` ends the program and is returned.
+    /// every instruction, in order. `argument` may be empty. Not checked: it must not contain a
+    /// comma. If `entries` has addresses, the instructions before the first one at any of these
+    /// addresses are left out, which saves most of the time of a short run; `each` is not called if
+    /// the program never comes there.
+    ///
+    /// After `limit` of the host's time QEMU is killed. That is no error, except while instructions
+    /// are left out, and neither is a program that fails ([`Ended::status`]). An error of `each`
+    /// ends the program and is returned. Other errors mean that QEMU cannot be started or refuses
+    /// the debugger.
     pub(super) fn trace(
         &self,
         argument: &str,

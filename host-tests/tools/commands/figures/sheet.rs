@@ -24,9 +24,9 @@ pub const BLUE: RGBColor = RGBColor(0, 95, 175);
 /// The colour of the second curve.
 pub const ORANGE: RGBColor = RGBColor(205, 85, 15);
 
-/// A rectangle of a figure that is drawn on.
+/// A rectangle of a figure that is drawn on. Its coordinates are in dots from its top left corner.
 pub type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
-/// A chart with two linear axes.
+/// A chart with two linear axes. Its coordinates are the numbers of the axes, across and upwards.
 pub type Axes<'a> = ChartContext<'a, SVGBackend<'a>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
 
 /// Returns a length in dots, 8 times `length`, which is in units. Not checked: the result must fit

@@ -24,7 +24,8 @@ pub struct Map {
     /// The distance from the middle to each side, rad: the same across and upwards, so that pixels
     /// are square only in a square map.
     pub half: f64,
-    /// The searches with the step and with half of it. Both end at the limit.
+    /// The searches with the step and with half of it. Both end at the limit, rounded up to whole
+    /// steps.
     pub searches: [Search; 2],
 }
 

@@ -1,4 +1,9 @@
 //! The scene to plan, as the command line describes it.
+//!
+//! Without options, the display is 64 pixels high, the scene is 30 s long and has 60 frames a
+//! second, and the chip is the first of [`CHIPS`]. The numbers are checked by
+//! [`SceneOptions::plan`]: the height must be more than 0 and at most 1e6 pixels, the duration more
+//! than 0 and at most (2^32 - 1)/rate s.
 
 use anyhow::{Context, bail, ensure};
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
@@ -90,9 +95,9 @@ const HIGHEST: f64 = 1e6;
 
 impl SceneOptions {
     /// Returns the scene with its plan, or with the limit that forbids any plan. Lengths are in m,
-    /// angles in rad, times in s, costs in cycles. An error is one line that names the option and
-    /// the value; it is caused by a number out of range, by a pendulum that the kernel refuses, or
-    /// by a built-in scene without a motion to plan.
+    /// angles in rad, times in s, costs in cycles. The tolerance is half a pixel. An error is one
+    /// line that names the option and the value; it is caused by a number out of range, by a
+    /// pendulum that the kernel refuses, or by a built-in scene without a motion to plan.
     ///
     /// The plan of a [linear](SceneName::is_linear) scene always has the closed form. Its horizon
     /// is the time until which the linear motion is within half a pixel of the exact motion.

@@ -10,7 +10,9 @@ use reference::enclosure::{Fixed, Start, up};
 use crate::commands::table::at_most;
 
 /// A frame compared with the exact motion. The exact motion is known to be in a box: each number of
-/// the directions is known up to a radius.
+/// the directions is known up to a radius. The frame is proved right, proved wrong, or undecided,
+/// because the box is too wide. It is right if both bobs, and bob 2 as seen from bob 1, are within
+/// the tolerance of the scene ([`Problem::tolerance`]).
 #[derive(Clone, Copy, Debug)]
 pub struct Verdict {
     /// The box: the directions of the rods, (sin, cos) each, with their radii.
@@ -22,7 +24,8 @@ pub struct Verdict {
     is_right: Option<bool>,
 }
 
-/// Returns the time of frame `frame` of the scene, s since the start, which is frame 0.
+/// Returns the time of frame `frame` of the scene, s since the start, which is frame 0. The frame
+/// may be after the scene's end. Not checked: the scene's rate is not 0.
 pub fn time(scene: &Problem, frame: u32) -> f64 {
     f64::from(frame) / f64::from(scene.rate)
 }

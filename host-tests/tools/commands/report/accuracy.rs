@@ -44,11 +44,11 @@ pub const LONG: Scene = Scene {
     duration: 100,
 };
 
-/// The largest errors of a motion at the compared moments; 0 if there are none. Both are infinite
-/// if it has diverged.
+/// The largest errors of a motion at the compared moments, of both rods and both bobs; 0 if no
+/// moment is compared. Both are infinite if the motion has diverged.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Error {
-    /// The error of an angle, rad, without whole turns.
+    /// The error of an angle, rad, 0 or more, without whole turns: at most pi.
     pub angle: f64,
     /// The distance of a bob from its exact position on the panel, pixels. Both rods together are
     /// [`REACH`] long there, 28.5 pixels.

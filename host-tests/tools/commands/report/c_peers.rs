@@ -32,9 +32,12 @@ const TEXTBOOK: Method = Method::TextbookF32;
 /// Builds the programs into `target/peers-c` of the project, runs them in QEMU, and returns the
 /// costs and errors of every program on every board, in 16, 32, 64, 128 and 256 steps per second
 /// through `scenes`: each with its exact angles (rad), [`SAMPLES`](super::accuracy::SAMPLES) per
-/// second. In the long scene it is 256 steps only. Also returns a line for each program and board
-/// that cannot be built, with the reason. A program that fails on the target is an error, and so is
-/// another number of exact angles.
+/// second. In the long scene it is 256 steps only. The order is that of [`PROGRAMS`], then of the
+/// targets, of the scenes, and of the steps, from the coarsest on.
+///
+/// Also returns a line for each program and board that cannot be built, with the reason; it has no
+/// points. A program that fails on the target is an error, and so is another number of exact
+/// angles.
 pub fn points(
     toolchain: &Toolchain,
     targets: &[Target],

@@ -58,15 +58,16 @@ impl Point {
 }
 
 /// Returns the points of every method and of every program in C, through the scenes on all targets.
-/// It runs QEMU for minutes. The closed forms are left out, because their error comes from the
-/// linear equations. The long scene has the typical number of steps only. A scene or a step that a
-/// method does not support has no point; a motion that diverges has infinite errors.
+/// It runs QEMU for minutes. The scenes are those of [`SCENES`], then [`LONG`], with the numbers of
+/// steps of [`rates`] up to 2^13 per second. The closed forms are left out, because their error
+/// comes from the linear equations. A scene or a step that a method does not support has no point;
+/// a motion that diverges has infinite errors.
 ///
-/// The methods are in the order of [`Method::ALL`], and the programs in C are last. The points of a
-/// method are in the order of the scenes, then of the steps, from the coarsest on, then of the
-/// targets. Also returns a line for each program in C and board that cannot be built, with the
-/// reason. An error means that QEMU or a program on a target fails, or executes an instruction
-/// without a known timing.
+/// The methods are in the order of [`Method::ALL`]. The points of a method are in the order of the
+/// scenes, then of the steps, from the coarsest on, then of the targets. The programs in C are
+/// last, each by target, scene and steps. Also returns a line for each program in C and board that
+/// cannot be built, with the reason. An error means that QEMU or a program on a target fails, or
+/// executes an instruction without a known timing.
 pub fn join(toolchain: &Toolchain, targets: &[Target]) -> Result<(Vec<Point>, Vec<String>)> {
     let scenes = [&SCENES[0], &SCENES[1], &LONG]
         .map(|scene| (scene, accuracy::exact(scene, SAMPLES * scene.duration)));

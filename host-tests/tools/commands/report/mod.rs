@@ -48,10 +48,13 @@ pub struct ReportOptions {
 }
 
 /// Measures, which takes minutes, writes the table and the charts into the folder of the options,
-/// and prints the advice: the cheapest methods for each core. The folder is created, and existing
-/// files are replaced. Missing tools are installed. An error means that a tool cannot be provided,
-/// that QEMU or a program fails, that a file cannot be written, or, after the files of the folder
-/// are written, that a README has lost the lines around its generated part.
+/// and prints the advice: the cheapest methods for each core. The files are
+/// `speed-against-error.csv` and a chart `SCENE-CPU.svg` for each of [`SCENES`] and each core. The
+/// folder is created, and existing files are replaced. Missing tools are installed. An error means
+/// that a tool cannot be provided or the folder cannot be made
+/// ([`Refused`](console::cli::Refused)), that QEMU or a program fails, that a file cannot be
+/// written, or, after the files of the folder are written, that a README has lost the lines around
+/// its generated part.
 ///
 /// With `--readme` the generated parts of the READMEs and the charts that they show are replaced,
 /// too. It is then an error if a program in C could not be built; the READMEs are not changed, but

@@ -26,10 +26,11 @@ use emulator::out_file::OutFile;
 use emulator::qemu::{Clock, Machine, Settings};
 use emulator::toolchain;
 
-/// Prints the table of methods or the motion, or writes the motion to the file of the options.
+/// Prints the table of methods or the motion, or writes the motion to the file of the options. The
+/// motion is CSV: a heading, a row of the start, and a row for each `--every` until `--until`.
 /// Options that cannot be used, also a file that cannot be written, are [`Refused`] before the
-/// first row. With a board as the place, missing tools are installed and the board is emulated.
-/// Notes and advice go to stderr.
+/// first row. With a board as the place, missing tools are installed and the board is emulated; a
+/// tool that cannot be provided is [`Refused`], too. Notes and advice go to stderr.
 ///
 /// A motion that diverges later, or a board that fails, is an error after the rows before it; these
 /// are kept, also in the file. The file replaces an existing one after the last of these rows; if

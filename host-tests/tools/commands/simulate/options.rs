@@ -1,4 +1,12 @@
 //! The command line of `cargo simulate`.
+//!
+//! Without options, `until` is 10 s, `place` is this program, `columns` are t, a1, a2, p1, p2, w1,
+//! w2 and energy, and the first line has names only. The numbers of times and steps are finite, but
+//! otherwise not checked here ([`plan`](super::plan), [`choose`](super::choose)).
+//!
+//! `columns` has places in the list t, a1, a2, p1, p2, w1, w2, energy, x1, y1, x2, y2, from 0, in
+//! the order in which they are printed. `units` is true for names with units. `bits` adds four
+//! columns of 16 digits, the bits of an `f64`, or of 8 digits for a method in plain `f32`.
 
 use std::f64::consts::TAU;
 use std::path::PathBuf;
@@ -20,7 +28,7 @@ pub type Place = Option<&'static Board>;
 /// The name of this program as a place.
 const HOST: &str = "host";
 
-/// Returns the name of a place on the command line.
+/// Returns the name of a place on the command line: that of the board, or `host`.
 pub(super) fn name(place: Place) -> &'static str {
     place.map_or(HOST, |board| board.name)
 }
@@ -108,8 +116,9 @@ pub struct SimulateOptions {
     pub out: Option<PathBuf>,
 }
 
-/// A pendulum and its start. Without these options the gravity is 9.81 m/s^2 and both angles are
-/// 120 degrees. All numbers are finite, but otherwise not checked here.
+/// A pendulum and its start. Without these options the bobs have 1 kg, the rods are 1 m long, the
+/// gravity is 9.81 m/s^2, and both rods are at rest at 120 degrees. All numbers are finite, but
+/// otherwise not checked here.
 #[derive(Args, Clone, Debug)]
 pub struct StartOptions {
     /// Masses of the bobs, kg
@@ -201,8 +210,10 @@ impl StartOptions {
         })
     }
 
-    /// Returns the pair of options whose value is farthest from 1, which makes the motion fast or
-    /// its numbers too large.
+    /// Returns the option with the most extreme number, with its value, as in "--masses 1,1e9".
+    /// Such a number makes the motion fast or its numbers too large. Masses and lengths are extreme
+    /// by their ratio to 1, large or small; velocities and a given gravity only if they exceed 1.
+    /// Of equally extreme options it is the last, in this order. Angles are not considered.
     pub(super) fn extreme(&self) -> String {
         // The options and their numbers.
         let pairs = [

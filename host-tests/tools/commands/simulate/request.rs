@@ -41,11 +41,14 @@ struct Timing {
 /// not considered. A time of the last row of 0 gives the start only. A step that may be too long
 /// for the motion is no error, but causes a note.
 ///
+/// The chosen step is as in [`SimulateOptions::step`]. But the closed form makes one step for each
+/// row, and if safe steps were more than 2^22 in all, the step need not be safe.
+///
 /// An error is one line that names the option and the value. It is an error if that time is
 /// negative or another time is not greater than zero, if it is no whole multiple of the time
-/// between rows, or the latter none of the step, if there are too many steps, or if the place does
-/// not have the method. It is also an error if the kernel refuses the motion, if its first step
-/// diverges, or if an angle exceeds 2^26 rad, in single precision 2^12 rad.
+/// between rows, or the latter none of the step, if there are more than 2^32 - 1 steps, or if the
+/// place does not have the method. It is also an error if the kernel refuses the motion, if its
+/// first step diverges, or if an angle exceeds 2^26 rad, in single precision 2^12 rad.
 pub fn plan(options: &SimulateOptions) -> anyhow::Result<Plan> {
     let until = &options.until;
     ensure!(
@@ -226,8 +229,9 @@ fn check_first_step(options: &SimulateOptions, request: &Request) -> anyhow::Res
     }
 }
 
-/// Returns a short number that is at most `limit`, s, as text. From 1e-6 on it is a decimal or a
-/// fraction.
+/// Returns a time of at most `limit`, s, as a short text with the unit: three decimals from 0.1 s
+/// on ("0.125 s"), a fraction from 1e-6 s on ("1/1024 s"), or else two digits with an exponent. Not
+/// checked: `limit` is positive and finite.
 pub(super) fn at_most(limit: f64) -> String {
     const LONG: f64 = 0.1;
     const SHORT: f64 = 1e-6;
@@ -242,8 +246,9 @@ pub(super) fn at_most(limit: f64) -> String {
     format!("{digits}e{power} s")
 }
 
-/// Returns how many times one option's time divides another's. An error, which names both options,
-/// means that the quotient is not a whole number from 0 to 2^32 - 1.
+/// Returns how many times `unit` is in `time`, computed exactly. The error, which names both
+/// options and their values, means that this is not a whole number from 0 to 2^32 - 1, that `unit`
+/// is zero, or that an exact value is unknown ([`Number::exact`]).
 pub(super) fn count(
     (option, time): (&str, &Number),
     (unit_option, unit): (&str, &Number),
@@ -268,8 +273,8 @@ pub(super) fn count(
     })
 }
 
-/// Returns a request for the motion that the options describe, by `method` in steps of `step`. A
-/// row is `stride` steps after the one before; `samples` rows follow the first.
+/// Returns a request for the motion that the options describe, by `method` in steps of `step`, s. A
+/// row is `stride` steps after the one before; `samples` rows follow the first. Nothing is checked.
 pub(super) fn request(
     options: &SimulateOptions,
     method: Method,
@@ -294,7 +299,8 @@ pub(super) fn request(
 }
 
 /// Returns an error for everything that the kernel refuses, with the option's name, and for angles
-/// whose whole turns need more digits than the direction has left.
+/// whose whole turns need more digits than the direction has left: more than 2^26 rad, in single
+/// precision 2^12 rad. No step is computed.
 // Half of the digits of a number are for the turns, the other half for the direction.
 pub(super) fn accepted(options: &SimulateOptions, request: &Request) -> anyhow::Result<()> {
     let digits = if request.method.is_single() {

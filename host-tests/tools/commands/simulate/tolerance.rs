@@ -26,7 +26,10 @@ const ROWS: u32 = 100;
 /// Returns the cheapest method and step that the options allow and that keep `tolerance`, rad, in
 /// every row. The second value is the largest error of an angle in any row, rad; a missing turn is
 /// an error. Prices are cycles on the board of the options, or evaluations of the equations on this
-/// computer. Every trial is computed on this computer, which may take minutes.
+/// computer. Without a method in the options, only methods with a price are tried; a method in the
+/// options that has none is priced by its evaluations. Every trial is computed on this computer,
+/// which may take minutes. The time between rows is that of the options, or else a hundredth of the
+/// time of the last row. The note of the plan names the choice.
 ///
 /// An error is one line that names the option and the value. It is an error if the tolerance or a
 /// time is not greater than zero, if the time of the last row is no whole multiple of the time
@@ -192,7 +195,8 @@ fn candidates(options: &SimulateOptions) -> (&'static str, Vec<(Method, f64)>) {
     }
 }
 
-/// Returns the methods that the place can compute.
+/// Returns the methods that the place can compute: [`Method::ALL`] on the host, [`ON_BOARDS`] on
+/// every board.
 pub(super) fn methods(place: Place) -> &'static [Method] {
     if place.is_none() {
         Method::ALL

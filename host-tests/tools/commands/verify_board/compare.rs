@@ -237,9 +237,9 @@ const PATIENCE: usize = 10 * FRAMES as usize;
 /// that by this clock took longer than the whole run; 0 Hz counts as 1 Hz. Dropped frames are no
 /// fault.
 ///
-/// An error means that the board is silent for 20 s, refuses a command, or that fewer than 60 of
-/// 600 frames of a scene can be compared. This waits without a limit for a board that sends frames
-/// of another scene only.
+/// An error means that the board is silent for 20 s, refuses a command, sends 600 frames of other
+/// scenes instead of the chosen one, or that fewer than 60 of 600 frames of a scene can be
+/// compared.
 pub fn scenes(talk: &mut Talk, hertz: u32) -> anyhow::Result<Section> {
     let columns = &[
         "scene",

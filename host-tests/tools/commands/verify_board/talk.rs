@@ -45,7 +45,8 @@ impl Talk {
     /// Returns the value of `kind` for the next message that it accepts. The messages before it are
     /// dropped; later ones are kept. It is an error if none arrives within 20 s of the call, also
     /// if others do; that error is the latest notice of the port, if there is one. A refusal of any
-    /// request by the board is an error, too, even if `kind` would accept it.
+    /// request by the board is an error, too, even if `kind` would accept it. After an error the
+    /// conversation can continue.
     pub fn next<M>(&mut self, kind: impl Fn(ToHost) -> Option<M>) -> anyhow::Result<M> {
         let since = Instant::now();
         let mut notice = None;
@@ -120,12 +121,13 @@ const UNDER_WAY: u32 = 12;
 /// Asks the person about the panel and the buttons of the board `name`, in the scene `Page`, which
 /// it starts. Prints the questions to stderr, reads a line from stdin for each, and waits without
 /// limit while the board sends frames. There are questions for `lm3s6965evb`, `pico` and
-/// `stm32f405` only.
+/// `stm32f405` only; for another board the section has no rows.
 ///
-/// The panel is a fault if the answer is `n`, and not answered unless it is `y` or `n`. A button is
-/// a fault if a line is entered, also an empty one, and the motion has not started again shortly
-/// after; `n` means that there is no such button, which is no fault. After the end of stdin nothing
-/// is a fault. Errors are as in [`Talk::next`].
+/// The panel is a fault if the answer is `n` or `no`, and not answered unless it is that, `y` or
+/// `yes`. A button is a fault if a line is entered, also an empty one, and the motion has not
+/// started again between the question and shortly after the line; `n` or `no` means that there is
+/// no such button, which is no fault. After the end of stdin nothing is a fault. Errors are as in
+/// [`Talk::next`].
 pub fn ask_person(talk: &mut Talk, name: &str) -> anyhow::Result<Section> {
     // The panel and the keys that each board has.
     let (has_panel, keys): (_, &[Key]) = match name {

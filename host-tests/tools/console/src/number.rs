@@ -5,7 +5,8 @@ use std::str::FromStr;
 
 /// A number with its text: a decimal such as `-2.5`, `.5` or `1e-3`, or two of them with a `/`
 /// between them and no spaces. A number that was parsed is finite: `inf`, `1e999` and `1/0` are
-/// refused. Numbers are equal only if their texts are, too.
+/// refused. The error of the parser is the reason, in words for the user. Numbers are equal only if
+/// their texts are, too.
 ///
 /// It is printed as it was written; after [`Number::divided_by`], as a whole number or a fraction
 /// or, if the exact value is unknown, as a decimal, `inf` or `NaN`.
@@ -182,7 +183,7 @@ fn nearest((above, below): Fraction) -> f64 {
 }
 
 /// Two numbers separated by a comma: one for each bob or rod, number 1 first. Spaces around a
-/// number are accepted, and not printed. Any other text is refused.
+/// number are accepted, and not printed. Any other text is refused, with the reason in words.
 #[derive(Clone, Debug)]
 pub struct Pair(pub Number, pub Number);
 

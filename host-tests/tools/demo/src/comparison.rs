@@ -27,6 +27,10 @@ const MOST_TICKS: u32 = 2000;
 /// The comparison of a board with the host. The board's frames and reports of its scene go in, and
 /// frames come out in the same order once they are compared. Its default is empty.
 ///
+/// The compared numbers are the scene, the mass ratio, the start angle, and the report without
+/// method and step count, bit by bit. A scene that is stopped on one side only is a difference,
+/// too. Nothing else is compared.
+///
 /// The counts and the first difference are of all scenes together, since the comparison was made.
 /// Later differences are only counted as skipped frames.
 #[derive(Debug, Default)]
@@ -182,6 +186,8 @@ impl Comparison {
     }
 }
 
+/// Writes the first confirmed difference or, without one, the number of identical frames and, if it
+/// is not 0, that of the frames that are skipped or still wait. It is one line without a newline.
 impl fmt::Display for Comparison {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if let Some(difference) = &self.first {

@@ -54,9 +54,9 @@ const NO_TERMINAL: &str = "no terminal: running headless; --record FILE.gif or -
 /// time.
 const LIMIT: [f64; 2] = [60.0, 20.0];
 
-/// Shows the board in the terminal until the user quits, or runs it without one, and then prints a
-/// summary to stdout. It runs without a terminal by `--headless`, or if stdin or stdout is not a
-/// terminal. `--seconds` limits both; without a terminal the default is 10 s.
+/// Shows the board in the terminal until the user quits, or runs it without one. In both cases it
+/// then prints a summary to stdout. It runs without a terminal by `--headless`, or if stdin or
+/// stdout is not a terminal. `--seconds` limits both; without a terminal the default is 10 s.
 ///
 /// Missing tools of an emulated board are installed, from the network, and its application is
 /// built. The files of the options are replaced, the animation already at the start; after an error
@@ -66,8 +66,8 @@ const LIMIT: [f64; 2] = [60.0, 20.0];
 /// frame by frame, nothing else went wrong. Each problem is a line on stderr. Options that cannot
 /// be served, also by the board, are [`Refused`]. It is another error if a build fails, if the
 /// emulator ends, if no frame has arrived at the end, or if a file cannot be written. Without a
-/// terminal, it is also an error if a board at a port sends no further frame of the requested scene
-/// for 10 s.
+/// terminal, it is also an error if a board at a port does not begin the requested scene within
+/// 10 s, or sends no frame for 10 s after that. After an error there is no summary.
 pub fn run(options: &DemoOptions) -> anyhow::Result<bool> {
     let is_live = !options.headless && stdout().is_terminal() && stdin().is_terminal();
     // All options are checked before anything is built.

@@ -88,9 +88,9 @@ impl OwnMotion {
     /// The given values replace those of the scene's own first settings, rounded to `f32`. In the
     /// settings, angles are in degrees, velocities in rad/s, and all other numbers in SI units.
     /// Returns an error if the scene does not use an option, if an angle is more than half a turn,
-    /// or if the scene cannot show the motion on `processor`: a mass or length that is not
-    /// positive, negative gravity, unequal rods in some scenes, or a motion that is too fast for
-    /// every method.
+    /// or if the scene cannot show the motion on `processor`: a number that is too large for `f32`,
+    /// a mass or length that is not positive, negative gravity, zero gravity or unequal rods in
+    /// some scenes, or a motion that is too fast for every method.
     pub fn settings(
         &self,
         scene: SceneName,

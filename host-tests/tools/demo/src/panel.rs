@@ -148,8 +148,8 @@ impl Recording {
     /// The picture is shown until two ticks after `tick`. If it is late, it is shown from the tick
     /// at which one was due, so that the animation keeps the board's time, for at most 655 s.
     ///
-    /// An error means that the file cannot be written. It is then removed, and the recording is of
-    /// no further use.
+    /// An error means that the file cannot be written. It is then removed, unless it is a device,
+    /// and the recording is of no further use.
     pub fn add(&mut self, screenshot: &Screenshot, tick: i64) -> anyhow::Result<()> {
         if !self.is_due(tick) {
             return Ok(());
@@ -196,8 +196,8 @@ impl Recording {
     }
 
     /// Writes the rest of the file. Returns the path of the file and the number of its pictures,
-    /// which may be 0. The last picture lasts two ticks. If the file cannot be written, removes it
-    /// and returns an error.
+    /// which may be 0. The last picture is shown until two ticks after its own. If the file cannot
+    /// be written, removes it, unless it is a device, and returns an error.
     pub fn finish(self) -> anyhow::Result<(PathBuf, usize)> {
         let Self {
             path,

@@ -85,7 +85,8 @@ pub struct Readings {
     pub speed: Option<f32>,
     /// The last scene and method of a warning that the scene does not use the requested method.
     unusable: Option<(SceneName, Method)>,
-    /// The times when the frames of the last second arrived.
+    /// The times when frames arrived, oldest first. Those older than a second are removed when the
+    /// next frame arrives.
     pub(super) arrivals: Vec<Instant>,
     /// The number of all frames.
     frames: u64,

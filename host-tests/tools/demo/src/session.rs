@@ -154,8 +154,9 @@ impl<'a> Session<'a> {
     ///
     /// An error means that the user's options do not suit the board's scene or are refused by the
     /// board, that an emulator has ended or brings no further frame, or that the recording cannot
-    /// be written. A port that is gone or silent is no error: it causes a warning in the log and is
-    /// opened again when it is back. The refusal of a key is a line of the log, too.
+    /// be written. Messages that have arrived, but are not processed yet, may then be lost. A port
+    /// that is gone or silent is no error: it causes a warning in the log and is opened again when
+    /// it is back. The refusal of a key is a line of the log, too.
     pub fn hear(&mut self) -> anyhow::Result<()> {
         for message in self.source.messages()? {
             match message {
@@ -349,7 +350,7 @@ impl<'a> Session<'a> {
     }
 
     /// Returns the seconds of the board's clock since the first frame of the requested scene,
-    /// including that frame, which gives 1/60; 0 before it. They go on when the board restarts.
+    /// including that frame, which gives 1/60; 0 before it. They continue when the board restarts.
     pub fn seconds(&self) -> f64 {
         self.begun.zip(self.now).map_or(0.0, |(begun, now)| {
             (now - begun + 1) as f64 / f64::from(TICK_RATE)

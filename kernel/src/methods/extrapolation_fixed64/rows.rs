@@ -21,7 +21,10 @@ const SHARE: f64 = (1 << 27) as f64;
 const LEAST: f64 = 0.01;
 
 /// Returns the longest unit of time, s, up to `longest` s, such that a step of `dt` s is a whole
-/// number of [`PARTS`] in the format [`SHARE`]. It has the sign of `dt`.
+/// multiple of 840 2^-27 units: a whole number of [`PARTS`] in the format [`SHARE`]. It has the
+/// sign of `dt`.
+///
+/// `longest` must be positive and finite, and `dt` finite and not 0; this is not checked.
 pub(super) fn unit_of_time(longest: f64, dt: f64) -> f64 {
     let unit = dt * SHARE / PARTS as f64;
     unit / libm::ceil(libm::fabs(unit) / longest)
@@ -96,8 +99,9 @@ impl Rows {
     /// Prepares steps of `dt` s of the order `order`. Refuses an order that is not 2, 4 .. 16, by
     /// [`Error::OutOfRange`].
     ///
-    /// `scaling` must have a unit of time that [`unit_of_time`] returned for the same `dt`, and
-    /// `dt` must be finite and not 0, negative if time runs backwards; this is not checked.
+    /// `scaling` must have a unit of time that [`unit_of_time`] returned for the same `dt`, in
+    /// which a step is at most 15 long and no torque of gravity is above 1/256. `dt` must be finite
+    /// and not 0, negative if time runs backwards. This is not checked.
     pub fn new(order: u32, scaling: &Scaling, dt: f64) -> Result<Self, Error> {
         let count = rows(order)?;
         let mut shares = [Factor::ZERO; ROWS];

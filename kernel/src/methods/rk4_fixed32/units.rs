@@ -42,25 +42,27 @@ const MOST_HALVINGS: u32 = 12;
 /// [`Scaling`]: nu and m are divided by its powers of two, here in every constant.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Units {
-    /// nu.
+    /// nu, from 1/2 to 1.
     pub norm: Q30,
-    /// m.
+    /// m, from 1 to 2.
     pub inertia: Q30,
     /// G1 and G2.
     pub gravity: [Gravity; 2],
     /// -G1 and -G2, for the stages that run backwards in time.
     pub reversed_gravity: [Gravity; 2],
-    /// The number n such that half a step is 3 2^-n T.
+    /// The number n such that half a step is 3 2^-n T; from 3 to 12.
     pub halvings: u32,
-    /// The change of a momentum in 32 steps that the rounding of G1 and G2 leaves out, for a sine
-    /// of 1, with 60 fractional bits.
+    /// The decrease of P1 and of P2 in 32 steps that the rounding of G1 and G2 leaves out, with 60
+    /// fractional bits: that of P1 for sin a1 = 1, that of P2 for nu sin a2 = 1. Negative if the
+    /// rounded G is too large.
     pub missed: [i32; 2],
     /// nu^2 with 60 fractional bits.
     pub square: i64,
     /// 1/nu^2 with 29 fractional bits.
     pub inverse_square: i64,
     /// The energy above rest beyond which the motion is lost, in the format of `Fixed32::energy`:
-    /// 60 fractional bits, less the shifts of momenta and rates.
+    /// 60 fractional bits, less the shifts of momenta and rates. It is 9/8 of the energy at the
+    /// start, plus an allowance for rounding.
     pub most_energy: i64,
     /// The units of momenta and time, and the unrounded constants.
     pub scaling: Scaling,

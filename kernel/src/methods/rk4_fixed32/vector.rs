@@ -6,7 +6,9 @@ use crate::numbers::fixed::{Q30, Slope, Torque};
 
 /// One number for each of the six quantities sin a1, cos a1, S, C, P1 and P2: `D` for those of
 /// directions, `M` for momenta. None has a dimension. All are in the units of the motion
-/// ([`Scaling`](crate::methods::scaling::Scaling)), which also divide nu by a power of two.
+/// ([`Scaling`](crate::methods::scaling::Scaling)), which also divide nu by a power of two. Each
+/// number is added alone. A sum that does not fit its format panics in unit tests and wraps in
+/// other builds.
 #[derive(Clone, Copy)]
 pub struct Quantities<D, M> {
     /// sin a1.

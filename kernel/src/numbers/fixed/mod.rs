@@ -37,7 +37,8 @@ pub(crate) use q30::watch;
 pub(crate) use q30::{Gravity, Q30, Slope, Torque, word};
 pub(crate) use q64::Q64;
 
-/// Returns `value` times 2^`exponent`; infinity beyond the range of `f64`.
+/// Returns `value` times 2^`exponent`. It is exact if the result is normal, infinite beyond the
+/// range of `f64`, and rounded, at the least to 0, below the normal numbers. NaN gives NaN.
 pub(crate) fn scaled(value: f64, exponent: i32) -> f64 {
     libm::scalbn(value, exponent)
 }
