@@ -323,7 +323,7 @@ fn settings_of_all_kinds_are_shown_as_claimed() {
     cases.push(Case::new(SceneName::Page, 8.0, 171.0));
     // Here the errors of runs in 32 bits of fixed point have the same sign.
     cases.push(Case::new(SceneName::Page, 50.0, -134.0));
-    // Here a slow processor finds a plan so late that its horizon is past when it could be followed.
+    // Here a slow processor finds a plan whose horizon is past before it can be followed.
     cases.push(Case::new(SceneName::Beats3To1, 5.0, -180.0));
     // So light a bob 2 makes the curve so small that the chord of an error matters.
     cases.push(Case::new(SceneName::SmallLight, 0.01, -165.0));
