@@ -7,7 +7,7 @@ use crate::pendulum::{Parameters, Pendulum};
 /// A normal mode: both angles oscillate at one frequency, in a fixed ratio.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mode<R> {
-    /// Angular frequency, rad/s.
+    /// Angular frequency, rad/s; finite and more than 0.
     pub frequency: R,
     /// The shape r = H2/H1 of the mode, the ratio of the amplitudes H of the angles: the angle of
     /// rod 2 if the angle of rod 1 is 1.

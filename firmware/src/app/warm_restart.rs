@@ -90,8 +90,9 @@ pub struct Journal {
 }
 
 impl Journal {
-    /// Creates the counters; `restart` is the record of the restart that has just happened, `None`
-    /// after a reset from outside or at power-on.
+    /// Creates the counters. `restart` is the record of the restart that has just happened, from
+    /// [`Record::restart`]; its count, which already includes this restart, is taken over. It is
+    /// `None` after a reset from outside or at power-on.
     pub fn new(restart: Option<&Record>) -> Self {
         Self {
             restarts: restart.map_or(0, |restart| restart.end.restarts),

@@ -50,7 +50,8 @@ pub trait Scene: Sized {
     /// Returns the kernel's error if the settings describe no pendulum, or a pendulum that the
     /// scene cannot show, such as unequal rods. A scene that shows a motion also refuses a start
     /// that is not finite. A motion that is only too fast is no error
-    /// ([`is_too_fast`](Self::is_too_fast)), unless the user has requested its method.
+    /// ([`is_too_fast`](Self::is_too_fast)), unless the user has requested its method. A scene that
+    /// uses the requested method refuses it if it cannot compute the motion.
     fn new(settings: &Settings, resources: &Resources) -> Result<(Self, Option<f32>), Error>;
 
     /// Advances by one tick, to `ticks` ticks after the start, and adds the lasting part of the

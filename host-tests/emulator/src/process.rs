@@ -77,7 +77,8 @@ impl Running {
     /// first, if that is a pipe that was not taken. A child whose full output pipe nobody reads
     /// ends at its time limit only. Returns an error of kind `TimedOut` if the child was killed at
     /// its time limit. Another failure of the child is a status. A further call has the same result
-    /// at once.
+    /// at once, except that a child killed by somebody else's SIGKILL is a status only in calls
+    /// before its time limit, and `TimedOut` in later ones.
     pub fn wait(&mut self) -> io::Result<ExitStatus> {
         // The child, then the warden, which kills the rest of the group.
         let status = self.child.wait()?;

@@ -72,9 +72,9 @@ fn diverged_run_keeps_its_last_good_state_in_every_method() -> Result<(), Error>
 
 /// A job with a step that is too long for its motion, but within the limit of small motions,
 /// starts, because only that limit can be checked before. Its first readings must be finite, and
-/// its last answer must be an error that names the step.
+/// its last answer must be an error that names the step size.
 #[test]
-fn job_reports_its_step_when_the_motion_has_diverged() {
+fn failure_of_a_diverged_job_names_the_step_size() {
     let parameters = Parameters { m2: 100.0, ..EVEN };
     let request = Request {
         method: Method::Rk4F32,

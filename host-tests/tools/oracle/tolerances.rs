@@ -114,8 +114,9 @@ pub const FIGURE_7_ABOVE: f64 = 0.03;
 ///   gives half of A epsilon sqrt(n). It is doubled because increments near rest are rounded alike.
 ///   A is the largest of both exact angles and 4 (pi, up to its binade).
 /// - Evaluation: the velocities have an error of epsilon W sqrt((m1 + m2)/m1), because w1 is a
-///   difference of momenta that are larger by this factor. The change of all rates by the rounding
-///   of the parameters is as large.
+///   difference of momenta that are larger by this factor. The total is
+///   epsilon W t sqrt((m1 + m2)/m1). The change of all rates by the rounding of the parameters is
+///   as large, and is not added.
 ///
 /// The epsilon is that of `f32` for numbers in `f32` and in 32-bit fixed point, and that of `f64`
 /// otherwise. Where the tolerance exceeds 1, the test claims nothing. [`KNOWN_ANSWERS_CLAIMED`]

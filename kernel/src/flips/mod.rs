@@ -43,7 +43,9 @@ pub enum Flip<R> {
 ///
 /// A flip is detected by the signs of sine and cosine after each step. Its time is interpolated
 /// between two steps, linearly in the sine. This costs about 15 arithmetic operations per step.
-/// Whole turns of a start do not matter. A rod that starts straight up has not flipped yet.
+/// Whole turns of a start do not matter. A rod that starts straight up has not flipped yet. If the
+/// energy is too low for any flip, the result is [`Flip::Never`]; if no rod flips within the steps,
+/// it is [`Flip::Later`].
 ///
 /// In maps of equal rods and bobs up to 10 sqrt(l/g), in steps of [`step_size`], 99.9 % of the
 /// starts that may turn over have their flip within one of 14 grey levels of that in far finer

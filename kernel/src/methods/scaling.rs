@@ -25,7 +25,8 @@ const MOST: i32 = 12;
 /// For equal rods and masses all shifts are 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Scaling {
-    /// T, s. Negative if time runs backwards.
+    /// T, s; finite and not 0. Negative if time runs backwards. [`in_seconds`](Self::in_seconds)
+    /// sets it to 1 s, before a unit that keeps the limits is chosen.
     pub time: f64,
     /// P1/p1 and P2/p2, s/(kg m^2). Negative if time runs backwards.
     pub momenta: [f64; 2],

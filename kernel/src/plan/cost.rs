@@ -319,8 +319,9 @@ impl Stepping {
     /// [`Method::ClosedFormF32`] and [`Method::Extrapolation10Fixed64`] always do. Every other
     /// method is judged as RK4. Its step count must be at least the smallest power of two whose
     /// steps are at most two [admissible steps](Pendulum::admissible_step) long, or 65,536 if that
-    /// is less. In longer steps RK4 gains or loses several percent of the energy within seconds, or
-    /// diverges. The start and the rate are not checked.
+    /// is less; 0 is too few, although a motion counts 0 as 1. In longer steps RK4 gains or loses
+    /// several percent of the energy within seconds, or diverges. The start and the rate are not
+    /// checked.
     ///
     /// # Errors
     ///

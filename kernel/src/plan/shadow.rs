@@ -141,7 +141,7 @@ impl Shadows {
     }
 
     /// Returns true after the first frame has been compared. Until then shadows are prepared at the
-    /// start of the motion.
+    /// start of the motion. From then on, they are drawn back to the motion at the present frame.
     pub fn has_begun(&self) -> bool {
         self.has_begun
     }

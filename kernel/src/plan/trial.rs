@@ -590,10 +590,10 @@ impl Trial {
         helps.then_some(times)
     }
 
-    /// Returns the cost of one frame of all runs that are still needed, with the closed form and
-    /// the shadows, in the unit of `costs`. Preparations are not included. The runs of the
-    /// reference or, without one, those of the single candidate and in finer steps are always
-    /// needed.
+    /// Returns the cost of a whole frame, also in the middle of one, in the unit of `costs`: of all
+    /// runs that are still needed, of the closed form while it is accurate, and of the shadows
+    /// while a candidate in 64 bits is. Preparations are not included. The runs of the reference
+    /// or, without one, those of the single candidate and in finer steps are always needed.
     pub fn frame_cost(&mut self, costs: &Costs) -> f32 {
         let closed = if self.candidates[CLOSED].is_accurate() {
             costs.of_frame(self.candidates[CLOSED].stepping)

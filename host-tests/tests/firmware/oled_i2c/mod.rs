@@ -463,7 +463,7 @@ const LATE: u32 = 1;
 /// At least a part of every frame of every scene is sent, at any speed of the bus. The rest follows
 /// with the next frame. At the ideal speed, nine of ten frames are complete within their tick.
 #[test]
-fn no_frame_of_any_scene_is_skipped_at_any_speed() {
+fn no_frame_of_any_scene_is_skipped_at_any_bus_speed() {
     // The smallest number of frames out of ten that are sent completely.
     const SPEEDS: [(u32, u32); 3] = [(IDEAL, 9), (USUAL, 0), (WORST, 0)];
 

@@ -1,9 +1,9 @@
 //! The units of a motion in 32-bit fixed point, and the constants of the equations in these units.
 //!
 //! [`Units::new`] chooses a unit of time T from the energy of the motion, such that every quantity
-//! fits its format and none is needlessly small. For unlike rods or masses some quantities also get
-//! a power of two of their own ([`Shifts`](crate::methods::scaling::Shifts)); for about equal ones
-//! all these shifts are 0.
+//! fits its format and, unless the steps are very short, none is needlessly small. For unlike rods
+//! or masses some quantities also get a power of two of their own
+//! ([`Shifts`](crate::methods::scaling::Shifts)); for about equal ones all these shifts are 0.
 //!
 //! Half a step is 3 2^-n T, where n is [`Units::halvings`]. A sixth of a step is then a power of
 //! two times T, and the weights of RK4 are exact shifts.
@@ -71,6 +71,9 @@ pub struct Units {
 impl Units {
     /// Chooses the units for a motion with `energy` joules above rest and steps of `dt` seconds. A
     /// negative `dt` runs backwards.
+    ///
+    /// T is at most 4096/6 steps long. Steps so short that the energy would allow a longer T are
+    /// accepted, too, but the numbers then lose digits.
     ///
     /// The parameters must be valid, the energy finite and not negative, and `dt` finite and not
     /// zero. This is not checked.
