@@ -199,17 +199,18 @@ impl Toolchain {
     }
 
     /// Builds the programs of `kernel/minimal` for a target, as a user of the kernel would, and
-    /// returns the folder of their ELF files, `firmware/TARGET/release` in the target folder. Older
-    /// files are replaced, in each call.
+    /// returns the folder of their ELF files, `firmware/minimal/TARGET/release` in the target
+    /// folder. Older files are replaced, in each call.
     ///
     /// Cargo runs in an empty folder, so that the settings of this repository do not apply. The
     /// package's own `.cargo/config.toml` is passed to it. This toolchain must have the core
-    /// library of the target. The build takes turns with those of the firmware. An error contains
-    /// the output of the compiler.
+    /// library of the target. An error contains the output of the compiler.
     pub fn build_minimal(&self, target: &str) -> anyhow::Result<PathBuf> {
         let nowhere = tempfile::tempdir()?;
         let package = workspace().join("kernel/minimal");
-        let folder = Self::folder();
+        // A folder of their own: where the firmware's flags differ, cargo would compile the common
+        // crates anew for either, and link all images again.
+        let folder = Self::folder().join("minimal");
         let rustc = self.rustc();
         let flags = remap::flags(rustc).map_err(|error| anyhow!(error))?;
 
@@ -233,11 +234,7 @@ impl Toolchain {
             .arg("--config")
             .arg(package.join(".cargo/config.toml"))
             .args(["--config", &format!("target.{target}.rustflags={flags:?}")])
-            .env("CARGO_TARGET_DIR", &folder)
-            // With these settings of the workspace, cargo finds the macros of the firmware's builds
-            // there, and compiles none again. They are no part of the programs.
-            .env("CARGO_PROFILE_RELEASE_BUILD_OVERRIDE_DEBUG", "none")
-            .env("CARGO_PROFILE_RELEASE_BUILD_OVERRIDE_CODEGEN_UNITS", "4");
+            .env("CARGO_TARGET_DIR", &folder);
         self.finish(
             command,
             &format!("building the minimal programs for {target}"),
