@@ -23,8 +23,8 @@ pub type Kept = [u8; MAX_WIRE];
 /// Restarts are in a row if fewer than [`SOUND_FRAMES`] frames are between them. They count even if
 /// the user has changed the scene in between.
 pub const MOST_RESTARTS: u8 = 3;
-/// After this number of frames without a restart, 3,600, earlier restarts no longer count. It is a
-/// minute on a board that draws every frame.
+/// Earlier restarts no longer count after this number of frames, 3,600, without a restart. This is
+/// a minute on a board that draws every frame.
 pub const SOUND_FRAMES: u32 = 60 * TICK_RATE;
 
 /// The retained record: the state before a restart, and the reason why the program ended.

@@ -186,8 +186,8 @@ choice! {
         /// [`Step`](super::Command::Step) advances it.
         Paused = "paused";
         /// The scene has stopped because the motion is too fast for this chip, or for the method
-        /// that the user has selected. Other settings or another scene start again. It is stopped
-        /// whether it is paused or not.
+        /// that the user has selected. Other settings or another scene start again. A
+        /// paused scene is also reported as stopped.
         Stopped = "stopped";
     }
 }

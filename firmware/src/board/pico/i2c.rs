@@ -77,8 +77,8 @@ pub(super) type Pins = (
     Pin<Gpio5, FunctionI2C, PullUp>,
 );
 
-/// Starts the bus and its interrupt. `clock` is the processor's clock, by which the transfers are
-/// timed; the frequency of the bus assumes 125 MHz. Returns `None` the second time.
+/// Starts the bus and its interrupt. `clock` is the processor's clock and times the transfers; the
+/// frequency of the bus assumes 125 MHz. Returns `None` the second time.
 pub(super) fn start(_port: I2C0, _pins: Pins, clock: HertzU32) -> Option<Bus<I2c0>> {
     let bus = Bus::new(I2c0(()), clock.to_Hz())?; // it resets the block, and sets it up
     unmask(Interrupt::I2C0_IRQ);

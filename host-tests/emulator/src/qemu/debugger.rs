@@ -268,7 +268,7 @@ impl Machine {
 
 /// Sends a packet of GDB's protocol with its checksum, and does not wait for the acknowledgement.
 /// An error means that it does not fit into the pipe, or that nobody has the other end; a part may
-/// then be sent. Not checked: that the text has none of the characters `$`, `#` and `}`.
+/// then be sent. The text must not contain the characters `$`, `#` and `}`; this is not checked.
 pub fn send_packet(sender: &mut File, packet: &str) -> io::Result<()> {
     let checksum = packet.bytes().fold(0, u8::wrapping_add);
     write!(sender, "${packet}#{checksum:02x}")

@@ -70,7 +70,7 @@ pub enum Consent {
     /// in capitals too, are a consent. After another answer, or unless standard input and standard
     /// error are a terminal, nothing is installed, and the tool stays missing.
     Ask,
-    /// The user has passed `--yes`. Nothing is asked.
+    /// The user has passed `--yes`. There is no question.
     Given,
 }
 
