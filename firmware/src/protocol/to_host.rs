@@ -186,8 +186,8 @@ choice! {
         /// [`Step`](super::Command::Step) advances it.
         Paused = "paused";
         /// The scene has stopped because the motion is too fast for this chip, or for the method
-        /// that the user has selected. Other settings or another scene start again. A
-        /// paused scene is also reported as stopped.
+        /// that the user has selected. Other settings or another scene start again. Such
+        /// a scene is reported as stopped even if it is paused.
         Stopped = "stopped";
     }
 }

@@ -7,8 +7,8 @@ use crate::Core;
 /// overlap: if its address does not depend on that load.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Class {
-    /// It has no effect of its own. It may write an address register of the next instruction, or branch to
-    /// an address in a register.
+    /// It has no effect of its own. It may write an address register of the next instruction, or
+    /// branch to an address in a register.
     Fixed,
     /// A branch to an address in the instruction. On the M3 and the M4F it refills the pipeline
     /// sooner than a branch to an address in a register.
