@@ -37,8 +37,8 @@ enum Content {
 impl OutFile {
     /// Begins the file that `option` names (such as `--out`), as a temporary file in the same
     /// folder, or in the folder of the target of a symbolic link that has one. The folder must
-    /// exist and be writable, and an existing file must be writable, too, and no folder; else this is
-    /// refused. A device or a pipe is opened and written directly; a named pipe without a reader
+    /// exist and be writable, and an existing file must be writable, too, and no folder; else this
+    /// is refused. A device or a pipe is opened and written directly; a named pipe without a reader
     /// blocks this. From now on an interrupt ends the process ([`remove_on_interrupt`]).
     pub fn create(option: &'static str, path: &Path) -> Result<Self, Refused> {
         let content = Content::create(path).map_err(|error| unwritable(option, path, &error))?;
