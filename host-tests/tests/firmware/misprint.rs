@@ -162,6 +162,28 @@ fn printed_form_is_shown_only_while_it_is_resolved() {
     assert!(lost.len() > 10 && least > MU as f32, "{lost:?}");
 }
 
+/// Without gravity, a motion is lost in the first tick if its rods, which turn together, turn by
+/// more than 0.5 rad in the shortest step, 1/480 s, in either direction, and only then. At mass
+/// ratio 24 it is lost if rod 2 alone turns by more than 1/sqrt(1 + 24) = 0.2 rad.
+#[test]
+fn a_motion_is_lost_when_its_rods_turn_too_far_in_the_shortest_step() {
+    const STEPS: f32 = 480.0;
+    // The mass ratio, the largest velocity, rad/s, and the momenta at velocity 1.
+    let both = (1.0, 0.5 * STEPS, [3.0, 2.0]);
+    let rod_2 = (24.0, 0.2 * STEPS, [1.0, 1.0]);
+
+    for (mass_ratio, most, momenta) in [both, rod_2] {
+        for share in [0.9, 1.01, -0.9, -1.01] {
+            let [p1, p2] = momenta.map(|p| p * share * most);
+            let [a1, a2] = [0.3; 2];
+            let parameters = Parameters::equal_rods(mass_ratio, 1.0, 0.0);
+            let mut shown = Misprinted::new(&parameters, &State { a1, a2, p1, p2 });
+            shown.tick();
+            assert_eq!(shown.is_lost(), share.abs() > 1.0, "{mass_ratio}, {share}");
+        }
+    }
+}
+
 /// The misprinted motion from the default start of the scene is never lost in ten minutes.
 #[test]
 fn figure_7_shows_the_printed_form_for_ten_minutes() {
