@@ -102,6 +102,36 @@ impl Machine {
         &mut self,
         read: impl FnOnce(File) -> anyhow::Result<T> + Send,
     ) -> anyhow::Result<T> {
+        self.logged(|machine| machine.run_to_frame().map(drop), read)
+    }
+
+    /// Runs to the next call of the function at this address, without the Thumb bit, and to its
+    /// return, while `read` reads QEMU's log of the call. The log ends with the instruction after
+    /// the return, at which the machine is then stopped or just past it. The function must not call
+    /// itself; then the log ends at the first inner return. `read` and its errors are as in
+    /// [`Self::next_frame_logged`]; the run is as in [`Self::run_to`].
+    pub fn next_call_logged<T: Send>(
+        &mut self,
+        function: u32,
+        read: impl FnOnce(File) -> anyhow::Result<T> + Send,
+    ) -> anyhow::Result<T> {
+        self.run_to(function)?;
+        let return_address = self.get(Register::Lr)? & !1;
+        let call = |machine: &mut Self| {
+            machine.run_to(return_address)?;
+            // The instruction there is logged when it is executed.
+            machine.places.here = None;
+            machine.expect("s", "T05")
+        };
+        self.logged(call, read)
+    }
+
+    /// Runs the machine as `run` does while `read` reads QEMU's log.
+    fn logged<T: Send>(
+        &mut self,
+        run: impl FnOnce(&mut Self) -> anyhow::Result<()>,
+        read: impl FnOnce(File) -> anyhow::Result<T> + Send,
+    ) -> anyhow::Result<T> {
         let folder = tempfile::tempdir_in(self.folder.path())?;
         let path = folder.path().join("log");
         mkfifo(&path, Mode::S_IRUSR | Mode::S_IWUSR)?;
@@ -116,16 +146,16 @@ impl Machine {
         // The log is read by a thread, because QEMU waits while its pipe is full.
         thread::scope(|scope| {
             let reader = scope.spawn(|| read(pipe));
-            let frame = self
+            let ran = self
                 .log(&path, "cpu,nochain", "on")
-                .and_then(|()| self.run_to_frame());
+                .and_then(|()| run(self));
             // The log is closed even if the run fails, so that the reader ends.
             let ended = self.log(Path::new("/dev/null"), "none", "off");
             drop(writer);
             let read = reader
                 .join()
                 .unwrap_or_else(|panic| panic::resume_unwind(panic));
-            frame.and(ended).and(read)
+            ran.and(ended).and(read)
         })
     }
 
@@ -196,11 +226,8 @@ impl Machine {
         self.leave(places)?;
         self.expect("c", "T05")?;
 
-        // The program counter identifies the place that was reached. GDB sends it in the target's
-        // byte order.
-        let answer = self.ask(&format!("p{:x}", Register::Pc as u32))?;
-        let here = u32::from_str_radix(&answer, 16).map_err(|_| unexpected("p", &answer))?;
-        self.places.here = Some(here.swap_bytes());
+        // The program counter identifies the place that was reached.
+        self.places.here = Some(self.get(Register::Pc)?);
         Ok(())
     }
 
@@ -226,6 +253,14 @@ impl Machine {
             Some(here) if places.contains(&here) => self.expect("s", "T05"),
             _ => Ok(()),
         }
+    }
+
+    /// Returns the contents of a register.
+    fn get(&mut self, register: Register) -> anyhow::Result<u32> {
+        // GDB sends them in the target's byte order.
+        let answer = self.ask(&format!("p{:x}", register as u32))?;
+        let number = u32::from_str_radix(&answer, 16).map_err(|_| unexpected("p", &answer))?;
+        Ok(number.swap_bytes())
     }
 
     /// Sets a register.

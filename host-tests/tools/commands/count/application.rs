@@ -2,6 +2,7 @@
 //! of a function. The planner's price lists are counted here as well.
 
 use std::collections::BTreeSet;
+use std::fs::File;
 use std::path::PathBuf;
 
 use anyhow::{Context, Result};
@@ -86,18 +87,26 @@ fn next_frame<'a>(
     core: Core,
     entries: BTreeSet<u32>,
 ) -> Result<(Cost, Calls<'a>)> {
-    board.next_frame_logged(|mut log| {
-        let mut whole = Cost::default();
-        let mut stream = Stream::of(image, core);
-        let mut calls = Calls::of(image, core, entries);
-        for_each_instruction(&mut log, &mut |registers| {
-            whole += stream
-                .see(registers)?
-                .map_or(Cost::default(), |(.., cost)| cost);
-            calls.see(registers)
-        })?;
-        Ok((whole, calls))
-    })
+    board.next_frame_logged(|log| counted(log, image, core, entries))
+}
+
+/// Returns the cost of everything in a log, and the calls of the functions that begin at `entries`.
+fn counted(
+    mut log: File,
+    image: &Image,
+    core: Core,
+    entries: BTreeSet<u32>,
+) -> Result<(Cost, Calls<'_>)> {
+    let mut whole = Cost::default();
+    let mut stream = Stream::of(image, core);
+    let mut calls = Calls::of(image, core, entries);
+    for_each_instruction(&mut log, &mut |registers| {
+        whole += stream
+            .see(registers)?
+            .map_or(Cost::default(), |(.., cost)| cost);
+        calls.see(registers)
+    })?;
+    Ok((whole, calls))
 }
 
 /// The file of the price lists.
@@ -113,9 +122,10 @@ const MARKS: [&str; 2] = [
 /// them in QEMU. An error means that a program cannot be built, that QEMU fails, or that an
 /// instruction has no known timing.
 ///
-/// The costs are in cycles (estimated). `preparation` is per motion and `fixed64` is per step: each
-/// is the most expensive one in a frame of the application. All others are per step of 1/256 s,
-/// averages over a motion of equal rods and bobs from rest at 0.5 rad.
+/// The costs are in cycles (estimated). `preparation` is per motion: the most expensive one when
+/// each method in turn is selected in the application. `fixed64` is per step: the most expensive
+/// one in a frame of the application. All others are per step of 1/256 s, averages over a motion of
+/// equal rods and bobs from rest at 0.5 rad.
 pub fn prices(toolchain: &Toolchain) -> Result<Vec<(&'static Board, Costs)>> {
     let targets = Target::build_all(toolchain)?;
     targets
@@ -161,35 +171,30 @@ fn in_application(board: &'static Board, toolchain: &Toolchain) -> Result<(f32, 
         limit: LIMIT,
     };
 
-    let mut machine = Machine::halted(&settings)?;
-    // Returns the cycles of the most expensive call of a function within the next frame.
-    let most = |machine: &mut Machine, entry: u32| {
-        let (_, calls) = next_frame(machine, &image, board.core(), BTreeSet::from([entry]))?;
-        anyhow::Ok(
-            calls
-                .ended
-                .iter()
-                .map(|call| call.cycles as f32)
-                .fold(0.0, f32::max),
-        )
-    };
-
     // The first frame includes the start of the program, so it is not counted.
+    let mut machine = Machine::halted(&settings)?;
     machine.run_to_frame()?;
-    let step = most(
-        &mut machine,
-        image.function("Fixed64State::advance")?.address,
-    )?;
+    let step = BTreeSet::from([image.function("Fixed64State::advance")?.address]);
+    let (_, steps) = next_frame(&mut machine, &image, board.core(), step)?;
 
     // A motion is prepared whenever the method changes, so every method is selected once.
     let preparation = image.function("PlannedRun::new")?.address;
     let mut prepared: f32 = 0.0;
     for &method in Method::DRAWN {
         machine.send(1, Command::Method(Some(method)))?;
-        machine.run_to(preparation)?;
-        prepared = prepared.max(most(&mut machine, preparation)?);
+        let (_, calls) = machine.next_call_logged(preparation, |log| {
+            counted(log, &image, board.core(), BTreeSet::from([preparation]))
+        })?;
+        prepared = prepared.max(most(&calls));
+        machine.run_to_frame()?;
     }
-    Ok((step, prepared))
+    Ok((most(&steps), prepared))
+}
+
+/// Returns the cycles of the most expensive call.
+fn most(calls: &Calls) -> f32 {
+    let cycles = calls.ended.iter().map(|call| call.cycles as f32);
+    cycles.fold(0.0, f32::max)
 }
 
 /// Writes the price lists into the kernel's source, `kernel/src/plan/prices.rs`, in place of the
