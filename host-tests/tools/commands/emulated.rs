@@ -66,7 +66,7 @@ pub struct FwOptions {
     /// A binary of the firmware, or the path of an existing ELF file
     #[arg(value_name = "BIN", required_unless_present = "check")]
     binary: Option<PathBuf>,
-    /// The board to run it on [default: the first board below that can run it]
+    /// The board to run it on [default: the first below whose application it is, else the first]
     #[arg(
         long,
         visible_alias = "on",
@@ -76,10 +76,10 @@ pub struct FwOptions {
     )]
     board: Option<&'static Board>,
     /// Stop it after this many seconds, with exit code 0 [default: fails after one hour]
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     seconds: Option<u32>,
-    /// Only check that all binaries compile for all targets without a warning; includes clippy's
-    /// warnings if it is installed
+    /// Only check that all binaries compile for all targets without a warning, clippy's included;
+    /// with Debian's compiler without clippy
     #[arg(long, conflicts_with = "binary")]
     check: bool,
 }
@@ -87,7 +87,7 @@ pub struct FwOptions {
 /// Runs a firmware and prints its log to stdout until it ends. Cargo also uses this command as the
 /// runner for the ARM targets. A name without a slash is a binary, which is built first; any other
 /// name is a file, which is run as it is. Missing tools are installed. Not checked: the board must
-/// suit the binary, and `--seconds` must not be 0, which usually ends QEMU while it starts.
+/// suit the binary.
 ///
 /// Without `--board` the firmware runs on the first board whose application has the name of the
 /// binary, or else on the first board. If the path of a file has a folder named after a target,

@@ -309,15 +309,18 @@ pub fn send_packet(sender: &mut File, packet: &str) -> io::Result<()> {
     write!(sender, "${packet}#{checksum:02x}")
 }
 
-/// Removes the first packet of GDB's protocol, and acknowledgements before it, from the bytes that
-/// have arrived. Returns the text of the packet, in which bytes that are not UTF-8 are replaced. If
-/// it is not complete, returns `None` and removes nothing. Its checksum is not checked. Panics at a
-/// `#` before its `$`, which QEMU does not send.
+/// Removes the first packet of GDB's protocol, and everything before it, from the bytes that have
+/// arrived. Returns the text of the packet, in which bytes that are not UTF-8 are replaced. If it is
+/// not complete, returns `None` and removes nothing. Its checksum is not checked.
 pub fn take_reply(bytes: &mut Vec<u8>) -> Option<String> {
     // A packet is complete if its checksum of two digits has arrived.
-    let [start, end] = [b'$', b'#'].map(|mark| bytes.iter().position(|byte| *byte == mark));
-    let (start, end) = start.zip(end.filter(|end| end + 2 < bytes.len()))?;
-    let reply = String::from_utf8_lossy(&bytes[start + 1..end]).into_owned();
+    let start = 1 + bytes.iter().position(|byte| *byte == b'$')?;
+    let length = bytes[start..].iter().position(|byte| *byte == b'#')?;
+    let end = start + length;
+    if bytes.len() < end + 3 {
+        return None;
+    }
+    let reply = String::from_utf8_lossy(&bytes[start..end]).into_owned();
     bytes.drain(..end + 3);
     Some(reply)
 }
@@ -325,4 +328,19 @@ pub fn take_reply(bytes: &mut Vec<u8>) -> Option<String> {
 /// Returns the error of a reply that was not expected.
 fn unexpected(packet: &str, reply: &str) -> anyhow::Error {
     anyhow!("QEMU refuses the debugger: {packet} was answered with {reply:?}")
+}
+
+/// A reply is taken when it is complete, with the bytes before it, even if one of them ends a
+/// packet. The bytes after it remain.
+#[test]
+fn the_first_complete_reply_is_taken() {
+    for incomplete in ["", "+", "#00", "+$OK", "+$OK#", "+$OK#9"] {
+        let mut bytes = incomplete.as_bytes().to_vec();
+        assert_eq!(take_reply(&mut bytes), None, "{incomplete}");
+        assert_eq!(bytes, incomplete.as_bytes());
+    }
+    let mut bytes = b"+#00$OK#9a$T05#b9".to_vec();
+    assert_eq!(take_reply(&mut bytes).as_deref(), Some("OK"));
+    assert_eq!(take_reply(&mut bytes).as_deref(), Some("T05"));
+    assert_eq!(take_reply(&mut bytes), None);
 }
