@@ -107,8 +107,8 @@ impl Machine {
 
     /// Runs to the next call of the function at this address, without the Thumb bit, and to its
     /// return, while `read` reads QEMU's log of the call. The log ends with the instruction after
-    /// the return, at which the machine is then stopped or just past it. The function must not call
-    /// itself; then the log ends at the first inner return. `read` and its errors are as in
+    /// the return, which the machine has then executed. The function must not call itself; if it
+    /// does, the log may end at an inner return. `read` and its errors are as in
     /// [`Self::next_frame_logged`]; the run is as in [`Self::run_to`].
     pub fn next_call_logged<T: Send>(
         &mut self,
@@ -310,8 +310,8 @@ pub fn send_packet(sender: &mut File, packet: &str) -> io::Result<()> {
 }
 
 /// Removes the first packet of GDB's protocol, and everything before it, from the bytes that have
-/// arrived. Returns the text of the packet, in which bytes that are not UTF-8 are replaced. If it is
-/// not complete, returns `None` and removes nothing. Its checksum is not checked.
+/// arrived. Returns the text of the packet, in which bytes that are not UTF-8 are replaced. If the
+/// packet is not complete, returns `None` and removes nothing. Its checksum is not checked.
 pub fn take_reply(bytes: &mut Vec<u8>) -> Option<String> {
     // A packet is complete if its checksum of two digits has arrived.
     let start = 1 + bytes.iter().position(|byte| *byte == b'$')?;
