@@ -290,12 +290,13 @@ pub fn verify(options: &TestOptions) -> anyhow::Result<ExitCode> {
 
         let toolchain = toolchain::set_up()?;
         toolchain::set_up_pico_with(consent(options.yes))?;
-        // One image is linked on a single processor, so others are compiled beside it.
+        toolchain.build_ahead()?;
+        // An application is linked on a single processor, so other programs are compiled beside.
         let minimal = scope.spawn({
             let toolchain = toolchain.clone();
             move || toolchain.build_minimal_ahead()
         });
-        toolchain.build_ahead()?;
+        toolchain.build_applications_ahead()?;
         toolchain.build_cores_ahead()?;
         // Without the tools the test says that it is skipped.
         if let Ok(web) = toolchain::set_up_web() {

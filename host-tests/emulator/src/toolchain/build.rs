@@ -256,18 +256,22 @@ impl Toolchain {
     }
 
     /// Builds the binaries that run on every target, for all [`TARGETS`] at once, so that later
-    /// builds take less time; then every board's application, one after the other. The first
-    /// failure ends it; the error contains the output of the compiler.
+    /// builds take less time. An error contains the output of the compiler.
     pub fn build_ahead(&self) -> anyhow::Result<()> {
         let mut command = self.for_targets("build", &TARGETS)?;
         command.args(AHEAD.iter().flat_map(|binary| ["--bin", binary]));
-        self.finish(command, "building the firmware for all targets")?;
+        self.finish(command, "building the firmware for all targets")
+    }
+
+    /// Builds every board's application, one after the other, so that later builds take less time.
+    /// The first failure ends it; the error contains the output of the compiler.
+    pub fn build_applications_ahead(&self) -> anyhow::Result<()> {
         every_board().try_for_each(|board| self.build_for(board).map(drop))
     }
 
     /// Builds the programs of [`Self::build_minimal`] for all [`TARGETS`], one target after the
     /// other, so that later builds take less time. Their folder is their own, so this may run
-    /// beside any other build. Errors are as in [`Self::build_ahead`].
+    /// beside any other build. Errors are as in [`Self::build_applications_ahead`].
     pub fn build_minimal_ahead(&self) -> anyhow::Result<()> {
         TARGETS
             .iter()
