@@ -291,7 +291,7 @@ pub fn verify(options: &TestOptions) -> anyhow::Result<ExitCode> {
         let toolchain = toolchain::set_up()?;
         toolchain::set_up_pico_with(consent(options.yes))?;
         toolchain.build_ahead()?;
-        // An application is linked on a single processor, so other programs are compiled beside.
+        // An application is linked on a single processor, so other programs are compiled too.
         let minimal = scope.spawn({
             let toolchain = toolchain.clone();
             move || toolchain.build_minimal_ahead()

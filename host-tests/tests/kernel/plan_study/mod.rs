@@ -339,7 +339,7 @@ fn half_a_pixel_is_kept_until_the_predicted_horizon() {
 ///
 /// The shares of the horizons must be at least [`SHARE`] if [`LEAST_ENDING`] plans or more end
 /// early. This is a known failure of all classes but high starts: most plans end early because
-/// their planning budget, what a board can spend while it plays the scene, is used up.
+/// their planning budget is used up: the cycles that a board can spare while it plays the scene.
 ///
 /// `cargo test -p host-tests --test kernel plan_study::thousands --
 /// --ignored --nocapture` prints the README's table.
