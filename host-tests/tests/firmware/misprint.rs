@@ -162,9 +162,9 @@ fn printed_form_is_shown_only_while_it_is_resolved() {
     assert!(lost.len() > 10 && least > MU as f32, "{lost:?}");
 }
 
-/// Without gravity, a motion is lost in the first tick if its rods, which turn together, turn by
-/// more than 0.5 rad in the shortest step, 1/480 s, in either direction, and only then. At mass
-/// ratio 24 it is lost if rod 2 alone turns by more than 1/sqrt(1 + 24) = 0.2 rad.
+/// A motion without gravity whose rods turn together is lost in the first tick if they turn by more
+/// than 0.5 rad in the shortest step, 1/480 s, in either direction, and only then. At mass ratio 24
+/// a motion in which only rod 2 turns is lost beyond 1/sqrt(1 + 24) = 0.2 rad.
 #[test]
 fn a_motion_is_lost_when_its_rods_turn_too_far_in_the_shortest_step() {
     const STEPS: f32 = 480.0;

@@ -204,7 +204,7 @@ fn binaries() -> Vec<String> {
     names
 }
 
-/// Sets everything up and runs all tests, including those in QEMU. Takes about nine minutes.
+/// Sets everything up and runs all tests, including those in QEMU. Takes about ten minutes.
 #[derive(Debug, Parser)]
 #[command(name = "cargo verify", after_help = "Example: cargo verify --long")]
 pub struct TestOptions {
@@ -267,7 +267,7 @@ pub fn verify(options: &TestOptions) -> anyhow::Result<ExitCode> {
     complain(if options.long {
         "note: running all tests, including those that take hours"
     } else {
-        "note: all tests take about nine minutes"
+        "note: all tests take about ten minutes"
     });
 
     let ignored: &[&str] = if options.long {

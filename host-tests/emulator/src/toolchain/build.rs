@@ -270,8 +270,8 @@ impl Toolchain {
     }
 
     /// Builds the programs of [`Self::build_minimal`] for all [`TARGETS`], one target after the
-    /// other, so that later builds take less time. Their folder is their own, so this may run
-    /// beside any other build. Errors are as in [`Self::build_applications_ahead`].
+    /// other, so that later builds take less time. They have a folder of their own, so this may run
+    /// at the same time as other builds. Errors are as in [`Self::build_applications_ahead`].
     pub fn build_minimal_ahead(&self) -> anyhow::Result<()> {
         TARGETS
             .iter()

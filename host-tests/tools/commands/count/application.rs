@@ -87,11 +87,11 @@ fn next_frame<'a>(
     core: Core,
     entries: BTreeSet<u32>,
 ) -> Result<(Cost, Calls<'a>)> {
-    board.next_frame_logged(|log| counted(log, image, core, entries))
+    board.next_frame_logged(|log| costs_in(log, image, core, entries))
 }
 
 /// Returns the cost of everything in a log, and the calls of the functions that begin at `entries`.
-fn counted(
+fn costs_in(
     mut log: File,
     image: &Image,
     core: Core,
@@ -183,7 +183,7 @@ fn in_application(board: &'static Board, toolchain: &Toolchain) -> Result<(f32, 
     for &method in Method::DRAWN {
         machine.send(1, Command::Method(Some(method)))?;
         let (_, calls) = machine.next_call_logged(preparation, |log| {
-            counted(log, &image, board.core(), BTreeSet::from([preparation]))
+            costs_in(log, &image, board.core(), BTreeSet::from([preparation]))
         })?;
         prepared = prepared.max(most(&calls));
         machine.run_to_frame()?;
