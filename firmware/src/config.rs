@@ -215,7 +215,7 @@ pub const GRAVITY: f64 = 9.81;
 /// the page's own figures: `small-0.2`, `small-1`, `small-5` and `figure-7`.
 pub const PAGE_GRAVITY: f64 = 9.8;
 /// The mass ratio mu = m2/m1 at power-on, with m1 = 1 kg. It is also in the initial settings of
-/// `frequencies`, `butterfly` and `flips`; the other scenes have their own.
+/// `page`, `frequencies`, `butterfly` and `flips`; the other scenes have their own.
 pub const FIRST_MASS_RATIO: f32 = 1.0;
 /// The start angle of both rods at power-on, degrees from the downward vertical. It is well in the
 /// chaotic regime. The scenes that share it are those of [`FIRST_MASS_RATIO`].
@@ -285,8 +285,9 @@ pub const TRAIL_FADING: u8 = 5;
 /// 10/460,800 = 2.0 ms of the 16.7 ms of a tick.
 pub const BAUD: u32 = 460_800;
 /// The largest number of steps whose time is measured at once; a request for more measures this
-/// number. With order 16 in 64 bits of fixed point they block a Cortex-M3 at 50 MHz for
-/// 16 x 46,450/50e6 = 15 ms.
+/// number. They block the board, and may take longer than a tick, 16.7 ms. On a Cortex-M3 at 50 MHz
+/// order 16 in 64 bits of fixed point takes 16 x 46,800/50e6 = 15 ms, and `rk4-f64` 21 ms. On a
+/// Cortex-M4F at 25 MHz `rk4-f64` takes 16 x 64,800/25e6 = 41 ms.
 pub const MOST_MEASURED_STEPS: u32 = 16;
 /// The number of times in a row that a serial port or an SPI bus is polled before it counts as
 /// stuck and the transfer fails. After each byte of the serial port the count begins again. A try

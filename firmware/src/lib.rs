@@ -124,7 +124,8 @@
 #![allow(missing_docs, reason = "what name and type say is not said again")]
 
 /// Defines an enum of named choices. Each row gives a variant and its name for people. The first
-/// variant is the default.
+/// variant is the default. The call also contains the documentation of the enum and of its
+/// variants.
 #[cfg(feature = "application")]
 macro_rules! choice {
     ($(#[$doc:meta])* $name:ident { $($(#[$row_doc:meta])* $row:ident = $text:literal;)* }) => {

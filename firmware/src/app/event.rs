@@ -35,8 +35,9 @@ pub enum Event<Panel, Link> {
     },
     /// The host has sent bytes faster than they were taken. It is logged at most once a second.
     Lost { bytes: u32, total: u32 },
-    /// A frame did not reach the panel: the first one, or one after a frame that did. Further
-    /// failures in a row are not logged.
+    /// The driver of the panel has returned an error with a frame: the first one, or one after a
+    /// frame without an error. The error may be about earlier frames ([`Display::flush`]). Further
+    /// errors in a row, also different ones, are not logged.
     Panel(Panel),
     /// The panel answers for the first time, or again.
     PanelFound(Found),

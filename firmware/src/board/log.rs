@@ -53,7 +53,8 @@ pub fn into_memory() {
 
 /// Opens the log of an emulated chip, on the emulator's standard output. Earlier lines are lost. If
 /// the output cannot be opened, as on a chip without a debugger, all lines are lost; a line that it
-/// does not take is lost, too. Each line waits for the emulator.
+/// does not take is lost, too. Each line waits for the emulator. If the log is open already, it
+/// continues only here.
 #[cfg(feature = "stm32f405")]
 pub fn into_emulator() {
     PATH.with(|path| path.sink = hio::hstdout().map_or(Sink::Nowhere, Sink::Emulator));

@@ -35,9 +35,9 @@ pub struct Bus<P> {
     megahertz: u32,
 }
 
-/// The largest number of polls that wait for a start or a stop on the I2C bus of the panel. It
-/// takes 5 us, and these polls take at least 12 us. The Pico also waits this long for the bus's
-/// block to leave its reset.
+/// The largest number of polls that wait for a start or a stop on the I2C bus of the panel. A start
+/// or a stop takes 5 us, and these polls take at least 12 us. The Pico also waits this long for the
+/// bus's block to leave its reset.
 ///
 /// After the last poll the set-up continues, or the transfer begins, all the same; if it hangs, the
 /// driver of the panel aborts it. But if the STM32 waits in vain for the start within a transfer,

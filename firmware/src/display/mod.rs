@@ -126,7 +126,7 @@ pub struct Found {
     pub controller: Controller,
     /// The way in which the controller was identified.
     pub by: By,
-    /// The status byte, read with the display off, which bit 6 should report; `None` if the panel
+    /// The status byte, read with the display off, so that bit 6 should be 1; `None` if the panel
     /// acknowledges no read.
     pub status: Option<u8>,
 }

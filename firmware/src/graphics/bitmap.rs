@@ -48,6 +48,10 @@ const ROOM: [[[u32; 2]; 4]; 2] = [room(false), room(true)];
 ///
 /// A page is eight rows; the first page is at the top. A page has a byte for each column from the
 /// left. The lowest bit of a byte is the top row. A bit of 1 is a pixel that is on.
+///
+/// `Bitmap::from(&canvas)` converts the greys of a [`Canvas`] to dots. In a drawing, greys up to 2
+/// are off, and greys from 8 on are on; in a picture ([`Canvas::all_greys`]) only 0 is always off
+/// and only 15 always on. The greys in between are patterns of 4 x 4 pixels.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Bitmap {
     /// The pages from the top.
@@ -61,9 +65,7 @@ impl Bitmap {
     };
 }
 
-/// Converts the greys to dots. In a drawing, greys up to 2 are off, and greys from 8 on are on; in
-/// a picture ([`Canvas::all_greys`]) only 0 is always off and only 15 always on. The greys in
-/// between are patterns of 4 x 4 pixels.
+/// Converts the greys to dots, as described at [`Bitmap`].
 impl From<&Canvas> for Bitmap {
     fn from(canvas: &Canvas) -> Self {
         let mut bitmap = Self::BLACK;

@@ -25,7 +25,8 @@ pub struct Canvas {
     /// The rows from the top.
     pub rows: [Row; HEIGHT],
     /// True if every grey matters, as in a picture. False for a drawing, which is bright on dark.
-    /// Only a panel of one colour shows the difference ([`Bitmap`](crate::graphics::Bitmap)).
+    /// Only a panel of one colour shows the difference: it shows the greys of a picture as patterns
+    /// of dots, but most greys of a drawing as off or on ([`Bitmap`](crate::graphics::Bitmap)).
     pub all_greys: bool,
 }
 

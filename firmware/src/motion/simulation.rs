@@ -137,9 +137,9 @@ impl CatchingUp {
 
     /// Advances by the frames of a tick, but not beyond `simulation`. Returns true if it has caught
     /// up with `simulation`, which then continues with this motion. To be called after each
-    /// [`Simulation::tick`], until it returns true, as it does after the first tick of
-    /// `simulation`. A motion that diverges is not reported here. Not checked: both motions have
-    /// the same settings.
+    /// [`Simulation::tick`], until it returns true; with few frames to catch up, the first call
+    /// does. A motion that diverges is not reported here. Not checked: both motions have the same
+    /// settings.
     pub fn tick(&mut self, simulation: &mut Simulation) -> bool {
         for _ in 0..self.most {
             if self.motion.frame() < simulation.motion.frame() {

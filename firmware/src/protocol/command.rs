@@ -50,10 +50,12 @@ pub enum Command {
     /// Sets one parameter and starts the scene again with it. A change of the speed does not
     /// restart the scene.
     ///
-    /// It accepts `M1` to `W2`, `MassRatio`, `Angle` and `Speed`. Another field is refused with
-    /// [`Field::Field`]. A value with which the scene cannot start, an angle beyond straight up (pi
-    /// rad either way), and a speed that is not 0.01 to 4 after rounding to hundredths, are refused
-    /// with their own field.
+    /// It accepts `M1` to `W2`, `MassRatio` (by another m2), `Angle` (both start angles) and
+    /// `Speed`. Another field is refused with [`Field::Field`]. A value with which the scene cannot
+    /// start, an angle that is NaN or beyond straight up (pi rad either way), and a speed that is
+    /// not 0.01 to 4 after rounding to hundredths, are refused with their own field. Any
+    /// other value that the scene does not use is accepted, also NaN: a velocity in `flips`, and a
+    /// velocity, a length or the gravity in `frequencies`.
     Set {
         /// The parameter.
         field: Field,
@@ -66,7 +68,8 @@ pub enum Command {
     ///
     /// Refused with [`Field::Method`] if the method is not in [`Method::DRAWN`], or if the present
     /// scene cannot start by it: the method refuses the motion, or costs more than the budget of a
-    /// frame. Figures, `small-*` and `upright` do not use it, but start again.
+    /// frame, in `butterfly` more than half of it. Figures, `small-*` and `upright` do not use it,
+    /// but start again.
     Method(Option<Method>),
     /// Pauses the scene (`true`) or lets it continue. It ends a [`Step`](Self::Step). A stopped
     /// scene stays stopped.

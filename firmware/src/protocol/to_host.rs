@@ -152,8 +152,9 @@ pub struct Frame {
     /// frame and to be drawn, in counts of the processor clock. They are cycles on a chip. QEMU
     /// does not model cycles; there they are the time by its own clock. It is 0 on a host.
     pub scene_cycles: u32,
-    /// The same for the whole previous frame, including its transfer to the panel and over the
-    /// link; 0 in the first frame since reset.
+    /// The same for the whole previous frame, including the calls that pass it to the panel and to
+    /// the link; 0 in the first frame since reset. A transfer that continues after these calls, by
+    /// interrupts, is not included.
     pub busy_cycles: u32,
 }
 

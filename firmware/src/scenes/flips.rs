@@ -39,10 +39,10 @@ enum Searching {
     WithoutFpu(Search<WithoutFpu>, Option<Falling<WithoutFpu>>),
 }
 
-/// The map of flips, with a1 across and a2 upwards, each from -180 to 180 degrees, and both rods at
-/// rest at the start. The brightness is the time of the first flip: the sooner, the brighter, grey
-/// 15 to 2 ([`GREYS`]). Grey 1 means no flip before 100 sqrt(l1/g), and black (0) that no flip is
-/// possible. The start of a pixel is in its middle.
+/// The map of flips, which fills the canvas: a1 across in 128 pixels and a2 upwards in 64 pixels,
+/// each from -180 to 180 degrees, and both rods at rest at the start. The start of a pixel is in
+/// its middle. The brightness is the time of the first flip: the sooner, the brighter, grey 15 to 2
+/// ([`GREYS`]). Grey 1 means no flip before 100 sqrt(l1/g), and black (0) that no flip is possible.
 ///
 /// The map is computed coarse first. Until a pixel is computed, it has the grey of a computed start
 /// in the same block of 8 x 8, 4 x 4 or 2 x 2 pixels, and before that it is black. The corners show

@@ -95,8 +95,11 @@ pub struct Report {
     /// The simulated time since the start, s.
     pub time: f64,
     /// The canonical state of the first pendulum shown, in SI units (rad, kg m^2/s), with all
-    /// turns; zeros if no pendulum moves. The state of a diverged motion is not finite; the player
-    /// then stops the scene, and keeps and sends the report of the frame before.
+    /// turns; zeros if no pendulum moves. By RK4 in `f32` it may be up to half a step ahead of
+    /// `time`, or behind it ([`PlannedRun::rounded_state`]). The state of a diverged motion is not
+    /// finite; the player then stops the scene, and keeps and sends the report of the frame before.
+    ///
+    /// [`PlannedRun::rounded_state`]: double_pendulum::plan::PlannedRun::rounded_state
     pub state: State<f32>,
     /// The relative energy error (E - E0)/(E0 - Emin) of that pendulum, computed before its numbers
     /// are rounded for this report. E is the energy now, E0 that of the start, and Emin that of

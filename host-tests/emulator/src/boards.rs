@@ -125,9 +125,9 @@ pub const MPS2_AN386: Board = Board {
     ..LM3S6965EVB
 };
 
-/// The boards of QEMU: the LM3S6965 with a Cortex-M3, then with a Cortex-M4F, [`MPS2_AN386`],
-/// [`STM32F405`], and the LM3S6965 with a Cortex-M0+. The first one is the default of most
-/// commands.
+/// The boards of QEMU: the LM3S6965 with a Cortex-M3 (`lm3s6965evb`), then with a Cortex-M4F
+/// (`lm3s6965evb-m4`), [`MPS2_AN386`], [`STM32F405`], and the LM3S6965 with a Cortex-M0+
+/// (`lm3s6965evb-m0`). The first one is the default of most commands.
 pub const BOARDS: [Board; 5] = [
     LM3S6965EVB,
     Board {

@@ -201,8 +201,9 @@ impl PicoMachine {
         Ok(Screenshot::from_pages(&self.tell("panel")?))
     }
 
-    /// Presses a button (`down`) or releases it. The board sees it when it runs, and obeys once two
-    /// of its readings in a row, 1/60 s apart, agree.
+    /// Presses (`down`) or releases one of the five buttons: up, down, left, right or select. The
+    /// board sees it when it runs, and obeys once two of its readings in a row, 1/60 s apart,
+    /// agree.
     pub fn set_key(&mut self, key: Key, down: bool) -> anyhow::Result<()> {
         let pin = match key {
             Key::Up => 10,

@@ -228,8 +228,9 @@ pub fn ready_for_pico() -> Result<PathBuf, Refused> {
 }
 
 /// Returns the program Node.js and provides it and the emulator of the Pico if necessary. Asks the
-/// user on the terminal before anything is installed on the system; without a terminal, or if the
-/// answer is no, nothing is installed. Refusals are as in [`set_up_pico_with`].
+/// user on the terminal before Node.js or npm is installed on the system; without a terminal, or if
+/// the answer is no, they are not. The emulator is fetched without a question. Refusals are as in
+/// [`set_up_pico_with`].
 pub fn set_up_pico() -> Result<PathBuf, Refused> {
     set_up_pico_with(Consent::Ask)
 }

@@ -21,8 +21,10 @@ const ORDER: usize = 36;
 /// so 16 digits of it are 35 digits of the value.
 const FIRST_IN_F64: usize = 20;
 
-/// A double pendulum in exact motion. The error is about 1e-31 times the growth of a small error:
-/// about 30 digits are exact in a regular motion, and fewer in a chaotic one.
+/// A double pendulum in exact motion. The error of the sines and cosines of its angles is about
+/// 1e-31 times the growth of a small error: about 30 digits are exact in a regular motion, and
+/// fewer in a chaotic one. If the larger angle of the start is above 1 rad, the error is that many
+/// times as large.
 ///
 /// A step takes about 0.1 ms. A rod of 1 m needs 20 to 50 steps a second.
 #[derive(Clone, Debug)]

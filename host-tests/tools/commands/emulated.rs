@@ -237,10 +237,12 @@ const ON_BOARDS: [&str; 2] = ["--test=boards", "--test=commands"];
 /// The examples of the documentation, which cargo does not run together with other tests.
 const IN_DOCUMENTATION: [&str; 1] = ["--doc"];
 
-/// Runs the set-up, builds the firmware, and runs `cargo test` in three parts, with its own output
-/// and the exit code of the first part that fails; the parts after it are not run. `--long` adds
+/// Installs missing tools as [`setup`] does, with the same rule for system packages and `--yes`,
+/// builds the firmware, and runs `cargo test` in three parts. Returns success if all parts pass, or
+/// else the exit code of the first part that fails; the parts after it are not run. `--long` adds
 /// `-- --include-ignored`. Each of `RUST_TEST_THREADS` and `RAYON_NUM_THREADS` that is not set is
-/// twice the number of processors for the tests.
+/// twice the number of processors for the tests. The first part runs during the installation and
+/// the builds, whose errors are returned only after it has ended.
 ///
 /// An error means that the set-up ([`Refused`]) or a build of the firmware fails, or that a time
 /// limit is exceeded: 1 hour for compiling the tests and again for each part, or 12 hours each with

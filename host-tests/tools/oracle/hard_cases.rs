@@ -19,7 +19,7 @@ pub struct HardCase {
     /// angle is half as large.
     pub spread: f64,
     /// The largest allowed typical error of compensated `f32` with the finest steps, rad. It is
-    /// twice the measured error.
+    /// twice the measured error. In plain `f32` in directions 2000 times this error is allowed.
     pub floor: f64,
     /// The typical error in fixed point of 32 and 64 bits, rad. Below it a halved step need not be
     /// better, and the error of the finest step must be within it.
@@ -34,8 +34,9 @@ pub struct HardCase {
     /// Near the upright position an error of 2^-30 of a sine near 0 exceeds an `f32`'s error. In 64
     /// bits the roundings of each step accumulate, because no sum is compensated.
     pub fixed: [f64; 2],
-    /// The largest allowed error of `f64` with the finest steps, rad. It is the error of the
-    /// method. More is allowed for the roundings of plain sums.
+    /// The largest allowed error of `f64`, plain or compensated, with the finest steps, rad. It is
+    /// the error of the method. If the allowed error of plain `f32` by the same equations, times
+    /// 2^-29, the ratio of the epsilons, is larger, that is allowed instead.
     pub method: f64,
     /// The allowed error of plain sums in angles, `f32` or `f64`, over that in directions. The last
     /// place of an angle is coarse many turns away, and an error grows while the pendulum falls.

@@ -172,7 +172,9 @@ pub const STABILITY_EDGE: [f64; 2] = [1e-6, 1e-4];
 /// sines and of the lengths. The turn of a rod in the excess of all steps ([`LONGER`]) is allowed
 /// in addition.
 pub const DIRECTIONS: f64 = 8.0;
-/// The difference of the lengths of directions from 1, with 64 steps a second: the remainder after
+/// The difference of the lengths of directions from 1, by each of the
+/// [`exact_methods`](crate::oracle::trials::exact_methods), in 70 steps of 1/64 s of the chaotic
+/// scene and of [`Trial::unlike`](crate::oracle::trials::Trial::unlike): the remainder after
 /// restoring them to first order (measured 3e-6).
 pub const LENGTHS: f64 = 1e-5;
 

@@ -10,6 +10,9 @@ use crate::numbers::Real;
 use crate::pendulum::{Direction, Parameters, Pendulum, State};
 
 /// The equations of motion of a pendulum.
+///
+/// Any crate may implement this trait. [`Canonical`] with these equations is a
+/// [`Form`](super::Form), which [`Pendulum::run`] accepts.
 pub trait Derivatives<R: Real>: Copy + Debug + PartialEq + 'static {
     /// Prepares the equations. `Hamilton` refuses the parameters that [`Pendulum::new`] refuses;
     /// other equations may accept any, because [`Pendulum::run`] has a checked pendulum.

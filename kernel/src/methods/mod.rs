@@ -113,9 +113,14 @@ pub trait FormOperations: Copy + Debug + PartialEq + 'static {
     ///
     /// # Errors
     ///
-    /// Refuses the inputs that [`Pendulum::run`](crate::Pendulum::run) refuses, except a step
-    /// beyond [`STABLE`](Self::STABLE), a start of too many turns (only the closed form refuses
-    /// it), and some parameters that only [`Pendulum::new`](crate::Pendulum::new) refuses.
+    /// Refuses the inputs that [`Pendulum::run`](crate::Pendulum::run) refuses, except:
+    ///
+    /// - a step beyond [`STABLE`](Self::STABLE);
+    /// - a start of too many turns, which only the closed form refuses;
+    /// - in the direction form in floating point, valid parameters with a product that only
+    ///   [`Pendulum::new`](crate::Pendulum::new) computes and that is out of range;
+    /// - invalid parameters that the equations of [`Canonical`] accept
+    ///   ([`Derivatives::prepare`]); those of this crate accept none.
     fn new(parameters: &Parameters<f64>, start: &State<f64>, dt: f64) -> Result<Self, Error>;
 
     /// Returns a motion of the same pendulum from another start, in the same units and steps,
@@ -206,7 +211,7 @@ pub trait FormOperations: Copy + Debug + PartialEq + 'static {
 
     /// Passes the words that the motion carries from step to step to `feed`, one at a time and
     /// always in the same order, to compare machines. The bits of an `f32` are the lower 32 of a
-    /// word.
+    /// word; its upper 32 are 0.
     fn bits(&self, feed: impl FnMut(u64));
 }
 

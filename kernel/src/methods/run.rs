@@ -51,8 +51,8 @@ impl<R: Real> Pendulum<R> {
     /// - a start of 2^31 - 1 turns or more, if the method carries directions, or, for the closed
     ///   form, one from which an angle may exceed 2^31 - 1 turns, by [`Error::OutOfRange`];
     /// - a pendulum or a start out of the range of the method's numbers, by [`Error::OutOfRange`];
-    ///   if one of its numbers becomes infinite or zero there, by [`Error::NotFinite`] or
-    ///   [`Error::NotPositive`];
+    ///   if one of its numbers becomes infinite there, by [`Error::NotFinite`], or a mass or length
+    ///   zero, by [`Error::NotPositive`]. Gravity and the numbers of the start may become zero;
     /// - for the closed form, a pendulum without gravity, by [`Error::NotPositive`];
     /// - a step whose magnitude is beyond the limit of stability of the fast mode, of frequency w1,
     ///   or beyond that of [`Fixed32`] or [`Fixed64`](crate::Fixed64): [`Error::TooLarge`] contains

@@ -126,8 +126,8 @@ impl Scaling {
     /// within `torque`. They are in s; the two limits, which must be positive, have no dimension.
     ///
     /// The first is infinite if nothing can move and 0 for infinite bounds, the second is infinite
-    /// without gravity. The scaling must be that [`in_seconds`](Self::in_seconds), and the bounds
-    /// not NaN; nothing is checked.
+    /// without gravity. The scaling must be the result of [`in_seconds`](Self::in_seconds), and
+    /// the bounds not NaN; nothing is checked.
     pub fn longest(&self, bounds: &Bounds<f64>, [rate, torque]: [f64; 2]) -> [f64; 2] {
         let [momentum1, momentum2] = self.momenta;
         let rates = [

@@ -105,7 +105,8 @@ pub trait RealOperations:
     /// Returns the square root, correctly rounded; NaN below 0 and for NaN.
     #[must_use]
     fn sqrt(self) -> Self;
-    /// Returns the bits of the IEEE 754 format. The bits of an `f32` are the lower 32.
+    /// Returns the bits of the IEEE 754 format. The bits of an `f32` are the lower 32; the upper 32
+    /// are 0.
     fn bits(self) -> u64;
     /// Returns true if the number is neither infinite nor NaN.
     fn is_finite(self) -> bool;

@@ -12,6 +12,10 @@ use crate::table::{DrawnMethod, Method};
 /// finite and more than 0, otherwise a search is refused. The lists of some processors are
 /// [`CORTEX_M3`](Self::CORTEX_M3), [`CORTEX_M4F`](Self::CORTEX_M4F) and
 /// [`CORTEX_M0PLUS`](Self::CORTEX_M0PLUS).
+///
+/// The prices of these lists are those of the step alone. A [`PlannedRun`] also counts whole turns
+/// after each step, which they do not include: in `f32` on a Cortex-M4F the count takes about 180
+/// cycles, nearly as much as the step itself ([`Run`](crate::Run)).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Costs {
     /// A frame by [`Method::ClosedFormF32`].
@@ -81,8 +85,8 @@ pub struct Budget {
 pub struct Stepping {
     /// The method. Only those in [`Method::DRAWN`] can be run or planned.
     pub method: Method,
-    /// The number of steps per frame. A motion or search counts 0 as 1. The closed form has no
-    /// steps and ignores it.
+    /// The number of steps per frame. A motion or search counts 0 as 1. A motion by the closed
+    /// form, which has no steps, ignores it; [`Search::of`](super::Search::of) does not.
     pub steps: u32,
 }
 
@@ -183,7 +187,7 @@ impl Pair {
     ///
     /// The coarse run makes at most `most` steps, unless `most` is less than `least`. If `most` is
     /// less than the usual number, the fine run makes a third more than `most`, and at least as
-    /// many as the longest of the [`FINE`] steps. Pairs may then be equal.
+    /// many as the longest of the [`FINE`] steps. Successive pairs may be equal.
     pub fn all(
         rate: u16,
         admissible: f64,

@@ -5,9 +5,13 @@
 //! on the Cortex-M0+, for the 1-cycle multiplier; without these a step takes longer. The code is
 //! built with all optimisations and the flags of the repository's `.cargo/config.toml`.
 //!
-//! A step is the average over a motion from rest at 0.5 rad, with equal bobs on rods of 1 m; it
-//! holds for all masses and lengths. The step in 64 bits and the preparation are the most expensive
-//! ones in a frame of the repository's application.
+//! A step is the average over a motion from rest at 0.5 rad, with equal bobs on rods of 1 m. It
+//! does not include the count of whole turns in a [`PlannedRun`](super::PlannedRun). The step in 64
+//! bits and the preparation are the most expensive ones in a frame of the repository's application.
+//!
+//! A search uses the same prices for all masses and lengths. A step by `rk4-fixed32` on a processor
+//! without a floating-point unit takes longer than its price if the rods or masses are not about
+//! equal, on a Cortex-M3 up to 40 % longer ([`Fixed32`](crate::Fixed32)).
 //!
 //! `cargo count --write-prices` writes this file, and the repository's test `count` verifies it to
 //! 3 %.

@@ -15,7 +15,8 @@ pub(super) type Directions = [Direction<f32>; 2];
 /// has returned an error, directions, states and energies are meaningless, and may look valid.
 ///
 /// Whole turns are counted after each step. If a rod turns by more than a quarter turn in a step,
-/// they may be miscounted.
+/// they may be miscounted. The price lists of the kernel do not include the time that the count
+/// takes ([`Costs`](super::Costs)).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlannedRun {
     stepping: Stepping,

@@ -34,8 +34,9 @@ const QUESTION: u16 = u16::MAX - 1;
 /// boards. The Pico obeys when the port is closed at this speed.
 pub const BAUD_OF_BOOT_LOADER: u32 = 1200;
 
-/// A serial port that is opened again whenever it is back: under its name or, if it is a USB
-/// device, under a new one. Problems of a port that was once open are no errors but
+/// A serial port that [`messages`](Port::messages) opens again when it is back: under its name or,
+/// if it is a USB device, under a new one. Without calls of `messages` nothing is received, and a
+/// port that has gone stays closed. Problems of a port that was once open are no errors but
 /// [`notices`](Port::notices). Dropping it closes the port.
 pub struct Port {
     /// The path of the port, which changes if a USB device returns under another name.
@@ -63,11 +64,15 @@ pub struct Port {
 }
 
 impl Port {
-    /// Opens the port of this name at [`BAUD`] (460,800) bits per second. `auto` means the only one
-    /// over USB and waits up to 3 s for it, and for the access rights of a port that appears
-    /// meanwhile; several are an error at once, even if one of them is a board. Returns the reason
-    /// as one line if the port is missing, in use, not accessible, no serial port or, with `auto`,
-    /// ambiguous. Nothing is sent. Not checked: that a board is at its other end.
+    /// Opens the port of this name at [`BAUD`] (460,800) bits per second. Nothing is sent. Not
+    /// checked: that a board is at its other end.
+    ///
+    /// `auto` means the only port over USB. If there is none yet, this waits up to 3 s until one
+    /// has appeared and can be opened. A port that is there at the call and cannot be opened is an
+    /// error at once. So are several ports, even if one of them is a board.
+    ///
+    /// The error is the reason in one line: the port is missing, in use, not accessible, no serial
+    /// port or, with `auto`, ambiguous.
     pub fn open(name: &str) -> Result<Self, String> {
         // A port without a name may take a moment to appear.
         let (name, open) = if name == AUTO {

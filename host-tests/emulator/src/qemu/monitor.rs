@@ -26,8 +26,9 @@ impl Machine {
     }
 
     /// Returns the bytes of memory or registers at these addresses, as the processor sees them. The
-    /// board may be running. An error means that QEMU has ended or that there is nothing at one of
-    /// the addresses. An empty or reversed range gives no bytes.
+    /// board may be running. To read a register has the same effects as a read by the program, such
+    /// as the removal of a received byte. An error means that QEMU has ended or that there is
+    /// nothing at one of the addresses. An empty or reversed range gives no bytes.
     pub fn read(&mut self, addresses: Range<u32>) -> anyhow::Result<Vec<u8>> {
         let range =
             json!({ "val": addresses.start, "size": addresses.len(), "filename": "memory" });
@@ -36,7 +37,9 @@ impl Machine {
     }
 
     /// Presses (`down`) or releases a button, without waiting until the firmware has seen it. To
-    /// repeat the same has no effect. While the machine is stopped, and on a board without buttons
+    /// repeat the same has no effect. Call [`Self::wake_keys`] once before the first call, because
+    /// the emulated buttons work only after that; this is not checked. While the machine is
+    /// stopped, and on a board without buttons
     /// ([`Board::has_panel`](crate::boards::Board::has_panel)), QEMU refuses the event, which is an
     /// error.
     pub fn set_key(&mut self, key: Key, down: bool) -> anyhow::Result<()> {

@@ -51,9 +51,9 @@ impl FrameProfile {
     ///
     /// Not checked: the machine must be from [`Machine::halted`] and stopped after a frame
     /// ([`Machine::run_to_frame`]); elsewhere the profile is not of one frame, and another machine
-    /// runs to its time limit. An error means that `image` has no function that shows a frame, that
-    /// an instruction has no known timing, that the board sleeps 1000 times without a frame, or
-    /// that QEMU ends.
+    /// runs to its time limit. An error means that `image` lacks any of the functions of an
+    /// application that show a frame, that an instruction has no known timing, that the board
+    /// sleeps 1000 times without a frame, or that QEMU ends.
     pub fn of_next(board: &mut Machine, image: &Image, core: Core) -> Result<Self> {
         let showing = SHOWING
             .into_iter()

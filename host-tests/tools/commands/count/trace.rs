@@ -100,9 +100,9 @@ impl Target {
 
     /// Runs `request` at full speed. Returns its CRC ([`Request::crc`]) and the ticks that it took
     /// of the board's SysTick, at the processor's clock after reset, under `-icount`, where an
-    /// instruction takes 1 ns. After 2^24 ticks they begin again from 0. A program that prints
-    /// anything else has failed, and the error contains its output. Other errors are as in
-    /// [`Self::output`].
+    /// instruction takes 1 ns. On the LM3S6965 that clock has 12.5 MHz, so that a tick is 80
+    /// instructions. After 2^24 ticks they begin again from 0. A program that prints anything else
+    /// has failed, and the error contains its output. Other errors are as in [`Self::output`].
     pub fn run(&self, request: &Request) -> Result<(u32, u64)> {
         // The program prints the CRC in hexadecimal digits and then the ticks.
         let output = self.output(request)?;

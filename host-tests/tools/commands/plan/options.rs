@@ -1,9 +1,10 @@
 //! The scene to plan, as the command line describes it.
 //!
 //! Without options, the display is 64 pixels high, the scene is 30 s long and has 60 frames a
-//! second, and the chip is the first of [`CHIPS`]. The numbers are checked by
-//! [`SceneOptions::plan`]: the height must be more than 0 and at most 1e6 pixels, the duration more
-//! than 0 and at most (2^32 - 1)/rate s.
+//! second, and the chip is the first of [`CHIPS`]. Both rods together are half as long as the
+//! display is high, so that half a pixel is (l1 + l2)/height, m; a built-in scene has its own size.
+//! The numbers are checked by [`SceneOptions::plan`]: the height must be more than 0 and at most
+//! 1e6 pixels, the duration more than 0 and at most (2^32 - 1)/rate s.
 
 use anyhow::{Context, bail, ensure};
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};

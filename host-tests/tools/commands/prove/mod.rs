@@ -66,11 +66,12 @@ pub struct ProveOptions {
     known_answers: bool,
 }
 
-/// Prints the proof, with `--csv` only a heading and a row for each frame, or a table. The exit
-/// code is a success for any result of the proof, also if no method is fast enough, so that nothing
-/// is proved. If Ctrl-C ended the proof, the frames so far are reported and it is the code of the
-/// signal, 130. Options that cannot be used, also a number with too many digits, or a method that
-/// does not accept the scene, are [`Refused`].
+/// Prints the proof, with `--csv` only a heading and a row for each frame, or, with `--table` or
+/// `--known-answers`, a table of many scenes. The exit code is a success for any result of the
+/// proof, also if no method is fast enough, so that nothing is proved. If Ctrl-C ended the proof,
+/// the frames so far are reported and it is the code of the signal, 130. Options that cannot be
+/// used, also a number with too many digits, or a method that does not accept the scene, are
+/// [`Refused`].
 ///
 /// A table takes neither `--scene` nor `--method` nor `--csv`, and ignores the other options.
 /// Ctrl-C ends it at once.

@@ -114,10 +114,10 @@ const HIGH: [u32; 21] = [
 ];
 const LOW: [u32; 3] = [16, 32, 64];
 
-/// Returns the numbers of steps a second to try with `method` in a scene, ascending. They are 21
-/// numbers from 4 to 96 for an order above 4, or else 16, 32 and 64, and then all powers of two
-/// from 2^7 to 2^`finest`, none if `finest` is less than 7. Of these, [`LONG`] is tried with
-/// [`usual_rate`] only. Not checked: `finest` is at most 31.
+/// Returns the numbers of steps a second to try with `method` in a scene, ascending. The first ones
+/// are 21 numbers from 4 to 96 for an order above 4, and 16, 32 and 64 for any other order. All
+/// powers of two from 2^7 to 2^`finest` follow for every order, none if `finest` is less than 7. Of
+/// these, [`LONG`] is tried with [`usual_rate`] only. Not checked: `finest` is at most 31.
 pub fn rates(method: Method, scene: &Scene, finest: u32) -> impl Iterator<Item = u32> {
     let few: &[u32] = if method.order() > 4 { &HIGH } else { &LOW };
     let all = few

@@ -4,9 +4,10 @@
 //! w2 and energy, and the first line has names only. The numbers of times and steps are finite, but
 //! otherwise not checked here ([`plan`](super::plan), [`choose`](super::choose)).
 //!
-//! `columns` has places in the list t, a1, a2, p1, p2, w1, w2, energy, x1, y1, x2, y2, from 0, in
-//! the order in which they are printed. `units` is true for names with units. `bits` adds four
-//! columns of 16 digits, the bits of an `f64`, or of 8 digits for a method in plain `f32`.
+//! `columns` has places in the list t, a1, a2, p1, p2, w1, w2, energy, x1, y1, x2, y2, from 0 to
+//! 11, in the order in which they are printed; any other place makes [`run`](super::run) panic.
+//! `units` is true for names with units. `bits` adds four columns of 16 digits, the bits of an
+//! `f64`, or of 8 digits for a method in plain `f32`.
 
 use std::f64::consts::TAU;
 use std::path::PathBuf;
@@ -117,8 +118,9 @@ pub struct SimulateOptions {
 }
 
 /// A pendulum and its start. Without these options the bobs have 1 kg, the rods are 1 m long, the
-/// gravity is 9.81 m/s^2, and both rods are at rest at 120 degrees. All numbers are finite, but
-/// otherwise not checked here.
+/// gravity is 9.81 m/s^2, and both rods are at rest at 120 degrees. Given angles are in rad and
+/// velocities in rad/s, or, with `--degrees`, in degrees and degrees per second. All numbers are
+/// finite, but otherwise not checked here.
 #[derive(Args, Clone, Debug)]
 pub struct StartOptions {
     /// Masses of the bobs, kg
@@ -271,11 +273,12 @@ impl StartOptions {
         found.or(gravity).unwrap_or_default()
     }
 
-    /// Returns the pendulum and its start with all given digits, or `None` if a number has too
-    /// many. Up to 18 digits, when it is written without an exponent, are never too many for a
-    /// decimal, or for each number of a fraction of whole numbers. The result also says if angles
-    /// and velocities are in degrees, and has the exact defaults of options that are not given. The
-    /// numbers are not checked.
+    /// Returns the pendulum and its start with all given digits, as the
+    /// [`Start`](reference::enclosure::Start) of an enclosure, or `None` if a number has too many.
+    /// Up to 18 digits, when it is written without an exponent, are never too many for a decimal,
+    /// or for each number of a fraction of whole numbers. The result also says if angles and
+    /// velocities are in degrees, as the default angles always are, and has the exact defaults of
+    /// options that are not given. The numbers are not checked.
     pub fn exact(&self) -> Option<Exact> {
         let [gravity, first] =
             // The values of options that were not given.

@@ -49,8 +49,9 @@ pub const BLANK: &str = "(fill in)";
 
 /// Returns the check list of the board `name`: the number of restarts that `port` has observed
 /// since it was first opened, the last unplanned restart, and a row for each manual check of this
-/// board, with [`BLANK`] as its result. A board that this project does not know has only the checks
-/// that every board needs. Nothing is sent.
+/// board, with [`BLANK`] as its result. The section never has a fault, also after an unplanned
+/// restart. A board that this project does not know has only the checks that every board needs.
+/// Nothing is sent.
 pub fn section(port: &Port, name: &str) -> Section {
     let note = "The board reports its restarts itself. Please fill in the other rows as the check \
                 list in `firmware/README.md` describes; leave rows that do not apply.";

@@ -45,9 +45,10 @@ fn request(method: Method, (_, m2, angle): (&str, f64, f64)) -> Request {
 }
 
 /// Compares every method of the boards in two motions from rest, a regular and a chaotic one, of
-/// 2 s each in steps of 1/256 s. The board computes them on request. A motion whose samples differ
-/// in any bit from the host's is a fault of the section. An error means that the board does not
-/// answer within 20 s, refuses a request, or loses a sample.
+/// 2 s each in steps of 1/256 s. Returns the section with a row for each motion of each method. The
+/// board computes the motions on request and sends a sample at the start and after every 32 steps.
+/// A motion with a sample that differs in any bit from the host's adds a line to `Section::faults`.
+/// An error means that the board does not answer within 20 s, refuses a request, or loses a sample.
 pub fn methods(talk: &mut Talk) -> anyhow::Result<Section> {
     let note = "Motions from rest in steps of 1/256 s, computed by the board on request.";
     let mut section = Section::new("Bits", note, &["method", "motion", "steps", "bits"]);
@@ -138,12 +139,14 @@ pub fn measured(talk: &mut Talk) -> anyhow::Result<Vec<[Option<f64>; 2]>> {
 }
 
 /// Returns the section of the measured cycles ([`measured`]) with the estimate of `cargo count`.
-/// `measured` is in the order of [`ON_BOARDS`], and `board` is the board it comes from. There are
-/// no faults.
+/// `measured` has an element for each method of [`ON_BOARDS`], in this order; the rows end with the
+/// shorter of the two. `board` is the real board that was measured, or `None` if this project does
+/// not know it. There are no faults.
 ///
-/// Instructions are counted in QEMU, on a board with the same processor. Without such a board, or
-/// without a cycle counter, the estimates are left out and no tools are needed. Nothing is
-/// installed. Missing tools are refused. Another error means that the build or QEMU fails.
+/// The estimate is from instructions that are counted in QEMU, on the first of [`BOARDS`] with the
+/// same target as `board`. If `board` is `None` or has no cycle counter, the estimates are left out
+/// and no tools are needed. Nothing is installed. Missing tools are refused. Another error means
+/// that the build or QEMU fails.
 pub fn cycles(measured: &[[Option<f64>; 2]], board: Option<&Board>) -> anyhow::Result<Section> {
     let note = "Measured with the processor's cycle counter, interrupts off, over 256 steps of the \
                 regular motion: once with the code in flash and, if there is one, once with its \

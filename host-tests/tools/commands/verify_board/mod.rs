@@ -84,9 +84,10 @@ fn verdict(difference: Option<String>) -> String {
 /// replaced by `md`. Prints the faults to stderr and the result to stdout. Returns true if there
 /// was no fault. Another program in flash than this workspace builds is reported, but is no fault.
 ///
-/// A port that cannot be opened is refused, and so are missing tools. Another error means that the
-/// board does not answer within 20 s or refuses a request, that a build or QEMU fails, or that the
-/// report cannot be written, which is not checked before the end. In all these cases there is none.
+/// A port that cannot be opened is refused. So are missing tools, but only after all measurements
+/// and questions. Another error means that the board does not answer within 20 s or refuses a
+/// request, that a build or QEMU fails, or that the report cannot be written, which is not checked
+/// before the end. After any of these errors there is no new report.
 pub fn run(options: &VerifyOptions) -> anyhow::Result<bool> {
     let mut talk = Talk::new(demo::port(&options.port)?)?;
     let identity = talk.ask(protocol::Command::Identify, |answer| {

@@ -24,7 +24,7 @@ const LOOK: Duration = Duration::from_millis(1);
 /// A conversation with the board at a port.
 pub struct Talk {
     /// The port, with its counts and the restarts of the board. Messages that are read from it
-    /// directly are lost to the conversation.
+    /// directly are lost to the conversation. Its notices are removed by [`Talk::next`].
     pub port: Port,
     /// The messages that have arrived and are not yet examined.
     arrived: std::vec::IntoIter<ToHost>,
@@ -44,9 +44,9 @@ impl Talk {
 
     /// Returns the value of `kind` for the next message that it accepts. The messages before it are
     /// dropped; later ones are kept. It is an error if none arrives within 20 s of the call, also
-    /// if others do; that error is the latest notice of the port, if there is one. A refusal of any
-    /// request by the board is an error, too, even if `kind` would accept it. After an error the
-    /// conversation can continue.
+    /// if others do; that error is the latest notice of the port, if there is one. All other
+    /// notices are dropped, also if the call succeeds. A refusal of any request by the board is an
+    /// error, too, even if `kind` would accept it. After an error the conversation can continue.
     pub fn next<M>(&mut self, kind: impl Fn(ToHost) -> Option<M>) -> anyhow::Result<M> {
         let since = Instant::now();
         let mut notice = None;

@@ -47,7 +47,7 @@ impl Number {
     /// Returns the exact value, in lowest terms, or `None` if only [`Number::value`] is known,
     /// because the exact value or a number of the text does not fit in 64 bits. A decimal and a
     /// fraction of whole numbers always fit if each number has at most 18 digits, including the
-    /// zeros that an exponent adds.
+    /// zeros that an exponent adds. A fraction of decimals of this length may not fit.
     pub fn exact(&self) -> Option<Fraction> {
         self.fraction
     }

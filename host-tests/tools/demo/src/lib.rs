@@ -59,8 +59,9 @@ const LIMIT: [f64; 2] = [60.0, 20.0];
 /// stdout is not a terminal. `--seconds` limits both; without a terminal the default is 10 s.
 ///
 /// Missing tools of an emulated board are installed, from the network, and its application is
-/// built. The files of the options are replaced, the animation already at the start; after an error
-/// it may be incomplete.
+/// built. System packages, which only the Pico needs, are installed only if the user agrees on the
+/// terminal. The files of the options are replaced, the animation already at the start; after an
+/// error it may be incomplete.
 ///
 /// Returns true if no compared bit differs from the host's and if, on an emulated board that is run
 /// frame by frame, nothing else went wrong. Each problem is a line on stderr. Options that cannot

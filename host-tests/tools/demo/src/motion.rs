@@ -85,12 +85,15 @@ impl OwnMotion {
     /// Returns the settings to play `scene` with, or `None` if no option is given. `--degrees`
     /// alone counts as none.
     ///
-    /// The given values replace those of the scene's own first settings, rounded to `f32`. In the
-    /// settings, angles are in degrees, velocities in rad/s, and all other numbers in SI units.
-    /// Returns an error if the scene does not use an option, if an angle is more than half a turn,
-    /// or if the scene cannot show the motion on `processor`: a number that is too large for `f32`,
-    /// a mass or length that is not positive, negative gravity, zero gravity or unequal rods in
-    /// some scenes, or a motion that is too fast for every method.
+    /// The given values replace those of the scene's own first settings, rounded to `f32`. The user
+    /// gives angles in rad and velocities in rad/s or, with `--degrees`, in degrees and degrees/s.
+    /// In the settings, angles are always in degrees and velocities in rad/s. All other numbers are
+    /// in SI units in both.
+    ///
+    /// Returns an error if the scene does not use an option, if a given angle is more than half a
+    /// turn, or if the scene cannot show the motion on `processor`: a number that is too large for
+    /// `f32`, a mass or length that is not positive, negative gravity, zero gravity or unequal rods
+    /// in some scenes, or a motion that is too fast for every method.
     pub fn settings(
         &self,
         scene: SceneName,

@@ -173,10 +173,10 @@ fn within_half_a_turn(degrees: f64) -> f64 {
     degrees - 2.0 * HALF_TURN * ((degrees - HALF_TURN - ROUNDING) / (2.0 * HALF_TURN)).ceil()
 }
 
-/// Draws the chart of both angles, in degrees, over the last 5 s of simulated time before the last
-/// report. `past`, whose angles are in rad, must be in ascending order of time, which is not
-/// checked. Angles with turns are drawn within half a turn. Without reports the chart has only its
-/// axes.
+/// Draws the chart of both angles, in degrees, over the 5 s of simulated time before the last
+/// report, or from 0 to 5 s if that is earlier than 5 s. `past`, whose angles are in rad, must be
+/// in ascending order of time, which is not checked. Angles with turns are drawn within half a
+/// turn. Without reports the chart has only its axes.
 pub fn draw_angles(frame: &mut Frame, area: Rect, past: &[Report]) {
     // The chart shows the last `SPAN` seconds, and from the start before that time.
     let end = past.last().map_or(0.0, |last| last.time).max(SPAN);

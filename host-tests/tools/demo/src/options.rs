@@ -1,6 +1,9 @@
 //! The command line of `cargo demo`.
 //!
-//! The texts of [`DemoOptions`] are the help of the command. `--port` excludes `--board`.
+//! The texts of [`DemoOptions`] are the help of the command. `--port` excludes `--board`. Without
+//! both, the board is the first of [`BOARDS`], emulated. Without `--scene`, `--method`, `--panel`
+//! or `--speed`, whose field is then `None`, the board keeps its present one.
+//!
 //! `--seconds` must be greater than 0 and at most [`MOST_SECONDS`]. The file of `--record` is a
 //! GIF, and that of `--screenshot` a PNG; their names must end so. Without a terminal at stdin and
 //! stdout the command runs as with `--headless`. A board at a port keeps its own time then, too, so

@@ -99,9 +99,10 @@ impl Rows {
     /// Prepares steps of `dt` s of the order `order`. Refuses an order that is not 2, 4 .. 16, by
     /// [`Error::OutOfRange`].
     ///
-    /// `scaling` must have a unit of time that [`unit_of_time`] returned for the same `dt`, in
-    /// which a step is at most 15 long and no torque of gravity is above 1/256. `dt` must be finite
-    /// and not 0, negative if time runs backwards. This is not checked.
+    /// The unit of time of `scaling` must be one that [`unit_of_time`] returned for the same `dt`:
+    /// a step is then a whole multiple of 840 2^-27 units. It must be at most 15 units, and no
+    /// torque of gravity above 1/256. `dt` must be finite and not 0, negative if time runs
+    /// backwards. None of this is checked.
     pub fn new(order: u32, scaling: &Scaling, dt: f64) -> Result<Self, Error> {
         let count = rows(order)?;
         let mut shares = [Factor::ZERO; ROWS];
@@ -153,7 +154,8 @@ impl Rows {
         })
     }
 
-    /// Returns an eighth of nu/sigma ([`Scaling::norm`]), the length of (S, C).
+    /// Returns the length of (S, C) as it is stored: an eighth of nu/sigma ([`Scaling::norm`]).
+    /// Here sigma is the power of two that leaves nu/sigma above 1/2 and at most 1.
     pub fn norm(&self) -> Q64 {
         self.norm
     }
@@ -175,8 +177,9 @@ impl Rows {
     /// first four are stored as an eighth: (sin a1, cos a1) of length 1, and (S, C) = nu/sigma
     /// (sin D, cos D), where D = a1 - a2. P1 and P2 are whole, in the unit of the [`Scaling`].
     ///
-    /// Makes `reach` nonzero if a quantity at `z` or within the step left twice its range; the end
-    /// is then meaningless. It clears no bits, and does not check the end itself.
+    /// Makes `reach` nonzero if a quantity at `z` or within the step exceeds its largest magnitude
+    /// by a factor of 2 or more; the end is then meaningless. It clears no bits, and does not check
+    /// the end itself.
     ///
     /// Compiled for three kinds of pendulum, because shifts by constants are cheaper: without
     /// shifts ([`Shifts::NONE`]), with a shift of r only (a heavier bob 2), and all others.
