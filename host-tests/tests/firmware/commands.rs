@@ -85,15 +85,15 @@ fn every_parameter_is_set_in_si_units() {
     }
 }
 
-/// The taps arrive at the same time and are all executed in order, as if the board's own buttons
-/// were pressed.
+/// Nine commands arrive at the same time. All are executed in order, as if the board's own buttons
+/// were pressed, and answered.
 #[test]
-fn no_tap_is_lost_at_any_speed() {
+fn every_command_of_a_burst_is_obeyed() {
     let mut app = app();
     let before = app.player.settings;
     let right = Command::TurnRight;
     let left = Command::TurnLeft;
-    let taps = [
+    let commands = [
         right,
         right,
         Command::Heavier,
@@ -105,9 +105,9 @@ fn no_tap_is_lost_at_any_speed() {
         right,
     ];
     // The application may take only some of the bytes, so offer the rest until none are left.
-    let mut bytes = taps
+    let mut bytes = commands
         .iter()
-        .flat_map(|&tap| wire(1, tap))
+        .flat_map(|&command| wire(1, command))
         .collect::<Vec<_>>()
         .into_iter();
     while !bytes.as_slice().is_empty() {

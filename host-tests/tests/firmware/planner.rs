@@ -3,9 +3,9 @@
 use double_pendulum::Method;
 use double_pendulum::plan::{Limit, PlanError, Stepping};
 use firmware::config::{
-    CORTEX_M3, CORTEX_M4F, PLANNED, PROCESSORS, Processor, SETTLED_TICKS, STM32F405,
+    CORTEX_M0PLUS, CORTEX_M3, CORTEX_M4F, PLANNED, PROCESSORS, Processor, SETTLED_TICKS, STM32F405,
 };
-use firmware::motion::{Planner, Settings};
+use firmware::motion::{CatchingUp, Planner, Settings};
 
 /// The initial stepping of these tests, with finer steps than any reference. It is accurate for at
 /// least as long as any other stepping.
@@ -173,6 +173,41 @@ fn a_calm_motion_is_verified_while_it_is_played() {
             );
         }
     }
+}
+
+/// A preliminary plan is followed from its report on. Its final horizon is about the same method,
+/// although a start of that method in the tick of the final result would come too late. Here that
+/// tick is at about 46 s, so that the start would catch up at 92 s, after the horizon of 76 s.
+#[test]
+fn final_result_is_about_the_plan_that_is_followed() {
+    let settings = Settings {
+        degrees: [81.0, 64.0],
+        ..Settings::equal_rods(0.17, 0.0)
+    };
+    let initial = Stepping {
+        method: Method::Rk4F32Direction,
+        steps: 4,
+    };
+    let mut planner = Planner::new(CORTEX_M0PLUS);
+    planner.start(&settings, Some(HEIGHT), Some(initial), false);
+
+    // The results, each with its tick.
+    let results: Vec<_> = (1..60 * PATIENCE)
+        .filter_map(|tick| Some((tick, planner.tick()?.ok()?)))
+        .take(2)
+        .collect();
+    let [(early, preliminary), (late, last)] = results[..] else {
+        panic!("{results:?}")
+    };
+    assert_eq!(preliminary.stepping(), last.stepping(), "{results:?}");
+    assert!(last.horizon > PLANNED && planner.horizon(last.stepping()) == last.horizon);
+
+    // Only the tick of the first report is in time.
+    let arrival = |tick| CatchingUp::arrival(last.stepping(), &CORTEX_M0PLUS, tick);
+    assert!(
+        arrival(early) < last.horizon && last.horizon < arrival(late),
+        "{results:?}"
+    );
 }
 
 /// Settings with a mass ratio of NaN have one result in all ticks: the error.
