@@ -55,6 +55,8 @@ enum MotionState {
     /// The planned motion catches up with the current one, and then takes over. Meanwhile nothing
     /// is planned.
     Switching(CatchingUp),
+    /// The horizon of the last plan, s, is past. The motion keeps its method, which resolves it.
+    PastHorizon { horizon: f32 },
     /// The motion cannot be computed. It is too fast for every method that a frame can pay for, or
     /// has left the finite numbers.
     Stopped,
@@ -226,6 +228,8 @@ impl<'a> Player<'a> {
             } else if let Some(found) = self.planner.tick() {
                 tell(PlannerEvent::Found(found));
                 self.follow(&found);
+            } else if let Some(stepping) = self.leave_plan() {
+                tell(PlannerEvent::Shown(stepping, self.cost(stepping)));
             }
         }
     }
@@ -255,6 +259,28 @@ impl<'a> Player<'a> {
         if let Ok(next) = CatchingUp::new(&self.settings, planned, processor) {
             self.motion = MotionState::Switching(next);
         }
+    }
+
+    /// Stops following the plan when planning has ended and the horizon is past. If the steps of
+    /// the plan do not resolve the motion, it would then visibly gain or lose energy. So it
+    /// continues by other steps, which are returned.
+    fn leave_plan(&mut self) -> Option<Stepping> {
+        if !matches!(self.motion, MotionState::FollowsPlan) || !self.planner.is_settled() {
+            return None;
+        }
+        let simulation = self.scene.planned()?;
+        let stepping = simulation.motion.stepping();
+        let horizon = self.planner.horizon(stepping);
+        if simulation.time() <= horizon {
+            return None;
+        }
+
+        self.motion = MotionState::PastHorizon {
+            horizon: horizon as f32,
+        };
+        let next = self.planner.resolving(stepping)?;
+        let continued = simulation.continue_by(&self.settings, next);
+        continued.is_ok().then_some(next)
     }
 
     /// Performs a piece of the next tick's planning in advance. Returns true if it did, so that
@@ -296,7 +322,10 @@ impl<'a> Player<'a> {
             return report;
         };
 
-        let verified = self.planner.horizon(stepping) as f32;
+        let verified = match self.motion {
+            MotionState::PastHorizon { horizon } => horizon,
+            _ => self.planner.horizon(stepping) as f32,
+        };
         let horizon = if self.planner.is_settled() && !self.is_switching() {
             Horizon::Until(verified)
         } else if verified >= report.time as f32 {

@@ -23,6 +23,9 @@ pub struct Simulation {
     pub energy: Energy,
     /// The motion. It is for reading only; [`tick`](Self::tick) advances it.
     pub motion: PlannedRun,
+    /// The frame of the scene in which `motion` began: 0, or that of
+    /// [`continue_by`](Self::continue_by).
+    first_frame: u64,
     /// True if no method that resolves the motion is within the budget of a frame. Then `motion` is
     /// only the pose at the start, and must not be advanced. It is never true with a requested
     /// method.
@@ -63,6 +66,7 @@ impl Simulation {
         Ok(Self {
             energy: Energy::new(settings)?,
             motion: settings.run(0.0, stepping)?,
+            first_frame: 0,
             is_too_fast: initial.is_none(),
         })
     }
@@ -74,6 +78,33 @@ impl Simulation {
     pub fn tick(&mut self) {
         // A motion that has diverged is detected by its state.
         let _is_lost = self.motion.advance(1);
+    }
+
+    /// Returns the number of frames, 1/60 s each, since the start of the scene.
+    pub fn frame(&self) -> u64 {
+        self.first_frame + self.motion.frame()
+    }
+
+    /// Returns the time since the start of the scene, s.
+    pub fn time(&self) -> f64 {
+        self.frame() as f64 / f64::from(TICK_RATE)
+    }
+
+    /// Continues from the present state by another method and step count. `settings` must be those
+    /// of the start, which is not checked.
+    ///
+    /// # Errors
+    ///
+    /// Refuses what [`PlannedRun::new`] refuses, also the state of a motion that has diverged. Then
+    /// nothing is changed.
+    pub fn continue_by(&mut self, settings: &Settings, stepping: Stepping) -> Result<(), Error> {
+        let mut problem = settings.problem(HEIGHT as f32);
+        problem.start = self.energy.pendulum.to_motion(&self.motion.state());
+        let motion = PlannedRun::new(&problem, stepping)?;
+
+        self.first_frame = self.frame();
+        self.motion = motion;
+        Ok(())
     }
 }
 

@@ -83,7 +83,7 @@ impl Beats {
             Spot::at(x + self.scale * across, y - self.scale * (a2 - across))
         };
         let [left, right] = MIDDLES;
-        let linear = self.linear.at(self.simulation.motion.time()).angles();
+        let linear = self.linear.at(self.simulation.time()).angles();
         [spot(left, linear), spot(right, self.exact)]
     }
 }

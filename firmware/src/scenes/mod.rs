@@ -133,7 +133,7 @@ impl Report {
             state: motion.rounded_state(),
             energy_error: simulation.energy.error(motion),
             stepping: Some(motion.stepping()),
-            ..Self::at(motion.frame())
+            ..Self::at(simulation.frame())
         }
     }
 }
