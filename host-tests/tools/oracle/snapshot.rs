@@ -51,7 +51,18 @@ pub fn check(name: &str, picture: &str) -> Result<(), String> {
         )
     })?;
 
-    // The differing rows are shown one above the other.
+    differing_rows(&committed, picture).map_or(Ok(()), |rows| {
+        Err(format!(
+            "{name} differs from {}; accept by {BLESS}=1\n{rows}",
+            path.display()
+        ))
+    })
+}
+
+/// Returns the rows that differ, each with the old one above the new one, or `None` if both
+/// pictures are the same, byte by byte. The text is empty if only the numbers of rows or the ends
+/// of lines differ.
+fn differing_rows(committed: &str, picture: &str) -> Option<String> {
     let differs = |(row, (old, new)): (usize, (&str, &str))| {
         (old != new).then(|| format!("row {row}\n  was |{old}|\n  is  |{new}|"))
     };
@@ -61,14 +72,7 @@ pub fn check(name: &str, picture: &str) -> Result<(), String> {
         .enumerate()
         .filter_map(differs)
         .collect();
-    if rows.is_empty() && committed.len() == picture.len() {
-        return Ok(());
-    }
-    Err(format!(
-        "{name} differs from {}; accept by {BLESS}=1\n{}",
-        path.display(),
-        rows.join("\n")
-    ))
+    (committed != picture).then(|| rows.join("\n"))
 }
 
 /// Compares `text` with a committed file; `file` is its path from the project's folder
@@ -104,4 +108,25 @@ pub fn check_lines(file: &str, text: &str) -> Result<(), String> {
         text.lines().count(),
         differing.join("\n")
     ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Pictures are the same only if every byte is: other ends of lines differ, also if the number
+    /// of bytes is the same.
+    #[test]
+    fn other_ends_of_lines_are_a_difference() {
+        assert_eq!(differing_rows("ab\ncd\n", "ab\ncd\n"), None);
+        for other in ["ab\r\ncd", "ab\ncd", "ab\r\ncd\r\n"] {
+            assert_eq!(
+                differing_rows("ab\ncd\n", other),
+                Some(String::new()),
+                "{other:?}"
+            );
+        }
+        let rows = differing_rows("ab\ncd\n", "ab\nce\n");
+        assert_eq!(rows.as_deref(), Some("row 1\n  was |cd|\n  is  |ce|"));
+    }
 }
