@@ -119,8 +119,9 @@ const MARKS: [&str; 2] = [
 
 /// Returns the price list of every method that a plan chooses from, on one board for each kind of
 /// core: a Cortex-M3, a Cortex-M4F and a Cortex-M0+, in this order. It builds the programs and runs
-/// them in QEMU. An error means that a program cannot be built, that QEMU fails, or that an
-/// instruction has no known timing.
+/// them in QEMU. An error means that a program cannot be built, that QEMU fails, that an
+/// instruction has no known timing, or that a counted frame does not call the function with a
+/// price.
 ///
 /// The costs are in cycles (estimated). `preparation` is per motion: the most expensive one when
 /// each method in turn is selected in the application. `fixed64` is per step: the most expensive
@@ -155,6 +156,11 @@ fn on(target: &Target, toolchain: &Toolchain) -> Result<Costs> {
     })
 }
 
+/// The function that makes 64-bit fixed-point steps.
+const STEP: &str = "Fixed64State::advance";
+/// The function that prepares a motion.
+const PREPARATION: &str = "PlannedRun::new";
+
 /// Returns the costs that only the application has: a 64-bit fixed-point step of the plans' order,
 /// and the most expensive preparation of a motion.
 fn in_application(board: &'static Board, toolchain: &Toolchain) -> Result<(f32, f32)> {
@@ -174,27 +180,30 @@ fn in_application(board: &'static Board, toolchain: &Toolchain) -> Result<(f32, 
     // The first frame includes the start of the program, so it is not counted.
     let mut machine = Machine::halted(&settings)?;
     machine.run_to_frame()?;
-    let step = BTreeSet::from([image.function("Fixed64State::advance")?.address]);
+    let step = BTreeSet::from([image.function(STEP)?.address]);
     let (_, steps) = next_frame(&mut machine, &image, board.core(), step)?;
+    let fixed64 = most(STEP, &steps.ended)?;
 
     // A motion is prepared whenever the method changes, so every method is selected once.
-    let preparation = image.function("PlannedRun::new")?.address;
+    let preparation = image.function(PREPARATION)?.address;
     let mut prepared: f32 = 0.0;
     for &method in Method::DRAWN {
         machine.send(1, Command::Method(Some(method)))?;
         let (_, calls) = machine.next_call_logged(preparation, |log| {
             costs_in(log, &image, board.core(), BTreeSet::from([preparation]))
         })?;
-        prepared = prepared.max(most(&calls));
+        prepared = prepared.max(most(PREPARATION, &calls.ended)?);
         machine.run_to_frame()?;
     }
-    Ok((most(&steps), prepared))
+    Ok((fixed64, prepared))
 }
 
-/// Returns the cycles of the most expensive call.
-fn most(calls: &Calls) -> f32 {
-    let cycles = calls.ended.iter().map(|call| call.cycles as f32);
-    cycles.fold(0.0, f32::max)
+/// Returns the cycles of the most expensive of these calls of `function`. It is an error if there
+/// is none, because the price would be 0.
+fn most(function: &str, calls: &[Cost]) -> Result<f32> {
+    let most = calls.iter().map(|call| call.cycles).max();
+    most.map(|cycles| cycles as f32)
+        .with_context(|| format!("{function} was not called in the counted frame: no price"))
 }
 
 /// Writes the price lists into the kernel's source, `kernel/src/plan/prices.rs`, in place of the
@@ -238,6 +247,20 @@ fn list(board: &Board, costs: &Costs) -> String {
 mod tests {
     use super::*;
     use emulator::boards::BOARDS;
+
+    /// The price of a function is that of its most expensive call. Without a call there is no
+    /// price, and the error names the function.
+    #[test]
+    fn a_function_that_was_not_called_has_no_price() -> Result<()> {
+        let call = |cycles| Cost {
+            cycles,
+            ..Cost::default()
+        };
+        assert_eq!(most(STEP, &[call(3), call(5), call(4)])?, 5.0);
+        let error = most(STEP, &[]).expect_err("no call").to_string();
+        assert!(error.contains(STEP), "{error}");
+        Ok(())
+    }
 
     /// The file with its own prices written again is the same file, in the format of rustfmt.
     #[test]
