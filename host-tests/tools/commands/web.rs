@@ -1,11 +1,11 @@
 //! `cargo web`: the application as a page for a browser, in one file that needs no network.
 
 use std::fs;
-use std::path::{Path, PathBuf, absolute};
+use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::time::Duration;
 
-use anyhow::ensure;
+use anyhow::{bail, ensure};
 use clap::Parser;
 use double_pendulum::Method;
 use firmware::config::{CORTEX_M0PLUS, CORTEX_M3, CORTEX_M4F, MASS_RATIOS, Processor, TICK_RATE};
@@ -63,9 +63,9 @@ pub struct WebOptions {
 ///
 /// If the picture cannot be written or a program is missing, this is [`Refused`] before the build,
 /// and no file is changed; a missing Chromium is installed first. Other errors before the page is
-/// written are those of [`write_page`]. After that, an error means that Chromium fails or takes
-/// longer than 120 s, or that the browser cannot be started; the page remains. The browser is not
-/// waited for.
+/// written are those of [`write_page`]. After that, an error means that Chromium fails, writes no
+/// picture or takes longer than 120 s, that the picture's file cannot be written, or that the
+/// browser cannot be started; the page remains. The browser is not waited for.
 pub fn run(options: &WebOptions) -> anyhow::Result<()> {
     // Refuse before the build.
     let picture = options.picture.as_deref();
@@ -154,18 +154,61 @@ fn facts() -> Value {
     })
 }
 
-/// Saves a picture of the page some seconds after its start.
+/// Saves a picture of the page some seconds after its start. If Chromium fails or writes none, an
+/// existing file remains unchanged.
 fn take_picture(chromium: &Path, page: &Path, picture: &Path) -> anyhow::Result<()> {
     let folder = tempfile::tempdir()?;
     let timed = folder.path().join(FILE);
+    let taken = folder.path().join("picture.png");
     fs::write(&timed, format!("{CLOCK}{}", fs::read_to_string(page)?))?;
     let mut chromium = Command::new(chromium);
     chromium
         .args(HEADLESS.split(' ').chain(PICTURE.split(' ')))
         .arg(format!("--user-data-dir={}", folder.path().display()))
-        .arg(format!("--screenshot={}", absolute(picture)?.display()))
+        .arg(format!("--screenshot={}", taken.display()))
         .arg(timed);
     let output = process::run(&mut chromium, PICTURE_LIMIT)?;
     ensure!(output.status.success(), "Chromium: {}", output.stderr);
-    Ok(())
+
+    // Chromium can also end with success without a picture.
+    let Ok(bytes) = fs::read(&taken) else {
+        bail!("Chromium wrote no picture: {}", output.stderr);
+    };
+    OutFile::create("--picture", picture)?.write_whole(&bytes)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::fs::Permissions;
+    use std::os::unix::fs::PermissionsExt;
+
+    use super::*;
+
+    /// A fake of Chromium that writes a picture.
+    const WRITES: &str = "#!/bin/sh
+for option; do
+    case $option in --screenshot=*) printf new > \"${option#*=}\" ;; esac
+done
+";
+
+    /// A program that ends with success but writes no picture is an error, and an existing file
+    /// remains unchanged. A picture that was written replaces it.
+    #[test]
+    fn a_picture_that_was_not_written_is_an_error() -> anyhow::Result<()> {
+        let folder = tempfile::tempdir()?;
+        let [page, picture] = ["page.html", "picture.png"].map(|name| folder.path().join(name));
+        fs::write(&page, "")?;
+        fs::write(&picture, "old")?;
+        let taken = take_picture(Path::new("true"), &page, &picture);
+        let error = taken.expect_err("no picture").to_string();
+        assert!(error.contains("wrote no picture"), "{error}");
+        assert_eq!(fs::read(&picture)?, b"old");
+
+        let chromium = folder.path().join("chromium");
+        fs::write(&chromium, WRITES)?;
+        fs::set_permissions(&chromium, Permissions::from_mode(0o755))?;
+        take_picture(&chromium, &page, &picture)?;
+        assert_eq!(fs::read(&picture)?, b"new");
+        Ok(())
+    }
 }
