@@ -9,7 +9,7 @@ use std::io::{self, BufRead, BufReader, Read};
 use std::thread::sleep;
 use std::time::Duration;
 
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, ensure};
 
 use crate::Core;
 use crate::image::Image;
@@ -136,6 +136,7 @@ pub struct Calls<'a> {
 #[derive(Debug)]
 pub struct Stream<'a> {
     image: &'a Image,
+    core: Core,
     pipeline: Pipeline,
     /// The registers before the instruction that is about to be executed.
     before: Option<Registers>,
@@ -146,6 +147,7 @@ impl<'a> Stream<'a> {
     pub fn of(image: &'a Image, core: Core) -> Self {
         Self {
             image,
+            core,
             pipeline: Pipeline::new(core),
             before: None,
         }
@@ -153,14 +155,20 @@ impl<'a> Stream<'a> {
 
     /// Takes the registers before the next instruction. Returns the address, the instruction and
     /// the cost of the previous instruction, or `None` at the first call. It is an error if the
-    /// previous instruction is not in the program or has no known timing; a further call continues
-    /// after it. Not checked: that the core has the instruction; otherwise its cycles have no
-    /// meaning, or this may panic ([`Pipeline::execute`]).
+    /// previous instruction is not in the program, has no known timing, or is missing on the core
+    /// ([`Instruction::is_missing_on`]); a further call continues after it.
     pub fn see(&mut self, next: Registers) -> Result<Option<(u32, Instruction, Cost)>> {
         let Some(before) = self.before.replace(next) else {
             return Ok(None);
         };
         let instruction = self.image.instruction_at(before.pc())?;
+        ensure!(
+            !instruction.is_missing_on(self.core),
+            "{} at {:#x} is no instruction of a {}; choose another core",
+            instruction.row.name,
+            before.pc(),
+            self.core.name()
+        );
         let branches = next.pc() != before.pc() + instruction.size();
         Ok(Some((
             before.pc(),
@@ -190,9 +198,9 @@ impl<'a> Calls<'a> {
     /// Takes the registers before the next instruction. A call begins at an entry, unless another
     /// call is running. It ends at the caller's return address if the stack pointer is as at the
     /// entry; that instruction does not begin a call, even at an entry. An interrupt handler does
-    /// not return like this, so its call never ends. Errors and panics are as in [`Stream::see`],
-    /// during a call only. After an error the call is still running, without the instruction that
-    /// failed, and these registers do not end it.
+    /// not return like this, so its call never ends. Errors are as in [`Stream::see`], during a
+    /// call only. After an error the call is still running, without the instruction that failed,
+    /// and these registers do not end it.
     pub fn see(&mut self, registers: Registers) -> Result<()> {
         if self.running.is_none() && self.entries.contains(&registers.pc()) {
             self.running = Some((

@@ -84,6 +84,12 @@ const ENDS: &str = "ldr r1, =0x20026";
 const FAILS: &str = "ldr r1, =0x020023";
 const WAITS: &str = "b wait";
 const NEEDS_FLOATS: &str = ".inst.w 0xee300a00 @ vadd.f32 s0, s0, s0";
+/// A call of a function that loads a floating-point register right after another load.
+const LOADS_FLOATS: &str = "bl floats
+b wait
+floats: ldr r0, [sp]
+.inst.w 0xed9d0a00 @ vldr s0, [sp]
+bx lr";
 
 /// Runs `cargo count` for a function of a program on the first board.
 fn count(elf: &Path, function: &str, more: &[&str]) -> Output {
@@ -170,8 +176,8 @@ fn a_function_that_cannot_be_counted_is_an_error_of_one_line() -> anyhow::Result
     let measure = toolchain().build("measure", BOARDS[0].target)?;
     let host = Path::new(env!("CARGO_BIN_EXE_host-tests"));
     let folder = tempfile::tempdir()?;
-    let [ends, fails, floats] =
-        [ENDS, FAILS, NEEDS_FLOATS].map(|last| program(folder.path(), "0x0", last));
+    let [ends, fails, floats, loads] =
+        [ENDS, FAILS, NEEDS_FLOATS, LOADS_FLOATS].map(|last| program(folder.path(), "0x0", last));
     let elsewhere = program(folder.path(), "0x8000000", ENDS);
 
     // A file, a function in it, the reason of the error, and the exit code.
@@ -220,6 +226,12 @@ fn a_function_that_cannot_be_counted_is_an_error_of_one_line() -> anyhow::Result
             &floats,
             "never",
             "never was never called: vadd, vsub at ",
+            2,
+        ),
+        (
+            &loads,
+            "floats",
+            " is no instruction of a Cortex-M3; choose another core",
             2,
         ),
     ] {
