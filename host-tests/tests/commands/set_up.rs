@@ -129,6 +129,22 @@ fn a_good_qemu_of_the_system_is_used() {
     assert!(!system.path("log").exists(), "apt-get was called");
 }
 
+/// A QEMU in a relative folder of `PATH` is found, and named by its absolute path, because it runs
+/// in another folder.
+#[test]
+fn a_qemu_in_a_relative_folder_of_path_has_an_absolute_path() {
+    let system = System::new(GOOD_QEMU, GOOD_NODE);
+    let rest = std::env::var_os("PATH").unwrap_or_default();
+    let path = std::iter::once("bin".into()).chain(std::env::split_paths(&rest));
+    let mut setup = system.setup(&[]);
+    setup
+        .env("PATH", std::env::join_paths(path).expect("a path"))
+        .current_dir(system.folder.path());
+    let result = output(&mut setup);
+    let line = format!("QEMU: {}\n", system.path("bin/qemu-system-arm").display());
+    assert!(result.stdout.contains(&line), "{result:?}");
+}
+
 /// Node.js is too old. Without a terminal the set-up has exit code 2, one error with the remedy,
 /// and installs nothing. With `--yes` root installs nodejs and npm.
 #[test]

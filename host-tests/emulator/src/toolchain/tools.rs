@@ -1,7 +1,7 @@
 //! The search for each tool, and the ways to provide it.
 
 use std::os::unix::fs::PermissionsExt;
-use std::path::{Path, PathBuf};
+use std::path::{Path, PathBuf, absolute};
 use std::process::Command;
 use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
@@ -301,10 +301,12 @@ fn judged_once(path: &Path) -> Result<(), String> {
 }
 
 /// Returns the program that the shell would run for this name, or `None` if no folder of `PATH` has
-/// it or `PATH` is not set. A file that nobody may execute is passed over. The path is relative if
-/// that folder is. Not checked: that the name has no slash, for which the shell would not search.
+/// it or `PATH` is not set. A file that nobody may execute is passed over. The path is absolute,
+/// also if that folder is relative. Not checked: that the name has no slash, for which the shell
+/// would not search.
 pub fn find(program: &str) -> Option<PathBuf> {
-    env::split_paths(&env::var_os("PATH")?).find_map(|folder| executable(folder.join(program)))
+    env::split_paths(&env::var_os("PATH")?)
+        .find_map(|folder| executable(absolute(folder.join(program)).ok()?))
 }
 
 /// Returns the path if it is a file that may be executed.
