@@ -157,3 +157,37 @@ fn received_bytes_that_are_lost_are_counted() -> anyhow::Result<()> {
     }
     Ok(())
 }
+
+/// Returns the processor time of this thread.
+#[cfg(target_os = "linux")]
+fn processor_time() -> anyhow::Result<Duration> {
+    let text = std::fs::read_to_string("/proc/thread-self/schedstat")?;
+    let time = text.split(' ').next().unwrap_or_default();
+    Ok(Duration::from_nanos(time.parse()?))
+}
+
+/// A host that does not read the link waits for a message until QEMU's time limit, and uses hardly
+/// any processor time meanwhile, although the link has unread bytes.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_host_that_does_not_read_waits_without_processor_time() -> anyhow::Result<()> {
+    let limit = Duration::from_secs(5);
+    let mut machine = on(BOARD, |settings| {
+        Machine::start(&Settings {
+            clock: Clock::Real,
+            limit,
+            ..*settings
+        })
+    })?;
+    machine.next_frame()?;
+    machine.listens = false;
+    let start = Instant::now();
+    let before = processor_time()?;
+    while machine.next_frame().is_ok() {}
+
+    let used = processor_time()? - before;
+    let waited = start.elapsed();
+    assert!(waited > limit / 2, "{waited:?}");
+    assert!(used < waited / 10, "{used:?} of {waited:?}");
+    Ok(())
+}

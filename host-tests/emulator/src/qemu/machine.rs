@@ -250,9 +250,11 @@ impl Machine {
                 return Ok(found);
             }
             taken?;
-            let channels =
-                [&self.monitor, &self.debugger, &self.serial].map(|channel| &channel.stream);
-            stream::wait(channels.into_iter().chain(&self.log));
+
+            // Unread bytes of a link that is not read must not end the wait.
+            let serial = self.listens.then_some(&self.serial.stream);
+            let channels = [&self.monitor.stream, &self.debugger.stream];
+            stream::wait(channels.into_iter().chain(&self.log).chain(serial));
         }
     }
 
