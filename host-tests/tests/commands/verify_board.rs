@@ -7,7 +7,7 @@ use std::sync::mpsc::{Receiver, channel};
 use std::thread::spawn;
 use std::time::{Duration, Instant};
 
-use super::cli::program;
+use super::cli::{output, program};
 use crate::support::LIMIT;
 use crate::support::bench::{BOARD, Bench, at_port, wire};
 use emulator::boards::BOARDS;
@@ -86,6 +86,39 @@ fn a_board_with_the_hosts_bits_is_verified_and_reported() {
         (2 * ON_BOARDS.len(), SceneName::ALL.len()),
         "{markdown}"
     );
+}
+
+/// A report that cannot be written is refused before the port is opened.
+#[test]
+fn a_report_that_cannot_be_written_is_refused_at_the_start() {
+    let mut command = program("verify-board");
+    command.args(["--port", "/nowhere/port", "--report", "/nowhere/report"]);
+    let output = output(&mut command);
+    assert_eq!(output.status.code(), Some(2), "{output:?}");
+    let error = "error: --report: cannot write /nowhere/report.md: ";
+    assert!(output.stderr.starts_with(error), "{output:?}");
+}
+
+/// Missing tools are refused before the board has computed anything.
+#[test]
+fn missing_tools_are_refused_before_the_measurements() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut command = program("verify-board");
+    command
+        .args(["--no-questions", "--report"])
+        .arg(folder.path().join("report"))
+        .env("PATH", folder.path())
+        .env("CARGO_TARGET_DIR", folder.path());
+    let mut samples = 0;
+    let output = at_port(&mut Bench::new(), &mut command, |bench| {
+        bench.carry(|message| {
+            samples += u32::from(matches!(message, ToHost::Answer(_, Answer::Sample { .. })));
+            wire(message)
+        })
+    });
+    assert_eq!(output.status.code(), Some(2), "{output:?}");
+    assert!(output.stderr.contains(" is missing: "), "{output:?}");
+    assert_eq!(samples, 0, "{output:?}");
 }
 
 /// The time after which a button without an effect is released.

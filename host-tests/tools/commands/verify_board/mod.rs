@@ -21,6 +21,7 @@ use console::progress::Progress;
 use emulator::boards::{Board, every_board};
 use emulator::flash::{ERASED, flash_image_over};
 use emulator::link;
+use emulator::out_file::{OutFile, check_writable};
 use emulator::process;
 use emulator::toolchain::{self, QUICK, workspace};
 use talk::Talk;
@@ -84,11 +85,15 @@ fn verdict(difference: Option<String>) -> String {
 /// replaced by `md`. Prints the faults to stderr and the result to stdout. Returns true if there
 /// was no fault. Another program in flash than this workspace builds is reported, but is no fault.
 ///
-/// A port that cannot be opened is refused. So are missing tools, but only after all measurements
-/// and questions. Another error means that the board does not answer within 20 s or refuses a
-/// request, that a build or QEMU fails, or that the report cannot be written, which is not checked
-/// before the end. After any of these errors there is no new report.
+/// Before the measurements, a report that cannot be written, a port that cannot be opened, and
+/// missing tools for a board that this project knows are refused, in this order. Another error
+/// means that the board does not send what is awaited within 20 s or refuses a request, that a
+/// build or QEMU fails, or that the report can no longer be written. After any of these errors
+/// there is no new report, and an existing one remains.
 pub fn run(options: &VerifyOptions) -> anyhow::Result<bool> {
+    // Refuse before the measurements.
+    let path = options.report.with_extension("md");
+    check_writable("--report", &path)?;
     let mut talk = Talk::new(demo::port(&options.port)?)?;
     let identity = talk.ask(protocol::Command::Identify, |answer| {
         if let Answer::Identity(identity) = answer {
@@ -99,6 +104,10 @@ pub fn run(options: &VerifyOptions) -> anyhow::Result<bool> {
     })?;
     let name = identity.board.name();
     let board = every_board().find(|board| board.name == name);
+    // The tools build the board's program, after the measurements.
+    if board.is_some() {
+        toolchain::ready()?;
+    }
 
     let progress = Progress::start(&format!("verifying {name} at {}", talk.port.name));
     let methods = compare::methods(&mut talk)?;
@@ -165,8 +174,7 @@ pub fn run(options: &VerifyOptions) -> anyhow::Result<bool> {
     );
 
     // The faults go to stderr, the verdict to stdout.
-    let path = options.report.with_extension("md");
-    fs::write(&path, text).with_context(|| path.display().to_string())?;
+    OutFile::create("--report", &path)?.write_whole(text.as_bytes())?;
     faults
         .iter()
         .for_each(|fault| complain(format_args!("problem: {fault}")));
