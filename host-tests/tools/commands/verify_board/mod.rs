@@ -83,7 +83,8 @@ fn verdict(difference: Option<String>) -> String {
 /// Verifies the board, which takes minutes, asks the person at it unless `no_questions` is set, and
 /// writes the report over an existing file, also if there are faults. The extension of its name is
 /// replaced by `md`. Prints the faults to stderr and the result to stdout. Returns true if there
-/// was no fault. Another program in flash than this workspace builds is reported, but is no fault.
+/// was no fault, and false if there was one, even if the result cannot be printed. Another program
+/// in flash than this workspace builds is reported, but is no fault.
 ///
 /// Before the measurements, a report that cannot be written, a port that cannot be opened, and
 /// missing tools for a board that this project knows are refused, in this order. Another error
@@ -179,10 +180,15 @@ pub fn run(options: &VerifyOptions) -> anyhow::Result<bool> {
         .iter()
         .for_each(|fault| complain(format_args!("problem: {fault}")));
     let panel = panel.map_or(String::new(), |panel| format!("panel: {panel}\n"));
-    say(format_args!(
+    let said = say(format_args!(
         "{headline}\n{panel}report: {}",
         path.display()
-    ))?;
+    ));
+
+    // Faults decide the exit code, also if nobody reads stdout.
+    if faults.is_empty() {
+        said?;
+    }
     Ok(faults.is_empty())
 }
 
