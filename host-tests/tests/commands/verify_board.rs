@@ -121,6 +121,31 @@ fn missing_tools_are_refused_before_the_measurements() {
     assert_eq!(samples, 0, "{output:?}");
 }
 
+/// A board answers, but sends no frames of a scene: after 20 s that is an error.
+#[test]
+fn a_board_that_only_answers_is_an_error() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut command = program("verify-board");
+    command
+        .args(["--no-questions", "--report"])
+        .arg(folder.path().join("report"));
+    let output = at_port(&mut Bench::new(), &mut command, |bench| {
+        bench.carry(|message| {
+            let is_lost = message
+                .frame()
+                .is_some_and(|frame| frame.scene == SceneName::ALL[1]);
+            wire(if is_lost {
+                ToHost::Answer(0, Answer::Done)
+            } else {
+                message
+            })
+        })
+    });
+    assert_eq!(output.status.code(), Some(1), "{output:?}");
+    let error = ": the board answers but sends no frames for 20 s; flash it again";
+    assert!(output.stderr.trim_end().ends_with(error), "{output:?}");
+}
+
 /// The time after which a button without an effect is released.
 const PATIENCE: Duration = Duration::from_secs(10);
 

@@ -240,8 +240,8 @@ const PATIENCE: usize = 10 * FRAMES as usize;
 /// that by this clock took longer than the whole run; 0 Hz counts as 1 Hz. Dropped frames are no
 /// fault.
 ///
-/// An error means that the board is silent for 20 s, refuses a command, sends 600 frames of other
-/// scenes instead of the chosen one, or that fewer than 60 of 600 frames of a scene can be
+/// An error means that the board sends no frame for 20 s, refuses a command, sends 600 frames of
+/// other scenes instead of the chosen one, or that fewer than 60 of 600 frames of a scene can be
 /// compared.
 pub fn scenes(talk: &mut Talk, hertz: u32) -> anyhow::Result<Section> {
     let columns = &[
@@ -272,25 +272,23 @@ fn play(talk: &mut Talk, name: SceneName, hertz: u32, section: &mut Section) -> 
     let mut of_others = 0;
 
     while compared < FRAMES && comparison.difference().is_none() {
-        // The frames of this scene, and the answers about its settings.
-        let frame = match talk.next(Some)? {
-            ToHost::Frame(frame) if frame.scene == name => frame,
-            ToHost::Frame(frame) => {
-                of_others += 1;
-                ensure!(
-                    of_others < PATIENCE,
-                    "{}: the board still shows {} after {of_others} frames",
-                    name.name(),
-                    frame.scene.name()
-                );
-                continue;
-            }
-            ToHost::Answer(_, Answer::Status(status)) => {
+        // The next frame, and the answers about the settings before it.
+        let frame = talk.next(|message| {
+            if let ToHost::Answer(_, Answer::Status(status)) = message {
                 comparison.status(&status);
-                continue;
             }
-            _ => continue,
-        };
+            message.frame()
+        })?;
+        if frame.scene != name {
+            of_others += 1;
+            ensure!(
+                of_others < PATIENCE,
+                "{}: the board still shows {} after {of_others} frames",
+                name.name(),
+                frame.scene.name()
+            );
+            continue;
+        }
         frames.push(frame);
         ensure!(
             frames.len() < PATIENCE,

@@ -47,14 +47,11 @@ impl Talk {
     /// if others do; that error is the latest notice of the port, if there is one. All other
     /// notices are dropped, also if the call succeeds. A refusal of any request by the board is an
     /// error, too, even if `kind` would accept it. After an error the conversation can continue.
-    pub fn next<M>(&mut self, kind: impl Fn(ToHost) -> Option<M>) -> anyhow::Result<M> {
+    pub fn next<M>(&mut self, mut kind: impl FnMut(ToHost) -> Option<M>) -> anyhow::Result<M> {
         let since = Instant::now();
         let mut notice = None;
-        let mut silence = format!(
-            "{}: no message for {} s; is the board powered and connected?",
-            self.port.name,
-            PATIENCE.as_secs()
-        );
+        let mut has_answered = false;
+        let mut has_drawn = false;
         while since.elapsed() < PATIENCE {
             // The messages that have arrived, one by one.
             for message in self.arrived.by_ref() {
@@ -64,10 +61,8 @@ impl Talk {
                 if let Some(wanted) = kind(message) {
                     return Ok(wanted);
                 }
-                silence = format!(
-                    "{}: the board sends frames but does not answer; flash it again",
-                    self.port.name
-                );
+                has_drawn |= message.frame().is_some();
+                has_answered |= message.answer().is_some();
             }
 
             // More messages, and the notices of the port. The latest notice explains a silence
@@ -76,7 +71,18 @@ impl Talk {
             notice = self.port.notices.drain(..).next_back().or(notice);
             sleep(LOOK);
         }
-        bail!(notice.unwrap_or(silence))
+        // The reason, by the messages that have arrived.
+        let name = &self.port.name;
+        let seconds = PATIENCE.as_secs();
+        bail!(notice.unwrap_or_else(|| match (has_drawn, has_answered) {
+            (true, _) =>
+                format!("{name}: the board sends frames but does not answer; flash it again"),
+            (false, true) => format!(
+                "{name}: the board answers but sends no frames for {seconds} s; flash it again"
+            ),
+            (false, false) =>
+                format!("{name}: no message for {seconds} s; is the board powered and connected?"),
+        }))
     }
 
     /// Returns the next frame and drops the other messages before it. Errors are as in
