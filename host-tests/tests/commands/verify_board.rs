@@ -15,7 +15,7 @@ use emulator::process;
 use firmware::app::Key;
 use firmware::display::{BusFault, PanelState};
 use firmware::job::ON_BOARDS;
-use firmware::protocol::{Answer, ToHost};
+use firmware::protocol::{Answer, Cause, Restarted, ToHost};
 use firmware::scenes::SceneName;
 
 /// The cells of a method without a cycle count.
@@ -67,6 +67,7 @@ fn a_board_with_the_hosts_bits_is_verified_and_reported() {
 
     // The board's report of restarts, and the checks for its owner.
     for row in [
+        "| restarts during the comparison | 0 |",
         "| restarts during this verification | 0 |",
         "| last unplanned restart | none since power-on |",
         "| a night's run | (fill in) |",
@@ -171,13 +172,25 @@ fn person(question: &str) -> Option<(Option<Key>, Option<&'static str>)> {
 /// 50 MHz.
 const OVERLONG: u32 = 0_u32.wrapping_sub(750_000);
 
+/// A restart that the board reports.
+const HANG: Restarted = Restarted {
+    cause: Some(Cause::Hang),
+    scene: SceneName::Upright,
+    step: 20,
+    restarts: 1,
+    pc: 0,
+    lr: 0,
+    cfsr: 0,
+};
+
 /// Changes the messages of an emulated board into the messages of a chip with a cycle counter. No
 /// emulated board has such a counter.
 ///
 /// The chip counts 100 cycles for a step of the second arithmetic from flash, 50 from RAM, and none
 /// for the others. An arithmetic without a count is measured once for each place, and the others
 /// until 256 steps are made. One bit is flipped in the second motion of the second arithmetic, and
-/// one in a scene. In another scene a frame takes longer than the run.
+/// one in a scene. In another scene a frame takes longer than the run, and the board reports a
+/// restart after it.
 fn counting(mut message: ToHost, measurements: &mut u32) -> Vec<u8> {
     match &mut message {
         ToHost::Answer(_, Answer::Measured { steps, cycles }) => {
@@ -200,6 +213,7 @@ fn counting(mut message: ToHost, measurements: &mut u32) -> Vec<u8> {
         }
         ToHost::Frame(frame) if frame.scene == SceneName::Upright && frame.report.step == 20 => {
             frame.busy_cycles = OVERLONG;
+            return [wire(message), wire(ToHost::Restarted(HANG))].concat();
         }
         _ => {}
     }
@@ -207,9 +221,9 @@ fn counting(mut message: ToHost, measurements: &mut u32) -> Vec<u8> {
 }
 
 /// The messages of an emulated board are changed as [`counting`] says, and the questions are
-/// answered as [`person`] says. The exit code is 1, although nobody reads stdout, and there are five
-/// problems: two flipped bits, a frame that is too long, the panel and a button. The report has the
-/// answers, and the counted cycles next to the estimate.
+/// answered as [`person`] says. The exit code is 1, although nobody reads stdout, and there are six
+/// problems: two flipped bits, a frame that is too long, a restart, the panel and a button. The
+/// report has the answers, and the counted cycles next to the estimate.
 #[test]
 fn the_report_has_differences_answers_of_the_person_and_counted_cycles() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -294,9 +308,21 @@ fn the_report_has_differences_answers_of_the_person_and_counted_cycles() {
         "no {too_long:?} in {said:#?}"
     );
 
+    // The restart is reported when it happens, and is a problem.
+    let restart = "the board has restarted after a hang in scene upright, step 20 (in a row: 1)";
+    assert!(said.iter().any(|line| line.ends_with(restart)), "{said:#?}");
+    assert!(
+        said.contains(&"problem: restarts during the comparison: 1".to_owned()),
+        "{said:#?}"
+    );
+    assert!(
+        markdown.contains("| restarts during the comparison | 1 |"),
+        "{markdown}"
+    );
+
     // In addition to the panel and a button.
     assert!(
-        markdown.contains("problems: 5") && markdown.contains("step 160: w2 is 0x"),
+        markdown.contains("problems: 6") && markdown.contains("step 160: w2 is 0x"),
         "{markdown}"
     );
 

@@ -47,16 +47,20 @@ pub const CHECKS: &[Check] = &[
 /// A cell that the owner fills in.
 pub const BLANK: &str = "(fill in)";
 
-/// Returns the check list of the board `name`: the number of restarts that `port` has observed
-/// since it was first opened, the last unplanned restart, and a row for each manual check of this
-/// board, with [`BLANK`] as its result. The section never has a fault, also after an unplanned
-/// restart. A board that this project does not know has only the checks that every board needs.
+/// Returns the check list of the board `name`: the number of restarts during the comparison, which
+/// is `compared`, the number that `port` has observed since it was first opened, the last unplanned
+/// restart, and a row for each manual check of this board, with [`BLANK`] as its result. A restart
+/// during the comparison is a fault. A later one is not, because the person at the board may have
+/// caused it. A board that this project does not know has only the checks that every board needs.
 /// Nothing is sent.
-pub fn section(port: &Port, name: &str) -> Section {
+pub fn section(port: &Port, name: &str, compared: u32) -> Section {
     let note = "The board reports its restarts itself. Please fill in the other rows as the check \
                 list in `firmware/README.md` describes; leave rows that do not apply.";
     let mut section = Section::new("Check list", note, &["what", "found"]);
     // The observed restarts, then a row to fill in for each manual check.
+    let during = "restarts during the comparison";
+    let fault = (compared > 0).then(|| format!("{during}: {compared}"));
+    section.add(vec![during.to_owned(), compared.to_string()], fault);
     for (what, found) in restarts(port.restarts.count, port.restarts.last.as_ref()) {
         section.add(vec![what.to_owned(), found], None);
     }

@@ -82,9 +82,10 @@ fn verdict(difference: Option<String>) -> String {
 
 /// Verifies the board, which takes minutes, asks the person at it unless `no_questions` is set, and
 /// writes the report over an existing file, also if there are faults. The extension of its name is
-/// replaced by `md`. Prints the faults to stderr and the result to stdout. Returns true if there
-/// was no fault, and false if there was one, even if the result cannot be printed. Another program
-/// in flash than this workspace builds is reported, but is no fault.
+/// replaced by `md`. Prints the faults and the port's notices, such as a restart of the board, to
+/// stderr, and the result to stdout. Returns true if there was no fault, and false if there was
+/// one, even if the result cannot be printed. A restart before the questions is a fault. Another
+/// program in flash than this workspace builds is reported, but is no fault.
 ///
 /// Before the measurements, a report that cannot be written, a port that cannot be opened, and
 /// missing tools for a board that this project knows are refused, in this order. Another error
@@ -121,6 +122,7 @@ pub fn run(options: &VerifyOptions) -> anyhow::Result<bool> {
         }
     })?;
     let measured = compare::measured(&mut talk)?;
+    let restarts = talk.port.restarts.count;
     drop(progress);
 
     // The person is asked after the long measurements.
@@ -129,7 +131,7 @@ pub fn run(options: &VerifyOptions) -> anyhow::Result<bool> {
     } else {
         talk::ask_person(&mut talk, name)?
     };
-    let checks = check_list::section(&talk.port, name);
+    let checks = check_list::section(&talk.port, name, restarts);
 
     // All questions to the board come before the builds, because the board continues to send.
     let cycles = compare::cycles(&measured, board)?;

@@ -13,6 +13,7 @@ use firmware::scenes::SceneName;
 
 use super::Section;
 use console::cli::complain;
+use console::progress::complain_above;
 use emulator::link::{Port, refusal};
 
 /// The time limit of an answer. A board answers a command within a tick, and the slowest requested
@@ -24,7 +25,7 @@ const LOOK: Duration = Duration::from_millis(1);
 /// A conversation with the board at a port.
 pub struct Talk {
     /// The port, with its counts and the restarts of the board. Messages that are read from it
-    /// directly are lost to the conversation. Its notices are removed by [`Talk::next`].
+    /// directly are lost to the conversation. Its notices are printed by [`Talk::next`].
     pub port: Port,
     /// The messages that have arrived and are not yet examined.
     arrived: std::vec::IntoIter<ToHost>,
@@ -44,9 +45,9 @@ impl Talk {
 
     /// Returns the value of `kind` for the next message that it accepts. The messages before it are
     /// dropped; later ones are kept. It is an error if none arrives within 20 s of the call, also
-    /// if others do; that error is the latest notice of the port, if there is one. All other
-    /// notices are dropped, also if the call succeeds. A refusal of any request by the board is an
-    /// error, too, even if `kind` would accept it. After an error the conversation can continue.
+    /// if others do; that error is the latest notice of the port, if there is one. All notices are
+    /// printed to stderr when they come. A refusal of any request by the board is an error, too,
+    /// even if `kind` would accept it. After an error the conversation can continue.
     pub fn next<M>(&mut self, mut kind: impl FnMut(ToHost) -> Option<M>) -> anyhow::Result<M> {
         let since = Instant::now();
         let mut notice = None;
@@ -68,9 +69,13 @@ impl Talk {
             // More messages, and the notices of the port. The latest notice explains a silence
             // best.
             self.arrived = self.port.messages().into_iter();
-            notice = self.port.notices.drain(..).next_back().or(notice);
+            for new in self.port.notices.drain(..) {
+                complain_above(&new);
+                notice = Some(new);
+            }
             sleep(LOOK);
         }
+
         // The reason, by the messages that have arrived.
         let name = &self.port.name;
         let seconds = PATIENCE.as_secs();

@@ -1,6 +1,7 @@
 //! The progress of a command: a spinner or a bar on a terminal, elsewhere a plain line from time to
 //! time.
 
+use std::fmt::Display;
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
@@ -15,6 +16,17 @@ const REMINDER: u64 = 15;
 const TURN: Duration = Duration::from_millis(120);
 /// The number of characters of a child's last line that the spinner shows.
 const SHOWN: usize = 60;
+
+/// All pieces of work that are shown. Concurrent ones each have a line of their own.
+static BARS: OnceLock<MultiProgress> = OnceLock::new();
+
+/// Prints a line to standard error as [`complain`] does, above the progress that a terminal shows.
+pub fn complain_above(line: impl Display) {
+    match BARS.get() {
+        Some(bars) => bars.suspend(|| complain(line)),
+        None => complain(line),
+    }
+}
 
 /// Work in progress. It appears on standard error; several at once have a line each. A failure to
 /// print is ignored. Dropping it removes the bar or spinner; a plain line stays.
@@ -54,8 +66,6 @@ impl Progress {
     fn new(doing: &str, bar: ProgressBar, style: &str) -> Self {
         let style =
             ProgressStyle::with_template(style).unwrap_or_else(|_| ProgressStyle::default_bar());
-        // Concurrent pieces of work each have a line of their own.
-        static BARS: OnceLock<MultiProgress> = OnceLock::new();
         let bar = BARS.get_or_init(MultiProgress::new).add(bar);
         Self {
             bar: bar.with_style(style).with_prefix(doing.to_owned()),
