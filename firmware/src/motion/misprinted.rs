@@ -93,11 +93,14 @@ impl Misprinted {
     /// Advances by one tick of 1/60 s, in 2 to 8 steps that resolve the motion at both of their
     /// ends: no rod turns by more than 0.5 rad in the step, the elbow bends by at most
     /// 1/sqrt(1 + mu) rad, and the squared lengths of the directions are within 0.001 of 1. If no
-    /// step does, the motion is lost, and the tick ends early.
+    /// step does, the motion is lost, and the tick ends early. A lost motion does nothing.
     pub fn tick(&mut self) {
         let mut left = PARTS;
         let mut parts = PARTS / STEPS_PER_TICK;
         while left > 0 {
+            if self.is_lost {
+                return;
+            }
             // Try a step, and halve it until it resolves the motion at both ends.
             let z = rk4::step(|z| self.rates(z), &self.z, parts as f32 * PART);
             if self.is_resolved(&self.z, parts) && self.is_resolved(&z, parts) {
@@ -107,9 +110,6 @@ impl Misprinted {
                 parts /= 2;
             } else {
                 self.is_lost = true;
-            }
-            if self.is_lost {
-                return;
             }
         }
 
