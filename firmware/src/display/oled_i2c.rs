@@ -641,9 +641,15 @@ impl<Bus: PanelBus> Display for OledI2c<'_, Bus> {
     }
 
     /// Always returns true. From the next frame on the panel is searched for and set up again;
-    /// until that ends, the result of [`flush`](Display::flush) stays.
+    /// until that ends, the result of [`flush`](Display::flush) stays, except that
+    /// [`OledError::Slow`] becomes `Ok`. The frames are counted anew.
     fn choose(&mut self, chosen: Option<Controller>) -> bool {
         self.chosen = chosen;
+        if let Err(OledError::Slow { .. }) = self.result {
+            self.result = Ok(());
+        }
+        self.counted = Count::default();
+        self.counts = Count::default();
         // The next frame begins the search and the set-up.
         self.state = State::Absent { retry_in: 0 };
         true

@@ -588,6 +588,42 @@ fn a_bus_that_is_held_up_is_reported_once_a_second() {
     assert_eq!(second(false), (Ok(()), 60));
 }
 
+/// A choice of the controller on a slow bus begins a new search: until the panel has shown frames
+/// for a second again, the report neither calls it absent nor repeats the old counts, and no frame
+/// returns `Slow`.
+#[test]
+fn a_choice_on_a_slow_bus_forgets_the_counts() {
+    let mut panel = panel(Controller::new(SSD1306, 0x3C));
+    for number in 0..2 * TICK_RATE {
+        let _ = panel.flush(&scene(number));
+        if number % 2 == 1 {
+            panel.bus.run_tick();
+        }
+    }
+    let frame = scene(1);
+    assert!(matches!(
+        panel.flush(&frame),
+        Err(OledError::Slow { shown: 30 })
+    ));
+    assert!(panel.report().shown > 0);
+
+    assert!(panel.choose(Some(Name::Ssd1306)));
+    let starting = PanelReport {
+        state: PanelState::Starting,
+        chosen: Some(Name::Ssd1306),
+        ..PanelReport::default()
+    };
+    assert_eq!(panel.report(), starting);
+    let mut frames = 0;
+    while !matches!(panel.report().state, PanelState::Shown(_)) {
+        assert_eq!(panel.report(), starting);
+        assert_eq!(tick(&mut panel, &frame), Ok(()));
+        frames += 1;
+        assert!(frames < BACK, "the panel is back within 2 s");
+    }
+    assert_eq!((panel.report().shown, panel.report().whole), (0, 0));
+}
+
 /// The texts of the errors, as the log prints them.
 #[test]
 fn errors_of_the_panel_are_printed_in_words() {
