@@ -212,6 +212,7 @@ impl From<Error> for Field {
             // The initial momenta follow from the velocities, masses and lengths.
             Parameter::W1 | Parameter::P1 => Field::W1,
             Parameter::W2 | Parameter::P2 => Field::W2,
+            Parameter::Method => Field::Method,
             _ => Field::Dt,
         }
     }

@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use double_pendulum::plan::Stepping;
-use double_pendulum::{Method, Parameters};
+use double_pendulum::{Error, Method, Parameters};
 use emulator::link::refusal;
 use fastrand::Rng;
 use firmware::app::{Event, Instruments, PlannerEvent};
@@ -226,6 +226,13 @@ fn a_bad_command_is_answered_with_the_field_and_changes_nothing() {
     }
 
     assert_eq!((status(&mut app), app.player.report), before);
+}
+
+/// The error of a method that scenes are not drawn by is about the method, not about the step.
+#[test]
+fn an_error_about_the_method_names_the_method() {
+    let method = Method::Rk4F64;
+    assert_eq!(Field::from(Error::NotDrawn { method }), Field::Method);
 }
 
 /// The panel shows the reason in words, the frames report that the scene has stopped, and the log
