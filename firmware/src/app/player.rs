@@ -513,7 +513,8 @@ impl<'a> Player<'a> {
     }
 
     /// Returns the settings with one field changed to `value`, in SI units: of an angle in rad.
-    /// Refuses an angle beyond straight up, and a field that is none of the settings.
+    /// Refuses an angle to set that is beyond straight up or NaN, and a field that is none of the
+    /// settings. The other angle is not checked.
     fn with(&self, field: Field, value: f64) -> Result<Settings, Field> {
         let mut settings = self.settings;
         let Settings {
@@ -523,6 +524,10 @@ impl<'a> Player<'a> {
         } = &mut settings;
         let angle = value.to_degrees() as f32;
         let value = value as f32;
+        let is_angle = matches!(field, Field::A1 | Field::A2 | Field::Angle);
+        if is_angle && is_beyond(angle) {
+            return Err(field);
+        }
 
         match field {
             Field::M1 => parameters.m1 = value,
@@ -538,16 +543,20 @@ impl<'a> Player<'a> {
             Field::MassRatio => parameters.m2 = parameters.m1 * value,
             _ => return Err(Field::Field),
         }
-        in_range(settings).map_err(|_| field)
+        Ok(settings)
     }
 }
 
 /// Refuses an angle beyond straight up, and an angle that is NaN.
 fn in_range(settings: Settings) -> Result<Settings, Field> {
-    let is_beyond = |degrees: f32| !(-GREATEST_ANGLE..=GREATEST_ANGLE).contains(&degrees);
     match settings.degrees.map(is_beyond) {
         [true, _] => Err(Field::A1),
         [_, true] => Err(Field::A2),
         _ => Ok(settings),
     }
+}
+
+/// Returns true for an angle, degrees, that is beyond straight up or NaN.
+fn is_beyond(degrees: f32) -> bool {
+    !(-GREATEST_ANGLE..=GREATEST_ANGLE).contains(&degrees)
 }

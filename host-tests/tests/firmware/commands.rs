@@ -19,7 +19,7 @@ use firmware::protocol::{
 };
 use firmware::scenes::SceneName;
 
-use crate::bench::{Plain, answers, app, frames, wire};
+use crate::bench::{Plain, answers, app, frames, starting_with, wire};
 
 /// Returns the answer to a command.
 fn answer(app: &mut Plain, command: Command) -> Answer {
@@ -226,6 +226,36 @@ fn a_bad_command_is_answered_with_the_field_and_changes_nothing() {
     }
 
     assert_eq!((status(&mut app), app.player.report), before);
+}
+
+/// A start angle beyond straight up that the program has set stays when another field is set, also
+/// the angle of the other rod. Only the angle that a command sets is checked.
+#[test]
+fn an_angle_beyond_straight_up_does_not_refuse_another_field() {
+    let degrees = [200.0, -181.0];
+    for (field, value, expected) in [
+        (Field::M1, 2.0, degrees),
+        (Field::MassRatio, 0.5, degrees),
+        (Field::W2, 1.0, degrees),
+        (Field::A1, PI / 2.0, [90.0, -181.0]),
+        (Field::A2, PI / 2.0, [200.0, 90.0]),
+        (Field::Angle, PI / 2.0, [90.0, 90.0]),
+    ] {
+        let mut app = starting_with(Settings {
+            degrees,
+            ..Settings::default()
+        });
+        assert_eq!(
+            answer(&mut app, set(field, value)),
+            Answer::Done,
+            "{field:?}"
+        );
+        assert_eq!(app.player.settings.degrees, expected, "{field:?}");
+
+        for field in [Field::A1, Field::A2, Field::Angle] {
+            assert_eq!(answer(&mut app, set(field, 3.2)), Answer::Refused(field));
+        }
+    }
 }
 
 /// The error of a method that scenes are not drawn by is about the method, not about the step.
