@@ -2,8 +2,8 @@
 //!
 //! It is kept in memory that the start-up code does not initialise, in the format of a message on
 //! the serial link. When the board is switched on, this memory contains noise. The frame, length,
-//! version and CRC of the message show whether it is intact. If it is not, the board starts with
-//! the first scene.
+//! version and CRC of the message show whether it is intact. If it is not, or if a program that was
+//! built for another panel wrote it, the board starts with the first scene.
 //!
 //! After a reset from outside, by the reset button or a debugger, the board also starts with the
 //! first scene, because a fresh start is then wanted.
@@ -11,6 +11,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::config::TICK_RATE;
+use crate::display::{BUILT_FOR, Controller};
 use crate::protocol::{Cause, Decoder, MAX_WIRE, Restarted, Status, encode, read};
 
 /// The memory for a retained record, 105 bytes ([`MAX_WIRE`]). Any contents are possible;
@@ -37,21 +38,24 @@ pub struct Record {
 }
 
 impl Record {
-    /// Returns the bytes to keep: a message as on the wire, followed by zeros. Every record fits.
+    /// Returns the bytes to keep: a message as on the wire, of the record and [`BUILT_FOR`],
+    /// followed by zeros. Every record fits.
     pub fn write(&self) -> Kept {
         let mut kept = [0; MAX_WIRE];
-        encode(self, &mut kept);
+        encode(&(self, BUILT_FOR), &mut kept);
         kept
     }
 
     /// Returns the record in these bytes; `None` if it is not intact, or if a program with another
-    /// version of the protocol wrote it. Bytes after the first message are ignored. The numbers of
-    /// an intact record, such as its settings, are not checked.
+    /// version of the protocol or another [`BUILT_FOR`] wrote it. Bytes after the first message are
+    /// ignored. The numbers of an intact record, such as its settings, are not checked.
     pub fn read(kept: &Kept) -> Option<Self> {
         let mut decoder = Decoder::default();
         for &byte in kept {
             if let Some(message) = decoder.push(byte) {
-                return message.ok().and_then(read);
+                let (record, built_for): (Self, Option<Controller>) =
+                    message.ok().and_then(read)?;
+                return (built_for == BUILT_FOR).then_some(record);
             }
         }
         None

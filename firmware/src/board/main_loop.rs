@@ -88,10 +88,10 @@ impl<Panel: Display<Error: fmt::Display> + 'static, Link: Write, Keys: Buttons, 
     ///
     /// The scene is the first of the catalogue with the default settings, or after a warm restart
     /// the scene from before it. That is not played again after more than [`MOST_RESTARTS`]
-    /// restarts in a row, or if its settings are refused; then the first scene is. A controller
-    /// that was chosen for the panel is kept across every reset that leaves memory powered. The
-    /// choice to identify it is not: the reset restores
-    /// [`BUILT_FOR`](crate::display::BUILT_FOR).
+    /// restarts in a row, or if its settings are refused; then the first scene is. The choice of
+    /// the panel's controller, also the choice to identify it, is kept across every reset that
+    /// leaves memory powered. A program with another [`BUILT_FOR`](crate::display::BUILT_FOR)
+    /// does not take it over.
     ///
     /// Every finished frame feeds the watchdog and replaces the retained record. Received bytes
     /// come from the interrupt of the serial port, not from `link`. Errors of the panel and of the
@@ -190,8 +190,8 @@ fn resume<Panel: Display<Error: fmt::Display>, Link: Write, Keys: Buttons>(
     reset_by_watchdog: bool,
 ) -> Journal {
     // The choice of the panel's controller outlasts resets.
-    if let Some(controller) = retained::chosen_panel() {
-        app.choose_panel(Some(controller));
+    if let Some(chosen) = retained::chosen_panel() {
+        app.choose_panel(chosen);
     }
 
     // Count the restart before its scene is played.

@@ -166,8 +166,8 @@ pub struct PanelReport {
 
 /// The controller that the build variable `PANEL` names: `ssd1306`, also for an SSD1309, `sh1106`
 /// or `sh1107`. Another value is an error of the build. It is `None` without the variable, and then
-/// the controller is identified. A controller chosen by the host has precedence, and so has the
-/// controller chosen before a reset that leaves memory powered.
+/// the controller is identified. The host's choice has precedence, also after a reset that leaves
+/// memory powered, unless a program with another value made it.
 pub const BUILT_FOR: Option<Controller> = match option_env!("PANEL") {
     None => None,
     Some(name) => match name.as_bytes() {

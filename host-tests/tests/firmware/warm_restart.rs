@@ -4,8 +4,9 @@
 use emulator::host::Show;
 use fastrand::Rng;
 use firmware::app::{Journal, MOST_RESTARTS, Player, Record, SOUND_FRAMES};
+use firmware::display::{BUILT_FOR, Controller};
 use firmware::motion::Settings;
-use firmware::protocol::{Cause, Command, Field, MAX_WIRE, Restarted, Status};
+use firmware::protocol::{Cause, Command, Field, MAX_WIRE, Restarted, Status, encode};
 use firmware::scenes::SceneName;
 
 /// Returns a player of the page.
@@ -64,6 +65,26 @@ fn a_record_is_read_as_it_was_written() {
         }))
     );
     assert_eq!(kept.end.to_string(), "scene butterfly, step 480");
+}
+
+/// A record that a program for another panel wrote is not read, nor one without its panel.
+#[test]
+fn a_record_for_another_panel_is_not_trusted() {
+    let is_read = |bytes: &[u8]| {
+        let mut kept = [0; MAX_WIRE];
+        kept[..bytes.len()].copy_from_slice(bytes);
+        Record::read(&kept).is_some()
+    };
+    assert!(is_read(encode(&(record(), BUILT_FOR), &mut [0; MAX_WIRE])));
+    assert!(!is_read(encode(&record(), &mut [0; MAX_WIRE])));
+    for other in Controller::ALL
+        .iter()
+        .copied()
+        .map(Some)
+        .filter(|other| *other != BUILT_FOR)
+    {
+        assert!(!is_read(encode(&(record(), other), &mut [0; MAX_WIRE])));
+    }
 }
 
 /// Constant bytes and 100,000 random contents are no record.

@@ -1,8 +1,8 @@
 //! The retained record in memory that a reset does not clear. The main loop writes it after each
 //! frame, and a crash writes it at the end.
 //!
-//! A record is intact if its CRC matches and if a program with this version of the protocol wrote
-//! it. After power-on none is.
+//! A record is intact if its CRC matches and if a program with this version of the protocol, built
+//! for the same panel, wrote it. After power-on none is.
 
 use core::hint::black_box;
 use core::sync::atomic::{AtomicU8, Ordering};
@@ -52,12 +52,11 @@ pub fn recall(by_watchdog: bool) -> Option<Record> {
     kept()?.restart(by_watchdog)
 }
 
-/// Returns the controller that was chosen for the panel, as the stored record has it, after any
-/// reset that left memory powered; `None` if no record is intact, or none was chosen. The
-/// controller that the program before the reset was built for
-/// ([`BUILT_FOR`](crate::display::BUILT_FOR)) counts as chosen.
-pub fn chosen_panel() -> Option<Controller> {
-    kept()?.played.panel.chosen
+/// Returns the choice of the panel's controller, as the stored record has it, after any reset that
+/// left memory powered: a controller, or the inner `None` to identify it. The outer `None` means
+/// that no record is intact.
+pub fn chosen_panel() -> Option<Option<Controller>> {
+    Some(kept()?.played.panel.chosen)
 }
 
 /// Returns the second part of the stored record: the scene of the last frame and its tick, counted
