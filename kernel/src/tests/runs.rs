@@ -196,6 +196,27 @@ fn advance_refuses_an_energy_far_above_that_of_the_start() -> Result<(), Error> 
     energy_stays_within_its_bound::<ExtrapolationF64<12>>()
 }
 
+/// If the unit of momentum is so small that it is 0 in `f32`, a motion does not count as diverged:
+/// neither hanging at rest nor released at rest. Its bobs weigh 1e8 kg, its rods are 1e15 m long,
+/// and a step is 1e-7 s.
+#[test]
+fn unit_of_momentum_may_be_zero_in_single_precision() -> Result<(), Error> {
+    let pendulum = Pendulum::new(&Parameters {
+        m1: 1e8,
+        m2: 1e8,
+        l1: 1e15,
+        l2: 1e15,
+        g: 9.81,
+    })?;
+    for start in [State::at_rest(0.0, 0.0), State::at_rest(1.0, 2.0)] {
+        pendulum.run::<DirectionF32>(&start, 1e-7)?.advance(64)?;
+        pendulum
+            .run::<DirectionF32Plain>(&start, 1e-7)?
+            .advance(64)?;
+    }
+    Ok(())
+}
+
 /// Runs a motion that turns over, with and without counted turns.
 ///
 /// Both motions have the same bits. The angles of both differ by whole turns, to a millionth of a
