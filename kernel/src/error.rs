@@ -206,7 +206,14 @@ impl fmt::Display for Error {
                 parameter,
                 value,
                 limit,
-            } => write!(f, "{parameter} = {value:?}: must be at least {limit:?}"),
+            } => {
+                let relation = if *parameter == Parameter::FrequencyRatio {
+                    "exceed"
+                } else {
+                    "be at least"
+                };
+                write!(f, "{parameter} = {value:?}: must {relation} {limit:?}")
+            }
             Error::Diverged { parameter, value } => write!(
                 f,
                 "{parameter} = {value:?}: \

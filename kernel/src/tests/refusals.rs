@@ -172,8 +172,8 @@ fn errors_contain_the_parameter_and_its_value() {
     assert_eq!(good, [Ok(()); 3]);
 }
 
-/// `NotPositive`, `TooLarge` and `UnequalRods` must be displayed as exactly the expected lines,
-/// which name the parameter, its value and the limit or reason.
+/// `NotPositive`, `TooLarge`, `TooSmall` and `UnequalRods` must be displayed as exactly the
+/// expected lines, which name the parameter, its value and the limit or reason.
 #[test]
 fn errors_are_printed_in_one_line() {
     // A message names the parameter, its value, and the reason.
@@ -192,6 +192,23 @@ fn errors_are_printed_in_one_line() {
                 limit: 0.5,
             },
             "dt = 2.0: must not exceed 0.5",
+        ),
+        (
+            Error::TooSmall {
+                parameter: G,
+                value: -1.0,
+                limit: 0.0,
+            },
+            "g = -1.0: must be at least 0.0",
+        ),
+        // A frequency ratio at the limit is refused, too.
+        (
+            Error::TooSmall {
+                parameter: FrequencyRatio,
+                value: 2.0,
+                limit: 2.0,
+            },
+            "frequency ratio = 2.0: must exceed 2.0",
         ),
         (
             Error::UnequalRods { l1: 3.0, l2: 4.0 },
