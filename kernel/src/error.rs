@@ -150,7 +150,8 @@ pub enum Error {
     OutOfRange {
         /// The refused parameter. If a product is out of range, the mass, length or gravity whose
         /// value is farthest from 1 as a factor. For a start that the closed form cannot compute,
-        /// always `A1`.
+        /// the angle or angular velocity that leads to the largest angle: a velocity w leads to w
+        /// over the frequency of the slow mode.
         parameter: Parameter,
         /// The refused value.
         value: f64,

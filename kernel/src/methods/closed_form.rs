@@ -282,7 +282,8 @@ impl<R: Real> FormOperations for ClosedForm<R> {
     fn started(&self, start: &State<f64>) -> Result<Self, Error> {
         start.check()?;
         let motion = Pendulum::new(&self.parameters)?.to_motion(start);
-        let oscillations = SmallOscillations::new(Modes::new(&self.parameters)?, &motion.cast());
+        let modes = Modes::new(&self.parameters)?;
+        let oscillations = SmallOscillations::new(modes, &motion.cast());
         let started = Self {
             oscillations,
             directions: oscillations.directions(0.0),
@@ -294,13 +295,25 @@ impl<R: Real> FormOperations for ClosedForm<R> {
         let most_turns = R::from_f64(f64::from(i32::MAX) * core::f64::consts::TAU);
         let has_turns = oscillations.reach().map(|most| most <= most_turns) == [true; 2];
         if has_turns && started.check().is_ok() {
-            Ok(started)
-        } else {
-            Err(Error::OutOfRange {
-                parameter: Parameter::A1,
-                value: motion.a1,
-            })
+            return Ok(started);
         }
+
+        // Name a number that is infinite in `R`, otherwise the one that leads to the largest angle.
+        start.cast::<R>().check()?;
+        let slow = modes.slow.frequency;
+        let mut worst = (Parameter::A1, motion.a1, 1.0);
+        let angle = |(_, value, rate): (Parameter, f64, f64)| libm::fabs(value) / rate;
+        for number in [
+            (Parameter::A2, motion.a2, 1.0),
+            (Parameter::W1, motion.w1, slow),
+            (Parameter::W2, motion.w2, slow),
+        ] {
+            if angle(number) > angle(worst) {
+                worst = number;
+            }
+        }
+        let (parameter, value, _) = worst;
+        Err(Error::OutOfRange { parameter, value })
     }
 
     fn advance(&mut self, steps: u32) {

@@ -2,7 +2,7 @@
 
 use std::string::ToString;
 
-use double_pendulum::Parameter::{A1, A2, Dt, FrequencyRatio, G, L1, M1, M2};
+use double_pendulum::Parameter::{A1, A2, Dt, FrequencyRatio, G, L1, M1, M2, P2, W1, W2};
 use double_pendulum::{
     ClosedFormF32, Error, HamiltonF32, Modes, Motion, Parameters, Pendulum, State,
     periodic_mass_ratio,
@@ -23,9 +23,10 @@ fn pendulum(parameters: Parameters<f64>) -> Result<(), Error> {
 }
 
 /// Runs the linear motion in `f32`, whose turns are counted in 31 bits.
-fn linear(angle: f64) -> Result<(), Error> {
-    Pendulum::new(&GOOD)?
-        .run::<ClosedFormF32>(&State::at_rest(angle, 0.0), 0.01)
+fn linear(start: Motion<f64>) -> Result<(), Error> {
+    let pendulum = Pendulum::new(&GOOD)?;
+    pendulum
+        .run::<ClosedFormF32>(&pendulum.to_state(&start), 0.01)
         .map(drop)
 }
 
@@ -105,7 +106,7 @@ fn errors_contain_the_parameter_and_its_value() {
             not_positive(G, 0.0),
         ),
         (
-            linear(1e12),
+            linear(Motion::at_rest(1e12, 0.0)),
             Error::OutOfRange {
                 parameter: A1,
                 value: 1e12,
@@ -170,6 +171,70 @@ fn errors_contain_the_parameter_and_its_value() {
         Motion::at_rest(1.0, 2.0).check(),
     ];
     assert_eq!(good, [Ok(()); 3]);
+}
+
+/// A start that is out of the range of the closed form is refused by the number that is at fault:
+/// an angle of too many turns, a velocity that leads to such an angle, or a momentum that is
+/// infinite in `f32`. A velocity is compared by the angle that it leads to in the slow mode.
+#[test]
+fn closed_form_names_the_number_that_is_out_of_range() -> Result<(), Error> {
+    let rest = Motion::default();
+    for (start, at_fault) in [
+        (Motion { a1: 1e12, ..rest }, A1),
+        (Motion { a2: -1e12, ..rest }, A2),
+        (Motion { w1: 1e12, ..rest }, W1),
+        (Motion { w2: -1e12, ..rest }, W2),
+        // The frequency of the slow mode is about 1 rad/s.
+        (
+            Motion {
+                a1: 1e11,
+                w2: 1e12,
+                ..rest
+            },
+            W2,
+        ),
+        (
+            Motion {
+                a1: 1e12,
+                w2: 1e11,
+                ..rest
+            },
+            A1,
+        ),
+    ] {
+        let Err(Error::OutOfRange { parameter, value }) = linear(start) else {
+            panic!("{:?} of {start:?}", linear(start));
+        };
+        let named = match parameter {
+            A1 => start.a1,
+            A2 => start.a2,
+            W1 => start.w1,
+            _ => start.w2,
+        };
+        assert_eq!(parameter, at_fault, "{start:?}");
+        assert!((value / named - 1.0).abs() < 1e-12, "{value} of {start:?}");
+    }
+
+    // The velocity of a heavy pendulum is in range, but its momentum is infinite in `f32`.
+    let heavy = Pendulum::new(&Parameters {
+        m1: 1e36,
+        m2: 1e36,
+        l1: 10.0,
+        l2: 10.0,
+        g: 1.0,
+    })?;
+    let start = State {
+        p2: 1e39,
+        ..State::default()
+    };
+    assert_eq!(
+        heavy.run::<ClosedFormF32>(&start, 0.01).map(drop),
+        Err(Error::NotFinite {
+            parameter: P2,
+            value: f64::INFINITY,
+        })
+    );
+    Ok(())
 }
 
 /// `NotPositive`, `TooLarge`, `TooSmall` and `UnequalRods` must be displayed as exactly the
