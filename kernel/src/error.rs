@@ -217,8 +217,8 @@ impl fmt::Display for Error {
             }
             Error::Diverged { parameter, value } => write!(
                 f,
-                "{parameter} = {value:?}: \
-                 the motion has diverged; use a shorter step"
+                "{parameter} = {value:?}: the motion has diverged; \
+                 use a shorter step or, for the closed form, a shorter time"
             ),
             Error::OutOfRange { parameter, value } => write!(
                 f,

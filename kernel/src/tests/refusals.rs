@@ -237,8 +237,8 @@ fn closed_form_names_the_number_that_is_out_of_range() -> Result<(), Error> {
     Ok(())
 }
 
-/// `NotPositive`, `TooLarge`, `TooSmall` and `UnequalRods` must be displayed as exactly the
-/// expected lines, which name the parameter, its value and the limit or reason.
+/// `NotPositive`, `TooLarge`, `TooSmall`, `Diverged` and `UnequalRods` must be displayed as exactly
+/// the expected lines, which name the parameter, its value and the limit, reason or remedy.
 #[test]
 fn errors_are_printed_in_one_line() {
     // A message names the parameter, its value, and the reason.
@@ -274,6 +274,15 @@ fn errors_are_printed_in_one_line() {
                 limit: 2.0,
             },
             "frequency ratio = 2.0: must exceed 2.0",
+        ),
+        // A shorter step does not help a motion in closed form.
+        (
+            Error::Diverged {
+                parameter: P2,
+                value: f64::INFINITY,
+            },
+            "p2 = inf: the motion has diverged; \
+             use a shorter step or, for the closed form, a shorter time",
         ),
         (
             Error::UnequalRods { l1: 3.0, l2: 4.0 },
