@@ -121,7 +121,8 @@ pub struct Plan {
     /// The reason why the horizon is not longer.
     pub limit: Limit,
     /// The cost of planning, in the unit of the [`Costs`]; at most the planning budget, except
-    /// after [`Search::extend`].
+    /// after [`Search::extend`]. It is the cost of steps and preparations. To compare a frame,
+    /// with its directions by the closed form, counts as nothing ([`Search::advance`]).
     pub spent: f32,
 }
 
