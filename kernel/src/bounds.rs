@@ -87,7 +87,8 @@ impl<R: Real> Modes<R> {
 impl<R: Real> Pendulum<R> {
     /// Returns the bounds of the motion through `state`, forwards and backwards in time. They are 0
     /// if K is 0: hanging at rest, or at rest without gravity. A state that is not finite, or an
-    /// overflow, gives bounds that are NaN or infinite.
+    /// overflow, gives bounds that are NaN or infinite. The squares in the bound of the elbow can
+    /// overflow if K is 0, too; `elbow` is then NaN.
     #[must_use]
     pub fn bounds(&self, state: &State<R>) -> Bounds<R> {
         Bounds::new(self.parameters(), self.energy_above_rest(state))
@@ -187,7 +188,8 @@ impl<R: Real> Pendulum<R> {
     ///
     /// Refuses parameters whose modes are out of range ([`Error::OutOfRange`]). The state is not
     /// checked; one that is not finite, or whose bounds overflow, gives NaN or 0. The result is
-    /// also 0 if W^2 overflows in `R`, and infinite if it underflows to 0.
+    /// also 0 if W^2 overflows in `R`, infinite if it underflows to 0, and has fewer correct digits
+    /// if it is subnormal, which in `f32` means a W below 1e-19 rad/s.
     pub fn admissible_step(&self, state: &State<R>) -> Result<R, Error> {
         Ok(R::from_f64(RESOLVED) / self.fastest_rate(state)?)
     }
