@@ -125,8 +125,8 @@ pub trait FormOperations: Copy + Debug + PartialEq + 'static {
 
     /// Returns a motion of the same pendulum from another start, in the same units and steps,
     /// counted from 0. This motion may have diverged. In fixed point the energy must not exceed
-    /// the energy of the start in [`new`](Self::new), otherwise the numbers may leave their range;
-    /// this is not checked.
+    /// the energy of the start in [`new`](Self::new), otherwise the numbers may leave their range,
+    /// and a debug build may panic; this is not checked.
     ///
     /// # Errors
     ///
