@@ -17,8 +17,9 @@ pub enum PlannerEvent {
     /// The planner has found a result: a plan, or the reason why no method fits.
     Found(PlanResult),
     /// The motion is now computed by this method and step count, at this cost of a frame, cycles of
-    /// the price list. [`Player::tick`] reports it when a plan takes over. The application also
-    /// logs it when a command has started a scene whose report names a method.
+    /// the price list. [`Player::tick`] reports it when a plan takes over, and when the motion
+    /// continues by other steps after the horizon. The application also logs it when a command has
+    /// started a scene whose report names a method.
     Shown(Stepping, f32),
 }
 
@@ -55,7 +56,8 @@ enum MotionState {
     /// The planned motion catches up with the current one, and then takes over. Meanwhile nothing
     /// is planned.
     Switching(CatchingUp),
-    /// The horizon of the last plan, s, is past. The motion keeps its method, which resolves it.
+    /// The horizon of the last plan, s, is past. The motion keeps its method, which resolves it
+    /// unless the resolving one has refused its state.
     PastHorizon { horizon: f32 },
     /// The motion cannot be computed. It is too fast for every method that a frame can pay for, or
     /// has left the finite numbers.

@@ -173,14 +173,15 @@ impl CatchingUp {
     /// settings.
     pub fn tick(&mut self, simulation: &mut Simulation) -> bool {
         for _ in 0..self.most {
-            if self.motion.frame() < simulation.motion.frame() {
+            if self.motion.frame() < simulation.frame() {
                 let _is_lost = self.motion.advance(1);
             }
         }
 
-        let is_there = self.motion.frame() == simulation.motion.frame();
+        let is_there = self.motion.frame() == simulation.frame();
         if is_there {
             simulation.motion = self.motion;
+            simulation.first_frame = 0;
         }
         is_there
     }

@@ -1,7 +1,7 @@
 //! The planner of a scene: its work in a tick, its results, and their format in messages.
 
 use double_pendulum::Method;
-use double_pendulum::plan::{Limit, PlanError, Stepping};
+use double_pendulum::plan::{Limit, Plan, PlanError, Stepping};
 use firmware::config::{
     CORTEX_M0PLUS, CORTEX_M3, CORTEX_M4F, PLANNED, PROCESSORS, Processor, SETTLED_TICKS, STM32F405,
 };
@@ -175,39 +175,56 @@ fn a_calm_motion_is_verified_while_it_is_played() {
     }
 }
 
-/// A preliminary plan is followed from its report on. Its final horizon is about the same method,
-/// although a start of that method in the tick of the final result would come too late. Here that
-/// tick is at about 46 s, so that the start would catch up at 92 s, after the horizon of 76 s.
-#[test]
-fn final_result_is_about_the_plan_that_is_followed() {
-    let settings = Settings {
-        degrees: [81.0, 64.0],
-        ..Settings::equal_rods(0.17, 0.0)
-    };
-    let initial = Stepping {
-        method: Method::Rk4F32Direction,
-        steps: 4,
-    };
-    let mut planner = Planner::new(CORTEX_M0PLUS);
-    planner.start(&settings, Some(HEIGHT), Some(initial), false);
+/// The initial stepping of a scene with two results: of a preliminary plan, and a final one.
+const REPLACED: Stepping = Stepping {
+    method: Method::Rk4F32Direction,
+    steps: 4,
+};
 
-    // The results, each with its tick.
+/// Returns both results of a scene that begins with [`REPLACED`], each with the tick of its report,
+/// and the planner after them.
+fn two_results(processor: Processor, settings: &Settings) -> ([(u64, Plan); 2], Planner) {
+    let mut planner = Planner::new(processor);
+    planner.start(settings, Some(HEIGHT), Some(REPLACED), false);
     let results: Vec<_> = (1..60 * PATIENCE)
         .filter_map(|tick| Some((tick, planner.tick()?.ok()?)))
         .take(2)
         .collect();
-    let [(early, preliminary), (late, last)] = results[..] else {
-        panic!("{results:?}")
-    };
+    (results.try_into().expect("two results"), planner)
+}
+
+/// A preliminary plan that can catch up before its horizon is followed from its report on. The
+/// final horizon, here of 18 minutes, is about the same method, although a start of that method in
+/// the tick of the final result would come too late.
+#[test]
+fn final_result_is_about_the_plan_that_is_followed() {
+    let (results, planner) = two_results(CORTEX_M3, &Settings::equal_rods(3.0, 38.0));
+    let [(early, preliminary), (late, last)] = results;
     assert_eq!(preliminary.stepping(), last.stepping(), "{results:?}");
     assert!(last.horizon > PLANNED && planner.horizon(last.stepping()) == last.horizon);
 
     // Only the tick of the first report is in time.
-    let arrival = |tick| CatchingUp::arrival(last.stepping(), &CORTEX_M0PLUS, tick);
+    let arrival = |tick| CatchingUp::arrival(last.stepping(), &CORTEX_M3, tick);
     assert!(
-        arrival(early) < last.horizon && last.horizon < arrival(late),
+        arrival(early) <= preliminary.horizon && last.horizon < arrival(late),
         "{results:?}"
     );
+}
+
+/// A preliminary plan that would catch up only after its horizon is not followed. If its final
+/// horizon comes too late as well, the result is the horizon of the initial method.
+#[test]
+fn final_result_is_about_the_initial_method_if_the_plan_is_too_late() {
+    let settings = Settings {
+        degrees: [81.0, 64.0],
+        ..Settings::equal_rods(0.17, 0.0)
+    };
+    let (results, planner) = two_results(CORTEX_M0PLUS, &settings);
+    let [(early, preliminary), (_, last)] = results;
+    let arrival = CatchingUp::arrival(preliminary.stepping(), &CORTEX_M0PLUS, early);
+    assert!(arrival > preliminary.horizon, "{results:?}");
+    assert_eq!(last.stepping(), REPLACED, "{results:?}");
+    assert!(last.horizon > 0.0 && planner.horizon(REPLACED) == last.horizon);
 }
 
 /// Settings with a mass ratio of NaN have one result in all ticks: the error.
