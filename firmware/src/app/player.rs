@@ -56,8 +56,8 @@ enum MotionState {
     /// The planned motion catches up with the current one, and then takes over. Meanwhile nothing
     /// is planned.
     Switching(CatchingUp),
-    /// The horizon of the last plan, s, is past. The motion keeps its method, which resolves it
-    /// unless the resolving one has refused its state.
+    /// The horizon of the last plan, s, is past. The motion keeps its method, which keeps its energy
+    /// unless the method that would has refused its state.
     PastHorizon { horizon: f32 },
     /// The motion cannot be computed. It is too fast for every method that a frame can pay for, or
     /// has left the finite numbers.
@@ -263,9 +263,8 @@ impl<'a> Player<'a> {
         }
     }
 
-    /// Stops following the plan when planning has ended and the horizon is past. If the steps of
-    /// the plan do not resolve the motion, it would then visibly gain or lose energy. So it
-    /// continues by other steps, which are returned.
+    /// Stops following the plan when planning has ended and the horizon is past. If the plan would
+    /// not keep the energy, the motion continues by the method that is returned.
     fn leave_plan(&mut self) -> Option<Stepping> {
         if !matches!(self.motion, MotionState::FollowsPlan) || !self.planner.is_settled() {
             return None;
