@@ -98,6 +98,29 @@ fn one_flipped_bit_is_named_and_fails() {
     assert!(messages.lines().any(is_it), "{messages}");
 }
 
+/// The board has played its scene for months. The host, which computes the scene from its start,
+/// does not reach the frames in 4 s. The command fails and says so, and no frame counts as skipped.
+#[test]
+fn frames_that_the_host_does_not_reach_are_no_success() {
+    let late = |mut message: ToHost| {
+        if let ToHost::Frame(frame) = &mut message {
+            frame.report.step += 1 << 30;
+        }
+        wire(message)
+    };
+    let [summary, messages] = demo(1, "--seconds 1", |bench| bench.carry(late));
+    assert!(
+        messages.contains("problem: no frame was compared"),
+        "{messages}"
+    );
+    assert!(
+        summary.contains("0 frames, all identical to the host (")
+            && summary.contains(" waiting for the host)")
+            && !summary.contains("skipped"),
+        "{summary}"
+    );
+}
+
 /// Returns the message with this state of the panel.
 fn with_panel(mut message: ToHost, report: PanelReport) -> ToHost {
     if let ToHost::Answer(_, Answer::Status(status)) = &mut message {

@@ -179,6 +179,11 @@ impl Comparison {
         self.waiting.is_empty()
     }
 
+    /// Returns true if no frame was identical, and none differs for certain: nothing is known.
+    pub fn is_void(&self) -> bool {
+        self.compared == 0 && self.first.is_none()
+    }
+
     /// Returns the first number whose bits differ between board and host, in words, or `None` if no
     /// difference is confirmed. It stays the same from then on, also in later scenes.
     pub fn difference(&self) -> Option<&str> {
@@ -186,8 +191,9 @@ impl Comparison {
     }
 }
 
-/// Writes the first confirmed difference or, without one, the number of identical frames and, if it
-/// is not 0, that of the frames that are skipped or still wait. It is one line without a newline.
+/// Writes the first confirmed difference or, without one, the number of identical frames and, if
+/// they are not 0, those of the frames that were skipped and of those that still wait. It is one
+/// line without a newline.
 impl fmt::Display for Comparison {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if let Some(difference) = &self.first {
@@ -198,10 +204,19 @@ impl fmt::Display for Comparison {
             "{} frames, all identical to the host",
             HumanCount(self.compared)
         )?;
-        match self.skipped + self.waiting.len() as u64 {
-            0 => Ok(()),
-            skipped => write!(f, " ({} skipped at restarts)", HumanCount(skipped)),
+        let others = [
+            (self.skipped, "skipped at restarts"),
+            (self.waiting.len() as u64, "waiting for the host"),
+        ];
+        let others: Vec<_> = others
+            .into_iter()
+            .filter(|(count, _)| *count > 0)
+            .map(|(count, what)| format!("{} {what}", HumanCount(count)))
+            .collect();
+        if others.is_empty() {
+            return Ok(());
         }
+        write!(f, " ({})", others.join(", "))
     }
 }
 

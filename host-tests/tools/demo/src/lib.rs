@@ -64,11 +64,12 @@ const LIMIT: [f64; 2] = [60.0, 20.0];
 /// error it may be incomplete.
 ///
 /// Returns true if no compared bit differs from the host's and if, on an emulated board that is run
-/// frame by frame, nothing else went wrong. Each problem is a line on stderr. Options that cannot
-/// be served, also by the board, are [`Refused`]. It is another error if a build fails, if the
-/// emulator ends, if no frame has arrived at the end, or if a file cannot be written. Without a
-/// terminal, it is also an error if a board at a port does not begin the requested scene within
-/// 10 s, or sends no frame for 10 s after that. After an error there is no summary.
+/// frame by frame, nothing else went wrong. Without a terminal, a frame must have been compared.
+/// Each problem is a line on stderr. Options that cannot be served, also by the board, are
+/// [`Refused`]. It is another error if a build fails, if the emulator ends, if no frame has arrived
+/// at the end, or if a file cannot be written. Without a terminal, it is also an error if a board
+/// at a port does not begin the requested scene within 10 s, or sends no frame for 10 s after that.
+/// After an error there is no summary.
 pub fn run(options: &DemoOptions) -> anyhow::Result<bool> {
     let is_live = !options.headless && stdout().is_terminal() && stdin().is_terminal();
     // All options are checked before anything is built.
@@ -98,7 +99,7 @@ pub fn run(options: &DemoOptions) -> anyhow::Result<bool> {
     } else {
         headless(&mut session, seconds)?
     }
-    finish(options, session)
+    finish(options, session, is_live)
 }
 
 /// Opens a serial port by its path, or the only one over USB for `auto`, which waits up to 3 s for
@@ -189,9 +190,14 @@ fn headless(session: &mut Session, seconds: f64) -> anyhow::Result<()> {
     session.look()
 }
 
+/// The fault of a run without a comparison.
+const NOT_COMPARED: &str = "no frame was compared: the host computes the scene from its start, and \
+                            has not reached the board's frames; choose a --scene, which starts it \
+                            again, or a longer --seconds";
+
 /// Completes the files and prints the summary. Returns true if all was well. A board with a real
 /// clock may drop frames, and a cable may corrupt bits. Both are printed, and neither is a fault.
-fn finish(options: &DemoOptions, mut session: Session) -> anyhow::Result<bool> {
+fn finish(options: &DemoOptions, mut session: Session, is_live: bool) -> anyhow::Result<bool> {
     let is_silent = session.readings.frame.is_none();
     ensure!(
         !is_silent,
@@ -220,6 +226,10 @@ fn finish(options: &DemoOptions, mut session: Session) -> anyhow::Result<bool> {
         Vec::new()
     };
     faults.extend(readings.comparison.difference().map(str::to_owned));
+    // In a terminal the user sees that the host has not caught up.
+    if !is_live && readings.comparison.is_void() {
+        faults.push(NOT_COMPARED.to_owned());
+    }
     faults
         .iter()
         .for_each(|fault| complain(format_args!("problem: {fault}")));
