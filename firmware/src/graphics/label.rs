@@ -45,17 +45,27 @@ pub fn tick(value: f32, unit: &str) -> Label {
     label("", value, decimals, unit)
 }
 
-/// Returns a time, s, after a name and before its unit, rounded down to tenths of a second, or to
-/// seconds from 1,000 s on: `½px 12.3 s`, `½px 1234 s`. A negative time is written as 0.
+/// Returns a time, s, after a name and before its unit, rounded down to tenths of a second, to
+/// seconds from 1,000 s on, and to tenths of an hour from 100,000 s on: `½px 12.3 s`, `½px 1234 s`,
+/// `½px 27.7 h`. A negative time is written as 0.
 pub fn rounded_down(name: &str, seconds: f32) -> Label {
-    let parts = if seconds < 1e3 { 10 } else { 1 };
-    written([name, ""], (seconds * parts as f32) as u32, parts, " s")
+    tenths(name, (seconds * 10.0) as u32)
 }
 
-/// Returns a time, s, rounded down to tenths of a second: `12.3 s`. A negative time is written as
+/// Returns a time, s, rounded down as by [`rounded_down`]: `12.3 s`. A negative time is written as
 /// 0.
 pub fn time(seconds: f64) -> Label {
-    written([""; 2], (seconds * 10.0) as u32, 10, " s")
+    tenths("", (seconds * 10.0) as u32)
+}
+
+/// Returns a time in tenths of a second, after a name.
+fn tenths(name: &str, tenths: u32) -> Label {
+    let (number, parts, unit) = match tenths {
+        1_000_000.. => (tenths / 3600, 10, " h"),
+        10_000.. => (tenths / 10, 1, " s"),
+        _ => (tenths, 10, " s"),
+    };
+    written([name, ""], number, parts, unit)
 }
 
 /// Returns `value`, rounded to `decimals` places, after a name and before a unit. A negative value

@@ -313,17 +313,20 @@ fn labels_show_the_settings() {
     let expected = ["α 0°", "α 120°", "α -7°", "α 171.5°", "α -0.5°"];
     assert_eq!(angles.map(|label| label.to_string()), expected);
 
-    // Times are rounded down to tenths.
-    let times = [0.0, 0.099, 59.96, 3600.0].map(label::time);
+    // Times are rounded down to tenths, and remain short for weeks.
+    let times = [0.0, 0.099, 59.96, 999.99, 3600.9, 99_999.9, 1e5, 1e6].map(label::time);
     assert_eq!(
         times.map(|label| label.to_string()),
-        ["0.0 s", "0.0 s", "59.9 s", "3600.0 s"]
+        [
+            "0.0 s", "0.0 s", "59.9 s", "999.9 s", "3600 s", "99999 s", "27.7 h", "277.7 h"
+        ]
     );
 
     // The text depends on the kind of horizon, and the number of digits on its size.
     let horizons = [
         (Horizon::Until(8.46), "½px 8.4 s"),
         (Horizon::Until(9370.2), "½px 9370 s"),
+        (Horizon::AtLeast(1e6), "½px>277.7 h"),
         (Horizon::Until(1.0 / 60.0), "½px 0.02 s"),
         (Horizon::AtLeast(8.46), "½px>8.4 s"),
         (Horizon::Undecided, "½px ?"),
