@@ -45,7 +45,7 @@ impl Register {
     }
 
     /// Clears the bits of `clear`, then sets those of `set`, by one read and one write. A bit in
-    /// both is set. It is not atomic: what an interrupt writes in between is overwritten.
+    /// both is set. It is not atomic: a write by an interrupt in between is lost.
     pub fn modify(self, clear: u32, set: u32) {
         self.write((self.read() & !clear) | set);
     }

@@ -15,8 +15,8 @@ use crate::graphics::{Canvas, HEIGHT, WIDTH};
 /// The panel of a driver, the position of the frame's upper left corner on it, and the colour of
 /// each grey. The colour can be the panel's own `from`, or any other function.
 ///
-/// Each frame of 128 x 64 pixels is sent whole, row by row, and the driver decides how long that
-/// blocks. The driver must have set the panel up before the first frame, and must ignore pixels
+/// Each frame of 128 x 64 pixels is sent whole, row by row, and blocks for a time that depends on
+/// the driver. The driver must have set the panel up before the first frame, and must ignore pixels
 /// outside the panel. The error of a frame is the driver's own; the next frame is not affected.
 #[derive(Clone, Copy, Debug)]
 pub struct AnyPanel<Target, Color> {

@@ -110,9 +110,9 @@ pub fn for_each_instruction(
 }
 
 /// The calls of the functions that begin at some addresses. A call lasts until its function
-/// returns. Its cost, instructions and stack include those of the functions that it calls and of
-/// the interrupts in this time. A call within another counted call is a part of that call and is
-/// not counted again.
+/// returns. Its cost, instructions and stack include the functions that it calls and the interrupts
+/// in this time. A call within another counted call is a part of that call and is not counted
+/// again.
 #[derive(Debug)]
 pub struct Calls<'a> {
     image: &'a Image,

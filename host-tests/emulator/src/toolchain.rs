@@ -190,7 +190,7 @@ fn core(installs: bool, targets: &[&str]) -> Result<Option<FromSource>, Refused>
         .map_err(|why| missing(installs, "Rust's core library", &why, SETUP, &packages))
 }
 
-/// Returns both, or the lines of what is missing.
+/// Returns both, or the lines that name the missing ones.
 fn joined(
     core: Result<Option<FromSource>, Refused>,
     emulator: Result<PathBuf, Refused>,
@@ -276,7 +276,7 @@ const MARKS: [&str; 3] = [
     "host-tests/Cargo.toml",
 ];
 
-/// Returns the project's folder, the one that has `kernel`, `firmware` and `host-tests`.
+/// Returns the project's folder, which contains `kernel`, `firmware` and `host-tests`.
 ///
 /// The folder is searched at run time, because a checkout may be moved or copied with its programs
 /// already built. The search starts at the package that cargo runs (`CARGO_MANIFEST_DIR`), then at

@@ -30,8 +30,8 @@ fn every_board_finds_the_hosts_plan_and_follows_it_from_the_same_tick() -> anyho
     every_board_plans(&SCENES[..2])
 }
 
-/// In two further scenes, every frame of every board has, in 18 s, the host's method and horizon,
-/// and none is dropped. The answer to `AskPlan` and the log have the host's plan and its changes of
+/// Every frame of every board has the host's method and horizon in 18 s of two further scenes, and
+/// none is dropped. The answer to `AskPlan` and the log have the host's plan and its changes of
 /// method.
 #[test]
 #[ignore = "minutes: two scenes more"]

@@ -57,14 +57,13 @@ fn short(board: &Board, name: SceneName) -> u32 {
     }
 }
 
-/// The short run of what the module describes: 75 frames of each scene, or 10 s of the most
-/// expensive one.
+/// The short run of the module's test: 75 frames of each scene, or 10 s of the most expensive one.
 #[test]
 fn every_board_plays_every_scene_as_the_host_does_within_its_budgets() -> anyhow::Result<()> {
     every_board_plays(LIMIT, short)
 }
 
-/// The long run of what the module describes, over an hour of each board's clock.
+/// The long run of the module's test, over an hour of each board's clock.
 #[test]
 #[ignore = "an hour of five boards"]
 fn every_board_plays_every_scene_for_an_hour() -> anyhow::Result<()> {

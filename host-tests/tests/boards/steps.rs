@@ -95,7 +95,7 @@ fn reached(code: &Code, form: &str) -> BTreeSet<String> {
         .collect()
 }
 
-/// On a Cortex-M0+ a step in 32-bit fixed point calls no function of software floating point,
+/// A step in 32-bit fixed point on a Cortex-M0+ calls no function of software floating point,
 /// directly or indirectly, while a step in `f32` does. It is the claim of the kernel's example
 /// `fixed_point`.
 #[test]

@@ -44,7 +44,7 @@ fn recorded(board: &str, folder: &TempDir, name: &str) -> ([PathBuf; 2], String)
     (files, output.stdout)
 }
 
-/// In a headless run of 2 s all 120 frames equal the host's, and the animation has a different
+/// All 120 frames of a headless run of 2 s equal the host's, and the animation has a different
 /// picture for every second frame. A second run writes the same bytes. The boards are one in QEMU
 /// and the Pico in its own emulator, which reads the panel through the panel's own bus.
 #[test]
@@ -110,8 +110,8 @@ fn a_recording_shows_a_swinging_pendulum_and_is_the_same_every_time() {
     }
 }
 
-/// With `--method plan` and with a method, the summary of two seconds names the method, its steps
-/// and its horizon.
+/// The summary of two seconds names the method, its steps and its horizon, with `--method plan` and
+/// with a method.
 #[test]
 fn the_method_can_be_chosen_and_is_named() {
     toolchain();
@@ -234,7 +234,7 @@ fn a_motion_of_the_user_is_played_recorded_and_compared() {
     }
 }
 
-/// With `--speed 1/2`, 2 s of the board's clock simulate about 1 s, and all frames are identical to
+/// 2 s of the board's clock simulate about 1 s with `--speed 1/2`, and all frames are identical to
 /// the host's. A new tick is shown in every second frame.
 #[test]
 fn half_speed_simulates_half_the_time() {

@@ -376,7 +376,7 @@ fn a_message_that_is_no_command_is_not_answered() {
     assert!(app.link.is_empty());
 }
 
-/// Of a million bytes that end no message, one call takes as many as the receive queue holds.
+/// One call takes, of a million bytes that end no message, as many as the receive queue holds.
 #[test]
 fn an_endless_message_takes_one_queue_at_most() {
     let mut taken = 0;
@@ -562,8 +562,8 @@ fn a_scene_that_cannot_use_the_requested_method_follows_its_plan() {
     );
 }
 
-/// With each requested method, the commands for the next and the previous scene go through the
-/// whole catalogue and back, and none is refused.
+/// The commands for the next and the previous scene go through the whole catalogue and back with
+/// each requested method, and none is refused.
 #[test]
 fn every_scene_is_reached_with_any_requested_method() {
     for &method in Method::DRAWN {
@@ -718,7 +718,7 @@ fn a_scene_is_played_with_settings_of_the_user() {
     }
 }
 
-/// In 600 ticks of the clock the scene advances by exactly the speed times 600 ticks, at the
+/// The scene advances by exactly the speed times 600 ticks in 600 ticks of the clock, at the
 /// smallest, the largest and some speeds between.
 #[test]
 fn speed_is_exact_in_the_long_run() {

@@ -204,13 +204,12 @@ fn the_page_and_figure_7_reach_their_goals() {
     }
 }
 
-/// The largest change of the relative energy error after the horizon. In the steps of the first plan
-/// below it is -1.6e-2 after 300 s.
+/// The largest change of the relative energy error after the horizon. In the steps of the first
+/// plan below it is -1.6e-2 after 300 s.
 const KEPT: f32 = 1e-5;
 
-/// The largest error of an angle, rad, in the frame in which the method changes: the motion
-/// continues without a jump. The reported state before may be half a step off, 1/960 s, at about 1
-/// rad/s.
+/// The largest error of an angle, rad, in the first frame of the other method: the motion continues
+/// without a jump. The reported state before may be half a step off, 1/960 s, at about 1 rad/s.
 const CONTINUED: f64 = 1e-3;
 
 /// A motion by a plan in 32 bits continues after the horizon from its present state by its first
@@ -229,7 +228,7 @@ fn energy_is_kept_after_the_horizon_of_a_plan() {
         let parameters = settings.parameters.cast::<f64>();
         let pendulum = Pendulum::new(&parameters).expect("the scene took it");
 
-        // Find the frame in which the planned method is left.
+        // Find the first frame after the planned method.
         let mut before = show.report();
         let mut has_followed = false;
         while !(has_followed && show.report().stepping == initial) {

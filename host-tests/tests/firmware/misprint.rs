@@ -86,7 +86,7 @@ fn right_form_keeps_the_energy_and_spends_half_its_time_above_the_pivot() {
     );
 }
 
-/// At mass ratio 1 the misprinted equations equal the kernel's derivatives at one state, to
+/// The misprinted equations equal the kernel's derivatives at one state at mass ratio 1, to
 /// rounding.
 #[test]
 fn with_equal_masses_the_printed_form_is_right() {

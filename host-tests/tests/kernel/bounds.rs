@@ -95,10 +95,10 @@ fn hold<R: Step>() -> Result<(), Error> {
     Ok(())
 }
 
-/// No quantity of 10,000 random motions exceeds its bound by more than a millionth in 100 steps of
-/// RK4. The admissible step in `f32` is that in `f64` to 4e-6. It is infinite if nothing can move,
-/// half as long for twice the momentum without gravity, and for a hanging pendulum shorter than the
-/// limit of stability ([`hold`]).
+/// The quantities of 10,000 random motions exceed their bounds by at most a millionth in 100 steps
+/// of RK4. The admissible step in `f32` is that in `f64` to 4e-6. It is infinite if nothing can
+/// move, half as long for twice the momentum without gravity, and for a hanging pendulum shorter
+/// than the limit of stability ([`hold`]).
 #[test]
 fn bounds_and_admissible_steps_hold_in_either_precision() -> Result<(), Error> {
     hold::<f32>()?;

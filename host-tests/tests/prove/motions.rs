@@ -81,15 +81,15 @@ fn random_motions_are_inside(frames: u32) {
     }
 }
 
-/// For 200 random motions over 30 frames of 1/64 s, the box contains the reference and the energy
-/// of the start, and is not wider than its tolerance ([`is_inside`]).
+/// The box contains the reference and the energy of the start, and is not wider than its tolerance
+/// ([`is_inside`]), for 200 random motions over 30 frames of 1/64 s.
 #[test]
 fn random_motions_are_inside_for_half_a_second() {
     random_motions_are_inside(30);
 }
 
-/// For 200 random motions over 300 frames, 4.7 s, the box contains the reference and the energy of
-/// the start, and is not wider than its tolerance ([`is_inside`]).
+/// The box contains the reference and the energy of the start, and is not wider than its tolerance
+/// ([`is_inside`]), for 200 random motions over 300 frames, 4.7 s.
 #[test]
 #[ignore = "minutes"]
 fn random_motions_are_inside_for_long() {

@@ -30,9 +30,9 @@ pub fn text(greys: &[u8], width: usize) -> String {
 /// project's folder ([`workspace`]). Returns `Ok` if both are the same.
 ///
 /// The error names the file and says how to accept the picture, and lists the rows that differ,
-/// numbered from 0, each with the old one above the new one. Rows that only one of the two pictures
-/// has, and other ends of lines, are an error but are not listed. A file that cannot be read is an
-/// error, too.
+/// numbered from 0, each old row above the new row. Rows that only one of the two pictures has, and
+/// other ends of lines, are an error but are not listed. A file that cannot be read is an error,
+/// too.
 ///
 /// If [`BLESS`] is set, nothing is compared: the picture replaces the file, or creates it. It is
 /// then an error only if the file cannot be written. The folder must exist.
@@ -79,9 +79,9 @@ fn differing_rows(committed: &str, picture: &str) -> Option<String> {
 /// ([`workspace`]). Returns `Ok` if both are the same, byte by byte.
 ///
 /// The error names the file and says how to accept the text. It contains the numbers of lines
-/// before and now, and the lines that differ from the old one of the same number, each with the old
-/// one above the new one. Lines that only one of the two texts has, and other ends of lines, are an
-/// error but are not listed. A file that cannot be read is an error, too.
+/// before and now, and the lines that differ, each old line above the new line. Lines that only one
+/// of the two texts has, and other ends of lines, are an error but are not listed. A file that
+/// cannot be read is an error, too.
 ///
 /// If [`BLESS`] is set, nothing is compared: the text replaces the file, or creates it. It is then
 /// an error only if the file cannot be written. The folder must exist.

@@ -48,7 +48,7 @@ impl<F: Form> Falling<F> {
     /// `steps`, the result is `None`.
     ///
     /// `map` must be the map of the start, and the method must not be called again after a result;
-    /// neither is checked. Nor is the motion: one that diverges may have any of these results.
+    /// neither is checked. Nor is the motion: if it diverges, it may have any of these results.
     pub fn advance(&mut self, map: &Flips<F>, steps: u32) -> Option<Flip<F::Real>> {
         for _ in 0..steps {
             if self.steps >= map.steps {

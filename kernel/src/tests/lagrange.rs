@@ -142,7 +142,7 @@ fn all<R: Real>() {
     }
 }
 
-/// For 20,000 random pendulums and motions two ways must agree within 4e-6 in `f32` and 8e-15 in
+/// Two ways must agree for 20,000 random pendulums and motions, within 4e-6 in `f32` and 8e-15 in
 /// `f64` ([`tolerances::FORMULAS`]), relative to the terms of the formula: T and V by bobs and by
 /// formula; p by the slopes of L; w from p; H, K, L and w.p by T and V; and the rates of the
 /// momenta by Lagrange's accelerations and by Hamilton's equations. At rest both conversions are

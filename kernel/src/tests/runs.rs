@@ -196,7 +196,7 @@ fn advance_refuses_an_energy_far_above_that_of_the_start() -> Result<(), Error> 
     energy_stays_within_its_bound::<ExtrapolationF64<12>>()
 }
 
-/// If the unit of momentum is so small that it is 0 in `f32`, a motion does not count as diverged:
+/// A motion does not count as diverged if the unit of momentum is so small that it is 0 in `f32`:
 /// neither hanging at rest nor released at rest. Its bobs weigh 1e8 kg, its rods are 1e15 m long,
 /// and a step is 1e-7 s.
 #[test]

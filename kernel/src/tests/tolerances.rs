@@ -44,8 +44,8 @@ pub const FORMULAS: PerPrecision = PerPrecision {
 };
 
 /// The distance from the start of a motion run forth and back in 256 or 1024 steps: rad, and
-/// momenta relative to their bounds. It covers what the truncation errors of both ways leave, with
-/// a margin of ten and more (measured: 6e-12).
+/// momenta relative to their bounds. It covers the truncation errors of both ways, with a margin of
+/// ten and more (measured: 6e-12).
 pub const RETURN: f64 = 1e-10;
 
 /// Angles of the scenes in closed form, per radian of amplitude, at any time.

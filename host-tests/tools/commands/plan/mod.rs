@@ -17,7 +17,7 @@ const EXAMPLES: &str = "Examples:
   cargo plan --scene figure-7 --target pico";
 
 /// Finds the cheapest method that keeps the picture within half a pixel, and for how long. If the
-/// chip is too slow for any, it says so (exit code 0).
+/// chip is too slow for any, that is the result (exit code 0).
 ///
 /// Numbers are decimals (0.25, 1e-3) or fractions (1/256).
 #[derive(Debug, Parser)]

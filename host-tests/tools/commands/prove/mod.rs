@@ -69,7 +69,7 @@ pub struct ProveOptions {
 /// Prints the proof, with `--csv` only a heading and a row for each frame, or, with `--table` or
 /// `--known-answers`, a table of many scenes. The exit code is a success for any result of the
 /// proof, also if no method is fast enough, so that nothing is proved. If Ctrl-C ended the proof,
-/// the frames so far are reported and it is the code of the signal, 130. Options that cannot be
+/// the frames until then are reported and it is the code of the signal, 130. Options that cannot be
 /// used, also a number with too many digits, or a method that does not accept the scene, are
 /// [`Refused`].
 ///

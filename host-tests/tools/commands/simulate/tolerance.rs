@@ -28,8 +28,8 @@ const ROWS: u32 = 100;
 /// an error. Prices are cycles on the board of the options, or evaluations of the equations on this
 /// computer. Without a method in the options, only methods with a price are tried; a method in the
 /// options that has none is priced by its evaluations. Every trial is computed on this computer,
-/// which may take minutes. The time between rows is that of the options, or else a hundredth of the
-/// time of the last row. The note of the plan names the choice.
+/// which may take minutes. The time between rows is in the options, or else it is a hundredth of
+/// the time of the last row. The note of the plan names the choice.
 ///
 /// An error is one line that names the option and the value. It is an error if the tolerance or a
 /// time is not greater than zero, if the time of the last row is no whole multiple of the time

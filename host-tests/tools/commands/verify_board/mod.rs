@@ -89,7 +89,7 @@ fn verdict(difference: Option<String>) -> String {
 ///
 /// Before the measurements, a report that cannot be written, a port that cannot be opened, and
 /// missing tools for a board that this project knows are refused, in this order. Another error
-/// means that the board does not send what is awaited within 20 s or refuses a request, that a
+/// means that the board does not answer within 20 s, sends no frames or refuses a request, that a
 /// build or QEMU fails, or that the report can no longer be written. After any of these errors
 /// there is no new report, and an existing one remains.
 pub fn run(options: &VerifyOptions) -> anyhow::Result<bool> {

@@ -79,15 +79,16 @@ impl Talk {
         // The reason, by the messages that have arrived.
         let name = &self.port.name;
         let seconds = PATIENCE.as_secs();
-        bail!(notice.unwrap_or_else(|| match (has_drawn, has_answered) {
-            (true, _) =>
-                format!("{name}: the board sends frames but does not answer; flash it again"),
-            (false, true) => format!(
-                "{name}: the board answers but sends no frames for {seconds} s; flash it again"
-            ),
-            (false, false) =>
-                format!("{name}: no message for {seconds} s; is the board powered and connected?"),
-        }))
+        if let Some(notice) = notice {
+            bail!(notice)
+        }
+        if has_drawn {
+            bail!("{name}: the board sends frames but does not answer; flash it again")
+        }
+        if has_answered {
+            bail!("{name}: the board answers but sends no frames for {seconds} s; flash it again")
+        }
+        bail!("{name}: no message for {seconds} s; is the board powered and connected?")
     }
 
     /// Returns the next frame and drops the other messages before it. Errors are as in

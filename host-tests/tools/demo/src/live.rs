@@ -24,8 +24,8 @@ const LOOK: Duration = Duration::from_nanos(1_000_000_000 / TICK_RATE as u64);
 /// infinite, or until the user quits by q or Ctrl-C; both are `Ok`. If `seconds` is 0, negative or
 /// NaN, it returns at once. A board at a port that is silent is waited for.
 ///
-/// An error means that the terminal fails, or is one of the session, such as [`Session::hear`]
-/// returns. The terminal is restored in each case. A signal restores it, too, and ends the process.
+/// An error means that the terminal or the session fails, as in [`Session::hear`]. The terminal is
+/// restored in each case. A signal restores it, too, and ends the process.
 pub fn watch(session: &mut Session, seconds: f64) -> anyhow::Result<()> {
     // Ctrl-C must leave a usable terminal.
     process::on_interrupt(|| {
@@ -153,8 +153,8 @@ mod tests {
         KeyEvent::new(code, KeyModifiers::NONE)
     }
 
-    /// With a page of the help, any key but `?` and Ctrl-C closes it and does nothing else. Without
-    /// one, q quits and Esc does nothing. Ctrl-C quits always.
+    /// Any key but `?` and Ctrl-C closes a page of the help and does nothing else. Without a page,
+    /// q quits and Esc does nothing. Ctrl-C quits always.
     #[test]
     fn any_key_closes_the_help_and_escape_never_quits() {
         for code in [KeyCode::Esc, KeyCode::Char('q'), KeyCode::Up] {
