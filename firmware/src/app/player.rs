@@ -56,8 +56,8 @@ enum MotionState {
     /// The planned motion catches up with the current one, and then takes over. Meanwhile nothing
     /// is planned.
     Switching(CatchingUp),
-    /// The horizon of the last plan, s, is past. The motion keeps its method, which keeps its energy
-    /// unless the method that would has refused its state.
+    /// The horizon of the last plan, s, is past, and the motion keeps its present method. If the
+    /// plan would not keep the energy, that is its first method, unless this has refused the state.
     PastHorizon { horizon: f32 },
     /// The motion cannot be computed. It is too fast for every method that a frame can pay for, or
     /// has left the finite numbers.
@@ -514,8 +514,8 @@ impl<'a> Player<'a> {
     }
 
     /// Returns the settings with one field changed to `value`, in SI units: of an angle in rad.
-    /// Refuses an angle to set that is beyond straight up or NaN, and a field that is none of the
-    /// settings. The other angle is not checked.
+    /// Refuses an angle that is beyond straight up or NaN, and a field that is not a setting. The
+    /// angle that is not set is not checked.
     fn with(&self, field: Field, value: f64) -> Result<Settings, Field> {
         let mut settings = self.settings;
         let Settings {

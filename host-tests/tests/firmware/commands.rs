@@ -376,7 +376,8 @@ fn a_message_that_is_no_command_is_not_answered() {
     assert!(app.link.is_empty());
 }
 
-/// One call takes, of a million bytes that end no message, as many as the receive queue holds.
+/// One call takes at most as many bytes as the receive queue holds, of a million bytes that end no
+/// message.
 #[test]
 fn an_endless_message_takes_one_queue_at_most() {
     let mut taken = 0;
