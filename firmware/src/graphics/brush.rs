@@ -122,6 +122,7 @@ impl Disc {
         };
 
         let grey = shade(brightness);
+        let full = grey(SUBPIXELS);
 
         // The distance is a root only at the edges, where it matters.
         let columns = pixels([centre_x; 2], outer, WIDTH);
@@ -131,22 +132,24 @@ impl Disc {
             for x in columns.clone() {
                 let dx = middle(x) - i32::from(centre_x);
                 let squared = dx * dx + dy * dy;
-                if squared < inner * inner {
-                    row.update(x, |_| grey(SUBPIXELS));
-                } else if squared < edge * edge {
-                    let distance = root(squared, inner, edge);
-                    row.update(x, |old| wipe(old, distance).max(grey(edge - distance)));
-                } else if squared < outer * outer {
-                    row.update(x, |old| {
-                        if old == 0 {
-                            0
-                        } else {
-                            wipe(old, root(squared, edge, outer))
-                        }
-                    });
-                } else if dx > 0 {
-                    break;
+                if squared >= outer * outer {
+                    if dx > 0 {
+                        break;
+                    }
+                    continue;
                 }
+                row.update(x, |old| {
+                    if squared < inner * inner {
+                        full
+                    } else if squared < edge * edge {
+                        let distance = root(squared, inner, edge);
+                        wipe(old, distance).max(grey(edge - distance))
+                    } else if old == 0 {
+                        0
+                    } else {
+                        wipe(old, root(squared, edge, outer))
+                    }
+                });
             }
         }
     }

@@ -66,7 +66,6 @@ pub fn upright_axis(canvas: &mut Canvas, x: i32, from: i32, to: i32) {
 /// and right if x1 and x2 are equal, otherwise above and below. Brighter pixels keep their grey.
 /// Not checked: two diagonal corners give a filled rectangle, and a second pixel to the left of or
 /// above the first gives only the feet.
-#[inline(never)] // Inlined, it takes 368 bytes of flash (M3).
 pub fn bar(canvas: &mut Canvas, (x1, y1): (i32, i32), (x2, y2): (i32, i32)) {
     (x1..=x2).for_each(|x| (y1..=y2).for_each(|y| axis_dot(canvas, x, y)));
     let (across, down) = if x1 == x2 { (1, 0) } else { (0, 1) };

@@ -62,6 +62,7 @@ impl Derivatives<f32> for Micromath {
         Pendulum::new(parameters).map(Self)
     }
 
+    #[inline(always)] // A fifth fewer cycles on an M4F.
     fn derivatives(&self, &[a1, a2, p1, p2]: &[f32; 4]) -> [f32; 4] {
         self.0
             .derivatives_at([a1, a2].map(|a| F32Ext::sin_cos(a).into()), [p1, p2])

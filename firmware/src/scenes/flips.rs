@@ -114,7 +114,6 @@ impl Block {
     }
 
     /// Fills the block and its mirror image with a grey.
-    #[inline(never)] // Inlined, it takes 324 bytes of flash (M3).
     fn paint(self, ink: &mut FadeLayer, grey: u8) {
         let map = &mut ink.frame;
         map.all_greys = true;

@@ -215,7 +215,6 @@ impl Scale {
     /// 4 in small oscillations and of order 2 in others. If they leave the finite numbers, the
     /// motion is not taken back. NaN in `z` or `lost` gives NaN in the numbers that depend on it.
     #[must_use]
-    #[inline(never)] // 2.0 KB more flash on an M4F without.
     pub fn state<R: Real>(
         &self,
         // A pointer, so that the rates are compiled once and not in each stage.
