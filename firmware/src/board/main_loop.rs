@@ -154,7 +154,7 @@ fn run<Panel: Display<Error: fmt::Display>, Link: Write, Keys: Buttons>(
     let mut now = ticks();
     app.count_from(now, 0);
     loop {
-        // Catch up with the clock.
+        // Catch up with the clock, one frame after the other.
         let mut is_late = true;
         while is_late {
             let before = app.frames;
@@ -164,11 +164,11 @@ fn run<Panel: Display<Error: fmt::Display>, Link: Write, Keys: Buttons>(
                 retained::keep(&journal.note(app.status(), app.player.report.step));
                 watchdog.feed();
             }
-        }
 
-        // Execute the commands of the host.
-        app.receive(from_fn(serial::received), log);
-        app.note_lost(serial::lost(), log);
+            // Execute the commands of the host, also while the board is late.
+            app.receive(from_fn(serial::received), log);
+            app.note_lost(serial::lost(), log);
+        }
 
         // Use the rest of the tick: for the job of the host, for planning, for the panel.
         while ticks() == now && app.work(log) {

@@ -5,6 +5,7 @@ mod cores;
 mod count;
 mod count_elf;
 mod identity;
+mod late;
 mod mass_ratio;
 mod no_panic;
 mod pico;
