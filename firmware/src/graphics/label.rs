@@ -71,7 +71,7 @@ fn tenths(name: &str, tenths: u32) -> Label {
 /// Returns `value`, rounded to `decimals` places, after a name and before a unit. A negative value
 /// that is rounded to 0 keeps its sign. Halves are rounded away from 0. Examples: `±12°`, `ω₁
 /// 1.848`, `true -18.7 J`. Not checked: `decimals` is 0 to 9; with more, the digits are wrong.
-#[inline(never)] // Inlined, it takes 2,024 bytes of flash (M3).
+#[inline(never)] // Inlined, it takes 992 bytes of flash (M3).
 pub fn label(name: &str, value: f32, decimals: u32, unit: &str) -> Label {
     let one = 10_u32.saturating_pow(decimals);
     let sign = if value < 0.0 { "-" } else { "" };

@@ -95,7 +95,6 @@ impl PlannedRun {
     ///
     /// Unlike [`Run::advance`](crate::Run::advance), it checks no energy in `f32`: a motion whose
     /// numbers are finite but meaningless is accepted.
-    #[inline(never)] // With `state`: 3.3 KB more flash on an M4F without.
     pub fn advance(&mut self, frames: u32) -> Result<(), Error> {
         for _ in 0..frames {
             for _ in 0..self.stepping.steps {
@@ -137,7 +136,7 @@ impl PlannedRun {
     ///
     /// This is enough for a picture, and costs far less than [`state`](Self::state) on a processor
     /// whose `f64` is software.
-    #[inline(never)] // With `energy_above_rest`: 1.8 KB more flash on an M4F without.
+    #[inline(never)] // 0.4 KB more flash on an M3 without.
     #[must_use]
     pub fn rounded_state(&self) -> State<f32> {
         let ([turns1, turns2], [direction1, direction2]) = (&self.turns, self.directions());
@@ -153,7 +152,6 @@ impl PlannedRun {
     /// Returns the energy above rest, J, of the motion as it is carried: nothing is rounded to
     /// `f32`. It is that at the time of the [`directions`](Self::directions). `pendulum` must be
     /// the pendulum of the problem; another one gives a wrong energy.
-    #[inline(never)] // With `rounded_state`: 1.8 KB more flash on an M4F without.
     #[doc(hidden)] // For the firmware's reports.
     #[must_use]
     pub fn energy_above_rest(&self, pendulum: &Pendulum<f64>) -> f64 {
@@ -164,7 +162,6 @@ impl PlannedRun {
     /// the method carries. The angles include whole turns, which belong to this time even if a rod
     /// passes upright between it and that of the directions.
     #[must_use]
-    #[inline(never)] // With `advance`: 3.3 KB more flash on an M4F without.
     pub fn state(&self) -> State<f64> {
         Turns::unwrap(&self.turns, self.motion.state())
     }

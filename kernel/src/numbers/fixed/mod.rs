@@ -45,7 +45,7 @@ pub(crate) fn scaled(value: f64, exponent: i32) -> f64 {
 
 /// Returns the whole number nearest to `value`, the even one of two. NaN and infinity are
 /// unchanged.
-#[inline(never)] // With `Q64::from_f64`: 3.4 KB more flash on an M4F without.
+#[inline(never)] // With `Q64::from_f64`: 3.9 KB more flash on an M4F without.
 pub(crate) fn nearest(value: f64) -> f64 {
     libm::rint(value)
 }
