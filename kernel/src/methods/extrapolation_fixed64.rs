@@ -228,7 +228,7 @@ impl Fixed64State {
 
 /// Returns a direction with its length restored to first order in the error of its square, and that
 /// error. `gain` is half of 1/`square`.
-#[inline(always)] // `slope`, `times`, `restored`: +8 % cycles on an M3 without.
+#[inline(always)] // `slope`, `times`, `restored`: +10 % cycles on an M3 without.
 fn restored([s, c]: [Q64; 2], square: Q64, gain: Q64) -> ([Q64; 2], Q64) {
     let missing = square - s * s - c * c;
     let relative = missing.up(7) * gain;

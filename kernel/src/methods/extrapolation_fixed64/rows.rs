@@ -84,7 +84,7 @@ impl Factor {
     }
 
     /// Returns the product with `number`, rounded down. It wraps if it does not fit.
-    #[inline(always)] // `slope`, `times`, `restored`: +8 % cycles on an M3 without.
+    #[inline(always)] // `slope`, `times`, `restored`: +10 % cycles on an M3 without.
     fn times(&self, number: Q64) -> Q64 {
         let product = number * self.rest;
         if self.whole == 0 {
@@ -266,7 +266,7 @@ struct Equations<'a, const UNLIKE: bool, const INVERSE: bool> {
 
 impl<const UNLIKE: bool, const INVERSE: bool> Equations<'_, UNLIKE, INVERSE> {
     /// Returns the changes of the six quantities at `z` over the share of the step of `row`.
-    #[inline(always)] // `slope`, `times`, `restored`: +8 % cycles on an M3 without.
+    #[inline(always)] // `slope`, `times`, `restored`: +10 % cycles on an M3 without.
     fn slope(&self, row: &Row, z: &[Q64; 6]) -> [Q64; 6] {
         // Sines and cosines are below 2, momenta below 1/4.
         for &z in z {
