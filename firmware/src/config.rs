@@ -239,7 +239,8 @@ pub const GREATEST_ANGLE: f32 = 180.0;
 // ---- Buttons, in ticks of 1/60 s ----------------------------------------------------------------
 
 /// The number of equal readings in a row, one per tick, that count as a level. 2 readings are 17 ms
-/// apart, which is longer than contacts bounce.
+/// apart, which is longer than contacts bounce. So no press of 1/30 s or longer is lost, unless the
+/// board is late: it then reads for several ticks at almost the same time.
 pub const DEBOUNCE_TICKS: u8 = 2;
 /// The time after which a held button repeats for the first time, ticks: 24/60 = 0.4 s after the
 /// tick in which the press is recognised.
