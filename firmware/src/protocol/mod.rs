@@ -2,8 +2,10 @@
 //!
 //! A message on the wire is `COBS(version, message, CRC)` between two zero bytes. The version is
 //! one byte. The message is a [`ToHost`]; or it is a mark byte, a number chosen by the host and a
-//! [`Command`]. Its format is [postcard](https://postcard.jamesmunns.com), and its units are SI
-//! units. The CRC is the CRC-32/ISO-HDLC of all bytes before it, little-endian.
+//! [`Command`]. Its format is [postcard](https://postcard.jamesmunns.com). Its units are SI units,
+//! except that the angles of [`Settings`](crate::motion::Settings), in [`Command::Play`] and
+//! [`Status`], are in degrees. The CRC is the CRC-32/ISO-HDLC of all bytes before it,
+//! little-endian.
 //!
 //! # Undetected errors
 //!
