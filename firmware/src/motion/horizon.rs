@@ -5,6 +5,9 @@ use crate::graphics::label::{self, Label};
 /// The time until which the frames of a scene are within [half a pixel](crate::config::HALF_PIXEL)
 /// of the exact motion, s after the start.
 ///
+/// Frames that were shown before the motion switched to the method of its plan are not part of the
+/// prediction, except where the initial method is verified too.
+///
 /// Below, planning includes the switch to the method of the plan. In the scene `upright`, which has
 /// no plan, it is the comparison with a motion in 64 bits.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
