@@ -288,7 +288,10 @@ impl<'a> Player<'a> {
     /// more may be left. Returns false, without work, if the budget of that tick is spent, if
     /// nothing is left to plan, in the first ticks of a scene
     /// ([`SETTLED_TICKS`](crate::config::SETTLED_TICKS)), or if the scene is paused, stopped or
-    /// switching its method. No result depends on whether it is called.
+    /// switching its method.
+    ///
+    /// To be called after [`check`](Self::check). Then no event and no report depends on whether it
+    /// is called. [`plan`](Self::plan) may have a result that is found before its tick.
     pub fn look_ahead(&mut self) -> bool {
         !self.is_still() && !self.is_switching() && self.planner.work_ahead()
     }
@@ -342,10 +345,15 @@ impl<'a> Player<'a> {
     /// stopped already, also from its start, nothing is taken, and the result is false. A figure
     /// without a moving pendulum never stops.
     ///
-    /// To be called before each frame.
+    /// If the scene has not advanced since the last report, nothing is done, and the result is
+    /// false.
+    ///
+    /// To be called before each frame, after [`tick`](Self::tick) and before
+    /// [`look_ahead`](Self::look_ahead).
     #[inline(never)] // Test `scenes` profiles it by its name.
     pub fn check(&mut self) -> bool {
-        if self.is_stopped() {
+        // Without a tick of the scene the report stays: only work done in advance could change it.
+        if self.is_stopped() || self.report.step == self.planner.ticks {
             return false;
         }
         let report = self.now();

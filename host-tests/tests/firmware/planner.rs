@@ -2,10 +2,13 @@
 
 use double_pendulum::Method;
 use double_pendulum::plan::{Limit, Plan, PlanError, Stepping};
+use emulator::host::Show;
 use firmware::config::{
     CORTEX_M0PLUS, CORTEX_M3, CORTEX_M4F, PLANNED, PROCESSORS, Processor, SETTLED_TICKS, STM32F405,
 };
 use firmware::motion::{CatchingUp, Planner, Settings};
+use firmware::protocol::{Command, Field};
+use firmware::scenes::SceneName;
 
 /// The initial stepping of these tests, with finer steps than any reference. It is accurate for at
 /// least as long as any other stepping.
@@ -59,6 +62,48 @@ fn results_of_a_tick_do_not_depend_on_when_the_work_is_done() {
             assert_eq!((early.tick(), uneven.tick()), (found, found), "tick {tick}");
             let horizons = [&early, &uneven].map(|planner| planner.horizon(LASTING));
             assert_eq!(horizons, [late.horizon(LASTING); 2], "tick {tick}");
+        }
+    }
+}
+
+/// At any speed, and after a pause, the reports and events of a scene do not depend on whether
+/// planning is done in advance: in ticks of the clock without a tick of the scene, too.
+#[test]
+fn reports_do_not_depend_on_work_in_advance_at_any_speed() {
+    const SPEEDS: [f64; 4] = [1.0, 0.5, 0.01, 1.5];
+    let calm = Settings::equal_rods(1.0, 20.0);
+    for (name, settings) in [
+        (SceneName::Page, Settings::default()),
+        (SceneName::Page, calm),
+        (SceneName::Beats2To1, SceneName::Beats2To1.first_settings()),
+    ] {
+        for speed in SPEEDS {
+            let [mut late, mut early] =
+                [(); 2].map(|()| Show::new(name, &settings).expect("good settings"));
+            let set_speed = Command::Set {
+                field: Field::Speed,
+                value: speed,
+            };
+            for tick in 0..PATIENCE {
+                while early.player.look_ahead() {}
+                for show in [&mut late, &mut early] {
+                    // A pause of 10 ticks begins before every 50th tick, as by a button.
+                    let command = match tick % 50 {
+                        0 => Command::Pause(true),
+                        10 => Command::Pause(false),
+                        _ => set_speed,
+                    };
+                    assert_eq!(show.player.execute(command), Ok(false));
+                    show.tick();
+                }
+                assert_eq!(
+                    early.report(),
+                    late.report(),
+                    "{}, speed {speed}, tick {tick}",
+                    name.name()
+                );
+            }
+            assert_eq!(early.news, late.news);
         }
     }
 }
