@@ -19,8 +19,8 @@ const WISH = 4;
 /** Where the watchdog is, and the device that holds others in their reset; which of these the boot ROM lets go. */
 const [WATCHDOG, RESETS] = [0x40058, 0x4000c];
 const [ALL, BY_ROM] = [0x1ffffff, (1 << 6) | (1 << 9) | (1 << 21)];
-/** The newer revision of the chip, B2: of the older one's fault at the start of USB the emulator knows nothing. */
-const CHIP_ID = 0x20002927;
+/** The newer revision of the chip, B2, and the older one, B1, whose reset of USB may not end. */
+const [CHIP_ID, OLD_CHIP_ID] = [0x20002927, 0x10002927];
 /** The number of the exception. */
 const HARD_FAULT = 3;
 /** The instruction `b .`, a jump to itself, and its cycles. */
@@ -35,6 +35,7 @@ export class Board {
     this.image = flashed(uf2, FLASH);
     this.say = say;
     this.panel = new Panel();
+    this.isOld = false;
     this.pressed = new Set();
     this.usb = new UsbHost((bytes) => this.say('usb', bytes));
     this.start();
@@ -53,7 +54,7 @@ export class Board {
       chip.sram.set(before.sram);
       chip.clock.nanosCounter = before.clock.nanos;
     }
-    chip.peripherals[0x40000].readUint32 = (offset) => (offset === 0 ? CHIP_ID : 0);
+    chip.peripherals[0x40000].readUint32 = (offset) => (offset ? 0 : this.isOld ? OLD_CHIP_ID : CHIP_ID);
     const [watchdog, resets] = [WATCHDOG, RESETS].map((at) => chip.peripherals[at]);
     const [watched, held] = [WATCHDOG, RESETS].map((at) => before?.peripherals[at]);
     if (before) watchdog.scratchData.set(watched.scratchData);
@@ -185,6 +186,12 @@ export class Board {
     const parts = written > read ? [[read, written]] : [[read, size], [0, written]];
     this.say('log', Buffer.concat(parts.map(([from, to]) => sram.subarray(start + from, start + to))));
     sramView.setUint32(ring + 16, written, true);
+  }
+
+  /** A hub resets the bus of a chip of the older revision until it is told to end. */
+  resetBus(is) {
+    this.isOld = true;
+    this.usb.reset(is);
   }
 
   press(pin, is) {

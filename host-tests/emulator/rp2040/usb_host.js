@@ -11,6 +11,8 @@ const OPEN = 3;
 const BAUD = 460_800;
 /** Where the controller's pull-up is switched, and by which bit. */
 const [SIE_CTRL, PULL_UP] = [0x4c, 1 << 16];
+/** The controller's status: a reset of the bus, a connection, and the levels of the lines, which are low in a reset or idle. */
+const [BUS_RESET, CONNECTED, LINES, IDLE] = [1 << 19, 1 << 16, 3 << 2, 1 << 2];
 /** The device that holds the controller in reset, and its bit. */
 const [RESETS, HELD] = [0x4000c, 1 << 24];
 /**
@@ -92,6 +94,14 @@ export class UsbHost {
     if (absence < NOTICED) return;
     this.waiting = []; // what was for the port that is gone
     this.seen.schedule(DEBOUNCE);
+  }
+
+  /** Holds both lines low, or lets them go. The emulator's own resets end at once. */
+  reset(is) {
+    if (is) this.forget();
+    this.usb.sieStatus &= ~(CONNECTED | LINES);
+    this.usb.sieStatus |= is ? BUS_RESET : IDLE;
+    this.usb.sieStatusUpdated();
   }
 
   enumerate() {

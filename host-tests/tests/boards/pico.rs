@@ -6,6 +6,7 @@ use std::time::Duration;
 
 use crate::support::code::Code;
 use crate::support::{LIMIT, application, show};
+use anyhow::Context;
 use cycles::Core;
 use double_pendulum::Method;
 use emulator::boards::{BOARDS, PICO};
@@ -696,6 +697,35 @@ fn a_broken_off_control_transfer_does_not_stop_the_board() -> anyhow::Result<()>
     assert!(board.run(10 * TICK)?.len() < 3);
     board.set_port(BAUD)?;
     board.next_frame().map(drop)
+}
+
+/// A reset of the bus that lasts 1 s, as behind a hub without a host, delays the frames of a chip
+/// of the revision B1 by 0.2 s at most. The library leaves the reset pending, and the controller's
+/// interrupt is level-triggered. After the reset the port works again.
+#[test]
+fn a_reset_of_the_bus_that_lasts_does_not_stop_the_board() -> anyhow::Result<()> {
+    let mut board = board()?;
+    let before = board.next_frame()?;
+    board.heard_by_uart();
+    board.tell("resetBus 1")?;
+    board.run(TICK * TICK_RATE)?;
+    let after = board
+        .heard_by_uart()
+        .into_iter()
+        .rev()
+        .find_map(ToHost::frame)
+        .context("no frame by the UART")?;
+    let steps = after.report.step - before.report.step;
+    println!("{} ticks without a frame", after.dropped);
+    assert!(steps.abs_diff(TICK_RATE.into()) < 4, "{steps}");
+    assert!((1..TICK_RATE / 5).contains(&after.dropped), "{after:?}");
+
+    // The host ends the reset, and finds the device again.
+    board.tell("resetBus 0")?;
+    let again = board.next_frame()?;
+    assert_eq!(again.dropped, after.dropped);
+    assert_eq!(board.counts()[0].restarts, 0);
+    Ok(())
 }
 
 /// Byte 7 of the device descriptor is 64.

@@ -96,7 +96,8 @@ fn UART0_IRQ() {
 ///
 /// If the queue has no room for a USB packet, the packet stays in the device, and the host waits.
 /// Until then its interrupt would repeat without end, so it is masked. The UART's interrupt, which
-/// comes with each frame, polls USB instead. The same is done if USB cannot dispose of a packet.
+/// comes with each frame, polls USB instead. The same is done if USB cannot dispose of a packet, or
+/// if a reset of the bus does not end.
 fn receive(inbox: &mut Inbox) {
     if usb::poll(inbox) {
         enable_interrupts();

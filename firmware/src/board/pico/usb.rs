@@ -40,10 +40,18 @@ const CONTROL_PACKET: u8 = 64;
 const ABSENCE: u32 = 1_500_000;
 /// The speed that requests the boot loader: a host opens and closes the port with it.
 const BOOT_LOADER_BAUD: u32 = 1200;
-/// The number of interrupts in a row with something still pending after which the interrupt is
-/// masked. Each takes some 8 us, so that the main loop loses half a millisecond. In an intact
-/// connection one or two follow each other at most, because a packet takes 50 us.
-const MOST_FUTILE: u8 = 64;
+/// The number of interrupts in a row with something still pending, but no reset of the bus, after
+/// which the interrupt is masked. Each takes some 8 us, so that the main loop loses half a
+/// millisecond. In an intact connection one or two follow each other at most, because a packet
+/// takes 50 us.
+const MOST_FUTILE: u16 = 64;
+/// The number of interrupts in a row with a reset of the bus still pending, after which the
+/// interrupt is masked. They take 0.1 s, in which the main loop does not run.
+///
+/// The limit is high because `rp2040-hal` leaves a reset pending on the revisions B0 and B1 until
+/// it ends (erratum RP2040-E5). A host ends it after 10 to 50 ms, and may wait only 10 ms more for
+/// the device. A hub without a host may never end it.
+const MOST_IN_RESET: u16 = 16_384;
 
 /// The USB device, and the bytes to send.
 struct Usb {
@@ -52,8 +60,10 @@ struct Usb {
     leaving: Deque<u8, USB_QUEUE>,
     /// True while a program has the port open.
     is_open: bool,
-    /// The number of interrupts in a row that left something pending.
-    futile: u8,
+    /// The number of interrupts in a row that left something pending, but no reset of the bus.
+    futile: u16,
+    /// The number of interrupts in a row that left a reset of the bus pending.
+    in_reset: u16,
 }
 
 static USB: Shared<Option<&'static mut Usb>> = Shared::new(None);
@@ -93,6 +103,7 @@ pub(super) fn start(
         leaving: Deque::new(),
         is_open: false,
         futile: 0,
+        in_reset: 0,
     })?;
     USB.with(|place| *place = Some(usb))
 }
@@ -141,25 +152,33 @@ pub(super) fn poll(inbox: &mut Inbox) -> bool {
         // Send, and count the interrupts in a row that left something pending.
         usb.pass_on();
 
-        usb.futile = if is_pending() {
-            usb.futile.saturating_add(1)
-        } else {
-            0
-        };
-        usb.futile < MOST_FUTILE
+        let (is_pending, is_in_reset) = pending();
+        count(&mut usb.futile, is_pending && !is_in_reset);
+        count(&mut usb.in_reset, is_in_reset);
+        usb.futile < MOST_FUTILE && usb.in_reset < MOST_IN_RESET
     });
     has_room && is_served != Some(false)
 }
 
-/// Returns true if the device has an interrupt pending, except for a reset of the bus, which lasts.
+/// Returns two flags: true if the device has any interrupt pending, and true if a reset of the bus
+/// is pending.
 ///
 /// The libraries leave an unexpected packet to the control endpoint in place until the next request
 /// of the host. Such a packet belongs to a request that the host has abandoned, or to a request
 /// that is longer than their buffer of 128 bytes.
-fn is_pending() -> bool {
+fn pending() -> (bool, bool) {
     // SAFETY: the register is only read; no other code reads it for its side effects.
     let interrupts = unsafe { &*USBCTRL_REGS::ptr() }.ints().read();
-    interrupts.bits() != 0 && interrupts.bus_reset().bit_is_clear()
+    (interrupts.bits() != 0, interrupts.bus_reset().bit_is_set())
+}
+
+/// Adds one to the number of events in a row if the event has happened, and else sets it to 0.
+fn count(in_a_row: &mut u16, has_happened: bool) {
+    *in_a_row = if has_happened {
+        in_a_row.saturating_add(1)
+    } else {
+        0
+    };
 }
 
 impl Usb {
