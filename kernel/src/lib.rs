@@ -106,8 +106,9 @@
 //! stores the bits of every method. A test compares them, and another test requires an entry in the
 //! change log for every new version of the file. Steps use only IEEE 754 arithmetic, and the
 //! correctly rounded `sqrt` and `rint`, for angles up to 1,647,098 rad. The sines of larger angles,
-//! and the `atan2` in [`Run::state`], are computed by the `libm` crate in your lock file (0.2.16 or
-//! later). To compare machines, build for both with the same `libm`.
+//! the `atan2` in [`Run::state`], and the `log2` that chooses the units of fixed point at the start
+//! are computed by the `libm` crate in your lock file (0.2.16 or later). To compare machines, build
+//! for both with the same `libm`.
 //!
 //! # References
 //!
