@@ -143,7 +143,8 @@ pub enum Error {
     /// arithmetic.
     ///
     /// Also the error for a step that is zero, subnormal or infinite in the numbers of the method,
-    /// for an order that is not 2, 4 .. 16, and for a start of 2^31 - 1 turns or more. Only
+    /// or that alone takes a constant out of their range, for an order that is not 2, 4 .. 16, and
+    /// for a start of 2^31 - 1 turns or more. Only
     /// [`Pendulum::check_step`](crate::Pendulum::check_step) and
     /// [`Modes::check_step`](crate::Modes::check_step), which refuse steps backwards, refuse a zero
     /// step by `NotPositive`.
@@ -151,7 +152,8 @@ pub enum Error {
         /// The refused parameter. If a product is out of range, the mass, length or gravity whose
         /// value is farthest from 1 as a factor. For a start that the closed form cannot compute,
         /// the angle or angular velocity that leads to the largest angle: a velocity w leads to w
-        /// over the frequency of the slow mode.
+        /// over the frequency of the slow mode. For a start of infinite energy in fixed point, the
+        /// momentum of larger magnitude.
         parameter: Parameter,
         /// The refused value.
         value: f64,

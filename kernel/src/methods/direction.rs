@@ -109,7 +109,8 @@ pub(crate) struct Scale {
 /// # Errors
 ///
 /// Refuses the parameters and steps that [`Parameters::check`] and [`check_step`] refuse, and, by
-/// [`Error::OutOfRange`], parameters whose constants or their reciprocals leave the range of `R`.
+/// [`Error::OutOfRange`], parameters whose constants or their reciprocals leave the range of `R`. It
+/// names the step if that alone takes G1 or G2 out of range.
 pub(crate) fn prepare<R: Real>(
     parameters: &Parameters<R>,
     dt: f64,
@@ -145,9 +146,21 @@ pub(crate) fn prepare<R: Real>(
 
     let in_range = |constant: R| constant.is_normal() && (R::ONE / constant).is_normal();
     let constants = [coefficients.norm, coefficients.inertia, R::from_f64(total)];
-    let gravity_in_range = g == 0.0 || coefficients.gravity.into_iter().all(R::is_normal);
-    if constants.into_iter().all(in_range) && gravity_in_range {
+    if !constants.into_iter().all(in_range) {
+        return Err(parameters.out_of_range());
+    }
+
+    // If the torques are in range with a unit of 1 s, the step is at fault.
+    if g == 0.0 || coefficients.gravity.into_iter().all(R::is_normal) {
         Ok((coefficients, scale))
+    } else if [g / l1, total * (g / l1)]
+        .into_iter()
+        .all(|torque| R::from_f64(torque).is_normal())
+    {
+        Err(Error::OutOfRange {
+            parameter: Parameter::Dt,
+            value: dt,
+        })
     } else {
         Err(parameters.out_of_range())
     }

@@ -33,12 +33,12 @@ mod rows;
 
 use core::cell::Cell;
 
-use crate::bounds::check_step;
+use crate::bounds::{Bounds, check_step};
 use crate::error::{Error, Parameter};
 use crate::methods::FormOperations;
 use crate::methods::direction::{quantities, state_of};
 use crate::methods::extrapolation::{is_order, stable};
-use crate::methods::scaling::{Scaling, lost};
+use crate::methods::scaling::{Scaling, check_energy, lost};
 use crate::numbers::Real;
 use crate::numbers::fixed::Q64;
 use crate::pendulum::{Direction, Parameters, Pendulum, State};
@@ -132,7 +132,9 @@ impl Fixed64State {
         start.check()?;
 
         // The unit of time follows from the bounds of the energy, the longest step from the unit.
-        let bounds = pendulum.bounds(start);
+        let energy = pendulum.energy_above_rest(start);
+        check_energy(parameters, start, energy)?;
+        let bounds = Bounds::new(parameters, energy);
         let seconds = Scaling::in_seconds(parameters)?;
         let [by_rates, by_torques] = seconds.longest(&bounds, [RATE, TORQUE]);
         let longest = libm::fmin(libm::fmin(by_rates, by_torques), FOREVER);

@@ -46,11 +46,12 @@ impl<R: Real> Pendulum<R> {
     ///
     /// - a step that is NaN or infinite, by [`Error::NotFinite`], or, by [`Error::OutOfRange`],
     ///   zero, subnormal or too large in the method's numbers (`f64` for fixed point and the closed
-    ///   form);
+    ///   form), or so short that a torque of gravity in a step is subnormal or zero in them;
     /// - a start that is not finite, by [`Error::NotFinite`];
     /// - a start of 2^31 - 1 turns or more, if the method carries directions, or, for the closed
     ///   form, one from which an angle may exceed 2^31 - 1 turns, by [`Error::OutOfRange`];
-    /// - a pendulum or a start out of the range of the method's numbers, by [`Error::OutOfRange`];
+    /// - a pendulum or a start out of the range of the method's numbers, by [`Error::OutOfRange`],
+    ///   such as, in fixed point, a start of infinite energy;
     ///   if one of its numbers becomes infinite there, by [`Error::NotFinite`], or a mass or length
     ///   zero, by [`Error::NotPositive`]. Gravity and the numbers of the start may become zero;
     /// - for the closed form, a pendulum without gravity, by [`Error::NotPositive`];
@@ -102,6 +103,7 @@ fn start_within<F: Form>(
     dt: f64,
 ) -> Result<F, Error> {
     let stable = stable_step(parameters, F::STABLE);
+    let is_too_long = libm::fabs(dt) > stable;
     let too_large = |limit: f64| Error::TooLarge {
         parameter: Parameter::Dt,
         value: dt,
@@ -110,12 +112,17 @@ fn start_within<F: Form>(
 
     // The smaller of the two limits is reported, whichever refuses the step.
     match F::new(parameters, start, dt) {
-        Ok(_) if libm::fabs(dt) > stable => Err(too_large(stable)),
+        Ok(_) if is_too_long => Err(too_large(stable)),
         Err(Error::TooLarge {
             parameter: Parameter::Dt,
             limit,
             ..
         }) => Err(too_large(limit)),
+        // The constants or momenta are in proportion to the step, and so may overflow by it.
+        Err(Error::OutOfRange {
+            parameter: Parameter::Dt | Parameter::P1 | Parameter::P2,
+            ..
+        }) if is_too_long && F::Real::from_f64(dt).is_finite() => Err(too_large(stable)),
         started => started,
     }
 }

@@ -4,7 +4,7 @@
 use crate::bounds::Bounds;
 use crate::error::{Error, Parameter};
 use crate::numbers::fixed::scaled;
-use crate::pendulum::Parameters;
+use crate::pendulum::{Parameters, State};
 
 /// The largest shift of a quantity. Scaled ratios of masses and rods above 4,000 are refused.
 const MOST: i32 = 12;
@@ -64,6 +64,27 @@ pub(super) fn lost(is_lost: bool) -> Result<(), Error> {
         })
     } else {
         Ok(())
+    }
+}
+
+/// Refuses a start whose `energy` above rest, J, is not finite: by [`Error::OutOfRange`] with the
+/// momentum of larger magnitude or, at rest, the parameter that is farthest from 1 as a factor.
+pub(super) fn check_energy(
+    parameters: &Parameters<f64>,
+    start: &State<f64>,
+    energy: f64,
+) -> Result<(), Error> {
+    let (parameter, value) = if libm::fabs(start.p1) >= libm::fabs(start.p2) {
+        (Parameter::P1, start.p1)
+    } else {
+        (Parameter::P2, start.p2)
+    };
+    if energy.is_finite() {
+        Ok(())
+    } else if value == 0.0 {
+        Err(parameters.out_of_range())
+    } else {
+        Err(Error::OutOfRange { parameter, value })
     }
 }
 

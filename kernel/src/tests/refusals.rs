@@ -2,10 +2,10 @@
 
 use std::string::ToString;
 
-use double_pendulum::Parameter::{A1, A2, Dt, FrequencyRatio, G, L1, M1, M2, P2, W1, W2};
+use double_pendulum::Parameter::{A1, A2, Dt, FrequencyRatio, G, L1, M1, M2, P1, P2, W1, W2};
 use double_pendulum::{
-    ClosedFormF32, Error, HamiltonF32, Modes, Motion, Parameters, Pendulum, State,
-    periodic_mass_ratio,
+    ClosedFormF32, DirectionF32, DirectionF32Plain, Error, ExtrapolationF64, Fixed32, Fixed64,
+    Form, HamiltonF32, Modes, Motion, Parameters, Pendulum, State, periodic_mass_ratio,
 };
 
 /// Parameters that are accepted. Each case changes one or two of them.
@@ -234,6 +234,97 @@ fn closed_form_names_the_number_that_is_out_of_range() -> Result<(), Error> {
             value: f64::INFINITY,
         })
     );
+    Ok(())
+}
+
+/// The methods that carry directions blame the step if it alone takes their constants out of range:
+/// by `TooLarge` with the limit of stability, as `HamiltonF32` does, or by `OutOfRange` if it is too
+/// short. A step that no `f32` holds is refused by `OutOfRange` in both. A gravity that is out of
+/// range with any step is named itself.
+#[test]
+fn run_names_a_step_that_takes_constants_out_of_range() -> Result<(), Error> {
+    fn refused<F: Form>(parameters: &Parameters<f64>, dt: f64) -> Result<Option<Error>, Error> {
+        let pendulum = Pendulum::new(parameters)?;
+        Ok(pendulum.run::<F>(&State::default(), dt).err())
+    }
+    let out_of_range = |parameter, value| Some(Error::OutOfRange { parameter, value });
+
+    // Too long: the error reports the limit of stability.
+    for m2 in [1.0, 100.0] {
+        let parameters = Parameters::equal_rods(m2, 1.0, 9.81);
+        for dt in [1e20, -1e20] {
+            let expected = refused::<HamiltonF32>(&parameters, dt)?;
+            assert!(
+                matches!(expected, Some(Error::TooLarge { parameter: Dt, .. })),
+                "{expected:?}"
+            );
+            assert_eq!(refused::<DirectionF32>(&parameters, dt)?, expected);
+            assert_eq!(refused::<DirectionF32Plain>(&parameters, dt)?, expected);
+        }
+        assert!(matches!(
+            refused::<ExtrapolationF64<12>>(&parameters, 1e200)?,
+            Some(Error::TooLarge { parameter: Dt, .. })
+        ));
+
+        // Too short, or infinite in `f32`.
+        for dt in [1e-20, -1e-20, 1e50] {
+            assert_eq!(
+                refused::<DirectionF32>(&parameters, dt)?,
+                out_of_range(Dt, dt)
+            );
+        }
+        assert_eq!(
+            refused::<ExtrapolationF64<12>>(&parameters, 1e-200)?,
+            out_of_range(Dt, 1e-200)
+        );
+    }
+
+    // Not the step is at fault.
+    let light = Parameters::equal_rods(1.0, 1.0, 1e-40);
+    let rounded = f64::from(1e-40_f32);
+    assert_eq!(
+        refused::<DirectionF32>(&light, 0.01)?,
+        out_of_range(G, rounded)
+    );
+    Ok(())
+}
+
+/// A start of infinite energy is refused in fixed point by its larger momentum, with any step.
+#[test]
+fn fixed_point_names_the_momentum_of_infinite_energy() -> Result<(), Error> {
+    let pendulum = Pendulum::new(&GOOD)?;
+    for (p1, p2, parameter, value) in [
+        (1e200, 1.0, P1, 1e200),
+        (1e200, -1e250, P2, -1e250),
+        (-1e308, 1e308, P1, -1e308),
+    ] {
+        let start = State {
+            p1,
+            p2,
+            ..State::default()
+        };
+        let error = Err(Error::OutOfRange { parameter, value });
+        for dt in [1e-3, -1e-300] {
+            assert_eq!(pendulum.run::<Fixed32>(&start, dt).map(drop), error);
+            assert_eq!(pendulum.run::<Fixed64<12>>(&start, dt).map(drop), error);
+        }
+    }
+
+    // Without momenta the weight is at fault.
+    let heavy = Pendulum::new(&Parameters {
+        m1: 1e307,
+        m2: 1e307,
+        l1: 1.0,
+        l2: 1.0,
+        g: 6.0,
+    })?;
+    let error = Err(Error::OutOfRange {
+        parameter: M1,
+        value: 1e307,
+    });
+    let start = State::at_rest(3.0, 3.0);
+    assert_eq!(heavy.run::<Fixed32>(&start, 0.01).map(drop), error);
+    assert_eq!(heavy.run::<Fixed64<12>>(&start, 0.01).map(drop), error);
     Ok(())
 }
 
