@@ -776,3 +776,44 @@ fn limit_without_a_method_is_the_budget_to_raise() {
         "it has no steps"
     );
 }
+
+/// Without a reference no candidate of fixed point is trusted if a rod starts within 2^-20 rad of
+/// upright. It is trusted if the rod hangs, also after whole turns.
+///
+/// The planning budget pays for no reference of the first trial. If rod 1 hangs, the plan must be
+/// fixed point to the end, as for a start a little farther away. If it is upright, it must not be
+/// fixed point.
+#[test]
+fn fixed_point_is_trusted_near_hanging_but_not_near_upright() {
+    let plan = |a1: f64| {
+        let problem = Problem {
+            start: Motion::at_rest(a1, 0.3),
+            ..scene(1.0, 10.0, 5.0)
+        };
+        let budget = Budget {
+            frame: 40e3,
+            planning: 4.8e6,
+        };
+        let plan = Plan::search(&problem, &M3, &budget).ok()?;
+        Some((plan.method, plan.steps, plan.limit))
+    };
+
+    for turns in [-2.0, -1.0, 0.0, 1.0, 2.0] {
+        for off in [-1e-2, -1e-7, 0.0, 1e-7, 1e-2] {
+            let hanging = turns * 2.0 * PI + off;
+            assert_eq!(
+                plan(hanging),
+                Some((Method::Rk4Fixed32, 1, Limit::End)),
+                "{hanging} rad"
+            );
+        }
+        for off in [-1e-7, 0.0, 1e-7] {
+            let upright = PI + turns * 2.0 * PI + off;
+            let plan = plan(upright);
+            assert!(
+                !matches!(plan, Some((Method::Rk4Fixed32, ..))),
+                "{upright} rad: {plan:?}"
+            );
+        }
+    }
+}
