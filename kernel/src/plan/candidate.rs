@@ -55,6 +55,16 @@ impl Candidate {
         self.state == CandidateState::Accurate
     }
 
+    /// Returns true if a frame was inaccurate and the candidate is not excluded.
+    pub fn has_failed(&self) -> bool {
+        self.state == CandidateState::Failed
+    }
+
+    /// Returns true if the candidate was compared with a reference in 64 bits.
+    pub fn has_reference(&self) -> bool {
+        self.judge_steps != u32::MAX
+    }
+
     /// Excludes the candidate from the rest of the trial. Its accurate frames still count.
     pub fn exclude(&mut self) {
         self.state = CandidateState::Excluded;
