@@ -109,8 +109,8 @@ pub(crate) struct Scale {
 /// # Errors
 ///
 /// Refuses the parameters and steps that [`Parameters::check`] and [`check_step`] refuse, and, by
-/// [`Error::OutOfRange`], parameters whose constants or their reciprocals leave the range of `R`. It
-/// names the step if that alone takes G1 or G2 out of range.
+/// [`Error::OutOfRange`], parameters whose constants or their reciprocals leave the range of `R`.
+/// The error names the step if that alone takes G1 or G2 out of range.
 pub(crate) fn prepare<R: Real>(
     parameters: &Parameters<R>,
     dt: f64,
