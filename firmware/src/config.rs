@@ -97,13 +97,15 @@ impl Processor {
     }
 
     /// Returns the budgets of a problem, cycles of the price list: of each frame, and of all its
-    /// planning. Planning may spend [`look_ahead`](Self::look_ahead) in as many ticks as the
-    /// problem has frames, at least one, so that the search stays ahead of the scene. The problem
-    /// is not checked.
+    /// planning. A frame lasts [`TICK_RATE`] / `problem.rate` ticks, and has that share of the
+    /// budgets of a tick. Planning may spend [`look_ahead`](Self::look_ahead) in each tick until
+    /// the last frame, of which there is at least one, so that the search stays ahead of the scene.
+    /// The problem is not checked.
     pub fn budget(&self, problem: &Problem) -> Budget {
+        let ticks = TICK_RATE as f32 / f32::from(problem.rate);
         Budget {
-            frame: self.frame,
-            planning: self.look_ahead * problem.frames() as f32,
+            frame: ticks * self.frame,
+            planning: ticks * self.look_ahead * problem.frames() as f32,
         }
     }
 }

@@ -1,10 +1,11 @@
 //! The planner of a scene: its work in a tick, its results, and their format in messages.
 
 use double_pendulum::Method;
-use double_pendulum::plan::{Limit, Plan, PlanError, Stepping};
+use double_pendulum::plan::{Budget, Limit, Plan, PlanError, Problem, Stepping};
 use emulator::host::Show;
 use firmware::config::{
     CORTEX_M0PLUS, CORTEX_M3, CORTEX_M4F, PLANNED, PROCESSORS, Processor, SETTLED_TICKS, STM32F405,
+    TICK_RATE,
 };
 use firmware::motion::{CatchingUp, Planner, Settings};
 use firmware::protocol::{Command, Field};
@@ -338,4 +339,27 @@ fn the_code_of_every_processor_is_its_place() {
             .zip(PROCESSORS)
             .all(|(place, processor)| processor.code == place)
     );
+}
+
+/// A frame of 1/60 s has the budget of a tick, to the bit. At another rate a second has the same
+/// budgets, so that no processor is faster at a higher rate.
+#[test]
+fn a_second_has_the_same_budgets_at_every_rate() {
+    let usual = Settings::default().problem(HEIGHT);
+    for processor in PROCESSORS {
+        let whole = processor.budget(&usual);
+        let Budget { frame, planning } = whole;
+        assert_eq!(u32::from(usual.rate), TICK_RATE);
+        assert_eq!(frame.to_bits(), processor.frame.to_bits());
+        let ticks = usual.frames() as f32;
+        assert_eq!(planning.to_bits(), (processor.look_ahead * ticks).to_bits());
+
+        for rate in [1, 24, 30, 120, 2500, u16::MAX] {
+            let part = processor.budget(&Problem { rate, ..usual });
+            let is_near = |one: f32, other: f32| (one / other - 1.0).abs() < 1e-6;
+            let second = f32::from(rate) * part.frame;
+            assert!(is_near(second, 60.0 * frame), "{rate}: {second}");
+            assert!(is_near(part.planning, planning), "{rate}: {part:?}");
+        }
+    }
 }

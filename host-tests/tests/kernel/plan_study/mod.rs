@@ -224,8 +224,9 @@ fn judged(scene: &Problem, by_force: bool, is_checked: bool) -> Vec<Case> {
         .collect();
     if by_force && cases.iter().any(Case::ends_early) {
         for stepping in every_stepping() {
-            let is_affordable =
-                |chip: &Chip| chip.processor.costs.of_frame(stepping) <= chip.processor.frame;
+            let is_affordable = |chip: &Chip| {
+                chip.processor.costs.of_frame(stepping) <= chip.processor.budget(scene).frame
+            };
             let needed = |case: &Case, chip: &Chip| case.ends_early() && is_affordable(chip);
             // A method is run only for chips that can pay for it.
             if !cases

@@ -46,7 +46,7 @@ pub fn run(PlanOptions { scene }: &PlanOptions) -> anyhow::Result<()> {
 /// tolerance.
 fn words(scene: &Problem, plan: &Result<Plan, Limit>, chip: &Chip) -> Vec<String> {
     // One line for each number, and two lines of reasons.
-    let frame = chip.processor.frame;
+    let frame = chip.processor.budget(scene).frame;
     let mut lines = match plan {
         Ok(plan) => {
             let share = 100.0 * plan.cost * f32::from(scene.rate) / chip.clock;
