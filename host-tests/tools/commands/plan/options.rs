@@ -15,9 +15,8 @@ use firmware::config::{CORTEX_M0PLUS, CORTEX_M3, CORTEX_M4F, Processor, STM32F40
 use firmware::motion::half_pixel;
 use firmware::scenes::SceneName;
 
-use crate::commands::simulate::StartOptions;
+use crate::commands::simulate::{StartOptions, check_turns};
 use console::cli::choice;
-use console::cli::option_of;
 use console::number::Number;
 use emulator::boards::every_board;
 use emulator::host::Show;
@@ -97,8 +96,9 @@ const HIGHEST: f64 = 1e6;
 impl SceneOptions {
     /// Returns the scene with its plan, or with the limit that forbids any plan. Lengths are in m,
     /// angles in rad, times in s, costs in cycles. The tolerance is half a pixel. An error is one
-    /// line that names the option and the value; it is caused by a number out of range, by a
-    /// pendulum that the kernel refuses, or by a built-in scene without a motion to plan.
+    /// line that names the option and the value; it is caused by a number out of range, also an
+    /// angle of more than 2^26 rad, by a pendulum that the kernel refuses, or by a built-in scene
+    /// without a motion to plan.
     ///
     /// The plan of a [linear](SceneName::is_linear) scene always has the closed form. Its horizon
     /// is the time until which the linear motion is within half a pixel of the exact motion.
@@ -119,7 +119,7 @@ impl SceneOptions {
         match found {
             Ok(plan) => Ok((problem, Ok(plan))),
             Err(PlanError::NoMethod { limit, .. }) => Ok((problem, Err(limit))),
-            Err(PlanError::Refused(error)) => bail!("{}: {error}", option_of(&error, "the scene")),
+            Err(PlanError::Refused(error)) => bail!(self.start.refusal(&error, "the scene")),
             Err(error) => bail!("the scene: {error}"),
         }
     }
@@ -155,9 +155,12 @@ impl SceneOptions {
             height.value() <= HIGHEST,
             "--height {height}: more than {HIGHEST}, finer than the rods' directions in f32"
         );
+        let start = self.start.motion();
+        // A scene starts from `f64` numbers, also for a method in 32 bits.
+        check_turns(start.angles(), Method::Rk4F64)?;
         Ok(Problem {
             pendulum: self.start.parameters(),
-            start: self.start.motion(),
+            start,
             tolerance: half_pixel(&self.start.parameters(), height.value()),
             duration: self.duration.value(),
             rate: self.rate,

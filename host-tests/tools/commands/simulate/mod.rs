@@ -6,7 +6,7 @@ mod request;
 mod tolerance;
 
 pub use options::{Place, SimulateOptions, StartOptions};
-pub use request::{Plan, plan};
+pub use request::{Plan, check_turns, plan};
 pub use tolerance::choose;
 
 use std::fmt::{Display, LowerExp};

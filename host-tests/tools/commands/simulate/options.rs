@@ -13,12 +13,12 @@ use std::f64::consts::TAU;
 use std::path::PathBuf;
 
 use clap::{ArgAction, Args, Parser};
-use double_pendulum::{Method, Motion, Parameters};
+use double_pendulum::{Error, Method, Motion, Parameter, Parameters};
 use firmware::config::{FIRST_ANGLE, GRAVITY};
 use reference::enclosure::Start as Exact;
 
 use super::NAMES;
-use console::cli::choice;
+use console::cli::{choice, option_of};
 use console::number::{Number, Pair};
 use emulator::boards::{BOARDS, Board};
 
@@ -251,6 +251,48 @@ impl StartOptions {
         worst.map_or(String::new(), |(option, _, text)| {
             format!("{option} {text}")
         })
+    }
+
+    /// Returns the reason why the kernel refuses the pendulum or its start, as one line with the
+    /// option. If another parameter is refused, the option is `otherwise` or, of a scene, that of
+    /// [`option_of`].
+    ///
+    /// A number that is infinite or 0 only in the `f32` of a method was not typed. The line then
+    /// has the typed numbers.
+    pub fn refusal(&self, error: &Error, otherwise: &'static str) -> String {
+        let option = option_of(error, otherwise);
+        let typed = match option {
+            "--masses" => self.masses.to_string(),
+            "--lengths" => self.lengths.to_string(),
+            "--velocities" => self.velocities.to_string(),
+            "--gravity" => self
+                .gravity
+                .as_ref()
+                .map_or_else(String::new, Number::to_string),
+            _ => return format!("{option}: {error}"),
+        };
+        let parameter = error.parameter();
+        let change = match error {
+            Error::NotFinite { .. } => "large",
+            Error::NotPositive { value: 0.0, .. } if self.is_positive(parameter) => "small",
+            _ => return format!("{option}: {error}"),
+        };
+        format!("{option} {typed}: {parameter} is too {change} for f32; use less extreme values")
+    }
+
+    /// Returns true if a mass, a length or the gravity is greater than zero in `f64`, false for
+    /// another parameter.
+    fn is_positive(&self, parameter: Parameter) -> bool {
+        let Parameters { m1, m2, l1, l2, g } = self.parameters();
+        let value = match parameter {
+            Parameter::M1 => m1,
+            Parameter::M2 => m2,
+            Parameter::L1 => l1,
+            Parameter::L2 => l2,
+            Parameter::G => g,
+            _ => 0.0,
+        };
+        value > 0.0
     }
 
     /// Returns the first option whose number has too many digits for [`Self::exact`], with its

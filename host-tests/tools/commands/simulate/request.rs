@@ -7,7 +7,6 @@ use firmware::job::Request;
 use super::SimulateOptions;
 use super::options::name;
 use super::tolerance::methods;
-use console::cli::option_of;
 use console::number::Number;
 
 /// A checked request and the time between rows.
@@ -298,25 +297,33 @@ pub(super) fn request(
     }
 }
 
-/// Returns an error for everything that the kernel refuses, with the option's name, and for angles
-/// whose whole turns need more digits than the direction has left: more than 2^26 rad, in single
-/// precision 2^12 rad. No step is computed.
+/// Returns an error, one line, for angles, rad, whose whole turns need more digits than the
+/// direction has left in the numbers of the method: more than 2^26 rad, in single precision 2^12
+/// rad.
 // Half of the digits of a number are for the turns, the other half for the direction.
-pub(super) fn accepted(options: &SimulateOptions, request: &Request) -> anyhow::Result<()> {
-    let digits = if request.method.is_single() {
+pub fn check_turns(angles: [f64; 2], method: Method) -> anyhow::Result<()> {
+    let digits = if method.is_single() {
         f32::MANTISSA_DIGITS
     } else {
         f64::MANTISSA_DIGITS
     };
     let limit = f64::powi(2.0, digits as i32 / 2);
 
-    if let Some(angle) = request.angles.into_iter().find(|angle| angle.abs() > limit) {
-        let numbers = request.method.numbers();
+    if let Some(angle) = angles.into_iter().find(|angle| angle.abs() > limit) {
+        let numbers = method.numbers();
         bail!(
             "--angles: {angle:?} rad: must not exceed {limit}, beyond which {numbers} has too few \
              digits for a direction; subtract whole turns"
         );
     }
+    Ok(())
+}
+
+/// Returns an error for everything that the kernel refuses, with the option's name, and for angles
+/// whose whole turns need more digits than the direction has left: more than 2^26 rad, in single
+/// precision 2^12 rad. No step is computed.
+pub(super) fn accepted(options: &SimulateOptions, request: &Request) -> anyhow::Result<()> {
+    check_turns(request.angles, request.method)?;
 
     // A request without samples is checked and computes nothing.
     Request {
@@ -351,7 +358,7 @@ pub(super) fn accepted(options: &SimulateOptions, request: &Request) -> anyhow::
                 at_most(limit)
             ),
         },
-        error => anyhow!("{}: {error}", option_of(&error, "--step")),
+        error => anyhow!(options.start.refusal(&error, "--step")),
     })
 }
 
