@@ -9,8 +9,8 @@ use std::process::ExitCode;
 use std::sync::atomic::Ordering;
 
 use clap::{Parser, value_parser};
-use double_pendulum::Method;
-use double_pendulum::plan::{Plan, Stepping};
+use double_pendulum::plan::{Plan, Problem, Stepping};
+use double_pendulum::{Error, Method, Parameter};
 
 use crate::commands::plan::SceneOptions;
 use crate::oracle::known_answers;
@@ -25,6 +25,9 @@ const EXAMPLES: &str = "Examples:
   cargo prove --angles 120,120 --degrees --method rk4-f32-direction --steps 4
 
 Ctrl-C ends early and prints the proof so far.";
+
+/// The largest number of steps per frame.
+const MOST_STEPS: u32 = 65_536;
 
 /// Proves how long the frames that a chip draws stay within half a pixel of the exact motion. It
 /// encloses that motion, rounding errors included, and checks each frame of the planned method,
@@ -51,7 +54,7 @@ pub struct ProveOptions {
         value_name = "N",
         requires = "method",
         default_value_t = 1,
-        value_parser = value_parser!(u32).range(1..=65_536),
+        value_parser = value_parser!(u32).range(1..=MOST_STEPS.into()),
     )]
     steps: u32,
     /// Print for each frame the box that encloses the exact motion, and the verdict, as CSV
@@ -130,7 +133,8 @@ pub fn run(options: &ProveOptions) -> anyhow::Result<ExitCode> {
     let bar = Progress::of("proving", scene.frames().into());
     let mut proved = Vec::new();
 
-    for frame in frames(&scene, &start, stepping, &stopped).map_err(Refused::because)? {
+    let verdicts = frames(&scene, &start, stepping, &stopped);
+    for frame in verdicts.map_err(|error| refused(options, &scene, stepping, &error))? {
         bar.advance(1);
         proved.push(frame);
         if options.csv {
@@ -148,4 +152,35 @@ pub fn run(options: &ProveOptions) -> anyhow::Result<ExitCode> {
     }
 
     Ok(interrupted_by(stopped.load(Ordering::Relaxed)))
+}
+
+/// Returns the refusal of a scene that the method does not accept, with the option to change.
+fn refused(
+    options: &ProveOptions,
+    scene: &Problem,
+    Stepping { method, steps }: Stepping,
+    error: &Error,
+) -> Refused {
+    if let Error::TooLarge {
+        parameter: Parameter::Dt,
+        value,
+        limit,
+    } = *error
+    {
+        let rate = scene.rate;
+        let least = (f64::from(steps) * value / limit).ceil();
+        return Refused::because(if least <= f64::from(MOST_STEPS) {
+            format!(
+                "--steps {steps}: too few for {method} in a frame of 1/{rate} s; take at \
+                 least {least}"
+            )
+        } else {
+            format!(
+                "--method {method}: this motion needs more than {MOST_STEPS} steps per frame; take \
+                 a higher --rate or another method"
+            )
+        });
+    }
+    let reason = options.scene.start.refusal(error, "--method");
+    Refused::because(format_args!("{reason}, or leave --method {method} out"))
 }
