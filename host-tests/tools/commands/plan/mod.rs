@@ -166,6 +166,14 @@ fn forbidden(limit: Limit, frame: f32) -> String {
     }
 }
 
+/// Returns the result that the chip has no method for the scene, with the reason, as a sentence
+/// without a full stop.
+pub fn no_method(scene: &Problem, limit: Limit, chip: &Chip) -> String {
+    let frame = chip.processor.budget(scene).frame;
+    let why = forbidden(limit, frame);
+    format!("no method is fast enough for a {}: {why}", chip.title)
+}
+
 /// Returns a line about the energy of the scene, or `None` if the kernel refuses the scene.
 fn energy(scene: &Problem) -> Option<String> {
     let pendulum = Pendulum::new(&scene.pendulum).ok()?;

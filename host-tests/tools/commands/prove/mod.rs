@@ -9,10 +9,10 @@ use std::process::ExitCode;
 use std::sync::atomic::Ordering;
 
 use clap::{Parser, value_parser};
-use double_pendulum::plan::{Plan, Problem, Stepping};
+use double_pendulum::plan::{Problem, Stepping};
 use double_pendulum::{Error, Method, Parameter};
 
-use crate::commands::plan::SceneOptions;
+use crate::commands::plan::{SceneOptions, no_method};
 use crate::oracle::known_answers;
 use console::cli::{Refused, choice, complain, say};
 use console::progress::Progress;
@@ -25,6 +25,9 @@ const EXAMPLES: &str = "Examples:
   cargo prove --angles 120,120 --degrees --method rk4-f32-direction --steps 4
 
 Ctrl-C ends early and prints the proof so far.";
+
+/// The columns of `--csv`, which [`Verdict::row`](horizon::Verdict::row) fills.
+const CSV_HEADING: &str = "t,sin_a1,cos_a1,sin_a2,cos_a2,radius,verdict";
 
 /// The largest number of steps per frame.
 const MOST_STEPS: u32 = 65_536;
@@ -71,10 +74,10 @@ pub struct ProveOptions {
 
 /// Prints the proof, with `--csv` only a heading and a row for each frame, or, with `--table` or
 /// `--known-answers`, a table of many scenes. The exit code is a success for any result of the
-/// proof, also if no method is fast enough, so that nothing is proved. If Ctrl-C ended the proof,
-/// the frames until then are reported and it is the code of the signal, 130. Options that cannot be
-/// used, also a number with too many digits, or a method that does not accept the scene, are
-/// [`Refused`].
+/// proof, also if no method is fast enough, so that nothing is proved; with `--csv` the reason then
+/// goes to stderr. If Ctrl-C ended the proof, the frames until then are reported and it is the code
+/// of the signal, 130. Options that cannot be used, also a number with too many digits, or a method
+/// that does not accept the scene, are [`Refused`].
 ///
 /// A table takes neither `--scene` nor `--method` nor `--csv`, and ignores the other options.
 /// Ctrl-C ends it at once.
@@ -119,22 +122,33 @@ pub fn run(options: &ProveOptions) -> anyhow::Result<ExitCode> {
         steps: options.steps,
     });
     options.scene.start.advice().iter().for_each(complain);
-    let Some(stepping) = asked.or(plan.as_ref().ok().map(Plan::stepping)) else {
-        let chip = options.scene.target.title;
-        say(format_args!("no method is fast enough for a {chip}"))?;
-        return Ok(ExitCode::SUCCESS);
+    let stepping = match (asked, &plan) {
+        (Some(asked), _) => asked,
+        (None, Ok(plan)) => plan.stepping(),
+        (None, Err(limit)) => {
+            let reason = no_method(&scene, *limit, &options.scene.target);
+            // The table has no rows.
+            if options.csv {
+                say(CSV_HEADING)?;
+                complain(reason);
+            } else {
+                say(reason)?;
+            }
+            return Ok(ExitCode::SUCCESS);
+        }
     };
 
     // Ctrl-C ends the proof, and the frames that are already proved are reported.
     let stopped = interrupted()?;
+    let verdicts = frames(&scene, &start, stepping, &stopped)
+        .map_err(|error| refused(options, &scene, stepping, &error))?;
     if options.csv {
-        say("t,sin_a1,cos_a1,sin_a2,cos_a2,radius,verdict")?;
+        say(CSV_HEADING)?;
     }
     let bar = Progress::of("proving", scene.frames().into());
     let mut proved = Vec::new();
 
-    let verdicts = frames(&scene, &start, stepping, &stopped);
-    for frame in verdicts.map_err(|error| refused(options, &scene, stepping, &error))? {
+    for frame in verdicts {
         bar.advance(1);
         proved.push(frame);
         if options.csv {
