@@ -99,6 +99,9 @@ fn are_apart(
     distance: f64,
 ) -> [Option<bool>; 3] {
     let Parameters { l1, l2, .. } = scene.pendulum;
+    // No two positions are so far apart. The square of a longer distance can be out of the range
+    // of `Fixed`.
+    let distance = distance.min(FARTHEST * l1.max(l2));
 
     // All lengths are divided by the length of the longer rod, and rounded.
     let [l1, l2, distance] =
@@ -224,6 +227,10 @@ fn not_enclosed(scene: &Problem, frames: &[Verdict]) -> String {
     }
 }
 
+/// A distance that no two positions of a bob have, in lengths of the longer rod: twice the diameter
+/// of the largest circle.
+const FARTHEST: f64 = 8.0;
+
 /// The width of a box beyond which the width is the reason that the enclosure ends.
 const WIDE: f64 = 1e-12;
 
@@ -305,6 +312,8 @@ known      {known}{unknown}",
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::f64::consts::PI;
+
     use console::number::Number;
 
     /// Returns a scene with two rods of 1 m, let go at 2 rad, with a frame of 1 s and a tolerance
@@ -350,6 +359,24 @@ mod tests {
         // Boxes that are half a unit wide allow both results.
         let wide = one.map(|rod| rod.map(|x| x.wider(0.5)));
         assert_eq!(are_near(&scene(), &one, &wide), None);
+    }
+
+    /// If half a pixel is more than the whole circle, every frame is right.
+    #[test]
+    fn no_frame_is_wrong_by_more_than_the_circle() {
+        let [one, other] = [[0.0, 0.0], [PI, PI]].map(rods);
+        for tolerance in [3.9, 4.1, 8.0, 15.9, 16.1, 1e3, 1e300] {
+            let scene = Problem {
+                tolerance,
+                ..scene()
+            };
+            let is_right = tolerance > 4.0;
+            assert_eq!(
+                are_near(&scene, &one, &other),
+                Some(is_right),
+                "{tolerance}"
+            );
+        }
     }
 
     /// The printed box contains the ends of the ball, both if its middle is read as a decimal and
