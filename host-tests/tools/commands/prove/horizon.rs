@@ -279,7 +279,9 @@ pub fn words(
     let predicted = match plan {
         Ok(plan) => format!(
             "right until {:.3} s by {}, steps per frame: {}",
-            plan.horizon, plan.method, plan.steps
+            plan.horizon,
+            plan.method,
+            plan.stepping().steps
         ),
         Err(_) => String::from("no method is fast enough"),
     };
