@@ -15,6 +15,7 @@ use double_pendulum::{Error, Method, Parameter};
 use crate::commands::plan::{SceneOptions, no_method};
 use crate::oracle::known_answers;
 use console::cli::{Refused, choice, complain, say};
+use console::number::FEWER_DIGITS;
 use console::progress::Progress;
 use emulator::process::{interrupted, interrupted_by};
 use horizon::{frames, time, words};
@@ -105,7 +106,7 @@ pub fn run(options: &ProveOptions) -> anyhow::Result<ExitCode> {
         let start = &options.scene.start;
         start.exact().ok_or_else(|| {
             format!(
-                "{}: a number with more than 18 digits cannot be enclosed; write fewer digits",
+                "{}: a number of more than 64 bits cannot be enclosed; {FEWER_DIGITS}",
                 start.too_long()
             )
         })

@@ -23,6 +23,9 @@ pub struct Number {
 /// here return no other; the type does not check it.
 pub type Fraction = (i64, u64);
 
+/// The remedy for a number without an [exact](Number::exact) value.
+pub const FEWER_DIGITS: &str = "write at most 18 digits, counting the zeros that an exponent adds";
+
 /// The reasons why a text is not a [`Number`].
 const NOT_A_NUMBER: &str = "not a number (write a decimal or a fraction such as 1/256)";
 const NOT_FINITE: &str = "must be a finite number";
