@@ -147,6 +147,29 @@ fn a_board_that_only_answers_is_an_error() {
     assert!(output.stderr.trim_end().ends_with(error), "{output:?}");
 }
 
+/// A board sends nothing: each line on stderr is there only once, the likely reason and, after
+/// 20 s, the error.
+#[test]
+fn a_silent_board_is_reported_once() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut command = program("verify-board");
+    command
+        .args(["--no-questions", "--report"])
+        .arg(folder.path().join("report"));
+    let output = at_port(&mut Bench::new(), &mut command, |bench| {
+        bench.carry(|_| Vec::new())
+    });
+    assert_eq!(output.status.code(), Some(1), "{output:?}");
+    let lines: Vec<_> = output.stderr.lines().collect();
+    assert!(
+        matches!(lines[..], [notice, error]
+            if notice.contains(": no data; is the board powered")
+                && error.starts_with("error: ")
+                && error.contains(": no answer for 20 s")),
+        "{output:?}"
+    );
+}
+
 /// The time after which a button without an effect is released.
 const PATIENCE: Duration = Duration::from_secs(10);
 

@@ -45,12 +45,12 @@ impl Talk {
 
     /// Returns the value of `kind` for the next message that it accepts. The messages before it are
     /// dropped; later ones are kept. It is an error if none arrives within 20 s of the call, also
-    /// if others do; that error is the latest notice of the port, if there is one. All notices are
-    /// printed to stderr when they come. A refusal of any request by the board is an error, too,
-    /// even if `kind` would accept it. After an error the conversation can continue.
+    /// if others do. The notices of the port are printed to stderr when they come; if there was one,
+    /// the error refers to it. A refusal of any request by the board is an error, too, even if
+    /// `kind` would accept it. After an error the conversation can continue.
     pub fn next<M>(&mut self, mut kind: impl FnMut(ToHost) -> Option<M>) -> anyhow::Result<M> {
         let since = Instant::now();
-        let mut notice = None;
+        let mut has_notice = false;
         let mut has_answered = false;
         let mut has_drawn = false;
         while since.elapsed() < PATIENCE {
@@ -66,12 +66,11 @@ impl Talk {
                 has_answered |= message.answer().is_some();
             }
 
-            // More messages, and the notices of the port. The latest notice explains a silence
-            // best.
+            // More messages, and the notices of the port, which explain a silence best.
             self.arrived = self.port.messages().into_iter();
             for new in self.port.notices.drain(..) {
                 complain_above(&new);
-                notice = Some(new);
+                has_notice = true;
             }
             sleep(LOOK);
         }
@@ -79,8 +78,11 @@ impl Talk {
         // The reason, by the messages that have arrived.
         let name = &self.port.name;
         let seconds = PATIENCE.as_secs();
-        if let Some(notice) = notice {
-            bail!(notice)
+        if has_notice {
+            bail!(
+                "{name}: no answer for {seconds} s, probably for the reason above; correct it and \
+                 start again"
+            )
         }
         if has_drawn {
             bail!("{name}: the board sends frames but does not answer; flash it again")
