@@ -1,6 +1,7 @@
 //! The program of all commands. `.cargo/config.toml` runs each with its name as the first argument.
 //! Without a name, or with another first argument, it is the demo.
 
+use std::ffi::OsStr;
 use std::process::ExitCode;
 
 use console::cli::{main as run, verdict};
@@ -10,7 +11,9 @@ use host_tests::commands::{
 };
 
 fn main() -> ExitCode {
-    match std::env::args().nth(1).as_deref() {
+    // A name that is not UTF-8 is none of these.
+    let name = std::env::args_os().nth(1);
+    match name.as_deref().and_then(OsStr::to_str) {
         Some("count") => run(count::run),
         Some("figures") => run(figures::run),
         Some("flash-f4") => run(flash::stm32f405),

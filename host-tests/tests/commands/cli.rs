@@ -4,6 +4,8 @@
 //! A command and its arguments follow `$`. Then come the lines on stdout after `> ` and those on
 //! stderr after `! `, and the exit code. Another test closes the output early (`| head`).
 
+use std::ffi::OsStr;
+use std::os::unix::ffi::OsStrExt;
 use std::path::Path;
 use std::process::{Command, Stdio};
 use std::{fs, io};
@@ -167,6 +169,25 @@ fn a_closed_output_ends_every_command_quietly() -> io::Result<()> {
         .status()?;
     assert_eq!(status.code(), Some(2));
     Ok(())
+}
+
+/// An argument that is not UTF-8 is a wrong option, also as the name of a command.
+#[test]
+fn an_argument_that_is_no_text_is_refused() {
+    let word = OsStr::from_bytes(b"\xff");
+    let mut commands = [
+        Command::new(env!("CARGO_BIN_EXE_host-tests")),
+        program("plan"),
+    ];
+    for command in &mut commands {
+        let output = output(command.arg(word));
+        assert_eq!(output.status.code(), Some(2), "{output:?}");
+        let lines: Vec<_> = output.stderr.lines().collect();
+        assert!(
+            matches!(lines[..], [line] if line.starts_with("error: ")),
+            "{output:?}"
+        );
+    }
 }
 
 /// `cargo plan --scene page` prints the horizon that the board's own code finds, for two chips. The
