@@ -54,7 +54,7 @@ impl Image {
 
     fn parse(path: &Path) -> Result<Self> {
         let bytes = std::fs::read(path)?;
-        let file = object::File::parse(&*bytes)?;
+        let file = object::File::parse(&*bytes).context("no ELF file for ARM")?;
         let architecture = file.architecture();
         ensure!(
             architecture == Architecture::Arm,

@@ -10,6 +10,7 @@ use std::{env, fs};
 
 use anyhow::bail;
 use clap::Parser;
+use cycles::Image;
 
 use console::cli::{Refused, choice, complain, say};
 use emulator::boards::{BOARDS, Board};
@@ -94,9 +95,10 @@ pub struct FwOptions {
 /// only boards of that target are considered.
 ///
 /// Returns the exit code of the firmware, 1 if a signal ended QEMU, or success if `--seconds`,
-/// counted from the start of QEMU, ended it. An unknown binary, and a tool that cannot be provided,
-/// is [`Refused`]. It is an error if the build fails, if the file is missing or no ELF file, if
-/// QEMU ends while it starts, and, without `--seconds`, if the firmware runs for an hour.
+/// counted from the start of QEMU, ended it. An unknown binary, a file that is no program for ARM
+/// ([`Image::read`]), and a tool that cannot be provided is [`Refused`]. It is an error if the
+/// build fails, if QEMU ends while it starts, and, without `--seconds`, if the firmware runs for an
+/// hour.
 ///
 /// With `--check` nothing is run: all binaries are checked for all targets, and a warning is an
 /// error. Clippy must then be installed, unless Debian's compiler is used.
@@ -114,6 +116,11 @@ pub fn fw(options: &FwOptions) -> anyhow::Result<ExitCode> {
             "{name}: no binary of the firmware; choose one of {}, or write a path",
             binaries().join(", ")
         )));
+    }
+
+    // The file must be a program for ARM.
+    if is_path {
+        Image::read(binary).map_err(|error| Refused::because(format_args!("{error:#}")))?;
     }
 
     // The board is the user's, or follows from the binary.
