@@ -7,7 +7,7 @@ use firmware::job::Request;
 use super::SimulateOptions;
 use super::options::name;
 use super::tolerance::methods;
-use console::number::Number;
+use console::number::{FEWER_DIGITS, Number};
 
 /// A checked request and the time between rows.
 #[derive(Debug)]
@@ -246,30 +246,36 @@ pub(super) fn at_most(limit: f64) -> String {
 }
 
 /// Returns how many times `unit` is in `time`, computed exactly. The error, which names both
-/// options and their values, means that this is not a whole number from 0 to 2^32 - 1, that `unit`
-/// is zero, or that an exact value is unknown ([`Number::exact`]).
+/// options and their values, means that this is not a whole number from 0 to 2^32 - 1, or that
+/// `unit` is zero. It names one of them if its exact value is unknown ([`Number::exact`]).
 pub(super) fn count(
     (option, time): (&str, &Number),
     (unit_option, unit): (&str, &Number),
 ) -> anyhow::Result<u32> {
+    for (option, number) in [(option, time), (unit_option, unit)] {
+        ensure!(
+            number.exact().is_some(),
+            "{option} {number}: a number of more than 64 bits is not exact; {FEWER_DIGITS}"
+        );
+    }
     let count = time.whole_multiple_of(unit);
+    count
+        .and_then(|count| u32::try_from(count).ok())
+        .with_context(|| {
+            let parts = (time.value() / unit.value()).ceil();
+            if parts > f64::from(u32::MAX) {
+                let most = u32::MAX;
+                return format!("{option} {time}: at most {most} times {unit_option} {unit}");
+            }
 
-    // The remedy is a step that divides the time between rows.
-    let count = count.with_context(|| {
-        let parts = (time.value() / unit.value()).ceil();
-        let remedy = if option == "--every" && (1.0..1e9).contains(&parts) {
-            format!("; take --step {}", time.divided_by(parts as u32))
-        } else {
-            String::new()
-        };
-        format!("{option} {time}: must be a whole multiple of {unit_option} {unit}{remedy}")
-    })?;
-    u32::try_from(count).ok().with_context(|| {
-        format!(
-            "{option} {time}: at most {} times {unit_option} {unit}",
-            u32::MAX
-        )
-    })
+            // The remedy is a step that divides the time between rows.
+            let remedy = if option == "--every" && (1.0..1e9).contains(&parts) {
+                format!("; take --step {}", time.divided_by(parts as u32))
+            } else {
+                String::new()
+            };
+            format!("{option} {time}: must be a whole multiple of {unit_option} {unit}{remedy}")
+        })
 }
 
 /// Returns a request for the motion that the options describe, by `method` in steps of `step`, s. A
