@@ -182,13 +182,9 @@ fn chosen(options: &SimulateOptions, method: Method) -> anyhow::Result<Timing> {
         .into_iter()
         .find(|parts| parts * rows <= MOST_CHOSEN)
         .unwrap_or(parts(limit));
-    ensure!(
-        parts * rows <= f64::from(u32::MAX),
-        "{}: this fast motion needs steps of at most {}, too many for --until {until}; take a \
-         shorter --until",
-        options.start.extreme(),
-        at_most(limit)
-    );
+    if parts * rows > f64::from(u32::MAX) {
+        bail!(too_many(options, samples, limit));
+    }
 
     let stride = parts as u32;
     let (_, step) = in_parts(stride);
@@ -198,6 +194,39 @@ fn chosen(options: &SimulateOptions, method: Method) -> anyhow::Result<Timing> {
         stride,
         samples,
     })
+}
+
+/// Returns the refusal of a motion of more than 2^32 - 1 steps of at most `limit`, s, in `samples`
+/// rows. If the motion needs them shorter than [`USUAL_STEP`], the line names its option, or else
+/// the time that is too long.
+fn too_many(options: &SimulateOptions, samples: u32, limit: f64) -> String {
+    let until = &options.until;
+    let step = at_most(limit);
+    if limit < USUAL_STEP {
+        return format!(
+            "{}: this fast motion needs steps of at most {step}, too many for --until {until}; \
+             take a shorter --until",
+            options.start.extreme()
+        );
+    }
+
+    // The longest time, in whole rows.
+    let most = f64::from(u32::MAX);
+    let (option, time, longest) = match &options.every {
+        None => {
+            let rows = f64::from(samples);
+            ("--until", until, (most / rows).floor() * rows * limit)
+        }
+        Some(every) => match (most / (every.value() / limit).ceil()).floor() {
+            0.0 => ("--every", every, most * limit),
+            rows => ("--until", until, every.times(rows as u64)),
+        },
+    };
+    format!(
+        "{option} {time}: more than {} steps of {step}; take at most {}",
+        u32::MAX,
+        at_most(longest)
+    )
 }
 
 /// Returns an error if numbers overflow in the first step, before anything is printed.
