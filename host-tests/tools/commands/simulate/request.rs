@@ -20,7 +20,7 @@ pub struct Plan {
     pub note: Option<String>,
 }
 
-/// The longest step, s, that is chosen by default, and the largest number of steps.
+/// The longest step, s, that is chosen by default, and the largest number of shorter steps.
 const USUAL_STEP: f64 = 1.0 / 1024.0;
 const MOST_CHOSEN: f64 = (1 << 22) as f64;
 /// The number of rows if neither a step nor a time between rows is given.
@@ -37,11 +37,11 @@ struct Timing {
 
 /// Checks the options of the motion before the first row, and computes the first step on this
 /// computer. It uses the step of the options, or else chooses one; the tolerance and the file are
-/// not considered. A time of the last row of 0 gives the start only. A step that may be too long
-/// for the motion is no error, but causes a note.
+/// not considered. A time of the last row of 0 gives the start only. A step of the options that may
+/// be too long for the motion is no error, but causes a note.
 ///
 /// The chosen step is as in [`SimulateOptions::step`]. But the closed form makes one step for each
-/// row, and if safe steps were more than 2^22 in all, the step need not be safe.
+/// row. It is an error if a fast motion needs more than 2^22 safe steps in all.
 ///
 /// An error is one line that names the option and the value. It is an error if that time is
 /// negative or another time is not greater than zero, if it is no whole multiple of the time
@@ -71,19 +71,15 @@ pub fn plan(options: &SimulateOptions) -> anyhow::Result<Plan> {
     accepted(options, &request)?;
     check_first_step(options, &request)?;
 
-    // A step that is too long for the fastest motion is a warning only, because this motion may be
-    // slow.
+    // A given step that is too long for the fastest motion is a warning only, because this motion
+    // may be slow.
     let longest = request
         .admissible_step()
-        .filter(|longest| request.dt > *longest);
+        .filter(|longest| options.step.is_some() && request.dt > *longest);
     let note = longest.map(|longest| {
-        let what = match &options.step {
-            Some(step) => format!("--step {step}:"),
-            None => format!("steps of {step} s"),
-        };
         format!(
-            "warning: {what} may be too long for the fastest motion possible at this energy; {} \
-             is safe",
+            "warning: --step {step}: may be too long for the fastest motion possible at this \
+             energy; {} is safe",
             at_most(longest)
         )
     });
@@ -120,7 +116,7 @@ fn given(options: &SimulateOptions, step: &Number) -> anyhow::Result<Timing> {
 }
 
 /// Chooses the longest step that divides the time between rows, is at most [`USUAL_STEP`], and
-/// resolves every motion of this energy, unless that takes too many steps.
+/// resolves every motion of this energy. It is an error if that takes too many steps.
 fn chosen(options: &SimulateOptions, method: Method) -> anyhow::Result<Timing> {
     let until = &options.until;
     // Without `--every`, the rows divide the time into `ROWS` parts.
@@ -173,17 +169,28 @@ fn chosen(options: &SimulateOptions, method: Method) -> anyhow::Result<Timing> {
         .admissible_step()
         .map_or(limit, |safe| safe.min(limit));
 
-    // The number of steps between rows. The safe step is preferred if it does not need too many
-    // steps.
-    let parts = |longest: f64| (every.value() / longest).ceil();
+    // The number of steps between rows.
+    let [parts, least] = [safe, limit].map(|longest| (every.value() / longest).ceil());
     let rows = f64::from(samples.max(1));
-    let parts = [safe, limit]
-        .map(parts)
-        .into_iter()
-        .find(|parts| parts * rows <= MOST_CHOSEN)
-        .unwrap_or(parts(limit));
-    if parts * rows > f64::from(u32::MAX) {
+    if least * rows > f64::from(u32::MAX) {
         bail!(too_many(options, samples, limit));
+    }
+
+    // A fast motion that takes long is computed only if the user chooses the step.
+    let total = parts * rows;
+    if parts > least && total > MOST_CHOSEN {
+        let remedy = if total <= f64::from(u32::MAX) {
+            let step = every.divided_by(parts as u32);
+            format!(", or wait for it with --step {step} --every {every}")
+        } else {
+            String::new()
+        };
+        bail!(
+            "{}: this fast motion needs {total} steps of at most {}; take a shorter \
+             --until{remedy}",
+            options.start.extreme(),
+            at_most(safe)
+        );
     }
 
     let stride = parts as u32;
