@@ -93,13 +93,18 @@ impl Content {
     fn create(path: &Path) -> io::Result<Self> {
         const ANYONE: u32 = 0o666; // reduced by the umask
         let mut mode = ANYONE;
-        if let Ok(metadata) = fs::metadata(path) {
-            // A file that may not be changed is not replaced either.
-            let opened = File::options().append(true).open(path)?;
-            if !metadata.is_file() {
-                return Ok(Self::Device(opened));
+        match fs::metadata(path) {
+            Ok(metadata) => {
+                // A file that may not be changed is not replaced either.
+                let opened = File::options().append(true).open(path)?;
+                if !metadata.is_file() {
+                    return Ok(Self::Device(opened));
+                }
+                mode = metadata.permissions().mode();
             }
-            mode = metadata.permissions().mode();
+            Err(error) if error.kind() == io::ErrorKind::NotFound => {}
+            // No file can have this name.
+            Err(error) => return Err(error),
         }
 
         // The temporary file is in the same folder, so that it can be renamed.
@@ -153,7 +158,18 @@ pub fn check_writable(option: &'static str, path: &Path) -> Result<(), Refused> 
 /// it. `path` is that of the file. It replaces an existing file, as an [`OutFile`] does. An error
 /// names the option and the file. A folder or a file that cannot be created is refused.
 pub fn write(path: &Path, bytes: impl AsRef<[u8]>) -> anyhow::Result<()> {
+    create_in_folder(path)?.write_whole(bytes.as_ref())
+}
+
+/// Returns an error if [`write`] would refuse this file, before the work for it begins. Creates the
+/// folders.
+pub fn check_in_folder(path: &Path) -> Result<(), Refused> {
+    create_in_folder(path).map(drop)
+}
+
+/// Creates the folders of a file for `--out`, and begins the file.
+fn create_in_folder(path: &Path) -> Result<OutFile, Refused> {
     let made = path.parent().map_or(Ok(()), fs::create_dir_all);
     made.map_err(|error| unwritable("--out", path, &error))?;
-    OutFile::create("--out", path)?.write_whole(bytes.as_ref())
+    OutFile::create("--out", path)
 }

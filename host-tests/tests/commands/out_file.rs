@@ -117,6 +117,40 @@ fn an_existing_file_remains_until_the_new_one_is_complete() {
     assert_eq!(names(folder.path()).len(), 2);
 }
 
+/// A name that is too long, or below a file, is refused with exit code 2 before the computation,
+/// which would take minutes. Nothing is written.
+#[test]
+fn a_name_that_no_file_can_have_is_refused_at_once() {
+    let folder = tempfile::tempdir().expect("a folder");
+    fs::write(folder.path().join("file"), "old").expect("a file");
+    let long = "a".repeat(300);
+    for (path, reason) in [
+        (format!("{long}.csv"), "File name too long (os error 36)"),
+        (String::from("file/x.csv"), "Not a directory (os error 20)"),
+    ] {
+        for (line, file) in [
+            ("flips --size 20000 --limit 1000", path.clone()),
+            ("simulate --until 1e5", path.clone()),
+            ("simulate --tolerance 1e-30 --until 100", path.clone()),
+            ("figures", format!("{path}/figures/figure-2.svg")),
+        ] {
+            let mut command = program(line.split(' ').next().unwrap_or_default());
+            command
+                .args(line.split(' ').skip(1))
+                .args(["--out", &path])
+                .current_dir(folder.path());
+            let output = output(&mut command);
+            let error = format!("error: --out: cannot write {file}: {reason}\n");
+            assert_eq!(
+                (output.status.code(), &*output.stdout, output.stderr),
+                (Some(2), "", error),
+                "{line}"
+            );
+        }
+    }
+    assert_eq!(names(folder.path()), ["file"]);
+}
+
 /// A motion leaves the finite numbers after 20 rows: `cargo simulate` has exit code 1, and the file
 /// has the heading and these 20 rows. They are correct.
 #[test]

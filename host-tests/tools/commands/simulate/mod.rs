@@ -40,7 +40,11 @@ pub fn run(options: &SimulateOptions) -> anyhow::Result<()> {
         return Ok(say(list())?);
     }
 
-    // Everything that can be wrong is reported before the first row.
+    // Everything that can be wrong is reported before the first row, the file before the search
+    // for a method.
+    let file = options.out.as_ref();
+    let file = file.map(|path| OutFile::create("--out", path).map(|file| (path, file)));
+    let file = file.transpose()?;
     let planned = match &options.tolerance {
         Some(tolerance) => choose(options, tolerance).map(|(plan, _)| plan),
         None => plan(options),
@@ -50,12 +54,11 @@ pub fn run(options: &SimulateOptions) -> anyhow::Result<()> {
     notes.for_each(complain);
 
     // Without a file the rows are printed.
-    let Some(path) = &options.out else {
+    let Some((path, mut file)) = file else {
         let (rows, done) = write_rows(&plan, options, &mut stdout().lock())?;
         return done.with_context(|| after(rows));
     };
 
-    let mut file = OutFile::create("--out", path)?;
     let (rows, done) =
         write_rows(&plan, options, &mut file).map_err(|error| file.failed(&error))?;
 
