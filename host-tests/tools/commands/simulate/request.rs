@@ -179,14 +179,20 @@ fn chosen(options: &SimulateOptions, method: Method) -> anyhow::Result<Timing> {
     // A fast motion that takes long is computed only if the user chooses the step.
     let total = parts * rows;
     if parts > least && total > MOST_CHOSEN {
-        let remedy = if total <= f64::from(u32::MAX) {
+        // What the kernel refuses in any step has its own reason.
+        let longest = Request { dt: limit, ..usual };
+        accepted(options, &longest)?;
+        let (number, remedy) = if total <= f64::from(u32::MAX) {
             let step = every.divided_by(parts as u32);
-            format!(", or wait for it with --step {step} --every {every}")
+            (
+                format!("{total}"),
+                format!(", or wait for it with --step {step} --every {every}"),
+            )
         } else {
-            String::new()
+            (format!("more than {}", u32::MAX), String::new())
         };
         bail!(
-            "{}: this fast motion needs {total} steps of at most {}; take a shorter \
+            "{}: this fast motion needs {number} steps of at most {}; take a shorter \
              --until{remedy}",
             options.start.extreme(),
             at_most(safe)
