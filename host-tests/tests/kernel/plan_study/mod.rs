@@ -315,8 +315,8 @@ fn study(
     CHIPS.iter().enumerate().map(of_chip).collect()
 }
 
-/// A scene of every class, two with a long horizon, and the scenes that were once wrong are planned
-/// for each processor. No frame until the predicted horizon may be wrong by more than half a pixel.
+/// A scene of every class, three with a long horizon, and the scenes that were once wrong are
+/// planned for each processor. No frame until the predicted horizon may be wrong by more than half a pixel.
 /// At least ten plans of each processor must end early, and the median of their predicted horizons
 /// must be at least 0.7 ([`PLAN_SHARE`]) of the plan's true one. The reference must agree with one
 /// of another order to a hundredth of a pixel.
@@ -326,7 +326,7 @@ fn half_a_pixel_is_kept_until_the_predicted_horizon() {
         .into_iter()
         .flat_map(|class| class.scenes(0).take(SAMPLE));
     let scenes: Vec<_> = scenes::hard()
-        .chain(scenes::long().step_by(4))
+        .chain(scenes::long().step_by(2))
         .chain(sample)
         .collect();
     for results in study("sample", &scenes, false, (0, PLAN_ERROR)) {
