@@ -99,8 +99,8 @@ impl Processor {
     /// Returns the budgets of a problem, cycles of the price list: of each frame, and of all its
     /// planning. A frame lasts [`TICK_RATE`] / `problem.rate` ticks, and has that share of the
     /// budgets of a tick. Planning may spend [`look_ahead`](Self::look_ahead) in each tick until
-    /// the last frame, of which there is at least one, so that the search stays ahead of the scene.
-    /// The problem is not checked.
+    /// the last frame, so that the search stays ahead of the scene. A problem has at least one
+    /// frame. It is not checked.
     pub fn budget(&self, problem: &Problem) -> Budget {
         let ticks = TICK_RATE as f32 / f32::from(problem.rate);
         Budget {

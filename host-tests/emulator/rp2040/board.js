@@ -188,7 +188,10 @@ export class Board {
     sramView.setUint32(ring + 16, written, true);
   }
 
-  /** A hub resets the bus of a chip of the older revision until it is told to end. */
+  /**
+   * Begins (true) or ends (false) a long reset of the bus, as by a hub without a host. The chip is
+   * then of the older revision.
+   */
   resetBus(is) {
     this.isOld = true;
     this.usb.reset(is);

@@ -17,7 +17,7 @@ const commands = {
   port: (baud) => board.usb.open(Number(baud)),
   /** A long control transfer of the USB host's, which it breaks off after its first packet. */
   breakOff: () => board.usb.breakOff(),
-  /** A hub resets the bus: 1; or ends that: 0. From then on the chip is of its older revision. */
+  /** Begins (1) or ends (0) a long reset of the bus. From then on the chip is of its older revision. */
   resetBus: (is) => board.resetBus(is === '1'),
   /** The board's device descriptor, as the USB host has read it; nothing if no board is there. */
   descriptor: () => say('descriptor', board.usb.device),

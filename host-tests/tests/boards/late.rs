@@ -10,8 +10,8 @@ use crate::support::on;
 /// The number of ticks without a frame after which the board is asked. The map is finished after
 /// about 1,400.
 const DROPPED: u32 = 1_000;
-/// The largest number of frames before the answer, with those that the host has not read yet. A
-/// board that catches up before it receives sends 8.
+/// The largest number of frames before the answer. A board that catches up before it receives
+/// sends more.
 const MOST_FRAMES: u32 = 4;
 
 /// A board that needs twice the time of a frame for the scene, the map of flips at fourfold speed,
@@ -28,7 +28,11 @@ fn a_board_that_is_always_late_answers() -> anyhow::Result<()> {
     machine.send(2, fast)?;
     machine.wait_for(|message| message.frame().filter(|frame| frame.dropped > DROPPED))?;
 
+    // The board waits until it is asked.
+    machine.stop()?;
+    machine.messages()?;
     machine.send(3, Command::Ask)?;
+    machine.run()?;
     let mut frames = 0;
     loop {
         match machine.receive()? {

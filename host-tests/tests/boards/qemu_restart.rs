@@ -154,7 +154,7 @@ fn a_stack_overflow_in_a_frame_meets_the_guard_and_damages_no_static() -> anyhow
         // The stack pointer is at the guard, so the next function overflows the stack.
         probe.divert(&[
             (Register::Sp, UNUSED),
-            (Register::Pc, address(&elf, "Player::execute")),
+            (Register::Pc, address(&elf, "Player::draw")),
         ])?;
 
         probe.run_to(address(&elf, "HardFault"))?;

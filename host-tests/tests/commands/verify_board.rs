@@ -165,7 +165,7 @@ fn a_silent_board_is_reported_once() {
         matches!(lines[..], [notice, error]
             if notice.contains(": no data; is the board powered")
                 && error.starts_with("error: ")
-                && error.contains(": no answer for 20 s")),
+                && error.contains(": no expected message for 20 s")),
         "{output:?}"
     );
 }

@@ -67,8 +67,8 @@ fn results_of_a_tick_do_not_depend_on_when_the_work_is_done() {
     }
 }
 
-/// At any speed, and after a pause, the reports and events of a scene do not depend on whether
-/// planning is done in advance: in ticks of the clock without a tick of the scene, too.
+/// The reports and events of a scene do not depend on planning in advance. This is true at any
+/// speed, after a pause, and in ticks of the clock in which the scene does not advance.
 #[test]
 fn reports_do_not_depend_on_work_in_advance_at_any_speed() {
     const SPEEDS: [f64; 4] = [1.0, 0.5, 0.01, 1.5];

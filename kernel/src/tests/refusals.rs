@@ -289,7 +289,8 @@ fn run_names_a_step_that_takes_constants_out_of_range() -> Result<(), Error> {
     Ok(())
 }
 
-/// A start of infinite energy is refused in fixed point by its larger momentum, with any step.
+/// A start of infinite energy is refused in fixed point by its larger momentum, with any step within
+/// the limit of stability.
 #[test]
 fn fixed_point_names_the_momentum_of_infinite_energy() -> Result<(), Error> {
     let pendulum = Pendulum::new(&GOOD)?;

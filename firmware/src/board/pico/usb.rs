@@ -46,7 +46,7 @@ const BOOT_LOADER_BAUD: u32 = 1200;
 /// takes 50 us.
 const MOST_FUTILE: u16 = 64;
 /// The number of interrupts in a row with a reset of the bus still pending, after which the
-/// interrupt is masked. They take 0.1 s, in which the main loop does not run.
+/// interrupt is masked. They take 0.13 s, in which the main loop does not run.
 ///
 /// The limit is high because `rp2040-hal` leaves a reset pending on the revisions B0 and B1 until
 /// it ends (erratum RP2040-E5). A host ends it after 10 to 50 ms, and may wait only 10 ms more for

@@ -316,10 +316,10 @@ fn study(
 }
 
 /// A scene of every class, three with a long horizon, and the scenes that were once wrong are
-/// planned for each processor. No frame until the predicted horizon may be wrong by more than half a pixel.
-/// At least ten plans of each processor must end early, and the median of their predicted horizons
-/// must be at least 0.7 ([`PLAN_SHARE`]) of the plan's true one. The reference must agree with one
-/// of another order to a hundredth of a pixel.
+/// planned for each processor. No frame until the predicted horizon may be wrong by more than half
+/// a pixel. At least ten plans of each processor must end early, and the median of their predicted
+/// horizons must be at least 0.7 ([`PLAN_SHARE`]) of the plan's true one. The reference must agree
+/// with one of another order to a hundredth of a pixel.
 #[test]
 fn half_a_pixel_is_kept_until_the_predicted_horizon() {
     let sample = Class::ALL

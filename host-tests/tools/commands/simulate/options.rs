@@ -254,11 +254,11 @@ impl StartOptions {
     }
 
     /// Returns the reason why the kernel refuses the pendulum or its start, as one line with the
-    /// option. If another parameter is refused, the option is `otherwise` or, of a scene, that of
-    /// [`option_of`].
+    /// option. The option is that of [`option_of`], which is `otherwise` for a parameter that no
+    /// option sets.
     ///
-    /// A number that is infinite or 0 only in the `f32` of a method was not typed. The line then
-    /// has the typed numbers.
+    /// A number that becomes infinite or 0 only by a conversion or a product was not typed. The
+    /// line then has the typed numbers.
     pub fn refusal(&self, error: &Error, otherwise: &'static str) -> String {
         let option = option_of(error, otherwise);
         let typed = match option {
@@ -277,7 +277,10 @@ impl StartOptions {
             Error::NotPositive { value: 0.0, .. } if self.is_positive(parameter) => "small",
             _ => return format!("{option}: {error}"),
         };
-        format!("{option} {typed}: {parameter} is too {change} for f32; use less extreme values")
+        format!(
+            "{option} {typed}: {parameter} is too {change} for the numbers of the method; use less \
+             extreme values"
+        )
     }
 
     /// Returns true if a mass, a length or the gravity is greater than zero in `f64`, false for

@@ -20,8 +20,9 @@ pub struct Plan {
     pub note: Option<String>,
 }
 
-/// The longest step, s, that is chosen by default, and the largest number of shorter steps.
+/// The longest step, s, that is chosen by default.
 const USUAL_STEP: f64 = 1.0 / 1024.0;
+/// The largest number of steps of a motion for which the default step is shortened to be safe.
 const MOST_CHOSEN: f64 = (1 << 22) as f64;
 /// The number of rows if neither a step nor a time between rows is given.
 const ROWS: u32 = 100;
@@ -129,6 +130,7 @@ fn chosen(options: &SimulateOptions, method: Method) -> anyhow::Result<Timing> {
         every.is_positive(),
         "--every {every}: must be greater than zero"
     );
+    check_parts(options, &every)?;
     let samples = count(("--until", until), ("--every", &every))?;
 
     // Returns the request, and its step, with this number of steps between rows.
@@ -167,6 +169,7 @@ fn chosen(options: &SimulateOptions, method: Method) -> anyhow::Result<Timing> {
     };
     let safe = usual
         .admissible_step()
+        .filter(|safe| *safe > 0.0) // It is 0 if the square of a rate overflows.
         .map_or(limit, |safe| safe.min(limit));
 
     // The number of steps between rows.
@@ -179,8 +182,11 @@ fn chosen(options: &SimulateOptions, method: Method) -> anyhow::Result<Timing> {
     // A fast motion that takes long is computed only if the user chooses the step.
     let total = parts * rows;
     if parts > least && total > MOST_CHOSEN {
-        // What the kernel refuses in any step has its own reason.
-        let longest = Request { dt: limit, ..usual };
+        // If the kernel refuses the motion in any step, report its reason instead.
+        let longest = Request {
+            dt: limit.min(every.value()),
+            ..usual
+        };
         accepted(options, &longest)?;
         let (number, remedy) = if total <= f64::from(u32::MAX) {
             let step = every.divided_by(parts as u32);
@@ -210,8 +216,8 @@ fn chosen(options: &SimulateOptions, method: Method) -> anyhow::Result<Timing> {
 }
 
 /// Returns the refusal of a motion of more than 2^32 - 1 steps of at most `limit`, s, in `samples`
-/// rows. If the motion needs them shorter than [`USUAL_STEP`], the line names its option, or else
-/// the time that is too long.
+/// rows. If the motion needs steps shorter than [`USUAL_STEP`], the line names the option with the
+/// most extreme number. Otherwise it names the time that is too long.
 fn too_many(options: &SimulateOptions, samples: u32, limit: f64) -> String {
     let until = &options.until;
     let step = at_most(limit);
@@ -287,6 +293,18 @@ pub(super) fn at_most(limit: f64) -> String {
     format!("{digits}e{power} s")
 }
 
+/// Refuses a time of the last row if there is no `--every`, and the time between rows that follows
+/// from it, `every`, is not exact in 64 bits.
+pub(super) fn check_parts(options: &SimulateOptions, every: &Number) -> anyhow::Result<()> {
+    let until = &options.until;
+    ensure!(
+        options.every.is_some() || until.exact().is_none() || every.exact().is_some(),
+        "--until {until}: a hundredth of it is not exact in 64 bits; write fewer digits, or give \
+         --every"
+    );
+    Ok(())
+}
+
 /// Returns how many times `unit` is in `time`, computed exactly. The error, which names both
 /// options and their values, means that this is not a whole number from 0 to 2^32 - 1, or that
 /// `unit` is zero. It names one of them if its exact value is unknown ([`Number::exact`]).
@@ -307,7 +325,10 @@ pub(super) fn count(
             let parts = (time.value() / unit.value()).ceil();
             if parts > f64::from(u32::MAX) {
                 let most = u32::MAX;
-                return format!("{option} {time}: at most {most} times {unit_option} {unit}");
+                return format!(
+                    "{option} {time}: at most {most} times {unit_option} {unit}; take a longer \
+                     {unit_option}"
+                );
             }
 
             // The remedy is a step that divides the time between rows.

@@ -10,7 +10,7 @@ use firmware::config::Processor;
 use firmware::job::{ON_BOARDS, Request};
 use reference::taylor;
 
-use super::request::{accepted, count, method, request};
+use super::request::{accepted, check_parts, count, method, request};
 use super::{Place, Plan, SimulateOptions};
 use crate::commands::table::at_most;
 use console::number::Number;
@@ -52,6 +52,7 @@ pub fn choose(options: &SimulateOptions, tolerance: &Number) -> anyhow::Result<(
         every.is_positive(),
         "--every {every}: must be greater than zero"
     );
+    check_parts(options, &every)?;
     let samples = count(("--until", until), ("--every", &every))?;
     ensure!(
         samples < MOST_ROWS,

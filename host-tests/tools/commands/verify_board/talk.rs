@@ -80,8 +80,8 @@ impl Talk {
         let seconds = PATIENCE.as_secs();
         if has_notice {
             bail!(
-                "{name}: no answer for {seconds} s, probably for the reason above; correct it and \
-                 start again"
+                "{name}: no expected message for {seconds} s, probably because of a problem reported \
+                 above; solve it and start again"
             )
         }
         if has_drawn {
