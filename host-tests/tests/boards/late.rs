@@ -7,8 +7,8 @@ use firmware::scenes::SceneName;
 
 use crate::support::on;
 
-/// The number of ticks without a frame after which the board is asked. The map is finished after
-/// about 1,400.
+/// The number of ticks without a frame after which the command is sent. It is reached before the map
+/// is finished; 1,500 is not.
 const DROPPED: u32 = 1_000;
 /// The largest number of frames before the answer. A board that catches up before it receives
 /// sends more.
@@ -28,7 +28,7 @@ fn a_board_that_is_always_late_answers() -> anyhow::Result<()> {
     machine.send(2, fast)?;
     machine.wait_for(|message| message.frame().filter(|frame| frame.dropped > DROPPED))?;
 
-    // The board waits until it is asked.
+    // The board is stopped while the command is sent, so that no frame comes in between.
     machine.stop()?;
     machine.messages()?;
     machine.send(3, Command::Ask)?;
