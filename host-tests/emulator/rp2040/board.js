@@ -1,7 +1,7 @@
 // The chip with all that is wired to it, and its restarts.
 
 import { RP2040 } from 'rp2040js';
-import { quicken } from './dispatch.js';
+import { fast } from './fast.js';
 import { Panel } from './panel.js';
 import { BOOT, addRom } from './rom.js';
 import { addTime } from './uart.js';
@@ -67,7 +67,7 @@ export class Board {
     this.addRegisters(chip.ppb);
     this.shortenWrites(chip);
     this.mendEntry(chip.core);
-    quicken(chip.core);
+    this.fast = fast(chip);
     this.isInBootLoader = false;
     addRom(chip);
     chip.onBreak = (code) => code === BOOT && this.enterBootLoader();
@@ -152,8 +152,12 @@ export class Board {
   execute(end, cycle) {
     const { chip, hungAt } = this;
     const { core, clock, clkSys } = chip;
+    // Sums of times are exact if a cycle is a whole number of nanoseconds.
+    const isWhole = Number.isInteger(cycle);
     do {
-      const time = core.executeInstruction() * cycle;
+      const until = Math.min(clock.nextAlarm?.nanos ?? end, end);
+      const cycles = isWhole ? this.fast(Math.ceil((until - clock.nanosCounter) / cycle)) : 0;
+      const time = (cycles || core.executeInstruction()) * cycle;
       const now = clock.nanosCounter + time;
       const alarm = clock.nextAlarm;
       if (alarm !== null && alarm.nanos <= now) return clock.tick(time);

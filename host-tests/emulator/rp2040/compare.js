@@ -1,21 +1,35 @@
-// Compares the faster `executeInstruction` of `dispatch.js` with the emulator's own:
+// Compares the faster instructions of `fast.js` with the emulator's own:
 //
 //     node compare.js FIRMWARE.uf2 INSTRUCTIONS
 //
-// The first difference ends it with an error. Without one, it prints the number of instructions.
+// The first difference ends it with an error. Without one, it prints the numbers of instructions.
 
 import { readFileSync } from 'node:fs';
+import { RP2040 } from 'rp2040js';
 import { Board, NOWHERE } from './board.js';
-import { withTable } from './dispatch.js';
+import { fast } from './fast.js';
 
 /** The microseconds between two comparisons of a run. */
 const SLICE = 10;
-/** Second halfwords: of BL, DMB, DSB, ISB, MRS, MSR, UDF, and of no instruction. */
-const SECONDS = [0xf800, 0xd000, 0x8f5f, 0x8f4f, 0x8f6f, 0x8010, 0x8809, 0xa000, 0x8ff0, 0xc000];
 /** The microseconds of a hang. */
 const HANG = 50_000;
-/** The address of the single instructions, in memory. */
-const PLACE = 0x20000100;
+/** The share of the firmware's instructions that the emulator may execute itself. */
+const LEFT = 0.01;
+
+/** The address of the single instructions, and places in memory and in flash that they access. */
+const [PLACE, MEMORY, MEMORY_END, FLASH] = [0x20000100, 0x20001000, 0x20042000, 0x10000200];
+/** The number of times that each opcode is executed, with other registers. */
+const TIMES = 8;
+/**
+ * The number of opcodes that are executed fast, of all that are no first half of two. The others
+ * are jumps to themselves, breakpoints, waits and the like, and those that use the program counter.
+ */
+const FAST_OPCODES = 52_000;
+/** The link register of a handler. */
+const EXCEPTION_RETURN = 0xfffffff9;
+/** The opcodes from here on are the first half of two; BL begins with one of those in `BL`. */
+const WIDE = 0xe800;
+const [BL, SECONDS] = [[0xf000, 0xf3ff, 0xf400, 0xf7ff], [0xd000, 0xf800, 0xffff, 0x8f5f, 0xc000]];
 
 const [file, instructions] = process.argv.slice(2);
 
@@ -36,78 +50,95 @@ function compare(fast, plain, place) {
 function run() {
   const sent = [[], []];
   const image = readFileSync(file);
-  const [fast, plain] = sent.map((list) => new Board(image, (...said) => list.push(said)));
+  const [quick, plain] = sent.map((list) => new Board(image, (...said) => list.push(said)));
+  plain.fast = () => 0;
 
-  // Without its own function, the processor has that of its class.
-  const { core } = plain.chip;
-  const { executeInstruction } = Object.getPrototypeOf(core);
-  let executed = 0;
-  core.executeInstruction = () => {
-    executed += 1;
-    return executeInstruction.call(core);
-  };
-  if (fast.chip.core.executeInstruction === executeInstruction) throw new Error('it is not faster');
+  // The instructions of either board that the emulator executes.
+  const executed = [quick, plain].map(({ chip: { core } }) => {
+    const count = { instructions: 0 };
+    const { executeInstruction } = core;
+    core.executeInstruction = () => {
+      count.instructions += 1;
+      return executeInstruction.call(core);
+    };
+    return count;
+  });
 
   const both = (micros) => {
-    [fast, plain].forEach((board) => board.run(micros));
-    compare(fast.chip.core, core, `after ${executed} instructions`);
-    if (fast.chip.clock.nanos !== plain.chip.clock.nanos) throw new Error('the clocks differ');
+    [quick, plain].forEach((board) => board.run(micros));
+    compare(quick.chip.core, plain.chip.core, `after ${executed[1].instructions} instructions`);
+    if (quick.chip.clock.nanos !== plain.chip.clock.nanos) throw new Error('the clocks differ');
   };
-  while (executed < instructions) both(SLICE);
+  while (executed[1].instructions < instructions) both(SLICE);
 
   // A hang, in which the plain board executes every jump.
-  [fast, plain].forEach((board) => board.hang());
+  const [left, all] = executed.map((count) => count.instructions);
+  [quick, plain].forEach((board) => board.hang());
   plain.hungAt = NOWHERE;
   both(HANG);
-  if (Buffer.compare(fast.chip.sram, plain.chip.sram)) throw new Error('the memories differ');
+  if (Buffer.compare(quick.chip.sram, plain.chip.sram)) throw new Error('the memories differ');
   if (JSON.stringify(sent[0]) !== JSON.stringify(sent[1])) throw new Error('they sent differently');
-  return executed;
+  if (left > LEFT * all) throw new Error(`${left} of ${all} instructions are not fast`);
+  return all;
 }
 
-/** Executes every opcode once, from random registers; all accesses to memory must be the same. */
+/** Executes every opcode on two chips from random registers; the results must be the same. */
 function single() {
-  const { core } = new Board(readFileSync(file), () => {}).chip;
-  const Core = core.constructor;
+  const [quick, plain] = [new RP2040(), new RP2040()];
+  const step = fast(quick);
   let state = 1;
-  const random = () => (state = (Math.imul(state, 1664525) + 1013904223) >>> 0);
-
-  // A memory that records accesses. The first halfwords that are read are the instruction.
-  let [halves, accesses] = [[], []];
-  const note = (name) => (...values) => void accesses.push(name, ...values);
-  const memory = {
-    readUint32: (address) => (accesses.push('word', address), Math.imul(address, 0x9e3779b1) >>> 0),
-    readUint16: (address) => (accesses.push('half', address), halves.shift() ?? address & 0xffff),
-    readUint8: (address) => (accesses.push('byte', address), address & 0xff),
-    logger: { info: note('info'), warn: note('warn') },
-    onBreak: note('break'),
+  const random = (most) => {
+    state = (Math.imul(state, 1664525) + 1013904223) >>> 0;
+    return Math.floor((state / 2 ** 32) * most);
   };
-  for (const name of ['writeUint32', 'writeUint16', 'writeUint8']) memory[name] = note(name);
-  const plain = new Core(memory);
-  const fast = new Core(memory);
-  fast.executeInstruction = withTable(plain.executeInstruction);
-
-  let executed = 0;
-  const execute = (...instruction) => {
-    plain.registers.forEach((_, index) => (plain.registers[index] = random()));
-    plain.PC = PLACE;
-    plain.APSR = random();
-    fast.registers.set(plain.registers);
-    fast.APSR = plain.APSR;
-
-    const [ours, own] = [fast, plain].map((core) => {
-      [halves, accesses] = [[...instruction], []];
-      const cycles = core.executeInstruction();
-      return [cycles, ...accesses].join();
-    });
-    const place = instruction.map((half) => half.toString(16)).join(' ');
-    compare(fast, plain, place);
-    if (ours !== own) throw new Error(`${place}: ${ours} instead of ${own}`);
-    executed += 1;
-  };
-  for (let opcode = 0; opcode < 1 << 16; opcode += 1) {
-    if (opcode < 0xe800) execute(opcode);
-    else SECONDS.forEach((second) => execute(opcode, second));
+  // A number of all bits, a small one, or an address, mostly of a whole word.
+  const kinds = [
+    () => random(2 ** 32),
+    () => random(64),
+    () => MEMORY + 4 * random(64),
+    () => MEMORY + random(256),
+    () => MEMORY_END - 4 * random(8),
+    () => FLASH + 4 * random(64),
+  ];
+  for (const chip of [quick, plain]) {
+    chip.logger = { debug() {}, info() {}, warn() {}, error() {} };
+    for (let i = 0; i < 1024; i += 1) chip.flash[i] = i * 167;
   }
+
+  /** Executes an instruction on both, and returns whether it is fast. */
+  const execute = (first, second) => {
+    for (let i = 0; i < 13; i += 1) plain.core.registers[i] = kinds[random(kinds.length)]();
+    plain.core.SP = kinds[2 + 2 * random(2)]();
+    plain.core.LR = random(2) ? EXCEPTION_RETURN : random(2 ** 32);
+    [plain.core.PC, plain.core.APSR] = [PLACE, random(2 ** 32)];
+    plain.core.currentMode = random(2); // thread or handler
+    quick.core.registers.set(plain.core.registers);
+    [quick.core.APSR, quick.core.currentMode] = [plain.core.APSR, plain.core.currentMode];
+    for (const chip of [quick, plain]) {
+      chip.writeUint16(PLACE, first);
+      chip.writeUint16(PLACE + 2, second);
+      chip.core.interruptsUpdated = false;
+    }
+
+    const cycles = step(1);
+    if (cycles === 0) return false;
+    const place = `${first.toString(16)} ${second.toString(16)}`;
+    if (plain.core.executeInstruction() !== cycles) throw new Error(`${place}: ${cycles} cycles`);
+    compare(quick.core, plain.core, place);
+    return true;
+  };
+
+  let [executed, opcodes] = [0, 0];
+  for (let opcode = 0; opcode < WIDE; opcode += 1) {
+    let times = 0;
+    for (let i = 0; i < TIMES; i += 1) times += execute(opcode, 0);
+    executed += times;
+    opcodes += times > 0;
+  }
+  if (opcodes < FAST_OPCODES) throw new Error(`only ${opcodes} opcodes are fast`);
+  const calls = BL.flatMap((first) => SECONDS.map((second) => execute(first, second)));
+  executed += calls.filter((is) => is).length;
+  if (Buffer.compare(quick.sram, plain.sram)) throw new Error('the memories differ');
   return executed;
 }
 
