@@ -239,17 +239,19 @@ const ON_HOST: [&str; 5] = [
     "--test=prove",
     "--test=traits",
 ];
-/// The tests that need the firmware or its tools.
-const ON_BOARDS: [&str; 2] = ["--test=boards", "--test=commands"];
+/// The tests that need the firmware, and those of the commands, which need the firmware as well.
+const ON_BOARDS: &str = "--test=boards";
+const OF_COMMANDS: &str = "--test=commands";
 /// The examples of the documentation, which cargo does not run together with other tests.
-const IN_DOCUMENTATION: [&str; 1] = ["--doc"];
+const IN_DOCUMENTATION: &str = "--doc";
 
 /// Installs missing tools as [`setup`] does, with the same rule for system packages and `--yes`,
-/// builds the firmware, and runs `cargo test` in three parts. Returns success if all parts pass, or
-/// else the exit code of the first part that fails; the parts after it are not run. `--long` adds
-/// `-- --include-ignored`. Each of `RUST_TEST_THREADS` and `RAYON_NUM_THREADS` that is not set is
-/// twice the number of processors for the tests. The first part runs during the installation and
-/// the builds, whose errors are returned only after it has ended.
+/// builds the firmware, and runs `cargo test` in four parts. The first part, on the host, runs
+/// during the installation and the builds, whose errors are returned only after it has ended. If it
+/// passes, the others run, all at once; the output of each but the first of them is printed after
+/// its end. Returns success if all parts pass, or else the exit code of the first part that fails.
+/// `--long` adds `-- --include-ignored`. Each of `RUST_TEST_THREADS` and `RAYON_NUM_THREADS` that
+/// is not set is twice the number of processors for the tests.
 ///
 /// An error means that the set-up ([`Refused`]) or a build of the firmware fails, or that a time
 /// limit is exceeded: 1 hour for compiling the tests and again for each part, or 12 hours each with
@@ -257,7 +259,8 @@ const IN_DOCUMENTATION: [&str; 1] = ["--doc"];
 /// of the page for a browser cannot be provided, its tests are skipped, which is no error.
 pub fn verify(options: &TestOptions) -> anyhow::Result<ExitCode> {
     let limit = LIMITS[usize::from(options.long)];
-    // Returns a running `cargo test` with these arguments.
+    let threads = (2 * available_parallelism()?.get()).to_string();
+    // Returns a command that runs `cargo test` with these arguments.
     let test = |arguments: &[&str]| {
         let mut command = Command::new("cargo");
         command
@@ -265,13 +268,12 @@ pub fn verify(options: &TestOptions) -> anyhow::Result<ExitCode> {
             .args(arguments)
             .current_dir(toolchain::workspace())
             .stdin(Stdio::null());
-        let threads = 2 * available_parallelism()?.get();
         for name in THREADS {
             if env::var_os(name).is_none() {
-                command.env(name, threads.to_string());
+                command.env(name, &threads);
             }
         }
-        process::spawn(&mut command, limit)
+        command
     };
     complain(if options.long {
         "note: running all tests, including those that take hours"
@@ -285,48 +287,62 @@ pub fn verify(options: &TestOptions) -> anyhow::Result<ExitCode> {
         &[]
     };
     let run = |tests: &[&str]| test(&[tests, ignored].concat());
+    let shown = |mut command: Command| process::spawn(&mut command, limit)?.wait();
 
     // The tests are compiled, and those that need no firmware are run, while the tools are fetched
     // and the firmware is compiled, because none of these keeps all processors busy alone.
     let on_host = thread::scope(|scope| {
         let on_host = scope.spawn(|| {
-            let compiled = test(&["--no-run", "--quiet"])?.wait()?;
+            let compiled = shown(test(&["--no-run", "--quiet"]))?;
             if !compiled.success() {
                 return Ok(compiled);
             }
-            run(&ON_HOST)?.wait()
+            shown(run(&ON_HOST))
         });
 
         let toolchain = toolchain::set_up()?;
         toolchain::set_up_pico_with(consent(options.yes))?;
         toolchain.build_ahead()?;
         // An application is linked on a single processor, so other programs are compiled too.
-        let minimal = scope.spawn({
+        let others = scope.spawn({
             let toolchain = toolchain.clone();
-            move || toolchain.build_minimal_ahead()
+            move || {
+                toolchain.build_minimal_ahead()?;
+                toolchain.build_cores_ahead()?;
+                // Without the tools the test says that it is skipped.
+                if let Ok(web) = toolchain::set_up_web() {
+                    web.build_web()?;
+                }
+                anyhow::Ok(())
+            }
         });
         toolchain.build_applications_ahead()?;
-        toolchain.build_cores_ahead()?;
-        // Without the tools the test says that it is skipped.
-        if let Ok(web) = toolchain::set_up_web() {
-            web.build_web()?;
-        }
-        minimal.join().expect("it does not panic")?;
+        others.join().expect("it does not panic")?;
         let status = on_host.join().expect("it does not panic")?;
         anyhow::Ok(status)
     })?;
+    if !on_host.success() {
+        return Ok(process::exit_code(on_host));
+    }
 
-    // The other tests run only if these have passed.
-    let mut status = on_host;
-    for tests in [&ON_BOARDS[..], &IN_DOCUMENTATION] {
-        if status.success() {
-            status = run(tests)?.wait()?;
+    // Many of the other tests wait for a board, and the rest compute meanwhile.
+    let statuses = thread::scope(|scope| {
+        let others = [OF_COMMANDS, IN_DOCUMENTATION]
+            .map(|tests| scope.spawn(move || process::run(&mut run(&[tests]), limit)));
+        let mut statuses = vec![shown(run(&[ON_BOARDS]))?];
+        for other in others {
+            let output = other.join().expect("it does not panic")?;
+            complain(output.stderr);
+            say(output.stdout)?;
+            statuses.push(output.status);
         }
+        anyhow::Ok(statuses)
+    })?;
+    if let Some(failed) = statuses.into_iter().find(|status| !status.success()) {
+        return Ok(process::exit_code(failed));
     }
-    if status.success() {
-        say("all tests passed")?;
-    }
-    Ok(process::exit_code(status))
+    say("all tests passed")?;
+    Ok(ExitCode::SUCCESS)
 }
 
 /// Every test program is in one of the lists, so that `cargo verify` leaves none out.
@@ -334,7 +350,7 @@ pub fn verify(options: &TestOptions) -> anyhow::Result<ExitCode> {
 fn every_test_program_is_run() {
     let listed = |name: &str| {
         let test = format!("--test={name}");
-        ON_HOST.contains(&&*test) || ON_BOARDS.contains(&&*test)
+        ON_HOST.contains(&&*test) || [ON_BOARDS, OF_COMMANDS].contains(&&*test)
     };
     let mut found = 0;
     for folder in ["kernel/tests", "host-tests/tests"] {

@@ -102,6 +102,12 @@ impl Toolchain {
         target().join("firmware")
     }
 
+    /// Returns the folder for the programs that share no compiled crate with the boards' programs,
+    /// because their features differ. They can be built at the same time as those.
+    fn folder_apart() -> PathBuf {
+        Self::folder().join("apart")
+    }
+
     /// Builds the application of a board and returns the ELF file, as [`Self::build`] does.
     pub fn build_for(&self, board: &Board) -> anyhow::Result<PathBuf> {
         self.build(board.binary, board.target)
@@ -147,7 +153,7 @@ impl Toolchain {
         static TURN: Mutex<()> = Mutex::new(());
         let _turn = TURN.lock().unwrap_or_else(PoisonError::into_inner);
         self.build_core_images(&[target], double)?;
-        let folder = Self::folder().join(target).join("release");
+        let folder = Self::folder_apart().join(target).join("release");
         let built = if target.starts_with("wasm") {
             "cores.wasm"
         } else {
@@ -164,6 +170,7 @@ impl Toolchain {
         command
             .args(["--bin", "cores", "--no-default-features"])
             .args(["--features", "cores"])
+            .env("CARGO_TARGET_DIR", Self::folder_apart())
             // Nobody debugs these images, and debug information would double the time.
             .env("CARGO_PROFILE_RELEASE_DEBUG", "false");
         if let Some(cpu) = double {
@@ -249,10 +256,11 @@ impl Toolchain {
         let mut command = self.for_targets("build", &[WASM])?;
         command
             .args(["--bin", "web", "--features", "web"])
+            .env("CARGO_TARGET_DIR", Self::folder_apart())
             .env("CARGO_PROFILE_RELEASE_DEBUG", "false")
             .env("CARGO_PROFILE_RELEASE_STRIP", "symbols");
         self.finish(command, "building the application for the browser")?;
-        Ok(Self::folder().join(WASM).join("release/web.wasm"))
+        Ok(Self::folder_apart().join(WASM).join("release/web.wasm"))
     }
 
     /// Builds the binaries that run on every target, for all [`TARGETS`] at once, so that later
