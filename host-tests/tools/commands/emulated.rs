@@ -308,15 +308,14 @@ pub fn verify(options: &TestOptions) -> anyhow::Result<ExitCode> {
             let toolchain = toolchain.clone();
             move || {
                 toolchain.build_minimal_ahead()?;
-                toolchain.build_cores_ahead()?;
-                // Without the tools the test says that it is skipped.
-                if let Ok(web) = toolchain::set_up_web() {
-                    web.build_web()?;
-                }
-                anyhow::Ok(())
+                toolchain.build_cores_ahead()
             }
         });
         toolchain.build_applications_ahead()?;
+        // Without the tools the test says that it is skipped.
+        if let Ok(web) = toolchain::set_up_web() {
+            web.build_web()?;
+        }
         others.join().expect("it does not panic")?;
         let status = on_host.join().expect("it does not panic")?;
         anyhow::Ok(status)

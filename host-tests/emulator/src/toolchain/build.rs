@@ -102,10 +102,11 @@ impl Toolchain {
         target().join("firmware")
     }
 
-    /// Returns the folder for the programs that share no compiled crate with the boards' programs,
-    /// because their features differ. They can be built at the same time as those.
-    fn folder_apart() -> PathBuf {
-        Self::folder().join("apart")
+    /// Returns the folder in which the images of the golden bits are built. They share no compiled
+    /// crate with the boards' programs, because their features differ, so both can be built at the
+    /// same time.
+    fn folder_of_cores() -> PathBuf {
+        Self::folder().join("cores")
     }
 
     /// Builds the application of a board and returns the ELF file, as [`Self::build`] does.
@@ -153,7 +154,7 @@ impl Toolchain {
         static TURN: Mutex<()> = Mutex::new(());
         let _turn = TURN.lock().unwrap_or_else(PoisonError::into_inner);
         self.build_core_images(&[target], double)?;
-        let folder = Self::folder_apart().join(target).join("release");
+        let folder = Self::folder_of_cores().join(target).join("release");
         let built = if target.starts_with("wasm") {
             "cores.wasm"
         } else {
@@ -170,7 +171,7 @@ impl Toolchain {
         command
             .args(["--bin", "cores", "--no-default-features"])
             .args(["--features", "cores"])
-            .env("CARGO_TARGET_DIR", Self::folder_apart())
+            .env("CARGO_TARGET_DIR", Self::folder_of_cores())
             // Nobody debugs these images, and debug information would double the time.
             .env("CARGO_PROFILE_RELEASE_DEBUG", "false");
         if let Some(cpu) = double {
@@ -195,13 +196,17 @@ impl Toolchain {
             .take_while(|(target, _)| is_ready(target))
             .partition(|(_, double)| double.is_some());
 
-        // Images for no particular processor are built together, the others one at a time.
-        let targets: Vec<_> = any.into_iter().map(|(target, _)| target).collect();
-        if !targets.is_empty() {
-            self.build_core_images(&targets, None)?;
+        // Images for no particular processor are built together, the others one at a time. So is the
+        // one for WebAssembly: among microcontrollers, its crates would have their features.
+        let (alone, together): (Vec<_>, Vec<_>) =
+            any.into_iter().partition(|(target, _)| *target == WASM);
+        let together: Vec<_> = together.into_iter().map(|(target, _)| target).collect();
+        if !together.is_empty() {
+            self.build_core_images(&together, None)?;
         }
         double
             .into_iter()
+            .chain(alone)
             .try_for_each(|(target, double)| self.build_core_images(&[target], double))
     }
 
@@ -256,11 +261,10 @@ impl Toolchain {
         let mut command = self.for_targets("build", &[WASM])?;
         command
             .args(["--bin", "web", "--features", "web"])
-            .env("CARGO_TARGET_DIR", Self::folder_apart())
             .env("CARGO_PROFILE_RELEASE_DEBUG", "false")
             .env("CARGO_PROFILE_RELEASE_STRIP", "symbols");
         self.finish(command, "building the application for the browser")?;
-        Ok(Self::folder_apart().join(WASM).join("release/web.wasm"))
+        Ok(Self::folder().join(WASM).join("release/web.wasm"))
     }
 
     /// Builds the binaries that run on every target, for all [`TARGETS`] at once, so that later
