@@ -1,13 +1,12 @@
 //! Bit-identical results of the host and the boards, of optimised and unoptimised code, after every
 //! single step. The test `cores` compares the golden bits on more cores.
 
-use std::io::Write;
-use std::process::{Command, Stdio};
+use std::process::Command;
 
 use crate::support::targets;
 use anyhow::Result;
 use cycles::{Core, Instruction};
-use double_pendulum::Method;
+use double_pendulum::{Method, Parameters};
 use emulator::toolchain;
 use firmware::job::Request;
 use host_tests::commands::report::accuracy::{SCENES, Scene, request};
@@ -68,7 +67,7 @@ fn host_and_targets_agree_after_every_one_of_a_million_steps() -> Result<()> {
 /// overflow checks.
 #[test]
 fn unoptimised_code_computes_the_same_bits() {
-    let requests: Vec<Request> = Method::ALL
+    let requests: Vec<_> = Method::ALL
         .iter()
         .map(|&method| every_state(method, MOTIONS[1], STEPS_UNOPTIMISED))
         .collect();
@@ -76,12 +75,10 @@ fn unoptimised_code_computes_the_same_bits() {
     cargo.current_dir(toolchain::workspace()).args([
         "run",
         "--quiet",
-        "--package",
-        "firmware",
-        "--example",
-        "crc",
+        "--package=firmware",
+        "--example=crc",
+        "--no-default-features",
     ]);
-
     for package in ["double-pendulum-kernel", "firmware", "libm"] {
         cargo.args([
             "--config",
@@ -89,20 +86,21 @@ fn unoptimised_code_computes_the_same_bits() {
         ]);
     }
 
-    // The requests are sent as lines, and the answers are the CRCs in the same order.
-    let mut child = cargo
-        .stdin(Stdio::piped())
-        .stdout(Stdio::piped())
-        .spawn()
-        .expect("cargo runs");
-    let mut input = child.stdin.take().expect("a pipe");
-    requests
-        .iter()
-        .try_for_each(|request| writeln!(input, "{request}"))
-        .expect("it reads");
-    drop(input);
-    let output = child.wait_with_output().expect("cargo ends");
-    assert!(output.status.success());
+    // The requests differ in the method only.
+    let Request {
+        parameters: Parameters { m1, m2, l1, l2, g },
+        angles: [a1, a2],
+        velocities: [w1, w2],
+        dt,
+        stride,
+        samples,
+        ..
+    } = requests[0];
+    let numbers = [m1, m2, l1, l2, g, a1, a2, w1, w2, dt];
+    cargo.arg("--").args(numbers.map(|number| number.to_string()));
+    cargo.args([stride, samples].map(|number| number.to_string()));
+    let output = cargo.output().expect("cargo runs");
+    assert!(output.status.success(), "{output:?}");
 
     let text = String::from_utf8(output.stdout).expect("text");
     assert_eq!(text.lines().count(), requests.len());
