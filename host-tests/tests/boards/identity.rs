@@ -97,7 +97,9 @@ fn unoptimised_code_computes_the_same_bits() {
         ..
     } = requests[0];
     let numbers = [m1, m2, l1, l2, g, a1, a2, w1, w2, dt];
-    cargo.arg("--").args(numbers.map(|number| number.to_string()));
+    cargo
+        .arg("--")
+        .args(numbers.map(|number| number.to_string()));
     cargo.args([stride, samples].map(|number| number.to_string()));
     let output = cargo.output().expect("cargo runs");
     assert!(output.status.success(), "{output:?}");

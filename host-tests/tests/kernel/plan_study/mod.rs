@@ -335,6 +335,14 @@ fn half_a_pixel_is_kept_until_the_predicted_horizon() {
     }
 }
 
+/// No frame of a scene with a short rod 2 may be wrong by more than half a pixel until the predicted
+/// horizon, on any processor.
+#[test]
+fn short_rods_keep_their_horizons() {
+    let scenes: Vec<_> = scenes::short_rods().collect();
+    study("short rods", &scenes, false, (0, PLAN_ERROR));
+}
+
 /// Studies a whole class. At most [`VIOLATIONS`] plans for each processor and seed may have an
 /// inaccurate frame before the predicted horizon, of at most [`LARGEST`] half pixels.
 ///
