@@ -25,6 +25,8 @@ const [CHIP_ID, OLD_CHIP_ID] = [0x20002927, 0x10002927];
 const HARD_FAULT = 3;
 /** The instruction `b .`, a jump to itself, and its cycles. */
 const [SELF_JUMP, JUMP_CYCLES] = [0xe7fe, 2];
+/** More than the rounding error of a quotient of times, and less than a cycle. */
+const ROUNDING = 1e-6;
 /** No address of an instruction. */
 export const NOWHERE = -1;
 /** Registers of the processor that the emulator lacks: reset (bit 2), what protects memory, and whether a debugger is there. */
@@ -152,11 +154,12 @@ export class Board {
   execute(end, cycle) {
     const { chip, hungAt } = this;
     const { core, clock, clkSys } = chip;
-    // Sums of times are exact if a cycle is a whole number of nanoseconds.
+    // Sums of times are exact if a cycle is a whole number of nanoseconds. Their difference is not.
     const isWhole = Number.isInteger(cycle);
     do {
       const until = Math.min(clock.nextAlarm?.nanos ?? end, end);
-      const cycles = isWhole ? this.fast(Math.ceil((until - clock.nanosCounter) / cycle)) : 0;
+      const left = (until - clock.nanosCounter) / cycle;
+      const cycles = isWhole ? this.fast(Math.ceil(left - ROUNDING)) : 0;
       const time = (cycles || core.executeInstruction()) * cycle;
       const now = clock.nanosCounter + time;
       const alarm = clock.nextAlarm;

@@ -9,10 +9,14 @@ import { RP2040 } from 'rp2040js';
 import { Board, NOWHERE } from './board.js';
 import { fast } from './fast.js';
 
-/** The microseconds between two comparisons of a run. */
-const SLICE = 10;
-/** The microseconds of a hang. */
-const HANG = 50_000;
+/** The microseconds between two comparisons of a run: in its first hundredth, and later. */
+const [FIRST_SLICE, SLICE] = [10, 1000];
+/** The microseconds after each event, and of a hang. */
+const [EVENT, HANG] = [20_000, 50_000];
+/** The restarts by the fault and by the reset. */
+const RESTARTS = 2;
+/** The pin of a button. */
+const BUTTON = 10;
 /** The share of the firmware's instructions that the emulator may execute itself. */
 const LEFT = 0.01;
 
@@ -21,8 +25,8 @@ const [PLACE, MEMORY, MEMORY_END, FLASH] = [0x20000100, 0x20001000, 0x20042000, 
 /** The number of times that each opcode is executed, with other registers. */
 const TIMES = 8;
 /**
- * The number of opcodes that are executed fast, of all that are no first half of two. The others
- * are jumps to themselves, breakpoints, waits and the like, and those that use the program counter.
+ * The smallest number of opcodes that must be fast, of all that are no first half of two. The
+ * others are breakpoints, waits and the like, and those that use the program counter.
  */
 const FAST_OPCODES = 52_000;
 /** The link register of a handler. */
@@ -46,39 +50,76 @@ function compare(fast, plain, place) {
   }
 }
 
-/** Runs two boards from the start; all memory and everything that they send must be the same. */
+/** A board that counts the instructions that the emulator executes, also after a restart. */
+class Counting extends Board {
+  start(...reason) {
+    super.start(...reason);
+    this.left ??= 0;
+    if (this.isPlain) this.fast = () => 0;
+    const { core } = this.chip;
+    const { executeInstruction } = core;
+    core.executeInstruction = () => {
+      this.left += 1;
+      return executeInstruction.call(core);
+    };
+  }
+}
+
+/** A board on which the emulator executes all instructions, also each jump of a hang. */
+class Plain extends Counting {
+  get isPlain() {
+    return true;
+  }
+
+  hang() {
+    super.hang();
+    this.hungAt = NOWHERE;
+  }
+}
+
+/**
+ * Runs two boards from the start, through events, a hang and restarts. Everything that they send,
+ * and at the end all memory, must be the same.
+ */
 function run() {
   const sent = [[], []];
   const image = readFileSync(file);
-  const [quick, plain] = sent.map((list) => new Board(image, (...said) => list.push(said)));
-  plain.fast = () => 0;
+  const quick = new Counting(image, (...said) => sent[0].push(said));
+  const plain = new Plain(image, (...said) => sent[1].push(said));
+  const both = (act) => [quick, plain].forEach(act);
 
-  // The instructions of either board that the emulator executes.
-  const executed = [quick, plain].map(({ chip: { core } }) => {
-    const count = { instructions: 0 };
-    const { executeInstruction } = core;
-    core.executeInstruction = () => {
-      count.instructions += 1;
-      return executeInstruction.call(core);
-    };
-    return count;
-  });
-
-  const both = (micros) => {
-    [quick, plain].forEach((board) => board.run(micros));
-    compare(quick.chip.core, plain.chip.core, `after ${executed[1].instructions} instructions`);
+  const step = (micros) => {
+    both((board) => board.run(micros));
+    compare(quick.chip.core, plain.chip.core, `after ${plain.left} instructions`);
     if (quick.chip.clock.nanos !== plain.chip.clock.nanos) throw new Error('the clocks differ');
   };
-  while (executed[1].instructions < instructions) both(SLICE);
+  while (plain.left < instructions) step(plain.left < instructions / 100 ? FIRST_SLICE : SLICE);
+  const [left, all] = [quick.left, plain.left];
+  if (left > LEFT * all) throw new Error(`${left} of ${all} instructions are not fast`);
 
-  // A hang, in which the plain board executes every jump.
-  const [left, all] = executed.map((count) => count.instructions);
-  [quick, plain].forEach((board) => board.hang());
-  plain.hungAt = NOWHERE;
-  both(HANG);
+  const events = [
+    (board) => board.press(BUTTON, true),
+    (board) => board.press(BUTTON, false),
+    (board) => board.usb.send(Buffer.from([0, 1, 2, 0, 255])),
+    (board) => board.chip.uart[0].feedByte(0),
+    (board) => {
+      // A processor that waits has no fault.
+      while (board.chip.core.waiting) board.run(FIRST_SLICE);
+      board.fault();
+    },
+    (board) => board.reset(false),
+  ];
+  for (const event of events) {
+    both(event);
+    step(EVENT);
+  }
+  both((board) => board.hang());
+  step(HANG);
+
   if (Buffer.compare(quick.chip.sram, plain.chip.sram)) throw new Error('the memories differ');
   if (JSON.stringify(sent[0]) !== JSON.stringify(sent[1])) throw new Error('they sent differently');
-  if (left > LEFT * all) throw new Error(`${left} of ${all} instructions are not fast`);
+  const restarts = sent[0].filter(([word]) => word === 'restarted').length;
+  if (restarts !== RESTARTS) throw new Error(`${restarts} restarts`);
   return all;
 }
 

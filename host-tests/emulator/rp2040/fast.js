@@ -11,10 +11,10 @@
 
 const [FLASH, RAM] = [0x10000000, 0x20000000];
 const [SP, LR, PC] = [13, 14, 15];
-/** The most cycles of a call, so that all numbers here are small integers. */
+/** The limit of the cycles of a call. With it, Node.js computes with small integers. */
 const MOST = 1e6;
 
-/** An access to memory, whose address the instruction has computed. */
+/** The kinds of access to memory. */
 const [NO_ACCESS, LOAD, LOAD_HALF, LOAD_BYTE, LOAD_SIGNED_HALF, LOAD_SIGNED_BYTE] = [0, 1, 2, 3, 4, 5];
 const [STORE, STORE_HALF, STORE_BYTE] = [6, 7, 8];
 /** The accesses with an address in two registers, by bits 9 to 11 of the instruction. */
@@ -27,9 +27,9 @@ const COUNTS = Uint8Array.from({ length: 256 }, (_, list) => {
 });
 
 /**
- * Returns a function that executes instructions of this chip until at least `most` cycles have
- * passed, or up to an instruction that it does not know, and returns the cycles. It has done
- * nothing if it returns 0.
+ * Returns a function that executes instructions of this chip until `most` cycles have passed, a
+ * million at most, or up to an instruction that it does not know. It returns the cycles, which may
+ * be a few more. If it returns 0, it has done nothing.
  */
 export function fast(chip) {
   const { core } = chip;
