@@ -1,7 +1,7 @@
 //! `cargo setup`, `cargo fw` and `cargo verify`: install the tools, run a firmware on an emulated
 //! board, run every test.
 
-use std::io::{self, Write, stdout};
+use std::io::{self, Read, Seek, Write, stdout};
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode, Stdio};
 use std::thread::{self, available_parallelism};
@@ -227,8 +227,8 @@ pub struct TestOptions {
 /// with the long tests.
 const LIMITS: [Duration; 2] = [Duration::from_secs(3600), Duration::from_secs(12 * 3600)];
 /// The environment variables with the numbers of concurrent tests, and of concurrent pieces of
-/// work within tests. If the user has not set one, it is twice the number of processors,
-/// because many tests wait for an emulator or a clock.
+/// work within tests. If the user has not set one, it is twice the number of processors for each
+/// part, because many tests wait for an emulator or a clock.
 const THREADS: [&str; 2] = ["RUST_TEST_THREADS", "RAYON_NUM_THREADS"];
 
 /// The tests that need no firmware, as arguments of `cargo test`.
@@ -248,10 +248,12 @@ const IN_DOCUMENTATION: &str = "--doc";
 /// Installs missing tools as [`setup`] does, with the same rule for system packages and `--yes`,
 /// builds the firmware, and runs `cargo test` in four parts. The first part, on the host, runs
 /// during the installation and the builds, whose errors are returned only after it has ended. If it
-/// passes, the others run, all at once; the output of each but the first of them is printed after
-/// its end. Returns success if all parts pass, or else the exit code of the first part that fails.
-/// `--long` adds `-- --include-ignored`. Each of `RUST_TEST_THREADS` and `RAYON_NUM_THREADS` that
-/// is not set is twice the number of processors for the tests.
+/// passes, the other three run, all at once: those of the boards, of the commands, and of the
+/// documentation. The output of the last two is printed when all three have ended.
+///
+/// Returns success if all parts pass, or else the exit code of the first one in this order that
+/// fails. `--long` adds `-- --include-ignored`. Each of `RUST_TEST_THREADS` and `RAYON_NUM_THREADS`
+/// that is not set is twice the number of processors, for each part.
 ///
 /// An error means that the set-up ([`Refused`]) or a build of the firmware fails, or that a time
 /// limit is exceeded: 1 hour for compiling the tests and again for each part, or 12 hours each with
@@ -324,21 +326,37 @@ pub fn verify(options: &TestOptions) -> anyhow::Result<ExitCode> {
         return Ok(process::exit_code(on_host));
     }
 
-    // Many of the other tests wait for a board, and the rest compute meanwhile.
-    let statuses = thread::scope(|scope| {
-        let others = [OF_COMMANDS, IN_DOCUMENTATION]
-            .map(|tests| scope.spawn(move || process::run(&mut run(&[tests]), limit)));
-        let mut statuses = vec![shown(run(&[ON_BOARDS]))?];
-        for other in others {
-            let output = other.join().expect("it does not panic")?;
-            complain(output.stderr);
-            say(output.stdout)?;
-            statuses.push(output.status);
+    // Many of the other tests wait for a board, and the rest compute meanwhile. The outputs of two
+    // parts are kept in files, in which nothing is lost if a part is stopped.
+    let parts = [OF_COMMANDS, IN_DOCUMENTATION];
+    let mut outputs = [tempfile::tempfile()?, tempfile::tempfile()?];
+    let results = thread::scope(|scope| {
+        let others = [0, 1].map(|i| {
+            let part = parts[i];
+            let output = &outputs[i];
+            scope.spawn(move || {
+                let mut command = run(&[part]);
+                command.stdout(output.try_clone()?);
+                command.stderr(output.try_clone()?);
+                shown(command)
+            })
+        });
+        let on_boards = shown(run(&[ON_BOARDS]));
+        let [of_commands, in_documentation] =
+            others.map(|other| other.join().expect("it does not panic"));
+        [on_boards, of_commands, in_documentation]
+    });
+    for output in &mut outputs {
+        let mut text = Vec::new();
+        output.rewind()?;
+        output.read_to_end(&mut text)?;
+        say(String::from_utf8_lossy(&text).trim_end())?;
+    }
+    for result in results {
+        let status = result?;
+        if !status.success() {
+            return Ok(process::exit_code(status));
         }
-        anyhow::Ok(statuses)
-    })?;
-    if let Some(failed) = statuses.into_iter().find(|status| !status.success()) {
-        return Ok(process::exit_code(failed));
     }
     say("all tests passed")?;
     Ok(ExitCode::SUCCESS)

@@ -102,9 +102,9 @@ impl Toolchain {
         target().join("firmware")
     }
 
-    /// Returns the folder in which the images of the golden bits are built. They share no compiled
-    /// crate with the boards' programs, because their features differ, so both can be built at the
-    /// same time.
+    /// Returns the folder in which the images of the golden bits are built. It is a folder of its
+    /// own, so that cargo can build them and the boards' programs at the same time. Only macros and
+    /// build scripts are compiled twice because of it.
     fn folder_of_cores() -> PathBuf {
         Self::folder().join("cores")
     }
@@ -196,8 +196,9 @@ impl Toolchain {
             .take_while(|(target, _)| is_ready(target))
             .partition(|(_, double)| double.is_some());
 
-        // Images for no particular processor are built together, the others one at a time. So is the
-        // one for WebAssembly: among microcontrollers, its crates would have their features.
+        // Images for no particular processor are built together, the others one at a time. The one
+        // for WebAssembly is built alone, too: in one call with microcontrollers, cargo would enable
+        // their features for it, and the test's build would compile it again.
         let (alone, together): (Vec<_>, Vec<_>) =
             any.into_iter().partition(|(target, _)| *target == WASM);
         let together: Vec<_> = together.into_iter().map(|(target, _)| target).collect();
