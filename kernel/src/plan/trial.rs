@@ -149,19 +149,23 @@ const BESIDE_REFERENCE: f32 = 1.1;
 const UNRESOLVED: f32 = 4.0;
 
 /// The factor on the bound of the error of a candidate that is compared with runs in finer steps,
-/// if bob 2 is heavy.
+/// if bob 2 is heavy and rod 2 is not short.
 ///
 /// In 32 bits of fixed point the inverse 1/(m + S^2), with m = m1/m2, then has few digits while S
 /// is large. It is always rounded down, so that the errors of all these runs have the same sign.
 const ROUNDED_ALIKE: f32 = 2.0;
 
-/// The ratio of the lengths of rod 1 and rod 2 above which rod 2 is short, and the factor on the
-/// bound of a candidate in 32 bits of fixed point that is compared with runs in finer steps.
+/// The ratio of the lengths of rod 1 and rod 2 above which rod 2 is short.
+const SHORT_ROD_2: f64 = 12.0;
+
+/// The factors on the bound of the error of a candidate that is compared with runs in finer steps,
+/// if rod 2 is short: in 32 bits of fixed point, and in `f32`.
 ///
 /// The changes of the quantities of a short rod 2 have few digits, and part of their rounding is
-/// the same in all these runs. The values are measured: test `short_rods_keep_their_horizons`.
-const SHORT_ROD_2: f64 = 12.0;
-const SHORT_AND_ROUNDED_ALIKE: f32 = 6.0;
+/// the same in all these runs. The values are measured: without a factor, up to 11 of 100 similar
+/// motions were inaccurate before their predicted horizon at ratios of 17 to 100, and none at 10.
+/// Test `short_rods_keep_their_horizons` checks some of them against the exact motion.
+const SHORT_AND_ROUNDED_ALIKE: [f32; 2] = [6.0, 4.0];
 
 /// The factor on the largest distance to three runs in finer steps in the bound of an error.
 ///
@@ -308,9 +312,12 @@ impl Trial {
         } = problem;
 
         let is_heavy = problem.has_heavy_bob_2();
-        let is_in_fixed_point = stepping.method == Method::Rk4Fixed32;
-        let alike = if is_in_fixed_point && pendulum.l1 > SHORT_ROD_2 * pendulum.l2 {
-            SHORT_AND_ROUNDED_ALIKE
+        let alike = if pendulum.l1 > SHORT_ROD_2 * pendulum.l2 {
+            let [in_fixed_point, in_f32] = SHORT_AND_ROUNDED_ALIKE;
+            match stepping.method {
+                Method::Rk4Fixed32 => in_fixed_point,
+                _ => in_f32,
+            }
         } else if is_heavy {
             ROUNDED_ALIKE
         } else {
