@@ -77,7 +77,7 @@ fn panic(_: &core::panic::PanicInfo) -> ! { loop {} }
 
 /// The time limit of a program that never ends: many times the time until it waits, on a busy
 /// machine too.
-const SECONDS: [&str; 2] = ["--seconds", "3"];
+const SECONDS: [&str; 2] = ["--seconds", "6"];
 /// The ends of programs: it ends with success or failure, it waits for ever, or it needs a
 /// floating-point unit.
 const ENDS: &str = "ldr r1, =0x20026";
@@ -161,7 +161,7 @@ fn functions_and_labels_are_counted_and_the_end_is_reported() -> anyhow::Result<
         "{output:?}"
     );
     assert!(
-        output.stderr.contains("stopped after 3 s and 3 calls"),
+        output.stderr.contains("stopped after 6 s and 3 calls"),
         "{output:?}"
     );
     Ok(())

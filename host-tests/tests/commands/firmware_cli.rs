@@ -27,11 +27,11 @@ fn fw(arguments: &[&str]) -> Output {
     output(program("fw").args(arguments))
 }
 
-/// `cargo fw --seconds 2` stops the application with exit code 0 and reports it. A program that
+/// `cargo fw --seconds 5` stops the application with exit code 0 and reports it. A program that
 /// fails before its time has exit code 1.
 #[test]
 fn a_program_without_end_is_stopped_with_success_on_request() {
-    let output = fw(&["mps2-an386", "--seconds", "2"]);
+    let output = fw(&["mps2-an386", "--seconds", "5"]);
     assert_eq!(output.status.code(), Some(0), "{}", output.stderr);
     assert!(
         output.stdout.contains("boot: mps2-an386"),
@@ -40,7 +40,7 @@ fn a_program_without_end_is_stopped_with_success_on_request() {
     );
     assert_eq!(
         output.stderr.lines().last(),
-        Some("stopped after 2 s, as requested")
+        Some("stopped after 5 s, as requested")
     );
     assert_eq!(
         fw(&["inject-panic", "--seconds", "600"]).status.code(),
@@ -136,7 +136,7 @@ fn the_folder_of_a_killed_command_is_removed_by_the_next_command() {
         .set_modified(SystemTime::now() - LONG_AGO)
         .expect("its time");
     let mut next = program("fw");
-    next.args(["mps2-an386", "--seconds", "1"])
+    next.args(["mps2-an386", "--seconds", "5"])
         .env("TMPDIR", temporary.path());
     assert_eq!(output(&mut next).status.code(), Some(0));
     assert_eq!(left(temporary.path()), [""; 0].map(PathBuf::from));

@@ -13,7 +13,7 @@ use nix::unistd::Pid;
 /// A limit far above the time that any of these children needs.
 const AMPLE: Duration = Duration::from_secs(60);
 /// The limit of children that must be stopped.
-const SHORT: Duration = Duration::from_millis(300);
+const SHORT: Duration = Duration::from_secs(2);
 /// A process with a child of its own. Both ignore requests to end.
 const FAMILY: &str = "trap '' TERM; (sleep 20; echo late) & echo ready; sleep 20; echo late";
 /// The environment variable that turns [`interrupted_helper`] from an empty test into the process
@@ -43,13 +43,13 @@ fn rest(mut pipe: BufReader<ChildStdout>) -> String {
     text
 }
 
-/// A child writes 220,000 bytes to each output, is silent for a second and ends with code 7. All of
+/// A child writes 220,000 bytes to each output, is silent for two seconds and ends with code 7. All of
 /// that is captured, and the watcher was called with lines and, more than five times, without. A
 /// program that does not exist is an error with its name.
 #[test]
 fn output_and_exit_code_are_captured_while_a_watcher_sees_lines_and_silence() {
     let script = "i=0; while [ $i -lt 20000 ]; do echo 0123456789; echo 0123456789 >&2; \
-        i=$((i+1)); done; sleep 1; exit 7";
+        i=$((i+1)); done; sleep 2; exit 7";
     // The watcher sees some of the lines, and the silence at the end.
     let mut lines = 0;
     let mut ticks = 0;

@@ -13,7 +13,7 @@ use std::time::Duration;
 use emulator::boards::{PICO, every_board};
 use emulator::flash::flash_image;
 use emulator::pico::PicoMachine;
-use emulator::process::Output;
+use emulator::process::{self, Output};
 use emulator::toolchain::{self, target, workspace};
 
 use super::cli::{output, program};
@@ -23,8 +23,8 @@ use crate::support::{application, toolchain};
 /// A small image that every kind of core runs.
 const SMALL: (&str, &str) = ("inject-panic", "thumbv7m-none-eabi");
 
-/// The time limit of the emulated Pico. A whole verification takes 25 s of its own time, and
-/// minutes of real time.
+/// The time limit of a command in the copy, which may build all images, and of the emulated Pico: a
+/// whole verification takes 25 s of its own time, and minutes of real time.
 const LONG: Duration = Duration::from_secs(3600);
 
 /// Returns cargo's home folder.
@@ -74,13 +74,12 @@ impl Elsewhere {
 
     /// Runs a command of the project there.
     fn output(&self, command: &mut Command) -> Output {
-        output(
-            command
-                .current_dir(self.checkout())
-                .env("CARGO_MANIFEST_DIR", self.checkout().join("host-tests"))
-                .env("CARGO_HOME", self.0.path().join("cargo"))
-                .env_remove("CARGO_TARGET_DIR"),
-        )
+        command
+            .current_dir(self.checkout())
+            .env("CARGO_MANIFEST_DIR", self.checkout().join("host-tests"))
+            .env("CARGO_HOME", self.0.path().join("cargo"))
+            .env_remove("CARGO_TARGET_DIR");
+        process::run(command, LONG).unwrap_or_else(|error| panic!("{error}"))
     }
 }
 

@@ -2,9 +2,9 @@
 //! uses all of this module.
 #![allow(dead_code)]
 
-use std::fs;
+use std::fs::{self, OpenOptions};
 use std::io::{ErrorKind, Read, Write};
-use std::os::unix::fs::symlink;
+use std::os::unix::fs::{OpenOptionsExt, symlink};
 use std::path::PathBuf;
 use std::process::Command;
 use std::thread::{scope, sleep};
@@ -17,6 +17,7 @@ use emulator::qemu::{Clock, Machine, Settings};
 use firmware::protocol::{MAX_WIRE, ToHost, encode};
 use nix::fcntl::OFlag;
 use nix::pty::{PtyMaster, grantpt, posix_openpt, ptsname_r, unlockpt};
+use nix::sys::termios::{SetArg, cfmakeraw, tcgetattr, tcsetattr};
 
 use crate::support::{LIMIT, on};
 
@@ -109,7 +110,21 @@ impl<M: Linked> Bench<M> {
         grantpt(&cable)
             .and_then(|()| unlockpt(&cable))
             .expect("a pseudo-terminal");
-        symlink(ptsname_r(&cable).expect("its name"), &self.name).expect("a link");
+        let port = ptsname_r(&cable).expect("its name");
+
+        // A terminal that was never open counts as open, and repeats and changes bytes.
+        let terminal = OpenOptions::new()
+            .read(true)
+            .write(true)
+            .custom_flags(OFlag::O_NOCTTY.bits())
+            .open(&port)
+            .expect("the other end");
+        let mut settings = tcgetattr(&terminal).expect("its settings");
+        cfmakeraw(&mut settings);
+        tcsetattr(&terminal, SetArg::TCSANOW, &settings).expect("a terminal");
+        drop(terminal);
+
+        symlink(port, &self.name).expect("a link");
         self.cable = Some(cable);
     }
 

@@ -227,8 +227,8 @@ pub struct TestOptions {
 /// with the long tests.
 const LIMITS: [Duration; 2] = [Duration::from_secs(3600), Duration::from_secs(12 * 3600)];
 /// The environment variables with the numbers of concurrent tests, and of concurrent pieces of
-/// work within tests. If the user has not set one, it is twice the number of processors for each
-/// part, because many tests wait for an emulator or a clock.
+/// work within tests. If the user has not set one, the tests that run at the same time have twice
+/// the number of processors together, because many wait for an emulator or a clock.
 const THREADS: [&str; 2] = ["RUST_TEST_THREADS", "RAYON_NUM_THREADS"];
 
 /// The tests that need no firmware, as arguments of `cargo test`.
@@ -253,7 +253,8 @@ const IN_DOCUMENTATION: &str = "--doc";
 ///
 /// Returns success if all parts pass, or else the exit code of the first one in this order that
 /// fails. `--long` adds `-- --include-ignored`. Each of `RUST_TEST_THREADS` and `RAYON_NUM_THREADS`
-/// that is not set is twice the number of processors, for each part.
+/// that is not set is twice the number of processors for the tests on the host, and that number for
+/// each part of those that run at once.
 ///
 /// An error means that the set-up ([`Refused`]) or a build of the firmware fails, or that a time
 /// limit is exceeded: 1 hour for compiling the tests and again for each part, or 12 hours each with
@@ -261,9 +262,9 @@ const IN_DOCUMENTATION: &str = "--doc";
 /// of the page for a browser cannot be provided, its tests are skipped, which is no error.
 pub fn verify(options: &TestOptions) -> anyhow::Result<ExitCode> {
     let limit = LIMITS[usize::from(options.long)];
-    let threads = (2 * available_parallelism()?.get()).to_string();
-    // Returns a command that runs `cargo test` with these arguments.
-    let test = |arguments: &[&str]| {
+    let processors = available_parallelism()?.get();
+    // Returns a command that runs `cargo test` with these arguments and this number of threads.
+    let test = |arguments: &[&str], threads: usize| {
         let mut command = Command::new("cargo");
         command
             .arg("test")
@@ -272,7 +273,7 @@ pub fn verify(options: &TestOptions) -> anyhow::Result<ExitCode> {
             .stdin(Stdio::null());
         for name in THREADS {
             if env::var_os(name).is_none() {
-                command.env(name, &threads);
+                command.env(name, threads.to_string());
             }
         }
         command
@@ -288,18 +289,18 @@ pub fn verify(options: &TestOptions) -> anyhow::Result<ExitCode> {
     } else {
         &[]
     };
-    let run = |tests: &[&str]| test(&[tests, ignored].concat());
+    let run = |tests: &[&str], threads| test(&[tests, ignored].concat(), threads);
     let shown = |mut command: Command| process::spawn(&mut command, limit)?.wait();
 
     // The tests are compiled, and those that need no firmware are run, while the tools are fetched
     // and the firmware is compiled, because none of these keeps all processors busy alone.
     let on_host = thread::scope(|scope| {
         let on_host = scope.spawn(|| {
-            let compiled = shown(test(&["--no-run", "--quiet"]))?;
+            let compiled = shown(test(&["--no-run", "--quiet"], processors))?;
             if !compiled.success() {
                 return Ok(compiled);
             }
-            shown(run(&ON_HOST))
+            shown(run(&ON_HOST, 2 * processors))
         });
 
         let toolchain = toolchain::set_up()?;
@@ -335,29 +336,36 @@ pub fn verify(options: &TestOptions) -> anyhow::Result<ExitCode> {
             let part = parts[i];
             let output = &outputs[i];
             scope.spawn(move || {
-                let mut command = run(&[part]);
+                let mut command = run(&[part], processors);
                 command.stdout(output.try_clone()?);
                 command.stderr(output.try_clone()?);
                 shown(command)
             })
         });
-        let on_boards = shown(run(&[ON_BOARDS]));
+        let on_boards = shown(run(&[ON_BOARDS], processors));
         let [of_commands, in_documentation] =
             others.map(|other| other.join().expect("it does not panic"));
         [on_boards, of_commands, in_documentation]
     });
-    for output in &mut outputs {
+    let printed = outputs.iter_mut().try_for_each(|output| {
         let mut text = Vec::new();
         output.rewind()?;
         output.read_to_end(&mut text)?;
-        say(String::from_utf8_lossy(&text).trim_end())?;
-    }
-    for result in results {
+        say(String::from_utf8_lossy(&text).trim_end())
+    });
+
+    // A failure of the tests comes before a failure to print.
+    for (part, result) in [ON_BOARDS, OF_COMMANDS, IN_DOCUMENTATION]
+        .iter()
+        .zip(results)
+    {
         let status = result?;
         if !status.success() {
+            complain(format_args!("error: cargo test {part} failed"));
             return Ok(process::exit_code(status));
         }
     }
+    printed?;
     say("all tests passed")?;
     Ok(ExitCode::SUCCESS)
 }
