@@ -247,6 +247,24 @@ pub fn short_rods() -> impl Iterator<Item = Problem> {
     at_rest.chain([fast])
 }
 
+/// Returns two high starts whose horizons a Cortex-M3 predicts too long: a known failure. Bob 2 is
+/// just not heavy enough for the wider bounds of a heavy one.
+pub fn known_failures() -> impl Iterator<Item = Problem> {
+    let scenes = [
+        (
+            (3.4351644469898424, 0.8252731667216725),
+            [2.954107937931796, -2.8533645723251544],
+        ),
+        (
+            (3.5655412876168424, 0.991392561863083),
+            [2.2300776406129033, 1.5698256601019014],
+        ),
+    ];
+    scenes
+        .into_iter()
+        .map(|((m2, l2), [a1, a2])| shown(pendulum(m2, l2), Motion::at_rest(a1, a2), 30.0))
+}
+
 /// Returns a pendulum with a bob 1 of 1 kg and a rod 1 of 1 m.
 fn pendulum(m2: f64, l2: f64) -> Parameters<f64> {
     Parameters {
