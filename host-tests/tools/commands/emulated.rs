@@ -239,7 +239,7 @@ const ON_HOST: [&str; 5] = [
     "--test=prove",
     "--test=traits",
 ];
-/// The tests that need the firmware, and those of the commands, which need the firmware as well.
+/// The tests of the boards and of the commands. Both need the firmware.
 const ON_BOARDS: &str = "--test=boards";
 const OF_COMMANDS: &str = "--test=commands";
 /// The examples of the documentation, which cargo does not run together with other tests.
@@ -248,7 +248,7 @@ const IN_DOCUMENTATION: &str = "--doc";
 /// Installs missing tools as [`setup`] does, with the same rule for system packages and `--yes`,
 /// builds the firmware, and runs `cargo test` in four parts. The first part, on the host, runs
 /// during the installation and the builds, whose errors are returned only after it has ended. If it
-/// passes, the other three run, all at once: those of the boards, of the commands, and of the
+/// passes, the other three run, all at once: on the boards, of the commands, and of the
 /// documentation. The output of the last two is printed when all three have ended.
 ///
 /// Returns success if all parts pass, or else the exit code of the first one in this order that
@@ -327,8 +327,8 @@ pub fn verify(options: &TestOptions) -> anyhow::Result<ExitCode> {
         return Ok(process::exit_code(on_host));
     }
 
-    // Many of the other tests wait for a board, and the rest compute meanwhile. The outputs of two
-    // parts are kept in files, in which nothing is lost if a part is stopped.
+    // Many of the other tests wait for a board, and the rest compute meanwhile. Two parts write to
+    // files, so that nothing is lost if one of them is stopped.
     let parts = [OF_COMMANDS, IN_DOCUMENTATION];
     let mut outputs = [tempfile::tempfile()?, tempfile::tempfile()?];
     let results = thread::scope(|scope| {

@@ -102,9 +102,9 @@ impl Toolchain {
         target().join("firmware")
     }
 
-    /// Returns the folder in which the images of the golden bits are built. It is a folder of its
-    /// own, so that cargo can build them and the boards' programs at the same time. Only macros and
-    /// build scripts are compiled twice because of it.
+    /// Returns the folder for the builds of the images of the golden bits. It is separate, so that
+    /// cargo can build them and the boards' programs at the same time. Only macros and build scripts
+    /// are compiled twice because of it.
     fn folder_of_cores() -> PathBuf {
         Self::folder().join("cores")
     }

@@ -207,12 +207,10 @@ pub fn long() -> impl Iterator<Item = Problem> {
     })
 }
 
-/// Returns scenes with a short rod 2 whose horizons were once predicted too long: all but the last
-/// one by processors without a floating-point unit, at high frame rates on a large display and as
-/// usual; the last one by those with one.
+/// Returns scenes with a short rod 2 whose horizons were once predicted too long. The last scene was
+/// wrong on processors with a floating-point unit, the others on processors without one.
 ///
-/// The runs in finer steps with which each method was compared had most of its rounding error in
-/// common.
+/// Each method was compared with runs in finer steps, and these had most of its rounding error, too.
 pub fn short_rods() -> impl Iterator<Item = Problem> {
     // A row has the mass of bob 2, the length of rod 2, the rate, the height, and a small number
     // that is added: to the mass relatively, to the length 0.7 of it relatively, and to both angles.
