@@ -103,8 +103,8 @@ impl Toolchain {
     }
 
     /// Returns the folder for the builds of the images of the golden bits. It is separate, so that
-    /// cargo can build them and the boards' programs at the same time. Only macros and build scripts
-    /// are compiled twice because of it.
+    /// cargo can build them and the boards' programs at the same time. Only macros and build
+    /// scripts are compiled twice because of it.
     fn folder_of_cores() -> PathBuf {
         Self::folder().join("cores")
     }
@@ -197,8 +197,8 @@ impl Toolchain {
             .partition(|(_, double)| double.is_some());
 
         // Images for no particular processor are built together, the others one at a time. The one
-        // for WebAssembly is built alone, too: in one call with microcontrollers, cargo would enable
-        // their features for it, and the test's build would compile it again.
+        // for WebAssembly is built alone, too: in one call with microcontrollers, cargo would
+        // enable their features for it, and the test's build would compile it again.
         let (alone, together): (Vec<_>, Vec<_>) =
             any.into_iter().partition(|(target, _)| *target == WASM);
         let together: Vec<_> = together.into_iter().map(|(target, _)| target).collect();

@@ -207,13 +207,15 @@ pub fn long() -> impl Iterator<Item = Problem> {
     })
 }
 
-/// Returns scenes with a short rod 2 whose horizons were once predicted too long. The last scene was
-/// wrong on processors with a floating-point unit, the others on processors without one.
+/// Returns scenes with a short rod 2 whose horizons were once predicted too long. The last scene
+/// was wrong on processors with a floating-point unit, the others on processors without one.
 ///
-/// Each method was compared with runs in finer steps, and these had most of its rounding error, too.
+/// Each method was compared with runs in finer steps, and these had most of its rounding error,
+/// too.
 pub fn short_rods() -> impl Iterator<Item = Problem> {
-    // A row has the mass of bob 2, the length of rod 2, the rate, the height, and a small number
-    // that is added: to the mass relatively, to the length 0.7 of it relatively, and to both angles.
+    // A row has the mass of bob 2, the length of rod 2, the rate, the height, and a small number.
+    // It is added to both angles; relative to their values, it is added to the mass, and 0.7 of it
+    // to the length.
     let scenes = [
         (0.85, 0.016, 104, 5856.0, 38e-5),
         (0.01, 0.016, 104, 5856.0, 31e-5),
