@@ -1,86 +1,92 @@
 //! Shadows: motions close to another one, which measure the growth of its small errors.
 //!
-//! An error that arises in a run is carried on by the motion. In a chaotic motion it grows
-//! exponentially. Its direction in phase space soon becomes that of fastest growth, and its growth
-//! does not depend on its initial size. The distance of a shadow grows in the same way.
+//! A run in 64 bits makes a small rounding error in every frame. The motion carries these errors
+//! on, and in a chaotic motion they grow exponentially. As long as they are small they are carried
+//! on linearly, so that larger distances grow in the same way. A shadow is a motion at such a
+//! distance, which may be computed in 32 bits and in coarse steps.
 //!
-//! A shadow may be computed in 32 bits and in coarse steps. Its distance is kept between 2^-16 and
-//! 2^-6 rad, where its own errors are negligible: at a larger distance it is drawn back along the
-//! line to the motion.
+//! The error of a run is a random vector in phase space (a1, a2, p1, p2), with a covariance matrix
+//! P. Four shadows represent it: if D is the matrix of their differences from a fifth one, the
+//! central shadow, then
 //!
-//! Four shadows are started. Each differs from the motion in a single number of the state. An error
-//! of any direction is a linear combination of these differences. The farthest shadow therefore
-//! grows at least half as much as any error. When one shadow has grown by 1000, all shadows that
-//! have grown point in the direction of growth, and only the farthest is kept. A smaller growth
-//! does not prove this: even without any instability, a push moves a bob by more and more every
-//! second.
+//! ```text
+//! P = unit^2 D D^T + q^2 n I
+//! ```
 //!
-//! With a heavy bob 2 no growth proves it, and all four are kept. Rod 1 is then so light that any
-//! push moves it far at once. The farthest shadow may lack the direction in which errors grow
-//! later: in some motions these became 200 times as large as it showed.
+//! Here q is the rounding error of a frame, and n is the number of frames since the shadows were
+//! last prepared. The unit is the rounding error, in rad, that a distance of 1 rad stands for. The
+//! expected displacement of a bob is the root of the sum of the squares of the displacements that
+//! the four shadows show.
 //!
-//! Let G(t) be the growth of the farthest shadow since the start. An error e that arises at time s
-//! has the size e G(t)/G(s) at time t. The rounding errors of different frames are independent, so
-//! that the squares of e/G(s) add up.
+//! When a distance has become four times as large, or some time has passed, the shadows are
+//! prepared anew at the motion. Their differences are the columns of the Cholesky factor of P. This
+//! adds the rounding errors of the last frames, in all directions. They have to be added soon: a
+//! direction in phase space that shrinks at first may grow most later. The error of a later frame
+//! may then become a hundred times as large as the growth since the start suggests.
 
 use super::candidate::{distance, greater};
-use super::cost::Stepping;
+use super::cost::{Costs, Stepping};
 use super::problem::Problem;
-use super::run::Directions;
 use super::trial::Run;
 use crate::error::Error;
 use crate::methods::any::DrawnMotion32;
 use crate::pendulum::{Parameters, State};
 
-/// The initial distance of a shadow, rad.
-const NEAR: f64 = 1.0 / (1 << 16) as f64;
-/// The largest distance of a shadow, rad. Beyond it the shadow is drawn back.
-const FAR: f32 = 1.0 / (1 << 6) as f32;
-/// The factor on the distance when a shadow is drawn back.
-const BACK: f32 = 1.0 / (1 << 10) as f32;
-/// The growth after which only the farthest shadow is kept, unless bob 2 is heavy.
-const ALIGNED: f32 = 1000.0;
+/// The distance of the farthest shadow when the shadows are prepared, rad.
+const NEAR: f64 = 1.0 / (1 << 13) as f64;
+/// The distance at which the shadows are prepared anew, rad.
+const FAR: f32 = 4.0 * NEAR as f32;
+/// The growth of the errors after which new rounding errors hardly matter, and the distance at which
+/// the shadows are prepared anew from then on, rad.
+const GROWN: f32 = 1e5;
+const FARTHEST: f32 = 1.0 / (1 << 6) as f32;
+/// The phase of the fastest motion after which the shadows are prepared anew, rad, and the smallest
+/// number of frames. A heavy bob 2 allows so fast a motion that this phase may pass in a frame.
+const PHASE: f64 = 32.0;
+const FEWEST_FRAMES: u32 = 32;
+/// The smallest column of the Cholesky factor, as a share of the largest one. The numbers of the
+/// shadows cannot show smaller differences.
+const SMALLEST: f64 = 1.0 / (1 << 26) as f64;
 
-/// The rounding error of a run in 64 bits, rad: of its start, of each radian of phase at the
-/// fastest rate of the energy, and of each step. They are added within a frame, and as squares from
-/// frame to frame.
+/// The number of shadows: the central one, and one for each dimension of phase space.
+const SHADOWS: usize = 5;
+
+/// The rounding error of a run in 64 bits, rad: of its start, and of each step. They are added as
+/// squares from frame to frame.
 ///
-/// The values are measured. With 12 steps per frame the errors of 60 motions from high starts came
-/// to at most 0.4 of the bound; the median was 0.04. Test `plan_study` checks the bound against the
+/// The values are measured, as is the next one. Of 500 motions from high starts, the errors came to
+/// at most 0.9 of the bound; the median was 0.05. Test `plan_study` checks the bound against the
 /// exact motion.
-const ROUNDING: [f32; 3] = [2.4e-16, 3.2e-16, 6.4e-17];
+const ROUNDING: [f32; 2] = [6e-16, 2.5e-17];
 
-/// A motion close to another one.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Shadow {
-    run: Run<DrawnMotion32>,
-    /// True if the shadow must be drawn back.
-    is_far: bool,
-    /// The product of the factors 1/[`BACK`] of all times that the shadow was drawn back.
-    drawn_back: f32,
-}
+/// The factor on the rounding error of a step if l1/l2 is not above 1/2 and at most 1. The method
+/// then has different units for the rates of the two rods.
+const UNLIKE_UNITS: f32 = 3.0;
 
-/// Four motions close to another one. Later only the farthest may be kept.
+/// The differences of four shadows from the central one, in units of [`scales`]: a1, a2, p1, p2 of
+/// each.
+type Differences = [[f64; 4]; 4];
+
+/// A central motion and four others close to it.
 ///
 /// For each frame, [`prepare`](Self::prepare) is called until it returns false, all
 /// [`runs`](Self::runs) are advanced to the frame, and it is [compared](Self::compare).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Shadows {
-    shadows: [Shadow; 4],
-    /// The index of the shadow that is kept; `None` while all four are kept.
-    kept: Option<usize>,
-    /// The growth after which only the farthest shadow is kept.
-    aligned: f32,
+    /// The central shadow and the other four.
+    runs: [Run<DrawnMotion32>; SHADOWS],
+    /// The differences at which the shadows are prepared.
+    differences: Differences,
+    /// The rounding error that a distance stands for, rad per rad.
+    unit: f32,
+    /// The number of frames since the shadows were prepared.
+    frames: u32,
+    /// The number of frames after which they are prepared anew.
+    most_frames: u32,
+    /// True if the shadows must be prepared anew.
+    is_due: bool,
     /// True after the first frame has been compared.
     has_begun: bool,
-    /// The largest growth of a distance since the start, rad per radian at the start.
-    growth: f32,
-    /// The largest growth of a distance of the bobs since the start, in units of the tolerance per
-    /// radian at the start.
-    shown: f32,
-    /// The root of the sum of the squares of all rounding errors since the start, each divided by
-    /// the growth when it arose, rad.
-    roundings: f32,
     /// The fastest rate that the energy allows, rad/s.
     rate: f64,
     /// The rounding error of one frame, rad.
@@ -89,185 +95,409 @@ pub(super) struct Shadows {
 
 impl Shadows {
     /// Creates the shadows of a motion in 64 bits that makes `steps` steps per frame. The shadows
-    /// themselves are computed by `stepping`.
+    /// themselves are computed by `stepping`. `start` is the state at the start, in SI units.
+    /// `admissible` is the [longest step that resolves the motion](super::cost::admissible_step), s;
+    /// infinite if nothing can move.
     ///
-    /// No motion is prepared yet. A pendulum that is refused counts as one that cannot move; it is
-    /// reported by [`prepare`](Self::prepare). So are a `stepping` that is not in 32 bits and one
-    /// with 0 steps.
-    pub fn new(stepping: Stepping, problem: &Problem, steps: u32) -> Self {
-        // The fastest rate advances a phase by a radian in four admissible steps.
-        let rate = super::cost::admissible_step(problem).map_or(0.0, |step| 0.25 / step);
-        let [of_start, of_radian, of_step] = ROUNDING;
-
-        // The unit of the rate of rod 2 is coarser if rod 2 is shorter. The power is measured, as
-        // the bounds are.
+    /// No motion is prepared yet. A pendulum that is refused is reported by
+    /// [`prepare`](Self::prepare). So are a `stepping` that is not in 32 bits and one with 0 steps.
+    pub fn new(
+        stepping: Stepping,
+        problem: &Problem,
+        start: &State<f64>,
+        admissible: f64,
+        steps: u32,
+    ) -> Self {
+        let rate = fastest_rate(admissible);
+        let [of_start, of_step] = ROUNDING;
         let Parameters { l1, l2, .. } = problem.pendulum;
-        let short = if l2 < l1 { (l1 / l2) as f32 } else { 1.0 };
-        let coarser = short * short * short;
+        let has_like_units = 0.5 * l2 < l1 && l1 <= l2;
+        let unlike = if has_like_units { 1.0 } else { UNLIKE_UNITS };
+
+        // At the start both angles are rounded, and the momenta relative to their values.
+        let [_, _, of_p1, of_p2] = scales(&problem.pendulum, rate);
+        let shares = [1.0, 1.0, start.p1 / of_p1, start.p2 / of_p2];
+        let mut differences = [[0.0; 4]; 4];
+        for (i, share) in shares.into_iter().enumerate() {
+            differences[i][i] = NEAR * share;
+        }
         Self {
-            shadows: [Shadow {
-                run: Run::new(stepping),
-                is_far: false,
-                drawn_back: 1.0,
-            }; 4],
-            kept: None,
-            aligned: if problem.has_heavy_bob_2() {
-                f32::INFINITY
-            } else {
-                ALIGNED
-            },
+            runs: [Run::new(stepping); SHADOWS],
+            differences,
+            unit: of_start / NEAR as f32,
+            frames: 0,
+            most_frames: frames_between(rate, problem.rate),
+            is_due: false,
             has_begun: false,
-            growth: 1.0,
-            shown: 0.0,
-            roundings: of_start,
             rate,
-            of_frame: (of_radian * (rate / f64::from(problem.rate)) as f32
-                + of_step * steps as f32)
-                * coarser,
+            of_frame: unlike * of_step * steps as f32,
         }
     }
 
-    /// Returns the shadows that are still needed: all four, or the one that is kept. Some may not
-    /// be prepared yet, or may have diverged.
-    pub fn runs(&mut self) -> impl Iterator<Item = &mut Run<DrawnMotion32>> {
-        self.needed().map(|(_, shadow)| &mut shadow.run)
+    /// Returns the cost of a frame of shadows that are computed by `stepping`, in the unit of
+    /// `costs`. It includes a share of the preparations, if these are due by the phase.
+    ///
+    /// `admissible` is the [longest step that resolves the motion](super::cost::admissible_step),
+    /// and `rate` is the number of frames per second.
+    pub fn cost_of_frame(stepping: Stepping, admissible: f64, rate: u16, costs: &Costs) -> f32 {
+        let between = frames_between(fastest_rate(admissible), rate);
+        SHADOWS as f32 * costs.of_frame(stepping) + costs.preparation / between as f32
     }
 
-    /// Returns the shadows that are still needed, with their indices.
-    fn needed(&mut self) -> impl Iterator<Item = (usize, &mut Shadow)> {
-        let kept = self.kept;
-        let shadows = self.shadows.iter_mut().enumerate();
-        shadows.filter(move |(number, _)| kept.is_none_or(|kept| kept == *number))
+    /// Returns the runs of all shadows. Some may not be prepared yet, or may have diverged.
+    pub fn runs(&mut self) -> impl Iterator<Item = &mut Run<DrawnMotion32>> {
+        self.runs.iter_mut()
     }
 
     /// Returns true after the first frame has been compared. Until then shadows are prepared at the
-    /// start of the motion. From then on, they are drawn back to the motion at the present frame.
+    /// start of the motion, and from then on at the present frame.
     pub fn has_begun(&self) -> bool {
         self.has_begun
     }
 
-    /// Returns true if a shadow must be drawn back by [`prepare`](Self::prepare). Shadows that are
-    /// not prepared yet do not count.
-    pub fn must_prepare(&mut self) -> bool {
-        self.needed().any(|(_, shadow)| shadow.is_far)
+    /// Returns true if the shadows must be prepared anew by [`prepare`](Self::prepare). Before the
+    /// first frame is compared, they need not.
+    pub fn must_prepare(&self) -> bool {
+        self.is_due
     }
 
-    /// Prepares one shadow close to a motion in the state `motion`, or draws one back to it. The
-    /// state is that of the fine run at the same frame, in SI units.
+    /// Prepares one shadow close to a motion in the state `motion`, or all shadows anew, if that is
+    /// due. The state is that of the fine run at the same frame, in SI units.
     ///
     /// Returns true if it has done either, and false if there is nothing to do. `problem` must be
     /// that of [`new`](Self::new); this is not checked.
     ///
     /// # Errors
     ///
-    /// Returns the error of the method if it refuses the shadow on both sides of the motion. A
-    /// `motion` that is not finite is refused. The shadows are unchanged then.
+    /// Returns the error of the method if it refuses the shadow on both sides of the motion; the
+    /// shadows are unchanged then. A `motion` that is not finite is refused.
     pub fn prepare(&mut self, problem: &Problem, motion: &State<f64>) -> Result<bool, Error> {
-        // Select a shadow that is too far away or not yet prepared.
-        let rate = self.rate;
-        let mut shadows = self.needed();
-        let Some((number, shadow)) =
-            shadows.find(|(_, shadow)| shadow.is_far || shadow.run.motion.is_none())
-        else {
+        let scales = scales(&problem.pendulum, self.rate);
+        if self.is_due {
+            self.add_roundings(scales);
+            for number in 0..SHADOWS {
+                let start = self.beside(motion, number, scales);
+                if let Some(shadow) = &mut self.runs[number].motion {
+                    *shadow = shadow.started(&start)?;
+                }
+            }
+            return Ok(true);
+        }
+
+        // Select a shadow that is not prepared.
+        let Some(number) = self.runs.iter().position(|run| run.motion.is_none()) else {
             return Ok(false);
         };
 
-        // Compute its difference from the motion.
-        let by = match &shadow.run.motion {
-            Some(shadow) => {
-                let factor = f64::from(BACK);
-                difference(&shadow.state(), motion).map(|by| by * factor)
-            }
-            None => {
-                let mut by = [0.0; 4];
-                by[number % 4] = NEAR * scales(&problem.pendulum, rate)[number % 4];
-                by
-            }
-        };
-
         // Create it on one side of the motion or, if the method refuses that, on the other.
-        let Stepping { method, steps } = shadow.run.stepping;
+        let Stepping { method, steps } = self.runs[number].stepping;
         let dt = 1.0 / (f64::from(problem.rate) * f64::from(steps));
         let prepared = |sign: f64| {
-            let [a1, a2, p1, p2] = <[f64; 4]>::from(*motion);
-            let [by1, by2, by3, by4] = by.map(|by| sign * by);
-            let state = State {
-                a1: a1 + by1,
-                a2: a2 + by2,
-                p1: p1 + by3,
-                p2: p2 + by4,
-            };
-            DrawnMotion32::new(method, &problem.pendulum, &state, dt)
+            let start = self.beside(motion, number, scales.map(|scale| sign * scale));
+            DrawnMotion32::new(method, &problem.pendulum, &start, dt)
         };
-        shadow.run.motion = Some(prepared(1.0).or_else(|_| prepared(-1.0))?);
-
-        if shadow.is_far {
-            shadow.is_far = false;
-            shadow.drawn_back /= BACK;
-        }
+        self.runs[number].motion = Some(prepared(1.0).or_else(|_| prepared(-1.0))?);
         Ok(true)
     }
 
-    /// Compares the shadows with the frame `motion`, the directions of the fine run. Every frame
-    /// after the start must be compared once, in order, because rounding errors add up. All steps
-    /// towards it must have been made. Neither is checked. A shadow that is not prepared counts as
-    /// diverged.
+    /// Returns the state of shadow `number` at its difference from `motion`; of shadow 0, the
+    /// central one, that is `motion` itself.
+    fn beside(&self, motion: &State<f64>, number: usize, scales: [f64; 4]) -> State<f64> {
+        let difference = match number.checked_sub(1) {
+            Some(other) => self.differences[other % 4],
+            None => [0.0; 4],
+        };
+        let [by1, by2, by3, by4] = core::array::from_fn(|i| difference[i] * scales[i]);
+        State {
+            a1: motion.a1 + by1,
+            a2: motion.a2 + by2,
+            p1: motion.p1 + by3,
+            p2: motion.p2 + by4,
+        }
+    }
+
+    /// Adds the rounding errors since the last preparation to the differences.
+    fn add_roundings(&mut self, scales: [f64; 4]) {
+        let [center, others @ ..] = &self.runs;
+        let mut columns = [[0.0; 4]; 4];
+        for (column, run) in columns.iter_mut().zip(others) {
+            if let (Some(shadow), Some(center)) = (&run.motion, &center.motion) {
+                *column = difference(&shadow.state(), &center.state(), scales);
+            }
+        }
+
+        // The Cholesky factor of the covariance, in shadow distances.
+        let added = f64::from(self.of_frames() / self.unit);
+        let factor = cholesky(&covariance(&columns, added * added));
+
+        // Scale it, so that its largest column is as long as the shadows may be near.
+        let longest = longest(&factor);
+        let scale = NEAR / longest;
+        self.differences = factor.map(|column| column.map(|number| number * scale));
+        self.unit *= (longest / NEAR) as f32;
+        self.frames = 0;
+        self.is_due = false;
+    }
+
+    /// Returns the rounding error of all frames since the last preparation, without its growth,
+    /// rad.
+    fn of_frames(&self) -> f32 {
+        self.of_frame * libm::sqrtf(self.frames as f32)
+    }
+
+    /// Compares the shadows with each other at a frame. Every frame after the start must be
+    /// compared once, in order, because rounding errors add up. All steps towards it must have been
+    /// made. Neither is checked. A shadow that is not prepared counts as diverged.
     ///
     /// Returns the largest rounding error that is expected of the motion in 64 bits, with the steps
     /// given to [`new`](Self::new), in units of the tolerance. `rods` are the lengths of the rods
-    /// in the same unit. The result is NaN if the error is unknown: once a shadow that is still
-    /// needed, or the motion itself, has diverged.
-    pub fn compare(&mut self, rods: [f32; 2], motion: &Directions) -> f32 {
+    /// in the same unit. The result is NaN if the error is unknown: once a shadow has diverged.
+    pub fn compare(&mut self, rods: [f32; 2]) -> f32 {
         self.has_begun = true;
+        self.frames = self.frames.saturating_add(1);
 
-        // Find the farthest shadow.
-        let mut farthest = 0;
-        let mut growth = 0.0;
-        let mut shown = 0.0;
-        for (number, shadow) in self.needed() {
-            let frame = shadow.run.frame();
-            let off = distance([1.0; 2], &frame, motion);
-            shadow.is_far = off > FAR;
-
-            let drawn_back = shadow.drawn_back / NEAR as f32;
-            if off * drawn_back > growth {
-                farthest = number;
-            }
-            growth = greater(off * drawn_back, growth);
-            shown = greater(distance(rods, &frame, motion) * drawn_back, shown);
+        // The distances from the central shadow.
+        let [center, others @ ..] = self.runs.each_mut().map(Run::frame);
+        let mut farthest = 0.0;
+        let mut squares = 0.0;
+        for other in &others {
+            farthest = greater(distance([1.0; 2], other, &center), farthest);
+            let shown = distance(rods, other, &center);
+            squares += shown * shown;
         }
+        let [of_start, _] = ROUNDING;
+        self.is_due = if self.unit * farthest > GROWN * of_start {
+            farthest > FARTHEST
+        } else {
+            farthest > FAR || self.frames >= self.most_frames
+        };
 
-        // Keep only that, once it has grown enough.
-        if growth >= self.aligned {
-            self.kept = Some(farthest);
-        }
-
-        // Update the growth.
-        self.growth = greater(growth, self.growth);
-        self.shown = greater(shown, self.shown);
-
-        // Add the rounding error of this frame.
-        let of_frame = self.of_frame / self.growth;
-        self.roundings = libm::sqrtf(self.roundings * self.roundings + of_frame * of_frame);
-        self.shown * self.roundings
+        let carried_on = self.unit * libm::sqrtf(squares);
+        let [rod1, rod2] = rods;
+        carried_on + self.of_frames() * (rod1 + rod2)
     }
 }
 
+/// Returns the fastest rate that the energy allows, rad/s: in four admissible steps it advances a
+/// phase by a radian.
+fn fastest_rate(admissible: f64) -> f64 {
+    0.25 / admissible
+}
+
+/// Returns the number of frames after which shadows are prepared anew, at most. `rate` is the
+/// fastest rate, rad/s, and `frames` the number of frames per second.
+fn frames_between(rate: f64, frames: u16) -> u32 {
+    let phase_passes = (PHASE / rate * f64::from(frames)) as u32;
+    phase_passes.max(FEWEST_FRAMES)
+}
+
 /// Returns the units of the numbers of a state, in the order a1, a2, p1, p2: 1 rad, and the
-/// momenta, kg m^2/s, of rods that turn at half the fastest `rate`, rad/s.
+/// momenta, kg m^2/s, of rods that turn at half the fastest `rate`, rad/s, or at 1 rad/s if nothing
+/// can move.
 fn scales(&Parameters { m1, m2, l1, l2, .. }: &Parameters<f64>, rate: f64) -> [f64; 4] {
-    let half = 0.5 * rate;
+    let half = if rate > 0.0 { 0.5 * rate } else { 1.0 };
     [1.0, 1.0, (m1 + m2) * l1 * l1 * half, m2 * l2 * l2 * half]
 }
 
-/// Returns `one` - `other` in the order a1, a2, p1, p2, with angles between -pi and pi.
-fn difference(one: &State<f64>, other: &State<f64>) -> [f64; 4] {
+/// Returns `one` - `other` in the order a1, a2, p1, p2, with angles between -pi and pi, each divided
+/// by its scale.
+fn difference(one: &State<f64>, other: &State<f64>, scales: [f64; 4]) -> [f64; 4] {
     const TURN: f64 = 2.0 * core::f64::consts::PI;
     let turned = |angle: f64| angle - TURN * libm::rint(angle / TURN);
+    let [s1, s2, s3, s4] = scales;
     [
-        turned(one.a1 - other.a1),
-        turned(one.a2 - other.a2),
-        one.p1 - other.p1,
-        one.p2 - other.p2,
+        turned(one.a1 - other.a1) / s1,
+        turned(one.a2 - other.a2) / s2,
+        (one.p1 - other.p1) / s3,
+        (one.p2 - other.p2) / s4,
     ]
+}
+
+/// Returns D D^T + `variance` I, where `columns` are those of D.
+fn covariance(columns: &Differences, variance: f64) -> Differences {
+    let mut matrix = [[0.0; 4]; 4];
+    for (i, row) in matrix.iter_mut().enumerate() {
+        for (j, element) in row.iter_mut().enumerate() {
+            *element = columns.iter().map(|column| column[i] * column[j]).sum();
+        }
+        row[i] += variance;
+    }
+    matrix
+}
+
+/// Returns the columns of the lower triangular matrix L with L L^T = `matrix`, which is symmetric.
+///
+/// A diagonal element of L is at least [`SMALLEST`] times the root of the largest one of `matrix`.
+fn cholesky(matrix: &Differences) -> Differences {
+    let mut rest = *matrix;
+    let largest = (0..4).map(|i| matrix[i][i]).fold(0.0, f64::max);
+    let least = SMALLEST * SMALLEST * largest;
+
+    let mut columns = [[0.0; 4]; 4];
+    for (j, column) in columns.iter_mut().enumerate() {
+        // The column is that of the rest, divided by the root of its diagonal element.
+        let diagonal = libm::sqrt(f64::max(rest[j][j], least));
+        for (i, element) in column.iter_mut().enumerate().skip(j + 1) {
+            *element = rest[i][j] / diagonal;
+        }
+        column[j] = diagonal;
+
+        // Subtract its product with itself.
+        for (i, row) in rest.iter_mut().enumerate().skip(j + 1) {
+            for (k, element) in row.iter_mut().enumerate().skip(j + 1) {
+                *element -= column[i] * column[k];
+            }
+        }
+    }
+    columns
+}
+
+/// Returns the length of the longest column.
+fn longest(columns: &Differences) -> f64 {
+    let squares = columns.map(|column| column.iter().map(|number| number * number).sum());
+    libm::sqrt(squares.into_iter().fold(0.0, f64::max))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::pendulum::{Motion, Pendulum};
+    use crate::table::Method;
+
+    /// A motion in which the error of a frame after the first second grows 30 times as much as the
+    /// growth since the start suggests.
+    const PROBLEM: Problem = Problem {
+        pendulum: Parameters {
+            m1: 1.0,
+            m2: 2.984898867826733,
+            l1: 1.0,
+            l2: 1.8673452819254164,
+            g: 9.81,
+        },
+        start: Motion {
+            a1: 2.2082918834551712,
+            a2: 1.9751053641836052,
+            w1: 0.0,
+            w2: 0.0,
+        },
+        tolerance: 0.04,
+        duration: 10.0,
+        rate: 60,
+    };
+    /// The steps per frame of the exact motion, and of a shadow.
+    const STEPS: u32 = 32;
+    /// The largest difference between the error that the shadows show and the exact one, as a share
+    /// of it, after the first frames. Before these, errors are not added at once.
+    const DIFFERENCE: f64 = 0.4;
+    const FIRST_FRAMES: u32 = 120;
+
+    /// Returns the state after a frame.
+    fn after_frame(pendulum: &Pendulum<f64>, start: &State<f64>) -> State<f64> {
+        let dt = 1.0 / (f64::from(PROBLEM.rate) * f64::from(STEPS));
+        let mut state = *start;
+        for _ in 0..STEPS {
+            state = pendulum.step(&state, dt);
+        }
+        state
+    }
+
+    /// Returns the columns of the Jacobian matrix of a frame, in units of `scales`, by central
+    /// differences.
+    fn jacobian(pendulum: &Pendulum<f64>, start: &State<f64>, scales: [f64; 4]) -> Differences {
+        const STEP: f64 = 1e-5;
+        core::array::from_fn(|j| {
+            let [less, more] = [-STEP, STEP].map(|by| {
+                let mut state = <[f64; 4]>::from(*start);
+                state[j] += by * scales[j];
+                let [a1, a2, p1, p2] = state;
+                after_frame(pendulum, &State { a1, a2, p1, p2 })
+            });
+            difference(&more, &less, scales).map(|change| change / (2.0 * STEP))
+        })
+    }
+
+    /// Returns the root of the expected square of the distance of two frames, in units of the
+    /// tolerance, if the error of the state has this covariance matrix.
+    fn expected_distance(state: &State<f64>, covariance: &Differences) -> f64 {
+        let [l1, l2] = [PROBLEM.pendulum.l1, PROBLEM.pendulum.l2].map(|l| l / PROBLEM.tolerance);
+        let [[v11, v12, ..], [_, v22, ..], ..] = *covariance;
+        let bob1 = l1 * l1 * v11;
+        let relative = l2 * l2 * v22;
+        let bob2 = bob1 + relative + 2.0 * l1 * l2 * libm::cos(state.a1 - state.a2) * v12;
+        libm::sqrt(bob1.max(relative).max(bob2))
+    }
+
+    /// The shadows show the rounding error that a random error of the start and of every frame
+    /// causes. For this the covariance matrix is carried on by the Jacobian matrix of every frame.
+    #[test]
+    fn shadows_show_the_expected_error_of_roundings_in_all_frames() -> Result<(), Error> {
+        let pendulum = Pendulum::new(&PROBLEM.pendulum)?;
+        let mut state = pendulum.to_state(&PROBLEM.start);
+        let stepping = Stepping {
+            method: Method::Rk4Fixed32,
+            steps: STEPS,
+        };
+        let admissible = pendulum.admissible_step(&state)?;
+        let mut shadows = Shadows::new(stepping, &PROBLEM, &state, admissible, 12);
+        let scales = scales(&PROBLEM.pendulum, shadows.rate);
+        let rods = [PROBLEM.pendulum.l1, PROBLEM.pendulum.l2].map(|l| l / PROBLEM.tolerance);
+
+        // The error of the start.
+        let [of_start, _] = ROUNDING.map(f64::from);
+        let mut exact = [[0.0; 4]; 4];
+        exact[0][0] = of_start * of_start;
+        exact[1][1] = of_start * of_start;
+
+        for frame in 1..=PROBLEM.frames() {
+            // M P M^T + q^2 I is the sum over the columns of M times the Cholesky factor of P.
+            let matrix = jacobian(&pendulum, &state, scales);
+            let carried_on = cholesky(&exact).map(|column| {
+                core::array::from_fn(|i| (0..4).map(|j| matrix[j][i] * column[j]).sum())
+            });
+            let of_frame = f64::from(shadows.of_frame);
+            exact = covariance(&carried_on, of_frame * of_frame);
+
+            // Advance the shadows and the motion to the frame.
+            while shadows.prepare(&PROBLEM, &state)? {}
+            for run in shadows.runs() {
+                run.motion.as_mut().expect("prepared").advance(STEPS);
+            }
+            state = after_frame(&pendulum, &state);
+            let shown = f64::from(shadows.compare(rods.map(|rod| rod as f32)));
+
+            // Compare the two.
+            let expected = expected_distance(&state, &exact);
+            assert!(
+                frame <= FIRST_FRAMES || (shown - expected).abs() < DIFFERENCE * expected,
+                "frame {frame}: {shown} instead of {expected}"
+            );
+        }
+        Ok(())
+    }
+
+    /// The product of the Cholesky factor with its transpose is the matrix, to 1e-15. Of a singular
+    /// matrix the factor is finite, and its smallest diagonal element is [`SMALLEST`] times the
+    /// largest one.
+    #[test]
+    fn cholesky_factor_is_a_root_of_the_matrix() {
+        let columns = [
+            [1.0, 2.0, -1.0, 0.5],
+            [0.0, 1.5, 0.3, -0.2],
+            [0.1, -0.7, 1.0, 0.0],
+            [0.0, 0.0, 0.0, 0.4],
+        ];
+        let matrix = covariance(&columns, 0.25);
+        let product = covariance(&cholesky(&matrix), 0.0);
+        for (row, expected) in product.iter().zip(&matrix) {
+            for (element, expected) in row.iter().zip(expected) {
+                assert!((element - expected).abs() < 1e-15 * matrix[1][1]);
+            }
+        }
+        // The diagonal is the sum of the squares of a row of D, and the variance.
+        assert_eq!(matrix[0][0], 1.0 + 0.01 + 0.25);
+
+        let [column, ..] = columns;
+        let singular = cholesky(&covariance(&[column, [0.0; 4], [0.0; 4], [0.0; 4]], 0.0));
+        assert_eq!([1, 2, 3].map(|i| singular[i][i]), [2.0 * SMALLEST; 3]);
+    }
 }

@@ -5,14 +5,15 @@
 //! The reference is a pair of runs in 64 bits. The *fine* run has more steps, and the *coarse* run
 //! has about three quarters of them. Both have the same order p = 10. The truncation error of the
 //! coarse run is therefore (fine/coarse)^p times as large, and the distance between the two
-//! measures it.
+//! measures it. If the steps of the fine run do not resolve the motion, its error is assumed to be
+//! as large as this distance.
 //!
 //! The rounding errors of the two runs are too similar to be measured by their distance. Their size
 //! is known where they arise. Their growth since then is measured by *shadows* ([`Shadows`]).
 //!
 //! | error | upper bound |
 //! |---|---|
-//! | fine run | the share of the distance to the coarse run due to truncation, plus rounding |
+//! | fine run | a share of the distance to the coarse run, plus rounding |
 //! | coarse run | the distance to the fine run, plus the error of the fine run |
 //! | 32 bits, closed form | the distance to the fine run, plus its truncation error |
 //!
@@ -27,7 +28,7 @@
 //! error.
 
 use super::candidate::{Candidate, distance, greater};
-use super::cost::{Costs, Pair, Stepping};
+use super::cost::{Costs, Pair, Stepping, admissible_step};
 use super::problem::{NONE, PERTURBATIONS, Problem};
 use super::run::Directions;
 use super::shadow::Shadows;
@@ -234,6 +235,8 @@ pub(super) struct Trial {
     /// True if the rounding error is larger than the truncation error, of the single candidate or
     /// of the fine run.
     by_rounding: bool,
+    /// The share of the distance of the reference's runs that bounds the error of the fine run.
+    share_of_fine: f32,
     /// True if bob 2 is heavy.
     is_heavy: bool,
     /// The factor on the bound of an error that is measured by runs in finer steps, for errors that
@@ -324,19 +327,22 @@ impl Trial {
             1.0
         };
 
+        // A pendulum that is refused is reported later; until then nothing can move.
+        let admissible = admissible_step(problem).unwrap_or(f64::INFINITY);
         let start = Pendulum::new(pendulum).map(|pendulum| pendulum.to_state(start));
-        let closed =
-            start.and_then(|start| ClosedFormF32::new(pendulum, &start, 1.0 / f64::from(*rate)));
+        let start = start.unwrap_or(State::at_rest(0.0, 0.0));
+        let closed = ClosedFormF32::new(pendulum, &start, 1.0 / f64::from(*rate));
         Self {
             single: single.map(Run::new),
             double: [pair.coarse, pair.fine].map(Run::new),
             reference,
-            shadows: Shadows::new(shadow, problem, pair.fine.steps),
+            shadows: Shadows::new(shadow, problem, &start, admissible, pair.fine.steps),
             tries_64_bits: false,
             closed: closed.ok().map(|closed| closed.oscillations),
             rods: [pendulum.l1, pendulum.l2].map(|l| (l / problem.tolerance) as f32),
             candidates,
             by_rounding: false,
+            share_of_fine: pair.share_of_fine(*rate, admissible),
             is_heavy,
             alike,
         }
@@ -412,8 +418,8 @@ impl Trial {
         self.shadows.runs().filter(move |_| are_needed)
     }
 
-    /// Prepares one motion, or draws back a shadow that is too far from the fine run. Returns true
-    /// if it has done either, and false if all motions are prepared and no shadow is too far.
+    /// Prepares one motion, or all shadows anew if that is due. Returns true if it has done either,
+    /// and false if there is nothing to prepare.
     ///
     /// Runs that are no longer needed are not prepared. `problem` must be that of
     /// [`new`](Self::new); this is not checked.
@@ -464,10 +470,9 @@ impl Trial {
         Ok(false)
     }
 
-    /// Returns true if a shadow must be drawn back by [`prepare`](Self::prepare) before the next
-    /// frame. Otherwise its own errors spoil the comparison. Motions that are not prepared yet do
-    /// not count.
-    pub fn must_prepare(&mut self) -> bool {
+    /// Returns true if the shadows must be prepared anew by [`prepare`](Self::prepare) before the
+    /// next frame. Motions that are not prepared yet do not count.
+    pub fn must_prepare(&self) -> bool {
         self.has_candidate_in_64_bits() && self.shadows.must_prepare()
     }
 
@@ -480,9 +485,9 @@ impl Trial {
         }
     }
 
-    /// Makes steps of one motion towards the next frame: as many as `cost` pays for, but at least
-    /// one, also if `cost` is 0, negative or NaN. All motions must be prepared; this is not
-    /// checked.
+    /// Makes steps of one motion, or of several shadows, towards the next frame: as many as `cost`
+    /// pays for, but at least one, also if `cost` is 0, negative or NaN. All motions must be
+    /// prepared; this is not checked.
     ///
     /// Returns the cost of these steps, in the unit of `costs`; 0 if every motion has reached the
     /// frame. `cost` has the same unit; an infinite one pays for all steps of a motion to the
@@ -506,11 +511,15 @@ impl Trial {
             }
         }
 
-        // Last the shadows, which only candidates in 64 bits need.
+        // Last the shadows, which only candidates in 64 bits need. They cost little, so that
+        // several of them may be advanced at once.
         for run in self.shadows() {
-            spent = run.advance(costs, cost);
-            if spent > 0.0 {
-                break;
+            let step = costs.of_frame(Stepping {
+                steps: 1,
+                ..run.stepping
+            });
+            if spent == 0.0 || spent + step <= cost {
+                spent += run.advance(costs, cost - spent);
             }
         }
         spent
@@ -530,7 +539,7 @@ impl Trial {
         let in_32_bits = [own, second, third, plain, closed];
 
         // Without a reference: the distances of the candidate to the finer runs.
-        let Some(pair) = self.reference else {
+        if self.reference.is_none() {
             let others = [second, third, fourth].map(|other| distance(self.rods, &own, &other));
             let greatest = others.into_iter().fold(0.0, greater);
             self.by_rounding = others.into_iter().any(|other| 2.0 * other < greatest);
@@ -540,12 +549,12 @@ impl Trial {
                 candidate.note(beside + greatest, beside + bound);
             }
             return;
-        };
+        }
 
         // With a reference: the error of the fine run by truncation, and the candidates in 32 bits.
         let [coarse, fine] = self.double.each_mut().map(Run::frame);
         let spread = distance(self.rods, &coarse, &fine);
-        let of_fine = spread * pair.share_of_fine();
+        let of_fine = spread * self.share_of_fine;
         let unresolved = if self.is_heavy { UNRESOLVED } else { 1.0 };
         let bound_of_fine = unresolved * of_fine;
         for (candidate, shown) in self.candidates.iter_mut().zip(in_32_bits) {
@@ -555,7 +564,7 @@ impl Trial {
 
         // The candidates in 64 bits. Their bounds include grown rounding errors.
         if self.has_candidate_in_64_bits() {
-            let rounding = self.shadows.compare(self.rods, &fine);
+            let rounding = self.shadows.compare(self.rods);
             let bound_of_coarse = unresolved * BESIDE_REFERENCE * spread + bound_of_fine;
             self.by_rounding = if self.candidates[FINE].is_accurate() {
                 rounding > bound_of_fine
