@@ -44,8 +44,8 @@ const FARTHEST: f32 = 1.0 / (1 << 6) as f32;
 /// number of frames. A heavy bob 2 allows so fast a motion that this phase may pass in a frame.
 const PHASE: f64 = 32.0;
 const FEWEST_FRAMES: u32 = 32;
-/// The smallest column of the Cholesky factor, as a share of the largest one. The numbers of the
-/// shadows cannot show smaller differences.
+/// The smallest diagonal element of the Cholesky factor, as a share of the largest standard
+/// deviation, so that it is never 0. The numbers of the shadows do not show smaller differences.
 const SMALLEST: f64 = 1.0 / (1 << 26) as f64;
 
 /// The number of shadows: the central one, and one for each dimension of phase space.
@@ -63,9 +63,8 @@ const ROUNDING: [f32; 2] = [6e-16, 2.5e-17];
 /// then has different units for the rates of the two rods.
 const UNLIKE_UNITS: f32 = 3.0;
 
-/// The differences of four shadows from the central one, in units of [`scales`]: a1, a2, p1, p2 of
-/// each.
-type Differences = [[f64; 4]; 4];
+/// The rows of a matrix. Its rows belong to a1, a2, p1 and p2, in units of [`scales`].
+type Matrix = [[f64; 4]; 4];
 
 /// A central motion and four others close to it.
 ///
@@ -75,8 +74,6 @@ type Differences = [[f64; 4]; 4];
 pub(super) struct Shadows {
     /// The central shadow and the other four.
     runs: [Run<DrawnMotion32>; SHADOWS],
-    /// The differences at which the shadows are prepared.
-    differences: Differences,
     /// The rounding error that a distance stands for, rad per rad.
     unit: f32,
     /// The number of frames since the shadows were prepared.
@@ -88,48 +85,33 @@ pub(super) struct Shadows {
     /// True after the first frame has been compared.
     has_begun: bool,
     /// The fastest rate that the energy allows, rad/s.
-    rate: f64,
+    rate: f32,
     /// The rounding error of one frame, rad.
     of_frame: f32,
 }
 
 impl Shadows {
     /// Creates the shadows of a motion in 64 bits that makes `steps` steps per frame. The shadows
-    /// themselves are computed by `stepping`. `start` is the state at the start, in SI units.
-    /// `admissible` is the [longest step that resolves the motion](super::cost::admissible_step), s;
-    /// infinite if nothing can move.
+    /// themselves are computed by `stepping`. `admissible` is the [longest step that resolves the
+    /// motion](super::cost::admissible_step), s; infinite if nothing can move.
     ///
     /// No motion is prepared yet. A pendulum that is refused is reported by
     /// [`prepare`](Self::prepare). So are a `stepping` that is not in 32 bits and one with 0 steps.
-    pub fn new(
-        stepping: Stepping,
-        problem: &Problem,
-        start: &State<f64>,
-        admissible: f64,
-        steps: u32,
-    ) -> Self {
+    pub fn new(stepping: Stepping, problem: &Problem, admissible: f64, steps: u32) -> Self {
         let rate = fastest_rate(admissible);
         let [of_start, of_step] = ROUNDING;
         let Parameters { l1, l2, .. } = problem.pendulum;
         let has_like_units = 0.5 * l2 < l1 && l1 <= l2;
         let unlike = if has_like_units { 1.0 } else { UNLIKE_UNITS };
 
-        // At the start both angles are rounded, and the momenta relative to their values.
-        let [_, _, of_p1, of_p2] = scales(&problem.pendulum, rate);
-        let shares = [1.0, 1.0, start.p1 / of_p1, start.p2 / of_p2];
-        let mut differences = [[0.0; 4]; 4];
-        for (i, share) in shares.into_iter().enumerate() {
-            differences[i][i] = NEAR * share;
-        }
         Self {
             runs: [Run::new(stepping); SHADOWS],
-            differences,
             unit: of_start / NEAR as f32,
             frames: 0,
             most_frames: frames_between(rate, problem.rate),
             is_due: false,
             has_begun: false,
-            rate,
+            rate: rate as f32,
             of_frame: unlike * of_step * steps as f32,
         }
     }
@@ -172,71 +154,77 @@ impl Shadows {
     /// Returns the error of the method if it refuses the shadow on both sides of the motion; the
     /// shadows are unchanged then. A `motion` that is not finite is refused.
     pub fn prepare(&mut self, problem: &Problem, motion: &State<f64>) -> Result<bool, Error> {
-        let scales = scales(&problem.pendulum, self.rate);
+        let scales = scales(&problem.pendulum, self.rate.into());
         if self.is_due {
-            self.add_roundings(scales);
-            for number in 0..SHADOWS {
-                let start = self.beside(motion, number, scales);
-                if let Some(shadow) = &mut self.runs[number].motion {
-                    *shadow = shadow.started(&start)?;
-                }
-            }
+            self.prepare_anew(motion, scales)?;
             return Ok(true);
         }
 
         // Select a shadow that is not prepared.
-        let Some(number) = self.runs.iter().position(|run| run.motion.is_none()) else {
+        let mut runs = self.runs.iter_mut().enumerate();
+        let Some((number, run)) = runs.find(|(_, run)| run.motion.is_none()) else {
             return Ok(false);
         };
 
+        // At the start both angles are rounded, and the momenta relative to their values.
+        let [_, _, of_p1, of_p2] = scales;
+        let shares = [1.0, 1.0, motion.p1 / of_p1, motion.p2 / of_p2];
+        let difference = |sign: f64| {
+            core::array::from_fn(|i| {
+                let share = if number == i + 1 { shares[i] } else { 0.0 };
+                sign * NEAR * share
+            })
+        };
+
         // Create it on one side of the motion or, if the method refuses that, on the other.
-        let Stepping { method, steps } = self.runs[number].stepping;
+        let Stepping { method, steps } = run.stepping;
         let dt = 1.0 / (f64::from(problem.rate) * f64::from(steps));
         let prepared = |sign: f64| {
-            let start = self.beside(motion, number, scales.map(|scale| sign * scale));
+            let start = beside(motion, difference(sign), scales);
             DrawnMotion32::new(method, &problem.pendulum, &start, dt)
         };
-        self.runs[number].motion = Some(prepared(1.0).or_else(|_| prepared(-1.0))?);
+        run.motion = Some(prepared(1.0).or_else(|_| prepared(-1.0))?);
         Ok(true)
     }
 
-    /// Returns the state of shadow `number` at its difference from `motion`; of shadow 0, the
-    /// central one, that is `motion` itself.
-    fn beside(&self, motion: &State<f64>, number: usize, scales: [f64; 4]) -> State<f64> {
-        let difference = match number.checked_sub(1) {
-            Some(other) => self.differences[other % 4],
-            None => [0.0; 4],
-        };
-        let [by1, by2, by3, by4] = core::array::from_fn(|i| difference[i] * scales[i]);
-        State {
-            a1: motion.a1 + by1,
-            a2: motion.a2 + by2,
-            p1: motion.p1 + by3,
-            p2: motion.p2 + by4,
-        }
-    }
-
-    /// Adds the rounding errors since the last preparation to the differences.
-    fn add_roundings(&mut self, scales: [f64; 4]) {
-        let [center, others @ ..] = &self.runs;
-        let mut columns = [[0.0; 4]; 4];
-        for (column, run) in columns.iter_mut().zip(others) {
-            if let (Some(shadow), Some(center)) = (&run.motion, &center.motion) {
-                *column = difference(&shadow.state(), &center.state(), scales);
+    /// Prepares all shadows anew at the motion in the state `motion`, and adds the rounding errors
+    /// since they were last prepared to their differences.
+    fn prepare_anew(&mut self, motion: &State<f64>, scales: [f64; 4]) -> Result<(), Error> {
+        // The differences, a row for each dimension.
+        let [center, others @ ..] = &mut self.runs;
+        let center_state = center.motion.map_or(*motion, |motion| motion.state());
+        let mut rows = [[0.0; 4]; 4];
+        for (column, run) in others.iter().enumerate() {
+            if let Some(shadow) = &run.motion {
+                let difference = difference(&shadow.state(), &center_state, scales);
+                for (row, number) in rows.iter_mut().zip(difference) {
+                    row[column] = number;
+                }
             }
         }
 
-        // The Cholesky factor of the covariance, in shadow distances.
-        let added = f64::from(self.of_frames() / self.unit);
-        let factor = cholesky(&covariance(&columns, added * added));
+        // The Cholesky factor, scaled so that the largest standard deviation is near.
+        let added = f64::from(self.of_frame / self.unit);
+        let variance = added * added * f64::from(self.frames);
+        let largest = rows.iter().map(|row| dot(row, row)).fold(0.0, f64::max) + variance;
+        let factor = cholesky(&rows, variance, SMALLEST * SMALLEST * largest);
+        let deviation = libm::sqrt(largest);
+        let scale = NEAR / deviation;
+        self.unit *= (deviation / NEAR) as f32;
 
-        // Scale it, so that its largest column is as long as the shadows may be near.
-        let longest = longest(&factor);
-        let scale = NEAR / longest;
-        self.differences = factor.map(|column| column.map(|number| number * scale));
-        self.unit *= (longest / NEAR) as f32;
+        // The central shadow at the motion itself, and the others at the columns of the factor.
+        for (number, run) in self.runs.iter_mut().enumerate() {
+            if let Some(shadow) = &mut run.motion {
+                let difference = match number.checked_sub(1) {
+                    Some(column) => factor.map(|row| scale * row[column % 4]),
+                    None => [0.0; 4],
+                };
+                *shadow = shadow.started(&beside(motion, difference, scales))?;
+            }
+        }
         self.frames = 0;
         self.is_due = false;
+        Ok(())
     }
 
     /// Returns the rounding error of all frames since the last preparation, without its growth,
@@ -313,49 +301,39 @@ fn difference(one: &State<f64>, other: &State<f64>, scales: [f64; 4]) -> [f64; 4
     ]
 }
 
-/// Returns D D^T + `variance` I, where `columns` are those of D.
-fn covariance(columns: &Differences, variance: f64) -> Differences {
-    let mut matrix = [[0.0; 4]; 4];
-    for (i, row) in matrix.iter_mut().enumerate() {
-        for (j, element) in row.iter_mut().enumerate() {
-            *element = columns.iter().map(|column| column[i] * column[j]).sum();
-        }
-        row[i] += variance;
+/// Returns the state at a difference from `motion`, which is in units of `scales`.
+fn beside(motion: &State<f64>, difference: [f64; 4], scales: [f64; 4]) -> State<f64> {
+    let [by1, by2, by3, by4] = core::array::from_fn(|i| difference[i] * scales[i]);
+    State {
+        a1: motion.a1 + by1,
+        a2: motion.a2 + by2,
+        p1: motion.p1 + by3,
+        p2: motion.p2 + by4,
     }
-    matrix
 }
 
-/// Returns the columns of the lower triangular matrix L with L L^T = `matrix`, which is symmetric.
-///
-/// A diagonal element of L is at least [`SMALLEST`] times the root of the largest one of `matrix`.
-fn cholesky(matrix: &Differences) -> Differences {
-    let mut rest = *matrix;
-    let largest = (0..4).map(|i| matrix[i][i]).fold(0.0, f64::max);
-    let least = SMALLEST * SMALLEST * largest;
-
-    let mut columns = [[0.0; 4]; 4];
-    for (j, column) in columns.iter_mut().enumerate() {
-        // The column is that of the rest, divided by the root of its diagonal element.
-        let diagonal = libm::sqrt(f64::max(rest[j][j], least));
-        for (i, element) in column.iter_mut().enumerate().skip(j + 1) {
-            *element = rest[i][j] / diagonal;
-        }
-        column[j] = diagonal;
-
-        // Subtract its product with itself.
-        for (i, row) in rest.iter_mut().enumerate().skip(j + 1) {
-            for (k, element) in row.iter_mut().enumerate().skip(j + 1) {
-                *element -= column[i] * column[k];
-            }
+/// Returns the lower triangular matrix L with L L^T = D D^T + `variance` I, where `rows` are those
+/// of D. The square of a diagonal element of L is at least `least`.
+fn cholesky(rows: &Matrix, variance: f64, least: f64) -> Matrix {
+    let mut factor = [[0.0; 4]; 4];
+    for i in 0..4 {
+        for j in 0..=i {
+            // The elements of row i of the factor from j on are still 0.
+            let rest = dot(&rows[i], &rows[j]) - dot(&factor[i], &factor[j]);
+            factor[i][j] = if i == j {
+                libm::sqrt(f64::max(rest + variance, least))
+            } else {
+                rest / factor[j][j]
+            };
         }
     }
-    columns
+    factor
 }
 
-/// Returns the length of the longest column.
-fn longest(columns: &Differences) -> f64 {
-    let squares = columns.map(|column| column.iter().map(|number| number * number).sum());
-    libm::sqrt(squares.into_iter().fold(0.0, f64::max))
+/// Returns the scalar product of two rows.
+#[inline(never)] // 3 KB more flash on an M3 without.
+fn dot(a: &[f64; 4], b: &[f64; 4]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 #[cfg(test)]
@@ -401,29 +379,29 @@ mod tests {
         state
     }
 
-    /// Returns the columns of the Jacobian matrix of a frame, in units of `scales`, by central
-    /// differences.
-    fn jacobian(pendulum: &Pendulum<f64>, start: &State<f64>, scales: [f64; 4]) -> Differences {
+    /// Returns the Jacobian matrix of a frame, in units of `scales`, by central differences.
+    fn jacobian(pendulum: &Pendulum<f64>, start: &State<f64>, scales: [f64; 4]) -> Matrix {
         const STEP: f64 = 1e-5;
-        core::array::from_fn(|j| {
+        let columns: Matrix = core::array::from_fn(|j| {
             let [less, more] = [-STEP, STEP].map(|by| {
-                let mut state = <[f64; 4]>::from(*start);
-                state[j] += by * scales[j];
-                let [a1, a2, p1, p2] = state;
-                after_frame(pendulum, &State { a1, a2, p1, p2 })
+                let mut change = [0.0; 4];
+                change[j] = by;
+                after_frame(pendulum, &beside(start, change, scales))
             });
             difference(&more, &less, scales).map(|change| change / (2.0 * STEP))
-        })
+        });
+        core::array::from_fn(|i| columns.map(|column| column[i]))
     }
 
     /// Returns the root of the expected square of the distance of two frames, in units of the
-    /// tolerance, if the error of the state has this covariance matrix.
-    fn expected_distance(state: &State<f64>, covariance: &Differences) -> f64 {
+    /// tolerance, if the covariance matrix of the error is `root` times its transpose.
+    fn expected_distance(state: &State<f64>, root: &Matrix) -> f64 {
         let [l1, l2] = [PROBLEM.pendulum.l1, PROBLEM.pendulum.l2].map(|l| l / PROBLEM.tolerance);
-        let [[v11, v12, ..], [_, v22, ..], ..] = *covariance;
-        let bob1 = l1 * l1 * v11;
-        let relative = l2 * l2 * v22;
-        let bob2 = bob1 + relative + 2.0 * l1 * l2 * libm::cos(state.a1 - state.a2) * v12;
+        let [a1, a2, ..] = root;
+        let bob1 = l1 * l1 * dot(a1, a1);
+        let relative = l2 * l2 * dot(a2, a2);
+        let cos = libm::cos(state.a1 - state.a2);
+        let bob2 = bob1 + relative + 2.0 * l1 * l2 * cos * dot(a1, a2);
         libm::sqrt(bob1.max(relative).max(bob2))
     }
 
@@ -438,24 +416,24 @@ mod tests {
             steps: STEPS,
         };
         let admissible = pendulum.admissible_step(&state)?;
-        let mut shadows = Shadows::new(stepping, &PROBLEM, &state, admissible, 12);
-        let scales = scales(&PROBLEM.pendulum, shadows.rate);
+        let mut shadows = Shadows::new(stepping, &PROBLEM, admissible, 12);
+        let scales = scales(&PROBLEM.pendulum, shadows.rate.into());
         let rods = [PROBLEM.pendulum.l1, PROBLEM.pendulum.l2].map(|l| l / PROBLEM.tolerance);
 
-        // The error of the start.
+        // The error of the start, as a root of its covariance matrix.
         let [of_start, _] = ROUNDING.map(f64::from);
-        let mut exact = [[0.0; 4]; 4];
-        exact[0][0] = of_start * of_start;
-        exact[1][1] = of_start * of_start;
+        let mut root = [[0.0; 4]; 4];
+        root[0][0] = of_start;
+        root[1][1] = of_start;
 
         for frame in 1..=PROBLEM.frames() {
-            // M P M^T + q^2 I is the sum over the columns of M times the Cholesky factor of P.
-            let matrix = jacobian(&pendulum, &state, scales);
-            let carried_on = cholesky(&exact).map(|column| {
-                core::array::from_fn(|i| (0..4).map(|j| matrix[j][i] * column[j]).sum())
-            });
-            let of_frame = f64::from(shadows.of_frame);
-            exact = covariance(&carried_on, of_frame * of_frame);
+            // Carry the error on by the Jacobian matrix, and add that of the frame.
+            let columns = |row: [f64; 4]| {
+                core::array::from_fn(|column| (0..4).map(|j| row[j] * root[j][column]).sum())
+            };
+            let carried_on = jacobian(&pendulum, &state, scales).map(columns);
+            let variance = f64::from(shadows.of_frame).powi(2);
+            root = cholesky(&carried_on, variance, variance);
 
             // Advance the shadows and the motion to the frame.
             while shadows.prepare(&PROBLEM, &state)? {}
@@ -466,7 +444,7 @@ mod tests {
             let shown = f64::from(shadows.compare(rods.map(|rod| rod as f32)));
 
             // Compare the two.
-            let expected = expected_distance(&state, &exact);
+            let expected = expected_distance(&state, &root);
             assert!(
                 frame <= FIRST_FRAMES || (shown - expected).abs() < DIFFERENCE * expected,
                 "frame {frame}: {shown} instead of {expected}"
@@ -475,29 +453,31 @@ mod tests {
         Ok(())
     }
 
-    /// The product of the Cholesky factor with its transpose is the matrix, to 1e-15. Of a singular
-    /// matrix the factor is finite, and its smallest diagonal element is [`SMALLEST`] times the
-    /// largest one.
+    /// The product of the Cholesky factor with its transpose is D D^T + v I, to 1e-14. If that is
+    /// singular, the factor is finite, and its diagonal elements have the least square.
     #[test]
     fn cholesky_factor_is_a_root_of_the_matrix() {
-        let columns = [
-            [1.0, 2.0, -1.0, 0.5],
-            [0.0, 1.5, 0.3, -0.2],
-            [0.1, -0.7, 1.0, 0.0],
-            [0.0, 0.0, 0.0, 0.4],
+        let rows = [
+            [1.0, 0.0, 0.1, 0.0],
+            [2.0, 1.5, -0.7, 0.0],
+            [-1.0, 0.3, 1.0, 0.0],
+            [0.5, -0.2, 0.0, 0.4],
         ];
-        let matrix = covariance(&columns, 0.25);
-        let product = covariance(&cholesky(&matrix), 0.0);
-        for (row, expected) in product.iter().zip(&matrix) {
-            for (element, expected) in row.iter().zip(expected) {
-                assert!((element - expected).abs() < 1e-15 * matrix[1][1]);
+        let factor = cholesky(&rows, 0.25, 0.0);
+        for i in 0..4 {
+            for j in 0..4 {
+                let variance = if i == j { 0.25 } else { 0.0 };
+                let expected = dot(&rows[i], &rows[j]) + variance;
+                let product = dot(&factor[i], &factor[j]);
+                assert!(
+                    (product - expected).abs() < 1e-14,
+                    "{i} {j}: {product} {expected}"
+                );
+                assert!(j <= i || factor[i][j] == 0.0);
             }
         }
-        // The diagonal is the sum of the squares of a row of D, and the variance.
-        assert_eq!(matrix[0][0], 1.0 + 0.01 + 0.25);
 
-        let [column, ..] = columns;
-        let singular = cholesky(&covariance(&[column, [0.0; 4], [0.0; 4], [0.0; 4]], 0.0));
-        assert_eq!([1, 2, 3].map(|i| singular[i][i]), [2.0 * SMALLEST; 3]);
+        let singular = cholesky(&rows.map(|[first, ..]| [first, 0.0, 0.0, 0.0]), 0.0, 1e-6);
+        assert_eq!([1, 2, 3].map(|i| singular[i][i]), [1e-3; 3]);
     }
 }

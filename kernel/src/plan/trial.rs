@@ -218,8 +218,8 @@ pub(super) struct Trial {
     single: [Run<DrawnMotion32>; 5],
     /// The coarse and the fine run of the reference.
     double: [Run<DrawnMotion64>; 2],
-    /// The reference: the coarse and the fine run. Without one, the error bounds are rough.
-    pub reference: Option<Pair>,
+    /// True if the trial is compared with a reference. Otherwise the error bounds are rough.
+    has_reference: bool,
     /// The shadows of the fine run. Unused while no candidate in 64 bits is accurate.
     shadows: Shadows,
     /// True if the trial began with a candidate in 64 bits. False until the caller sets it, because
@@ -335,8 +335,8 @@ impl Trial {
         Self {
             single: single.map(Run::new),
             double: [pair.coarse, pair.fine].map(Run::new),
-            reference,
-            shadows: Shadows::new(shadow, problem, &start, admissible, pair.fine.steps),
+            has_reference,
+            shadows: Shadows::new(shadow, problem, admissible, pair.fine.steps),
             tries_64_bits: false,
             closed: closed.ok().map(|closed| closed.oscillations),
             rods: [pendulum.l1, pendulum.l2].map(|l| (l / problem.tolerance) as f32),
@@ -350,7 +350,13 @@ impl Trial {
 
     /// Returns true if the trial is compared with a reference in 64 bits.
     pub fn has_reference(&self) -> bool {
-        self.reference.is_some()
+        self.has_reference
+    }
+
+    /// Returns the reference: the coarse and the fine run.
+    pub fn reference(&self) -> Option<Pair> {
+        let [coarse, fine] = self.double.each_ref().map(|run| run.stepping);
+        self.has_reference.then_some(Pair { coarse, fine })
     }
 
     /// Returns the cost of a frame of a trial of `stepping` that is compared with a reference, in
@@ -395,7 +401,7 @@ impl Trial {
 
     /// Returns the runs in 32 bits that are still needed, with their indices.
     fn single(&mut self) -> impl Iterator<Item = (usize, &mut Run<DrawnMotion32>)> {
-        let all = self.reference.is_none();
+        let all = !self.has_reference;
         let [own, second, third, plain, ..] =
             self.candidates.each_ref().map(Candidate::is_accurate);
         let needed = [all || own, all || second, all || third, plain, all];
@@ -405,7 +411,7 @@ impl Trial {
 
     /// Returns the runs of the reference, or no runs without a reference.
     fn double(&mut self) -> &mut [Run<DrawnMotion64>] {
-        if self.reference.is_some() {
+        if self.has_reference {
             &mut self.double
         } else {
             &mut []
@@ -539,7 +545,7 @@ impl Trial {
         let in_32_bits = [own, second, third, plain, closed];
 
         // Without a reference: the distances of the candidate to the finer runs.
-        if self.reference.is_none() {
+        if !self.has_reference {
             let others = [second, third, fourth].map(|other| distance(self.rods, &own, &other));
             let greatest = others.into_iter().fold(0.0, greater);
             self.by_rounding = others.into_iter().any(|other| 2.0 * other < greatest);
