@@ -170,7 +170,12 @@ impl DrawnMotion32 {
     }
 
     /// Returns a motion of the same pendulum that begins at `start`, with the same constants, as
-    /// [`FormOperations::started`] does. The energy may be slightly different; this is not checked.
+    /// [`FormOperations::started`] does. The energy of `start` must be close to that of this motion,
+    /// because the constants were chosen for that; this is not checked.
+    ///
+    /// # Errors
+    ///
+    /// Refuses a `start` that is not finite or otherwise out of the range of the method.
     pub fn started(&self, start: &State<f64>) -> Result<Self, Error> {
         Ok(match self {
             Self::ClosedFormF32(motion) => Self::ClosedFormF32(motion.started(start)?),

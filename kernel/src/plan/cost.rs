@@ -214,10 +214,10 @@ impl Pair {
     /// fine run: 16 ([`TRUST`]) times (coarse/fine)^10, but at least 1/32 ([`LEAST_SHARE`]) and at
     /// most 1. Here coarse and fine are the step counts. They must not be 0; this is not checked.
     ///
-    /// If both runs resolve the motion, the order of the method gives (coarse/fine)^10. The share is
-    /// 1 if the steps of the fine run are longer than `admissible`, the [longest
-    /// step](admissible_step) that resolves the motion, s, at `rate` frames per second: both runs may
-    /// then have almost the same error.
+    /// If both runs resolve the motion, the order of the method gives (coarse/fine)^10.
+    /// `admissible` is the [longest step](admissible_step) that resolves the motion, s, and `rate`
+    /// the number of frames per second. If the steps of the fine run are longer, the share is 1,
+    /// because both runs may have almost the same error.
     pub fn share_of_fine(&self, rate: u16, admissible: f64) -> f32 {
         let step = 1.0 / (f64::from(rate) * f64::from(self.fine.steps));
         if step > admissible {

@@ -424,7 +424,7 @@ impl Trial {
         self.shadows.runs().filter(move |_| are_needed)
     }
 
-    /// Prepares one motion, or all shadows anew if that is due. Returns true if it has done either,
+    /// Prepares one motion, or starts all shadows again if that is due. Returns true if it has done either,
     /// and false if there is nothing to prepare.
     ///
     /// Runs that are no longer needed are not prepared. `problem` must be that of
@@ -436,8 +436,8 @@ impl Trial {
     /// # Errors
     ///
     /// Refuses a pendulum that [`Pendulum::new`] refuses. Returns the error of a method that
-    /// refuses the motion and, if it is perturbed or a shadow, its opposite. The trial is unchanged
-    /// then; another call returns the same error.
+    /// refuses the motion and, if it is perturbed or a shadow, its opposite. Another call then
+    /// returns the same error.
     #[inline(never)] // Its motions would be on the stack of every piece.
     pub fn prepare(&mut self, problem: &Problem) -> Result<bool, Error> {
         let has_reference = self.has_reference();
@@ -476,8 +476,8 @@ impl Trial {
         Ok(false)
     }
 
-    /// Returns true if the shadows must be prepared anew by [`prepare`](Self::prepare) before the
-    /// next frame. Motions that are not prepared yet do not count.
+    /// Returns true if [`prepare`](Self::prepare) must start the shadows again before the next
+    /// frame. Motions that are not prepared yet do not count.
     pub fn must_prepare(&self) -> bool {
         self.has_candidate_in_64_bits() && self.shadows.must_prepare()
     }
@@ -496,8 +496,8 @@ impl Trial {
     /// prepared; this is not checked.
     ///
     /// Returns the cost of these steps, in the unit of `costs`; 0 if every motion has reached the
-    /// frame. `cost` has the same unit; an infinite one pays for all steps of a motion to the
-    /// frame. The prices must be more than 0.
+    /// frame. `cost` has the same unit; an infinite one pays for all steps of a motion, or
+    /// of all shadows, to the frame. The prices must be more than 0.
     pub fn advance(&mut self, costs: &Costs, cost: f32) -> f32 {
         let mut spent = 0.0;
 
@@ -517,8 +517,8 @@ impl Trial {
             }
         }
 
-        // Last the shadows, which only candidates in 64 bits need. They cost little, so that
-        // several of them may be advanced at once.
+        // Advance the shadows last, which only candidates in 64 bits need. They cost little, so
+        // that one piece may advance several of them.
         for run in self.shadows() {
             let step = costs.of_frame(Stepping {
                 steps: 1,
