@@ -170,8 +170,8 @@ impl DrawnMotion32 {
     }
 
     /// Returns a motion of the same pendulum that begins at `start`, with the same constants, as
-    /// [`FormOperations::started`] does. The energy of `start` must be close to that of this motion,
-    /// because the constants were chosen for that; this is not checked.
+    /// [`FormOperations::started`] does. The energy of `start` must be close to that of this
+    /// motion, because the constants were chosen for that; this is not checked.
     ///
     /// # Errors
     ///

@@ -9,9 +9,9 @@
 //! # The covariance of the errors
 //!
 //! The error of a run is a random vector e = (a1, a2, p1/s1, p2/s2), with the momenta divided by
-//! [`scales`]. A frame is assumed to add an independent error of standard deviation q to each of the
-//! four numbers. Five shadows represent the covariance matrix P of e. With the 4 x 4 matrix D of the
-//! differences of four of them, its columns, from the central one,
+//! [`scales`]. A frame is assumed to add an independent error of standard deviation q to each of
+//! the four numbers. Five shadows represent the covariance matrix P of e. With the 4 x 4 matrix D
+//! of the differences of four of them, its columns, from the central one,
 //!
 //! ```text
 //! P = u^2 D D^T + n q^2 I
@@ -79,9 +79,9 @@ const SHADOWS: usize = 5;
 /// of each step. The errors of the steps of a frame add up linearly, those of different frames as
 /// squares.
 ///
-/// The values are measured, and larger than the errors: with four fifths of them, one of 2,000 plans
-/// for high starts had an error before its horizon of 1.09 tolerances, and no other one more than 1.
-/// Test `plan_study` checks the bound against the exact motion.
+/// The values are measured, and larger than the errors: with four fifths of them, one of 2,000
+/// plans for high starts had an error before its horizon of 1.09 tolerances, and no other one more
+/// than 1. Test `plan_study` checks the bound against the exact motion.
 const ROUNDING: [f32; 2] = [1.2e-15, 5e-17];
 
 /// The factor on the rounding error of a step unless 1/2 < l1/l2 <= 1. Outside that range
@@ -118,8 +118,8 @@ impl Shadows {
     /// themselves are computed by `stepping`. `admissible` is the [longest step that resolves the
     /// motion](super::cost::admissible_step), s; infinite if nothing can move.
     ///
-    /// No motion is prepared yet. [`prepare`](Self::prepare) reports a pendulum that is refused, and
-    /// a `stepping` that is not in 32 bits or has 0 steps.
+    /// No motion is prepared yet. [`prepare`](Self::prepare) reports a pendulum that is refused,
+    /// and a `stepping` that is not in 32 bits or has 0 steps.
     pub fn new(stepping: Stepping, problem: &Problem, admissible: f64, steps: u32) -> Self {
         let [of_start, of_step] = ROUNDING;
         let Parameters { l1, l2, .. } = problem.pendulum;
@@ -142,8 +142,8 @@ impl Shadows {
     /// `costs`. It includes the share of a frame in the starts that are due by the phase, but not
     /// those that are due by distance.
     ///
-    /// `admissible` is the [longest step that resolves the motion](super::cost::admissible_step), s,
-    /// and `frame_rate` is the number of frames per second.
+    /// `admissible` is the [longest step that resolves the motion](super::cost::admissible_step),
+    /// s, and `frame_rate` is the number of frames per second.
     pub fn cost_of_frame(
         stepping: Stepping,
         admissible: f64,
@@ -159,14 +159,14 @@ impl Shadows {
         self.runs.iter_mut()
     }
 
-    /// Returns true after the first frame has been compared. Until then shadows start at the start of
-    /// the motion, and from then on at the present frame.
+    /// Returns true after the first frame has been compared. Until then shadows start at the start
+    /// of the motion, and from then on at the present frame.
     pub fn has_begun(&self) -> bool {
         self.has_begun
     }
 
-    /// Returns true if [`prepare`](Self::prepare) must start the shadows again. Returns false before
-    /// the first frame is compared, although they may not be prepared yet.
+    /// Returns true if [`prepare`](Self::prepare) must start the shadows again. Returns false
+    /// before the first frame is compared, although they may not be prepared yet.
     pub fn must_prepare(&self) -> bool {
         self.is_due
     }
@@ -179,9 +179,9 @@ impl Shadows {
     ///
     /// # Errors
     ///
-    /// Returns the error of the method if it refuses the shadow on both sides of `fine`; the shadows
-    /// are unchanged then. If they are started again, it refuses only states that are not finite,
-    /// and the shadows are meaningless then.
+    /// Returns the error of the method if it refuses the shadow on both sides of `fine`; the
+    /// shadows are unchanged then. If they are started again, it refuses only states that are not
+    /// finite, and the shadows are meaningless then.
     pub fn prepare(&mut self, problem: &Problem, fine: &State<f64>) -> Result<bool, Error> {
         let scales = scales(problem)?;
         if self.is_due {
@@ -263,8 +263,8 @@ impl Shadows {
         Ok(())
     }
 
-    /// Returns q sqrt(n): the rounding error of all frames since the last start, without its growth,
-    /// rad.
+    /// Returns q sqrt(n): the rounding error of all frames since the last start, without its
+    /// growth, rad.
     fn recent_error(&self) -> f32 {
         self.frame_error * libm::sqrtf(self.frames as f32)
     }
@@ -395,8 +395,8 @@ mod tests {
         ratios: [f64; 2],
     }
 
-    /// In the first motion an error of the second second grows 30 times as much as one of the start.
-    /// The others have a heavy bob 2, in small and in large oscillations, and unlike rods.
+    /// In the first motion an error of the second second grows 30 times as much as one of the
+    /// start. The others have a heavy bob 2, in small and in large oscillations, and unlike rods.
     const CASES: [Case; 5] = [
         Case {
             m2: 2.984898867826733,
@@ -483,14 +483,14 @@ mod tests {
         }
     }
 
-    /// The number of frames after which the two errors are compared. At first the shadows lag behind,
-    /// because errors are only added when they are started again.
+    /// The number of frames after which the two errors are compared. At first the shadows lag
+    /// behind, because errors are only added when they are started again.
     const FIRST_FRAMES: u32 = 120;
     /// The steps per frame of the run in 64 bits, which is only assumed.
     const FINE_STEPS: u32 = 12;
 
-    /// Returns the root of the expected square of the distance of two frames, in the unit of `rods`,
-    /// if the covariance matrix of the error is `root` times its transpose.
+    /// Returns the root of the expected square of the distance of two frames, in the unit of
+    /// `rods`, if the covariance matrix of the error is `root` times its transpose.
     fn expected_distance([l1, l2]: [f64; 2], state: &State<f64>, root: &Matrix) -> f64 {
         let [a1, a2, ..] = root;
         let bob1 = l1 * l1 * dot(a1, a1);

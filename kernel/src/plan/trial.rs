@@ -424,8 +424,8 @@ impl Trial {
         self.shadows.runs().filter(move |_| are_needed)
     }
 
-    /// Prepares one motion, or starts all shadows again if that is due. Returns true if it has done either,
-    /// and false if there is nothing to prepare.
+    /// Prepares one motion, or starts all shadows again if that is due. Returns true if it has done
+    /// either, and false if there is nothing to prepare.
     ///
     /// Runs that are no longer needed are not prepared. `problem` must be that of
     /// [`new`](Self::new); this is not checked.
