@@ -247,6 +247,28 @@ pub fn short_rods() -> impl Iterator<Item = Problem> {
     at_rest.chain([fast])
 }
 
+/// Returns two high starts, each with the processor that predicts its horizon too long: a known
+/// failure. In the first one, two runs in 64 bits, in long steps, are closer to each other than to
+/// the exact motion.
+pub fn known_failures() -> impl Iterator<Item = (&'static str, Problem)> {
+    let scenes = [
+        (
+            "pico",
+            (5.059922776667145, 0.7875533309654146),
+            [1.9840807868409727, -2.3164628977526847],
+        ),
+        (
+            "m3",
+            (4.808452641890087, 1.0320854427363506),
+            [-1.550699714462983, 2.0555724626043013],
+        ),
+    ];
+    scenes.into_iter().map(|(name, (m2, l2), [a1, a2])| {
+        let start = Motion::at_rest(a1, a2);
+        (name, shown(pendulum(m2, l2), start, 30.0))
+    })
+}
+
 /// Returns a pendulum with a bob 1 of 1 kg and a rod 1 of 1 m.
 fn pendulum(m2: f64, l2: f64) -> Parameters<f64> {
     Parameters {
