@@ -169,26 +169,6 @@ impl DrawnMotion32 {
         })
     }
 
-    /// Returns a motion of the same pendulum that begins at `start`, with the same constants, as
-    /// [`FormOperations::started`] does. The energy of `start` must be close to that of this
-    /// motion, because the constants were chosen for that; this is not checked.
-    ///
-    /// # Errors
-    ///
-    /// Refuses a `start` that is not finite or otherwise out of the range of the method.
-    pub fn started(&self, start: &State<f64>) -> Result<Self, Error> {
-        Ok(match self {
-            Self::ClosedFormF32(motion) => Self::ClosedFormF32(motion.started(start)?),
-            Self::Rk4F32DirectionPlain(motion) => {
-                Self::Rk4F32DirectionPlain(motion.started(start)?)
-            }
-            Self::Rk4F32Direction(motion) => Self::Rk4F32Direction(motion.started(start)?),
-            Self::Rk4Fixed32(motion) => Self::Rk4Fixed32(motion.started(start)?),
-            #[cfg(test)]
-            Self::Rk4F32Lagrange(motion) => Self::Rk4F32Lagrange(motion.started(start)?),
-        })
-    }
-
     /// Advances the motion by `steps` steps; 0 steps change nothing. A motion that diverges is not
     /// reported, and goes on without meaning or stops; [`check`](Self::check) it afterwards.
     ///

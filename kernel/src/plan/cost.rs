@@ -212,17 +212,11 @@ impl Pair {
 
     /// Returns the share of the distance between both runs that bounds the truncation error of the
     /// fine run: 16 ([`TRUST`]) times (coarse/fine)^10, but at least 1/32 ([`LEAST_SHARE`]) and at
-    /// most 1. Here coarse and fine are the step counts. They must not be 0; this is not checked.
+    /// most 1. Here coarse and fine are the step counts.
     ///
-    /// If both runs resolve the motion, the order of the method gives (coarse/fine)^10.
-    /// `admissible` is the [longest step](admissible_step) that resolves the motion, s, and `rate`
-    /// the number of frames per second. If the steps of the fine run are longer, the share is 1,
-    /// because both runs may have almost the same error.
-    pub fn share_of_fine(&self, rate: u16, admissible: f64) -> f32 {
-        let step = 1.0 / (f64::from(rate) * f64::from(self.fine.steps));
-        if step > admissible {
-            return 1.0;
-        }
+    /// If both runs resolve the motion, the order of the method gives (coarse/fine)^10. The step
+    /// counts must not be 0; this is not checked.
+    pub fn share_of_fine(&self) -> f32 {
         let ratio = self.coarse.steps as f32 / self.fine.steps as f32;
         let fifth = ratio * ratio * ratio * ratio * ratio;
         (TRUST * fifth * fifth).clamp(LEAST_SHARE, 1.0)
@@ -455,14 +449,12 @@ mod tests {
     /// The share of the distance that is assumed as the error of the fine run is 1/32
     /// ([`LEAST_SHARE`]) with twice the steps of the coarse run, 1 with one percent more, and 16
     /// ([`TRUST`]) times 0.75^10 with a third more. Twice the steps reduce an error of order 10 by
-    /// 2^10; the assumed share is larger. It is 1 if the steps do not resolve the motion.
+    /// 2^10; the assumed share is larger.
     #[test]
     fn share_of_the_fine_run_follows_from_its_order_within_limits() {
-        let share = |coarse, fine| Pair::new(coarse, fine).share_of_fine(60, 0.01);
-        assert_eq!(share(3, 6), LEAST_SHARE);
-        assert_eq!(share(99, 100), 1.0);
-        assert_eq!(Pair::new(3, 6).share_of_fine(60, 0.0027), 1.0);
-        let share = share(3, 4);
+        assert_eq!(Pair::new(3, 6).share_of_fine(), LEAST_SHARE);
+        assert_eq!(Pair::new(99, 100).share_of_fine(), 1.0);
+        let share = Pair::new(3, 4).share_of_fine();
         assert!((share / (TRUST * 0.75_f32.powi(10)) - 1.0).abs() < 1e-5);
     }
 }

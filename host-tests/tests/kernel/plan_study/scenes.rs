@@ -247,26 +247,22 @@ pub fn short_rods() -> impl Iterator<Item = Problem> {
     at_rest.chain([fast])
 }
 
-/// Returns two high starts, each with the processor that predicts its horizon too long: a known
-/// failure. In the first one, two runs in 64 bits, in long steps, are closer to each other than to
-/// the exact motion.
-pub fn known_failures() -> impl Iterator<Item = (&'static str, Problem)> {
+/// Returns two high starts whose horizons a Cortex-M3 predicts too long: a known failure. Bob 2 is
+/// just not heavy enough for the wider bounds of a heavy one.
+pub fn known_failures() -> impl Iterator<Item = Problem> {
     let scenes = [
         (
-            "pico",
-            (5.059922776667145, 0.7875533309654146),
-            [1.9840807868409727, -2.3164628977526847],
+            (3.4351644469898424, 0.8252731667216725),
+            [2.954107937931796, -2.8533645723251544],
         ),
         (
-            "m3",
-            (4.808452641890087, 1.0320854427363506),
-            [-1.550699714462983, 2.0555724626043013],
+            (3.5655412876168424, 0.991392561863083),
+            [2.2300776406129033, 1.5698256601019014],
         ),
     ];
-    scenes.into_iter().map(|(name, (m2, l2), [a1, a2])| {
-        let start = Motion::at_rest(a1, a2);
-        (name, shown(pendulum(m2, l2), start, 30.0))
-    })
+    scenes
+        .into_iter()
+        .map(|((m2, l2), [a1, a2])| shown(pendulum(m2, l2), Motion::at_rest(a1, a2), 30.0))
 }
 
 /// Returns a pendulum with a bob 1 of 1 kg and a rod 1 of 1 m.
@@ -283,9 +279,8 @@ fn pendulum(m2: f64, l2: f64) -> Parameters<f64> {
 /// Returns scenes with horizons that planners have once predicted too long.
 ///
 /// In most of them the 64-bit run that others were compared with was as inaccurate as these, by the
-/// truncation of its steps and along the same unstable direction. The last three at rest
-/// start so close to upright that torques are some 100 units of 32-bit fixed point; in the three
-/// before them, the growth of early rounding errors was estimated far too low.
+/// truncation of its steps and along the same unstable direction. The last three start so close to
+/// upright that torques are some 100 units of 32-bit fixed point.
 pub fn hard() -> impl Iterator<Item = Problem> {
     // A row has the mass of bob 2, the length of rod 2, both angles, and the duration.
     let at_rest = [
@@ -320,24 +315,6 @@ pub fn hard() -> impl Iterator<Item = Problem> {
             30.0,
         ),
         (1.5, 1.5, [-1.9, 1.5], 30.0),
-        (
-            3.4351644469898424,
-            0.8252731667216725,
-            [2.954107937931796, -2.8533645723251544],
-            30.0,
-        ),
-        (
-            3.5655412876168424,
-            0.991392561863083,
-            [2.2300776406129033, 1.5698256601019014],
-            30.0,
-        ),
-        (
-            2.984898867826733,
-            1.8673452819254164,
-            [2.2082918834551712, 1.9751053641836052],
-            30.0,
-        ),
         (
             36.52164454459284,
             0.9099955648494059,
