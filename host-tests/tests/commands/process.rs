@@ -43,8 +43,8 @@ fn rest(mut pipe: BufReader<ChildStdout>) -> String {
     text
 }
 
-/// A child writes 220,000 bytes to each output, is silent for two seconds and ends with code 7. All of
-/// that is captured, and the watcher was called with lines and, more than five times, without. A
+/// A child writes 220,000 bytes to each output, is silent for two seconds and ends with code 7. All
+/// of that is captured, and the watcher was called with lines and, more than five times, without. A
 /// program that does not exist is an error with its name.
 #[test]
 fn output_and_exit_code_are_captured_while_a_watcher_sees_lines_and_silence() {

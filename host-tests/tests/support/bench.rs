@@ -112,7 +112,8 @@ impl<M: Linked> Bench<M> {
             .expect("a pseudo-terminal");
         let port = ptsname_r(&cable).expect("its name");
 
-        // A terminal that was never open counts as open, and repeats and changes bytes.
+        // Open and close the other end once, so that it counts as closed until a program opens it.
+        // Make it raw, so that it neither echoes nor changes bytes.
         let terminal = OpenOptions::new()
             .read(true)
             .write(true)

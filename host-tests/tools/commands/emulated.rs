@@ -253,8 +253,8 @@ const IN_DOCUMENTATION: &str = "--doc";
 ///
 /// Returns success if all parts pass, or else the exit code of the first one in this order that
 /// fails. `--long` adds `-- --include-ignored`. Each of `RUST_TEST_THREADS` and `RAYON_NUM_THREADS`
-/// that is not set is twice the number of processors for the tests on the host, and that number for
-/// each part of those that run at once.
+/// that is not set is twice the number of processors for the tests on the host, and the number of
+/// processors for each of the three parts that run at once.
 ///
 /// An error means that the set-up ([`Refused`]) or a build of the firmware fails, or that a time
 /// limit is exceeded: 1 hour for compiling the tests and again for each part, or 12 hours each with

@@ -247,8 +247,11 @@ pub fn short_rods() -> impl Iterator<Item = Problem> {
     at_rest.chain([fast])
 }
 
-/// Returns two high starts whose horizons a Cortex-M3 predicts too long: a known failure. Bob 2 is
-/// just not heavy enough for the wider bounds of a heavy one.
+/// Returns two high starts whose horizons a Cortex-M3 predicts too long: a known failure.
+///
+/// In the first one, the steps of the reference do not resolve the motion, so that the error of its
+/// fine run is much larger than estimated. In the second one, the growth of rounding errors of the
+/// first seconds is estimated too low.
 pub fn known_failures() -> impl Iterator<Item = Problem> {
     let scenes = [
         (
