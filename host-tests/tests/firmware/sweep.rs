@@ -313,8 +313,8 @@ fn settings_of_all_kinds_are_shown_as_claimed() {
     // 2.6 % and 6.3 %.
     cases.push(Case::new(SceneName::Page, 100.0, 105.0));
     cases.push(Case::new(SceneName::Beats3To1, 63.0, -90.0));
-    // With a heavy bob 2 the shadow that is the farthest at first does not show how rounding errors
-    // in 64 bits grow later.
+    // With a heavy bob 2 the growth since the start does not show how rounding errors in 64 bits
+    // grow later.
     cases.push(Case::new(SceneName::Page, 20.0, 123.0));
     cases.push(Case::new(SceneName::Beats3To2, 25.0, -135.0));
     cases.push(Case::new(SceneName::Butterfly, 16.0, 136.0));

@@ -11,6 +11,7 @@ use super::{
     Fixed64, Form, FormOperations, HamiltonF32, HamiltonF64,
 };
 use crate::error::Error;
+use crate::numbers::Real;
 use crate::pendulum::{Direction, Parameters, Pendulum, State};
 use crate::table::{DrawnMethod, Method};
 
@@ -169,6 +170,27 @@ impl DrawnMotion32 {
         })
     }
 
+    /// Starts the motion again at `start`, with the same pendulum and the same constants, as
+    /// [`FormOperations::started`] does. The energy of `start` must not be much larger than that
+    /// of the first start, because the constants were chosen for that; this is not checked.
+    /// `rk4-fixed32` has room for an eighth more.
+    ///
+    /// # Errors
+    ///
+    /// Refuses a `start` that is not finite or otherwise out of the range of the method. The motion
+    /// is unchanged then.
+    pub(crate) fn start_again(&mut self, start: &State<f64>) -> Result<(), Error> {
+        match self {
+            Self::ClosedFormF32(motion) => *motion = motion.started(start)?,
+            Self::Rk4F32DirectionPlain(motion) => *motion = motion.started(start)?,
+            Self::Rk4F32Direction(motion) => *motion = motion.started(start)?,
+            Self::Rk4Fixed32(motion) => *motion = motion.started(start)?,
+            #[cfg(test)]
+            Self::Rk4F32Lagrange(motion) => *motion = motion.started(start)?,
+        }
+        Ok(())
+    }
+
     /// Advances the motion by `steps` steps; 0 steps change nothing. A motion that diverges is not
     /// reported, and goes on without meaning or stops; [`check`](Self::check) it afterwards.
     ///
@@ -222,6 +244,11 @@ impl DrawnMotion32 {
     /// it. A diverged motion need not show it: in fixed point its directions are finite. Call
     /// [`check`](Self::check).
     pub fn directions(&self) -> [Direction<f32>; 2] {
+        self.directions_in()
+    }
+
+    /// Returns the [`directions`](Self::directions) in the numbers `Q`.
+    pub(crate) fn directions_in<Q: Real>(&self) -> [Direction<Q>; 2] {
         match self {
             Self::ClosedFormF32(motion) => motion.directions(),
             Self::Rk4F32DirectionPlain(motion) => motion.directions(),
@@ -232,8 +259,9 @@ impl DrawnMotion32 {
         }
     }
 
-    /// Returns the momenta p1 and p2, kg m^2/s.
-    fn momenta(&self) -> [f32; 2] {
+    /// Returns the momenta p1 and p2, kg m^2/s, at the time of the
+    /// [`directions`](Self::directions). They are NaN if the motion has diverged in fixed point.
+    pub(crate) fn momenta<Q: Real>(&self) -> [Q; 2] {
         match self {
             Self::ClosedFormF32(motion) => motion.momenta(),
             Self::Rk4F32DirectionPlain(motion) => motion.momenta(),

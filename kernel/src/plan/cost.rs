@@ -28,7 +28,8 @@ pub struct Costs {
     pub fixed32: f32,
     /// A step by [`Method::Extrapolation10Fixed64`].
     pub fixed64: f32,
-    /// The preparation of a motion by any of these methods.
+    /// The preparation of a motion by any of these methods, or the start of all shadows again,
+    /// whichever costs more.
     pub preparation: f32,
 }
 
@@ -103,9 +104,13 @@ const INITIAL: [f64; 5] = [RESOLVING, 1.0, 1.5, 2.1, FIRST_STEP];
 /// The steps of the fine run of a reference, in admissible steps. The first of them is used that
 /// planning can pay for.
 ///
-/// The error of the fine run is measured. Longer steps therefore shorten a horizon, but do not make
-/// it wrong.
-const FINE: [f64; 6] = [0.53, 0.65, 0.8, 1.1, 1.5, 2.1];
+/// The last two are too long for candidates in 64 bits, because there errors do not fall evenly
+/// with the steps: runs with 3 and 4 steps per frame have had errors that differed by 5 %, and were
+/// 500 times as large as with 5 steps. They are good enough to judge candidates in 32 bits, whose
+/// errors are larger.
+const FINE: [f64; 6] = [0.53, 0.65, 0.8, LONGEST_IN_64_BITS, 1.5, 2.1];
+/// The longest of these that judge candidates in 64 bits.
+const LONGEST_IN_64_BITS: f64 = 1.1;
 
 /// The longest step of the first trial, in admissible steps.
 ///
@@ -187,7 +192,8 @@ impl Pair {
     ///
     /// The coarse run makes at most `most` steps, unless `most` is less than `least`. If `most` is
     /// less than the usual number, the fine run makes a third more than `most`, and at least as
-    /// many as the longest of the [`FINE`] steps. Successive pairs may be equal.
+    /// many as usual or as steps of 1.1 admissible steps take, whichever is less. Successive pairs
+    /// may be equal.
     pub fn all(
         rate: u16,
         admissible: f64,
@@ -202,21 +208,33 @@ impl Pair {
             let fine = steps(longest);
             let coarse = (fine - fine.div_ceil(4)).max(least);
             if coarse > most && most >= least {
-                let [.., longest] = FINE;
-                Self::of_coarse(most, steps(longest))
+                Self::of_coarse(most, fine.min(steps(LONGEST_IN_64_BITS)))
             } else {
                 Self::new(coarse, fine.max(coarse.saturating_add(1)))
             }
         })
     }
 
+    /// Returns true if the distance between both runs measures their own errors, so that they may
+    /// be candidates: if the steps of the fine run are at most 1.1 admissible steps long.
+    pub fn judges_64_bits(&self, rate: u16, admissible: f64) -> bool {
+        let longest = LONGEST_IN_64_BITS * admissible;
+        self.fine.steps >= steps_to_frame(self.fine.method, rate, longest)
+    }
+
     /// Returns the share of the distance between both runs that bounds the truncation error of the
-    /// fine run: 16 ([`TRUST`]) times (coarse/fine)^10, but at least 1/32 ([`LEAST_SHARE`]) and at
-    /// most 1. Here coarse and fine are the step counts.
+    /// fine run. If its steps do not resolve the motion, it is 1. Otherwise it is 16 ([`TRUST`])
+    /// times (coarse/fine)^10, but at least 1/32 ([`LEAST_SHARE`]) and at most 1. Here coarse and
+    /// fine are the step counts. They must not be 0; this is not checked.
     ///
-    /// If both runs resolve the motion, the order of the method gives (coarse/fine)^10. The step
-    /// counts must not be 0; this is not checked.
-    pub fn share_of_fine(&self) -> f32 {
+    /// If both runs resolve the motion, the order of the method gives (coarse/fine)^10.
+    /// `admissible` is the [longest step](admissible_step) that resolves the motion, s, and `rate`
+    /// the number of frames per second.
+    pub fn share_of_fine(&self, rate: u16, admissible: f64) -> f32 {
+        let step = 1.0 / (f64::from(rate) * f64::from(self.fine.steps));
+        if step > admissible {
+            return 1.0;
+        }
         let ratio = self.coarse.steps as f32 / self.fine.steps as f32;
         let fifth = ratio * ratio * ratio * ratio * ratio;
         (TRUST * fifth * fifth).clamp(LEAST_SHARE, 1.0)
@@ -449,12 +467,14 @@ mod tests {
     /// The share of the distance that is assumed as the error of the fine run is 1/32
     /// ([`LEAST_SHARE`]) with twice the steps of the coarse run, 1 with one percent more, and 16
     /// ([`TRUST`]) times 0.75^10 with a third more. Twice the steps reduce an error of order 10 by
-    /// 2^10; the assumed share is larger.
+    /// 2^10; the assumed share is larger. If the steps do not resolve the motion, it is 1.
     #[test]
     fn share_of_the_fine_run_follows_from_its_order_within_limits() {
-        assert_eq!(Pair::new(3, 6).share_of_fine(), LEAST_SHARE);
-        assert_eq!(Pair::new(99, 100).share_of_fine(), 1.0);
-        let share = Pair::new(3, 4).share_of_fine();
+        let share = |coarse, fine| Pair::new(coarse, fine).share_of_fine(60, 0.01);
+        assert_eq!(share(3, 6), LEAST_SHARE);
+        assert_eq!(share(99, 100), 1.0);
+        assert_eq!(Pair::new(3, 6).share_of_fine(60, 0.0027), 1.0);
+        let share = share(3, 4);
         assert!((share / (TRUST * 0.75_f32.powi(10)) - 1.0).abs() < 1e-5);
     }
 }

@@ -22,32 +22,32 @@ use super::Costs;
 impl Costs {
     /// The counted price list of a Cortex-M3, in cycles.
     pub const CORTEX_M3: Costs = Costs {
-        closed_form: 10928.2,
-        direction_plain: 13012.0,
-        direction: 14828.2,
+        closed_form: 10886.2,
+        direction_plain: 13052.9,
+        direction: 14863.8,
         fixed32: 662.2,
-        fixed64: 20060.0,
-        preparation: 156107.0,
+        fixed64: 20202.0,
+        preparation: 162081.0,
     };
 
     /// The counted price list of a Cortex-M4F, in cycles.
     pub const CORTEX_M4F: Costs = Costs {
-        closed_form: 1780.2,
+        closed_form: 1777.2,
         direction_plain: 161.3,
         direction: 206.1,
         fixed32: 622.3,
-        fixed64: 13444.0,
-        preparation: 153270.0,
+        fixed64: 13103.0,
+        preparation: 154093.0,
     };
 
     /// The counted price list of a Cortex-M0+, in cycles.
     pub const CORTEX_M0PLUS: Costs = Costs {
-        closed_form: 19129.6,
-        direction_plain: 22401.3,
+        closed_form: 19133.6,
+        direction_plain: 22402.3,
         direction: 25551.9,
         fixed32: 2128.6,
-        fixed64: 75407.0,
-        preparation: 387363.0,
+        fixed64: 74934.0,
+        preparation: 386934.0,
     };
 }
 // end of the generated part

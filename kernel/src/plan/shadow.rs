@@ -1,273 +1,735 @@
-//! Shadows: motions close to another one, which measure the growth of its small errors.
+//! Shadows: motions close to another one, which measure how its rounding errors grow.
 //!
-//! An error that arises in a run is carried on by the motion. In a chaotic motion it grows
-//! exponentially. Its direction in phase space soon becomes that of fastest growth, and its growth
-//! does not depend on its initial size. The distance of a shadow grows in the same way.
+//! A run in 64 bits makes a small rounding error in every frame. The motion propagates these errors
+//! and, if it is chaotic, they grow exponentially. Small errors are propagated linearly. Larger
+//! distances therefore grow by the same factors, as long as they stay below about 2^-6 rad, and
+//! such distances can be computed in 32 bits and in coarse steps. A *shadow* is a motion at such a
+//! distance.
 //!
-//! A shadow may be computed in 32 bits and in coarse steps. Its distance is kept between 2^-16 and
-//! 2^-6 rad, where its own errors are negligible: at a larger distance it is drawn back along the
-//! line to the motion.
+//! # The covariance of the errors
 //!
-//! Four shadows are started. Each differs from the motion in a single number of the state. An error
-//! of any direction is a linear combination of these differences. The farthest shadow therefore
-//! grows at least half as much as any error. When one shadow has grown by 1000, all shadows that
-//! have grown point in the direction of growth, and only the farthest is kept. A smaller growth
-//! does not prove this: even without any instability, a push moves a bob by more and more every
-//! second.
+//! The error of a run is a random vector e = (a1, a2, p1/s1, p2/s2), with the momenta divided by
+//! [`scales`]. A frame is assumed to add an independent error of standard deviation q to each of
+//! the four numbers. Five shadows represent the covariance matrix P of e. With the 4 x 4 matrix D
+//! of the differences of four of them, its columns, from the central one,
 //!
-//! With a heavy bob 2 no growth proves it, and all four are kept. Rod 1 is then so light that any
-//! push moves it far at once. The farthest shadow may lack the direction in which errors grow
-//! later: in some motions these became 200 times as large as it showed.
+//! ```text
+//! P = u^2 D D^T + n q^2 I
+//! ```
 //!
-//! Let G(t) be the growth of the farthest shadow since the start. An error e that arises at time s
-//! has the size e G(t)/G(s) at time t. The rounding errors of different frames are independent, so
-//! that the squares of e/G(s) add up.
+//! where n is the number of frames since the shadows were last started, and u is the error that a
+//! distance of 1 rad stands for. All five have about the same truncation error, so that it cancels
+//! in D. At the start D is diagonal: both angles are rounded, and the momenta relative to their
+//! values.
+//!
+//! The shadows are started again when one is farther than 4 [`NEAR`], or after some time:
+//!
+//! 1. Compute P, and its Cholesky factor L, so that L L^T = P. Any D with the same u^2 D D^T
+//!    represents the same errors.
+//! 2. Choose u such that the largest standard deviation in L/u is [`NEAR`].
+//! 3. Start the central shadow at the state of the fine run of the reference, and the others beside
+//!    it at the columns of L/u. Set n to 0.
+//!
+//! This adds the errors of the last n frames, in all directions. It must happen often at first: a
+//! direction that shrinks at first may be the one that grows most later. An error of a later frame
+//! then grows a hundred times as much as an error of the start. When errors have grown by 1e5, new
+//! ones hardly matter, and the shadows are started again only where distances are no longer small,
+//! or after a long time.
+//!
+//! # The result
+//!
+//! The error of a frame is u times the root of the sum of the squares of the four displacements,
+//! plus q sqrt(n) times the length of both rods for the last n frames. Since q is larger than the
+//! rounding errors, this is used as an upper bound. If a shadow is so far that errors no longer
+//! grow in proportion, the error is unknown.
 
 use super::candidate::{distance, greater};
-use super::cost::Stepping;
+use super::cost::{Costs, MOST_STEPS, Stepping, steps_to_frame};
 use super::problem::Problem;
-use super::run::Directions;
 use super::trial::Run;
-use crate::error::Error;
+use crate::bounds::Bounds;
+use crate::error::{Error, Parameter};
 use crate::methods::any::DrawnMotion32;
-use crate::pendulum::{Parameters, State};
+use crate::pendulum::{Direction, Parameters, Pendulum, State};
+use crate::table::Method;
 
-/// The initial distance of a shadow, rad.
-const NEAR: f64 = 1.0 / (1 << 16) as f64;
-/// The largest distance of a shadow, rad. Beyond it the shadow is drawn back.
-const FAR: f32 = 1.0 / (1 << 6) as f32;
-/// The factor on the distance when a shadow is drawn back.
-const BACK: f32 = 1.0 / (1 << 10) as f32;
-/// The growth after which only the farthest shadow is kept, unless bob 2 is heavy.
-const ALIGNED: f32 = 1000.0;
+/// The longest step of the shadows as a multiple of the admissible step.
+const STEP: f64 = 1.0;
+/// The largest standard deviation that the shadows represent when they are started again, in units
+/// of [`scales`]. At the start, the distance of a shadow that differs in an angle, rad.
+const NEAR: f64 = 1.0 / (1 << 13) as f64;
+/// The distance at which the shadows are started again, rad.
+const FAR: f32 = 4.0 * NEAR as f32;
+/// The growth of the errors after which new rounding errors hardly matter: the ratio to the larger
+/// one of the errors of the start and of a frame.
+const GROWN: f32 = 1e5;
+/// The distance at which the shadows are started again after that growth, rad.
+const FARTHEST: f32 = 1.0 / (1 << 8) as f32;
+/// The distance beyond which the error is unknown, rad.
+const LARGEST: f32 = 0.25;
+/// The factor on the number of frames between two starts after that growth. With 16, rounding in
+/// the shadows themselves changed their directions: once the error of a frame was 13 times as large
+/// as they showed.
+const SELDOM: u32 = 3;
+/// The phase, at the fastest rate, after which the shadows are started again, rad.
+const PHASE: f64 = 12.0;
+/// The smallest number of frames between two starts that are due by the phase. With a heavy bob 2
+/// that phase may pass in a frame.
+const FEWEST_FRAMES: u16 = 8;
+/// The smallest diagonal element of the Cholesky factor, as a share of the largest standard
+/// deviation. It only avoids a division by almost 0: the digits of the shadows end at 2^-17 of
+/// [`NEAR`] in fixed point, and at 2^-10 in `f32`.
+const SMALLEST: f64 = 1.0 / (1 << 26) as f64;
 
-/// The rounding error of a run in 64 bits, rad: of its start, of each radian of phase at the
-/// fastest rate of the energy, and of each step. They are added within a frame, and as squares from
-/// frame to frame.
+/// The number of shadows: the central one, and one for each dimension of phase space.
+const SHADOWS: usize = 5;
+
+/// The assumed standard deviation of the rounding error of a run in 64 bits: of the start, rad, and
+/// of each step. The errors of the steps of a frame add up linearly, those of different frames as
+/// squares.
 ///
-/// The values are measured. With 12 steps per frame the errors of 60 motions from high starts came
-/// to at most 0.4 of the bound; the median was 0.04. Test `plan_study` checks the bound against the
-/// exact motion.
-const ROUNDING: [f32; 3] = [2.4e-16, 3.2e-16, 6.4e-17];
+/// The values are measured, and larger than the errors: with four thirds of them, the largest error
+/// of 2,000 high starts before a horizon that rounding ends was 0.63 tolerances. Test `plan_study`
+/// checks the bound against the exact motion.
+const ROUNDING: [f32; 2] = [9e-16, 3.6e-17];
 
-/// A motion close to another one.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Shadow {
-    run: Run<DrawnMotion32>,
-    /// True if the shadow must be drawn back.
-    is_far: bool,
-    /// The product of the factors 1/[`BACK`] of all times that the shadow was drawn back.
-    drawn_back: f32,
-}
+/// The factor on the rounding error of a step unless 1/2 < l1/l2 <= 1. Outside that range
+/// [`Fixed64`](crate::Fixed64) has different units for the rates of the two rods. Measured, too.
+const UNLIKE_UNITS: f32 = 6.0;
 
-/// Four motions close to another one. Later only the farthest may be kept.
+/// The rows of a matrix, which belong to a1, a2, p1 and p2 in units of [`scales`].
+type Matrix = [[f64; 4]; 4];
+
+/// A central motion and four others close to it.
 ///
-/// For each frame, [`prepare`](Self::prepare) is called until it returns false, all
-/// [`runs`](Self::runs) are advanced to the frame, and it is [compared](Self::compare).
+/// First, [`prepare`](Self::prepare) is called until all [are prepared](Self::are_prepared). For
+/// each frame, all [`runs`](Self::runs) are advanced to the frame, and the frame is
+/// [compared](Self::compare). After that they are [started again](Self::start_again) if that [is
+/// due](Self::is_due).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Shadows {
-    shadows: [Shadow; 4],
-    /// The index of the shadow that is kept; `None` while all four are kept.
-    kept: Option<usize>,
-    /// The growth after which only the farthest shadow is kept.
-    aligned: f32,
-    /// True after the first frame has been compared.
-    has_begun: bool,
-    /// The largest growth of a distance since the start, rad per radian at the start.
-    growth: f32,
-    /// The largest growth of a distance of the bobs since the start, in units of the tolerance per
-    /// radian at the start.
-    shown: f32,
-    /// The root of the sum of the squares of all rounding errors since the start, each divided by
-    /// the growth when it arose, rad.
-    roundings: f32,
-    /// The fastest rate that the energy allows, rad/s.
-    rate: f64,
-    /// The rounding error of one frame, rad.
-    of_frame: f32,
+    /// The central shadow and the other four.
+    runs: [Run<DrawnMotion32>; SHADOWS],
+    /// The units of the momenta ([`scales`]), kg m^2/s.
+    scales: [f64; 2],
+    /// u: the error that a distance of 1 rad stands for, rad.
+    unit: f32,
+    /// n: the number of frames since the shadows were started.
+    frames: u32,
+    /// The number of frames after which they are started again.
+    most_frames: u16,
+    /// True if the shadows must be started again.
+    is_due: bool,
+    /// q: the rounding error of one frame, rad.
+    frame_error: f32,
 }
 
 impl Shadows {
-    /// Creates the shadows of a motion in 64 bits that makes `steps` steps per frame. The shadows
-    /// themselves are computed by `stepping`.
-    ///
-    /// No motion is prepared yet. A pendulum that is refused counts as one that cannot move; it is
-    /// reported by [`prepare`](Self::prepare). So are a `stepping` that is not in 32 bits and one
-    /// with 0 steps.
-    pub fn new(stepping: Stepping, problem: &Problem, steps: u32) -> Self {
-        // The fastest rate advances a phase by a radian in four admissible steps.
-        let rate = super::cost::admissible_step(problem).map_or(0.0, |step| 0.25 / step);
-        let [of_start, of_radian, of_step] = ROUNDING;
+    /// Returns the usual method and step count of shadows. `method` is in 32 bits, and `admissible`
+    /// is the [longest step that resolves the motion](super::cost::admissible_step), s.
+    pub fn stepping(method: Method, frame_rate: u16, admissible: f64) -> Stepping {
+        let steps = steps_to_frame(method, frame_rate, STEP * admissible);
+        Stepping { method, steps }
+    }
 
-        // The unit of the rate of rod 2 is coarser if rod 2 is shorter. The power is measured, as
-        // the bounds are.
+    /// Creates the shadows of a motion in 64 bits that makes `steps` steps per frame. The shadows
+    /// themselves are computed by `stepping`, or in finer steps if the method refuses these as too
+    /// long. `scales` are the units of the momenta ([`scales`]), kg m^2/s. `admissible` is the
+    /// [longest step that resolves the motion](super::cost::admissible_step), s; infinite if
+    /// nothing can move.
+    ///
+    /// No motion is prepared yet. [`prepare`](Self::prepare) reports a pendulum that is refused,
+    /// and a `stepping` that is not in 32 bits or has 0 steps.
+    pub fn new(
+        stepping: Stepping,
+        problem: &Problem,
+        scales: [f64; 2],
+        admissible: f64,
+        steps: u32,
+    ) -> Self {
+        let [of_start, of_step] = ROUNDING;
         let Parameters { l1, l2, .. } = problem.pendulum;
-        let short = if l2 < l1 { (l1 / l2) as f32 } else { 1.0 };
-        let coarser = short * short * short;
+        let has_like_units = 0.5 * l2 < l1 && l1 <= l2;
+        let unlike = if has_like_units { 1.0 } else { UNLIKE_UNITS };
+
         Self {
-            shadows: [Shadow {
-                run: Run::new(stepping),
-                is_far: false,
-                drawn_back: 1.0,
-            }; 4],
-            kept: None,
-            aligned: if problem.has_heavy_bob_2() {
-                f32::INFINITY
-            } else {
-                ALIGNED
-            },
-            has_begun: false,
-            growth: 1.0,
-            shown: 0.0,
-            roundings: of_start,
-            rate,
-            of_frame: (of_radian * (rate / f64::from(problem.rate)) as f32
-                + of_step * steps as f32)
-                * coarser,
+            runs: [Run::new(stepping); SHADOWS],
+            scales,
+            // A distance of NEAR stands for the rounding error of the start.
+            unit: of_start / NEAR as f32,
+            frames: 0,
+            most_frames: frames_between(admissible, problem.rate),
+            is_due: false,
+            frame_error: unlike * of_step * steps as f32,
         }
     }
 
-    /// Returns the shadows that are still needed: all four, or the one that is kept. Some may not
-    /// be prepared yet, or may have diverged.
-    pub fn runs(&mut self) -> impl Iterator<Item = &mut Run<DrawnMotion32>> {
-        self.needed().map(|(_, shadow)| &mut shadow.run)
-    }
-
-    /// Returns the shadows that are still needed, with their indices.
-    fn needed(&mut self) -> impl Iterator<Item = (usize, &mut Shadow)> {
-        let kept = self.kept;
-        let shadows = self.shadows.iter_mut().enumerate();
-        shadows.filter(move |(number, _)| kept.is_none_or(|kept| kept == *number))
-    }
-
-    /// Returns true after the first frame has been compared. Until then shadows are prepared at the
-    /// start of the motion. From then on, they are drawn back to the motion at the present frame.
-    pub fn has_begun(&self) -> bool {
-        self.has_begun
-    }
-
-    /// Returns true if a shadow must be drawn back by [`prepare`](Self::prepare). Shadows that are
-    /// not prepared yet do not count.
-    pub fn must_prepare(&mut self) -> bool {
-        self.needed().any(|(_, shadow)| shadow.is_far)
-    }
-
-    /// Prepares one shadow close to a motion in the state `motion`, or draws one back to it. The
-    /// state is that of the fine run at the same frame, in SI units.
+    /// Returns the cost of a frame of shadows that are computed by `stepping`, in the unit of
+    /// `costs`. It includes the share of a frame in the starts that are due by the phase, but not
+    /// those that are due by distance.
     ///
-    /// Returns true if it has done either, and false if there is nothing to do. `problem` must be
-    /// that of [`new`](Self::new); this is not checked.
+    /// `admissible` is the [longest step that resolves the motion](super::cost::admissible_step),
+    /// s, and `frame_rate` is the number of frames per second.
+    pub fn cost_of_frame(
+        stepping: Stepping,
+        admissible: f64,
+        frame_rate: u16,
+        costs: &Costs,
+    ) -> f32 {
+        let frames = frames_between(admissible, frame_rate);
+        SHADOWS as f32 * costs.of_frame(stepping) + costs.preparation / frames as f32
+    }
+
+    /// Returns the runs of all shadows. Some may not be prepared yet, or may have diverged.
+    pub fn runs(&mut self) -> impl Iterator<Item = &mut Run<DrawnMotion32>> {
+        self.runs.iter_mut()
+    }
+
+    /// Returns true if all shadows are prepared.
+    pub fn are_prepared(&self) -> bool {
+        self.runs.iter().all(|run| run.motion.is_some())
+    }
+
+    /// Returns true if the shadows must be [started again](Self::start_again) before the next
+    /// frame.
+    pub fn is_due(&self) -> bool {
+        self.is_due
+    }
+
+    /// Prepares one shadow, if any is not prepared, beside `start`, the start of the motion in SI
+    /// units. Or, if the method refuses the steps as too long, gives all shadows finer steps.
+    /// `problem` must be that of [`new`](Self::new); this is not checked.
     ///
     /// # Errors
     ///
-    /// Returns the error of the method if it refuses the shadow on both sides of the motion. A
-    /// `motion` that is not finite is refused. The shadows are unchanged then.
-    pub fn prepare(&mut self, problem: &Problem, motion: &State<f64>) -> Result<bool, Error> {
-        // Select a shadow that is too far away or not yet prepared.
-        let rate = self.rate;
-        let mut shadows = self.needed();
-        let Some((number, shadow)) =
-            shadows.find(|(_, shadow)| shadow.is_far || shadow.run.motion.is_none())
-        else {
-            return Ok(false);
+    /// Returns the error of the method if it refuses the shadow on both sides of `start`; the
+    /// shadows are unchanged then.
+    pub fn prepare(&mut self, problem: &Problem, start: &State<f64>) -> Result<(), Error> {
+        // Select a shadow that is not prepared.
+        let mut runs = self.runs.iter_mut().enumerate();
+        let Some((number, run)) = runs.find(|(_, run)| run.motion.is_none()) else {
+            return Ok(());
         };
 
-        // Compute its difference from the motion.
-        let by = match &shadow.run.motion {
-            Some(shadow) => {
-                let factor = f64::from(BACK);
-                difference(&shadow.state(), motion).map(|by| by * factor)
-            }
-            None => {
-                let mut by = [0.0; 4];
-                by[number % 4] = NEAR * scales(&problem.pendulum, rate)[number % 4];
-                by
-            }
+        // At the start both angles are rounded, and the momenta relative to their values. Run 0 is
+        // the central one, and run i + 1 differs in number i of the state.
+        let scales = self.scales;
+        let [of_p1, of_p2] = scales;
+        let shares = [1.0, 1.0, start.p1 / of_p1, start.p2 / of_p2];
+        let difference = |sign: f64| {
+            core::array::from_fn(|i| {
+                let share = if number == i + 1 { shares[i] } else { 0.0 };
+                sign * NEAR * share
+            })
         };
 
         // Create it on one side of the motion or, if the method refuses that, on the other.
-        let Stepping { method, steps } = shadow.run.stepping;
+        let Stepping { method, steps } = run.stepping;
         let dt = 1.0 / (f64::from(problem.rate) * f64::from(steps));
         let prepared = |sign: f64| {
-            let [a1, a2, p1, p2] = <[f64; 4]>::from(*motion);
-            let [by1, by2, by3, by4] = by.map(|by| sign * by);
-            let state = State {
-                a1: a1 + by1,
-                a2: a2 + by2,
-                p1: p1 + by3,
-                p2: p2 + by4,
-            };
-            DrawnMotion32::new(method, &problem.pendulum, &state, dt)
+            let start = beside(start, difference(sign), scales);
+            DrawnMotion32::new(method, &problem.pendulum, &start, dt)
         };
-        shadow.run.motion = Some(prepared(1.0).or_else(|_| prepared(-1.0))?);
+        let prepared = prepared(1.0).or_else(|_| prepared(-1.0));
 
-        if shadow.is_far {
-            shadow.is_far = false;
-            shadow.drawn_back /= BACK;
-        }
-        Ok(true)
-    }
-
-    /// Compares the shadows with the frame `motion`, the directions of the fine run. Every frame
-    /// after the start must be compared once, in order, because rounding errors add up. All steps
-    /// towards it must have been made. Neither is checked. A shadow that is not prepared counts as
-    /// diverged.
-    ///
-    /// Returns the largest rounding error that is expected of the motion in 64 bits, with the steps
-    /// given to [`new`](Self::new), in units of the tolerance. `rods` are the lengths of the rods
-    /// in the same unit. The result is NaN if the error is unknown: once a shadow that is still
-    /// needed, or the motion itself, has diverged.
-    pub fn compare(&mut self, rods: [f32; 2], motion: &Directions) -> f32 {
-        self.has_begun = true;
-
-        // Find the farthest shadow.
-        let mut farthest = 0;
-        let mut growth = 0.0;
-        let mut shown = 0.0;
-        for (number, shadow) in self.needed() {
-            let frame = shadow.run.frame();
-            let off = distance([1.0; 2], &frame, motion);
-            shadow.is_far = off > FAR;
-
-            let drawn_back = shadow.drawn_back / NEAR as f32;
-            if off * drawn_back > growth {
-                farthest = number;
+        // All shadows make the same steps, so only the first one can change them.
+        if let Err(Error::TooLarge {
+            parameter: Parameter::Dt,
+            limit,
+            ..
+        }) = prepared
+        {
+            if number == 0 && steps < MOST_STEPS {
+                let enough = steps_to_frame(method, problem.rate, limit);
+                for run in &mut self.runs {
+                    run.stepping.steps = enough.max(2 * steps);
+                }
+                return Ok(());
             }
-            growth = greater(off * drawn_back, growth);
-            shown = greater(distance(rods, &frame, motion) * drawn_back, shown);
+        }
+        run.motion = Some(prepared?);
+        Ok(())
+    }
+
+    /// Starts all shadows again beside the state `fine`, and adds the rounding errors of the frames
+    /// since the last start to their differences. `fine` is the state of the fine run at the same
+    /// frame, in SI units. If the method refuses a shadow, because a number is not finite, the
+    /// error is unknown from then on.
+    pub fn start_again(&mut self, fine: &State<f64>) {
+        // Collect the differences from the central shadow: D, a row for each number of the state.
+        let scales = self.scales;
+        let places = self.runs.each_ref().map(Place::of);
+        let [center, others @ ..] = &places;
+        let mut rows = [[0.0; 4]; 4];
+        for (column, other) in others.iter().enumerate() {
+            let difference = other.minus(center, scales);
+            for (row, number) in rows.iter_mut().zip(difference) {
+                row[column] = number;
+            }
         }
 
-        // Keep only that, once it has grown enough.
-        if growth >= self.aligned {
-            self.kept = Some(farthest);
+        // Compute the variance that the last frames add, in units of a distance, and L/u for the
+        // present u.
+        let added = f64::from(self.frame_error / self.unit);
+        let variance = added * added * f64::from(self.frames);
+        let largest = rows.iter().map(|row| dot(row, row)).fold(0.0, f64::max) + variance;
+        let factor = cholesky(&rows, variance, SMALLEST * SMALLEST * largest);
+
+        // L is scaled such that the largest standard deviation is near, and u by the inverse
+        // factor, so that the errors stay the same.
+        let deviation = libm::sqrt(largest);
+        let scale = NEAR / deviation;
+        self.unit *= (deviation / NEAR) as f32;
+        self.frames = 0;
+        self.is_due = false;
+
+        // Start the central shadow at the state itself, and the others at the columns.
+        for (number, run) in self.runs.iter_mut().enumerate() {
+            if let Some(shadow) = &mut run.motion {
+                let difference = match number.checked_sub(1) {
+                    // The remainder changes nothing; it avoids a check of the index.
+                    Some(column) => factor.map(|row| scale * row[column % 4]),
+                    None => [0.0; 4],
+                };
+                let started = shadow.start_again(&beside(fine, difference, scales));
+                if started.is_err() {
+                    self.unit = f32::NAN;
+                }
+            }
+        }
+    }
+
+    /// Returns q sqrt(n): the rounding error of all frames since the last start, without its
+    /// growth, rad.
+    fn recent_error(&self) -> f32 {
+        self.frame_error * libm::sqrtf(self.frames as f32)
+    }
+
+    /// Compares the shadows with each other at a frame. Every frame after the start must be
+    /// compared once, in order, because rounding errors add up. All steps towards it must have been
+    /// made. Neither is checked. A shadow that is not prepared counts as diverged.
+    ///
+    /// Returns an upper bound of the rounding error of a motion in 64 bits, with as many steps as
+    /// [`new`](Self::new) was told, in units of the tolerance. It is exceeded only in rare cases.
+    /// `rods` are the lengths of the rods in the same unit. The result is NaN if the error is
+    /// unknown: once a shadow has diverged, or is farther than [`LARGEST`].
+    pub fn compare(&mut self, rods: [f32; 2]) -> f32 {
+        self.frames = self.frames.saturating_add(1);
+
+        // Measure the distances from the central shadow.
+        let [center, others @ ..] = self.runs.each_mut().map(Run::frame);
+        let mut farthest = 0.0;
+        let mut squares = 0.0;
+        for other in &others {
+            farthest = greater(distance([1.0; 2], other, &center), farthest);
+            let shown = distance(rods, other, &center);
+            squares += shown * shown;
         }
 
-        // Update the growth.
-        self.growth = greater(growth, self.growth);
-        self.shown = greater(shown, self.shown);
+        // Start again when distances are no longer small or when new errors must be added. Once the
+        // errors have grown, new ones hardly matter.
+        let [of_start, _] = ROUNDING;
+        let has_grown = self.unit * farthest > GROWN * greater(of_start, self.frame_error);
+        self.is_due = if has_grown {
+            farthest > FARTHEST || self.frames >= SELDOM * u32::from(self.most_frames)
+        } else {
+            farthest > FAR || self.frames >= u32::from(self.most_frames)
+        };
 
-        // Add the rounding error of this frame.
-        let of_frame = self.of_frame / self.growth;
-        self.roundings = libm::sqrtf(self.roundings * self.roundings + of_frame * of_frame);
-        self.shown * self.roundings
+        if farthest > LARGEST {
+            return f32::NAN;
+        }
+
+        // Add the errors of the last frames, which the shadows do not contain yet. Bob 2 moves by
+        // at most the sum of the displacements along both rods.
+        let [rod1, rod2] = rods;
+        self.unit * libm::sqrtf(squares) + self.recent_error() * (rod1 + rod2)
     }
 }
 
-/// Returns the units of the numbers of a state, in the order a1, a2, p1, p2: 1 rad, and the
-/// momenta, kg m^2/s, of rods that turn at half the fastest `rate`, rad/s.
-fn scales(&Parameters { m1, m2, l1, l2, .. }: &Parameters<f64>, rate: f64) -> [f64; 4] {
-    let half = 0.5 * rate;
-    [1.0, 1.0, (m1 + m2) * l1 * l1 * half, m2 * l2 * l2 * half]
+/// Returns the number of frames after which the shadows are started again, at most, at `frame_rate`
+/// frames per second. In four `admissible` steps, s, a phase advances by a radian at the fastest
+/// rate that the energy allows. The result is at most 65,535.
+fn frames_between(admissible: f64, frame_rate: u16) -> u16 {
+    let frames = PHASE * 4.0 * admissible * f64::from(frame_rate);
+    (frames as u16).max(FEWEST_FRAMES)
 }
 
-/// Returns `one` - `other` in the order a1, a2, p1, p2, with angles between -pi and pi.
-fn difference(one: &State<f64>, other: &State<f64>) -> [f64; 4] {
-    const TURN: f64 = 2.0 * core::f64::consts::PI;
-    let turned = |angle: f64| angle - TURN * libm::rint(angle / TURN);
-    [
-        turned(one.a1 - other.a1),
-        turned(one.a2 - other.a2),
-        one.p1 - other.p1,
-        one.p2 - other.p2,
-    ]
+/// Returns the units of the momenta p1 and p2, kg m^2/s: the largest ones that the energy of
+/// `start` allows ([`Bounds`]), because rounding errors of fixed point are relative to these. If
+/// the energy is less than a millionth of the one that allows a rod to turn over, it is replaced by
+/// that. Each unit is 1 if nothing can move. The unit of both angles is 1 rad.
+pub(super) fn scales(pendulum: &Pendulum<f64>, start: &State<f64>) -> [f64; 2] {
+    const LEAST: f64 = 1e-6;
+    let energy = pendulum.energy_above_rest(start);
+    let energy = f64::max(energy, LEAST * pendulum.turnover_energy());
+    let bounds = Bounds::new(pendulum.parameters(), energy);
+    [bounds.p1, bounds.p2].map(|p| if p > 0.0 { p } else { 1.0 })
+}
+
+/// The place of a shadow in phase space: the directions of its rods, and its momenta in SI units.
+struct Place {
+    directions: [Direction<f64>; 2],
+    momenta: [f64; 2],
+}
+
+impl Place {
+    /// Returns the place of a shadow; it is NaN if that has no motion.
+    fn of(run: &Run<DrawnMotion32>) -> Self {
+        const NAN: f64 = f64::NAN;
+        run.motion.as_ref().map_or(
+            Self {
+                directions: [[NAN; 2]; 2],
+                momenta: [NAN; 2],
+            },
+            |motion| Self {
+                directions: motion.directions_in(),
+                momenta: motion.momenta(),
+            },
+        )
+    }
+
+    /// Returns the difference from another place in the order a1, a2, p1, p2, with the momenta in
+    /// units of `scales`. The difference of an angle is given by its sine, or by 1 or -1 if it is
+    /// more than a right angle.
+    fn minus(&self, other: &Self, scales: [f64; 2]) -> [f64; 4] {
+        let angle = |[sin, cos]: Direction<f64>, [sin0, cos0]: Direction<f64>| {
+            let sine = sin * cos0 - cos * sin0;
+            if cos * cos0 + sin * sin0 < 0.0 {
+                f64::copysign(1.0, sine)
+            } else {
+                sine
+            }
+        };
+        let [rod1, rod2] = self.directions;
+        let [other1, other2] = other.directions;
+        let [p1, p2] = self.momenta;
+        let [other_p1, other_p2] = other.momenta;
+        let [s1, s2] = scales;
+        [
+            angle(rod1, other1),
+            angle(rod2, other2),
+            (p1 - other_p1) / s1,
+            (p2 - other_p2) / s2,
+        ]
+    }
+}
+
+/// Returns the state at a difference from `fine`, whose momenta are in units of `scales`.
+fn beside(fine: &State<f64>, difference: [f64; 4], [s1, s2]: [f64; 2]) -> State<f64> {
+    let [a1, a2, p1, p2] = difference;
+    State {
+        a1: fine.a1 + a1,
+        a2: fine.a2 + a2,
+        p1: fine.p1 + s1 * p1,
+        p2: fine.p2 + s2 * p2,
+    }
+}
+
+/// Returns the lower triangular matrix L with L L^T = D D^T + `variance` I, where `rows` are those
+/// of D. If that matrix is singular, or almost, the squares of diagonal elements of L are increased
+/// to `least`, and L L^T is larger.
+fn cholesky(rows: &Matrix, variance: f64, least: f64) -> Matrix {
+    let mut factor = [[0.0; 4]; 4];
+    for i in 0..4 {
+        for j in 0..=i {
+            // The elements of row i from j on are still 0, so that only columns before j count.
+            let rest = dot(&rows[i], &rows[j]) - dot(&factor[i], &factor[j]);
+            factor[i][j] = if i == j {
+                libm::sqrt(f64::max(rest + variance, least))
+            } else {
+                rest / factor[j][j]
+            };
+        }
+    }
+    factor
+}
+
+/// Returns the scalar product of two rows.
+#[inline(never)] // 3 KB more flash on an M3 without.
+fn dot(a: &[f64; 4], b: &[f64; 4]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::pendulum::Motion;
+
+    /// A pendulum with a bob 1 of 1 kg and a rod 1 of 1 m, and its start.
+    struct Case {
+        m2: f64,
+        l2: f64,
+        /// Two angles, rad, and two angular velocities, rad/s.
+        start: [f64; 4],
+        /// True if fixed point refuses the usual steps of the shadows as too long.
+        needs_finer_steps: bool,
+        /// The smallest and the largest ratio of the error that the shadows show to the exact one.
+        ratios: [f64; 2],
+    }
+
+    /// In the first motion an error of the second second grows 30 times as much as one of the
+    /// start. The others have a heavy bob 2, in small and in large oscillations, unlike rods, a
+    /// light bob 2 whose shadows need finer steps in fixed point, and a start in motion.
+    const CASES: [Case; 7] = [
+        Case {
+            m2: 2.984898867826733,
+            l2: 1.8673452819254164,
+            start: [2.2082918834551712, 1.9751053641836052, 0.0, 0.0],
+            needs_finer_steps: false,
+            ratios: [0.8, 1.3],
+        },
+        Case {
+            m2: 1000.0,
+            l2: 1.0,
+            start: [0.05, 0.05, 0.0, 0.0],
+            needs_finer_steps: false,
+            ratios: [0.8, 1.8],
+        },
+        Case {
+            m2: 100.0,
+            l2: 1.0,
+            start: [1.0, 1.5, 0.0, 0.0],
+            needs_finer_steps: false,
+            ratios: [0.2, 10.0],
+        },
+        Case {
+            m2: 1.0,
+            l2: 0.1,
+            start: [2.0, 2.0, 0.0, 0.0],
+            needs_finer_steps: false,
+            ratios: [0.7, 2.2],
+        },
+        Case {
+            m2: 1.0,
+            l2: 10.0,
+            start: [2.0, 2.0, 0.0, 0.0],
+            needs_finer_steps: false,
+            ratios: [0.7, 1.4],
+        },
+        Case {
+            m2: 0.05,
+            l2: 10.0,
+            start: [2.5, 2.5, 0.0, 0.0],
+            needs_finer_steps: true,
+            ratios: [0.45, 1.3],
+        },
+        Case {
+            m2: 0.5,
+            l2: 0.7,
+            start: [0.5, 1.0, 6.0, -9.0],
+            needs_finer_steps: false,
+            ratios: [0.65, 1.2],
+        },
+    ];
+
+    impl Case {
+        fn problem(&self) -> Problem {
+            let [a1, a2, w1, w2] = self.start;
+            Problem {
+                pendulum: Parameters {
+                    m1: 1.0,
+                    m2: self.m2,
+                    l1: 1.0,
+                    l2: self.l2,
+                    g: 9.81,
+                },
+                start: Motion { a1, a2, w1, w2 },
+                tolerance: 0.04,
+                duration: 8.0,
+                rate: 60,
+            }
+        }
+
+        /// Returns the state after a frame, in steps of at most an eighth of the admissible step.
+        fn after_frame(&self, pendulum: &Pendulum<f64>, start: &State<f64>) -> State<f64> {
+            let longest = pendulum.admissible_step(start).expect("a motion") / 8.0;
+            let steps = steps_to_frame(Method::Rk4F64, 60, longest);
+            let dt = 1.0 / (60.0 * f64::from(steps));
+            (0..steps).fold(*start, |state, _| pendulum.step(&state, dt))
+        }
+
+        /// Returns the Jacobian matrix of a frame, in units of `scales`, by central differences.
+        fn jacobian(
+            &self,
+            pendulum: &Pendulum<f64>,
+            start: &State<f64>,
+            scales: [f64; 2],
+        ) -> Matrix {
+            const STEP: f64 = 1e-6;
+            let columns: Matrix = core::array::from_fn(|j| {
+                let [less, more] = [-STEP, STEP].map(|by| {
+                    let mut change = [0.0; 4];
+                    change[j] = by;
+                    self.after_frame(pendulum, &beside(start, change, scales))
+                });
+                let [s1, s2] = scales;
+                let change = [
+                    more.a1 - less.a1,
+                    more.a2 - less.a2,
+                    (more.p1 - less.p1) / s1,
+                    (more.p2 - less.p2) / s2,
+                ];
+                change.map(|change| change / (2.0 * STEP))
+            });
+            core::array::from_fn(|i| columns.map(|column| column[i]))
+        }
+    }
+
+    /// The number of frames after which the two errors are compared. At first the shadows lag
+    /// behind, because errors are only added when they are started again.
+    const FIRST_FRAMES: u32 = 120;
+    /// The steps per frame of the run in 64 bits, which is only assumed.
+    const FINE_STEPS: u32 = 12;
+
+    /// Returns the root of the expected square of the distance of two frames, in the unit of
+    /// `rods`, if the covariance matrix of the error is `root` times its transpose.
+    fn expected_distance([l1, l2]: [f64; 2], state: &State<f64>, root: &Matrix) -> f64 {
+        let [a1, a2, ..] = root;
+        let bob1 = l1 * l1 * dot(a1, a1);
+        let relative = l2 * l2 * dot(a2, a2);
+        let cos = libm::cos(state.a1 - state.a2);
+        let bob2 = bob1 + relative + 2.0 * l1 * l2 * cos * dot(a1, a2);
+        libm::sqrt(bob1.max(relative).max(bob2))
+    }
+
+    /// Returns the smallest and the largest ratio of the error that shadows by `method` show to the
+    /// error that random errors of the start and of every frame cause. The covariance matrix of the
+    /// latter is propagated by the Jacobian matrix of every frame.
+    fn ratios(case: &Case, method: Method) -> Result<[f64; 2], Error> {
+        let problem = case.problem();
+        let pendulum = Pendulum::new(&problem.pendulum)?;
+        let mut state = pendulum.to_state(&problem.start);
+        let rods = [problem.pendulum.l1, problem.pendulum.l2].map(|l| l / problem.tolerance);
+
+        // Prepare the shadows.
+        let scales = scales(&pendulum, &state);
+        let admissible = pendulum.admissible_step(&state)?;
+        let stepping = Shadows::stepping(method, problem.rate, admissible);
+        let mut shadows = Shadows::new(stepping, &problem, scales, admissible, FINE_STEPS);
+        while !shadows.are_prepared() {
+            shadows.prepare(&problem, &state)?;
+        }
+        let has_finer_steps = shadows.runs[0].stepping != stepping;
+        assert_eq!(
+            has_finer_steps,
+            case.needs_finer_steps && method == Method::Rk4Fixed32
+        );
+
+        // Begin with a root of the covariance matrix of the start.
+        let [of_start, _] = ROUNDING.map(f64::from);
+        let mut root = [[0.0; 4]; 4];
+        let [s1, s2] = scales;
+        for (i, share) in [1.0, 1.0, state.p1 / s1, state.p2 / s2]
+            .into_iter()
+            .enumerate()
+        {
+            root[i][i] = of_start * share;
+        }
+
+        let mut ratios = [f64::INFINITY, 0.0];
+        for frame in 1..=problem.frames() {
+            // Propagate the error by the Jacobian matrix, and add that of the frame.
+            let columns = |row: [f64; 4]| {
+                core::array::from_fn(|column| (0..4).map(|j| row[j] * root[j][column]).sum())
+            };
+            let propagated = case.jacobian(&pendulum, &state, scales).map(columns);
+            let variance = f64::from(shadows.frame_error).powi(2);
+            root = cholesky(&propagated, variance, variance);
+
+            // Advance the shadows and the motion to the frame.
+            if shadows.is_due() {
+                shadows.start_again(&state);
+            }
+            for run in shadows.runs() {
+                let steps = run.stepping.steps;
+                run.motion.as_mut().expect("prepared").advance(steps);
+            }
+            state = case.after_frame(&pendulum, &state);
+            let shown = f64::from(shadows.compare(rods.map(|rod| rod as f32)));
+
+            // Compare the two.
+            let ratio = shown / expected_distance(rods, &state, &root);
+            assert!(ratio.is_finite(), "frame {frame}: {shown}");
+            if frame > FIRST_FRAMES {
+                let [least, most] = ratios;
+                ratios = [least.min(ratio), most.max(ratio)];
+            }
+        }
+        Ok(ratios)
+    }
+
+    /// The shadows show the rounding error that random errors of the start and of all frames cause.
+    #[test]
+    fn shadows_show_the_expected_error_of_roundings_in_all_frames() -> Result<(), Error> {
+        for case in &CASES {
+            for method in [Method::Rk4Fixed32, Method::Rk4F32Direction] {
+                let [least, most] = ratios(case, method)?;
+                let [lowest, highest] = case.ratios;
+                assert!(
+                    lowest < least && most < highest,
+                    "m2 = {}, l2 = {}, {method:?}: {least} to {most}",
+                    case.m2,
+                    case.l2
+                );
+            }
+        }
+        Ok(())
+    }
+
+    /// At 1 frame per second an error in rods of 1 cm grows by more than shadows can show. Then it
+    /// is unknown, instead of too small.
+    #[test]
+    fn error_of_shadows_too_far_apart_is_unknown() -> Result<(), Error> {
+        let problem = Problem {
+            pendulum: Parameters::equal_rods(1.0, 0.01, 9.81),
+            start: Motion::at_rest(2.5, 2.5),
+            tolerance: 1e-3,
+            duration: 1.0,
+            rate: 1,
+        };
+        let pendulum = Pendulum::new(&problem.pendulum)?;
+        let start = pendulum.to_state(&problem.start);
+        let admissible = pendulum.admissible_step(&start)?;
+        let stepping = Shadows::stepping(Method::Rk4Fixed32, 1, admissible);
+        let scales = scales(&pendulum, &start);
+        let mut shadows = Shadows::new(stepping, &problem, scales, admissible, FINE_STEPS);
+        while !shadows.are_prepared() {
+            shadows.prepare(&problem, &start)?;
+        }
+        for run in shadows.runs() {
+            let steps = run.stepping.steps;
+            run.motion.as_mut().expect("prepared").advance(steps);
+        }
+        assert!(shadows.compare([1.0; 2]).is_nan());
+        Ok(())
+    }
+
+    /// The product of the Cholesky factor with its transpose is D D^T + v I, to 1e-14. If that is
+    /// singular, the factor is finite, and its diagonal elements have the least square.
+    #[test]
+    fn cholesky_factor_is_a_root_of_the_matrix() {
+        let rows = [
+            [1.0, 0.0, 0.1, 0.0],
+            [2.0, 1.5, -0.7, 0.0],
+            [-1.0, 0.3, 1.0, 0.0],
+            [0.5, -0.2, 0.0, 0.4],
+        ];
+        let factor = cholesky(&rows, 0.25, 0.0);
+        for i in 0..4 {
+            for j in 0..4 {
+                let variance = if i == j { 0.25 } else { 0.0 };
+                let expected = dot(&rows[i], &rows[j]) + variance;
+                let product = dot(&factor[i], &factor[j]);
+                assert!(
+                    (product - expected).abs() < 1e-14,
+                    "{i} {j}: {product} {expected}"
+                );
+                assert!(j <= i || factor[i][j] == 0.0);
+            }
+        }
+
+        let singular = cholesky(&rows.map(|[first, ..]| [first, 0.0, 0.0, 0.0]), 0.0, 1e-6);
+        assert_eq!([1, 2, 3].map(|i| singular[i][i]), [1e-3; 3]);
+    }
 }

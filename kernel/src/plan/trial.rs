@@ -5,14 +5,15 @@
 //! The reference is a pair of runs in 64 bits. The *fine* run has more steps, and the *coarse* run
 //! has about three quarters of them. Both have the same order p = 10. The truncation error of the
 //! coarse run is therefore (fine/coarse)^p times as large, and the distance between the two
-//! measures it.
+//! measures it. If the steps of the fine run do not resolve the motion, its error is assumed to be
+//! as large as this distance.
 //!
 //! The rounding errors of the two runs are too similar to be measured by their distance. Their size
 //! is known where they arise. Their growth since then is measured by *shadows* ([`Shadows`]).
 //!
 //! | error | upper bound |
 //! |---|---|
-//! | fine run | the share of the distance to the coarse run due to truncation, plus rounding |
+//! | fine run | a share of the distance to the coarse run, plus rounding |
 //! | coarse run | the distance to the fine run, plus the error of the fine run |
 //! | 32 bits, closed form | the distance to the fine run, plus its truncation error |
 //!
@@ -30,7 +31,7 @@ use super::candidate::{Candidate, distance, greater};
 use super::cost::{Costs, Pair, Stepping};
 use super::problem::{NONE, PERTURBATIONS, Problem};
 use super::run::Directions;
-use super::shadow::Shadows;
+use super::shadow::{Shadows, scales};
 use crate::error::Error;
 use crate::methods::any::{DrawnMotion32, DrawnMotion64};
 use crate::methods::{ClosedFormF32, FormOperations, SmallOscillations};
@@ -217,8 +218,8 @@ pub(super) struct Trial {
     single: [Run<DrawnMotion32>; 5],
     /// The coarse and the fine run of the reference.
     double: [Run<DrawnMotion64>; 2],
-    /// The reference: the coarse and the fine run. Without one, the error bounds are rough.
-    pub reference: Option<Pair>,
+    /// True if the trial is compared with a reference. Otherwise the error bounds are rough.
+    has_reference: bool,
     /// The shadows of the fine run. Unused while no candidate in 64 bits is accurate.
     shadows: Shadows,
     /// True if the trial began with a candidate in 64 bits. False until the caller sets it, because
@@ -234,6 +235,8 @@ pub(super) struct Trial {
     /// True if the rounding error is larger than the truncation error, of the single candidate or
     /// of the fine run.
     by_rounding: bool,
+    /// The share of the distance of the reference's runs that bounds the error of the fine run.
+    share_of_fine: f32,
     /// True if bob 2 is heavy.
     is_heavy: bool,
     /// The factor on the bound of an error that is measured by runs in finer steps, for errors that
@@ -324,19 +327,26 @@ impl Trial {
             1.0
         };
 
-        let start = Pendulum::new(pendulum).map(|pendulum| pendulum.to_state(start));
-        let closed =
-            start.and_then(|start| ClosedFormF32::new(pendulum, &start, 1.0 / f64::from(*rate)));
+        // A pendulum that is refused is reported later; until then nothing can move.
+        let known = Pendulum::new(pendulum).and_then(|pendulum| {
+            let start = pendulum.to_state(start);
+            let scales = scales(&pendulum, &start);
+            Ok((start, scales, pendulum.admissible_step(&start)?))
+        });
+        let nothing = (State::at_rest(0.0, 0.0), [1.0; 2], f64::INFINITY);
+        let (start, scales, admissible) = known.unwrap_or(nothing);
+        let closed = ClosedFormF32::new(pendulum, &start, 1.0 / f64::from(*rate));
         Self {
             single: single.map(Run::new),
             double: [pair.coarse, pair.fine].map(Run::new),
-            reference,
-            shadows: Shadows::new(shadow, problem, pair.fine.steps),
+            has_reference,
+            shadows: Shadows::new(shadow, problem, scales, admissible, pair.fine.steps),
             tries_64_bits: false,
             closed: closed.ok().map(|closed| closed.oscillations),
             rods: [pendulum.l1, pendulum.l2].map(|l| (l / problem.tolerance) as f32),
             candidates,
             by_rounding: false,
+            share_of_fine: pair.share_of_fine(*rate, admissible),
             is_heavy,
             alike,
         }
@@ -344,7 +354,13 @@ impl Trial {
 
     /// Returns true if the trial is compared with a reference in 64 bits.
     pub fn has_reference(&self) -> bool {
-        self.reference.is_some()
+        self.has_reference
+    }
+
+    /// Returns the reference: the coarse and the fine run.
+    pub fn reference(&self) -> Option<Pair> {
+        let [coarse, fine] = self.double.each_ref().map(|run| run.stepping);
+        self.has_reference.then_some(Pair { coarse, fine })
     }
 
     /// Returns the cost of a frame of a trial of `stepping` that is compared with a reference, in
@@ -389,7 +405,7 @@ impl Trial {
 
     /// Returns the runs in 32 bits that are still needed, with their indices.
     fn single(&mut self) -> impl Iterator<Item = (usize, &mut Run<DrawnMotion32>)> {
-        let all = self.reference.is_none();
+        let all = !self.has_reference;
         let [own, second, third, plain, ..] =
             self.candidates.each_ref().map(Candidate::is_accurate);
         let needed = [all || own, all || second, all || third, plain, all];
@@ -399,7 +415,7 @@ impl Trial {
 
     /// Returns the runs of the reference, or no runs without a reference.
     fn double(&mut self) -> &mut [Run<DrawnMotion64>] {
-        if self.reference.is_some() {
+        if self.has_reference {
             &mut self.double
         } else {
             &mut []
@@ -412,8 +428,8 @@ impl Trial {
         self.shadows.runs().filter(move |_| are_needed)
     }
 
-    /// Prepares one motion, or draws back a shadow that is too far from the fine run. Returns true
-    /// if it has done either, and false if all motions are prepared and no shadow is too far.
+    /// Prepares one motion, or starts all shadows again if that is due. Returns true if it has done
+    /// either, and false if there is nothing to prepare.
     ///
     /// Runs that are no longer needed are not prepared. `problem` must be that of
     /// [`new`](Self::new); this is not checked.
@@ -424,10 +440,21 @@ impl Trial {
     /// # Errors
     ///
     /// Refuses a pendulum that [`Pendulum::new`] refuses. Returns the error of a method that
-    /// refuses the motion and, if it is perturbed or a shadow, its opposite. The trial is unchanged
-    /// then; another call returns the same error.
+    /// refuses the motion and, if it is perturbed or a shadow, its opposite. Another call then
+    /// returns the same error.
     #[inline(never)] // Its motions would be on the stack of every piece.
     pub fn prepare(&mut self, problem: &Problem) -> Result<bool, Error> {
+        // All shadows, again.
+        if self.must_prepare() {
+            self.start_shadows_again();
+            return Ok(true);
+        }
+
+        // Creating the pendulum is expensive, so this is checked first.
+        if self.is_prepared() {
+            return Ok(false);
+        }
+
         let has_reference = self.has_reference();
         let start = Pendulum::new(&problem.pendulum)?.to_state(&problem.start);
         let dt = |steps: u32| 1.0 / (f64::from(problem.rate) * f64::from(steps));
@@ -458,35 +485,41 @@ impl Trial {
         }
 
         // A shadow.
-        if self.has_candidate_in_64_bits() {
-            return self.shadows.prepare(problem, &self.fine_state(&start));
-        }
-        Ok(false)
+        self.shadows.prepare(problem, &start)?;
+        Ok(true)
     }
 
-    /// Returns true if a shadow must be drawn back by [`prepare`](Self::prepare) before the next
-    /// frame. Otherwise its own errors spoil the comparison. Motions that are not prepared yet do
-    /// not count.
-    pub fn must_prepare(&mut self) -> bool {
-        self.has_candidate_in_64_bits() && self.shadows.must_prepare()
+    /// Returns true if all motions that are needed are prepared.
+    fn is_prepared(&mut self) -> bool {
+        let needs_shadows = self.has_candidate_in_64_bits();
+        self.single().all(|(_, run)| run.motion.is_some())
+            && self.double().iter().all(|run| run.motion.is_some())
+            && (!needs_shadows || self.shadows.are_prepared())
     }
 
-    /// Returns the state of the fine run, or `start` before the first frame is compared.
-    fn fine_state(&self, start: &State<f64>) -> State<f64> {
+    /// Starts all shadows again at the present state of the fine run, or does nothing if that is
+    /// not prepared.
+    #[inline(never)] // Counted by its name, as the price of a preparation.
+    fn start_shadows_again(&mut self) {
         let [_, fine] = &self.double;
-        match &fine.motion {
-            Some(motion) if self.shadows.has_begun() => motion.state(),
-            _ => *start,
+        if let Some(fine) = &fine.motion {
+            self.shadows.start_again(&fine.state());
         }
     }
 
-    /// Makes steps of one motion towards the next frame: as many as `cost` pays for, but at least
-    /// one, also if `cost` is 0, negative or NaN. All motions must be prepared; this is not
-    /// checked.
+    /// Returns true if [`prepare`](Self::prepare) must start the shadows again before the next
+    /// frame. Motions that are not prepared yet do not count.
+    pub fn must_prepare(&self) -> bool {
+        self.has_candidate_in_64_bits() && self.shadows.is_due()
+    }
+
+    /// Makes steps of one motion, or of several shadows, towards the next frame: as many as `cost`
+    /// pays for, but at least one, also if `cost` is 0, negative or NaN. All motions must be
+    /// prepared; this is not checked.
     ///
     /// Returns the cost of these steps, in the unit of `costs`; 0 if every motion has reached the
-    /// frame. `cost` has the same unit; an infinite one pays for all steps of a motion to the
-    /// frame. The prices must be more than 0.
+    /// frame. `cost` has the same unit; an infinite one pays for all steps of a motion, or
+    /// of all shadows, to the frame. The prices must be more than 0.
     pub fn advance(&mut self, costs: &Costs, cost: f32) -> f32 {
         let mut spent = 0.0;
 
@@ -506,11 +539,15 @@ impl Trial {
             }
         }
 
-        // Last the shadows, which only candidates in 64 bits need.
+        // Advance the shadows last, which only candidates in 64 bits need. They cost little, so
+        // that one piece may advance several of them.
         for run in self.shadows() {
-            spent = run.advance(costs, cost);
-            if spent > 0.0 {
-                break;
+            let step = costs.of_frame(Stepping {
+                steps: 1,
+                ..run.stepping
+            });
+            if spent == 0.0 || spent + step <= cost {
+                spent += run.advance(costs, cost - spent);
             }
         }
         spent
@@ -530,7 +567,7 @@ impl Trial {
         let in_32_bits = [own, second, third, plain, closed];
 
         // Without a reference: the distances of the candidate to the finer runs.
-        let Some(pair) = self.reference else {
+        if !self.has_reference {
             let others = [second, third, fourth].map(|other| distance(self.rods, &own, &other));
             let greatest = others.into_iter().fold(0.0, greater);
             self.by_rounding = others.into_iter().any(|other| 2.0 * other < greatest);
@@ -540,12 +577,12 @@ impl Trial {
                 candidate.note(beside + greatest, beside + bound);
             }
             return;
-        };
+        }
 
         // With a reference: the error of the fine run by truncation, and the candidates in 32 bits.
         let [coarse, fine] = self.double.each_mut().map(Run::frame);
         let spread = distance(self.rods, &coarse, &fine);
-        let of_fine = spread * pair.share_of_fine();
+        let of_fine = spread * self.share_of_fine;
         let unresolved = if self.is_heavy { UNRESOLVED } else { 1.0 };
         let bound_of_fine = unresolved * of_fine;
         for (candidate, shown) in self.candidates.iter_mut().zip(in_32_bits) {
@@ -555,7 +592,7 @@ impl Trial {
 
         // The candidates in 64 bits. Their bounds include grown rounding errors.
         if self.has_candidate_in_64_bits() {
-            let rounding = self.shadows.compare(self.rods, &fine);
+            let rounding = self.shadows.compare(self.rods);
             let bound_of_coarse = unresolved * BESIDE_REFERENCE * spread + bound_of_fine;
             self.by_rounding = if self.candidates[FINE].is_accurate() {
                 rounding > bound_of_fine

@@ -348,16 +348,6 @@ fn short_rods_keep_their_horizons() {
     }
 }
 
-/// The horizons of two high starts are too long on a Cortex-M3. This failure is known; when it is
-/// repaired, the scenes belong to [`scenes::hard`].
-#[test]
-fn two_high_starts_have_too_long_horizons() {
-    for scene in scenes::known_failures() {
-        let case = Case::new(&scene, &CHIPS[0], &mut Exact::new(&scene));
-        assert!(case.is_violation(), "{case:?}");
-    }
-}
-
 /// Studies a whole class. At most [`VIOLATIONS`] plans for each processor and seed may have an
 /// inaccurate frame before the predicted horizon, of at most [`LARGEST`] half pixels.
 ///
