@@ -6,7 +6,7 @@ use std::fs::File;
 use std::path::PathBuf;
 
 use anyhow::{Context, Result};
-use cycles::{Calls, Core, Cost, Image, Stream, for_each_instruction};
+use cycles::{Calls, Core, Cost, Image, for_each_instruction};
 use double_pendulum::Method;
 use double_pendulum::plan::Costs;
 use firmware::job::Request;
@@ -20,33 +20,47 @@ use emulator::boards::Board;
 use emulator::qemu::{Clock, Machine, Settings};
 use emulator::toolchain::{Toolchain, workspace};
 
-/// The functions that show a frame, as path of the module and name. They draw the frame, and send
-/// it to the panel and over the link. They are not inlined, and each exists once in a program.
-const SHOWING: [(&str, &str); 7] = [
+/// A function of an application: the path of its module, and its name. It is not inlined, and
+/// exists once in a program.
+type Place = (&'static str, &'static str);
+
+/// The functions that compute and draw a scene.
+const SCENE: [Place; 3] = [
+    ("firmware::app::player::", "::tick"),
+    ("firmware::app::player::", "::check"),
+    ("firmware::app::player::", "::draw"),
+];
+
+/// The function that sends a frame to the panel and over the link.
+const SENDING: Place = ("firmware::app::App", "::show");
+
+/// The functions that show a frame: they draw it, and send it to the panel and over the link.
+const SHOWING: [Place; 7] = [
     ("firmware::graphics::brush::", "::lighten"),
     ("firmware::graphics::canvas::", "::fade"),
     ("firmware::graphics::canvas::", "::scroll"),
     ("firmware::app::player::", "::draw"),
     ("firmware::app::player::", "::check"),
-    ("firmware::app::App", "::show"),
+    SENDING,
     ("firmware::board::cortex_m::retained::", "keep"),
 ];
 
 /// The cost of one frame of an application: executed instructions (exact) and cycles (estimated).
+/// All functions that the named ones call, and interrupts meanwhile, are included.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct FrameProfile {
-    /// The cost of everything that the board executes until the frame is complete, from its stop
-    /// before: usually the end of the frame before. Interrupts count, the time asleep does not.
-    pub whole: Cost,
-    /// The part of the cost in the functions that show the frame: they draw it, and send it to the
-    /// panel and over the link. All functions that they call, and interrupts meanwhile, are
-    /// included.
+    /// The cost of computing and drawing the scene.
+    pub scene: Cost,
+    /// The cost of computing, drawing and sending: what a frame must do. Planning in the time that
+    /// is left is not included.
+    pub busy: Cost,
+    /// The cost of drawing the frame, and of sending it to the panel and over the link.
     pub showing: Cost,
 }
 
 impl FrameProfile {
-    /// Runs `board` to its next frame and profiles everything that it executes from where it is
-    /// stopped. `image` is the program that runs on it, and `core` its core. The machine is stopped
+    /// Runs `board` to its next frame and profiles what it executes from where it is stopped.
+    /// `image` is the program that runs on it, and `core` its core. The machine is stopped
     /// afterwards, and the messages up to the frame are dropped.
     ///
     /// Not checked: the machine must be from [`Machine::halted`] and stopped after a frame
@@ -55,13 +69,22 @@ impl FrameProfile {
     /// application that show a frame, that an instruction has no known timing, that the board
     /// sleeps 1000 times without a frame, or that QEMU ends.
     pub fn of_next(board: &mut Machine, image: &Image, core: Core) -> Result<Self> {
-        let showing = SHOWING
-            .into_iter()
-            .map(|(module, name)| address(image, module, name));
-        let (whole, calls) = next_frame(board, image, core, showing.collect::<Result<_>>()?)?;
+        let busy = [&SCENE[..], &[SENDING]].concat();
+        let parts = [&SCENE[..], &busy, &SHOWING].map(|places| {
+            let addresses = places
+                .iter()
+                .map(|(module, name)| address(image, module, name));
+            addresses.collect::<Result<BTreeSet<u32>>>()
+        });
+        let [scene, busy, showing] = parts;
+        let parts = [scene?, busy?, showing?];
+
+        let [scene, busy, showing] =
+            board.next_frame_logged(|log| calls_in(log, image, core, parts))?;
         Ok(Self {
-            whole,
-            showing: calls.cost(),
+            scene: scene.cost(),
+            busy: busy.cost(),
+            showing: showing.cost(),
         })
     }
 }
@@ -79,34 +102,19 @@ fn address(image: &Image, module: &str, name: &str) -> Result<u32> {
         .ok_or_else(|| image.lacks(&format!("{module}..{name}")))
 }
 
-/// Runs `board` to its next frame. Returns the cost of that, and the calls of the functions that
-/// begin at `entries`.
-fn next_frame<'a>(
-    board: &mut Machine,
+/// Returns the calls in a log of the functions that begin at the given addresses: for each set of
+/// addresses, the calls from outside these functions.
+fn calls_in<'a, const N: usize>(
+    mut log: File,
     image: &'a Image,
     core: Core,
-    entries: BTreeSet<u32>,
-) -> Result<(Cost, Calls<'a>)> {
-    board.next_frame_logged(|log| costs_in(log, image, core, entries))
-}
-
-/// Returns the cost of everything in a log, and the calls of the functions that begin at `entries`.
-fn costs_in(
-    mut log: File,
-    image: &Image,
-    core: Core,
-    entries: BTreeSet<u32>,
-) -> Result<(Cost, Calls<'_>)> {
-    let mut whole = Cost::default();
-    let mut stream = Stream::of(image, core);
-    let mut calls = Calls::of(image, core, entries);
+    entries: [BTreeSet<u32>; N],
+) -> Result<[Calls<'a>; N]> {
+    let mut calls = entries.map(|entries| Calls::of(image, core, entries));
     for_each_instruction(&mut log, &mut |registers| {
-        whole += stream
-            .see(registers)?
-            .map_or(Cost::default(), |(.., cost)| cost);
-        calls.see(registers)
+        calls.iter_mut().try_for_each(|calls| calls.see(registers))
     })?;
-    Ok((whole, calls))
+    Ok(calls)
 }
 
 /// The file of the price lists.
@@ -124,9 +132,10 @@ const MARKS: [&str; 2] = [
 /// price.
 ///
 /// The costs are in cycles (estimated). `preparation` is per motion: the most expensive one when
-/// each method in turn is selected in the application. `fixed64` is per step: the most expensive
-/// one in a frame of the application. All others are per step of 1/256 s, averages over a motion of
-/// equal rods and bobs from rest at 0.5 rad.
+/// each method in turn is selected in the application, or the first time that the application
+/// starts the shadows of its plan again, whichever is more. `fixed64` is per step: the most
+/// expensive one in a frame of the application. All others are per step of 1/256 s, averages over a
+/// motion of equal rods and bobs from rest at 0.5 rad.
 pub fn prices(toolchain: &Toolchain) -> Result<Vec<(&'static Board, Costs)>> {
     let targets = Target::build_all(toolchain)?;
     targets
@@ -160,9 +169,11 @@ fn on(target: &Target, toolchain: &Toolchain) -> Result<Costs> {
 const STEP: &str = "Fixed64State::advance";
 /// The function that prepares a motion.
 const PREPARATION: &str = "PlannedRun::new";
+/// The function that starts the shadows of a plan again.
+const START: &str = "Trial::start_shadows_again";
 
 /// Returns the costs that only the application has: a 64-bit fixed-point step of the plans' order,
-/// and the most expensive preparation of a motion.
+/// and the most expensive preparation.
 fn in_application(board: &'static Board, toolchain: &Toolchain) -> Result<(f32, f32)> {
     let elf = toolchain.build_for(board)?;
     let image = Image::read(&elf)?;
@@ -181,16 +192,22 @@ fn in_application(board: &'static Board, toolchain: &Toolchain) -> Result<(f32, 
     let mut machine = Machine::halted(&settings)?;
     machine.run_to_frame()?;
     let step = BTreeSet::from([image.function(STEP)?.address]);
-    let (_, steps) = next_frame(&mut machine, &image, board.core(), step)?;
+    let [steps] = machine.next_frame_logged(|log| calls_in(log, &image, board.core(), [step]))?;
     let fixed64 = most(STEP, &steps.ended)?;
+
+    // The application plans its first scene.
+    let start = image.function(START)?.address;
+    let [calls] = machine.next_call_logged(start, |log| {
+        calls_in(log, &image, board.core(), [BTreeSet::from([start])])
+    })?;
+    let mut prepared = most(START, &calls.ended)?;
 
     // A motion is prepared whenever the method changes, so every method is selected once.
     let preparation = image.function(PREPARATION)?.address;
-    let mut prepared: f32 = 0.0;
     for &method in Method::DRAWN {
         machine.send(1, Command::Method(Some(method)))?;
-        let (_, calls) = machine.next_call_logged(preparation, |log| {
-            costs_in(log, &image, board.core(), BTreeSet::from([preparation]))
+        let [calls] = machine.next_call_logged(preparation, |log| {
+            calls_in(log, &image, board.core(), [BTreeSet::from([preparation])])
         })?;
         prepared = prepared.max(most(PREPARATION, &calls.ended)?);
         machine.run_to_frame()?;
