@@ -724,6 +724,33 @@ fn a_horizon_that_finer_steps_would_extend_is_limited_by_planning() -> Result<()
     Ok(())
 }
 
+/// At 1 frame per second, errors in rods of 1 cm grow by more within the first frame than the
+/// planner can measure. Finer steps and larger budgets cannot help, so that growth is the limit.
+#[test]
+fn growth_that_cannot_be_measured_is_the_limit() {
+    let pendulum = Parameters::equal_rods(1.0, 0.01, 9.81);
+    let problem = Problem {
+        pendulum,
+        start: Motion::at_rest(2.5, 2.5),
+        tolerance: half_pixel(&pendulum, 64.0),
+        duration: 10.0,
+        rate: 1,
+    };
+    let budget = Budget {
+        frame: 1.4e7,
+        planning: 1e10,
+    };
+    let plan = Plan::search(&problem, &M3, &budget);
+    let is_growth = matches!(
+        plan,
+        Err(PlanError::NoMethod {
+            limit: Limit::Growth,
+            ..
+        })
+    );
+    assert!(is_growth, "{plan:?}");
+}
+
 /// The limit without a method is the budget to raise: the planning budget if an affordable
 /// candidate has not failed yet, otherwise the frame budget.
 ///

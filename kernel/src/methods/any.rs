@@ -170,7 +170,7 @@ impl DrawnMotion32 {
         })
     }
 
-    /// Starts the motion again at `start`, with the same pendulum and the same constants, as
+    /// Restarts the motion at `start`, with the same pendulum and the same constants, as
     /// [`FormOperations::started`] does. The energy of `start` must not be much larger than that
     /// of the first start, because the constants were chosen for that; this is not checked.
     /// `rk4-fixed32` has room for an eighth more.
@@ -179,7 +179,7 @@ impl DrawnMotion32 {
     ///
     /// Refuses a `start` that is not finite or otherwise out of the range of the method. The motion
     /// is unchanged then.
-    pub(crate) fn start_again(&mut self, start: &State<f64>) -> Result<(), Error> {
+    pub(crate) fn restart(&mut self, start: &State<f64>) -> Result<(), Error> {
         match self {
             Self::ClosedFormF32(motion) => *motion = motion.started(start)?,
             Self::Rk4F32DirectionPlain(motion) => *motion = motion.started(start)?,

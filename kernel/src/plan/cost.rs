@@ -28,8 +28,9 @@ pub struct Costs {
     pub fixed32: f32,
     /// A step by [`Method::Extrapolation10Fixed64`].
     pub fixed64: f32,
-    /// The preparation of a motion by any of these methods, or the start of all shadows again,
-    /// whichever costs more.
+    /// The preparation of a motion by any of these methods, or the restart of all shadows of a
+    /// search, whichever costs more. Shadows are five motions in 32 bits that measure how the
+    /// rounding errors of a run in 64 bits grow.
     pub preparation: f32,
 }
 
@@ -181,7 +182,7 @@ impl Pair {
         Self::new(steps, steps.saturating_add(more).max(least))
     }
 
-    /// Returns six pairs, the finest first: one for each of the [`FINE`] steps of the fine run,
+    /// Returns six pairs, roughly the finest first: one for each of the [`FINE`] steps of the fine run,
     /// from 0.53 to 2.1 admissible steps.
     ///
     /// `rate` is the number of frames per second, and `admissible` the admissible step, s. The fine
@@ -190,10 +191,10 @@ impl Pair {
     /// quarters of them, rounded down, but at least `least`. The fine run always makes more than
     /// the coarse run, even if that is more than 65,536.
     ///
-    /// The coarse run makes at most `most` steps, unless `most` is less than `least`. If `most` is
-    /// less than the usual number, the fine run makes a third more than `most`, and at least as
-    /// many as usual or as steps of 1.1 admissible steps take, whichever is less. Successive pairs
-    /// may be equal.
+    /// The coarse run makes at most `most` steps, unless `most` is less than `least`. If this limit
+    /// applies, the fine run makes a third more steps than `most`, rounded down, but at least one
+    /// more. It makes at least its usual number or the number for 1.1 admissible steps, whichever
+    /// is less. Successive pairs may be equal.
     pub fn all(
         rate: u16,
         admissible: f64,
@@ -216,7 +217,8 @@ impl Pair {
     }
 
     /// Returns true if the distance between both runs measures their own errors, so that they may
-    /// be candidates: if the steps of the fine run are at most 1.1 admissible steps long.
+    /// be candidates: if the steps of the fine run are at most 1.1 admissible steps long, or if it
+    /// makes 65,536 steps per frame.
     pub fn judges_64_bits(&self, rate: u16, admissible: f64) -> bool {
         let longest = LONGEST_IN_64_BITS * admissible;
         self.fine.steps >= steps_to_frame(self.fine.method, rate, longest)

@@ -21,8 +21,8 @@
 //! perturbed by an ulp.
 //!
 //! No run is assumed to be exact. Errors grow along a single direction, and along it two equally
-//! wrong runs may agree by chance. The growth is measured by motions in 32 bits that are kept close
-//! to the one in 64 bits.
+//! wrong runs may agree by chance. The growth is measured by *shadows*: motions in 32 bits that are
+//! kept close to the one in 64 bits.
 //!
 //! # Choice of the method
 //!

@@ -2,9 +2,8 @@
 //!
 //! A run in 64 bits makes a small rounding error in every frame. The motion propagates these errors
 //! and, if it is chaotic, they grow exponentially. Small errors are propagated linearly. Larger
-//! distances therefore grow by the same factors, as long as they stay below about 2^-6 rad, and
-//! such distances can be computed in 32 bits and in coarse steps. A *shadow* is a motion at such a
-//! distance.
+//! distances therefore grow by the same factors, as long as they stay small, and such distances can
+//! be computed in 32 bits and in coarse steps. A *shadow* is a motion at such a distance.
 //!
 //! # The covariance of the errors
 //!
@@ -17,12 +16,13 @@
 //! P = u^2 D D^T + n q^2 I
 //! ```
 //!
-//! where n is the number of frames since the shadows were last started, and u is the error that a
+//! where n is the number of frames since the last restart (see below), and u is the error that a
 //! distance of 1 rad stands for. All five have about the same truncation error, so that it cancels
-//! in D. At the start D is diagonal: both angles are rounded, and the momenta relative to their
-//! values.
+//! in D. At the start D is diagonal, because the four numbers are rounded independently: both
+//! angles by the same amount, and each momentum in proportion to its value.
 //!
-//! The shadows are started again when one is farther than 4 [`NEAR`], or after some time:
+//! The shadows are *restarted* when one is farther than 4 [`NEAR`] from the central one, or after
+//! some time:
 //!
 //! 1. Compute P, and its Cholesky factor L, so that L L^T = P. Any D with the same u^2 D D^T
 //!    represents the same errors.
@@ -30,11 +30,11 @@
 //! 3. Start the central shadow at the state of the fine run of the reference, and the others beside
 //!    it at the columns of L/u. Set n to 0.
 //!
-//! This adds the errors of the last n frames, in all directions. It must happen often at first: a
-//! direction that shrinks at first may be the one that grows most later. An error of a later frame
-//! then grows a hundred times as much as an error of the start. When errors have grown by 1e5, new
-//! ones hardly matter, and the shadows are started again only where distances are no longer small,
-//! or after a long time.
+//! A restart adds the errors of the last n frames, in all four dimensions. Restarts must be
+//! frequent at first: an error that shrinks at first may grow most later, so that the error of a
+//! later frame can grow a hundred times as much as an error of the start. After errors have grown
+//! by 1e5, new ones hardly matter. The shadows are then restarted only if their distances are no
+//! longer small, or after a longer time.
 //!
 //! # The result
 //!
@@ -55,26 +55,27 @@ use crate::table::Method;
 
 /// The longest step of the shadows as a multiple of the admissible step.
 const STEP: f64 = 1.0;
-/// The largest standard deviation that the shadows represent when they are started again, in units
-/// of [`scales`]. At the start, the distance of a shadow that differs in an angle, rad.
+/// The largest standard deviation that the shadows represent after a restart, in units of
+/// [`scales`]. At the start, the distance of a shadow that differs in an angle, rad.
 const NEAR: f64 = 1.0 / (1 << 13) as f64;
-/// The distance at which the shadows are started again, rad.
+/// The distance at which the shadows are restarted, rad.
 const FAR: f32 = 4.0 * NEAR as f32;
-/// The growth of the errors after which new rounding errors hardly matter: the ratio to the larger
-/// one of the errors of the start and of a frame.
+/// The growth of the errors after which new rounding errors hardly matter. It is the error that the
+/// farthest shadow stands for, divided by the error of the start or of a frame, whichever is
+/// larger.
 const GROWN: f32 = 1e5;
-/// The distance at which the shadows are started again after that growth, rad.
+/// The distance at which the shadows are restarted after errors have grown by [`GROWN`], rad.
 const FARTHEST: f32 = 1.0 / (1 << 8) as f32;
 /// The distance beyond which the error is unknown, rad.
 const LARGEST: f32 = 0.25;
-/// The factor on the number of frames between two starts after that growth. With 16, rounding in
-/// the shadows themselves changed their directions: once the error of a frame was 13 times as large
-/// as they showed.
+/// The factor on the number of frames between two restarts after errors have grown by [`GROWN`].
+/// The factor 16 was too large: the rounding errors of the shadows themselves changed the columns
+/// of D, and the error of a frame was 13 times as large as they showed.
 const SELDOM: u32 = 3;
-/// The phase, at the fastest rate, after which the shadows are started again, rad.
+/// The time between two restarts, as the phase that the fastest rate advances in it, rad.
 const PHASE: f64 = 12.0;
-/// The smallest number of frames between two starts that are due by the phase. With a heavy bob 2
-/// that phase may pass in a frame.
+/// The smallest number of frames between two restarts, except those that are due by distance. With
+/// a heavy bob 2, the phase [`PHASE`] may pass within one frame.
 const FEWEST_FRAMES: u16 = 8;
 /// The smallest diagonal element of the Cholesky factor, as a share of the largest standard
 /// deviation. It only avoids a division by almost 0: the digits of the shadows end at 2^-17 of
@@ -85,11 +86,11 @@ const SMALLEST: f64 = 1.0 / (1 << 26) as f64;
 const SHADOWS: usize = 5;
 
 /// The assumed standard deviation of the rounding error of a run in 64 bits: of the start, rad, and
-/// of each step. The errors of the steps of a frame add up linearly, those of different frames as
-/// squares.
+/// of each step, rad. Within a frame the errors of the steps are added; over several frames the
+/// squares of the errors of the frames are added.
 ///
-/// The values are measured, and larger than the errors: with four thirds of them, the largest error
-/// of 2,000 high starts before a horizon that rounding ends was 0.63 tolerances. Test `plan_study`
+/// The values are measured upper estimates. When both were a third larger, the largest error of
+/// 2,000 high starts, before a horizon that rounding ends, was 0.63 tolerances. Test `plan_study`
 /// checks the bound against the exact motion.
 const ROUNDING: [f32; 2] = [9e-16, 3.6e-17];
 
@@ -104,7 +105,7 @@ type Matrix = [[f64; 4]; 4];
 ///
 /// First, [`prepare`](Self::prepare) is called until all [are prepared](Self::are_prepared). For
 /// each frame, all [`runs`](Self::runs) are advanced to the frame, and the frame is
-/// [compared](Self::compare). After that they are [started again](Self::start_again) if that [is
+/// [compared](Self::compare). After that they are [restarted](Self::restart) if that [is
 /// due](Self::is_due).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Shadows {
@@ -112,13 +113,14 @@ pub(super) struct Shadows {
     runs: [Run<DrawnMotion32>; SHADOWS],
     /// The units of the momenta ([`scales`]), kg m^2/s.
     scales: [f64; 2],
-    /// u: the error that a distance of 1 rad stands for, rad.
+    /// u: the error that a distance of 1 rad stands for, rad; NaN after a refused restart.
     unit: f32,
-    /// n: the number of frames since the shadows were started.
+    /// n: the number of frames since the start or the last restart.
     frames: u32,
-    /// The number of frames after which they are started again.
+    /// The number of frames after which they are restarted at the latest; [`SELDOM`] times as many
+    /// once the errors have grown by [`GROWN`].
     most_frames: u16,
-    /// True if the shadows must be started again.
+    /// True if the shadows must be restarted.
     is_due: bool,
     /// q: the rounding error of one frame, rad.
     frame_error: f32,
@@ -165,8 +167,8 @@ impl Shadows {
     }
 
     /// Returns the cost of a frame of shadows that are computed by `stepping`, in the unit of
-    /// `costs`. It includes the share of a frame in the starts that are due by the phase, but not
-    /// those that are due by distance.
+    /// `costs`. It includes the share of a frame in the restarts that are due by the phase, but not
+    /// in those that are due by distance.
     ///
     /// `admissible` is the [longest step that resolves the motion](super::cost::admissible_step),
     /// s, and `frame_rate` is the number of frames per second.
@@ -190,15 +192,16 @@ impl Shadows {
         self.runs.iter().all(|run| run.motion.is_some())
     }
 
-    /// Returns true if the shadows must be [started again](Self::start_again) before the next
+    /// Returns true if the shadows must be [restarted](Self::restart) before the next
     /// frame.
     pub fn is_due(&self) -> bool {
         self.is_due
     }
 
-    /// Prepares one shadow, if any is not prepared, beside `start`, the start of the motion in SI
-    /// units. Or, if the method refuses the steps as too long, gives all shadows finer steps.
-    /// `problem` must be that of [`new`](Self::new); this is not checked.
+    /// Prepares one shadow that is not prepared yet, at or beside `start`, the start of the motion
+    /// in SI units. If the method refuses the steps of the central shadow as too long, this gives
+    /// all shadows finer steps instead. Does nothing if all are prepared. `problem` must be that of
+    /// [`new`](Self::new); this is not checked.
     ///
     /// # Errors
     ///
@@ -211,8 +214,8 @@ impl Shadows {
             return Ok(());
         };
 
-        // At the start both angles are rounded, and the momenta relative to their values. Run 0 is
-        // the central one, and run i + 1 differs in number i of the state.
+        // At the start both angles are rounded by the same amount, and each momentum in proportion
+        // to its value. Run 0 is the central one, and run i + 1 differs in number i of the state.
         let scales = self.scales;
         let [of_p1, of_p2] = scales;
         let shares = [1.0, 1.0, start.p1 / of_p1, start.p2 / of_p2];
@@ -251,11 +254,11 @@ impl Shadows {
         Ok(())
     }
 
-    /// Starts all shadows again beside the state `fine`, and adds the rounding errors of the frames
-    /// since the last start to their differences. `fine` is the state of the fine run at the same
+    /// Restarts all shadows beside the state `fine`, and adds the rounding errors of the frames
+    /// since the last restart to their differences. `fine` is the state of the fine run at the same
     /// frame, in SI units. If the method refuses a shadow, because a number is not finite, the
     /// error is unknown from then on.
-    pub fn start_again(&mut self, fine: &State<f64>) {
+    pub fn restart(&mut self, fine: &State<f64>) {
         // Collect the differences from the central shadow: D, a row for each number of the state.
         let scales = self.scales;
         let places = self.runs.each_ref().map(Place::of);
@@ -268,15 +271,15 @@ impl Shadows {
             }
         }
 
-        // Compute the variance that the last frames add, in units of a distance, and L/u for the
-        // present u.
+        // Compute the variance that the last frames add, in the unit of squared differences, rad^2,
+        // and L/u for the present u.
         let added = f64::from(self.frame_error / self.unit);
         let variance = added * added * f64::from(self.frames);
         let largest = rows.iter().map(|row| dot(row, row)).fold(0.0, f64::max) + variance;
         let factor = cholesky(&rows, variance, SMALLEST * SMALLEST * largest);
 
-        // L is scaled such that the largest standard deviation is near, and u by the inverse
-        // factor, so that the errors stay the same.
+        // Scale L/u such that the largest standard deviation is NEAR, and u by the inverse factor,
+        // so that the represented errors stay the same.
         let deviation = libm::sqrt(largest);
         let scale = NEAR / deviation;
         self.unit *= (deviation / NEAR) as f32;
@@ -291,7 +294,7 @@ impl Shadows {
                     Some(column) => factor.map(|row| scale * row[column % 4]),
                     None => [0.0; 4],
                 };
-                let started = shadow.start_again(&beside(fine, difference, scales));
+                let started = shadow.restart(&beside(fine, difference, scales));
                 if started.is_err() {
                     self.unit = f32::NAN;
                 }
@@ -299,7 +302,7 @@ impl Shadows {
         }
     }
 
-    /// Returns q sqrt(n): the rounding error of all frames since the last start, without its
+    /// Returns q sqrt(n): the rounding error of all frames since the last restart, without its
     /// growth, rad.
     fn recent_error(&self) -> f32 {
         self.frame_error * libm::sqrtf(self.frames as f32)
@@ -309,10 +312,12 @@ impl Shadows {
     /// compared once, in order, because rounding errors add up. All steps towards it must have been
     /// made. Neither is checked. A shadow that is not prepared counts as diverged.
     ///
-    /// Returns an upper bound of the rounding error of a motion in 64 bits, with as many steps as
-    /// [`new`](Self::new) was told, in units of the tolerance. It is exceeded only in rare cases.
-    /// `rods` are the lengths of the rods in the same unit. The result is NaN if the error is
-    /// unknown: once a shadow has diverged, or is farther than [`LARGEST`].
+    /// Returns an upper bound of the rounding error of a motion in 64 bits that makes the `steps`
+    /// per frame of [`new`](Self::new), in units of the tolerance. It is exceeded only in rare
+    /// cases. `rods` are the lengths of the rods in the same unit.
+    ///
+    /// The result is NaN if the error is unknown: if a shadow has diverged or is now farther than
+    /// [`LARGEST`], or if a method has refused a shadow in [`restart`](Self::restart).
     pub fn compare(&mut self, rods: [f32; 2]) -> f32 {
         self.frames = self.frames.saturating_add(1);
 
@@ -326,7 +331,7 @@ impl Shadows {
             squares += shown * shown;
         }
 
-        // Start again when distances are no longer small or when new errors must be added. Once the
+        // Restart when distances are no longer small or when new errors must be added. Once the
         // errors have grown, new ones hardly matter.
         let [of_start, _] = ROUNDING;
         let has_grown = self.unit * farthest > GROWN * greater(of_start, self.frame_error);
@@ -340,25 +345,26 @@ impl Shadows {
             return f32::NAN;
         }
 
-        // Add the errors of the last frames, which the shadows do not contain yet. Bob 2 moves by
-        // at most the sum of the displacements along both rods.
+        // Add the errors of the last frames, which the shadows do not contain yet. If both angles
+        // are wrong by e, bob 2 is displaced by at most e times the sum of the rods' lengths.
         let [rod1, rod2] = rods;
         self.unit * libm::sqrtf(squares) + self.recent_error() * (rod1 + rod2)
     }
 }
 
-/// Returns the number of frames after which the shadows are started again, at most, at `frame_rate`
-/// frames per second. In four `admissible` steps, s, a phase advances by a radian at the fastest
-/// rate that the energy allows. The result is at most 65,535.
+/// Returns the largest number of frames between two restarts before errors have grown: those in
+/// which the fastest rate that the energy allows advances a phase by [`PHASE`], from 8
+/// ([`FEWEST_FRAMES`]) to 65,535. `admissible` is the admissible step, s, in which that rate
+/// advances a phase by 1/4 rad. `frame_rate` is the number of frames per second.
 fn frames_between(admissible: f64, frame_rate: u16) -> u16 {
     let frames = PHASE * 4.0 * admissible * f64::from(frame_rate);
     (frames as u16).max(FEWEST_FRAMES)
 }
 
-/// Returns the units of the momenta p1 and p2, kg m^2/s: the largest ones that the energy of
-/// `start` allows ([`Bounds`]), because rounding errors of fixed point are relative to these. If
-/// the energy is less than a millionth of the one that allows a rod to turn over, it is replaced by
-/// that. Each unit is 1 if nothing can move. The unit of both angles is 1 rad.
+/// Returns the units of the momenta p1 and p2, kg m^2/s: the largest momenta that the energy of
+/// `start` allows ([`Bounds`]), because rounding errors of fixed point are relative to these. An
+/// energy of less than a millionth of the turnover energy counts as that millionth. A unit is 1 if
+/// its bound is 0, because nothing can move. The unit of both angles is 1 rad.
 pub(super) fn scales(pendulum: &Pendulum<f64>, start: &State<f64>) -> [f64; 2] {
     const LEAST: f64 = 1e-6;
     let energy = pendulum.energy_above_rest(start);
@@ -415,7 +421,8 @@ impl Place {
     }
 }
 
-/// Returns the state at a difference from `fine`, whose momenta are in units of `scales`.
+/// Returns the sum of `fine` and `difference`. The momenta of `fine` and of the result are in SI
+/// units, those of `difference` in units of `scales`, which are the last argument.
 fn beside(fine: &State<f64>, difference: [f64; 4], [s1, s2]: [f64; 2]) -> State<f64> {
     let [a1, a2, p1, p2] = difference;
     State {
@@ -577,7 +584,7 @@ mod tests {
     }
 
     /// The number of frames after which the two errors are compared. At first the shadows lag
-    /// behind, because errors are only added when they are started again.
+    /// behind, because errors are only added when they are restarted.
     const FIRST_FRAMES: u32 = 120;
     /// The steps per frame of the run in 64 bits, which is only assumed.
     const FINE_STEPS: u32 = 12;
@@ -639,7 +646,7 @@ mod tests {
 
             // Advance the shadows and the motion to the frame.
             if shadows.is_due() {
-                shadows.start_again(&state);
+                shadows.restart(&state);
             }
             for run in shadows.runs() {
                 let steps = run.stepping.steps;

@@ -428,8 +428,9 @@ impl Trial {
         self.shadows.runs().filter(move |_| are_needed)
     }
 
-    /// Prepares one motion, or starts all shadows again if that is due. Returns true if it has done
-    /// either, and false if there is nothing to prepare.
+    /// Prepares one motion, gives all shadows finer steps because their method refuses the usual
+    /// ones, or restarts all shadows if that is due. Returns true if it has done one of these, and
+    /// false if there is nothing to prepare.
     ///
     /// Runs that are no longer needed are not prepared. `problem` must be that of
     /// [`new`](Self::new); this is not checked.
@@ -440,13 +441,13 @@ impl Trial {
     /// # Errors
     ///
     /// Refuses a pendulum that [`Pendulum::new`] refuses. Returns the error of a method that
-    /// refuses the motion and, if it is perturbed or a shadow, its opposite. Another call then
-    /// returns the same error.
+    /// refuses a motion; a perturbed motion or a shadow counts as refused only if its opposite is
+    /// refused, too. Another call then returns the same error.
     #[inline(never)] // Its motions would be on the stack of every piece.
     pub fn prepare(&mut self, problem: &Problem) -> Result<bool, Error> {
-        // All shadows, again.
+        // A restart of all shadows.
         if self.must_prepare() {
-            self.start_shadows_again();
+            self.restart_shadows();
             return Ok(true);
         }
 
@@ -497,17 +498,17 @@ impl Trial {
             && (!needs_shadows || self.shadows.are_prepared())
     }
 
-    /// Starts all shadows again at the present state of the fine run, or does nothing if that is
-    /// not prepared.
+    /// Restarts all shadows at the present state of the fine run, or does nothing if that is not
+    /// prepared.
     #[inline(never)] // Counted by its name, as the price of a preparation.
-    fn start_shadows_again(&mut self) {
+    fn restart_shadows(&mut self) {
         let [_, fine] = &self.double;
         if let Some(fine) = &fine.motion {
-            self.shadows.start_again(&fine.state());
+            self.shadows.restart(&fine.state());
         }
     }
 
-    /// Returns true if [`prepare`](Self::prepare) must start the shadows again before the next
+    /// Returns true if [`prepare`](Self::prepare) must restart the shadows before the next
     /// frame. Motions that are not prepared yet do not count.
     pub fn must_prepare(&self) -> bool {
         self.has_candidate_in_64_bits() && self.shadows.is_due()
@@ -594,19 +595,21 @@ impl Trial {
         if self.has_candidate_in_64_bits() {
             let rounding = self.shadows.compare(self.rods);
             let bound_of_coarse = unresolved * BESIDE_REFERENCE * spread + bound_of_fine;
-            self.by_rounding = if self.candidates[FINE].is_accurate() {
-                rounding > bound_of_fine
+            // An unknown rounding error has grown too much within a frame.
+            let truncation = if self.candidates[FINE].is_accurate() {
+                bound_of_fine
             } else {
-                rounding > bound_of_coarse
+                bound_of_coarse
             };
+            self.by_rounding = rounding.is_nan() || rounding > truncation;
 
             self.candidates[COARSE].note(spread, bound_of_coarse + rounding);
             self.candidates[FINE].note(of_fine, bound_of_fine + rounding);
         }
     }
 
-    /// Excludes the candidates in 64 bits, because the steps of the reference are too coarse for
-    /// them. The reference goes on without shadows.
+    /// Excludes the candidates in 64 bits, because it is too early for them, or because the steps
+    /// of the reference are too coarse for them. The reference goes on without shadows.
     pub fn exclude_64_bits(&mut self) {
         for in_64_bits in &mut self.candidates[COARSE..] {
             in_64_bits.exclude();

@@ -1,5 +1,6 @@
-//! The costs of a frame of an application: the whole frame, the part that shows it, and the calls
-//! of a function. The planner's price lists are counted here as well.
+//! The costs of a frame of an application: of its scene, of all that a frame must do, and of
+//! showing it; and the costs of the calls of a function. The planner's price lists are counted here
+//! as well.
 
 use std::collections::BTreeSet;
 use std::fs::File;
@@ -66,8 +67,8 @@ impl FrameProfile {
     /// Not checked: the machine must be from [`Machine::halted`] and stopped after a frame
     /// ([`Machine::run_to_frame`]); elsewhere the profile is not of one frame, and another machine
     /// runs to its time limit. An error means that `image` lacks any of the functions of an
-    /// application that show a frame, that an instruction has no known timing, that the board
-    /// sleeps 1000 times without a frame, or that QEMU ends.
+    /// application that compute, draw or send a frame, that an instruction has no known timing,
+    /// that the board sleeps 1000 times without a frame, or that QEMU ends.
     pub fn of_next(board: &mut Machine, image: &Image, core: Core) -> Result<Self> {
         let busy = [&SCENE[..], &[SENDING]].concat();
         let parts = [&SCENE[..], &busy, &SHOWING].map(|places| {
@@ -131,11 +132,11 @@ const MARKS: [&str; 2] = [
 /// instruction has no known timing, or that a counted frame does not call the function with a
 /// price.
 ///
-/// The costs are in cycles (estimated). `preparation` is per motion: the most expensive one when
-/// each method in turn is selected in the application, or the first time that the application
-/// starts the shadows of its plan again, whichever is more. `fixed64` is per step: the most
-/// expensive one in a frame of the application. All others are per step of 1/256 s, averages over a
-/// motion of equal rods and bobs from rest at 0.5 rad.
+/// The costs are in cycles (estimated). `preparation` is the larger of two costs: the most
+/// expensive preparation of a motion when each method in turn is selected in the application, and
+/// the first restart of the shadows of its plan. `fixed64` is per step: the most expensive one in a
+/// frame of the application. All others are per step of 1/256 s, averages over a motion of equal
+/// rods and bobs from rest at 0.5 rad.
 pub fn prices(toolchain: &Toolchain) -> Result<Vec<(&'static Board, Costs)>> {
     let targets = Target::build_all(toolchain)?;
     targets
@@ -169,8 +170,8 @@ fn on(target: &Target, toolchain: &Toolchain) -> Result<Costs> {
 const STEP: &str = "Fixed64State::advance";
 /// The function that prepares a motion.
 const PREPARATION: &str = "PlannedRun::new";
-/// The function that starts the shadows of a plan again.
-const START: &str = "Trial::start_shadows_again";
+/// The function that restarts the shadows of a plan.
+const RESTART: &str = "Trial::restart_shadows";
 
 /// Returns the costs that only the application has: a 64-bit fixed-point step of the plans' order,
 /// and the most expensive preparation.
@@ -196,11 +197,11 @@ fn in_application(board: &'static Board, toolchain: &Toolchain) -> Result<(f32, 
     let fixed64 = most(STEP, &steps.ended)?;
 
     // The application plans its first scene.
-    let start = image.function(START)?.address;
-    let [calls] = machine.next_call_logged(start, |log| {
-        calls_in(log, &image, board.core(), [BTreeSet::from([start])])
+    let restart = image.function(RESTART)?.address;
+    let [calls] = machine.next_call_logged(restart, |log| {
+        calls_in(log, &image, board.core(), [BTreeSet::from([restart])])
     })?;
-    let mut prepared = most(START, &calls.ended)?;
+    let mut prepared = most(RESTART, &calls.ended)?;
 
     // A motion is prepared whenever the method changes, so every method is selected once.
     let preparation = image.function(PREPARATION)?.address;
