@@ -8,7 +8,7 @@
 /// the map of flips on the latter. The rest is for the panel's bus, the serial link, commands, and
 /// requested motions.
 pub const SCENE: f64 = 0.55;
-/// The same for the page, the first scene, on a Cortex-M3 at 50 MHz.
+/// The largest part of a frame, as [`SCENE`], that the page may take on a Cortex-M3 at 50 MHz.
 pub const PAGE: f64 = 0.15;
 /// The largest cost of drawing and sending a frame of any scene on a Cortex-M3, cycles, without the
 /// computation of its motion. It is 13 % of 1/60 s at 50 MHz. The most expensive scene, figure 7,

@@ -45,8 +45,8 @@ const NO_PANEL: &str = "panel: absent";
 /// found.
 const MOST_CYCLES: f64 = 3.0;
 /// The number of frames that are profiled if a scene may exceed its budget or leave less than
-/// [`budgets::IDLE`]. One is not enough, because in the map of flips the cycles per
-/// instruction vary by 4 % from frame to frame.
+/// [`budgets::IDLE`]. One is not enough, because in the map of flips the cycles per instruction
+/// vary by 4 % from frame to frame.
 const PROFILED: usize = 4;
 
 /// Returns the number of frames of a scene in a short run.

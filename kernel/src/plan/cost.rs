@@ -182,8 +182,9 @@ impl Pair {
         Self::new(steps, steps.saturating_add(more).max(least))
     }
 
-    /// Returns six pairs, roughly the finest first: one for each of the [`FINE`] steps of the fine run,
-    /// from 0.53 to 2.1 admissible steps.
+    /// Returns six pairs, one for each of the [`FINE`] steps of the fine run, from 0.53 to 2.1
+    /// admissible steps. The finest comes first, except that the fine run of a pair limited by
+    /// `most` may make one step less than that of the next pair.
     ///
     /// `rate` is the number of frames per second, and `admissible` the admissible step, s. The fine
     /// run makes from 2 to 65,536 ([`MOST_STEPS`]) steps per frame: 65,536 if `rate` or
