@@ -44,10 +44,11 @@ const NO_PANEL: &str = "panel: absent";
 /// The largest number of cycles per instruction, averaged over the work of a frame; 1.1 to 1.9 were
 /// found.
 const MOST_CYCLES: f64 = 3.0;
-/// The number of frames that are profiled if a scene may exceed its budget or leave less than
-/// [`budgets::IDLE`]. One is not enough, because in the map of flips the cycles per instruction
-/// vary by 4 % from frame to frame.
+/// The number of frames that are profiled if a scene takes more than this share of one of its
+/// budgets. One is not enough then, because in the map of flips the cycles per instruction vary by
+/// 4 % from frame to frame.
 const PROFILED: usize = 4;
+const NEAR: f64 = 0.9;
 
 /// Returns the number of frames of a scene in a short run.
 ///
@@ -234,27 +235,42 @@ fn plays(
                 budgets::SCENE
             };
 
-            // Logging a frame takes seconds. If a scene may exceed its budgets, several frames are
-            // profiled, otherwise one on the M3 and none on the other cores.
-            let may_exceed =
-                MOST_CYCLES * scene > most || 1.0 - MOST_CYCLES * whole < budgets::IDLE;
-            let number = match board.core() {
-                _ if may_exceed => PROFILED,
-                Core::M3 => 1,
-                Core::M0Plus | Core::M4F => 0,
+            // The share of its budgets that the scene takes, at these numbers of cycles per
+            // instruction of the scene and of the whole frame. The budget of a scene is for the
+            // slower cores.
+            let load = |of_scene: f64, of_whole: f64| {
+                let of_budget = match board.core() {
+                    Core::M3 | Core::M0Plus => of_scene * scene / most,
+                    Core::M4F => 0.0,
+                };
+                of_budget.max(of_whole * whole / (1.0 - budgets::IDLE))
             };
-            if number > 0 {
+
+            // Logging a frame takes a second. On the M3 every scene is profiled, and on the other
+            // cores one that may exceed its budgets.
+            let mut profiled = |number| {
                 let profiled = || FrameProfile::of_next(&mut machine, &image, board.core());
-                profiles = std::iter::repeat_with(profiled)
+                std::iter::repeat_with(profiled)
                     .take(number)
-                    .collect::<Result<Vec<_>, _>>()?;
+                    .collect::<Result<Vec<_>, _>>()
+            };
+            if board.core() == Core::M3 || load(MOST_CYCLES, MOST_CYCLES) > 1.0 {
+                profiles = profiled(1)?;
             }
 
             // The board's clock counts instructions. The numbers of cycles per instruction are
-            // estimated from frames that QEMU logs completely.
-            let of_scene = cycles_per_instruction(profiles.iter().map(|profile| profile.scene));
-            let of_whole = cycles_per_instruction(profiles.iter().map(|profile| profile.busy));
-            let scene = scene * of_scene;
+            // estimated from frames that QEMU logs: from several of them if the scene is near a
+            // budget.
+            let estimated = |profiles: &[FrameProfile]| {
+                let of_scene = cycles_per_instruction(profiles.iter().map(|profile| profile.scene));
+                let of_whole = cycles_per_instruction(profiles.iter().map(|profile| profile.busy));
+                [of_scene, of_whole]
+            };
+            let [of_scene, of_whole] = estimated(&profiles);
+            if load(of_scene, of_whole) > NEAR {
+                profiles.extend(profiled(PROFILED - 1)?);
+            }
+            let [of_scene, of_whole] = estimated(&profiles);
             let idle = 1.0 - whole * of_whole;
             let showing = profiles.iter().map(|profile| profile.showing.cycles).max();
             let showing = showing.expect("of this scene or an earlier frame");
@@ -263,15 +279,13 @@ fn plays(
                 at {of_scene:.2} and {of_whole:.2} cycles for an instruction; shown in {showing}",
                 board.name,
                 name.name(),
-                100.0 * scene,
+                100.0 * scene * of_scene,
                 100.0 * idle
             );
             println!("{found}");
 
-            // The budgets of a scene and of showing it are for the slower cores.
-            let is_long = board.core() != Core::M4F && scene > most;
-            if is_long
-                || idle < budgets::IDLE
+            // The budget of showing it is for the M3.
+            if load(of_scene, of_whole) > 1.0
                 || board.core() == Core::M3 && showing > budgets::SHOWING
             {
                 too_much.push(found);

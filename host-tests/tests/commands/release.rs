@@ -139,6 +139,7 @@ fn no_folder_of_the_builder_is_in_an_image() {
 /// A small program is built here and in a copy of the checkout. Both ELF files are equal as a
 /// whole, and so are the bytes that are loaded. The copy's program runs.
 #[test]
+#[ignore = "compiles for half a minute; `.ci/run` runs it"]
 fn an_image_built_elsewhere_has_the_same_bytes() -> anyhow::Result<()> {
     let (binary, chip) = SMALL;
     let here = toolchain()

@@ -102,7 +102,44 @@ impl Machine {
         &mut self,
         read: impl FnOnce(File) -> anyhow::Result<T> + Send,
     ) -> anyhow::Result<T> {
-        self.logged(|machine| machine.run_to_frame().map(drop), read)
+        let frame = |machine: &mut Self, log: &Path| {
+            machine.start_log(log)?;
+            machine.run_to_frame().map(drop)
+        };
+        self.logged(frame, read)
+    }
+
+    /// Runs to the next frame like [`Self::next_frame_logged`], but the log ends before the
+    /// instruction at this address, without the Thumb bit. If the program does not come there
+    /// before the frame, the whole frame is logged. To stop there takes the rest of the tick, so
+    /// that the board does nothing until the next one begins.
+    pub fn next_frame_logged_until<T: Send>(
+        &mut self,
+        end: u32,
+        read: impl FnOnce(File) -> anyhow::Result<T> + Send,
+    ) -> anyhow::Result<T> {
+        let sleeps = self.places.sleeps.clone();
+        let places = [&sleeps[..], &[end]].concat();
+        let frame = |machine: &mut Self, log: &Path| {
+            machine.start_log(log)?;
+            let messages = up_to_frame(PATIENCE, || {
+                machine.run_until(&places)?;
+                if machine.places.here == Some(end) {
+                    machine.end_log()?;
+                    machine.run_until(&sleeps)?;
+                }
+                machine.messages()
+            });
+            messages.map(drop)
+        };
+        self.logged(frame, read)
+    }
+
+    /// Runs to the next call of the function at this address, without the Thumb bit, and returns
+    /// the address where its caller continues. The run is as in [`Self::run_to`].
+    pub fn next_return_address(&mut self, function: u32) -> anyhow::Result<u32> {
+        self.run_to(function)?;
+        Ok(self.get(Register::Lr)? & !1)
     }
 
     /// Runs to the next call of the function at this address, without the Thumb bit, and to its
@@ -115,9 +152,9 @@ impl Machine {
         function: u32,
         read: impl FnOnce(File) -> anyhow::Result<T> + Send,
     ) -> anyhow::Result<T> {
-        self.run_to(function)?;
-        let return_address = self.get(Register::Lr)? & !1;
-        let call = |machine: &mut Self| {
+        let return_address = self.next_return_address(function)?;
+        let call = |machine: &mut Self, log: &Path| {
+            machine.start_log(log)?;
             machine.run_to(return_address)?;
             // The instruction there is logged when it is executed.
             machine.places.here = None;
@@ -126,10 +163,11 @@ impl Machine {
         self.logged(call, read)
     }
 
-    /// Runs the machine as `run` does while `read` reads QEMU's log.
+    /// Runs the machine as `run` does while `read` reads QEMU's log. `run` is called with the path
+    /// of the log and starts it. It may end it.
     fn logged<T: Send>(
         &mut self,
-        run: impl FnOnce(&mut Self) -> anyhow::Result<()>,
+        run: impl FnOnce(&mut Self, &Path) -> anyhow::Result<()>,
         read: impl FnOnce(File) -> anyhow::Result<T> + Send,
     ) -> anyhow::Result<T> {
         let folder = tempfile::tempdir_in(self.folder.path())?;
@@ -146,17 +184,25 @@ impl Machine {
         // The log is read by a thread, because QEMU waits while its pipe is full.
         thread::scope(|scope| {
             let reader = scope.spawn(|| read(pipe));
-            let ran = self
-                .log(&path, "cpu,nochain", "on")
-                .and_then(|()| run(self));
+            let ran = run(self, &path);
             // The log is closed even if the run fails, so that the reader ends.
-            let ended = self.log(Path::new("/dev/null"), "none", "off");
+            let ended = self.end_log();
             drop(writer);
             let read = reader
                 .join()
                 .unwrap_or_else(|panic| panic::resume_unwind(panic));
             ran.and(ended).and(read)
         })
+    }
+
+    /// Lets QEMU write the registers before every instruction to this file.
+    fn start_log(&mut self, file: &Path) -> anyhow::Result<()> {
+        self.log(file, "cpu,nochain", "on")
+    }
+
+    /// Lets QEMU close its log.
+    fn end_log(&mut self) -> anyhow::Result<()> {
+        self.log(Path::new("/dev/null"), "none", "off")
     }
 
     /// Sets the file and the items of QEMU's log, and switches single steps on or off.

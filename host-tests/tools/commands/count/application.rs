@@ -43,8 +43,11 @@ const SHOWING: [Place; 7] = [
     ("firmware::app::player::", "::draw"),
     ("firmware::app::player::", "::check"),
     SENDING,
-    ("firmware::board::cortex_m::retained::", "keep"),
+    KEEPING,
 ];
+
+/// The function that records a frame. It is the last one that a frame must do.
+const KEEPING: Place = ("firmware::board::cortex_m::retained::", "keep");
 
 /// The cost of one frame of an application: executed instructions (exact) and cycles (estimated).
 /// All functions that the named ones call, and interrupts meanwhile, are included.
@@ -60,9 +63,9 @@ pub struct FrameProfile {
 }
 
 impl FrameProfile {
-    /// Runs `board` to its next frame and profiles what it executes from where it is stopped.
-    /// `image` is the program that runs on it, and `core` its core. The machine is stopped
-    /// afterwards, and the messages up to the frame are dropped.
+    /// Runs `board` to its next frame and on to the one after it, and profiles what it executes for
+    /// that one. `image` is the program that runs on it, and `core` its core. The machine is
+    /// stopped afterwards, and the messages up to the frame are dropped.
     ///
     /// Not checked: the machine must be from [`Machine::halted`] and stopped after a frame
     /// ([`Machine::run_to_frame`]); elsewhere the profile is not of one frame, and another machine
@@ -80,8 +83,14 @@ impl FrameProfile {
         let [scene, busy, showing] = parts;
         let parts = [scene?, busy?, showing?];
 
+        // The log ends with the first instruction after the last part. The planning that follows
+        // would be several times as long.
+        let (module, name) = KEEPING;
+        let after = board.next_return_address(address(image, module, name)?)?;
+        board.run_to_frame()?;
+        let end = after + image.instruction_at(after)?.size();
         let [scene, busy, showing] =
-            board.next_frame_logged(|log| calls_in(log, image, core, parts))?;
+            board.next_frame_logged_until(end, |log| calls_in(log, image, core, parts))?;
         Ok(Self {
             scene: scene.cost(),
             busy: busy.cost(),
