@@ -203,14 +203,22 @@ impl Reference {
 
 /// Returns coefficient k of the product of two power series; `a` and `b` are their coefficients 0
 /// to k.
+///
+/// The sum has the precision of a double-double. The products of the first words and their sums are
+/// split exactly into a rounded value and its error, and the errors are summed in `f64`, with the
+/// products that are as small (T. Ogita, S. Rump, S. Oishi, "Accurate sum and dot product", 2005).
 fn product(a: &[TwoFloat], b: &[TwoFloat]) -> TwoFloat {
+    let terms = a.iter().zip(b.iter().rev());
     if a.len() > FIRST_IN_F64 {
-        let terms = a.iter().zip(b.iter().rev());
         return terms.fold(0.0, |sum, (a, b)| sum + a.hi() * b.hi()).into();
     }
-    a.iter()
-        .zip(b.iter().rev())
-        .fold(TwoFloat::from(0.0), |sum, (&a, &b)| sum + a * b)
+    let [sum, errors] = terms.fold([0.0; 2], |[sum, errors], (a, b)| {
+        let term = TwoFloat::new_mul(a.hi(), b.hi());
+        let sum = TwoFloat::new_add(sum, term.hi());
+        let small = a.hi() * b.lo() + a.lo() * b.hi();
+        [sum.hi(), errors + (sum.lo() + term.lo() + small)]
+    });
+    TwoFloat::new_add(sum, errors)
 }
 
 /// Returns the sine and cosine, computed by their power series about the nearest multiple of pi/2.
