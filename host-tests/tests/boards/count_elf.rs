@@ -33,7 +33,8 @@ bne 1b
 LAST
 movs r0, #0x18
 bkpt 0xab
-wait: b wait
+wait: wfi
+b wait
 label: movs r0, #7
 bx lr
 never: bx lr
@@ -78,8 +79,8 @@ fn panic(_: &core::panic::PanicInfo) -> ! { loop {} }
 /// The time limit of a program that never ends: many times the time until it waits, on a busy
 /// machine too.
 const SECONDS: [&str; 2] = ["--seconds", "6"];
-/// The ends of programs: it ends with success or failure, it waits for ever, or it needs a
-/// floating-point unit.
+/// The ends of programs: it ends with success or failure, it waits for ever (asleep, because every
+/// instruction would be logged), or it needs a floating-point unit.
 const ENDS: &str = "ldr r1, =0x20026";
 const FAILS: &str = "ldr r1, =0x020023";
 const WAITS: &str = "b wait";

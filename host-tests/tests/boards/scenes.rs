@@ -44,18 +44,18 @@ const NO_PANEL: &str = "panel: absent";
 /// The largest number of cycles per instruction, averaged over the work of a frame; 1.1 to 1.9 were
 /// found.
 const MOST_CYCLES: f64 = 3.0;
-/// The number of frames that are profiled if a scene takes more than this share of one of its
-/// budgets. One is not enough then, because in the map of flips the cycles per instruction vary by
-/// 4 % from frame to frame.
+/// The number of frames that are profiled if a scene takes more than the share [`NEAR`] of one of
+/// its budgets. One is not enough then, because in the map of flips the cycles per instruction vary
+/// by 4 % from frame to frame.
 const PROFILED: usize = 4;
+/// The share of a budget from which on a scene is near it.
 const NEAR: f64 = 0.9;
 
 /// Returns the number of frames of a scene in a round of a short run.
 ///
 /// Within 1.1 s the stack has been as deep as in an hour, except for an interrupt, at whatever tick
 /// the scene is left. On the M3 the butterfly's curve grows, and the most expensive frame is after
-/// 10 s. In the second round nothing is new but what the first one has left behind, which the first
-/// frames show.
+/// 10 s. The second round is shorter, because it differs only by what the first one has left behind.
 fn short(board: &Board, name: SceneName, round: u32) -> u32 {
     if round > 0 {
         EVERY

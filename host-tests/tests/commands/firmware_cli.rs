@@ -136,7 +136,7 @@ fn the_folder_of_a_killed_command_is_removed_by_the_next_command() {
         .set_modified(SystemTime::now() - LONG_AGO)
         .expect("its time");
     let mut next = program("fw");
-    next.args(["mps2-an386", "--seconds", "5"])
+    next.args(["mps2-an386", "--seconds", "1"])
         .env("TMPDIR", temporary.path());
     assert_eq!(output(&mut next).status.code(), Some(0));
     assert_eq!(left(temporary.path()), [""; 0].map(PathBuf::from));

@@ -293,8 +293,8 @@ const OTHERS: [SceneName; 10] = [
 #[test]
 fn settings_of_all_kinds_are_shown_as_claimed() {
     let mut cases = Vec::new();
-    for ratio in [0.01, 0.1, 1.0, 2.5, 10.0, 40.0, 63.0, 80.0, 100.0] {
-        for degrees in [1.0, -60.0, 90.0, -120.0, 171.0, 179.0, 180.0] {
+    for ratio in [0.01, 0.1, 1.0, 2.5, 10.0, 63.0, 100.0] {
+        for degrees in [1.0, 90.0, -120.0, 171.0, 180.0] {
             cases.push(Case::new(SceneName::Page, ratio, degrees));
         }
     }

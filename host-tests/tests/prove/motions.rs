@@ -73,19 +73,19 @@ fn is_inside(parameters: &Parameters<f64>, motion: &Motion<f64>, frames: u32) {
     }
 }
 
-/// Checks 200 random motions for `frames` frames ([`is_inside`]).
-fn random_motions_are_inside(frames: u32) {
+/// Checks random motions for `frames` frames ([`is_inside`]).
+fn random_motions_are_inside(count: usize, frames: u32) {
     let mut rng = Rng::with_seed(28);
-    for (parameters, motion) in std::iter::repeat_with(|| random(&mut rng)).take(200) {
+    for (parameters, motion) in std::iter::repeat_with(|| random(&mut rng)).take(count) {
         is_inside(&parameters, &motion, frames);
     }
 }
 
 /// The box contains the reference and the energy of the start, and is not wider than its tolerance
-/// ([`is_inside`]), for 200 random motions over 30 frames of 1/64 s.
+/// ([`is_inside`]), for 100 random motions over 30 frames of 1/64 s.
 #[test]
 fn random_motions_are_inside_for_half_a_second() {
-    random_motions_are_inside(30);
+    random_motions_are_inside(100, 30);
 }
 
 /// The box contains the reference and the energy of the start, and is not wider than its tolerance
@@ -93,7 +93,7 @@ fn random_motions_are_inside_for_half_a_second() {
 #[test]
 #[ignore = "minutes"]
 fn random_motions_are_inside_for_long() {
-    random_motions_are_inside(300);
+    random_motions_are_inside(200, 300);
 }
 
 /// The box contains the reference and the energy of the start, and is not wider than its tolerance

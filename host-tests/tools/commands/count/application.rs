@@ -6,7 +6,7 @@ use std::collections::BTreeSet;
 use std::fs::File;
 use std::path::PathBuf;
 
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, ensure};
 use cycles::{Calls, Core, Cost, Image, for_each_instruction};
 use double_pendulum::Method;
 use double_pendulum::plan::Costs;
@@ -63,9 +63,9 @@ pub struct FrameProfile {
 }
 
 impl FrameProfile {
-    /// Runs `board` to its next frame and on to the one after it, and profiles what it executes for
-    /// that one. `image` is the program that runs on it, and `core` its core. The machine is
-    /// stopped afterwards, and the messages up to the frame are dropped.
+    /// Profiles what `board` executes for one of its next frames. `image` is the program that runs
+    /// on it, and `core` its core. The machine is stopped after a frame, and the messages up to
+    /// then are dropped.
     ///
     /// Not checked: the machine must be from [`Machine::halted`] and stopped after a frame
     /// ([`Machine::run_to_frame`]); elsewhere the profile is not of one frame, and another machine
@@ -89,8 +89,14 @@ impl FrameProfile {
         let after = board.next_return_address(address(image, module, name)?)?;
         board.run_to_frame()?;
         let end = after + image.instruction_at(after)?.size();
-        let [scene, busy, showing] =
+        let profiles =
             board.next_frame_logged_until(end, |log| calls_in(log, image, core, parts))?;
+        let is_whole = |calls: &Calls| calls.running.is_none() && !calls.ended.is_empty();
+        ensure!(
+            profiles.iter().all(is_whole),
+            "the log of a frame ends before its work does"
+        );
+        let [scene, busy, showing] = profiles;
         Ok(Self {
             scene: scene.cost(),
             busy: busy.cost(),

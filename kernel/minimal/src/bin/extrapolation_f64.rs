@@ -6,5 +6,5 @@ use double_pendulum::ExtrapolationF64;
 
 #[cortex_m_rt::entry]
 fn main() -> ! {
-    minimal::swing(minimal::start::<ExtrapolationF64<12>>(), 2, minimal::draw)
+    minimal::swing(minimal::start::<ExtrapolationF64<12>>(), 1, minimal::draw)
 }
