@@ -125,13 +125,11 @@ fn no_folder_of_the_builder_is_in_an_image() {
     ];
     for board in every_board() {
         let elf = fs::read(application(board)).expect("an ELF file");
+        let text = String::from_utf8_lossy(&elf);
         for folder in &folders {
             // An empty path would be found in every file.
             assert!(folder.len() > 1);
-            let is_in_it = elf
-                .windows(folder.len())
-                .any(|bytes| bytes == folder.as_bytes());
-            assert!(!is_in_it, "{}: {folder}", board.name);
+            assert!(!text.contains(folder), "{}: {folder}", board.name);
         }
     }
 }

@@ -93,27 +93,17 @@ impl Machine {
     }
 
     /// Runs to the next frame while `read` reads QEMU's log. The log contains the processor's
-    /// registers before every instruction, hundreds of bytes each time. Returns the result of
-    /// `read`, which runs in a thread of its own and must read to the end of the log, because QEMU
-    /// waits while nobody does. Errors are as in [`Self::run_to_frame`], and, if there is none,
-    /// that of `read`; its panic is passed on. The messages up to the frame are dropped. The
-    /// machine must be from [`Self::halted`] and stopped, and is stopped after the frame.
+    /// registers before every instruction, hundreds of bytes each time. It ends before the
+    /// instruction at `end`, an address without the Thumb bit, or with the frame if the program
+    /// does not come there. To stop there takes the rest of the tick, so that the board does
+    /// nothing until the next one begins.
+    ///
+    /// Returns the result of `read`, which runs in a thread of its own and must read to the end of
+    /// the log, because QEMU waits while nobody does. Errors are as in [`Self::run_to_frame`], and,
+    /// if there is none, that of `read`; its panic is passed on. The messages up to the frame are
+    /// dropped. The machine must be from [`Self::halted`] and stopped, and is stopped after the
+    /// frame.
     pub fn next_frame_logged<T: Send>(
-        &mut self,
-        read: impl FnOnce(File) -> anyhow::Result<T> + Send,
-    ) -> anyhow::Result<T> {
-        let frame = |machine: &mut Self, log: &Path| {
-            machine.start_log(log)?;
-            machine.run_to_frame().map(drop)
-        };
-        self.logged(frame, read)
-    }
-
-    /// Runs to the next frame like [`Self::next_frame_logged`], but the log ends before the
-    /// instruction at this address, without the Thumb bit. If the program does not come there
-    /// before the frame, the whole frame is logged. To stop there takes the rest of the tick, so
-    /// that the board does nothing until the next one begins.
-    pub fn next_frame_logged_until<T: Send>(
         &mut self,
         end: u32,
         read: impl FnOnce(File) -> anyhow::Result<T> + Send,

@@ -89,8 +89,7 @@ impl FrameProfile {
         let after = board.next_return_address(address(image, module, name)?)?;
         board.run_to_frame()?;
         let end = after + image.instruction_at(after)?.size();
-        let profiles =
-            board.next_frame_logged_until(end, |log| calls_in(log, image, core, parts))?;
+        let profiles = board.next_frame_logged(end, |log| calls_in(log, image, core, parts))?;
         let is_whole = |calls: &Calls| calls.running.is_none() && !calls.ended.is_empty();
         ensure!(
             profiles.iter().all(is_whole),
@@ -103,6 +102,15 @@ impl FrameProfile {
             showing: showing.cost(),
         })
     }
+}
+
+/// Runs `board` to a frame. Returns the address of the second instruction after everything that a
+/// frame must do: a log that ends there has the first one.
+fn end_of_frame(board: &mut Machine, image: &Image) -> Result<u32> {
+    let (module, name) = KEEPING;
+    let after = board.next_return_address(address(image, module, name)?)?;
+    board.run_to_frame()?;
+    Ok(after + image.instruction_at(after)?.size())
 }
 
 /// Returns the address of a function of an application. The error names a function that is missing.
@@ -206,9 +214,10 @@ fn in_application(board: &'static Board, toolchain: &Toolchain) -> Result<(f32, 
 
     // The first frame includes the start of the program, so it is not counted.
     let mut machine = Machine::halted(&settings)?;
-    machine.run_to_frame()?;
+    let end = end_of_frame(&mut machine, &image)?;
     let step = BTreeSet::from([image.function(STEP)?.address]);
-    let [steps] = machine.next_frame_logged(|log| calls_in(log, &image, board.core(), [step]))?;
+    let [steps] =
+        machine.next_frame_logged(end, |log| calls_in(log, &image, board.core(), [step]))?;
     let fixed64 = most(STEP, &steps.ended)?;
 
     // The application plans its first scene.

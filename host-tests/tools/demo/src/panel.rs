@@ -251,20 +251,22 @@ pub fn played(path: &Path) -> anyhow::Result<Vec<(Vec<u8>, u16)>> {
     options.set_color_output(ColorOutput::Indexed);
     let mut decoder = options.read_info(File::open(path)?)?;
     let mut played = Vec::new();
-    // A transparent dot keeps the colour of the picture before.
-    let mut shown = Vec::new();
+    let mut greys = vec![0; WIDTH * HEIGHT];
     while let Some(frame) = decoder.read_next_frame()? {
-        shown.resize(frame.buffer.len(), 0);
-        let dots = shown.iter_mut().zip(frame.buffer.iter());
-        dots.filter(|(_, dot)| frame.transparent != Some(**dot))
-            .for_each(|(shown, dot)| *shown = *dot);
-
         // Each pixel is a square of `SCALE` dots; one of them is read.
-        let greys = shown
+        let dots = frame
+            .buffer
             .chunks(WIDTH * SCALE)
             .step_by(SCALE)
-            .flat_map(|row| row.iter().step_by(SCALE).copied());
-        played.push((greys.collect(), frame.delay));
+            .flat_map(|row| row.iter().step_by(SCALE));
+
+        // A transparent dot keeps the colour of the picture before.
+        for (grey, &dot) in greys.iter_mut().zip(dots) {
+            if frame.transparent != Some(dot) {
+                *grey = dot;
+            }
+        }
+        played.push((greys.clone(), frame.delay));
     }
     Ok(played)
 }
