@@ -305,7 +305,7 @@ fn settings_of_all_kinds_are_shown_as_claimed() {
             settings: first,
         });
         // Combinations that are at the limits of the scene.
-        for (ratio, degrees) in [(0.01, 120.0), (1.0, 90.0), (100.0, -15.0), (100.0, 179.0)] {
+        for (ratio, degrees) in [(0.01, 120.0), (100.0, -15.0), (100.0, 179.0)] {
             cases.push(Case::new(name, ratio, degrees));
         }
     }

@@ -6,5 +6,5 @@ use double_pendulum::Fixed64;
 
 #[cortex_m_rt::entry]
 fn main() -> ! {
-    minimal::swing(minimal::start::<Fixed64<12>>(), 8, minimal::draw)
+    minimal::swing(minimal::start::<Fixed64<12>>(), 2, minimal::draw)
 }
