@@ -20,6 +20,10 @@ pub fn start<F: Form>() -> Result<Run<F>, Error> {
     pendulum.run(&State::at_rest(0.5, 0.5), 1.0 / 256.0)
 }
 
+/// The number of steps in `f32` that are counted. Without a floating-point unit, a step has a
+/// hundred times as many instructions, and a few steps are enough for an average.
+pub const STEPS_IN_F32: u32 = if cfg!(target_abi = "eabihf") { 32 } else { 8 };
+
 /// Computes motions from `start`: of no step, of one step, and of `steps` more than one. Then it
 /// ends the emulation. `draw` reads the motion.
 pub fn swing<F: Form, const TURNS: bool>(

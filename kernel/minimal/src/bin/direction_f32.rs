@@ -6,5 +6,9 @@ use double_pendulum::DirectionF32;
 
 #[cortex_m_rt::entry]
 fn main() -> ! {
-    minimal::swing(minimal::start::<DirectionF32>(), 32, minimal::draw)
+    minimal::swing(
+        minimal::start::<DirectionF32>(),
+        minimal::STEPS_IN_F32,
+        minimal::draw,
+    )
 }

@@ -6,5 +6,9 @@ use double_pendulum::DirectionF32Plain;
 
 #[cortex_m_rt::entry]
 fn main() -> ! {
-    minimal::swing(minimal::start::<DirectionF32Plain>(), 32, minimal::draw)
+    minimal::swing(
+        minimal::start::<DirectionF32Plain>(),
+        minimal::STEPS_IN_F32,
+        minimal::draw,
+    )
 }

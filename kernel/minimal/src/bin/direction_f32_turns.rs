@@ -8,7 +8,7 @@ use double_pendulum::{DirectionF32, Run};
 fn main() -> ! {
     minimal::swing(
         minimal::start::<DirectionF32>().map(Run::counting_turns),
-        32,
+        minimal::STEPS_IN_F32,
         minimal::draw,
     )
 }
