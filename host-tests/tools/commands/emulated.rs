@@ -211,7 +211,7 @@ fn binaries() -> Vec<String> {
     names
 }
 
-/// Sets everything up and runs all tests, including those in QEMU. Takes about ten minutes.
+/// Sets everything up and runs all tests, including those in QEMU. Takes about eight minutes.
 #[derive(Debug, Parser)]
 #[command(name = "cargo verify", after_help = "Example: cargo verify --long")]
 pub struct TestOptions {
@@ -281,7 +281,7 @@ pub fn verify(options: &TestOptions) -> anyhow::Result<ExitCode> {
     complain(if options.long {
         "note: running all tests, including those that take hours"
     } else {
-        "note: all tests take about ten minutes"
+        "note: all tests take about eight minutes"
     });
 
     let ignored: &[&str] = if options.long {
