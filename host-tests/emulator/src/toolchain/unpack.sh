@@ -42,7 +42,8 @@ for program in $programs; do
     cat > "$program" <<'END'
 #!/bin/sh
 here=$(dirname "$(readlink -f "$0")")
-for folder in "$here"/usr/lib/*-linux-gnu* "$here"/lib/*-linux-gnu* "$here"/usr/lib; do
+for folder in "$here"/usr/lib/*-linux-gnu* "$here"/usr/lib/*-linux-gnu*/pulseaudio \
+    "$here"/lib/*-linux-gnu* "$here"/usr/lib; do
     LD_LIBRARY_PATH=$folder${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}
 done
 export LD_LIBRARY_PATH
