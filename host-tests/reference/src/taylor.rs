@@ -204,10 +204,11 @@ impl Reference {
 /// Returns coefficient k of the product of two power series; `a` and `b` are their coefficients 0
 /// to k.
 ///
-/// The products of the high words, and their sums, are split exactly into a rounded value and its
-/// error. The errors are summed in `f64`, with the products of a high and a low word (T. Ogita, S.
-/// Rump, S. Oishi, "Accurate sum and dot product", 2005). Products of two low words are left out.
-/// The error of n terms is at most about (n + 3)^2 2^-106 times the sum of their magnitudes.
+/// Below [`FIRST_IN_F64`], the products of the high words and their sums are split exactly into a
+/// rounded value and its error. The errors are summed in `f64`, with the products of a high and a
+/// low word (T. Ogita, S. Rump, S. Oishi, "Accurate sum and dot product", 2005). Products of two
+/// low words are left out. The error of n terms is at most about (n + 3)^2 2^-106 times the sum of
+/// their magnitudes. From there on, the high words are multiplied and summed in `f64`.
 fn product(a: &[TwoFloat], b: &[TwoFloat]) -> TwoFloat {
     let terms = a.iter().zip(b.iter().rev());
     if a.len() > FIRST_IN_F64 {

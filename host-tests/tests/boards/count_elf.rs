@@ -79,8 +79,8 @@ fn panic(_: &core::panic::PanicInfo) -> ! { loop {} }
 /// The time limit of a program that never ends: many times the time until it waits, on a busy
 /// machine too.
 const SECONDS: [&str; 2] = ["--seconds", "6"];
-/// The ends of programs: it ends with success or failure, it waits for ever (asleep, because every
-/// instruction would be logged), or it needs a floating-point unit.
+/// The ends of programs: success, failure, an endless wait (asleep, because an endless loop would
+/// fill the log), or an instruction that needs a floating-point unit.
 const ENDS: &str = "ldr r1, =0x20026";
 const FAILS: &str = "ldr r1, =0x020023";
 const WAITS: &str = "b wait";

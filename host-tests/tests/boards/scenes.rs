@@ -48,14 +48,14 @@ const MOST_CYCLES: f64 = 3.0;
 /// its budgets. One is not enough then, because in the map of flips the cycles per instruction vary
 /// by 4 % from frame to frame.
 const PROFILED: usize = 4;
-/// The share of a budget from which on a scene is near it.
+/// A scene that takes more than this share of a budget is near it.
 const NEAR: f64 = 0.9;
 
 /// Returns the number of frames of a scene in a round of a short run.
 ///
 /// Within 1.1 s the stack has been as deep as in an hour, except for an interrupt, at whatever tick
 /// the scene is left. On the M3 the butterfly's curve grows, and the most expensive frame is after
-/// 10 s. The second round is shorter, because it differs only by what the first one has left behind.
+/// 10 s. The second round is shorter: it only tests that state left by the first does no harm.
 fn short(board: &Board, name: SceneName, round: u32) -> u32 {
     if round > 0 {
         EVERY
@@ -242,7 +242,7 @@ fn plays(
                 budgets::SCENE
             };
 
-            // The share of its budgets that the scene takes, at these numbers of cycles per
+            // The largest share of a budget that the scene takes, at these numbers of cycles per
             // instruction of the scene and of the whole frame. The budget of a scene is for the
             // slower cores.
             let load = |of_scene: f64, of_whole: f64| {
@@ -291,7 +291,7 @@ fn plays(
             );
             println!("{found}");
 
-            // The budget of showing it is for the M3.
+            // The budget for showing a frame applies to the M3 only.
             if load(of_scene, of_whole) > 1.0
                 || board.core() == Core::M3 && showing > budgets::SHOWING
             {

@@ -147,7 +147,7 @@ fn time_is_accurate_to_one_step_after_a_day() -> Result<(), Error> {
 /// The energy error of a report belongs to a single instant.
 ///
 /// A scene runs at the costs of the STM32F405: for a day by each method with steps in 32 bits, and
-/// for a quarter of a day by its initial method, extrapolation. At each of 240 samples of a day the
+/// for a quarter of a day by its initial method, extrapolation. At each sample, 240 a day, the
 /// reported energy error must be that of `f64` in the same steps (0 by extrapolation), within 1e-3
 /// of the energy above rest ([`DAY_ENERGY`]).
 #[test]

@@ -445,8 +445,8 @@ mod tests {
     ///
     /// Each pair has its coarse run between `least` and `most` steps and its fine run above that.
     /// If `most` is below `least`, only `least` counts. No pair is finer than the one before, and
-    /// every fine run makes at least as many steps as the longest of the [`FINE`] steps needs. One
-    /// of the pendulums has fine runs of 6 and 7 steps, close to a limit of 5 steps.
+    /// every fine run makes at least as many steps as the longest of the [`FINE`] steps needs. At
+    /// 0.0032162 s, a limit of 5 steps applies to fine runs of 10 and 8 steps, but not to one of 7.
     #[test]
     fn pairs_keep_their_step_limits_and_resolve_the_motion() {
         for admissible in [1e-4, 1e-3, 3e-3, 0.0032162, 1e-2, 1.0] {

@@ -37,8 +37,9 @@
 //! that the energy allows, a proven bound, advances a phase by a radian. The first trial uses these
 //! steps and, if it has a run in 64 bits, steps of a half and a quarter of their length. Its method
 //! is compensated `f32` or 32 bits of fixed point, by their costs. The search changes to 64 bits if
-//! rounding is the larger error, if 64 bits cost less, or if planning can pay for them but not for
-//! finer steps in 32 bits as well. It then takes the finest steps that both budgets can pay for.
+//! rounding is the larger error, if 64 bits cost less, or if 32 bits fail early and planning can
+//! pay for 64 bits but not for finer steps in 32 bits as well. It then takes the finest steps that
+//! both budgets can pay for.
 //!
 //! Planning needs no heap. It is divided into pieces that a busy caller can afford ([`Search`]).
 //! The caller provides the cost of a step: [`Costs`] is a price list in any unit. The kernel has

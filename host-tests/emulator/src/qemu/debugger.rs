@@ -95,8 +95,8 @@ impl Machine {
     /// Runs to the next frame while `read` reads QEMU's log. The log contains the processor's
     /// registers before every instruction, hundreds of bytes each time. It ends before the
     /// instruction at `end`, an address without the Thumb bit, or with the frame if the program
-    /// does not come there. To stop there takes the rest of the tick, so that the board does
-    /// nothing until the next one begins.
+    /// does not come there. A stop at `end` uses up the rest of the tick: the board executes
+    /// nothing more until the next one.
     ///
     /// Returns the result of `read`, which runs in a thread of its own and must read to the end of
     /// the log, because QEMU waits while nobody does. Errors are as in [`Self::run_to_frame`], and,

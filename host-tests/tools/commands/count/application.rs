@@ -46,7 +46,7 @@ const SHOWING: [Place; 7] = [
     KEEPING,
 ];
 
-/// The function that records a frame. It is the last one that a frame must do.
+/// The function that records a frame. It is the last one that a frame must call.
 const KEEPING: Place = ("firmware::board::cortex_m::retained::", "keep");
 
 /// The cost of one frame of an application: executed instructions (exact) and cycles (estimated).
@@ -104,8 +104,8 @@ impl FrameProfile {
     }
 }
 
-/// Runs `board` to a frame. Returns the address of the second instruction after everything that a
-/// frame must do: a log that ends there has the first one.
+/// Runs `board` to a frame. Returns the address of the second instruction after the return from
+/// [`KEEPING`], so that a log that ends before it includes the first.
 fn end_of_frame(board: &mut Machine, image: &Image) -> Result<u32> {
     let (module, name) = KEEPING;
     let after = board.next_return_address(address(image, module, name)?)?;
