@@ -94,7 +94,8 @@ enum History {
     LeftOut,
 }
 
-/// Copies the files of a folder, except those with these names.
+/// Copies the files of a folder, except those with these names. A link stays a link: a file in its
+/// place would be an uncommitted change.
 fn copy(from: &Path, to: &Path, left_out: &[&str]) -> io::Result<()> {
     fs::create_dir_all(to)?;
     for entry in fs::read_dir(from)? {
@@ -103,6 +104,8 @@ fn copy(from: &Path, to: &Path, left_out: &[&str]) -> io::Result<()> {
         let to = to.join(name);
         if left_out.iter().any(|not| *not == name) {
             continue;
+        } else if path.is_symlink() {
+            symlink(fs::read_link(&path)?, &to)?;
         } else if path.is_dir() {
             copy(&path, &to, left_out)?;
         } else {
