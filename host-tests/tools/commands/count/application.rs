@@ -74,14 +74,14 @@ impl FrameProfile {
     /// that the board sleeps 1000 times without a frame, or that QEMU ends.
     pub fn of_next(board: &mut Machine, image: &Image, core: Core) -> Result<Self> {
         let busy = [&SCENE[..], &[SENDING]].concat();
-        let parts = [&SCENE[..], &busy, &SHOWING].map(|places| {
+        let parts = [&SCENE[..], &busy, &SHOWING, &[KEEPING]].map(|places| {
             let addresses = places
                 .iter()
                 .map(|(module, name)| address(image, module, name));
             addresses.collect::<Result<BTreeSet<u32>>>()
         });
-        let [scene, busy, showing] = parts;
-        let parts = [scene?, busy?, showing?];
+        let [scene, busy, showing, keeping] = parts;
+        let parts = [scene?, busy?, showing?, keeping?];
 
         // The log ends with the first instruction after the last part. The planning that follows
         // would be several times as long.
@@ -89,13 +89,12 @@ impl FrameProfile {
         let after = board.next_return_address(address(image, module, name)?)?;
         board.run_to_frame()?;
         let end = after + image.instruction_at(after)?.size();
-        let profiles = board.next_frame_logged(end, |log| calls_in(log, image, core, parts))?;
-        let is_whole = |calls: &Calls| calls.running.is_none() && !calls.ended.is_empty();
+        let [scene, busy, showing, keeping] =
+            board.next_frame_logged(end, |log| calls_in(log, image, core, parts))?;
         ensure!(
-            profiles.iter().all(is_whole),
+            keeping.ended.len() == 1,
             "the log of a frame ends before its work does"
         );
-        let [scene, busy, showing] = profiles;
         Ok(Self {
             scene: scene.cost(),
             busy: busy.cost(),
