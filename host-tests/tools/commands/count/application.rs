@@ -83,12 +83,8 @@ impl FrameProfile {
         let [scene, busy, showing, keeping] = parts;
         let parts = [scene?, busy?, showing?, keeping?];
 
-        // The log ends with the first instruction after the last part. The planning that follows
-        // would be several times as long.
-        let (module, name) = KEEPING;
-        let after = board.next_return_address(address(image, module, name)?)?;
-        board.run_to_frame()?;
-        let end = after + image.instruction_at(after)?.size();
+        // The planning that follows the last part would be several times as long as the frame.
+        let end = end_of_frame(board, image)?;
         let [scene, busy, showing, keeping] =
             board.next_frame_logged(end, |log| calls_in(log, image, core, parts))?;
         ensure!(
