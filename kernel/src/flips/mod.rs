@@ -23,7 +23,7 @@ mod side_by_side;
 
 use crate::error::Error;
 use crate::methods::Form;
-use crate::methods::run::turns_over;
+use crate::methods::turns::turns_over;
 use crate::numbers::{Real, RealOperations};
 use crate::pendulum::{Parameters, Pendulum, State};
 use falling::Falling;

@@ -7,7 +7,7 @@ use super::lanes::{DirectionLanes, Numbers};
 use super::{Flip, Flips, passes};
 use crate::error::Error;
 use crate::methods::direction::BLOCK;
-use crate::methods::run::turns_over;
+use crate::methods::turns::turns_over;
 use crate::methods::{DirectionF32Plain, FormOperations};
 use crate::numbers::RealOperations;
 use crate::pendulum::{Direction, State};

@@ -16,8 +16,9 @@ pub(crate) mod lagrange;
 pub mod rk4;
 mod rk4_direction;
 mod rk4_fixed32;
-pub(crate) mod run;
+mod run;
 mod scaling;
+pub(crate) mod turns;
 
 pub use any::{DrawnMotion, FormVisitor};
 #[cfg(test)]
@@ -28,7 +29,8 @@ pub use extrapolation_f64::ExtrapolationF64;
 pub use extrapolation_fixed64::Fixed64;
 pub use rk4_direction::Rk4Direction;
 pub use rk4_fixed32::Fixed32;
-pub use run::{Run, Turns};
+pub use run::Run;
+pub use turns::Turns;
 
 use core::fmt::Debug;
 

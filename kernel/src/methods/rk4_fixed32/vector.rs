@@ -31,6 +31,17 @@ pub type Words = Quantities<Q30, Q30>;
 /// The rates of change of the quantities, per unit of time T.
 pub type Rates = Quantities<Slope, Torque>;
 
+impl Words {
+    /// Returns the same point with reversed momenta.
+    pub fn reversed(self) -> Self {
+        Self {
+            p1: -self.p1,
+            p2: -self.p2,
+            ..self
+        }
+    }
+}
+
 impl<D: Add<Output = D>, M: Add<Output = M>> Add for Quantities<D, M> {
     type Output = Self;
     fn add(self, other: Self) -> Self {
