@@ -666,6 +666,59 @@ mod tests {
         Ok(ratios)
     }
 
+    /// In small oscillations the errors hardly grow, so that the shadows are restarted by the phase
+    /// only. Over ten restarts, the estimated cost of a frame is right to a hundredth.
+    #[test]
+    fn estimated_cost_is_that_of_all_steps_and_restarts() -> Result<(), Error> {
+        let problem = Problem {
+            pendulum: Parameters::equal_rods(1.0, 1.0, 9.81),
+            start: Motion::at_rest(0.05, 0.05),
+            tolerance: 0.04,
+            duration: 60.0,
+            rate: 60,
+        };
+        let costs = Costs::CORTEX_M3;
+        let pendulum = Pendulum::new(&problem.pendulum)?;
+        let start = pendulum.to_state(&problem.start);
+        let admissible = pendulum.admissible_step(&start)?;
+        let stepping = Shadows::stepping(Method::Rk4Fixed32, problem.rate, admissible);
+        let scales = scales(&pendulum, &start);
+        let mut shadows = Shadows::new(stepping, &problem, scales, admissible, FINE_STEPS);
+        while !shadows.are_prepared() {
+            shadows.prepare(&problem, &start)?;
+        }
+
+        // Add the costs of all frames up to the tenth restart.
+        let mut cost = 0.0;
+        let mut frames = 0;
+        let mut restarts = 0;
+        while restarts < 10 {
+            for run in shadows.runs() {
+                run.motion
+                    .as_mut()
+                    .expect("prepared")
+                    .advance(run.stepping.steps);
+                cost += costs.of_frame(run.stepping);
+            }
+            shadows.compare([25.0; 2]);
+            frames += 1;
+            if shadows.is_due() {
+                let central = shadows.runs[0].motion.as_ref().expect("prepared");
+                let state = central.state();
+                shadows.restart(&state);
+                cost += costs.preparation;
+                restarts += 1;
+            }
+        }
+        let estimated = Shadows::cost_of_frame(stepping, admissible, problem.rate, &costs);
+        let measured = cost / frames as f32;
+        assert!(
+            (estimated / measured - 1.0).abs() < 0.01,
+            "{estimated} {measured}"
+        );
+        Ok(())
+    }
+
     /// The shadows show the rounding error that random errors of the start and of all frames cause.
     #[test]
     fn shadows_show_the_expected_error_of_roundings_in_all_frames() -> Result<(), Error> {
