@@ -99,10 +99,9 @@ impl<'a> Player<'a> {
     /// beyond straight up are not refused here. Not checked: the start in `flips`, which does not
     /// use it, and all but the mass ratio in `frequencies`.
     pub fn play(&mut self, name: SceneName, settings: Settings) -> Result<(), Error> {
-        match self.play_by(self.method, name, settings) {
-            Err(_) if self.method.is_some() => self.play_by(None, name, settings),
-            played => played,
-        }
+        // Without a requested method, the second attempt fails as the first one did.
+        self.play_by(self.method, name, settings)
+            .or_else(|_| self.play_by(None, name, settings))
     }
 
     /// Plays a scene by `method` and no other, or by its plan. If that is impossible, nothing is

@@ -137,8 +137,9 @@ impl<const ORDER: u32> ExtrapolationF64<ORDER> {
                 // Use the result.
                 let end: [f64; 6] = core::array::from_fn(|i| last[i].0[lane]);
                 match work[lane] {
-                    Work::FirstSlope if lane == 0 => first = end,
-                    Work::FirstSlope | Work::Done => {}
+                    // It is the same in all lanes.
+                    Work::FirstSlope => first = end,
+                    Work::Done => {}
                     Work::Row(_) if is_first_end => {
                         is_first_end = false;
                         sum = end;
