@@ -158,14 +158,15 @@ fn planner_chooses_the_cheapest_method_with_the_longest_horizon() {
             Limit::Budget,
             5.0..=10.0,
         ),
-        // A pendulum out of the range of fixed point is planned in floating point.
+        // A pendulum out of the range of fixed point is planned in floating point, in long steps,
+        // because planning cannot pay for steps that resolve every motion of its energy.
         (
             M3,
             1e6,
             scene(1e5, 10.0, 2.0),
             (ClosedFormF32, 0),
-            Limit::Planning,
-            0.4..=0.6,
+            Limit::End,
+            2.0..=2.0,
         ),
     ];
 
@@ -215,7 +216,8 @@ fn planner_keeps_to_the_frame_budget_and_pays_for_the_end() {
         frugal.limit == Limit::Budget && frugal.spent < 1e8,
         "{frugal:?}"
     );
-    let poor = within(&figure7, 300.0).expect_err("one step is too coarse");
+    let elbow = scene(1e4, 171.0, 30.0);
+    let poor = within(&elbow, 300.0).expect_err("one step is too coarse");
     assert!(
         matches!(poor, PlanError::NoMethod { limit: Limit::Budget, spent } if spent < 4e6),
         "{poor:?}"
@@ -300,7 +302,7 @@ fn plans_keep_to_both_budgets() {
         "{found} of 64: some plans are found, some budgets are too small"
     );
     // Planning cannot pay for a run in 64 bits for as long as the method is accurate, and does not
-    // start one.
+    // start one. With more planning there would be more finer runs.
     let plan = Plan::search(
         &scene(1.0, 120.0, 20.0),
         &M3,
@@ -313,12 +315,13 @@ fn plans_keep_to_both_budgets() {
 
     assert_eq!(
         (plan.method, plan.steps, plan.limit),
-        (Method::Rk4Fixed32, 2, Limit::Budget)
+        (Method::Rk4Fixed32, 2, Limit::Planning)
     );
 }
 
-/// A frame budget that equals the cost of a plan gives the same plan. A slightly smaller one gives
-/// a plan that costs less.
+/// A frame budget that equals the cost of a plan gives the same plan, or one that costs less and is
+/// accurate for no less time: the search begins in longer steps if the budget does not pay for the
+/// usual ones. A slightly smaller budget gives a plan that costs less.
 #[test]
 fn frame_budget_of_the_exact_cost_is_enough() {
     for (mass_ratio, degrees) in [(1.0, 60.0), (1.0, 120.0), (2.75, 171.0), (1e3, 30.0)] {
@@ -338,9 +341,10 @@ fn frame_budget_of_the_exact_cost_is_enough() {
 
             let lavish = within(1e6).expect("a good scene");
             let enough = within(lavish.cost).expect("a good scene");
-            assert_eq!(
-                (enough.method, enough.steps, enough.horizon),
-                (lavish.method, lavish.steps, lavish.horizon)
+            let is_same = enough.stepping() == lavish.stepping();
+            assert!(
+                (is_same || enough.cost < lavish.cost) && enough.horizon >= lavish.horizon,
+                "{enough:?} {lavish:?}"
             );
             if let Ok(frugal) = within(lavish.cost.next_down()) {
                 assert!(frugal.cost < lavish.cost, "{frugal:?} {lavish:?}");

@@ -23,6 +23,8 @@ pub(super) struct Candidate {
     state: CandidateState,
     /// The steps per frame of the fine run of the reference; `u32::MAX` without a reference.
     pub judge_steps: u32,
+    /// The number of finer runs that it was compared with; 0 with a reference.
+    pub finer_runs: u8,
 }
 
 /// The state of a candidate in its trial.
@@ -46,6 +48,7 @@ impl Candidate {
             error: 0.0,
             state: CandidateState::Accurate,
             judge_steps: u32::MAX,
+            finer_runs: 0,
         }
     }
 
@@ -60,9 +63,12 @@ impl Candidate {
         self.state == CandidateState::Failed
     }
 
-    /// Returns true if the candidate was compared with a reference in 64 bits.
-    pub fn has_reference(&self) -> bool {
-        self.judge_steps != u32::MAX
+    /// Returns true if the candidate was measured better than `other`: with a reference in 64 bits
+    /// instead of finer runs, or with more finer runs.
+    pub fn is_measured_better(&self, other: &Self) -> bool {
+        // A reference counts as more than any number of finer runs.
+        let [own, known] = [self, other].map(|one| one.finer_runs.wrapping_sub(1));
+        own > known
     }
 
     /// Excludes the candidate from the rest of the trial. Its accurate frames still count.

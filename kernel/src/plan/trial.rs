@@ -23,9 +23,11 @@
 //!
 //! # The errors of a trial without one
 //!
-//! If planning cannot pay for a reference, a candidate in 32 bits is compared with three runs of
-//! the same method in finer steps. The inputs of these runs are perturbed by about their rounding
-//! error.
+//! If planning cannot pay for a reference, a candidate in 32 bits is compared with one to three
+//! *finer runs*: runs of the same method in finer steps. Their inputs are perturbed by about their
+//! rounding error. The fewer runs there are, the more probable it is that all of them have the
+//! error of the candidate by chance. The bound of the error is therefore a larger multiple of the
+//! largest distance.
 
 use super::candidate::{Candidate, distance, greater};
 use super::cost::{Costs, Pair, Stepping};
@@ -168,25 +170,39 @@ const SHORT_ROD_2: f64 = 12.0;
 /// Test `short_rods_keep_their_horizons` checks some of them against the exact motion.
 const SHORT_AND_ROUNDED_ALIKE: [f32; 2] = [6.0, 4.0];
 
-/// The factor on the largest distance to three runs in finer steps in the bound of an error.
+/// The largest number of finer runs.
+pub(super) const MOST_FINER_RUNS: u8 = 3;
+
+/// The factors on the largest distance to one, two or three finer runs in the bound of an error.
 ///
 /// The truncation error is at most 1.7 times the distance to a run with 5/4 of the steps (order 4),
-/// and 1.12 times the distance to a run with 7/4. The rounding errors of the run and of the three
-/// finer runs are samples of one distribution. Test `plan_study` checks the bound against the exact
-/// motion.
-const BESIDE_FINER_STEPS: f32 = 2.9;
+/// and 1.12 times the distance to a run with 7/4. The rounding errors of the run and of the finer
+/// runs are samples of one distribution. If it is normal, the probability that the error exceeds
+/// the bound by chance is 0.002 for all three numbers. Test `plan_study` checks the bound against
+/// the exact motion.
+const BESIDE_FINER_RUNS: [f32; MOST_FINER_RUNS as usize] = [150.0, 8.0, 2.9];
 
 /// Returns the three finer runs of a trial without a reference: with 5/4, 6/4 and 7/4 of the steps.
+/// If there are fewer, they are the first of these.
 ///
 /// In fixed point each of them has another unit of time, and therefore other constants and rounding
 /// errors. Otherwise a pendulum that is almost at rest would truncate the same amount of its torque
 /// in all runs.
-fn steps_beside(Stepping { method, steps }: Stepping) -> [Stepping; 3] {
+fn finer_runs(Stepping { method, steps }: Stepping) -> [Stepping; MOST_FINER_RUNS as usize] {
     [1, 2, 3].map(|quarters: u32| {
         let more = (u64::from(steps) * u64::from(quarters) / 4) as u32;
         let steps = steps.saturating_add(if more > quarters { more } else { quarters });
         Stepping { method, steps }
     })
+}
+
+/// The runs that the candidates of a trial are compared with.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Judges {
+    /// A reference in 64 bits.
+    Reference(Pair),
+    /// This number of finer runs, from 1 to [`MOST_FINER_RUNS`].
+    FinerRuns(u8),
 }
 
 /// Returns the candidates of a trial with a reference: with 1, 2 and 4 times the steps.
@@ -214,12 +230,13 @@ pub(super) struct Trial {
     ///
     /// With a reference they are the first three candidates and plain `f32`; the fifth is unused.
     /// Without one they are a single candidate, two finer runs, plain `f32`, and the third finer
-    /// run.
+    /// run. Finer runs beyond the number of the trial are unused.
     single: [Run<DrawnMotion32>; 5],
     /// The coarse and the fine run of the reference.
     double: [Run<DrawnMotion64>; 2],
-    /// True if the trial is compared with a reference. Otherwise the error bounds are rough.
-    has_reference: bool,
+    /// The number of finer runs that the candidate is compared with. The fewer there are, the
+    /// rougher the error bounds. It is 0 if the trial has a reference.
+    finer_runs: u8,
     /// The shadows of the fine run. Unused while no candidate in 64 bits is accurate.
     shadows: Shadows,
     /// True if the trial began with a candidate in 64 bits. False until the caller sets it, because
@@ -245,12 +262,12 @@ pub(super) struct Trial {
 }
 
 impl Trial {
-    /// Creates a trial of `stepping` that is compared with `reference`.
+    /// Creates a trial of `stepping` that is compared with `judges`.
     ///
-    /// With a `reference`, the candidates are the method of `stepping` with 1, 2 and 4 times its
+    /// With a reference, the candidates are the method of `stepping` with 1, 2 and 4 times its
     /// steps, at most 2^32 - 1, and both runs of the reference. Without one, `stepping` is the only
-    /// one of these. It is then compared with three runs of its own in 5/4, 6/4 and 7/4 of its
-    /// steps, rounded down, but at least 1, 2 and 3 more.
+    /// one of these. It is then compared with runs of its own in 5/4, 6/4 and 7/4 of its steps,
+    /// rounded down, but at least 1, 2 and 3 more: with the first, the first two, or all three.
     ///
     /// If `stepping` is in 64 bits, a reference is required, and the trial has no candidates in 32
     /// bits. In any case, also without a reference, the closed form is a candidate, and plain `f32`
@@ -259,37 +276,35 @@ impl Trial {
     ///
     /// No motion is prepared yet. A pendulum that is refused is reported by
     /// [`prepare`](Self::prepare). Without normal modes the closed form fails at the first frame.
-    pub fn new(
-        stepping: Stepping,
-        problem: &Problem,
-        reference: Option<Pair>,
-        shadow: Stepping,
-    ) -> Self {
+    pub fn new(stepping: Stepping, problem: &Problem, judges: Judges, shadow: Stepping) -> Self {
         let is_in_32_bits = stepping.method != Method::Extrapolation10Fixed64;
         let [own, second, third] = tried(stepping);
         let [plain, closed] = [Method::Rk4F32DirectionPlain, Method::ClosedFormF32]
             .map(|method| Stepping { method, ..stepping });
-        let single = match reference {
-            Some(_) => [own, second, third, plain, third],
-            None => {
-                let [first, second, third] = steps_beside(stepping);
-                [own, first, second, plain, third]
+        let (single, pair, judge_steps, finer_runs) = match judges {
+            Judges::Reference(pair) => {
+                let single = [own, second, third, plain, third];
+                (single, pair, pair.fine.steps, 0)
+            }
+            Judges::FinerRuns(number) => {
+                let [first, second, third] = finer_runs(stepping);
+                let unused = Pair {
+                    coarse: stepping,
+                    fine: stepping,
+                };
+                ([own, first, second, plain, third], unused, u32::MAX, number)
             }
         };
-
-        let pair = reference.unwrap_or(Pair {
-            coarse: stepping,
-            fine: stepping,
-        });
 
         let mut candidates =
             [own, second, third, plain, closed, pair.coarse, pair.fine].map(Candidate::new);
         for candidate in &mut candidates {
-            candidate.judge_steps = reference.map_or(u32::MAX, |pair| pair.fine.steps);
+            candidate.judge_steps = judge_steps;
+            candidate.finer_runs = finer_runs;
         }
 
         // Exclude the candidates that are not part of this trial.
-        let has_reference = reference.is_some();
+        let has_reference = finer_runs == 0;
         let has_several = is_in_32_bits && has_reference;
         let has_plain = stepping.method == Method::Rk4F32Direction;
         let are_tried = [
@@ -339,7 +354,7 @@ impl Trial {
         Self {
             single: single.map(Run::new),
             double: [pair.coarse, pair.fine].map(Run::new),
-            has_reference,
+            finer_runs,
             shadows: Shadows::new(shadow, problem, scales, admissible, pair.fine.steps),
             tries_64_bits: false,
             closed: closed.ok().map(|closed| closed.oscillations),
@@ -354,29 +369,36 @@ impl Trial {
 
     /// Returns true if the trial is compared with a reference in 64 bits.
     pub fn has_reference(&self) -> bool {
-        self.has_reference
+        self.finer_runs == 0
+    }
+
+    /// Returns the number of finer runs that the candidate is compared with; 0 with a reference.
+    pub fn finer_runs(&self) -> u8 {
+        self.finer_runs
     }
 
     /// Returns the reference: the coarse and the fine run.
     pub fn reference(&self) -> Option<Pair> {
         let [coarse, fine] = self.double.each_ref().map(|run| run.stepping);
-        self.has_reference.then_some(Pair { coarse, fine })
+        self.has_reference().then_some(Pair { coarse, fine })
     }
 
-    /// Returns the cost of a frame of a trial of `stepping` that is compared with a reference, in
-    /// the unit of `costs`. The shadows, plain `f32` and the closed form are not included. If
+    /// Returns the cost of a frame of a trial of `stepping` that is compared with `judges`, in the
+    /// unit of `costs`. The shadows, plain `f32` and the closed form are not included. If
     /// `stepping` is in 64 bits, only the reference costs anything.
-    pub fn cost_with_reference(
-        costs: &Costs,
-        stepping: Stepping,
-        Pair { coarse, fine }: Pair,
-    ) -> f32 {
-        let [own, second, third] = if stepping.method == Method::Extrapolation10Fixed64 {
-            [0.0; 3]
-        } else {
-            tried(stepping).map(|stepping| costs.of_frame(stepping))
-        };
-        own + second + third + costs.of_frame(coarse) + costs.of_frame(fine)
+    pub fn cost(costs: &Costs, stepping: Stepping, judges: Judges) -> f32 {
+        let of = |stepping| costs.of_frame(stepping);
+        match judges {
+            Judges::Reference(Pair { coarse, fine }) => {
+                let is_in_64_bits = stepping.method == Method::Extrapolation10Fixed64;
+                let own: f32 = tried(stepping).map(of).into_iter().sum();
+                of(coarse) + of(fine) + if is_in_64_bits { 0.0 } else { own }
+            }
+            Judges::FinerRuns(number) => {
+                let finer = finer_runs(stepping).map(of).into_iter();
+                of(stepping) + finer.take(number.into()).sum::<f32>()
+            }
+        }
     }
 
     /// Returns true if a candidate in 32 bits, or the closed form, is still accurate, as it is
@@ -405,17 +427,24 @@ impl Trial {
 
     /// Returns the runs in 32 bits that are still needed, with their indices.
     fn single(&mut self) -> impl Iterator<Item = (usize, &mut Run<DrawnMotion32>)> {
-        let all = !self.has_reference;
+        // Without a reference, the candidate and its finer runs are always needed.
+        let has = |number: u8| self.finer_runs >= number;
         let [own, second, third, plain, ..] =
             self.candidates.each_ref().map(Candidate::is_accurate);
-        let needed = [all || own, all || second, all || third, plain, all];
+        let needed = [
+            has(1) || own,
+            has(1) || second,
+            has(2) || third,
+            plain,
+            has(3),
+        ];
         let runs = self.single.iter_mut().enumerate().zip(needed);
         runs.filter(|(_, is_needed)| *is_needed).map(|(run, _)| run)
     }
 
     /// Returns the runs of the reference, or no runs without a reference.
     fn double(&mut self) -> &mut [Run<DrawnMotion64>] {
-        if self.has_reference {
+        if self.has_reference() {
             &mut self.double
         } else {
             &mut []
@@ -568,11 +597,12 @@ impl Trial {
         let in_32_bits = [own, second, third, plain, closed];
 
         // Without a reference: the distances of the candidate to the finer runs.
-        if !self.has_reference {
-            let others = [second, third, fourth].map(|other| distance(self.rods, &own, &other));
-            let greatest = others.into_iter().fold(0.0, greater);
-            self.by_rounding = others.into_iter().any(|other| 2.0 * other < greatest);
-            let bound = self.alike * BESIDE_FINER_STEPS * greatest;
+        if !self.has_reference() {
+            let distances = [second, third, fourth].map(|other| distance(self.rods, &own, &other));
+            let distances = distances.into_iter().take(self.finer_runs.into());
+            let greatest = distances.clone().fold(0.0, greater);
+            self.by_rounding = distances.clone().any(|distance| 2.0 * distance < greatest);
+            let bound = self.factor() * greatest;
             for (candidate, shown) in self.candidates.iter_mut().zip(in_32_bits) {
                 let beside = distance(self.rods, &shown, &own);
                 candidate.note(beside + greatest, beside + bound);
@@ -605,6 +635,18 @@ impl Trial {
 
             self.candidates[COARSE].note(spread, bound_of_coarse + rounding);
             self.candidates[FINE].note(of_fine, bound_of_fine + rounding);
+        }
+    }
+
+    /// Returns the factor on the largest distance to the finer runs in the bound of an error.
+    ///
+    /// That of a single finer run is large enough also for errors that the runs have in common.
+    fn factor(&self) -> f32 {
+        let [one, two, three] = BESIDE_FINER_RUNS;
+        match self.finer_runs {
+            1 => one,
+            2 => two * self.alike,
+            _ => three * self.alike,
         }
     }
 
@@ -647,7 +689,8 @@ impl Trial {
     ///
     /// With a reference it is 8, if 4 times the steps had a horizon more than a tenth longer than
     /// twice the steps, which no trial in 64 bits has. Without one it is 2, unless rounding is the
-    /// larger error ([`is_limited_by_rounding`](Self::is_limited_by_rounding)).
+    /// larger error ([`is_limited_by_rounding`](Self::is_limited_by_rounding)), which a single finer
+    /// run does not show.
     pub fn refinement(&self) -> Option<u32> {
         let [_, second, third, ..] = &self.candidates;
         let (helps, times) = if self.has_reference() {
@@ -676,5 +719,66 @@ impl Trial {
         let double: f32 = double.sum();
         let shadows = self.shadows().map(|run| costs.of_frame(run.stepping));
         closed + single + double + shadows.sum::<f32>()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::pendulum::{Motion, Parameters};
+
+    /// A frame of a trial costs what [`Trial::cost`] says, with every number of finer runs and with
+    /// a reference, whose shadows and closed form are not included.
+    #[test]
+    fn frame_costs_what_is_estimated() -> Result<(), Error> {
+        let problem = Problem {
+            pendulum: Parameters::equal_rods(1.0, 1.0, 9.81),
+            start: Motion::at_rest(0.5, 0.5),
+            tolerance: 0.01,
+            duration: 1.0,
+            rate: 60,
+        };
+        let costs = Costs::CORTEX_M3;
+        let stepping = Stepping {
+            method: Method::Rk4Fixed32,
+            steps: 8,
+        };
+        let fixed64 = costs.fixed64;
+
+        // With 8 steps, the finer runs make 10, 12 and 14, and the other candidates 16 and 32.
+        for (judges, expected) in [
+            (Judges::FinerRuns(1), (8 + 10) as f32 * costs.fixed32),
+            (Judges::FinerRuns(2), (8 + 10 + 12) as f32 * costs.fixed32),
+            (
+                Judges::FinerRuns(3),
+                (8 + 10 + 12 + 14) as f32 * costs.fixed32,
+            ),
+            (
+                Judges::Reference(Pair::new(6, 8)),
+                (8 + 16 + 32) as f32 * costs.fixed32 + (6 + 8) as f32 * fixed64,
+            ),
+        ] {
+            let mut trial = Trial::new(stepping, &problem, judges, stepping);
+            trial.exclude_64_bits();
+            while trial.prepare(&problem)? {}
+            let with_closed = trial.frame_cost(&costs);
+
+            let mut spent = 0.0;
+            loop {
+                let piece = trial.advance(&costs, f32::INFINITY);
+                if piece == 0.0 {
+                    break;
+                }
+                spent += piece;
+            }
+            let estimated = Trial::cost(&costs, stepping, judges);
+            for cost in [spent, estimated, with_closed - costs.closed_form] {
+                assert!(
+                    (cost / expected - 1.0).abs() < 1e-5,
+                    "{judges:?}: {cost} instead of {expected}"
+                );
+            }
+        }
+        Ok(())
     }
 }

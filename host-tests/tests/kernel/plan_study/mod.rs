@@ -348,6 +348,37 @@ fn short_rods_keep_their_horizons() {
     }
 }
 
+/// Scenes of the broad class with very unlike masses: the index, the processor, and the smallest
+/// predicted horizon, s. All of these were once predicted for less than two thirds as long.
+///
+/// In the first scene planning can only pay for one finer run. In the next two, fewer steps than
+/// usual are enough, and a frame cannot pay for the usual ones. In the others, a reference would
+/// use up the planning budget in a small part of the scene.
+const UNLIKE: [(usize, &str, f64); 6] = [
+    (22, "m3", 2.9),
+    (32, "slow-m4f", 19.0),
+    (45, "slow-m4f", 12.7),
+    (58, "m4f", 2.5),
+    (128, "m4f", 20.4),
+    (147, "m4f", 4.8),
+];
+
+/// The plans of scenes with very unlike masses do not give up early, and no frame before their
+/// horizons is inaccurate.
+#[test]
+fn unlike_masses_keep_their_horizons() {
+    for (index, name, least) in UNLIKE {
+        let scene = Class::Broad.scenes(1).nth(index).expect("no end");
+        let chip = CHIPS.iter().find(|chip| chip.name == name).expect("a chip");
+        let case = Case::new(&scene, chip, &mut Exact::new(&scene));
+        let plan = case.plan.expect("a plan");
+        assert!(
+            plan.horizon >= least && case.error <= PLAN_ERROR,
+            "{index}, {name}: {case:?}"
+        );
+    }
+}
+
 /// Studies a whole class. At most [`VIOLATIONS`] plans for each processor and seed may have an
 /// inaccurate frame before the predicted horizon, of at most [`LARGEST`] half pixels.
 ///
