@@ -1,6 +1,8 @@
 //! The application that runs on the boards, with a panel in memory, a byte vector as its link, and
 //! scripted buttons.
 
+use std::convert::Infallible;
+
 use double_pendulum::plan::Stepping;
 use double_pendulum::{Method, Parameters, Pendulum, State};
 use embedded_io::{ErrorKind, ErrorType, Write};
@@ -8,7 +10,7 @@ use emulator::host::Show;
 use emulator::link::Inbox;
 use firmware::app::{Buttons, Event, MOST_RESTARTS, NoButtons, Pressed, Record};
 use firmware::config::{GRAVITY, MOST_TICKS_PER_FRAME, ROD, TICK_RATE};
-use firmware::display::{Display, NoDisplay};
+use firmware::display::{Controller, Display, NoDisplay, PanelReport};
 use firmware::graphics::{Canvas, Place, RodDirections, View};
 use firmware::motion::Settings;
 use firmware::protocol::{Answer, Cause, Command, LinkError, Restarted, Status, ToHost};
@@ -300,6 +302,42 @@ impl Display for BrokenPanel {
             Ok(())
         }
     }
+}
+
+/// A panel that reports its controller and the number of frames.
+#[derive(Default)]
+struct ReportingPanel(u8);
+
+impl Display for ReportingPanel {
+    type Error = Infallible;
+
+    fn flush(&mut self, _: &Canvas) -> Result<(), Infallible> {
+        self.0 += 1;
+        Ok(())
+    }
+
+    fn report(&self) -> PanelReport {
+        PanelReport {
+            chosen: Some(Controller::Sh1106),
+            shown: self.0,
+            ..PanelReport::default()
+        }
+    }
+}
+
+/// The status contains the report of the panel after seven frames, and the scene that the player
+/// shows.
+#[test]
+fn status_is_that_of_player_and_panel() {
+    let mut app = of(ReportingPanel::default(), Vec::new(), NoButtons);
+    for now in 1..=7 {
+        app.run_to(now, |_| ());
+    }
+    let status = app.status();
+    assert_eq!(
+        (status.scene, status.panel.chosen, status.panel.shown),
+        (SceneName::Page, Some(Controller::Sh1106), 7)
+    );
 }
 
 /// A link that fails for the writes from 5 to 9, each time after half of the bytes.
