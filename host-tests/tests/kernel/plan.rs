@@ -158,8 +158,8 @@ fn planner_chooses_the_cheapest_method_with_the_longest_horizon() {
             Limit::Budget,
             5.0..=10.0,
         ),
-        // A pendulum out of the range of fixed point is planned in floating point, in long steps,
-        // because planning cannot pay for steps that resolve every motion of its energy.
+        // A pendulum out of the range of fixed point. The closed form is compared with runs in
+        // `f32`, in long steps, because planning cannot pay for steps that resolve its energy.
         (
             M3,
             1e6,
@@ -302,7 +302,7 @@ fn plans_keep_to_both_budgets() {
         "{found} of 64: some plans are found, some budgets are too small"
     );
     // Planning cannot pay for a run in 64 bits for as long as the method is accurate, and does not
-    // start one. With more planning there would be more finer runs.
+    // start one.
     let plan = Plan::search(
         &scene(1.0, 120.0, 20.0),
         &M3,
@@ -315,13 +315,13 @@ fn plans_keep_to_both_budgets() {
 
     assert_eq!(
         (plan.method, plan.steps, plan.limit),
-        (Method::Rk4Fixed32, 2, Limit::Planning)
+        (Method::Rk4Fixed32, 2, Limit::Budget)
     );
 }
 
-/// A frame budget that equals the cost of a plan gives the same plan, or one that costs less and is
-/// accurate for no less time: the search begins in longer steps if the budget does not pay for the
-/// usual ones. A slightly smaller budget gives a plan that costs less.
+/// A frame budget that equals the cost of a plan gives the same plan, or one that costs less and
+/// has no shorter horizon. It may differ, because the search begins in longer steps if the budget
+/// does not pay for the usual ones. A slightly smaller budget gives a plan that costs less.
 #[test]
 fn frame_budget_of_the_exact_cost_is_enough() {
     for (mass_ratio, degrees) in [(1.0, 60.0), (1.0, 120.0), (2.75, 171.0), (1e3, 30.0)] {

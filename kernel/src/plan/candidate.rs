@@ -23,7 +23,8 @@ pub(super) struct Candidate {
     state: CandidateState,
     /// The steps per frame of the fine run of the reference; `u32::MAX` without a reference.
     pub judge_steps: u32,
-    /// The number of finer runs that it was compared with; 0 with a reference.
+    /// The number of finer runs that the candidate is compared with. It is 0 with a reference, and
+    /// until [`Trial::new`](super::trial::Trial::new) sets it.
     pub finer_runs: u8,
 }
 
@@ -66,7 +67,7 @@ impl Candidate {
     /// Returns true if the candidate was measured better than `other`: with a reference in 64 bits
     /// instead of finer runs, or with more finer runs.
     pub fn is_measured_better(&self, other: &Self) -> bool {
-        // A reference counts as more than any number of finer runs.
+        // No finer runs mean a reference, which is better than any number of them: 0 - 1 wraps.
         let [own, known] = [self, other].map(|one| one.finer_runs.wrapping_sub(1));
         own > known
     }

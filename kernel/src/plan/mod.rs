@@ -17,9 +17,9 @@
 //! | truncation in 64 bits | the distance to a second run in 64 bits, in other steps |
 //! | rounding in 64 bits | its size where it arises, times the later growth of small distances |
 //!
-//! The runs in finer steps are used if planning cannot pay for a run in 64 bits. There are three,
-//! or fewer if planning cannot pay for three; the bound is then a larger multiple of the distance.
-//! Their inputs are perturbed by an ulp.
+//! The runs in finer steps are used if planning cannot pay for a run in 64 bits, or if that would
+//! be too expensive. Their inputs are perturbed by an ulp. There are three of them, or fewer if
+//! planning cannot pay for three. With fewer runs, the bound is a larger multiple of the distance.
 //!
 //! No run is assumed to be exact. Errors grow along a single direction, and along it two equally
 //! wrong runs may agree by chance. The growth is measured by *shadows*: motions in 32 bits that are
@@ -33,12 +33,12 @@
 //! worth its cost. If no method within the budgets has an accurate frame, it returns
 //! [`PlanError::NoMethod`].
 //!
-//! The first steps are as long as four steps of
+//! The first steps are usually as long as four steps of
 //! [`Pendulum::admissible_step`](crate::Pendulum::admissible_step). In such a step the fastest rate
 //! that the energy allows, a proven bound, advances a phase by a radian. If the budgets do not pay
-//! for them, the first steps are up to 16 times as long. The first trial uses these steps and, if
-//! it has a run in 64 bits, steps of a half and a quarter of their length. Its method is
-//! compensated `f32` or 32 bits of fixed point, by their costs. The search changes to 64 bits if
+//! for steps of this length, the first steps are longer, up to 16 times. The first trial uses these
+//! steps and, if it has a run in 64 bits, steps of a half and a quarter of their length. Its method
+//! is compensated `f32` or 32 bits of fixed point, by their costs. The search changes to 64 bits if
 //! rounding is the larger error, if 64 bits cost less, or if 32 bits fail early and planning can
 //! pay for 64 bits but not for finer steps in 32 bits as well. It then takes the finest steps that
 //! both budgets can pay for.
