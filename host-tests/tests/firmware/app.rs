@@ -328,7 +328,7 @@ impl Display for ReportingPanel {
 /// The status contains the report of the panel after seven frames, and the scene that the player
 /// shows.
 #[test]
-fn status_is_that_of_player_and_panel() {
+fn status_contains_the_scene_and_the_panel_report() {
     let mut app = of(ReportingPanel::default(), Vec::new(), NoButtons);
     for now in 1..=7 {
         app.run_to(now, |_| ());

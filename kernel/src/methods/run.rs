@@ -28,7 +28,7 @@ pub struct Run<F: Form, const COUNTS_TURNS: bool = false> {
     /// The energy H, J, above which the motion counts as diverged. Unused if `F` checks its energy.
     most_energy: F::Real,
     motion: F,
-    /// The turns of the start; of every step since then if they are counted.
+    /// The turns at the start. If turns are counted, it is updated after every step.
     turns: [Turns; 2],
     dt: f64,
     steps: u64,

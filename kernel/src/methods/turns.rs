@@ -6,7 +6,7 @@ use crate::pendulum::{Direction, State};
 
 /// Returns a negative number if the sine has changed its sign, from `from` to `to`, and `cos` is
 /// negative; another number otherwise. Only the highest bit of each word counts.
-#[inline(always)] // With `side`: maps of flips take 2.5 times as long without.
+#[inline(always)] // As with `side`: otherwise maps of flips take 2.5 times as long.
 pub(crate) fn turns_over([from, to, cos]: [i32; 3]) -> i32 {
     (from ^ to) & cos
 }
@@ -27,9 +27,9 @@ impl Turns {
     /// result has one count for each rod.
     ///
     /// `now` is the sine and cosine of each rod as words whose highest bit is the sign
-    /// ([`sides`](super::FormOperations::sides)). By a rounding it may be on the other side of
-    /// upright than the angle; the count follows `now`. The angles must not be NaN; this is not
-    /// checked.
+    /// ([`sides`](super::FormOperations::sides)). Rounding may put a direction on the other side of
+    /// upright than its angle; the count then follows `now`. The angles must not be NaN; this is
+    /// not checked.
     ///
     /// # Errors
     ///
@@ -40,6 +40,7 @@ impl Turns {
         let mut turns = start.map(|angle| {
             let whole = libm::rint(angle / core::f64::consts::TAU);
             let rest = angle - whole * core::f64::consts::TAU;
+            // The last cosine counts as negative, so that the sign of the new one decides.
             Self {
                 whole: whole as i32,
                 last: [-i32::from(rest < 0.0), -1],
@@ -81,9 +82,9 @@ impl Turns {
         }
     }
 
-    /// Returns the angle, rad, including whole turns, of the direction that was observed last,
-    /// which is the argument; this is not checked. Its length does not matter, unless it is 0 or
-    /// infinite, which gives a meaningless angle. NaN gives NaN.
+    /// Returns the angle, rad, including whole turns, of the argument. It must be the direction
+    /// that was observed last; this is not checked. Its length does not matter, except that 0 or
+    /// infinity gives a meaningless angle. NaN gives NaN.
     pub fn angle<R: Real>(&self, [s, c]: Direction<R>) -> R {
         R::from_f64(f64::from(self.whole) * core::f64::consts::TAU) + s.atan2(c)
     }
@@ -105,7 +106,8 @@ impl Turns {
                 FRAC_PI_2
             };
 
-            // Choose the turn that is nearest to the middle of the side seen last.
+            // Add the turns that bring the angle closest to the middle of the half turn that the
+            // sign of the last sine selects.
             let near = f64::from(turns.whole) * TAU + side;
             angle + TAU * libm::rint((near - angle) / TAU)
         };
