@@ -160,3 +160,44 @@ fn passes(before: &[[i32; 2]; 2], after: &[[i32; 2]; 2]) -> i32 {
     turns_over([upper_before, upper_after, upper_cos])
         | turns_over([lower_before, lower_after, lower_cos])
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::methods::FormVisitor;
+    use crate::table::Method;
+
+    /// Computes the time of the first flip of equal rods and bobs from rest at 2 and 2.5 rad, in
+    /// steps of 1/256 s.
+    struct FirstFlip;
+
+    impl FormVisitor for FirstFlip {
+        type Output = Result<Option<f64>, Error>;
+
+        fn visit<F: Form>(self) -> Self::Output {
+            let parameters = Parameters::equal_rods(1.0, 1.0, 9.81).cast();
+            let map = Flips::<F>::new(&parameters, 1.0 / 256.0, 2560)?;
+            let flip = map.of(F::Real::from_f64(2.0), F::Real::from_f64(2.5))?;
+            Ok(match flip {
+                Flip::After(time) => Some(time.to_f64()),
+                Flip::Never | Flip::Later => None,
+            })
+        }
+    }
+
+    /// Every method, in any arithmetic, finds the same first flip to a millisecond. Only the closed
+    /// form does not, because it is linear.
+    #[test]
+    fn every_method_finds_the_same_first_flip() -> Result<(), Error> {
+        const BY_RK4_F64: f64 = 4.0153;
+        for &method in Method::ALL {
+            let Some(flip) = method.visit(FirstFlip) else {
+                continue;
+            };
+            let is_linear = method.order() == 0;
+            let is_right = flip?.is_some_and(|time| (time - BY_RK4_F64).abs() < 1e-3);
+            assert_eq!(is_right, !is_linear, "{method}: {flip:?}");
+        }
+        Ok(())
+    }
+}
