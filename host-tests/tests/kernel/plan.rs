@@ -761,11 +761,12 @@ fn growth_that_cannot_be_measured_is_the_limit() {
 /// The example is a light elbow at 90 degrees. Steps that resolve it cost several times the frame
 /// budget of a Cortex-M3, and the closed form is accurate for two frames.
 ///
-/// A search that can pay only for creating a trial, or not even for that, must report the planning
-/// budget if a frame can pay for the closed form, and the frame budget if not. Once the closed form
-/// has failed, it must report the frame budget. The evaluation of the closed form must give a plan
-/// with its horizon in any case, whatever its step count, also for a pendulum that fixed point
-/// refuses.
+/// A search that cannot pay for the first frame of a trial must report the planning budget if a
+/// frame can pay for the closed form, and the frame budget if not. If planning is affordable, the
+/// closed form must be planned for two frames, although a frame cannot pay for the steps that fixed
+/// point accepts. With a tolerance so small that it fails in the first frame, the frame budget must
+/// be reported. The evaluation of the closed form must give a plan with its horizon in any case,
+/// whatever its step count, also for a pendulum that fixed point refuses.
 #[test]
 fn limit_without_a_method_is_the_budget_to_raise() {
     let light = Problem {
@@ -776,20 +777,35 @@ fn limit_without_a_method_is_the_budget_to_raise() {
         closed_form: 10.0,
         ..M3
     };
-    let limit = |frame, planning| match Plan::search(&light, &costs, &Budget { frame, planning }) {
+    let plan =
+        |problem, frame, planning| Plan::search(problem, &costs, &Budget { frame, planning });
+    let limit_of = |problem, frame, planning| match plan(problem, frame, planning) {
         Err(PlanError::NoMethod { limit, .. }) => limit,
         other => panic!("{other:?}"),
     };
+    let limit = |frame, planning| limit_of(&light, frame, planning);
     let started = 1.2 * M3.preparation;
     assert_eq!(
         [limit(20.0, started), limit(5.0, started)],
         [Limit::Planning, Limit::Budget]
     );
-    assert_eq!(limit(20.0, 20.0 * M3.preparation), Limit::Budget);
+    assert_eq!(limit(20.0, 20.0 * M3.preparation), Limit::Planning);
     assert_eq!(
         [limit(20.0, 1.0), limit(20.0, 0.5 * M3.preparation)],
         [Limit::Planning; 2]
     );
+
+    // The closed form is compared, and succeeds or fails.
+    let linear = plan(&light, 20.0, 1e10).expect("a plan");
+    assert_eq!(
+        (linear.method, linear.horizon),
+        (Method::ClosedFormF32, 2.0 / 60.0)
+    );
+    let precise = Problem {
+        tolerance: 1e-9,
+        ..light
+    };
+    assert_eq!(limit_of(&precise, 20.0, 1e10), Limit::Budget);
 
     // A requested method is evaluated, even if it is not accurate for long.
     let stepping = Stepping {

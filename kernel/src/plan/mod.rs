@@ -159,7 +159,9 @@ impl Plan {
     /// [`steps`](Self::steps) per frame of the problem; 0 counts as 1. Other fields of the plan are
     /// not used.
     ///
-    /// A motion of another problem starts, too, but nothing is known of its accuracy.
+    /// A motion of another problem starts, too, but nothing is known of its accuracy. Whole turns
+    /// are miscounted if a rod turns by more than a quarter turn in a step, as a very short rod 2
+    /// may; its directions do not depend on them.
     ///
     /// # Errors
     ///

@@ -178,9 +178,9 @@ pub(super) const MOST_FINER_RUNS: u8 = 3;
 /// The truncation error is at most 1.7 times the distance to a run with 5/4 of the steps (order 4),
 /// and 1.12 times the distance to a run with 7/4. The rounding errors of the candidate and of its
 /// finer runs are independent samples of one distribution. If that is the normal distribution in
-/// one dimension, the probability that the error exceeds the bound is 0.0008 with each number of
+/// one dimension, the probability that the error exceeds the bound is 0.0006 with each number of
 /// finer runs. Test `plan_study` checks the bound against the exact motion.
-const BESIDE_FINER_RUNS: [f32; MOST_FINER_RUNS as usize] = [400.0, 12.0, 4.0];
+const BESIDE_FINER_RUNS: [f32; MOST_FINER_RUNS as usize] = [550.0, 15.0, 4.5];
 
 /// Returns the three finer runs of a trial without a reference: with 5/4, 6/4 and 7/4 of the steps.
 /// A trial with one or two finer runs has the first of these.

@@ -357,8 +357,8 @@ fn short_rods_keep_their_horizons() {
 /// would use up the planning budget in a small part of the scene.
 const UNLIKE: [(usize, &str, f64); 6] = [
     (22, "m3", 2.9),
-    (32, "slow-m4f", 18.4),
-    (45, "slow-m4f", 12.7),
+    (32, "slow-m4f", 16.4),
+    (45, "slow-m4f", 12.1),
     (58, "m4f", 2.5),
     (128, "m4f", 20.4),
     (147, "m4f", 4.8),
