@@ -166,3 +166,35 @@ impl PlannedRun {
         Turns::unwrap(&self.turns, self.motion.state())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::pendulum::{Motion, Parameters};
+
+    /// At three frames per second, a motion of 300 rad/s in one step per frame leaves the finite
+    /// numbers of `f32` within 10,000 frames. That is reported then and by every later call.
+    #[test]
+    fn diverged_motion_is_reported_for_ever() -> Result<(), Error> {
+        let problem = Problem {
+            pendulum: Parameters::equal_rods(1.0, 1.0, 9.81),
+            start: Motion {
+                a1: 3.0,
+                a2: 1.0,
+                w1: 300.0,
+                w2: -300.0,
+            },
+            tolerance: 0.01,
+            duration: 1e4,
+            rate: 3,
+        };
+        for method in [Method::Rk4F32DirectionPlain, Method::Rk4F32Direction] {
+            let mut run = PlannedRun::new(&problem, Stepping { method, steps: 1 })?;
+            let lost = (0..10_000).find_map(|_| run.advance(1).err());
+            for error in [lost, run.advance(0).err(), run.advance(1).err()] {
+                assert!(matches!(error, Some(Error::Diverged { .. })), "{error:?}");
+            }
+        }
+        Ok(())
+    }
+}
