@@ -1,0 +1,358 @@
+//! Tests of the decisions of a search.
+
+use super::*;
+use crate::pendulum::{Motion, Parameters};
+
+/// Returns `candidate` after `frames` accurate frames, followed by an inaccurate one if it
+/// `fails`.
+fn measured(mut candidate: Candidate, frames: u32, fails: bool) -> Candidate {
+    for _ in 0..frames {
+        candidate.note(0.5, 0.5);
+    }
+    if fails {
+        candidate.note(2.0, 2.0);
+    }
+    candidate
+}
+
+/// Returns a search whose first trial is created, for large oscillations of equal rods on a
+/// Cortex-M3.
+fn in_first_trial() -> Result<Search, PlanError> {
+    let problem = Problem {
+        pendulum: Parameters::equal_rods(1.0, 1.0, 9.81),
+        start: Motion::at_rest(1.0, 1.0),
+        tolerance: 0.01,
+        duration: 10.0,
+        rate: 60,
+    };
+    let budget = Budget {
+        frame: 1e6,
+        planning: 1e10,
+    };
+    let mut search = Search::new(&problem, &Costs::CORTEX_M3, &budget)?;
+    search.create_trial();
+    Ok(search)
+}
+
+/// Returns the accurate frames of the best candidate after a trial. Before it, the best one was
+/// `best`; in the trial the candidates with these indices were `tried`.
+fn kept(search: &Search, best: Candidate, tried: &[(usize, Candidate)]) -> Option<u32> {
+    let mut search = *search;
+    search.goal.set_best(best);
+    let SearchState::Trying { trial, .. } = &mut search.state else {
+        panic!("the trial is not created");
+    };
+    trial.retain(|_| false);
+    for &(i, candidate) in tried {
+        trial.candidates[i] = candidate;
+    }
+    search.keep_best();
+    search.goal.best().map(|best| best.accurate_frames)
+}
+
+/// A candidate of 100 frames is measured again for fewer frames.
+///
+/// The second measurement counts if it is better and the candidate fails in it, also if not
+/// even its first frame is accurate. A reference is better than finer runs, and more finer runs
+/// are better than fewer. The second measurement does not count if the candidate has not
+/// failed, because planning ended it.
+#[test]
+fn better_measurement_replaces_a_rough_one() -> Result<(), PlanError> {
+    let search = in_first_trial()?;
+    let SearchState::Trying { trial, .. } = search.state else {
+        panic!("the trial is not created");
+    };
+    assert!(trial.has_reference());
+
+    // The index 4 is that of the closed form, which takes part with any step count.
+    for (i, finer) in [(0, 1), (4, 1), (4, 2)] {
+        let tried = trial.candidates[i];
+        let mut rough = Candidate::new(tried.stepping);
+        rough.finer_runs = MOST_FINER_RUNS;
+        rough.stepping.steps *= finer;
+        let first = measured(rough, 100, true);
+        let kept =
+            |first, frames, fails| kept(&search, first, &[(i, measured(tried, frames, fails))]);
+        assert_eq!(kept(first, 60, true), Some(60), "candidate {i}");
+        assert_eq!(kept(first, 0, true), None, "candidate {i}");
+        assert_eq!(kept(first, 60, false), Some(100), "candidate {i}");
+
+        let judged = measured(tried, 100, true);
+        assert_eq!(kept(judged, 60, true), Some(100), "candidate {i}");
+
+        // The second measurement has two finer runs.
+        for (number, expected) in [(1, 60), (2, 100), (3, 100)] {
+            let mut few = first;
+            few.finer_runs = number;
+            let mut more = measured(tried, 60, true);
+            more.finer_runs = 2;
+            let kept = self::kept(&search, few, &[(i, more)]);
+            assert_eq!(kept, Some(expected), "candidate {i}, {number}");
+        }
+    }
+
+    // The others in the trial are compared with the second measurement.
+    let [own, .., closed, _, _] = trial.candidates;
+    let mut rough = Candidate::new(closed.stepping);
+    rough.finer_runs = MOST_FINER_RUNS;
+    let rough = measured(rough, 100, true);
+    let tried = [
+        (0, measured(own, 80, true)),
+        (4, measured(closed, 60, true)),
+    ];
+    assert_eq!(kept(&search, rough, &tried), Some(80));
+    Ok(())
+}
+
+/// Finer steps in 32 bits are not tried if planning can pay for a trial of 64 bits, but not for
+/// one that tries both: they would spend what 64 bits need. They are tried if planning can pay
+/// for both or for neither, and if no frame was accurate before.
+#[test]
+fn finer_steps_do_not_spend_the_budget_of_64_bits() -> Result<(), PlanError> {
+    const FACTOR: u32 = 8;
+    let mut search = in_first_trial()?;
+    let Stepping { method, steps } = search.stepping;
+    let finer = Stepping {
+        method,
+        steps: FACTOR * steps,
+    };
+    let in_64_bits = search.in_64_bits().expect("a frame can pay for it");
+    let first = Candidate::new(search.stepping);
+
+    let mut cases = [0; 3];
+    for power in 0..40 {
+        search.budget.planning = 1e5 * 1.5_f32.powi(power);
+        search.goal = Goal::FindBest { best: None };
+        assert_eq!(search.finer(Some(FACTOR)), Some(finer));
+
+        search.goal.set_best(measured(first, 60, true));
+        let [alone, both] =
+            [in_64_bits, finer].map(|stepping| search.judging_pair(stepping).is_some());
+        let expected = (!alone || both).then_some(finer);
+        assert_eq!(search.finer(Some(FACTOR)), expected, "{power}");
+        cases[usize::from(alone) + usize::from(both)] += 1;
+    }
+    assert!(cases.iter().all(|&count| count > 0), "{cases:?}");
+    Ok(())
+}
+
+/// Returns a search whose trial has this number of finer runs and no reference. Its candidate
+/// has failed after 100 accurate frames.
+fn without_reference(finer_runs: u8) -> Result<Search, PlanError> {
+    let mut search = in_first_trial()?;
+    let judges = Judges::FinerRuns(finer_runs);
+    let mut trial = Trial::new(search.stepping, &search.problem, judges, search.shadow());
+    trial.candidates[0] = measured(trial.candidates[0], 100, true);
+    search.goal.set_best(trial.candidates[0]);
+    search.state = SearchState::Trying {
+        trial,
+        progress: Progress::BetweenFrames { compared: 101 },
+    };
+    // No step count in 64 bits is accepted, so that planning can never pay for a reference.
+    search.least_in_64_bits = None;
+    Ok(search)
+}
+
+/// Sets the planning budget to the cost so far, plus the cost of `frames` frames of a trial
+/// with this number of finer runs, plus a thousandth of the latter.
+fn limit_planning(search: &mut Search, finer_runs: u8, frames: f32) {
+    let judges = Judges::FinerRuns(finer_runs);
+    let cost = Trial::cost(&search.costs, search.stepping, judges);
+    search.budget.planning = search.spent + 1.001 * cost * frames;
+}
+
+/// A trial has as many finer runs as planning can pay for: for all 600 frames if none is known
+/// to be accurate, otherwise for 2.75 times the known horizon or, if it cannot pay for any
+/// number of them then, for 1.25 times. There are at least two after a measurement with two,
+/// and no fewer than a repeated trial must have. The evaluation of one method always has three.
+#[test]
+fn trial_has_as_many_finer_runs_as_planning_pays_for() -> Result<(), PlanError> {
+    let mut search = without_reference(1)?;
+    let goals = [(0, 600.0), (100, 275.0), (400, 600.0)];
+    for (known, frames) in goals {
+        let mut best = Candidate::new(search.stepping);
+        best.finer_runs = 1;
+        search.goal.set_best(measured(best, known, true));
+        for number in 1..=MOST_FINER_RUNS {
+            limit_planning(&mut search, number, frames);
+            assert_eq!(search.affordable_finer_runs(), number, "{known}");
+        }
+    }
+
+    // Planning pays for 1.25 times the known 100 frames, or not even for these.
+    let mut best = Candidate::new(search.stepping);
+    best.finer_runs = 1;
+    search.goal.set_best(measured(best, 100, true));
+    limit_planning(&mut search, 2, 125.0);
+    assert_eq!(search.affordable_finer_runs(), 2);
+    limit_planning(&mut search, 1, 50.0);
+    assert_eq!(search.affordable_finer_runs(), 1);
+    search.least_finer_runs = 2;
+    assert_eq!(search.affordable_finer_runs(), 2);
+    search.least_finer_runs = 1;
+    best.finer_runs = 2;
+    search.goal.set_best(measured(best, 100, true));
+    assert_eq!(search.affordable_finer_runs(), 2);
+
+    search.goal = Goal::Evaluate { only: best };
+    assert_eq!(search.affordable_finer_runs(), MOST_FINER_RUNS);
+    Ok(())
+}
+
+/// A failed trial with one or two finer runs is repeated with the largest number that planning
+/// can pay for, for 1.25 times its horizon. If two finer runs have shown a truncation error,
+/// finer steps are tried instead, if a frame and planning can pay for them.
+#[test]
+fn rough_trial_is_repeated_with_more_finer_runs() -> Result<(), PlanError> {
+    for number in 1..=MOST_FINER_RUNS {
+        let mut search = without_reference(number)?;
+        // A frame cannot pay for finer steps.
+        search.budget.frame = search.costs.of_frame(search.stepping);
+        for more in 1..=MOST_FINER_RUNS {
+            limit_planning(&mut search, more, 125.0);
+            let expected = (more > number).then_some(more);
+            assert_eq!(search.more_finer_runs(), expected, "{number}");
+        }
+
+        // A frame and planning can pay for finer steps.
+        search.budget.frame = 1e6;
+        search.budget.planning = 1e10;
+        let expected = (number == 1).then_some(MOST_FINER_RUNS);
+        assert_eq!(search.more_finer_runs(), expected, "{number}");
+    }
+
+    // Rounding is the larger error of a trial with two finer runs.
+    let mut search = without_reference(2)?;
+    if let SearchState::Trying { trial, .. } = &mut search.state {
+        let failed = trial.candidates[0];
+        trial.exclude_for_rounding();
+        trial.candidates[0] = failed;
+    }
+    search.budget.planning = 1e10;
+    assert_eq!(search.more_finer_runs(), Some(MOST_FINER_RUNS));
+
+    // Not even the first frame was accurate. Planning pays for 1.25 frames.
+    let mut search = without_reference(1)?;
+    search.goal = Goal::FindBest { best: None };
+    limit_planning(&mut search, MOST_FINER_RUNS, 1.25);
+    assert_eq!(search.more_finer_runs(), Some(MOST_FINER_RUNS));
+
+    // Planning pays for a reference, which the repeated trial takes.
+    let mut search = without_reference(1)?;
+    search.least_in_64_bits = in_first_trial()?.least_in_64_bits;
+    search.budget.planning = 1e10;
+    assert!(search.affordable_reference().is_some());
+    assert_eq!(search.more_finer_runs(), Some(2));
+
+    // Neither the evaluation of one method is repeated, nor a trial without a failure.
+    let mut search = without_reference(1)?;
+    let only = Candidate::new(search.stepping);
+    search.goal = Goal::Evaluate { only };
+    assert_eq!(search.more_finer_runs(), None);
+    let mut search = without_reference(1)?;
+    if let SearchState::Trying { trial, .. } = &mut search.state {
+        trial.retain(|_| false);
+    }
+    assert_eq!(search.more_finer_runs(), None);
+    Ok(())
+}
+
+/// If a frame pays for neither finer steps nor 64 bits, the frame budget is the limit after a
+/// trial with three finer runs. After one with fewer, planning is the limit, which does not pay
+/// for its repetition.
+#[test]
+fn planning_is_the_limit_of_a_rough_trial() -> Result<(), PlanError> {
+    for (number, expected) in [
+        (1, Limit::Planning),
+        (2, Limit::Planning),
+        (3, Limit::Budget),
+    ] {
+        let mut search = without_reference(number)?;
+        search.budget.frame = search.costs.of_frame(search.stepping);
+        search.budget.planning = search.spent;
+        assert_eq!(search.end_trial(), Some(expected), "{number}");
+    }
+    Ok(())
+}
+
+/// A reference that costs more than five times as much as three finer runs is not taken if
+/// planning cannot pay for half of all frames, although it could pay for 2.75 times the known
+/// horizon. It is taken if the same steps were measured with three finer runs before.
+#[test]
+fn expensive_reference_waits_until_finer_runs_have_measured() -> Result<(), PlanError> {
+    let mut search = in_first_trial()?;
+    let finer_runs = Judges::FinerRuns(MOST_FINER_RUNS);
+    let cost = 5.0 * Trial::cost(&search.costs, search.stepping, finer_runs);
+    search.budget.planning = search.spent + 300.0 * cost;
+    for (factor, planning, expected) in
+        [(1.01, 0.99, true), (0.99, 0.99, false), (1.01, 1.02, false)]
+    {
+        let mut search = search;
+        search.budget.planning = search.spent + planning * 300.0 * cost;
+        let is_too_expensive = search.is_too_expensive(search.stepping, factor * cost);
+        assert_eq!(is_too_expensive, expected, "{factor} {planning}");
+    }
+
+    // 64 bits cost a hundred times as much as usual, and a frame was accurate.
+    search.costs.fixed64 *= 100.0;
+    let mut best = Candidate::new(search.stepping);
+    for (finer_runs, expected) in [(1, false), (2, false), (3, true)] {
+        best.finer_runs = finer_runs;
+        search.goal.set_best(measured(best, 1, true));
+        search.budget.planning = search.spent + 1e8;
+        let is_taken = search.affordable_reference().is_some();
+        assert_eq!(is_taken, expected, "{finer_runs}");
+    }
+    Ok(())
+}
+
+/// The first trial takes steps of at most 4 admissible steps if a frame can pay for them, and
+/// planning can for all 600 frames. Otherwise it takes steps that are 2, 4, 8 or 16 times as
+/// long: the shortest that both can pay for, or the longest. In the faster normal mode, which
+/// limits them in small oscillations, they are a radian.
+#[test]
+fn first_steps_are_the_shortest_that_both_budgets_pay_for() -> Result<(), PlanError> {
+    let mut search = in_first_trial()?;
+    // The start is so fast that all five steps are short in comparison with the normal modes.
+    search.problem.start = Motion {
+        a1: 0.0,
+        a2: 0.0,
+        w1: 60.0,
+        w2: -60.0,
+    };
+    search.problem.rate = 6;
+    search.problem.duration = 100.0;
+    let first = |budget: &Budget| {
+        let search = Search::new(&search.problem, &search.costs, budget)?;
+        Ok::<_, PlanError>(search.stepping)
+    };
+    let rich = Budget {
+        frame: f32::MAX,
+        planning: f32::MAX,
+    };
+    let Stepping { method, steps } = first(&rich)?;
+    assert!(steps >= 16, "{steps} steps are too few for this test");
+    for times in [1, 2, 4, 8, 16] {
+        let expected = Stepping {
+            method,
+            steps: steps / times,
+        };
+        let frame = search.costs.of_frame(expected);
+        let judges = Judges::FinerRuns(MOST_FINER_RUNS);
+        let planning = 1.001 * 600.0 * Trial::cost(&search.costs, expected, judges);
+        assert_eq!(first(&Budget { frame, ..rich })?, expected);
+        assert_eq!(first(&Budget { planning, ..rich })?, expected);
+    }
+    let poor = Budget {
+        frame: 1.0,
+        planning: 1.0,
+    };
+    assert_eq!(first(&poor)?.steps, steps / 16);
+
+    // In a small oscillation of equal rods, the faster mode has 5.79 rad/s.
+    search.problem.start = Motion::at_rest(0.01, 0.01);
+    search.problem.rate = 1;
+    let small = Search::new(&search.problem, &search.costs, &poor)?;
+    assert_eq!(small.stepping.steps, 8);
+    Ok(())
+}
