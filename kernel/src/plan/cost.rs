@@ -123,10 +123,10 @@ pub(super) const FIRST_STEP: f64 = 4.0;
 /// that a frame can pay for and that planning can pay for in a trial of all frames with three finer
 /// runs. If the budgets pay for none of them, the last one is used.
 ///
-/// Steps longer than [`FIRST_STEP`] are useful because, with very unlike masses, a motion comes
-/// nowhere near the fastest rate that its energy allows: with a heavy bob 2 on a short rod, steps
-/// of 2000 admissible steps were accurate enough (measured). Test `plan_study` checks the
-/// predictions of such trials against the exact motion.
+/// Steps longer than [`FIRST_STEP`] are useful because, with very unlike masses, a motion is far
+/// slower than the fastest rate that its energy allows: with a heavy bob 2 on a short rod, steps of
+/// 2000 admissible steps were accurate enough (measured). Test `plan_study` checks the predictions
+/// of such trials against the exact motion.
 pub(super) const FIRST_STEPS: [f64; 5] = [FIRST_STEP, 8.0, 16.0, 32.0, 64.0];
 
 /// The longest steps of RK4 in 32 bits that a motion may start with, in admissible steps. The first

@@ -1,5 +1,5 @@
-//! What the budgets of a search can pay for: the first steps, the steps in 64 bits, and the runs
-//! that a trial is compared with.
+//! The steps and runs that the budgets of a search can pay for: the first steps, the steps in 64
+//! bits, and the runs that a trial is compared with.
 
 use core::ops::Range;
 
@@ -25,8 +25,8 @@ const EXPENSIVE: f32 = 5.0;
 
 /// Returns the steps per frame of the first trial in 32 bits, by `method`: the shortest of
 /// [`FIRST_STEPS`] that a frame can pay for, and planning to the end of the problem, or the
-/// longest. They are at most so long that the faster normal mode advances by a radian. `admissible`
-/// is the admissible step, s.
+/// longest. The faster normal mode advances by at most a radian in a step. `admissible` is the
+/// admissible step, s.
 pub(super) fn first_steps(
     method: Method,
     problem: &Problem,
