@@ -800,4 +800,44 @@ mod tests {
         }
         Ok(())
     }
+
+    /// In a chaotic motion, truncation is the larger error of a reference in long steps when its
+    /// runs fail, and rounding is the larger error of one in short steps.
+    #[test]
+    fn larger_error_of_64_bits_depends_on_the_steps() -> Result<(), Error> {
+        let problem = Problem {
+            pendulum: Parameters::equal_rods(1.0, 1.0, 9.81),
+            start: Motion::at_rest(2.5, 2.5),
+            tolerance: 0.01,
+            duration: 60.0,
+            rate: 60,
+        };
+        let shadow = Stepping {
+            method: Method::Rk4Fixed32,
+            steps: 4,
+        };
+        for (coarse, fine, by_rounding) in [(1, 2, false), (8, 11, true)] {
+            let method = Method::Extrapolation10Fixed64;
+            let stepping = Stepping {
+                method,
+                steps: fine,
+            };
+            let judges = Judges::Reference(Pair::new(coarse, fine));
+            let mut trial = Trial::new(stepping, &problem, judges, shadow);
+            let mut frame = 0;
+            while trial.has_candidate_in_64_bits() && frame < problem.frames() {
+                while trial.prepare(&problem)? {}
+                while trial.advance(&Costs::CORTEX_M3, f32::INFINITY) > 0.0 {}
+                frame += 1;
+                trial.compare(problem.time(frame));
+            }
+            assert!(frame < problem.frames(), "nothing has failed");
+            assert_eq!(
+                trial.is_limited_by_rounding(),
+                by_rounding,
+                "{coarse} {fine}"
+            );
+        }
+        Ok(())
+    }
 }
