@@ -372,6 +372,12 @@ impl Trial {
         self.finer_runs == 0
     }
 
+    /// Returns true if the trial has no reference and fewer than three finer runs, so that more of
+    /// them would give a smaller bound.
+    pub fn is_rough(&self) -> bool {
+        (1..MOST_FINER_RUNS).contains(&self.finer_runs)
+    }
+
     /// Returns the number of finer runs that the candidate is compared with; 0 with a reference.
     pub fn finer_runs(&self) -> u8 {
         self.finer_runs

@@ -114,7 +114,7 @@ impl Search {
     /// cost of a frame of the shadows. Pairs that are [too expensive](Self::is_too_expensive) are
     /// left out if `stepping` is in 32 bits, unless it is [well
     /// measured](Self::is_well_measured) already.
-    pub(super) fn first_affordable(
+    fn first_affordable(
         &self,
         stepping: Stepping,
         indices: Range<usize>,
@@ -155,7 +155,7 @@ impl Search {
 
     /// Returns true if the best known candidate is in 32 bits, by any method, has these steps per
     /// frame, and was measured with a reference or with three finer runs.
-    pub(super) fn is_well_measured(&self, steps: u32) -> bool {
+    fn is_well_measured(&self, steps: u32) -> bool {
         self.goal.best().is_some_and(|best| {
             best.stepping.method != Method::Extrapolation10Fixed64
                 && best.stepping.steps == steps

@@ -271,6 +271,19 @@ fn planning_is_the_limit_of_a_rough_trial() -> Result<(), PlanError> {
         search.budget.frame = search.costs.of_frame(search.stepping);
         search.budget.planning = search.spent;
         assert_eq!(search.end_trial(), Some(expected), "{number}");
+
+        // The same if not even the first frame was accurate by any method, and planning has ended.
+        search.goal = Goal::FindBest { best: None };
+        if let SearchState::Trying { trial, .. } = &mut search.state {
+            let failed = trial.candidates[0];
+            trial.retain(|_| false);
+            trial.candidates[0] = failed;
+        }
+        let limit = match search.plan(Limit::Planning) {
+            Err(PlanError::NoMethod { limit, .. }) => limit,
+            other => panic!("{other:?}"),
+        };
+        assert_eq!(limit, expected, "{number}");
     }
     Ok(())
 }
