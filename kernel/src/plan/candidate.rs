@@ -97,11 +97,7 @@ impl Candidate {
 
         // The first frame beyond the bound ends the horizon of the candidate.
         if bound <= TOLERATED {
-            self.error = if error > self.error {
-                error
-            } else {
-                self.error
-            };
+            self.error = greater(self.error, error);
             self.accurate_frames += 1;
         } else {
             self.state = CandidateState::Failed;

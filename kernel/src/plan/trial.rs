@@ -114,7 +114,7 @@ impl<M: Motion> Run<M> {
 
         // Stop at the frame, but make at least one step before it.
         let left = self.stepping.steps.saturating_sub(self.made);
-        let steps = left.min(if paid > 0 { paid } else { 1 });
+        let steps = left.min(paid.max(1));
         if let Some(motion) = &mut self.motion {
             motion.advance(steps);
         }

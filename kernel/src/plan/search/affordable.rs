@@ -221,7 +221,7 @@ impl Search {
         let method = Method::Extrapolation10Fixed64;
         let resolving = steps_to_frame(method, self.problem.rate, RESOLVING * self.admissible);
         let most = self.most_in_64_bits();
-        let steps = if resolving < most { resolving } else { most };
+        let steps = resolving.min(most);
         (steps >= least).then_some(Stepping { method, steps })
     }
 
