@@ -755,6 +755,41 @@ fn growth_that_cannot_be_measured_is_the_limit() {
     assert!(is_growth, "{plan:?}");
 }
 
+/// The closed form is measured in a trial in fixed point. The steps of the trial may cost more than
+/// a frame can pay for, but are not doubled beyond 65,536 per frame.
+///
+/// Two pendulums are shown once a second. With rods of 2.4e-7 m, fixed point needs fewer steps, and
+/// the closed form is planned. With rods of 2.3e-10 m it needs 32 times as many, and nothing is.
+#[test]
+fn trial_makes_a_limited_number_of_steps_per_frame() {
+    let of_length = |length| {
+        let pendulum = Parameters::equal_rods(1.0, length, 9.81);
+        Problem {
+            pendulum,
+            tolerance: half_pixel(&pendulum, 64.0),
+            rate: 1,
+            ..scene(1.0, 0.01, 1.0)
+        }
+    };
+    let budget = Budget {
+        frame: 2.0 * M3.closed_form,
+        planning: 1e12,
+    };
+    let plan = |length| Plan::search(&of_length(length), &M3, &budget);
+    assert_eq!(plan(2.4e-7).expect("a plan").method, Method::ClosedFormF32);
+    let too_short = plan(2.3e-10);
+    assert!(
+        matches!(
+            too_short,
+            Err(PlanError::NoMethod {
+                limit: Limit::Budget,
+                ..
+            })
+        ),
+        "{too_short:?}"
+    );
+}
+
 /// The limit without a method is the budget to raise: the planning budget if an affordable
 /// candidate has not failed yet, otherwise the frame budget.
 ///
