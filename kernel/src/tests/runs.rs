@@ -222,7 +222,7 @@ fn unit_of_momentum_may_be_zero_in_single_precision() -> Result<(), Error> {
 /// Both motions have the same bits. The angles of both differ by whole turns, to a millionth of a
 /// turn. The counted angles follow the rods beyond 3 pi; the others are within half a turn, or
 /// equal to them if the method carries angles. The momenta for the check of the energy are those of
-/// the motion to 3e-7.
+/// the motion to 3e-7. The time is the number of steps times dt, also backwards.
 fn counts_turns_on_request<F: Form>() -> Result<(), Error> {
     let pendulum = Pendulum::new(&Parameters { m2: 2.75, ..EVEN })?;
     let mut plain = pendulum.run::<F>(&State::at_rest(3.0, 3.0 + TAU), 1.0 / 256.0)?;
@@ -272,6 +272,13 @@ fn counts_turns_on_request<F: Form>() -> Result<(), Error> {
         }
     }
     assert!(farthest > 3.0 * PI, "no rod turned over: {farthest} rad");
+    assert_eq!([plain.time(), counting.time()], [10.0; 2]);
+
+    // Backwards the time is negative.
+    let mut backwards = pendulum.run::<F>(&State::at_rest(1.0, 2.0), -1.0 / 256.0)?;
+    assert_eq!(backwards.time(), 0.0);
+    backwards.advance(3)?;
+    assert_eq!(backwards.time(), -3.0 / 256.0);
 
     Ok(())
 }
