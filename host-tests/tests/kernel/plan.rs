@@ -758,8 +758,9 @@ fn growth_that_cannot_be_measured_is_the_limit() {
 /// The closed form is measured in a trial in fixed point. The steps of the trial may cost more than
 /// a frame can pay for, but are not doubled beyond 65,536 per frame.
 ///
-/// Two pendulums are shown once a second. With rods of 2.4e-7 m, fixed point needs fewer steps, and
-/// the closed form is planned. With rods of 2.3e-10 m it needs 32 times as many, and nothing is.
+/// Two pendulums are shown once a second. With rods of 2.4e-7 m, fixed point accepts 65,536 steps,
+/// and the closed form is planned. With rods of 2.3e-10 m it would accept 2,097,152, which are not
+/// tried, and no method is planned.
 #[test]
 fn trial_makes_a_limited_number_of_steps_per_frame() {
     let of_length = |length| {

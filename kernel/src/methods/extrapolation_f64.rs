@@ -372,3 +372,35 @@ impl<const ORDER: u32> FormOperations for ExtrapolationF64<ORDER> {
         feed(self.steps);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The rates of a general motion are the changes in a step of 1 us, to 1e-5 of each.
+    #[test]
+    fn rates_are_the_change_over_a_short_step() -> Result<(), Error> {
+        let parameters = Parameters {
+            m1: 1.0,
+            m2: 2.0,
+            l1: 1.0,
+            l2: 0.7,
+            g: 9.81,
+        };
+        let start = State {
+            a1: 0.5,
+            a2: 1.3,
+            p1: 2.0,
+            p2: -1.0,
+        };
+        let mut motion = ExtrapolationF64::<4>::new(&parameters, &start, 1e-6)?;
+        let before = motion.z;
+        let rates = motion.rates(&before);
+        motion.advance(1);
+        for i in 0..6 {
+            let error = motion.z[i] - before[i] - rates[i];
+            assert!(error.abs() <= 1e-5 * rates[i].abs(), "{i}: {error:e}");
+        }
+        Ok(())
+    }
+}

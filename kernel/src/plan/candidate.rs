@@ -87,9 +87,9 @@ impl Candidate {
     ///
     /// `error` is an estimate of its error, and `bound` is an upper bound that is exceeded only in
     /// rare cases. Both are in units of the tolerance. The frame is accurate if the bound is at
-    /// most 1 ([`TOLERATED`]); then it is counted, and the largest `error` is kept. A NaN `error`
-    /// is not kept, and a NaN `bound` counts as inaccurate. The first inaccurate frame makes the
-    /// candidate fail. After that, or if the candidate is excluded, nothing is recorded.
+    /// most 1 ([`TOLERATED`]); then it is counted, and the largest `error` is kept. If `error` is
+    /// NaN, `bound` must be NaN too, which counts as inaccurate. The first inaccurate frame makes
+    /// the candidate fail. After that, or if the candidate is excluded, nothing is recorded.
     pub fn note(&mut self, error: f32, bound: f32) {
         if !self.is_accurate() {
             return;

@@ -38,7 +38,8 @@
 //! that the energy allows, a proven bound, advances a phase by a radian. If the budgets do not pay
 //! for steps of this length, the first steps are longer, up to 16 times. The first trial uses these
 //! steps and, if it has a run in 64 bits, steps of a half and a quarter of their length. Its method
-//! is compensated `f32` or 32 bits of fixed point, by their costs. The search changes to 64 bits if
+//! is compensated `f32` or 32 bits of fixed point, by their costs. If fixed point refuses the
+//! motion, or all steps that a frame can pay for, it is `f32`. The search changes to 64 bits if
 //! rounding is the larger error, if 64 bits cost less, or if 32 bits fail early and planning can
 //! pay for 64 bits but not for finer steps in 32 bits as well. It then takes the finest steps that
 //! both budgets can pay for.

@@ -353,9 +353,9 @@ fn short_rods_keep_their_horizons() {
 /// were less than two thirds of these.
 ///
 /// In the first scene planning can only pay for one finer run. In the next two, the budgets do not
-/// pay for the usual first steps, and longer ones are accurate enough. In the next three, a reference
-/// would use up the planning budget in a small part of the scene. In the last two, a frame can pay
-/// for no steps that fixed point accepts, but for steps in `f32`.
+/// pay for the usual first steps, and longer ones are accurate enough. In the next three, a
+/// reference would use up the planning budget in a small part of the scene. In the last two, fixed
+/// point refuses all steps that a frame can pay for, but a frame can pay for `f32`.
 const UNLIKE: [(usize, &str, f64); 8] = [
     (22, "m3", 2.9),
     (32, "slow-m4f", 16.4),
