@@ -450,6 +450,7 @@ impl Stepping {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::{Motion, Parameters};
 
     /// Pendulums that need different step counts, on chips that can pay for few or for many steps.
     ///
@@ -490,5 +491,50 @@ mod tests {
         assert_eq!(Pair::new(3, 6).share_of_fine(60, 0.0027), 1.0);
         let share = share(3, 4);
         assert!((share / (TRUST * 0.75_f32.powi(10)) - 1.0).abs() < 1e-5);
+    }
+
+    /// Returns the least gravity, m/s^2, with which a pendulum near rest refuses a step as too long.
+    fn refused_gravity(stepping: Stepping, under: impl Fn(f64) -> Problem) -> f64 {
+        let [mut accepted, mut refused] = [1e-3, 1e6];
+        loop {
+            let middle = 0.5 * (accepted + refused);
+            if middle <= accepted || middle >= refused {
+                return refused;
+            }
+            match stepping.check(&under(middle)) {
+                Ok(()) => accepted = middle,
+                Err(_) => refused = middle,
+            }
+        }
+    }
+
+    /// At the least gravity that makes steps too long, one more step per frame is accepted in 64
+    /// bits, and twice as many in fixed point of 32 bits.
+    ///
+    /// The limit that the refusal names is then equal to the step within rounding errors. With 15
+    /// and 30 steps in 64 bits, the number that follows from the limit is the refused one.
+    #[test]
+    fn steps_are_increased_at_the_edge_of_their_limit() {
+        let under = |g| Problem {
+            pendulum: Parameters::equal_rods(1.0, 1.0, g),
+            start: Motion::at_rest(1e-6, 1e-6),
+            tolerance: 0.01,
+            duration: 1.0,
+            rate: 7,
+        };
+        for (method, steps, more) in [
+            (Method::Extrapolation10Fixed64, 8, 9),
+            (Method::Extrapolation10Fixed64, 15, 16),
+            (Method::Extrapolation10Fixed64, 30, 31),
+            (Method::Rk4Fixed32, 8, 16),
+        ] {
+            let edge = under(refused_gravity(Stepping { method, steps }, under));
+            let accepted = Stepping::accepted(method, &edge, steps, |_| true);
+            let expected = Stepping {
+                method,
+                steps: more,
+            };
+            assert_eq!(accepted, Some(expected), "{method}, {steps}");
+        }
     }
 }
