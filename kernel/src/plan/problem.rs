@@ -169,6 +169,28 @@ pub(super) const PERTURBATIONS: [Perturbation; 3] = [
 mod tests {
     use super::*;
 
+    /// Bob 2 is heavy if it has more than 4 times the mass of bob 1, in any unit of mass.
+    #[test]
+    fn bob_2_is_heavy_above_a_mass_ratio_of_4() {
+        for m1 in [0.25, 1.0, 16.0] {
+            let is_heavy = |m2| {
+                let problem = Problem {
+                    pendulum: Parameters {
+                        m1,
+                        m2,
+                        ..Parameters::equal_rods(1.0, 1.0, 9.81)
+                    },
+                    start: Motion::at_rest(0.0, 0.0),
+                    tolerance: 0.1,
+                    duration: 1.0,
+                    rate: 60,
+                };
+                problem.has_heavy_bob_2()
+            };
+            assert!(!is_heavy(4.0 * m1) && is_heavy(4.001 * m1), "{m1} kg");
+        }
+    }
+
     /// A start without a perturbation and the same start with each of the three perturbations are
     /// rounded to the numbers of each drawn method. No two of the four may be equal in m2, g, both
     /// angles and both momenta. No number may differ from the unperturbed one by more than two
