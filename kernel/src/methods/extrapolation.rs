@@ -211,8 +211,8 @@ mod tests {
         Ok(())
     }
 
-    /// By the orders 2 to 10, the change by a constant rate has a relative error of at most 5
-    /// epsilons, in steps of 0.01 to 1. It would be 10 epsilons if the weights multiplied the
+    /// A constant rate is integrated in steps of 0.01 to 1. The change has a relative error of at
+    /// most 5 epsilons in the orders 2 to 10. It would be 10 epsilons if the weights multiplied the
     /// changes of all rows instead of their differences.
     #[test]
     fn change_by_a_constant_rate_is_hardly_rounded() -> Result<(), Error> {

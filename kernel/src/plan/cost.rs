@@ -493,7 +493,8 @@ mod tests {
         assert!((share / (TRUST * 0.75_f32.powi(10)) - 1.0).abs() < 1e-5);
     }
 
-    /// Returns the least gravity, m/s^2, with which a pendulum near rest refuses a step as too long.
+    /// Returns the least gravity, m/s^2, for which the method refuses the step as too long. `under`
+    /// returns a problem with a given gravity.
     fn refused_gravity(stepping: Stepping, under: impl Fn(f64) -> Problem) -> f64 {
         let [mut accepted, mut refused] = [1e-3, 1e6];
         loop {
@@ -508,11 +509,11 @@ mod tests {
         }
     }
 
-    /// At the least gravity that makes steps too long, one more step per frame is accepted in 64
-    /// bits, and twice as many in fixed point of 32 bits.
+    /// Gravity is so strong that a step is just refused as too long. Then one more step per frame
+    /// is accepted in 64 bits, and twice as many in fixed point of 32 bits.
     ///
-    /// The limit that the refusal names is then equal to the step within rounding errors. With 15
-    /// and 30 steps in 64 bits, the number that follows from the limit is the refused one.
+    /// The error names a limit that equals the refused step within rounding errors. For 15 and 30
+    /// steps in 64 bits, that limit alone would give the refused step count again.
     #[test]
     fn steps_are_increased_at_the_edge_of_their_limit() {
         let under = |g| Problem {
