@@ -450,7 +450,7 @@ impl Stepping {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Motion, Parameters};
+    use crate::pendulum::{Motion, Parameters};
 
     /// Pendulums that need different step counts, on chips that can pay for few or for many steps.
     ///
