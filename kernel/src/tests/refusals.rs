@@ -2,7 +2,7 @@
 
 use std::string::ToString;
 
-use double_pendulum::Parameter::{A1, A2, Dt, FrequencyRatio, G, L1, M1, M2, P1, P2, W1, W2};
+use double_pendulum::Parameter::{A1, A2, Dt, FrequencyRatio, G, L1, L2, M1, M2, P1, P2, W1, W2};
 use double_pendulum::{
     ClosedFormF32, DirectionF32, DirectionF32Plain, Error, ExtrapolationF64, Fixed32, Fixed64,
     Form, HamiltonF32, Modes, Motion, Parameters, Pendulum, State, periodic_mass_ratio,
@@ -286,6 +286,37 @@ fn run_names_a_step_that_takes_constants_out_of_range() -> Result<(), Error> {
         refused::<DirectionF32>(&light, 0.01)?,
         out_of_range(G, rounded)
     );
+    Ok(())
+}
+
+/// `DirectionF32` refuses rods whose squared ratio, 1e38, has a reciprocal too small for a normal
+/// `f32`. It accepts a quarter of that.
+///
+/// Rods for which G2 is out of range with any step are at fault themselves: g/l1 is 3e-41 1/s^2.
+#[test]
+fn direction_form_names_a_rod_that_takes_constants_out_of_range() -> Result<(), Error> {
+    let refused = |l1, l2, g| {
+        let pendulum = Pendulum::new(&Parameters {
+            m1: 1.0,
+            m2: 1.0,
+            l1,
+            l2,
+            g,
+        })?;
+        let run = pendulum.run::<DirectionF32>(&State::default(), 1e-6);
+        Ok(run.err())
+    };
+    let out_of_range = |parameter, value: f32| Error::OutOfRange {
+        parameter,
+        value: value.into(),
+    };
+
+    assert_eq!(refused(1e9, 2e-10, 9.81)?, None);
+    let error = out_of_range(L2, 1e-10);
+    assert_eq!(refused(1e9, 1e-10, 9.81)?, Some(error));
+
+    let error = out_of_range(L1, 3e20);
+    assert_eq!(refused(3e20, 3e15, 1e-20)?, Some(error));
     Ok(())
 }
 
