@@ -157,8 +157,8 @@ fn closed_form_stands_at_its_start_before_its_first_step() {
 /// The largest relative difference between the energy above rest of a motion and that of its state.
 /// Both are computed from all digits that the method carries. Measured: 6e-15.
 const ENERGY: f64 = 1e-13;
-/// The largest difference between a direction and that by [`FormOperations::sides`], whose sines and
-/// cosines in `f64` are cut to 20 bits.
+/// The largest difference between a direction and that by [`FormOperations::sides`], whose numbers
+/// in `f64` are cut to 20 bits.
 const SIDES: f64 = 2e-6;
 
 /// Asserts that the energy of a motion, and the signs and the ratio of its sides, are those of its

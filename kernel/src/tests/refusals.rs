@@ -238,9 +238,9 @@ fn closed_form_names_the_number_that_is_out_of_range() -> Result<(), Error> {
 }
 
 /// The methods that carry directions blame the step if it alone takes their constants out of range:
-/// by `TooLarge` with the limit of stability, as `HamiltonF32` does, or by `OutOfRange` if it is too
-/// short. A step that no `f32` holds is refused by `OutOfRange` in both. A gravity that is out of
-/// range with any step is named itself.
+/// by `TooLarge` with the limit of stability, as `HamiltonF32` does, or by `OutOfRange` if it is
+/// too short. A step that no `f32` holds is refused by `OutOfRange` in both. A gravity that is out
+/// of range with any step is named itself.
 #[test]
 fn run_names_a_step_that_takes_constants_out_of_range() -> Result<(), Error> {
     fn refused<F: Form>(parameters: &Parameters<f64>, dt: f64) -> Result<Option<Error>, Error> {
@@ -320,8 +320,8 @@ fn direction_form_names_a_rod_that_takes_constants_out_of_range() -> Result<(), 
     Ok(())
 }
 
-/// A start of infinite energy is refused in fixed point by its larger momentum, with any step within
-/// the limit of stability.
+/// A start of infinite energy is refused in fixed point by its larger momentum, with any step
+/// within the limit of stability.
 #[test]
 fn fixed_point_names_the_momentum_of_infinite_energy() -> Result<(), Error> {
     let pendulum = Pendulum::new(&GOOD)?;
