@@ -137,16 +137,16 @@ fn errors_contain_the_parameter_and_its_value() {
             too_small(FrequencyRatio, 1.0, 1.0),
         ),
         (
-            periods(3, 2, [4.0, 1.0]),
+            periods(3, 2, [8.0, 2.0]),
             too_small(FrequencyRatio, 1.5, 2.0),
         ),
         // At the limit bob 2 would have no mass.
         (
-            periods(2, 1, [4.0, 1.0]),
+            periods(2, 1, [8.0, 2.0]),
             too_small(FrequencyRatio, 2.0, 2.0),
         ),
         (
-            periods(2, 1, [1.0, 4.0]),
+            periods(2, 1, [2.0, 8.0]),
             too_small(FrequencyRatio, 2.0, 2.0),
         ),
         (periods(3, 2, [0.0, 1.0]), not_positive(L1, 0.0)),
