@@ -118,3 +118,36 @@ impl Turns {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use core::f64::consts::PI;
+
+    use super::*;
+
+    /// Returns the angle of a count that starts at `start`, rad, with the direction of `now`, rad.
+    fn counted(start: f64, now: f64) -> f64 {
+        let direction = [libm::sin(now), libm::cos(now)];
+        let signs = direction.map(|value| if value < 0.0 { -1 } else { 0 });
+        let [turns, _] = Turns::of([start; 2], [signs; 2]).expect("few turns");
+        turns.angle(direction)
+    }
+
+    /// The count starts at angles of up to seven turns in both directions. Near upright it follows
+    /// the given direction, also if that is on the other side than the angle.
+    #[test]
+    fn counts_start_at_the_given_angles() {
+        for start in (-440..=440).map(|i| 0.1 * f64::from(i)) {
+            let angle = counted(start, start);
+            assert!((angle - start).abs() < 1e-12, "{angle} instead of {start}");
+        }
+
+        for upright in (-7..7).map(|turns| f64::from(2 * turns + 1) * PI) {
+            for [start, now] in [[-1e-6, 1e-6], [1e-6, -1e-6]].map(|pair| pair.map(|a| a + upright))
+            {
+                let angle = counted(start, now);
+                assert!((angle - now).abs() < 1e-12, "{angle} instead of {now}");
+            }
+        }
+    }
+}
