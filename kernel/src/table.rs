@@ -438,3 +438,52 @@ const _: () = {
         "Method::DRAWN has a method whose row is not drawn"
     );
 };
+
+#[cfg(test)]
+mod tests {
+    use std::string::ToString;
+
+    use super::*;
+
+    /// Equations, numbers and integrators are displayed as their documentation says.
+    #[test]
+    fn properties_are_displayed_by_their_names() {
+        let properties = |method: Method| {
+            [
+                method.equations().to_string(),
+                method.numbers().to_string(),
+                method.integrator().to_string(),
+            ]
+        };
+        for (method, equations, numbers, integrator) in [
+            (Method::Rk4F64, "Hamilton", "f64", "RK4"),
+            (
+                Method::Rk4F32Direction,
+                "directions",
+                "compensated f32",
+                "RK4",
+            ),
+            (Method::Rk4Fixed32, "directions", "fixed32", "RK4"),
+            (
+                Method::Extrapolation10Fixed64,
+                "directions",
+                "fixed64",
+                "extrapolation",
+            ),
+            (
+                Method::Extrapolation12F64,
+                "directions",
+                "compensated f64",
+                "extrapolation",
+            ),
+            (Method::ClosedFormF32, "linear", "f32", "closed form"),
+            (Method::TextbookF32, "textbook", "f32", "RK4"),
+        ] {
+            assert_eq!(
+                properties(method),
+                [equations, numbers, integrator],
+                "{method}"
+            );
+        }
+    }
+}

@@ -302,3 +302,40 @@ impl<const ORDER: u32> FormOperations for Fixed64<ORDER> {
         feed(u64::from(self.0.lost));
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A momentum out of its range, or a direction of rod 1 or rod 2 that is 2 % too long, each
+    /// mark the motion as lost after a step. A motion that is started anew is not lost.
+    #[test]
+    fn motion_out_of_range_is_lost_until_it_is_started_anew() -> Result<(), Error> {
+        let parameters = Parameters {
+            m1: 1.0,
+            m2: 1.0,
+            l1: 1.0,
+            l2: 1.0,
+            g: 9.81,
+        };
+        // The step is so short that a wrong number does not affect the others.
+        let start = State::at_rest(1.0, 2.0);
+        let motion = Fixed64::<10>::new(&parameters, &start, 1e-9)?;
+        for wrong in [[4, 4], [5, 5], [0, 1], [2, 3]] {
+            let mut lost = motion;
+            for i in wrong {
+                let z = &mut lost.0.z[i];
+                *z = if i < 4 {
+                    Q64(z.0 + z.0 / 50)
+                } else {
+                    Q64(3 << 61)
+                };
+            }
+            lost.advance(1);
+            let check = lost.check();
+            assert!(matches!(check, Err(Error::Diverged { .. })), "{wrong:?}");
+            assert_eq!(lost.started(&start)?, motion, "{wrong:?}");
+        }
+        Ok(())
+    }
+}

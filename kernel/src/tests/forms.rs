@@ -4,8 +4,8 @@
 
 use double_pendulum::parts::DirectionF64;
 use double_pendulum::{
-    ClosedFormF64, DirectionF32, ExtrapolationF64, Fixed32, Fixed64, Form, HamiltonF64, Motion,
-    Parameters, Pendulum,
+    ClosedFormF32, ClosedFormF64, DirectionF32, ExtrapolationF64, Fixed32, Fixed64, Form,
+    HamiltonF64, Motion, Parameters, Pendulum,
 };
 
 use super::{EQUATIONS, assert_near};
@@ -205,4 +205,6 @@ fn energy_and_sides_of_every_form_are_those_of_its_state() {
     energy_and_sides_are_those_of_the_state::<Fixed32>();
     energy_and_sides_are_those_of_the_state::<ExtrapolationF64<12>>();
     energy_and_sides_are_those_of_the_state::<Fixed64<12>>();
+    energy_and_sides_are_those_of_the_state::<ClosedFormF32>();
+    energy_and_sides_are_those_of_the_state::<ClosedFormF64>();
 }

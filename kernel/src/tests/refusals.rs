@@ -43,7 +43,8 @@ fn periods(fast: u16, slow: u16, lengths: [f64; 2]) -> Result<(), Error> {
 }
 
 /// Each bad parameter, step, state, motion or ratio of frequencies must be refused with exactly the
-/// expected error. Zero gravity, and finite states and motions, must be accepted.
+/// expected error. Zero gravity, finite states and motions, and a linear motion from 1e10 rad must
+/// be accepted.
 #[test]
 fn errors_contain_the_parameter_and_its_value() {
     let infinite = f64::INFINITY;
@@ -164,13 +165,14 @@ fn errors_contain_the_parameter_and_its_value() {
         "{nan:?}"
     );
 
-    // Zero gravity is allowed.
+    // Zero gravity is allowed, and so are many turns.
     let good = [
         pendulum(Parameters { g: 0.0, ..GOOD }),
         State::at_rest(1.0, 2.0).check(),
         Motion::at_rest(1.0, 2.0).check(),
+        linear(Motion::at_rest(1e10, 0.0)),
     ];
-    assert_eq!(good, [Ok(()); 3]);
+    assert_eq!(good, [Ok(()); 4]);
 }
 
 /// A start that is out of the range of the closed form is refused by the number that is at fault:
