@@ -85,3 +85,31 @@ impl fmt::Display for PlanError {
 }
 
 impl core::error::Error for PlanError {}
+
+#[cfg(test)]
+mod tests {
+    use std::string::ToString;
+
+    use super::*;
+    use crate::error::Parameter;
+
+    /// A refused input is displayed as its own error; otherwise the limit is named.
+    #[test]
+    fn errors_are_displayed_in_one_line() {
+        let error = Error::NotPositive {
+            parameter: Parameter::L1,
+            value: 0.0,
+        };
+        assert_eq!(PlanError::from(error).to_string(), error.to_string());
+
+        let error = PlanError::NoMethod {
+            limit: Limit::Planning,
+            spent: 1.0,
+        };
+        assert_eq!(
+            error.to_string(),
+            "no method within the budgets meets the tolerance; \
+             finer steps are ruled out by the budget for planning"
+        );
+    }
+}
