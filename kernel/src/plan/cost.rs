@@ -471,6 +471,11 @@ mod tests {
                     finer = fine.steps;
                 }
 
+                // A limit that the coarse run keeps changes nothing.
+                for (pair, usual) in pairs().zip(Pair::all(60, admissible, least, u32::MAX)) {
+                    assert!(pair == usual || usual.coarse.steps > most);
+                }
+
                 // The fine run resolves the motion, even if a frame can pay for a few steps only.
                 let [.., longest] = FINE;
                 let resolving = 1.0 / (60.0 * longest * admissible);
