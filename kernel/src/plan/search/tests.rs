@@ -136,6 +136,30 @@ fn finer_steps_do_not_spend_the_budget_of_64_bits() -> Result<(), PlanError> {
     Ok(())
 }
 
+/// A trial of 64 bits needs a planning budget for the trial, with the cheapest pair that judges 64
+/// bits, and for the shadows, at 1.25 times the known horizon of 60 frames.
+#[test]
+fn planning_pays_for_the_shadows_of_64_bits() -> Result<(), PlanError> {
+    let mut search = in_first_trial()?;
+    let in_64_bits = search.in_64_bits().expect("a frame can pay for it");
+    let first = Candidate::new(search.stepping);
+    search.goal.set_best(measured(first, 60, true));
+
+    let least = search.least_in_64_bits.expect("64 bits accept the motion");
+    let (rate, admissible) = (search.problem.rate, search.admissible);
+    let trial = Pair::all(rate, admissible, least, search.most_in_64_bits())
+        .filter(|pair| pair.judges_64_bits(rate, admissible))
+        .map(|pair| Trial::cost(&search.costs, in_64_bits, Judges::Reference(pair)))
+        .fold(f32::INFINITY, f32::min);
+    let shadows = Shadows::cost_of_frame(search.shadow(), admissible, rate, &search.costs);
+
+    for (share, expected) in [(0.999, false), (1.001, true)] {
+        search.budget.planning = search.spent + share * 75.0 * (trial + shadows);
+        assert_eq!(search.judging_pair(in_64_bits).is_some(), expected);
+    }
+    Ok(())
+}
+
 /// Returns a search whose trial has this number of finer runs and no reference. Its candidate
 /// has failed after 100 accurate frames.
 fn without_reference(finer_runs: u8) -> Result<Search, PlanError> {
