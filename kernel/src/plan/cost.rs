@@ -532,6 +532,7 @@ mod tests {
             (Method::Extrapolation10Fixed64, 8, 9),
             (Method::Extrapolation10Fixed64, 15, 16),
             (Method::Extrapolation10Fixed64, 30, 31),
+            (Method::Rk4Fixed32, 1, 2),
             (Method::Rk4Fixed32, 8, 16),
         ] {
             let edge = under(refused_gravity(Stepping { method, steps }, under));
@@ -542,5 +543,9 @@ mod tests {
             };
             assert_eq!(accepted, Some(expected), "{method}, {steps}");
         }
+
+        // 65,536 steps are too many, although the method would accept them.
+        let most = Stepping::accepted(Method::Rk4Fixed32, &under(1.0), MOST_STEPS, |_| true);
+        assert_eq!(most, None);
     }
 }

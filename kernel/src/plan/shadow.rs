@@ -769,6 +769,41 @@ mod tests {
         Ok(())
     }
 
+    /// Steps that fixed point refuses as too long become finer until there are 65,536 per frame
+    /// ([`MOST_STEPS`]). If these are refused, too, the error says so.
+    #[test]
+    fn finest_steps_of_shadows_may_be_refused() -> Result<(), Error> {
+        for (length, is_accepted) in [(1e-6, true), (1e-12, false)] {
+            let problem = Problem {
+                pendulum: Parameters::equal_rods(1.0, length, 9.81),
+                start: Motion::at_rest(0.1, 0.1),
+                tolerance: 1e-3,
+                duration: 1.0,
+                rate: 1,
+            };
+            let pendulum = Pendulum::new(&problem.pendulum)?;
+            let start = pendulum.to_state(&problem.start);
+            let stepping = Stepping {
+                method: Method::Rk4Fixed32,
+                steps: 256,
+            };
+            let scales = scales(&pendulum, &start);
+            let mut shadows = Shadows::new(stepping, &problem, scales, 1.0, FINE_STEPS);
+            let refused = loop {
+                if shadows.are_prepared() {
+                    break None;
+                }
+                if let Err(error) = shadows.prepare(&problem, &start) {
+                    break Some(error);
+                }
+            };
+            let most = shadows.runs().map(|run| run.stepping.steps).max();
+            assert!(most <= Some(MOST_STEPS), "{most:?}");
+            assert_eq!(refused.is_none(), is_accepted, "{length}: {refused:?}");
+        }
+        Ok(())
+    }
+
     /// The product of the Cholesky factor with its transpose is D D^T + v I, to 1e-14. If that is
     /// singular, the factor is finite, and its diagonal elements have the least square.
     #[test]

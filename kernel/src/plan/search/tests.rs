@@ -153,9 +153,28 @@ fn planning_pays_for_the_shadows_of_64_bits() -> Result<(), PlanError> {
         .fold(f32::INFINITY, f32::min);
     let shadows = Shadows::cost_of_frame(search.shadow(), admissible, rate, &search.costs);
 
+    // What is spent already does not count.
+    search.spent = 1e8;
     for (share, expected) in [(0.999, false), (1.001, true)] {
         search.budget.planning = search.spent + share * 75.0 * (trial + shadows);
         assert_eq!(search.judging_pair(in_64_bits).is_some(), expected);
+    }
+    Ok(())
+}
+
+/// After a trial that includes 64 bits, finer steps in 32 bits are tried only if 32 bits were
+/// accurate for at least half of the frames.
+#[test]
+fn finer_steps_follow_64_bits_if_half_of_the_frames_are_accurate() -> Result<(), PlanError> {
+    let mut search = in_first_trial()?;
+    let half = search.problem.frames() / 2;
+    for (frames, is_tried) in [(half - 1, false), (half, true), (half + 1, true)] {
+        let SearchState::Trying { trial, .. } = &mut search.state else {
+            panic!("the trial is not created");
+        };
+        trial.tries_64_bits = true;
+        trial.candidates[0] = measured(Candidate::new(search.stepping), frames, true);
+        assert_eq!(search.finer(Some(2)).is_some(), is_tried, "{frames}");
     }
     Ok(())
 }
