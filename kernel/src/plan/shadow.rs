@@ -804,6 +804,27 @@ mod tests {
         Ok(())
     }
 
+    /// The difference of angles is given by its sine, or by 1 or -1 beyond a right angle. That of
+    /// momenta is in units of the scales.
+    #[test]
+    fn differences_of_places_are_in_the_order_of_the_state() {
+        let place = |[a1, a2]: [f64; 2], momenta| Place {
+            directions: [a1, a2].map(|a| [libm::sin(a), libm::cos(a)]),
+            momenta,
+        };
+        let from = place([1.0, -2.0], [3.0, 4.0]);
+        for (angles, expected) in [
+            ([1.1, -2.2], [libm::sin(0.1), libm::sin(-0.2)]),
+            ([3.0, -5.0], [1.0, -1.0]),
+        ] {
+            let difference = place(angles, [3.5, 3.0]).minus(&from, [2.0, 4.0]);
+            let [a1, a2] = expected;
+            for (value, expected) in difference.into_iter().zip([a1, a2, 0.25, -0.25]) {
+                assert!((value - expected).abs() < 1e-15, "{difference:?}");
+            }
+        }
+    }
+
     /// The product of the Cholesky factor with its transpose is D D^T + v I, to 1e-14. If that is
     /// singular, the factor is finite, and its diagonal elements have the least square.
     #[test]
