@@ -127,6 +127,68 @@ pub(super) fn greater(a: f32, b: f32) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::table::Method;
+
+    /// Returns a candidate without frames.
+    fn candidate() -> Candidate {
+        Candidate::new(Stepping {
+            method: Method::Rk4Fixed32,
+            steps: 1,
+        })
+    }
+
+    /// Frames are counted up to a bound of exactly 1, and the largest error in them is kept. After
+    /// an inaccurate frame, or if the candidate is excluded, nothing is recorded.
+    #[test]
+    fn frames_are_counted_until_one_is_inaccurate() {
+        let mut measured = candidate();
+        measured.note(0.5, 1.0);
+        measured.note(0.25, 0.75);
+        assert!(measured.is_accurate() && !measured.has_failed());
+        measured.note(0.875, 1.001);
+        measured.note(0.75, 0.875);
+        assert!(!measured.is_accurate() && measured.has_failed());
+        assert_eq!((measured.accurate_frames, measured.error), (2, 0.5));
+
+        let mut excluded = candidate();
+        excluded.exclude();
+        excluded.note(0.5, 0.5);
+        assert!(!excluded.is_accurate() && !excluded.has_failed());
+        assert_eq!((excluded.accurate_frames, excluded.error), (0, 0.0));
+    }
+
+    /// A horizon is longer if it has more than 1.1 times as many frames.
+    #[test]
+    fn longer_horizons_are_more_than_a_tenth_longer() {
+        let with_frames = |accurate_frames| Candidate {
+            accurate_frames,
+            ..candidate()
+        };
+        for (own, other, is_longer) in [
+            (12, 10, true),
+            (11, 10, false),
+            (10, 10, false),
+            (1, 0, true),
+            (0, 0, false),
+        ] {
+            let longer = with_frames(own).has_longer_horizon(&with_frames(other));
+            assert_eq!(longer, is_longer, "{own}, {other}");
+        }
+    }
+
+    /// A reference measures better than three finer runs, these better than two, and so on.
+    #[test]
+    fn references_and_more_finer_runs_measure_better() {
+        let best_first = [0, 3, 2, 1].map(|finer_runs| Candidate {
+            finer_runs,
+            ..candidate()
+        });
+        for (i, own) in best_first.iter().enumerate() {
+            for (j, other) in best_first.iter().enumerate() {
+                assert_eq!(own.is_measured_better(other), i < j, "{i}, {j}");
+            }
+        }
+    }
 
     /// The displacement of bob 2 is the sum of the displacements along both rods. It may be shorter
     /// than either.
