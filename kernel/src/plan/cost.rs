@@ -514,6 +514,30 @@ mod tests {
         }
     }
 
+    /// RK4 resolves a motion if its step count is at least the power of two whose steps are at most
+    /// two admissible steps long. Extrapolation and the closed form always do.
+    #[test]
+    fn steps_of_two_admissible_steps_resolve_a_motion() -> Result<(), Error> {
+        let problem = Problem {
+            pendulum: Parameters::equal_rods(1.0, 0.01, 9.81),
+            start: Motion::at_rest(1.0, 1.0),
+            tolerance: 0.01,
+            duration: 1.0,
+            rate: 60,
+        };
+        let longest = 2.0 * admissible_step(&problem)?;
+        let enough = (1.0 / (60.0 * longest)).log2().ceil().exp2() as u32;
+        assert!(enough >= 4);
+        for &method in Method::DRAWN {
+            let always = [Method::ClosedFormF32, Method::Extrapolation10Fixed64].contains(&method);
+            for (steps, expected) in [(1, always), (enough - 1, always), (enough, true)] {
+                let stepping = Stepping { method, steps };
+                assert_eq!(stepping.resolves(&problem)?, expected, "{stepping:?}");
+            }
+        }
+        Ok(())
+    }
+
     /// Gravity is so strong that a step is just refused as too long. Then one more step per frame
     /// is accepted in 64 bits, and twice as many in fixed point of 32 bits.
     ///
