@@ -247,4 +247,20 @@ mod tests {
             }
         }
     }
+
+    /// Every perturbation increases as many numbers as it decreases. For every two numbers, some
+    /// perturbation changes both alike, and some changes them in opposite directions.
+    #[test]
+    fn perturbations_change_all_ratios() {
+        for changes in PERTURBATIONS {
+            assert_eq!(changes.into_iter().sum::<f64>(), 0.0);
+        }
+        for i in 0..4 {
+            for j in 0..i {
+                let alike = |changes: &Perturbation| changes[i] == changes[j];
+                assert!(PERTURBATIONS.iter().any(alike));
+                assert!(!PERTURBATIONS.iter().all(alike));
+            }
+        }
+    }
 }
