@@ -352,4 +352,33 @@ mod tests {
             assert_eq!(made < count, longer > 1e-6, "{longer}");
         }
     }
+
+    /// A motion that is a fifth of a step ahead is taken back with an error of order 5, for rod 1
+    /// that turns at a rate of 1, rod 2 at rest, and a momentum p1 that grows exponentially.
+    #[test]
+    fn state_is_taken_back_by_the_lead() {
+        let scale = Scale {
+            momentum: 2.0,
+            step: 0.5,
+            lead: Lead::new(1.01, 1.0),
+        };
+        let rates = |&[sin1, cos1, s, c, p1, _]: &[f64; 6]| [cos1, -sin1, c, -s, p1, 0.0];
+        let [a1, a2] = [0.5, -0.25];
+        let elbow = a1 - a2;
+        let z = [
+            libm::sin(a1),
+            libm::cos(a1),
+            libm::sin(elbow),
+            libm::cos(elbow),
+            3.0,
+            4.0,
+        ];
+
+        let span = 20.0 * (0.01 / 1.01) * 0.5;
+        let state = scale.state(&rates, &z, [0.0; 6], 20);
+        let expected = [a1 - span, a2, 1.5 * libm::exp(-span), 2.0];
+        for (value, expected) in <[f64; 4]>::from(state).into_iter().zip(expected) {
+            assert!((value - expected).abs() < span.powi(5) / 60.0, "{state:?}");
+        }
+    }
 }

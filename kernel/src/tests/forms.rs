@@ -1,11 +1,11 @@
-//! Compares a short run of each form with Hamilton's equations: the average rates of change.
-//!
-//! The equations are stepped by RK4 in `f64`, in steps ten times as fine.
+//! Compares a short run of each form with Hamilton's equations: the average rates of change, by RK4
+//! in `f64` in steps ten times as fine. Also the energy and the sides of each form with its state,
+//! and motions that overflow.
 
 use double_pendulum::parts::DirectionF64;
 use double_pendulum::{
-    ClosedFormF32, ClosedFormF64, DirectionF32, ExtrapolationF64, Fixed32, Fixed64, Form,
-    HamiltonF64, Motion, Parameters, Pendulum,
+    ClosedFormF32, ClosedFormF64, DirectionF32, Error, ExtrapolationF64, Fixed32, Fixed64, Form,
+    HamiltonF32, HamiltonF64, Motion, Parameters, Pendulum,
 };
 
 use super::{EQUATIONS, assert_near};
@@ -207,4 +207,36 @@ fn energy_and_sides_of_every_form_are_those_of_its_state() {
     energy_and_sides_are_those_of_the_state::<Fixed64<12>>();
     energy_and_sides_are_those_of_the_state::<ClosedFormF32>();
     energy_and_sides_are_those_of_the_state::<ClosedFormF64>();
+}
+
+/// Asserts that a motion of absurd speed in steps of 1 s is reported as diverged within 1000 steps.
+#[track_caller]
+fn reports_a_motion_that_overflows<F: Form>() {
+    let (parameters, _) = MOTIONS[0];
+    let pendulum = Pendulum::new(&parameters).expect("valid parameters");
+    let start = pendulum.to_state(&Motion {
+        a1: 1.0,
+        a2: 2.0,
+        w1: 1e3,
+        w2: -1e3,
+    });
+    let mut motion = F::new(&parameters, &start, 1.0).expect("a motion that it accepts");
+    assert_eq!(motion.check(), Ok(()));
+    motion.advance(1000);
+    let check = motion.check();
+    let form = core::any::type_name::<F>();
+    assert!(
+        matches!(check, Err(Error::Diverged { .. })),
+        "{form}: {check:?}"
+    );
+}
+
+/// Every form in floating point except the closed form reports a motion that overflows.
+#[test]
+fn every_form_in_floating_point_reports_an_overflow() {
+    reports_a_motion_that_overflows::<DirectionF32>();
+    reports_a_motion_that_overflows::<DirectionF64>();
+    reports_a_motion_that_overflows::<HamiltonF32>();
+    reports_a_motion_that_overflows::<HamiltonF64>();
+    reports_a_motion_that_overflows::<ExtrapolationF64<12>>();
 }

@@ -179,6 +179,57 @@ fn finer_steps_follow_64_bits_if_half_of_the_frames_are_accurate() -> Result<(),
     Ok(())
 }
 
+/// The limit of 64 bits is the growth of errors if a frame can pay for the finest steps and they
+/// were tried. Otherwise there is none if planning can pay for finer steps than the tried ones. If
+/// it cannot, the limit is the planning budget, or the frame budget if a frame could not pay for
+/// the tried fine run.
+#[test]
+fn limit_in_64_bits_is_the_budget_of_finer_steps() -> Result<(), PlanError> {
+    let mut search = in_first_trial()?;
+    let in_64_bits = search.in_64_bits().expect("a frame can pay for it");
+    let least = search.least_in_64_bits.expect("64 bits accept the motion");
+    let pairs = Pair::all(search.problem.rate, search.admissible, least, u32::MAX);
+    let [finest, .., coarsest]: [Pair; 6] = core::array::from_fn({
+        let mut pairs = pairs.into_iter();
+        move |_| pairs.next().expect("six pairs")
+    });
+
+    for (tried, planning, pays_for_fine, expected) in [
+        (finest, 1e10, true, Some(Limit::Growth)),
+        (finest, 1e10, false, Some(Limit::Budget)),
+        (coarsest, 1e10, true, None),
+        (coarsest, 1e-3, true, Some(Limit::Planning)),
+        (coarsest, 1e-3, false, Some(Limit::Budget)),
+    ] {
+        let judges = Judges::Reference(tried);
+        let trial = Trial::new(in_64_bits, &search.problem, judges, search.shadow());
+        search.state = SearchState::Trying {
+            trial,
+            progress: Progress::BetweenFrames { compared: 1 },
+        };
+        search.budget.planning = search.spent + planning;
+        let share = if pays_for_fine { 1.001 } else { 0.999 };
+        search.budget.frame = share * search.costs.of_frame(tried.fine);
+        let limit = search.limit_in_64_bits(in_64_bits);
+        assert_eq!(limit, expected, "{tried:?}, {planning}, {pays_for_fine}");
+    }
+    Ok(())
+}
+
+/// A frame that pays for exactly the fewest steps in 64 bits is enough for candidates in 64 bits.
+#[test]
+fn fewest_steps_in_64_bits_are_enough() -> Result<(), PlanError> {
+    let mut search = in_first_trial()?;
+    let first = Candidate::new(search.stepping);
+    search.goal.set_best(measured(first, 60, true));
+    let least = search.least_in_64_bits.expect("64 bits accept the motion");
+    for (steps, is_enough) in [(least as f32 + 0.5, true), (least as f32 - 0.5, false)] {
+        search.budget.frame = steps * search.costs.fixed64;
+        assert_eq!(search.judging_pair(search.stepping).is_some(), is_enough);
+    }
+    Ok(())
+}
+
 /// Returns a search whose trial has this number of finer runs and no reference. Its candidate
 /// has failed after 100 accurate frames.
 fn without_reference(finer_runs: u8) -> Result<Search, PlanError> {
