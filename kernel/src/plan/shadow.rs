@@ -737,10 +737,11 @@ mod tests {
         Ok(())
     }
 
-    /// At 1 frame per second an error in rods of 1 cm grows by more than shadows can show. Then it
-    /// is unknown, instead of too small. The rounding error of 9 frames is 3 times that of one.
+    /// At the start the error of shadows is in proportion to the rods. At 1 frame per second the
+    /// error in rods of 1 cm grows by more than shadows can show. Then it is unknown, instead of too
+    /// small. The rounding error of 9 frames is 3 times that of one.
     #[test]
-    fn error_of_shadows_too_far_apart_is_unknown() -> Result<(), Error> {
+    fn error_is_known_until_shadows_are_too_far_apart() -> Result<(), Error> {
         let problem = Problem {
             pendulum: Parameters::equal_rods(1.0, 0.01, 9.81),
             start: Motion::at_rest(2.5, 2.5),
@@ -757,6 +758,13 @@ mod tests {
         while !shadows.are_prepared() {
             shadows.prepare(&problem, &start)?;
         }
+        // At the start the error is known and in proportion to the rods.
+        let [error, doubled] = [1.0, 2.0].map(|scale| {
+            let mut at_start = shadows;
+            at_start.compare([scale, 3.0 * scale])
+        });
+        assert!(error > 0.0 && (doubled / (2.0 * error) - 1.0).abs() < 1e-6);
+
         for run in shadows.runs() {
             let steps = run.stepping.steps;
             run.motion.as_mut().expect("prepared").advance(steps);
@@ -801,6 +809,14 @@ mod tests {
             assert!(most <= Some(MOST_STEPS), "{most:?}");
             assert_eq!(refused.is_none(), is_accepted, "{length}: {refused:?}");
         }
+        Ok(())
+    }
+
+    /// If nothing can move, the units of the momenta are 1.
+    #[test]
+    fn units_of_momenta_are_never_zero() -> Result<(), Error> {
+        let pendulum = Pendulum::new(&Parameters::equal_rods(1.0, 1.0, 0.0))?;
+        assert_eq!(scales(&pendulum, &State::at_rest(1.0, 2.0)), [1.0; 2]);
         Ok(())
     }
 
