@@ -353,8 +353,9 @@ mod tests {
         }
     }
 
-    /// A motion that is a fifth of a step ahead is taken back with an error of order 5, for rod 1
-    /// that turns at a rate of 1, rod 2 at rest, and a momentum p1 that grows exponentially.
+    /// A motion that is a fifth of a step ahead is taken back. Rod 1 turns at a rate of 1, rod 2 is
+    /// at rest, and p1 grows exponentially. The error is that of order 4 over the lead: at most 1.5
+    /// lead^5/120, for p1. The allowance is a third larger.
     #[test]
     fn state_is_taken_back_by_the_lead() {
         let scale = Scale {

@@ -307,8 +307,9 @@ impl<const ORDER: u32> FormOperations for Fixed64<ORDER> {
 mod tests {
     use super::*;
 
-    /// A momentum out of its range, or a direction of rod 1 or rod 2 that is 2 % too long, each
-    /// mark the motion as lost after a step. A motion that is started anew is not lost.
+    /// A momentum out of its range, or a direction of rod 1 or of the angle between the rods that
+    /// is 2 % too long, marks the motion as lost after one step. An unchanged motion is not lost,
+    /// and neither is a lost one that is started anew.
     #[test]
     fn motion_out_of_range_is_lost_until_it_is_started_anew() -> Result<(), Error> {
         let parameters = Parameters {
@@ -321,14 +322,18 @@ mod tests {
         // The step is so short that a wrong number does not affect the others.
         let start = State::at_rest(1.0, 2.0);
         let motion = Fixed64::<10>::new(&parameters, &start, 1e-9)?;
-        for wrong in [[4, 4], [5, 5], [0, 1], [2, 3]] {
+        let mut unchanged = motion;
+        unchanged.advance(1);
+        unchanged.check()?;
+
+        for wrong in [&[4][..], &[5], &[0, 1], &[2, 3]] {
             let mut lost = motion;
-            for i in wrong {
+            for &i in wrong {
                 let z = &mut lost.0.z[i];
                 *z = if i < 4 {
                     Q64(z.0 + z.0 / 50)
                 } else {
-                    Q64(3 << 61)
+                    Q64(3 << 61) // 3/8, beyond 1/4.
                 };
             }
             lost.advance(1);

@@ -133,8 +133,9 @@ mod tests {
         turns.angle(direction)
     }
 
-    /// The count starts at angles of up to seven turns in both directions. Near upright it follows
-    /// the given direction, also if that is on the other side than the angle.
+    /// The count starts at angles of up to 44 rad, seven turns, in both directions. If rounding has
+    /// moved a direction to the other side of upright than its angle, the count follows the
+    /// direction.
     #[test]
     fn counts_start_at_the_given_angles() {
         for start in (-440..=440).map(|i| 0.1 * f64::from(i)) {

@@ -129,7 +129,7 @@ mod tests {
     use super::*;
     use crate::table::Method;
 
-    /// Returns a candidate without frames.
+    /// Returns a candidate that has not been compared yet.
     fn candidate() -> Candidate {
         Candidate::new(Stepping {
             method: Method::Rk4Fixed32,
@@ -137,8 +137,8 @@ mod tests {
         })
     }
 
-    /// Frames are counted up to a bound of exactly 1, and the largest error in them is kept. After
-    /// an inaccurate frame, or if the candidate is excluded, nothing is recorded.
+    /// A frame is counted if its bound is at most 1. The largest error of the counted frames is
+    /// kept. After an inaccurate frame, or if the candidate is excluded, nothing is recorded.
     #[test]
     fn frames_are_counted_until_one_is_inaccurate() {
         let mut measured = candidate();

@@ -471,7 +471,7 @@ mod tests {
                     finer = fine.steps;
                 }
 
-                // A limit that the coarse run keeps changes nothing.
+                // If the usual coarse run is within the limit, the pair is unchanged.
                 for (pair, usual) in pairs().zip(Pair::all(60, admissible, least, u32::MAX)) {
                     assert!(pair == usual || usual.coarse.steps > most);
                 }
@@ -514,10 +514,10 @@ mod tests {
         }
     }
 
-    /// RK4 resolves a motion if its step count is at least the power of two whose steps are at most
-    /// two admissible steps long. Extrapolation and the closed form always do.
+    /// RK4 resolves a motion if its step count is at least the smallest power of two whose steps
+    /// are at most two admissible steps long. Extrapolation and the closed form always resolve it.
     #[test]
-    fn steps_of_two_admissible_steps_resolve_a_motion() -> Result<(), Error> {
+    fn rk4_resolves_a_motion_in_steps_of_at_most_two_admissible_steps() -> Result<(), Error> {
         let problem = Problem {
             pendulum: Parameters::equal_rods(1.0, 0.01, 9.81),
             start: Motion::at_rest(1.0, 1.0),
@@ -527,6 +527,7 @@ mod tests {
         };
         let longest = 2.0 * admissible_step(&problem)?;
         let enough = (1.0 / (60.0 * longest)).log2().ceil().exp2() as u32;
+        // Otherwise 1, `enough` - 1 and `enough` are not three counts.
         assert!(enough >= 4);
         for &method in Method::DRAWN {
             let always = [Method::ClosedFormF32, Method::Extrapolation10Fixed64].contains(&method);
@@ -542,7 +543,8 @@ mod tests {
     /// is accepted in 64 bits, and twice as many in fixed point of 32 bits.
     ///
     /// The error names a limit that equals the refused step within rounding errors. For 15 and 30
-    /// steps in 64 bits, that limit alone would give the refused step count again.
+    /// steps in 64 bits, that limit alone would give the refused step count again. A step count of
+    /// 65,536 ([`MOST_STEPS`]) is never a result.
     #[test]
     fn steps_are_increased_at_the_edge_of_their_limit() {
         let under = |g| Problem {
@@ -568,8 +570,13 @@ mod tests {
             assert_eq!(accepted, Some(expected), "{method}, {steps}");
         }
 
-        // 65,536 steps are too many, although the method would accept them.
-        let most = Stepping::accepted(Method::Rk4Fixed32, &under(1.0), MOST_STEPS, |_| true);
-        assert_eq!(most, None);
+        // The method accepts 65,536 steps, but they are too many.
+        let method = Method::Rk4Fixed32;
+        let steps = MOST_STEPS;
+        assert_eq!(Stepping { method, steps }.check(&under(1.0)), Ok(()));
+        assert_eq!(
+            Stepping::accepted(method, &under(1.0), steps, |_| true),
+            None
+        );
     }
 }

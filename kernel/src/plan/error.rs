@@ -93,9 +93,10 @@ mod tests {
     use super::*;
     use crate::error::Parameter;
 
-    /// A refused input is displayed as its own error; otherwise the limit is named.
+    /// A refused input displays the error of that input. [`PlanError::NoMethod`] displays a message
+    /// that names the limit.
     #[test]
-    fn errors_are_displayed_in_one_line() {
+    fn plan_errors_display_their_reason() {
         let error = Error::NotPositive {
             parameter: Parameter::L1,
             value: 0.0,

@@ -144,9 +144,11 @@ fn epsilon(method: Method) -> f64 {
 
 /// The size of a perturbation, in epsilons: slightly more than one.
 ///
-/// In `f64`, half an epsilon would round back to the given number. Rounding changes a number by at
+/// It is more than one, so that the rounded number always changes. In `f64`, half an epsilon would
+/// round back to the given number. Rounding changes a number by at
 /// most half an epsilon, but the errors of all numbers add up at random.
 const OFF: f64 = 1.0 + 1.0 / 1024.0;
+const _: () = assert!(OFF > 1.0);
 
 /// The changes of the numbers of a problem before they are rounded, in epsilons: of g and p1, of l2
 /// and p2, of m2 and a2, and of a1.
@@ -158,7 +160,8 @@ pub(super) type Perturbation = [f64; 4];
 /// The perturbation that changes nothing.
 pub(super) const NONE: Perturbation = [0.0; 4];
 
-/// Perturbations that increase half of the numbers and decrease the others, in three combinations.
+/// Perturbations that increase two of the four factors and decrease the others, in three
+/// combinations.
 pub(super) const PERTURBATIONS: [Perturbation; 3] = [
     [OFF, OFF, -OFF, -OFF],
     [OFF, -OFF, OFF, -OFF],
@@ -248,18 +251,21 @@ mod tests {
         }
     }
 
-    /// Every perturbation increases as many numbers as it decreases. For every two numbers, some
-    /// perturbation changes both alike, and some changes them in opposite directions.
+    /// Every perturbation increases two of its four factors and decreases two. For every two
+    /// factors, some perturbation changes both in the same direction, and some in opposite
+    /// directions.
     #[test]
-    fn perturbations_change_all_ratios() {
+    fn every_two_factors_change_alike_and_oppositely() {
         for changes in PERTURBATIONS {
-            assert_eq!(changes.into_iter().sum::<f64>(), 0.0);
+            assert_eq!(changes.into_iter().sum::<f64>(), 0.0, "{changes:?}");
         }
         for i in 0..4 {
             for j in 0..i {
-                let alike = |changes: &Perturbation| changes[i] == changes[j];
-                assert!(PERTURBATIONS.iter().any(alike));
-                assert!(!PERTURBATIONS.iter().all(alike));
+                let has = |ratio| {
+                    let mut all = PERTURBATIONS.iter();
+                    all.any(|changes| changes[i] != 0.0 && changes[i] == ratio * changes[j])
+                };
+                assert!(has(1.0) && has(-1.0), "{i}, {j}");
             }
         }
     }

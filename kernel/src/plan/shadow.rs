@@ -738,8 +738,9 @@ mod tests {
     }
 
     /// At the start the error of shadows is in proportion to the rods. At 1 frame per second the
-    /// error in rods of 1 cm grows by more than shadows can show. Then it is unknown, instead of too
-    /// small. The rounding error of 9 frames is 3 times that of one.
+    /// error in rods of 1 cm grows by more than shadows can show. Then it is unknown, instead of
+    /// too small. The errors of frames are independent, so that the recent error of 9 frames is 3
+    /// times that of one.
     #[test]
     fn error_is_known_until_shadows_are_too_far_apart() -> Result<(), Error> {
         let problem = Problem {
@@ -771,17 +772,22 @@ mod tests {
         }
         assert!(shadows.compare([1.0; 2]).is_nan());
 
-        // The rounding errors of frames add up at random.
         shadows.frames = 9;
         assert_eq!(shadows.recent_error(), 3.0 * shadows.frame_error);
         Ok(())
     }
 
-    /// Steps that fixed point refuses as too long become finer until there are 65,536 per frame
-    /// ([`MOST_STEPS`]). If these are refused, too, the error says so.
+    /// Fixed point refuses the first steps per frame as too long. For rods of 150 m one step
+    /// becomes two. For rods of 1 um 256 steps become more, until they are accepted. For rods of 1
+    /// pm not even 65,536 steps ([`MOST_STEPS`]) are enough, and [`Shadows::prepare`] returns that
+    /// error.
     #[test]
-    fn finest_steps_of_shadows_may_be_refused() -> Result<(), Error> {
-        for (length, is_accepted) in [(1e-6, true), (1e-12, false)] {
+    fn refused_steps_of_shadows_become_finer_up_to_65_536() -> Result<(), Error> {
+        for (length, first, accepted) in [
+            (150.0, 1, Some(2)),
+            (1e-6, 256, Some(32_768)),
+            (1e-12, 256, None),
+        ] {
             let problem = Problem {
                 pendulum: Parameters::equal_rods(1.0, length, 9.81),
                 start: Motion::at_rest(0.1, 0.1),
@@ -793,7 +799,7 @@ mod tests {
             let start = pendulum.to_state(&problem.start);
             let stepping = Stepping {
                 method: Method::Rk4Fixed32,
-                steps: 256,
+                steps: first,
             };
             let scales = scales(&pendulum, &start);
             let mut shadows = Shadows::new(stepping, &problem, scales, 1.0, FINE_STEPS);
@@ -806,8 +812,15 @@ mod tests {
                 }
             };
             let most = shadows.runs().map(|run| run.stepping.steps).max();
-            assert!(most <= Some(MOST_STEPS), "{most:?}");
-            assert_eq!(refused.is_none(), is_accepted, "{length}: {refused:?}");
+            assert_eq!(most, accepted.or(Some(MOST_STEPS)), "{length}");
+            let is_too_long = matches!(
+                refused,
+                Some(Error::TooLarge {
+                    parameter: Parameter::Dt,
+                    ..
+                })
+            );
+            assert_eq!(is_too_long, accepted.is_none(), "{length}: {refused:?}");
         }
         Ok(())
     }

@@ -165,7 +165,7 @@ fn errors_contain_the_parameter_and_its_value() {
         "{nan:?}"
     );
 
-    // Zero gravity is allowed, and so are many turns.
+    // Zero gravity is allowed, and so are 1.6e9 turns, which are fewer than 2^31.
     let good = [
         pendulum(Parameters { g: 0.0, ..GOOD }),
         State::at_rest(1.0, 2.0).check(),
@@ -177,7 +177,8 @@ fn errors_contain_the_parameter_and_its_value() {
 
 /// A start that is out of the range of the closed form is refused by the number that is at fault:
 /// an angle of too many turns, a velocity that leads to such an angle, or a momentum that is
-/// infinite in `f32`. A velocity is compared by the angle that it leads to in the slow mode.
+/// infinite in `f32`. A velocity is compared by the angle that it leads to in the slow mode. An
+/// angle may also be out of range later, when both modes add up.
 #[test]
 fn closed_form_names_the_number_that_is_out_of_range() -> Result<(), Error> {
     let rest = Motion::default();
@@ -216,6 +217,18 @@ fn closed_form_names_the_number_that_is_out_of_range() -> Result<(), Error> {
         assert_eq!(parameter, at_fault, "{start:?}");
         assert!((value / named - 1.0).abs() < 1e-12, "{value} of {start:?}");
     }
+
+    // On a long rod 2, angle 1 reaches more than twice the angle at which rod 2 starts.
+    let long = Pendulum::new(&Parameters { l2: 300.0, ..GOOD })?;
+    let refused = |a2| {
+        let start = long.to_state(&Motion { a2, ..rest });
+        long.run::<ClosedFormF32>(&start, 0.01).err()
+    };
+    assert_eq!(refused(1e9), None);
+    assert!(matches!(
+        refused(1.2e10),
+        Some(Error::OutOfRange { parameter: A2, .. })
+    ));
 
     // The velocity of a heavy pendulum is in range, but its momentum is infinite in `f32`.
     let heavy = Pendulum::new(&Parameters {
@@ -291,10 +304,11 @@ fn run_names_a_step_that_takes_constants_out_of_range() -> Result<(), Error> {
     Ok(())
 }
 
-/// `DirectionF32` refuses rods whose squared ratio, 1e38, has a reciprocal too small for a normal
-/// `f32`. It accepts a quarter of that.
+/// `DirectionF32` refuses rods with (l1/l2)^2 = 1e38, because the reciprocal is subnormal in `f32`.
+/// It accepts a quarter of that square.
 ///
-/// Rods for which G2 is out of range with any step are at fault themselves: g/l1 is 3e-41 1/s^2.
+/// It also names the rod if g/l1, here 3e-41 1/s^2, is subnormal in `f32`: then G2 is out of range
+/// even with a unit of time of 1 s, so that the step is not at fault.
 #[test]
 fn direction_form_names_a_rod_that_takes_constants_out_of_range() -> Result<(), Error> {
     let refused = |l1, l2, g| {
