@@ -188,8 +188,14 @@ fn energy_and_sides_are_right<F: Form>() {
                 let [sin, cos]: [f64; 2] = sides.map(|side| F::side_value(side).into());
                 let length = libm::hypot(sin, cos);
                 for (side, expected) in [sin, cos].into_iter().zip(direction) {
-                    let what = format_args!("{form}: side");
-                    assert_near(what, side / length, expected, 1.0, SIDES, &parameters);
+                    assert_near(
+                        format_args!("{form}: side"),
+                        side / length,
+                        expected,
+                        1.0,
+                        SIDES,
+                        &parameters,
+                    );
                 }
             }
         }
