@@ -298,7 +298,8 @@ impl<R: Real> FormOperations for ClosedForm<R> {
             return Ok(started);
         }
 
-        // Name a number that is infinite in `R`, otherwise the one that leads to the largest angle.
+        // Name a number that is infinite in `R`, otherwise the one that leads to the largest angle,
+        // the first of equals.
         start.cast::<R>().check()?;
         let slow = modes.slow.frequency;
         let mut worst = (Parameter::A1, motion.a1, 1.0);

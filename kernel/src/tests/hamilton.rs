@@ -163,3 +163,15 @@ fn energy_above_rest_is_accurate_in_a_tiny_motion() {
         "{above} instead of {exact}"
     );
 }
+
+/// Without gravity it is never certain that no rod turns over, not even at rest. With gravity it is
+/// certain at rest below the turnover energy.
+#[test]
+fn no_motion_without_gravity_is_certain_not_to_turn_over() {
+    for (g, is_certain) in [(0.0, false), (9.81, true)] {
+        let parameters = Parameters::equal_rods(1.0, 1.0, g);
+        let pendulum = Pendulum::new(&parameters).expect("valid");
+        let start = State::at_rest(0.0, 0.0);
+        assert_eq!(pendulum.cannot_turn_over(&start), is_certain, "{g}");
+    }
+}

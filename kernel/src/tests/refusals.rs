@@ -187,6 +187,8 @@ fn closed_form_names_the_number_that_is_out_of_range() -> Result<(), Error> {
         (Motion { a2: -1e12, ..rest }, A2),
         (Motion { w1: 1e12, ..rest }, W1),
         (Motion { w2: -1e12, ..rest }, W2),
+        // The first of equal angles is named.
+        (Motion::at_rest(1e12, -1e12), A1),
         // The frequency of the slow mode is about 1 rad/s.
         (
             Motion {
