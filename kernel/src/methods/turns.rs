@@ -134,8 +134,8 @@ mod tests {
     }
 
     /// The count starts at angles of up to 44 rad, seven turns, in both directions. If rounding has
-    /// moved a direction to the other side of upright than its angle, the count follows the
-    /// direction.
+    /// moved a direction to the other side of upright or hanging than its angle, the count follows
+    /// the direction.
     #[test]
     fn counts_start_at_the_given_angles() {
         for start in (-440..=440).map(|i| 0.1 * f64::from(i)) {
@@ -143,8 +143,9 @@ mod tests {
             assert!((angle - start).abs() < 1e-12, "{angle} instead of {start}");
         }
 
-        for upright in (-7..7).map(|turns| f64::from(2 * turns + 1) * PI) {
-            for [start, now] in [[-1e-6, 1e-6], [1e-6, -1e-6]].map(|pair| pair.map(|a| a + upright))
+        for vertical in (-14..=14).map(|halves| f64::from(halves) * PI) {
+            for [start, now] in
+                [[-1e-6, 1e-6], [1e-6, -1e-6]].map(|pair| pair.map(|a| a + vertical))
             {
                 let angle = counted(start, now);
                 assert!((angle - now).abs() < 1e-12, "{angle} instead of {now}");
