@@ -747,6 +747,30 @@ mod tests {
     use super::*;
     use crate::pendulum::{Motion, Parameters};
 
+    /// The factors for two and three finer runs are multiplied by `alike`, the one for a single
+    /// finer run is not.
+    #[test]
+    fn errors_in_common_do_not_change_the_factor_of_a_single_finer_run() {
+        let problem = Problem {
+            pendulum: Parameters::equal_rods(1.0, 1.0, 9.81),
+            start: Motion::at_rest(0.5, 0.5),
+            tolerance: 0.01,
+            duration: 1.0,
+            rate: 60,
+        };
+        let stepping = Stepping {
+            method: Method::Rk4Fixed32,
+            steps: 4,
+        };
+        let [one, two, three] = BESIDE_FINER_RUNS;
+        for (number, expected) in [(1, one), (2, 4.0 * two), (3, 4.0 * three)] {
+            let judges = Judges::FinerRuns(number);
+            let mut trial = Trial::new(stepping, &problem, judges, stepping);
+            trial.alike = 4.0;
+            assert_eq!(trial.factor(), expected, "{number}");
+        }
+    }
+
     /// [`Trial::cost`] estimates the cost of a frame exactly, with each number of finer runs and
     /// with a reference, except for the closed form.
     #[test]
