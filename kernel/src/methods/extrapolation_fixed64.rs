@@ -308,17 +308,11 @@ mod tests {
     use super::*;
 
     /// A momentum out of its range, or a direction of rod 1 or of the angle between the rods that
-    /// is 2 % too long, marks the motion as lost after one step. An unchanged motion is not lost,
-    /// and neither is a lost one that is started anew.
+    /// is 2 % too long, marks the motion as lost after one step. An unchanged motion is not lost. A
+    /// lost motion that is started anew is not lost any more.
     #[test]
     fn motion_out_of_range_is_lost_until_it_is_started_anew() -> Result<(), Error> {
-        let parameters = Parameters {
-            m1: 1.0,
-            m2: 1.0,
-            l1: 1.0,
-            l2: 1.0,
-            g: 9.81,
-        };
+        let parameters = Parameters::equal_rods(1.0, 1.0, 9.81);
         // The step is so short that a wrong number does not affect the others.
         let start = State::at_rest(1.0, 2.0);
         let motion = Fixed64::<10>::new(&parameters, &start, 1e-9)?;

@@ -527,7 +527,7 @@ mod tests {
         };
         let longest = 2.0 * admissible_step(&problem)?;
         let enough = (1.0 / (60.0 * longest)).log2().ceil().exp2() as u32;
-        // Otherwise 1, `enough` - 1 and `enough` are not three counts.
+        // The three step counts below must be different.
         assert!(enough >= 4);
         for &method in Method::DRAWN {
             let always = [Method::ClosedFormF32, Method::Extrapolation10Fixed64].contains(&method);

@@ -145,8 +145,8 @@ fn epsilon(method: Method) -> f64 {
 /// The size of a perturbation, in epsilons: slightly more than one.
 ///
 /// It is more than one, so that the rounded number always changes. In `f64`, half an epsilon would
-/// round back to the given number. Rounding changes a number by at
-/// most half an epsilon, but the errors of all numbers add up at random.
+/// round back to the given number. Rounding changes a number by at most half an epsilon, but the
+/// errors of all numbers add up at random.
 const OFF: f64 = 1.0 + 1.0 / 1024.0;
 const _: () = assert!(OFF > 1.0);
 

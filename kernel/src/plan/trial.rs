@@ -747,17 +747,21 @@ mod tests {
     use super::*;
     use crate::pendulum::{Motion, Parameters};
 
-    /// The factors for two and three finer runs are multiplied by `alike`, the one for a single
-    /// finer run is not.
-    #[test]
-    fn errors_in_common_do_not_change_the_factor_of_a_single_finer_run() {
-        let problem = Problem {
+    /// Oscillations of equal rods, for a second.
+    fn oscillation() -> Problem {
+        Problem {
             pendulum: Parameters::equal_rods(1.0, 1.0, 9.81),
             start: Motion::at_rest(0.5, 0.5),
             tolerance: 0.01,
             duration: 1.0,
             rate: 60,
-        };
+        }
+    }
+
+    /// The factors for two and three finer runs are multiplied by `alike`. The factor for a single
+    /// finer run is not.
+    #[test]
+    fn errors_in_common_do_not_change_the_factor_of_a_single_finer_run() {
         let stepping = Stepping {
             method: Method::Rk4Fixed32,
             steps: 4,
@@ -765,7 +769,7 @@ mod tests {
         let [one, two, three] = BESIDE_FINER_RUNS;
         for (number, expected) in [(1, one), (2, 4.0 * two), (3, 4.0 * three)] {
             let judges = Judges::FinerRuns(number);
-            let mut trial = Trial::new(stepping, &problem, judges, stepping);
+            let mut trial = Trial::new(stepping, &oscillation(), judges, stepping);
             trial.alike = 4.0;
             assert_eq!(trial.factor(), expected, "{number}");
         }
@@ -775,13 +779,7 @@ mod tests {
     /// with a reference, except for the closed form.
     #[test]
     fn estimated_cost_of_a_frame_is_exact() -> Result<(), Error> {
-        let problem = Problem {
-            pendulum: Parameters::equal_rods(1.0, 1.0, 9.81),
-            start: Motion::at_rest(0.5, 0.5),
-            tolerance: 0.01,
-            duration: 1.0,
-            rate: 60,
-        };
+        let problem = oscillation();
         let costs = Costs::CORTEX_M3;
         // With 8 steps, the finer runs make 10, 12 and 14, and the other candidates 16 and 32.
         let [fixed, float] = [Method::Rk4Fixed32, Method::Rk4F32Direction];

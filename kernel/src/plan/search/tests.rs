@@ -180,10 +180,10 @@ fn finer_steps_follow_64_bits_if_half_of_the_frames_are_accurate() -> Result<(),
 }
 
 /// The limit is [`Limit::Growth`] if the finest steps were tried and a frame can pay for them.
-/// Otherwise there is none if planning can pay for finer steps than those tried, of which a frame
-/// can pay for the coarse run. If it cannot, the limit is [`Limit::Planning`], or
-/// [`Limit::Budget`] if a frame cannot pay for the fine run. Truncation is the larger error in all
-/// cases.
+/// Otherwise another trial is possible, and the result is `None`, if planning can pay for a finer
+/// pair and a frame can pay for its coarse run. If that is not so, the limit is
+/// [`Limit::Planning`], or [`Limit::Budget`] if a frame cannot pay for the fine run that was tried.
+/// Truncation is the larger error in all cases.
 #[test]
 fn limit_in_64_bits_names_growth_or_the_budget() -> Result<(), PlanError> {
     const AMPLE: f32 = 1e10;
