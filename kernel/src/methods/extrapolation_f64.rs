@@ -377,23 +377,59 @@ impl<const ORDER: u32> FormOperations for ExtrapolationF64<ORDER> {
 mod tests {
     use super::*;
 
+    const PARAMETERS: Parameters<f64> = Parameters {
+        m1: 1.0,
+        m2: 2.0,
+        l1: 1.0,
+        l2: 0.7,
+        g: 9.81,
+    };
+    const START: State<f64> = State {
+        a1: 0.5,
+        a2: 1.3,
+        p1: 2.0,
+        p2: -1.0,
+    };
+
+    /// A motion that is started again equals a new one.
+    #[test]
+    fn nothing_is_left_after_a_new_start() -> Result<(), Error> {
+        let motion = ExtrapolationF64::<4>::new(&PARAMETERS, &START, 1.0 / 64.0)?;
+        let mut moved = motion;
+        moved.advance(3);
+        assert_ne!(moved, motion);
+        assert_eq!(moved.started(&START)?, motion);
+        Ok(())
+    }
+
+    /// A momentum that is finite in the unit of the method, but not in SI units, is reported.
+    #[test]
+    fn momentum_that_overflows_in_si_units_is_reported() -> Result<(), Error> {
+        let motion = ExtrapolationF64::<4>::new(&PARAMETERS, &START, 1e-6)?;
+        for (i, parameter) in [(4, Parameter::P1), (5, Parameter::P2)] {
+            // The unit is 1e-6 s/(m2 l2^2), so that P is about 1e-6 times p.
+            for (momentum, expected) in [
+                (1e301, Ok(())),
+                (
+                    1e303,
+                    Err(Error::Diverged {
+                        parameter,
+                        value: f64::INFINITY,
+                    }),
+                ),
+            ] {
+                let mut wrong = motion;
+                wrong.z[i] = momentum;
+                assert_eq!(wrong.check(), expected, "{parameter:?}: {momentum:e}");
+            }
+        }
+        Ok(())
+    }
+
     /// The rates of a general motion are the changes in a step of 1 us, to 1e-5 of each.
     #[test]
     fn rates_are_the_change_over_a_short_step() -> Result<(), Error> {
-        let parameters = Parameters {
-            m1: 1.0,
-            m2: 2.0,
-            l1: 1.0,
-            l2: 0.7,
-            g: 9.81,
-        };
-        let start = State {
-            a1: 0.5,
-            a2: 1.3,
-            p1: 2.0,
-            p2: -1.0,
-        };
-        let mut motion = ExtrapolationF64::<4>::new(&parameters, &start, 1e-6)?;
+        let mut motion = ExtrapolationF64::<4>::new(&PARAMETERS, &START, 1e-6)?;
         let before = motion.z;
         let rates = motion.rates(&before);
         motion.advance(1);

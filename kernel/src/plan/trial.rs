@@ -745,6 +745,7 @@ impl Trial {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::methods::Fixed32;
     use crate::pendulum::{Motion, Parameters};
 
     /// Oscillations of equal rods, for a second.
@@ -773,6 +774,89 @@ mod tests {
             trial.alike = 4.0;
             assert_eq!(trial.factor(), expected, "{number}");
         }
+    }
+
+    /// The frame of a motion that has diverged is NaN, although its directions look valid.
+    #[test]
+    fn frame_of_a_diverged_motion_is_nan() -> Result<(), Error> {
+        let pendulum = Pendulum::new(&oscillation().pendulum)?;
+        let small = pendulum.to_state(&oscillation().start);
+        let high = pendulum.to_state(&Motion::at_rest(2.0, 2.0));
+
+        // The units are those of the small oscillation, so that the check refuses more energy.
+        let fixed = Fixed32::new(pendulum.parameters(), &small, 1.0 / 512.0)?.started(&high)?;
+        let mut run = Run::new(Stepping {
+            method: Method::Rk4Fixed32,
+            steps: 32,
+        });
+        run.motion = Some(DrawnMotion32::Rk4Fixed32(fixed));
+        assert!(run.frame().as_flattened().iter().all(|part| !part.is_nan()));
+        run.advance(&Costs::CORTEX_M3, f32::INFINITY);
+        let frame = run.frame();
+        let shown = run.motion.map(|motion| motion.directions());
+        assert!(
+            frame.as_flattened().iter().all(|part| part.is_nan()),
+            "{frame:?}"
+        );
+        assert!(
+            shown.is_some_and(|shown| shown.as_flattened().iter().all(|part| part.abs() <= 1.0)),
+            "{shown:?}"
+        );
+        Ok(())
+    }
+
+    /// The estimated error of a frame. Without a reference it is the distance to the frame of the
+    /// single candidate, plus the greatest distance of that to the finer runs. With a reference it
+    /// is the distance to the frame of the fine run, plus the error of that.
+    #[test]
+    fn estimated_errors_contain_those_of_the_compared_runs() -> Result<(), Error> {
+        let problem = Problem {
+            tolerance: 0.125,
+            rate: 6,
+            ..oscillation()
+        };
+        let rods = [8.0; 2]; // 1 m divided by the tolerance.
+        let stepping = Stepping {
+            method: Method::Rk4F32Direction,
+            steps: 4,
+        };
+        let reference = Judges::Reference(Pair::new(1, 2));
+        for judges in [Judges::FinerRuns(3), reference] {
+            let mut trial = Trial::new(stepping, &problem, judges, stepping);
+            trial.share_of_fine = 0.5;
+            while trial.prepare(&problem)? {}
+
+            // Rounded to `f32`, both runs of the reference are equal, unless one starts elsewhere.
+            if let Some(coarse) = &mut trial.double[0].motion {
+                *coarse = coarse.started(&State::at_rest(0.51, 0.5))?;
+            }
+            while trial.advance(&Costs::CORTEX_M3, f32::INFINITY) > 0.0 {}
+            let [own, second, third, plain, fourth] = trial.single.each_mut().map(Run::frame);
+            let double = trial.double.each_mut().map(Run::frame);
+            trial.compare(problem.time(1));
+
+            let closed = trial.closed.expect("the pendulum has normal modes");
+            let closed = closed.directions(problem.time(1));
+            let between = |a, b| distance(rods, &a, &b);
+            let (compared, error) = match judges {
+                Judges::FinerRuns(_) => {
+                    let distances = [second, third, fourth].map(|finer| between(own, finer));
+                    (own, distances.into_iter().fold(0.0, greater))
+                }
+                Judges::Reference(_) => {
+                    let [coarse, fine] = double;
+                    (fine, 0.5 * between(coarse, fine))
+                }
+            };
+            assert!(error > 0.0, "{judges:?}: the runs do not differ");
+            for (candidate, shown) in [(0, own), (PLAIN, plain), (CLOSED, closed)] {
+                let candidate = &trial.candidates[candidate];
+                assert!(candidate.is_accurate(), "{judges:?}: {candidate:?}");
+                let expected = between(shown, compared) + error;
+                assert_eq!(candidate.error, expected, "{judges:?}: {candidate:?}");
+            }
+        }
+        Ok(())
     }
 
     /// [`Trial::cost`] estimates the cost of a frame exactly, with each number of finer runs and
