@@ -129,6 +129,25 @@ fn errors_contain_the_parameter_and_its_value() {
                 value: 1e308,
             },
         ),
+        // Only one numerator overflows, or only the sum of both, which is not needed.
+        (
+            periods(1, 2, [1e308, 1.0]),
+            Error::OutOfRange {
+                parameter: L1,
+                value: 1e308,
+            },
+        ),
+        (
+            periods(1, 2, [1.0, 1e308]),
+            Error::OutOfRange {
+                parameter: L2,
+                value: 1e308,
+            },
+        ),
+        (
+            periods(1, 2, [4e307, 4e307]),
+            too_small(FrequencyRatio, 0.5, 1.0),
+        ),
         (
             periods(3, 0, [1.0, 1.0]),
             not_finite(FrequencyRatio, infinite),
