@@ -482,6 +482,20 @@ mod tests {
                 assert!(pairs().all(|pair| f64::from(pair.fine.steps) >= resolving.floor()));
             }
         }
+
+        // Three quarters of 7 steps, rounded down, are 5 steps, but those of 8 steps are 6.
+        let finest = Pair::all(60, 0.0032162, 1, 5).next();
+        assert_eq!(finest, Some(Pair::new(5, 7)));
+    }
+
+    /// The runs of a pair may be candidates if the steps of the fine run are at most 1.1 admissible
+    /// steps long. At 60 frames per second, 5 steps are 1.04 times as long as an admissible step of
+    /// 0.0032162 s, and 4 steps are 1.30 times as long.
+    #[test]
+    fn pairs_judge_64_bits_in_steps_that_resolve_the_motion() {
+        let judges = |coarse, fine| Pair::new(coarse, fine).judges_64_bits(60, 0.0032162);
+        assert!(judges(3, 5));
+        assert!(!judges(3, 4));
     }
 
     /// The share of the distance that is assumed as the error of the fine run is 1/32

@@ -34,9 +34,28 @@ fn in_first_trial() -> Result<Search, PlanError> {
     Ok(search)
 }
 
-/// Returns the accurate frames of the best candidate after a trial. Before it, the best one was
-/// `best`; in the trial the candidates with these indices were `tried`.
-fn kept(search: &Search, best: Candidate, tried: &[(usize, Candidate)]) -> Option<u32> {
+/// Returns a search whose next trial is in 64 bits, at 5 frames per second. A frame then has many
+/// steps, so that all references of a trial differ.
+fn at_a_low_rate() -> Result<Search, PlanError> {
+    let mut search = in_first_trial()?;
+    search.problem.rate = 5;
+    let in_64_bits = search.in_64_bits().expect("a frame can pay for it");
+    search.begin_trial(in_64_bits);
+    Ok(search)
+}
+
+/// Returns the references that judge candidates in 64 bits, and whose coarse runs a frame can pay
+/// for. The finest comes first.
+fn judging_pairs(search: &Search) -> impl DoubleEndedIterator<Item = Pair> + use<> {
+    let least = search.least_in_64_bits.expect("64 bits accept the motion");
+    let (rate, admissible) = (search.problem.rate, search.admissible);
+    Pair::all(rate, admissible, least, search.most_in_64_bits())
+        .filter(move |pair| pair.judges_64_bits(rate, admissible))
+}
+
+/// Returns the best candidate after a trial. Before it, the best one was `best`; in the trial the
+/// candidates with these indices were `tried`.
+fn best_after(search: &Search, best: Candidate, tried: &[(usize, Candidate)]) -> Option<Candidate> {
     let mut search = *search;
     search.goal.set_best(best);
     let SearchState::Trying { trial, .. } = &mut search.state else {
@@ -47,7 +66,25 @@ fn kept(search: &Search, best: Candidate, tried: &[(usize, Candidate)]) -> Optio
         trial.candidates[i] = candidate;
     }
     search.keep_best();
-    search.goal.best().map(|best| best.accurate_frames)
+    search.goal.best().copied()
+}
+
+/// Returns the accurate frames of the best candidate after a trial ([`best_after`]).
+fn kept(search: &Search, best: Candidate, tried: &[(usize, Candidate)]) -> Option<u32> {
+    best_after(search, best, tried).map(|best| best.accurate_frames)
+}
+
+/// The planning budget covers a piece if it pays exactly for it. The piece is a preparation, whose
+/// cost is a whole number.
+#[test]
+fn planning_budget_may_be_spent_completely() -> Result<(), PlanError> {
+    let mut search = in_first_trial()?;
+    let needed = search.spent + search.costs.preparation;
+    for (planning, expected) in [(needed, false), (needed - 1.0, true)] {
+        search.budget.planning = planning;
+        assert_eq!(search.exceeds_planning_budget(), expected, "{planning}");
+    }
+    Ok(())
 }
 
 /// A candidate of 100 frames is measured again for fewer frames.
@@ -104,6 +141,73 @@ fn better_measurement_replaces_a_rough_one() -> Result<(), PlanError> {
     Ok(())
 }
 
+/// If two candidates have equal horizons, the one that costs less is the best. If they also cost
+/// the same, it is the one that was tried first.
+#[test]
+fn lower_cost_decides_between_equal_horizons() -> Result<(), PlanError> {
+    let mut search = in_first_trial()?;
+    let SearchState::Trying { trial, .. } = search.state else {
+        panic!("the trial is not created");
+    };
+    let [own, .., closed, _, _] = trial.candidates;
+    let cost = search.costs.of_frame(own.stepping);
+    for (closed_form, expected) in [(0.999 * cost, closed), (cost, own), (1.001 * cost, own)] {
+        search.costs.closed_form = closed_form;
+        let first = measured(own, 100, true);
+        let best = best_after(&search, first, &[(4, measured(closed, 100, true))]);
+        assert_eq!(best, Some(measured(expected, 100, true)), "{closed_form}");
+    }
+    Ok(())
+}
+
+/// Finer steps in 32 bits are only tried if a frame by them costs less than one in 64 bits.
+#[test]
+fn finer_steps_cost_less_than_64_bits() -> Result<(), PlanError> {
+    let mut search = in_first_trial()?;
+    let in_64_bits = search.in_64_bits().expect("a frame can pay for it");
+    let steps = 2 * search.stepping.steps;
+    let finer = Stepping {
+        steps,
+        ..search.stepping
+    };
+    // With these prices both frames cost the same, without a rounding error.
+    search.costs.fixed32 = in_64_bits.steps as f32;
+    for (price, expected) in [(steps, None), (steps + 1, Some(finer))] {
+        search.costs.fixed64 = price as f32;
+        assert_eq!(search.in_64_bits(), Some(in_64_bits));
+        assert_eq!(search.finer(Some(2)), expected, "{price}");
+    }
+    Ok(())
+}
+
+/// If fixed point refuses its steps as too long, the next trial makes twice as many. From 65,536
+/// ([`MOST_STEPS`]) on, it is in 64 bits.
+#[test]
+fn refused_steps_are_doubled_up_to_their_limit() -> Result<(), PlanError> {
+    let too_long = Error::TooLarge {
+        parameter: Parameter::Dt,
+        value: 1.0,
+        limit: 0.5,
+    };
+    for (steps, is_doubled) in [(8, true), (MOST_STEPS / 2, true), (MOST_STEPS, false)] {
+        let mut search = in_first_trial()?;
+        // A frame can pay for any of these steps.
+        search.budget.frame = 1e9;
+        search.stepping.steps = steps;
+        let expected = if is_doubled {
+            Stepping {
+                steps: 2 * steps,
+                ..search.stepping
+            }
+        } else {
+            search.in_64_bits().expect("a frame can pay for it")
+        };
+        assert_eq!(search.after_refusal(too_long), Ok(None));
+        assert_eq!(search.stepping, expected);
+    }
+    Ok(())
+}
+
 /// Finer steps in 32 bits are not tried if planning can pay for a trial of 64 bits, but not for
 /// one that tries both: they would spend what 64 bits need. They are tried if planning can pay
 /// for both or for neither, and if no frame was accurate before.
@@ -145,10 +249,8 @@ fn planning_pays_for_the_shadows_of_64_bits() -> Result<(), PlanError> {
     let first = Candidate::new(search.stepping);
     search.goal.set_best(measured(first, 60, true));
 
-    let least = search.least_in_64_bits.expect("64 bits accept the motion");
     let (rate, admissible) = (search.problem.rate, search.admissible);
-    let trial = Pair::all(rate, admissible, least, search.most_in_64_bits())
-        .filter(|pair| pair.judges_64_bits(rate, admissible))
+    let trial = judging_pairs(&search)
         .map(|pair| Trial::cost(&search.costs, in_64_bits, Judges::Reference(pair)))
         .fold(f32::INFINITY, f32::min);
     let shadows = Shadows::cost_of_frame(search.shadow(), admissible, rate, &search.costs);
@@ -159,6 +261,45 @@ fn planning_pays_for_the_shadows_of_64_bits() -> Result<(), PlanError> {
         search.budget.planning = search.spent + share * 1.25 * 60.0 * (trial + shadows);
         assert_eq!(search.judging_pair(in_64_bits).is_some(), expected);
     }
+    Ok(())
+}
+
+/// A trial in 64 bits takes the finest reference that is affordable for 2.75 times the known
+/// horizon, or for 1.25 times if the best candidate is in 64 bits already. Here that is the
+/// coarsest reference in the first case, and the finest in the second.
+#[test]
+fn known_horizon_of_64_bits_needs_the_smaller_margin() -> Result<(), PlanError> {
+    let mut search = at_a_low_rate()?;
+    search.problem.duration = 120.0;
+    let mut pairs = judging_pairs(&search);
+    let finest = pairs.next().expect("four pairs");
+    let coarsest = pairs.next_back().expect("four pairs");
+    let [in_32_bits, in_64_bits] = [in_first_trial()?.stepping, search.stepping];
+
+    // Planning pays for the coarsest of them, for 2.75 times the known 60 frames.
+    let (rate, admissible) = (search.problem.rate, search.admissible);
+    let shadows = Shadows::cost_of_frame(search.shadow(), admissible, rate, &search.costs);
+    let cost = Trial::cost(&search.costs, in_64_bits, Judges::Reference(coarsest)) + shadows;
+    search.budget.planning = search.spent + 1.001 * 2.75 * 60.0 * cost;
+    for (known, expected) in [(in_32_bits, coarsest), (in_64_bits, finest)] {
+        search
+            .goal
+            .set_best(measured(Candidate::new(known), 60, true));
+        assert_eq!(search.judging_pair(in_64_bits), Some(expected), "{known:?}");
+    }
+    Ok(())
+}
+
+/// If planning cannot pay for any reference of a trial in 64 bits, the trial takes the coarsest
+/// that judges candidates in 64 bits.
+#[test]
+fn trial_in_64_bits_always_has_a_reference() -> Result<(), PlanError> {
+    let mut search = at_a_low_rate()?;
+    search.budget.planning = search.spent;
+    let coarsest = judging_pairs(&search).next_back();
+    assert!(coarsest.is_some());
+    assert_eq!(search.pair_within_budget(search.stepping), None);
+    assert_eq!(search.affordable_reference(), coarsest);
     Ok(())
 }
 
@@ -401,7 +542,7 @@ fn expensive_reference_waits_until_finer_runs_have_measured() -> Result<(), Plan
     let cost = 5.0 * Trial::cost(&search.costs, search.stepping, finer_runs);
     search.budget.planning = search.spent + 300.0 * cost;
     for (factor, planning, expected) in
-        [(1.01, 0.99, true), (0.99, 0.99, false), (1.01, 1.02, false)]
+        [(1.01, 0.99, true), (0.99, 0.97, false), (1.01, 1.02, false)]
     {
         let mut search = search;
         search.budget.planning = search.spent + planning * 300.0 * cost;
@@ -470,5 +611,30 @@ fn first_steps_are_the_shortest_that_both_budgets_pay_for() -> Result<(), PlanEr
     search.problem.rate = 1;
     let small = Search::new(&search.problem, &search.costs, &poor)?;
     assert_eq!(small.stepping.steps, 8);
+    Ok(())
+}
+
+/// A search that has reached the end of a calm motion is extended by 2 s. Its second plan lasts
+/// that much longer.
+#[test]
+fn extension_is_added_to_the_duration() -> Result<(), PlanError> {
+    let problem = Problem {
+        start: Motion::at_rest(0.3, 0.3),
+        duration: 3.0,
+        ..in_first_trial()?.problem
+    };
+    let budget = Budget {
+        frame: 1e6,
+        planning: 1e10,
+    };
+    let mut search = Search::new(&problem, &Costs::CORTEX_M4F, &budget)?;
+    let finish = |search: &mut Search| loop {
+        if let Some(plan) = search.advance(f32::INFINITY)? {
+            return Ok::<_, PlanError>((plan.limit, plan.horizon));
+        }
+    };
+    assert_eq!(finish(&mut search)?, (Limit::End, 3.0));
+    search.extend(2.0);
+    assert_eq!(finish(&mut search)?, (Limit::End, 5.0));
     Ok(())
 }
