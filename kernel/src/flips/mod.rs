@@ -185,6 +185,23 @@ mod tests {
         }
     }
 
+    /// A motion passes if either rod or both pass straight up: if a sine changes its sign while the
+    /// cosine is negative.
+    #[test]
+    fn either_rod_or_both_may_pass() {
+        let [before, after] = [[1, -1], [-1, -1]];
+        for (upper, lower, is_passage) in [
+            (before, before, false),
+            (after, before, true),
+            (before, after, true),
+            (after, after, true),
+            ([-1, 1], [-1, 1], false),
+        ] {
+            let passes = passes(&[before; 2], &[upper, lower]);
+            assert_eq!(passes < 0, is_passage, "{upper:?}, {lower:?}");
+        }
+    }
+
     /// Every method, in any arithmetic, finds the same first flip to a millisecond. Only the closed
     /// form does not, because it is linear.
     #[test]

@@ -181,8 +181,9 @@ mod tests {
     use crate::pendulum::Parameters;
     use std::vec::Vec;
 
-    /// The computed time of each start, s.
-    const LIMIT: f64 = 30.0;
+    /// The computed times of each start, s: one with many flips late in chaotic motion, and one
+    /// after which motions still flip in every step.
+    const LIMITS: [f64; 2] = [30.0, 5.0];
     /// The side of the square of starts: enough for flips in the step after which lengths are
     /// restored.
     const SIDE: usize = 91;
@@ -193,11 +194,10 @@ mod tests {
         (0..side * side).map(move |i| [angle(i % side), angle(i / side)])
     }
 
-    /// Returns a map whose number of steps is no multiple of a block, and whose number of starts is
-    /// no multiple of the lanes.
-    fn flips(parameters: &Parameters<f32>) -> Result<Flips<DirectionF32Plain>, Error> {
+    /// Returns a map over `limit` seconds, whose number of steps is no multiple of a block.
+    fn flips(parameters: &Parameters<f32>, limit: f64) -> Result<Flips<DirectionF32Plain>, Error> {
         let dt = step_size(parameters)?;
-        Flips::new(parameters, dt, (LIMIT / dt) as u32 | 1)
+        Flips::new(parameters, dt, (limit / dt) as u32 | 1)
     }
 
     /// Returns the flips of all starts, in the widest vectors of this processor.
@@ -217,23 +217,29 @@ mod tests {
     }
 
     /// The first flip of each of 91 times 91 starts, computed in lanes, is bit-identical to that of
-    /// the start alone, for two pendulums, in the compiled vectors and in the widest ones. A
-    /// hundredth of the steps is left out, so that lanes leave out steps at different times. Starts
-    /// that never flip, that flip, and that flip later must all occur.
+    /// the start alone, for two pendulums and two times, in the compiled vectors and in the widest
+    /// ones. The number of starts is no multiple of the lanes. A hundredth of the steps is left
+    /// out, so that lanes leave out steps at different times. Starts that never flip, that flip,
+    /// and that flip later must all occur.
     #[test]
     fn lanes_equal_single_motions() -> Result<(), Error> {
-        for parameters in [
-            Parameters::equal_rods(1.0, 1.0, 1.0),
-            Parameters {
-                m1: 2.0,
-                m2: 1.0,
-                l1: 1.0,
-                l2: 0.6,
-                g: 1.0,
-            },
+        let equal = Parameters::equal_rods(1.0, 1.0, 1.0);
+        let different = Parameters {
+            m1: 2.0,
+            m2: 1.0,
+            l1: 1.0,
+            l2: 0.6,
+            g: 1.0,
+        };
+        let [late, early] = LIMITS;
+        for (parameters, limit) in [
+            (equal, late),
+            (equal, early),
+            (different, late),
+            (different, early),
         ] {
             // Some motions leave out steps.
-            let flips = flips(&parameters)?;
+            let flips = flips(&parameters, limit)?;
             let flips = Flips {
                 highest: flips.highest.leaving_out_more(),
                 ..flips

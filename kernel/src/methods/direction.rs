@@ -353,6 +353,23 @@ mod tests {
         }
     }
 
+    /// A step is left out once the lead exceeds half a step, and only once: 64 steps that are too
+    /// long by 1/128 add up to exactly half a step.
+    #[test]
+    fn step_is_left_out_once() {
+        let lead = Lead::new(1.0, 127.0 / 128.0);
+        let left_out = [32, 64, 96, 128, 160, 192].map(|count| lead.is_left_out(count));
+        assert_eq!(left_out, [false, true, false, false, false, true]);
+    }
+
+    /// A number that `f32` rounds down is replaced by the next one above it.
+    #[test]
+    fn rounded_constant_is_never_below_its_value() {
+        let between = 1.0 + f64::from(f32::EPSILON) / 4.0;
+        assert_eq!(factor_above::<f32>(between, 1.0), 1.0 + f32::EPSILON);
+        assert_eq!(factor_above::<f32>(1.0, 1.0), 1.0);
+    }
+
     /// A motion that is a fifth of a step ahead is taken back. Rod 1 turns at a rate of 1, rod 2 is
     /// at rest, and p1 grows exponentially. The error is that of order 4 over the lead: at most 1.5
     /// lead^5/120, for p1. The allowance is a third larger.

@@ -391,17 +391,6 @@ mod tests {
         p2: -1.0,
     };
 
-    /// A motion that is started again equals a new one.
-    #[test]
-    fn nothing_is_left_after_a_new_start() -> Result<(), Error> {
-        let motion = ExtrapolationF64::<4>::new(&PARAMETERS, &START, 1.0 / 64.0)?;
-        let mut moved = motion;
-        moved.advance(3);
-        assert_ne!(moved, motion);
-        assert_eq!(moved.started(&START)?, motion);
-        Ok(())
-    }
-
     /// A momentum that is finite in the unit of the method, but not in SI units, is reported.
     #[test]
     fn momentum_that_overflows_in_si_units_is_reported() -> Result<(), Error> {

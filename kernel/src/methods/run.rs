@@ -342,3 +342,27 @@ impl<const COUNTS_TURNS: bool> Run<Fixed32, COUNTS_TURNS> {
         self.motion.q30()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::methods::DirectionF32;
+    use crate::pendulum::Motion;
+
+    /// A motion counts as diverged above 100 times its energy above rest at the start, whether that
+    /// is small or large.
+    #[test]
+    fn most_energy_is_in_proportion_to_that_of_the_start() -> Result<(), Error> {
+        let pendulum = Pendulum::<f64>::new(&Parameters::equal_rods(1.0, 1.0, 9.81))?;
+        for w1 in [0.01, 1.0, 50.0] {
+            let start = pendulum.to_state(&Motion {
+                w1,
+                ..Motion::default()
+            });
+            let run = pendulum.run::<DirectionF32>(&start, 1e-3)?;
+            let share = f64::from(run.most_energy) / pendulum.energy_above_rest(&start);
+            assert!((share / ENERGY_GROWTH - 1.0).abs() < 1e-6, "{w1}: {share}");
+        }
+        Ok(())
+    }
+}

@@ -208,7 +208,15 @@ fn closed_form_names_the_number_that_is_out_of_range() -> Result<(), Error> {
         (Motion { w2: -1e12, ..rest }, W2),
         // The first of equal angles is named.
         (Motion::at_rest(1e12, -1e12), A1),
-        // The frequency of the slow mode is about 1 rad/s.
+        // The frequency of the slow mode is about 1.2 rad/s.
+        (
+            Motion {
+                a1: 1e12,
+                w2: 1e12,
+                ..rest
+            },
+            A1,
+        ),
         (
             Motion {
                 a1: 1e11,
@@ -328,32 +336,42 @@ fn run_names_a_step_that_takes_constants_out_of_range() -> Result<(), Error> {
 /// `DirectionF32` refuses rods with (l1/l2)^2 = 1e38, because the reciprocal is subnormal in `f32`.
 /// It accepts a quarter of that square.
 ///
-/// It also names the rod if g/l1, here 3e-41 1/s^2, is subnormal in `f32`: then G2 is out of range
-/// even with a unit of time of 1 s, so that the step is not at fault.
+/// It names the step if only that takes G1 or G2 out of the range of `f32`. If they are out of
+/// range even with a unit of time of 1 s, the step is not at fault: g/l1 may be subnormal (3e-41
+/// 1/s^2) or, with a short rod 1, (1 + m1/m2) (l1/l2)^2 g/l1 (2e-39 1/s^2).
 #[test]
-fn direction_form_names_a_rod_that_takes_constants_out_of_range() -> Result<(), Error> {
-    let refused = |l1, l2, g| {
+fn direction_form_names_what_takes_constants_out_of_range() -> Result<(), Error> {
+    let refused = |l1, l2, g, dt| {
         let pendulum = Pendulum::new(&Parameters {
+            m1: 1.0,
             m2: 1.0,
             l1,
             l2,
             g,
-            ..GOOD
         })?;
-        let run = pendulum.run::<DirectionF32>(&State::default(), 1e-6);
+        let run = pendulum.run::<DirectionF32>(&State::default(), dt);
         Ok(run.err())
     };
     let out_of_range = |parameter, value: f32| Error::OutOfRange {
         parameter,
         value: value.into(),
     };
+    let of_step = |value| Error::OutOfRange {
+        parameter: Dt,
+        value,
+    };
 
-    assert_eq!(refused(1e9, 2e-10, 9.81)?, None);
+    assert_eq!(refused(1e9, 2e-10, 9.81, 1e-6)?, None);
     let error = out_of_range(L2, 1e-10);
-    assert_eq!(refused(1e9, 1e-10, 9.81)?, Some(error));
+    assert_eq!(refused(1e9, 1e-10, 9.81, 1e-6)?, Some(error));
 
     let error = out_of_range(L1, 3e20);
-    assert_eq!(refused(3e20, 3e15, 1e-20)?, Some(error));
+    assert_eq!(refused(3e20, 3e15, 1e-20, 1e-6)?, Some(error));
+    let error = out_of_range(G, 1e-24);
+    assert_eq!(refused(1e-15, 1.0, 1e-24, 1e-6)?, Some(error));
+
+    assert_eq!(refused(1.0, 1.0, 10.0, 1e-20)?, Some(of_step(1e-20)));
+    assert_eq!(refused(1e10, 1e10, 1e30, 1e-30)?, Some(of_step(1e-30)));
     Ok(())
 }
 

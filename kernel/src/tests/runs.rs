@@ -229,9 +229,9 @@ fn counts_turns_on_request<F: Form>() -> Result<(), Error> {
     let mut plain = pendulum.run::<F>(&State::at_rest(3.0, 3.0 + TAU), 1.0 / 256.0)?;
     let mut counting = plain.counting_turns();
     let mut farthest: f64 = 0.0;
-    for _ in 0..640 {
-        plain.advance(4)?;
-        counting.advance(4)?;
+    for _ in 0..512 {
+        plain.advance(5)?;
+        counting.advance(5)?;
         let mut words = [vec![], vec![]];
         plain.bits(|word| words[0].push(word));
         counting.bits(|word| words[1].push(word));
