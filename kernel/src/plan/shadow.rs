@@ -623,7 +623,7 @@ mod tests {
             case.needs_finer_steps && method == Method::Rk4Fixed32
         );
 
-        // Begin with a root of the covariance matrix of the start.
+        // Begin with a root of the covariance matrix of the start. The shadows represent the same.
         let [of_start, _] = ROUNDING.map(f64::from);
         let mut root = [[0.0; 4]; 4];
         let [s1, s2] = scales;
@@ -632,6 +632,16 @@ mod tests {
             .enumerate()
         {
             root[i][i] = of_start * share;
+        }
+        let [center, others @ ..] = shadows.runs.each_ref().map(Place::of);
+        for (column, other) in others.iter().enumerate() {
+            for (row, difference) in other.minus(&center, scales).into_iter().enumerate() {
+                let shown = f64::from(shadows.unit) * difference;
+                assert!(
+                    (shown - root[row][column]).abs() < 0.01 * of_start,
+                    "{row} {column}: {shown} {root:?}"
+                );
+            }
         }
 
         let mut ratios = [f64::INFINITY, 0.0];
@@ -720,6 +730,7 @@ mod tests {
     }
 
     /// The shadows show the rounding error that random errors of the start and of all frames cause.
+    /// Before the first frame, they represent the errors of the start.
     #[test]
     fn shadows_show_the_expected_error_of_roundings_in_all_frames() -> Result<(), Error> {
         for case in &CASES {
@@ -825,6 +836,63 @@ mod tests {
         Ok(())
     }
 
+    /// A shadow that the method refuses beside the start is prepared on the opposite side of the
+    /// start. Here the step is just short enough for the energy of the start, so that all shadows
+    /// with more energy are refused.
+    #[test]
+    fn refused_shadow_is_prepared_on_the_opposite_side() -> Result<(), Error> {
+        // An increase of any number of the state increases the energy. The longest step that is
+        // accepted is in inverse proportion to the speed.
+        let at_speed = |speed: f64| Problem {
+            pendulum: Parameters::equal_rods(1.0, 1.0, 9.81 * speed * speed),
+            start: Motion {
+                a1: 0.5,
+                a2: 0.5,
+                w1: 5.0 * speed,
+                w2: 5.0 * speed,
+            },
+            tolerance: 1e-3,
+            duration: 1.0,
+            rate: 1,
+        };
+        let stepping = Stepping {
+            method: Method::Rk4Fixed32,
+            steps: 64,
+        };
+
+        // Choose the speed from the longest step that is accepted at a speed of 1.
+        let Problem {
+            pendulum, start, ..
+        } = at_speed(1.0);
+        let start = Pendulum::new(&pendulum)?.to_state(&start);
+        let refused = DrawnMotion32::new(stepping.method, &pendulum, &start, 1.0);
+        let Err(Error::TooLarge { limit, .. }) = refused else {
+            panic!("a step of 1 s is not refused: {refused:?}");
+        };
+        let problem = at_speed(64.0 * limit * (1.0 - 1e-9));
+
+        // Prepare all shadows.
+        let pendulum = Pendulum::new(&problem.pendulum)?;
+        let start = pendulum.to_state(&problem.start);
+        let scales = scales(&pendulum, &start);
+        let mut shadows = Shadows::new(stepping, &problem, scales, 1.0, FINE_STEPS);
+        while !shadows.are_prepared() {
+            assert_eq!(shadows.prepare(&problem, &start), Ok(()));
+        }
+
+        // The steps are unchanged, and all others have less energy than the central shadow.
+        let [center, others @ ..] = shadows.runs.map(|run| {
+            assert_eq!(run.stepping, stepping);
+            let state = run.motion.expect("prepared").state();
+            pendulum.energy_above_rest(&state)
+        });
+        assert!(
+            others.iter().all(|energy| *energy < center),
+            "{center} {others:?}"
+        );
+        Ok(())
+    }
+
     /// If nothing can move, the units of the momenta are 1.
     #[test]
     fn units_of_momenta_are_never_zero() -> Result<(), Error> {
@@ -841,12 +909,18 @@ mod tests {
             directions: [a1, a2].map(|a| [libm::sin(a), libm::cos(a)]),
             momenta,
         };
-        let from = place([1.0, -2.0], [3.0, 4.0]);
-        for (angles, expected) in [
-            ([1.1, -2.2], [libm::sin(0.1), libm::sin(-0.2)]),
-            ([3.0, -5.0], [1.0, -1.0]),
+        for (from, to, expected) in [
+            ([1.0, -2.0], [1.1, -2.2], [libm::sin(0.1), libm::sin(-0.2)]),
+            ([1.0, -2.0], [3.0, -5.0], [1.0, -1.0]),
+            // Rod 1 passes the horizontal, and rod 2 the vertical.
+            (
+                [1.571, -0.001],
+                [1.5, 0.1],
+                [libm::sin(-0.071), libm::sin(0.101)],
+            ),
         ] {
-            let difference = place(angles, [3.5, 3.0]).minus(&from, [2.0, 4.0]);
+            let from = place(from, [3.0, 4.0]);
+            let difference = place(to, [3.5, 3.0]).minus(&from, [2.0, 4.0]);
             let [a1, a2] = expected;
             for (value, expected) in difference.into_iter().zip([a1, a2, 0.25, -0.25]) {
                 assert!((value - expected).abs() < 1e-15, "{difference:?}");
