@@ -201,7 +201,7 @@ pub fn periodic_mass_ratio<R: Real>(fast: u16, slow: u16, lengths: [R; 2]) -> Re
     let numerator2 = p * p * l2 - q * q * l1;
     let denominator = p * q * (l1 + l2);
 
-    // Terms of lengths near the largest number may overflow.
+    // With lengths near the largest number a term may overflow.
     if !(numerator1.is_finite() && numerator2.is_finite()) {
         return Err(parameters.out_of_range());
     }

@@ -185,10 +185,10 @@ mod tests {
         }
     }
 
-    /// A motion passes if either rod or both pass straight up: if a sine changes its sign while the
-    /// cosine is negative.
+    /// A passage is reported if one rod or both have passed straight up: if the sine has changed
+    /// its sign and the new cosine is negative.
     #[test]
-    fn either_rod_or_both_may_pass() {
+    fn passage_of_one_rod_or_both_is_reported() {
         let [before, after] = [[1, -1], [-1, -1]];
         for (upper, lower, is_passage) in [
             (before, before, false),

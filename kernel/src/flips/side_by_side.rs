@@ -181,8 +181,8 @@ mod tests {
     use crate::pendulum::Parameters;
     use std::vec::Vec;
 
-    /// The computed times of each start, s: one with many flips late in chaotic motion, and one
-    /// after which motions still flip in every step.
+    /// The computed times of each start, s. Within 30 s, chaotic motions flip late. After 5 s, some
+    /// motions flip in every remaining step of the last block, which must not count.
     const LIMITS: [f64; 2] = [30.0, 5.0];
     /// The side of the square of starts: enough for flips in the step after which lengths are
     /// restored.

@@ -260,9 +260,9 @@ pub(crate) const BLOCK: u32 = 32;
 
 /// The excess of a step over dt. It exists because the constants of the equations are rounded.
 ///
-/// The steps since the start are counted in blocks of [`BLOCK`] = 32. When a motion would be more
-/// than half a step ahead of the time, the last step of a block is left out. The motion is then
-/// about half a step behind.
+/// The steps since the start are counted in blocks of [`BLOCK`] = 32. When a motion would be half a
+/// step or more ahead of the time, the last step of a block is left out. The motion is then about
+/// half a step behind.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Lead {
     /// The lead of each step in multiples of 2^-64 of a step.
@@ -298,7 +298,7 @@ impl Lead {
     }
 
     /// Returns true if the last step of the block that ends at `count` steps since the start is
-    /// left out, because the lead exceeded half a step within the block. `count` must be a multiple
+    /// left out, because the lead reached half a step within the block. `count` must be a multiple
     /// of 32, which is not checked; 0 gives false.
     pub fn is_left_out(self, count: u64) -> bool {
         let after = count.wrapping_mul(self.each) as i64;
@@ -353,10 +353,11 @@ mod tests {
         }
     }
 
-    /// A step is left out once the lead exceeds half a step, and only once: 64 steps that are too
-    /// long by 1/128 add up to exactly half a step.
+    /// The last step of a block is left out when the lead reaches half a step, and not again until
+    /// it has grown by another step. Steps that are too long by 1/128 reach half a step after 64
+    /// steps, and one and a half after 192.
     #[test]
-    fn step_is_left_out_once() {
+    fn one_step_is_left_out_for_each_step_of_lead() {
         let lead = Lead::new(1.0, 127.0 / 128.0);
         let left_out = [32, 64, 96, 128, 160, 192].map(|count| lead.is_left_out(count));
         assert_eq!(left_out, [false, true, false, false, false, true]);

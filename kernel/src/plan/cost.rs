@@ -489,8 +489,8 @@ mod tests {
     }
 
     /// The runs of a pair may be candidates if the steps of the fine run are at most 1.1 admissible
-    /// steps long. At 60 frames per second, 5 steps are 1.04 times as long as an admissible step of
-    /// 0.0032162 s, and 4 steps are 1.30 times as long.
+    /// steps long. At 60 frames per second and an admissible step of 0.0032162 s, each of 5 steps
+    /// per frame is 1.04 admissible steps long, and each of 4 is 1.30.
     #[test]
     fn pairs_judge_64_bits_in_steps_that_resolve_the_motion() {
         let judges = |coarse, fine| Pair::new(coarse, fine).judges_64_bits(60, 0.0032162);

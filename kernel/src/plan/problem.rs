@@ -222,10 +222,9 @@ mod tests {
         assert_eq!(check(most + 1.0), Err(too_large));
     }
 
-    /// A start without a perturbation and the same start with each of the three perturbations are
-    /// rounded to the numbers of each drawn method. Each perturbation must increase or decrease m2,
-    /// l2, g, both angles and both momenta as its factors do, by at most two epsilons of the
-    /// method, relative to the unperturbed number.
+    /// Each of the three perturbations must increase or decrease the magnitudes of m2, l2, g, both
+    /// angles and both momenta as its factors do, by at most two epsilons of the method. For
+    /// methods in `f32` all numbers are rounded to `f32` first.
     ///
     /// The size 0.7 makes numbers that need rounding in `f32` but not in `f64`. The size 1.0 makes
     /// rods and masses that are powers of two.
@@ -265,7 +264,7 @@ mod tests {
                 })
             };
 
-            // Each must change as its factor does, and not far.
+            // Each magnitude must change in the direction of its factor, by two epsilons at most.
             for perturbation in PERTURBATIONS {
                 let [by_g, by_l2, by_m2, by_a1] = perturbation;
                 let factors = [by_m2, by_l2, by_g, by_a1, by_m2, by_g, by_l2];

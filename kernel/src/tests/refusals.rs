@@ -336,11 +336,11 @@ fn run_names_a_step_that_takes_constants_out_of_range() -> Result<(), Error> {
 /// `DirectionF32` refuses rods with (l1/l2)^2 = 1e38, because the reciprocal is subnormal in `f32`.
 /// It accepts a quarter of that square.
 ///
-/// It names the step if only that takes G1 or G2 out of the range of `f32`. If they are out of
-/// range even with a unit of time of 1 s, the step is not at fault: g/l1 may be subnormal (3e-41
-/// 1/s^2) or, with a short rod 1, (1 + m1/m2) (l1/l2)^2 g/l1 (2e-39 1/s^2).
+/// It names the step if G1 or G2 is out of the range of `f32` in this step, but both are in range
+/// with a unit of time of 1 s. Otherwise it names a parameter: g/l1 may be subnormal (3e-41 1/s^2)
+/// or, with a short rod 1, (1 + m1/m2) (l1/l2)^2 g/l1 (2e-39 1/s^2).
 #[test]
-fn direction_form_names_what_takes_constants_out_of_range() -> Result<(), Error> {
+fn direction_form_names_the_rod_gravity_or_step_that_is_out_of_range() -> Result<(), Error> {
     let refused = |l1, l2, g, dt| {
         let pendulum = Pendulum::new(&Parameters {
             m1: 1.0,

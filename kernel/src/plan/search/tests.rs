@@ -74,8 +74,8 @@ fn kept(search: &Search, best: Candidate, tried: &[(usize, Candidate)]) -> Optio
     best_after(search, best, tried).map(|best| best.accurate_frames)
 }
 
-/// The planning budget covers a piece if it pays exactly for it. The piece is a preparation, whose
-/// cost is a whole number.
+/// A piece may cost exactly the rest of the planning budget. The piece is a preparation, whose cost
+/// is a whole number, so that no sum is rounded.
 #[test]
 fn planning_budget_may_be_spent_completely() -> Result<(), PlanError> {
     let mut search = in_first_trial()?;
@@ -160,7 +160,8 @@ fn lower_cost_decides_between_equal_horizons() -> Result<(), PlanError> {
     Ok(())
 }
 
-/// Finer steps in 32 bits are only tried if a frame by them costs less than one in 64 bits.
+/// Finer steps in 32 bits are only tried if a frame in these steps costs less than one in
+/// 64 bits.
 #[test]
 fn finer_steps_cost_less_than_64_bits() -> Result<(), PlanError> {
     let mut search = in_first_trial()?;
@@ -265,8 +266,9 @@ fn planning_pays_for_the_shadows_of_64_bits() -> Result<(), PlanError> {
 }
 
 /// A trial in 64 bits takes the finest reference that is affordable for 2.75 times the known
-/// horizon, or for 1.25 times if the best candidate is in 64 bits already. Here that is the
-/// coarsest reference in the first case, and the finest in the second.
+/// horizon, or for 1.25 times if the best candidate is in 64 bits already. Of the four references
+/// that judge candidates in 64 bits, it is here the coarsest in the first case and the finest in
+/// the second.
 #[test]
 fn known_horizon_of_64_bits_needs_the_smaller_margin() -> Result<(), PlanError> {
     let mut search = at_a_low_rate()?;

@@ -371,8 +371,8 @@ fn refused_steps_of_shadows_become_finer_up_to_65_536() -> Result<(), Error> {
     Ok(())
 }
 
-/// A shadow that the method refuses beside the start is prepared on the opposite side of the
-/// start. Here the step is just short enough for the energy of the start, so that all shadows
+/// If the method refuses a shadow on one side of the start, the shadow is prepared on the opposite
+/// side. Here the step is just short enough for the energy of the start, so that all shadows
 /// with more energy are refused.
 #[test]
 fn refused_shadow_is_prepared_on_the_opposite_side() -> Result<(), Error> {

@@ -218,9 +218,9 @@ fn piece_advances_as_many_shadows_as_it_pays_for() -> Result<(), Error> {
     Ok(())
 }
 
-/// The estimated error of a frame. Without a reference it is the distance to the frame of the
-/// single candidate, plus the greatest distance of that to the finer runs. With a reference it
-/// is the distance to the frame of the fine run, plus the error of that.
+/// Without a reference, the estimated error of a frame is its distance to the frame of the single
+/// candidate, plus the greatest distance of that to the finer runs. With a reference it is the
+/// distance to the frame of the fine run, plus the error of that.
 #[test]
 fn estimated_errors_contain_those_of_the_compared_runs() -> Result<(), Error> {
     let problem = Problem {
