@@ -130,11 +130,7 @@ pub const CORTEX_M0PLUS: Processor = Processor {
     costs: Costs::CORTEX_M0PLUS,
     frame: 300_000.0,
     look_ahead: 640_000.0,
-    flips: FlipsPace {
-        steps: 400,
-        start: 46,
-        ..FIXED
-    },
+    flips: FlipsPace { start: 46, ..FIXED },
 };
 /// A Cortex-M4F, whose floating-point unit computes in `f32` only. The budgets are for a clock of
 /// 25 MHz or more, as on the slowest board. At 25 MHz a tick has 417,000 cycles: 150,000 for the

@@ -164,7 +164,7 @@ impl fmt::Display for Fault {
 
         // The status registers, if the processor has them.
         write!(f, "  sp {sp:#010x}")?;
-        if cfsr | hfsr == 0 {
+        if (*cfsr, *hfsr) == (0, 0) {
             return Ok(());
         }
         write!(

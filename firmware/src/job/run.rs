@@ -25,9 +25,7 @@ pub trait Run: Copy {
     /// caller must count whole turns by these signs after each step. The other bits are in the
     /// format of the method, and the words of a diverged motion are arbitrary. Returns `None` if
     /// the angles of the state include the turns.
-    fn sides(&self) -> Option<[[i32; 2]; 2]> {
-        None
-    }
+    fn sides(&self) -> Option<[[i32; 2]; 2]>;
 }
 
 /// Returns the motion of a request at its start, by the method that the type `F` computes. Not
