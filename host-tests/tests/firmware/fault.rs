@@ -20,8 +20,8 @@ fn fault(cfsr: u32, hfsr: u32) -> Fault {
     }
 }
 
-/// Each bit of the fault status registers has its cause in words. A refused access within the 128
-/// bytes below the stack pointer counts as a stack overflow, if its address is valid.
+/// Each bit of the fault status registers has its cause in words. A refused access to data within
+/// the 128 bytes below the stack pointer counts as a stack overflow, if its address is valid.
 #[test]
 fn names_the_cause() {
     let overflow = "stack overflow";
@@ -48,16 +48,21 @@ fn names_the_cause() {
         (fault(0x0000_0010, 0x4000_0000), overflow),
         (fault(0x0000_0020, 0x4000_0000), overflow),
         (fault(0x0000_1000, 0x4000_0000), overflow),
+        (fault(0x0000_2000, 0x4000_0000), overflow),
         (fault(0, 0x0000_0002), "vector table could not be read"),
         (fault(0, 0x8000_0000), "breakpoint without a debugger"),
         (fault(0, 0), "unknown cause (a Cortex-M0+ tells none)"),
-        // A refused access just below the stack is an overflow, if the address is valid.
+        // A refused access to data just below the stack is an overflow, if the address is valid.
         (fault_at(0x0000_0082, 0x2000_8014), stray),
         (fault_at(0x0000_0082, 0x2000_8010), stray),
         (fault_at(0x0000_0082, 0x2000_800f), overflow),
         (fault_at(0x0000_0082, 0x2000_7f90), overflow),
         (fault_at(0x0000_0082, 0x2000_7f8f), stray),
         (fault_at(0x0000_0002, 0x2000_800c), stray),
+        (
+            fault_at(0x0000_0081, 0x2000_800c),
+            "instruction fetch refused by the memory protection unit",
+        ),
     ] {
         assert_eq!(fault.cause(), cause, "{fault:x?}");
     }

@@ -7,7 +7,7 @@ use double_pendulum::plan::{Limit, Plan, PlanError, Stepping};
 use double_pendulum::{Error, Method};
 use firmware::app::Record;
 use firmware::display::{BusFault, By, Controller, Found, PanelReport, PanelState};
-use firmware::job::{Reading, Request};
+use firmware::job::{CRC, Reading, Request};
 use firmware::motion::{Horizon, PlanResult, Planned, Settings};
 use firmware::protocol::{
     Answer, BoardName, Cause, Command, Decoder, Field, Frame, LinkError, MAX_MESSAGE, MAX_WIRE,
@@ -41,6 +41,44 @@ fn crc(message: &[u8]) -> u32 {
     let length = cobs::decode_in_place(&mut body).expect("a COBS encoding");
     let (_, crc) = body[..length].split_last_chunk().expect("a body");
     u32::from_le_bytes(*crc)
+}
+
+/// The longest message is read, and fills its buffer for the wire. A longer one is malformed, even
+/// if its check is right.
+#[test]
+fn a_message_longer_than_the_longest_is_malformed() {
+    let longest = wire(&[9; MAX_MESSAGE]);
+    assert_eq!(longest.len(), MAX_WIRE);
+    assert_eq!(decoded(&longest), Some(Ok(vec![9; MAX_MESSAGE])));
+
+    // No encoder makes this message, so its bytes are written here.
+    let mut body = vec![VERSION];
+    body.extend([9; MAX_MESSAGE + 1]);
+    body.extend(CRC.checksum(&body).to_le_bytes());
+    let mut longer = [0; MAX_WIRE];
+    let encoded = cobs::encode(&body, &mut longer);
+    assert_eq!(
+        decoded(&longer[..=encoded]),
+        Some(Err(LinkError::Malformed))
+    );
+}
+
+/// The log of a board names the error of a message in words.
+#[test]
+fn every_error_of_a_message_has_its_words() {
+    let errors = [
+        LinkError::Malformed,
+        LinkError::Checksum,
+        LinkError::Version(VERSION - 1),
+    ];
+    assert_eq!(
+        errors.map(LinkError::name),
+        [
+            "malformed",
+            "wrong checksum",
+            "another version of the protocol"
+        ]
+    );
 }
 
 /// Every change of up to four bits of a body is detected, in the longest message and so in every

@@ -341,6 +341,20 @@ fn the_code_of_every_processor_is_its_place() {
     );
 }
 
+/// A floating-point unit is recognised by the prices: with one, a step in `f32` costs less than one
+/// in fixed point.
+#[test]
+fn equal_prices_count_as_without_a_floating_point_unit() {
+    assert_eq!(
+        PROCESSORS.map(|processor| processor.has_float()),
+        [false, true, true, false]
+    );
+
+    let mut equal = CORTEX_M4F;
+    equal.costs.direction_plain = equal.costs.fixed32;
+    assert!(!equal.has_float());
+}
+
 /// A frame of 1/60 s has the budget of a tick, to the bit. At another rate a second has the same
 /// budgets, so that no processor is faster at a higher rate.
 #[test]

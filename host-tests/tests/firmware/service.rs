@@ -163,19 +163,21 @@ fn every_method_computes_the_same_motion() {
     }
 }
 
-/// The two motions have equal ends, but different samples before.
+/// Motions with equal ends, but different samples before, have different CRCs. So have motions with
+/// equal numbers of samples, but different steps between these.
 #[test]
 fn the_crc_covers_every_sample() -> Result<(), Error> {
     for &method in Method::ALL {
-        let [often, once] = [(1, 2), (2, 1)].map(|(stride, samples)| {
+        let crc = |stride, samples| {
             Request {
                 stride,
                 samples,
                 ..Request::on_any_core(method)
             }
             .crc()
-        });
-        assert_ne!(often?, once?, "{method}");
+        };
+        assert_ne!(crc(1, 2)?, crc(2, 1)?, "{method}");
+        assert_ne!(crc(1, 1)?, crc(2, 1)?, "{method}");
     }
     Ok(())
 }
@@ -240,6 +242,23 @@ fn a_step_too_long_for_the_energy_is_computed_with_a_warning() {
     }
 }
 
+/// The admissible step of extrapolation of order 2 K is K times that of RK4. The closed form has no
+/// admissible step.
+#[test]
+fn the_admissible_step_is_in_proportion_to_the_order_of_extrapolation() {
+    let step = |method| Request { method, ..REQUEST }.admissible_step();
+    let rk4 = step(Method::Rk4F64).expect("a pendulum");
+    for (method, share) in [
+        (Method::Rk4F32, 1.0),
+        (Method::Extrapolation8Fixed64, 4.0),
+        (Method::Extrapolation10Fixed64, 5.0),
+        (Method::Extrapolation16F64, 8.0),
+    ] {
+        assert_eq!(step(method), Some(share * rk4), "{method}");
+    }
+    assert_eq!(step(Method::ClosedFormF64), None);
+}
+
 /// A request of a method that boards lack, of impossible parameters, of a start that is not finite,
 /// or of a step of 0 or of 9 s is refused with its field, and all samples of the request before it
 /// follow.
@@ -247,6 +266,11 @@ fn a_step_too_long_for_the_energy_is_computed_with_a_warning() {
 fn a_refusal_names_the_field_and_does_not_end_the_previous_request() {
     let pendulum = |m1, m2, l1, l2, g| Request {
         parameters: Parameters { m1, m2, l1, l2, g },
+        ..REQUEST
+    };
+    let start = |angles, velocities| Request {
+        angles,
+        velocities,
         ..REQUEST
     };
 
@@ -263,20 +287,12 @@ fn a_refusal_names_the_field_and_does_not_end_the_previous_request() {
         (pendulum(1.0, 1.0, f64::NAN, 1.0, 9.8), Field::L1),
         (pendulum(1.0, 1.0, 1.0, f64::INFINITY, 9.8), Field::L2),
         (pendulum(1.0, 1.0, 1.0, 1.0, -9.8), Field::G),
-        (
-            Request {
-                angles: [f64::NAN, 0.0],
-                ..REQUEST
-            },
-            Field::A1,
-        ),
-        (
-            Request {
-                velocities: [0.0, f64::INFINITY],
-                ..REQUEST
-            },
-            Field::W2,
-        ),
+        (start([f64::NAN, 0.0], [0.0; 2]), Field::A1),
+        (start([0.0, f64::NAN], [0.0; 2]), Field::A2),
+        (start([0.0; 2], [f64::INFINITY, 0.0]), Field::W1),
+        (start([0.0; 2], [0.0, f64::INFINITY]), Field::W2),
+        // Momentum 1, (m1 + m2) l1^2 w1 = 3.75e38 kg m^2/s, is beyond the range of `f32`.
+        (start([0.0; 2], [1e38, 0.0]), Field::W1),
         (Request { dt: 0.0, ..REQUEST }, Field::Dt),
         (Request { dt: 9.0, ..REQUEST }, Field::Dt),
     ] {
