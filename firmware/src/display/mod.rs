@@ -164,16 +164,26 @@ pub struct PanelReport {
     pub whole: u8,
 }
 
+impl Controller {
+    /// Returns the controller with this [`name`](Self::name); `None` if no controller has it.
+    pub const fn named(name: &str) -> Option<Self> {
+        match name.as_bytes() {
+            b"ssd1306" => Some(Self::Ssd1306),
+            b"sh1106" => Some(Self::Sh1106),
+            b"sh1107" => Some(Self::Sh1107),
+            _ => None,
+        }
+    }
+}
+
 /// The controller that the build variable `PANEL` names: `ssd1306`, also for an SSD1309, `sh1106`
 /// or `sh1107`. Another value is an error of the build. It is `None` without the variable, and then
 /// the controller is identified. The host's choice has precedence, also after a reset that leaves
 /// memory powered, unless a program with another value made it.
 pub const BUILT_FOR: Option<Controller> = match option_env!("PANEL") {
     None => None,
-    Some(name) => match name.as_bytes() {
-        b"ssd1306" => Some(Controller::Ssd1306),
-        b"sh1106" => Some(Controller::Sh1106),
-        b"sh1107" => Some(Controller::Sh1107),
-        _ => panic!("PANEL is neither ssd1306, sh1106 nor sh1107"),
+    Some(name) => match Controller::named(name) {
+        None => panic!("PANEL is neither ssd1306, sh1106 nor sh1107"),
+        named => named,
     },
 };

@@ -6,6 +6,7 @@ mod bench;
 mod canvas;
 mod commands;
 mod controls;
+mod display;
 mod fault;
 mod golden;
 mod horizon;
