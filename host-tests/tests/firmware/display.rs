@@ -1,6 +1,19 @@
-//! The parts that all panels share: names.
+//! The parts that all panels share: the defaults of the drivers, names, errors, and the outbox.
 
-use firmware::display::Controller;
+use embedded_hal::i2c::{ErrorKind, NoAcknowledgeSource};
+use firmware::display::{BusFault, Controller, Display, NoDisplay, Outbox};
+use firmware::graphics::Canvas;
+
+/// A panel whose driver neither keeps frames nor identifies a controller: no frame waits for it,
+/// and it refuses a choice.
+#[test]
+fn a_board_without_a_panel_owes_no_frame_and_refuses_a_choice() {
+    let mut panel = NoDisplay;
+    assert!(!panel.catch_up(&Canvas::BLACK));
+    for controller in [None, Some(Controller::Sh1106)] {
+        assert!(!panel.choose(controller), "{controller:?}");
+    }
+}
 
 /// The build variable `PANEL` names a controller as a command does, and nothing else.
 #[test]
@@ -11,4 +24,51 @@ fn the_build_names_a_controller_as_a_command_does() {
     for other in ["", "SSD1306", "sh110", "sh11066"] {
         assert_eq!(Controller::named(other), None, "{other:?}");
     }
+}
+
+/// Only a missing answer and a lost arbitration are named. Every other error of the bus is a
+/// transfer that does not end.
+#[test]
+fn errors_of_the_bus_have_three_causes() {
+    for (error, fault) in [
+        (
+            ErrorKind::NoAcknowledge(NoAcknowledgeSource::Address),
+            BusFault::NoAnswer,
+        ),
+        (ErrorKind::ArbitrationLoss, BusFault::Disturbed),
+        (ErrorKind::Bus, BusFault::Stuck),
+        (ErrorKind::Overrun, BusFault::Stuck),
+        (ErrorKind::Other, BusFault::Stuck),
+    ] {
+        assert_eq!(BusFault::from(error), fault, "{error:?}");
+    }
+}
+
+/// The length counts the bytes on the bus: an address, a control byte and the body of each message,
+/// and an address and the bytes of the answer, if there is one.
+#[test]
+fn the_outbox_counts_the_bytes_on_the_bus() {
+    let mut outbox = Outbox::default();
+    outbox.put(0x00, &[1, 2]);
+    assert_eq!(outbox.len(), 4);
+    for (asked, length) in [(1, 6), (2, 7), (0, 4)] {
+        outbox.ask(asked);
+        assert_eq!(outbox.len(), length, "{asked} bytes to read");
+    }
+}
+
+/// The outbox has room for 1,128 bytes. A message that does not fit, even one without a body, is
+/// dropped.
+#[test]
+fn a_full_outbox_drops_a_message() {
+    let mut outbox = Outbox::default();
+    let body = [0; 254];
+    (0..4).for_each(|_| outbox.put(0x40, &body));
+    outbox.put(0x40, &body[..103]);
+    assert_eq!(outbox.len(), 1024, "the last message is a byte too long");
+
+    outbox.put(0x40, &body[..102]);
+    assert_eq!(outbox.len(), 1128);
+    outbox.put(0x00, &[]);
+    assert_eq!(outbox.len(), 1128);
 }

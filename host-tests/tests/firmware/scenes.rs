@@ -1,7 +1,9 @@
 //! Every scene of the catalogue on the host: its frame to the pixel, and the properties that all
 //! scenes share.
 
-use double_pendulum::State;
+use std::f64::consts::TAU;
+
+use double_pendulum::{Modes, State};
 use emulator::host::Show;
 use emulator::qemu::Screenshot;
 use firmware::app::PlannerEvent;
@@ -9,9 +11,9 @@ use firmware::config::{
     CORTEX_M0PLUS, CORTEX_M3, CORTEX_M4F, PIVOT, PROCESSOR, Processor, REACH, STM32F405, TICK_RATE,
     TRAIL_FADING, TRAIL_HALF_WIDTH,
 };
-use firmware::graphics::{Anchor, Canvas, FadeLayer, HEIGHT, LOWEST, WIDTH, plot, text};
+use firmware::graphics::{Anchor, Canvas, FadeLayer, HEIGHT, LINE, LOWEST, WIDTH, plot, text};
 use firmware::motion::{Resources, Settings};
-use firmware::protocol::Command;
+use firmware::protocol::{Command, PlayState};
 use firmware::scenes::{AnyScene, Flips, Scene, SceneName};
 use host_tests::oracle::snapshot;
 use host_tests::oracle::tolerances::SHOWN_HEIGHT;
@@ -44,6 +46,13 @@ fn after(name: SceneName, ticks: u32) -> Show {
 /// Returns the picture as text.
 fn picture(canvas: &Canvas) -> String {
     snapshot::text(&Screenshot::from(canvas).greys, WIDTH)
+}
+
+/// Returns true if the frame has each pixel of this text.
+fn has_text(frame: &Canvas, words: &str, anchor: Anchor) -> bool {
+    let mut canvas = Canvas::BLACK;
+    text::write(&mut canvas, words, anchor);
+    places().all(|(x, y)| canvas.get(x, y) == Some(0) || canvas.get(x, y) == frame.get(x, y))
 }
 
 /// After one and after four seconds, every pixel of each scene equals the stored picture. Each is
@@ -244,6 +253,207 @@ fn only_scenes_with_angles_restart_when_an_angle_is_turned() {
             assert_eq!(started, name.has_angles(), "{}", name.name());
         }
     }
+}
+
+/// Two scenes of the catalogue are figures without start angles, and three show the linear motion.
+#[test]
+fn the_catalogue_has_two_figures_and_three_linear_motions() {
+    let select = |is: fn(SceneName) -> bool| -> Vec<_> {
+        let names = SceneName::ALL.iter().copied();
+        names.filter(|&name| is(name)).collect()
+    };
+    assert_eq!(
+        select(|name| !name.has_angles()),
+        [SceneName::Frequencies, SceneName::Flips]
+    );
+    assert_eq!(
+        select(SceneName::is_linear),
+        [
+            SceneName::SmallLight,
+            SceneName::SmallEqual,
+            SceneName::SmallHeavy
+        ]
+    );
+}
+
+/// The next and the previous scene are the neighbours in the catalogue, which is cyclic.
+#[test]
+fn next_and_previous_scene_are_neighbours_in_the_catalogue() {
+    let all = SceneName::ALL;
+    for (&name, &next) in all.iter().zip(all.iter().cycle().skip(1)) {
+        assert_eq!(name.next(), next);
+        assert_eq!(next.previous(), name);
+    }
+}
+
+/// A motion that is too fast for every method stops its scene from the start.
+#[test]
+fn scenes_of_a_motion_that_is_too_fast_do_not_move() {
+    for name in [
+        SceneName::Page,
+        SceneName::Beats2To1,
+        SceneName::Figure7,
+        SceneName::Butterfly,
+        SceneName::Upright,
+    ] {
+        let settings = Settings {
+            velocities: [0.0, 2e4],
+            ..name.first_settings()
+        };
+        let show = Show::new(name, &settings).expect("a start that is too fast is no error");
+        assert_eq!(show.player.state(), PlayState::Stopped, "{}", name.name());
+    }
+}
+
+/// Two different start angles of the page are written in two lines.
+#[test]
+fn the_page_has_a_label_for_each_angle() {
+    let settings = Settings {
+        degrees: [90.0, -45.0],
+        ..Settings::default()
+    };
+    let frame = Show::new(SceneName::Page, &settings)
+        .expect("the page")
+        .frame();
+    assert!(has_text(&frame, "α₁ 90°", Anchor::Left(LOWEST - LINE)));
+    assert!(has_text(&frame, "α₂ -45°", Anchor::Left(LOWEST)));
+}
+
+/// A pendulum that hangs at rest has the amplitude 0.
+#[test]
+fn a_pendulum_at_rest_has_no_amplitude() {
+    let first_row = 10; // of the label at the upper scale bar of `small-1`
+    for (name, label, anchor) in [
+        (SceneName::SmallEqual, "0°", Anchor::EndingAt(16, first_row)),
+        (SceneName::Beats2To1, "±0°", Anchor::Middle(5 * LINE)),
+    ] {
+        let settings = Settings {
+            degrees: [0.0; 2],
+            velocities: [0.0; 2],
+            ..name.first_settings()
+        };
+        let frame = Show::new(name, &settings).expect("a scene").frame();
+        assert!(has_text(&frame, label, anchor), "{}", name.name());
+    }
+}
+
+/// The mass ratio 6 widens the plot of frequencies to 7.5. Its scale then has steps of 2: lines at
+/// 0, 2 and 4, the last one in the topmost row of the plot.
+#[test]
+fn the_scale_of_frequencies_has_a_line_at_each_step() {
+    let frame = Show::new(SceneName::Frequencies, &Settings::equal_rods(6.0, 0.0))
+        .expect("a figure")
+        .frame();
+    // A column in which each dotted line has a dot.
+    let lines: Vec<_> = (10..54)
+        .filter(|&row| frame.get(18, row) == Some(plot::AXIS_GREY))
+        .collect();
+    assert_eq!(lines, [10, 31, 53]);
+}
+
+/// Returns the first and the last row with ink in the newest column, for the plots of angle 1 and
+/// angle 2 of small oscillations. A plot without ink gives the row of its axis.
+fn newest_rows(frame: &Canvas) -> [(i32, i32); 2] {
+    [(9..32, 20), (32..55, 43)].map(|(rows, axis)| {
+        let is_ink = |y: &i32| frame.get(WIDTH as i32 - 1, *y) != Some(0);
+        let top = rows.clone().find(is_ink).unwrap_or(axis);
+        let bottom = rows.rev().find(is_ink).unwrap_or(axis);
+        (top, bottom)
+    })
+}
+
+/// Each curve of small oscillations stays within its envelope, also if the pendulum starts in
+/// motion: in the newest column, the ink reaches as far above the axis as below it.
+#[test]
+fn curves_of_small_oscillations_stay_within_their_envelopes() {
+    let settings = Settings {
+        velocities: [1.0, 0.0],
+        ..SceneName::SmallEqual.first_settings()
+    };
+    let mut show = Show::new(SceneName::SmallEqual, &settings).expect("a scene");
+    for ticks in 1..=300 {
+        show.tick();
+        for ((top, bottom), axis) in newest_rows(&show.frame()).into_iter().zip([20, 43]) {
+            assert!(
+                (top + bottom - 2 * axis).abs() <= 2,
+                "rows {top} to {bottom} after {ticks} ticks"
+            );
+        }
+    }
+}
+
+/// The envelopes of small oscillations have the same heights, to a pixel, after ten million
+/// exchanges of energy, 107 days.
+#[test]
+fn envelopes_of_small_oscillations_are_accurate_for_months() {
+    let name = SceneName::SmallEqual;
+    let modes: Modes<f64> =
+        Modes::new(&name.first_settings().parameters.cast()).expect("a pendulum");
+    let exchange = TAU / modes.exchange() * f64::from(TICK_RATE); // ticks
+    let envelopes = |exchanges: f64| {
+        let mut ink = FadeLayer::NONE;
+        let mut scene = AnyScene::empty();
+        scene
+            .start(name, &name.first_settings(), &RESOURCES)
+            .expect("a scene");
+        // The curve in the newest column begins where the column before it ended.
+        let last = (exchanges * exchange).round() as u64;
+        scene.tick(last - 1, &mut ink);
+        scene.tick(last, &mut ink);
+        newest_rows(&ink.frame).map(|(top, _)| top)
+    };
+
+    for part in [0.1, 0.3] {
+        let early = envelopes(part);
+        let late = envelopes(1e7 + part);
+        for (early, late) in early.into_iter().zip(late) {
+            assert!((early - late).abs() <= 1, "row {late}, not {early}");
+        }
+    }
+}
+
+/// Where an angle of the exact motion passes straight up, the figure of two modes has no line from
+/// one edge to the other: in each tick its ink grows only near the end of the curve.
+#[test]
+fn beats_have_no_line_across_the_figure() {
+    let settings = Settings {
+        degrees: [0.0, 179.0],
+        velocities: [0.0, 2.0],
+        ..SceneName::Beats2To1.first_settings()
+    };
+    let mut ink = FadeLayer::NONE;
+    let mut scene = AnyScene::empty();
+    scene
+        .start(SceneName::Beats2To1, &settings, &RESOURCES)
+        .expect("a scene");
+
+    for ticks in 1..=60 {
+        let before = ink.frame.clone();
+        scene.tick(ticks, &mut ink);
+        // The figure of the exact motion is in the right half.
+        let new: Vec<_> = places()
+            .filter(|&(x, y)| x >= WIDTH as i32 / 2 && ink.frame.get(x, y) > before.get(x, y))
+            .collect();
+        for along in [|&(x, _): &(i32, i32)| x, |&(_, y): &(i32, i32)| y] {
+            let least = new.iter().map(along).min().unwrap_or(0);
+            let greatest = new.iter().map(along).max().unwrap_or(0);
+            assert!(greatest - least < 8, "{least} to {greatest}, tick {ticks}");
+        }
+    }
+
+    let a2 = scene.report(60).state.a2;
+    assert!(a2 > std::f32::consts::PI, "it has passed straight up: {a2}");
+}
+
+/// The separation of the two pendulums is at most 15.3 e-foldings, because whole turns are not
+/// counted. During the first 15 s the curve stays below the row 12.
+#[test]
+fn the_separation_of_the_butterfly_does_not_count_whole_turns() {
+    let frame = after(SceneName::Butterfly, 15 * TICK_RATE).frame();
+    let above: Vec<_> = places()
+        .filter(|&(x, y)| x >= 68 && (8..12).contains(&y) && frame.get(x, y) != Some(0))
+        .collect();
+    assert_eq!(above, []);
 }
 
 /// Text in each corner leaves the outermost pixels of the frame black.

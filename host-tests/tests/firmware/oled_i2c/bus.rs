@@ -179,7 +179,13 @@ pub const SSD1306: Kind = Kind {
     columns: WIDTH,
     left: 0,
     own: &[(0x20, 1), (0x2E, 0), (0x8D, 1), (0xDA, 1)],
-    needed: &[&[0x20, 2], &[0x2E], &[0x8D, 0x14], &[0xDA, 0x12]],
+    needed: &[
+        &[0x20, 2],
+        &[0x2E],
+        &[0x8D, 0x14],
+        &[0xA8, 0x3F],
+        &[0xDA, 0x12],
+    ],
     for_lit: &[],
 };
 /// A controller with more columns than are visible, whose memory can be read.
@@ -189,7 +195,7 @@ pub const SH1106: Kind = Kind {
     columns: WIDTH + 4,
     left: 2,
     own: &[(0xAD, 1), (0xDA, 1)],
-    needed: &[&[0xAD, 0x8B], &[0xDA, 0x12]],
+    needed: &[&[0xAD, 0x8B], &[0xA8, 0x3F], &[0xDA, 0x12]],
     for_lit: &[],
 };
 /// The upper half of a panel of 128 x 128.

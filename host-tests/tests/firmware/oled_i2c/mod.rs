@@ -318,15 +318,15 @@ const fn bits(columns: u32) -> u32 {
 
 /// The number of bits on the bus for a frame: without a change only the part of 16 columns that is
 /// always sent again, and in addition one column, or two columns of the same page with a single
-/// address.
+/// address. Up to five unchanged columns between two changed ones are sent, too.
 #[test]
 fn only_changes_are_sent_and_one_part_again() {
     let mut panel = panel(Controller::new(SSD1306, 0x3C));
     let mut canvas = scene(30);
-    // No change, one changed column, and two in the same page.
+    // No change, one changed column, and two in the same page, far from each other or near.
     let taken = [&[][..]; 10]
         .into_iter()
-        .chain([&[20][..], &[20, 90]])
+        .chain([&[20][..], &[20, 90], &[20, 27], &[20, 26]])
         .map(|changed| {
             for &x in changed {
                 canvas.update(x, 7, |grey| 15 - grey);
@@ -337,7 +337,8 @@ fn only_changes_are_sent_and_one_part_again() {
         .collect::<Vec<_>>();
 
     // The second run of a page does not contain the page's address.
-    let changes = [0, bits(1), 2 * bits(1) - BYTE];
+    let two = 2 * bits(1) - BYTE;
+    let changes = [0, bits(1), two, two, bits(7)];
     assert_eq!(
         taken[9..],
         changes.map(|change| change + bits(16) + 1),
@@ -382,6 +383,28 @@ fn panel_that_lost_its_power_is_set_up_again() {
             assert_eq!(tick(&mut panel, &frame), Ok(()));
         }
         assert_eq!(panel.bus.panel.lit, 1, "since power came last");
+    }
+}
+
+/// A panel with a useless status byte loses its power, and acknowledges all the same. Within 70
+/// ticks it has the settings that a lit display accepts and the whole picture again.
+#[test]
+fn panel_without_a_status_is_set_up_again_by_repetition() {
+    for says in [Says::Always(0x43), Says::Always(0x03), Says::Nothing] {
+        let kind = Kind {
+            needed: &[&[0xA8, 0x3F], &[0xDA, 0x12]],
+            ..BLIND.says(says)
+        };
+        let frame = scene(30);
+        let mut panel = panel(Controller::new(kind, 0x3C));
+        (0..BACK).for_each(|_| _ = tick(&mut panel, &frame));
+        assert!(shows(&panel, &frame), "{says:?}");
+
+        panel.bus.panel.lose_power();
+        for _ in 0..70 {
+            assert_eq!(tick(&mut panel, &frame), Ok(()));
+        }
+        assert!(shows(&panel, &frame), "{says:?}");
     }
 }
 
@@ -565,6 +588,16 @@ fn no_frame_is_skipped_when_frames_are_not_equally_far_apart() {
     }
 }
 
+/// A frame without a change counts as sent whole: a still picture gives 60 such frames in a second.
+#[test]
+fn a_still_picture_is_sent_whole() {
+    let mut panel = panel(Controller::new(SSD1306, 0x3C));
+    let frame = scene(30);
+    (0..3 * TICK_RATE).for_each(|_| _ = tick(&mut panel, &frame));
+    let report = panel.report();
+    assert_eq!((report.shown, report.whole), (60, 60));
+}
+
 /// If the bus transfers only every other frame, the driver returns the error `Slow` with 30 frames,
 /// and none before and after.
 #[test]
@@ -725,4 +758,34 @@ fn a_bus_that_hangs_delays_nothing_and_is_freed() {
     panel.bus.hangs = false;
     let last = (0..TICK_RATE + 12).map(|_| flush(&mut panel, 21)).last();
     assert!(last == Some(Ok(())) && shows(&panel, &scene(21)));
+}
+
+/// If the bus hangs while the panel is identified, the panel is absent with this error, although it
+/// has answered before.
+#[test]
+fn a_bus_that_hangs_during_identification_is_reported() {
+    // The display is switched off by the first frame. The status is asked for with the second one,
+    // and the memory with the third.
+    for before in [1, 2] {
+        let mut panel = panel(Controller::new(SSD1306, 0x3C));
+        (0..before).for_each(|_| assert_eq!(tick(&mut panel, &scene(1)), Ok(())));
+        panel.bus.hangs = true;
+        let last = (0..10).map(|_| tick(&mut panel, &scene(1))).last();
+        assert_eq!(
+            last,
+            Some(Err(OledError::Absent(ErrorKind::Other))),
+            "after {before} frames"
+        );
+        assert_eq!(panel.report().state, PanelState::Absent(BusFault::Stuck));
+    }
+}
+
+/// The first byte of memory is read before anything is written: the third frame sends the place, a
+/// read of memory, and the address for two bytes of answer.
+#[test]
+fn identification_reads_before_it_writes() {
+    let mut panel = panel(Controller::new(SH1106, 0x3C));
+    (0..3).for_each(|_| assert_eq!(tick(&mut panel, &scene(1)), Ok(())));
+    let [place, read, answer] = [5, 4, 3].map(|bytes| 1 + bytes * BYTE);
+    assert_eq!(panel.bus.taken, place + read + answer);
 }
