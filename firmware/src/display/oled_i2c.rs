@@ -160,8 +160,8 @@ const HEAD: usize = 7;
 const NEXT_HEAD: usize = HEAD - 1;
 /// The number of bytes on the bus for a reading of the status byte.
 const CHECK: usize = 4;
-/// The longest gap of unchanged columns that is sent too. To address the columns after it would
-/// take as many bytes.
+/// The longest distance between two changed columns of one run. The unchanged columns between them,
+/// one fewer, take fewer bytes than another address.
 const GAP: usize = NEXT_HEAD;
 
 /// The reason why the panel does not show the frames, or not all of them.
@@ -720,7 +720,7 @@ fn draw(
 }
 
 /// Returns the start and the end of the next run of differing columns, from column `from` on. Short
-/// gaps are part of a run.
+/// gaps ([`GAP`]) are part of a run.
 fn next_run(old: &[u8; WIDTH], new: &[u8; WIDTH], from: usize) -> Option<(usize, usize)> {
     let mut differing = old
         .iter()
