@@ -2,6 +2,7 @@
 //! scripted buttons.
 
 use std::convert::Infallible;
+use std::sync::atomic::{AtomicU32, Ordering};
 
 use double_pendulum::plan::Stepping;
 use double_pendulum::{Method, Parameters, Pendulum, State};
@@ -338,6 +339,80 @@ fn status_contains_the_scene_and_the_panel_report() {
         (status.scene, status.panel.chosen, status.panel.shown),
         (SceneName::Page, Some(Controller::Sh1106), 7)
     );
+}
+
+/// A panel whose controller can be chosen. Its frame waits for the bus for a number of calls.
+#[derive(Default)]
+struct BusyPanel {
+    chosen: Option<Controller>,
+    waits: u8,
+}
+
+impl Display for BusyPanel {
+    type Error = Infallible;
+
+    fn flush(&mut self, _: &Canvas) -> Result<(), Infallible> {
+        Ok(())
+    }
+
+    fn catch_up(&mut self, _: &Canvas) -> bool {
+        let is_waiting = self.waits > 0;
+        self.waits = self.waits.saturating_sub(1);
+        is_waiting
+    }
+
+    fn report(&self) -> PanelReport {
+        PanelReport {
+            chosen: self.chosen,
+            ..PanelReport::default()
+        }
+    }
+
+    fn choose(&mut self, controller: Option<Controller>) -> bool {
+        self.chosen = controller;
+        true
+    }
+}
+
+/// The command reaches the panel, and is answered as done. The status names the controller.
+#[test]
+fn the_controller_of_the_panel_is_chosen_by_a_command() {
+    let mut app = of(BusyPanel::default(), Vec::new(), NoButtons);
+    for controller in [Some(Controller::Sh1106), None] {
+        app.receive(wire(5, Command::Panel(controller)), |_| ());
+        let answer = ToHost::Answer(5, Answer::Done);
+        assert_eq!(messages(&app.link).last(), Some(&answer));
+        assert_eq!(app.status().panel.chosen, controller);
+    }
+}
+
+/// The application reports a frame that waits for the bus, until its transfer has begun.
+#[test]
+fn a_frame_waits_for_the_bus_until_it_is_free() {
+    let panel = BusyPanel {
+        waits: 2,
+        ..BusyPanel::default()
+    };
+    let mut app = of(panel, Vec::new(), NoButtons);
+    assert_eq!([(); 3].map(|()| app.catch_up()), [true, true, false]);
+}
+
+/// The stopwatch is read before the scene, after the picture, and after the frame is sent. Each
+/// frame reports the cycles of its own scene and picture, and all cycles of the frame before.
+#[test]
+fn frames_report_the_cycles_of_the_stopwatch() {
+    static READINGS: AtomicU32 = AtomicU32::new(0);
+    let mut app = app();
+    // Each reading is a cycle later than the one before.
+    app.instruments.stopwatch = || READINGS.fetch_add(1, Ordering::Relaxed);
+    for now in 1..=3 {
+        app.run_to(now, |_| ());
+    }
+    let cycles: Vec<_> = frames(&app.link)
+        .iter()
+        .map(|frame| (frame.scene_cycles, frame.busy_cycles))
+        .collect();
+    assert_eq!(cycles, [(1, 0), (1, 2), (1, 2)]);
 }
 
 /// A link that fails for the writes from 5 to 9, each time after half of the bytes.

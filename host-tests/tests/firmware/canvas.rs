@@ -101,6 +101,14 @@ fn glyphs_equal_the_font_of_the_library() {
     }
 }
 
+/// A character without a glyph of its own is shown as a question mark.
+#[test]
+fn an_unknown_character_is_a_question_mark() {
+    for unknown in ['\n', 'é', '漢'] {
+        assert_eq!(glyph(unknown), glyph('?'), "{unknown:?}");
+    }
+}
+
 /// Returns a disc at (x, y) with a radius of `pixels`, without a gap.
 fn disc(x: f32, y: f32, pixels: f32) -> Disc {
     Disc {
@@ -108,6 +116,15 @@ fn disc(x: f32, y: f32, pixels: f32) -> Disc {
         radius: (pixels * SUBPIXELS as f32) as u8,
         gap: 0,
     }
+}
+
+/// A disc of radius 0 still has a soft edge. In the middle of a pixel it has about half of the
+/// brightness, and no other pixel is lit.
+#[test]
+fn a_disc_of_radius_0_is_a_faint_pixel() {
+    let mut canvas = Canvas::default();
+    disc(10.5, 10.5, 0.0).draw(&mut canvas, u8::MAX);
+    assert_eq!((grey(&canvas, 10, 10), light(&canvas)), (8, 8));
 }
 
 /// The centre of light of 1,000 discs is at the place given, to [`CENTRE_TOLERANCE`].
@@ -290,6 +307,32 @@ fn a_gap_sets_a_disc_off() {
             "{exact} at {column}, {row}, not {}",
             grey(&canvas, column, row)
         );
+    }
+}
+
+/// A stroke of a subpixel in both directions looks like a disc: its greys differ by 1 at most from
+/// those of a stroke without a length.
+#[test]
+fn the_shortest_stroke_looks_like_a_disc() {
+    let from = Spot::at(10.0, 10.0);
+    let drawn = |to| {
+        let mut canvas = Canvas::default();
+        Stroke {
+            from,
+            to,
+            radius: u8::MAX,
+        }
+        .lighten(&mut canvas, u8::MAX);
+        canvas
+    };
+    let disc = drawn(from);
+    let short = drawn(Spot {
+        x: from.x + 1,
+        y: from.y + 1,
+    });
+    for (x, y) in places() {
+        let difference = grey(&short, x, y).abs_diff(grey(&disc, x, y));
+        assert!(difference <= 1, "{x}, {y}: {difference}");
     }
 }
 

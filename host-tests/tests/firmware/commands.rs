@@ -10,6 +10,7 @@ use firmware::app::{Event, Instruments, PlannerEvent};
 use firmware::config::{
     MOST_MEASURED_STEPS, MOST_MESSAGES_PER_TICK, PLANNED, PROCESSOR, RECEIVE_QUEUE, TICK_RATE,
 };
+use firmware::display::Controller;
 use firmware::graphics::{Anchor, Canvas, LINE, text};
 use firmware::job::{OnBoards, Request, Run};
 use firmware::motion::{Horizon, Planned, Settings};
@@ -323,6 +324,31 @@ fn a_pause_outlasts_a_stop() {
         assert_eq!(answer(&mut app, command), Answer::Done);
         assert_eq!((app.player.state(), status(&mut app).state), (state, state));
         assert_eq!(app.player.frame().state, state);
+    }
+}
+
+/// The command of the button pauses a scene that plays, and lets a paused one continue. It drops
+/// the ticks that are left of a step.
+#[test]
+fn pause_is_toggled() {
+    let mut app = app();
+    assert_eq!(answer(&mut app, Command::Step(3)), Answer::Done);
+    assert_eq!(status(&mut app).steps, 3);
+    for state in [PlayState::Playing, PlayState::Paused, PlayState::Playing] {
+        assert_eq!(answer(&mut app, Command::TogglePause), Answer::Done);
+        let status = status(&mut app);
+        assert_eq!((status.state, status.steps), (state, 0));
+    }
+}
+
+/// A board without a choice of controllers refuses a controller for its panel.
+#[test]
+fn a_controller_is_refused_without_a_choice() {
+    for controller in [None, Some(Controller::Sh1106)] {
+        assert_eq!(
+            answer(&mut app(), Command::Panel(controller)),
+            Answer::Refused(Field::Panel)
+        );
     }
 }
 

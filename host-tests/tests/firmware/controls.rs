@@ -2,7 +2,8 @@
 
 use firmware::app::{Controls, Pressed};
 use firmware::config::{
-    DEBOUNCE_TICKS, HOLD_TICKS, MASS_RATIOS, REPEAT_DELAY_TICKS, REPEAT_PERIOD_TICKS,
+    DEBOUNCE_TICKS, HOLD_TICKS, MASS_RATIOS, MOST_TICKS_BETWEEN_TAPS, REPEAT_DELAY_TICKS,
+    REPEAT_PERIOD_TICKS,
 };
 use firmware::graphics::label;
 use firmware::motion::{Horizon, Settings};
@@ -211,6 +212,11 @@ fn taps_before_a_hold_select_its_command() {
         );
     }
 
+    // From the end of a tap to a press are 5 ticks more than the pause.
+    let longest = usize::from(MOST_TICKS_BETWEEN_TAPS) - 5;
+    assert_eq!(after(1, longest, held), [Command::Heavier; 3]);
+    assert_eq!(after(1, longest + 1, held), [Command::NextScene]);
+
     assert_eq!(after(5, 0, held), [], "five taps have no command");
     assert_eq!(after(3, 0, 20), [], "not held long enough");
 }
@@ -328,6 +334,7 @@ fn labels_show_the_settings() {
         (Horizon::Until(9370.2), "½px 9370 s"),
         (Horizon::AtLeast(1e6), "½px>277.7 h"),
         (Horizon::Until(1.0 / 60.0), "½px 0.02 s"),
+        (Horizon::Until(1.0), "½px 1.0 s"),
         (Horizon::AtLeast(8.46), "½px>8.4 s"),
         (Horizon::Undecided, "½px ?"),
         (Horizon::Always, "½px ok"),

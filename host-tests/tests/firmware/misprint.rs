@@ -5,7 +5,7 @@ use double_pendulum::{Parameters, Pendulum, State, rk4};
 use emulator::host::Show;
 use firmware::config::{HALF_PIXEL, MASS_RATIOS, TICK_RATE};
 use firmware::graphics::{Anchor, Canvas, LINE, Place, View, text};
-use firmware::motion::{Misprinted, Settings};
+use firmware::motion::{Energy, Misprinted, Settings};
 use firmware::scenes::SceneName;
 use host_tests::oracle::{textbook, tolerances};
 
@@ -84,6 +84,24 @@ fn right_form_keeps_the_energy_and_spends_half_its_time_above_the_pivot() {
         (above - 0.507).abs() < tolerances::FIGURE_7_ABOVE,
         "{above} above the pivot"
     );
+}
+
+/// Equal rods of 1 m with masses of 1 kg, at a gravity of 9.81 m/s^2, have an energy of -29.43 J at
+/// rest and of 29.43 J straight up. A relative error is a share of the start's energy above rest.
+#[test]
+fn the_energy_of_a_relative_error_is_counted_from_rest() {
+    const AT_REST: f32 = -3.0 * 9.81;
+    for (degrees, error, expected) in [
+        (180.0, 0.0, -AT_REST),
+        (180.0, -1.0, AT_REST),
+        (180.0, 0.25, -1.5 * AT_REST),
+        (90.0, 0.0, 0.0),
+        (90.0, 0.5, -0.5 * AT_REST),
+    ] {
+        let energy = Energy::new(&Settings::equal_rods(1.0, degrees)).expect("good settings");
+        let energy = energy.of_error(error);
+        assert!((energy - expected).abs() < 1e-4, "{energy}, not {expected}");
+    }
 }
 
 /// The misprinted equations equal the kernel's derivatives at one state at mass ratio 1, to
@@ -181,6 +199,21 @@ fn a_motion_is_lost_when_its_rods_turn_too_far_in_the_shortest_step() {
             shown.tick();
             assert_eq!(shown.is_lost(), share.abs() > 1.0, "{mass_ratio}, {share}");
         }
+    }
+}
+
+/// A step must resolve the motion at both of its ends. In these motions without gravity the
+/// shortest step does so at its start only, so that they are lost in the first tick and do not
+/// move.
+#[test]
+fn a_step_that_is_resolved_only_at_its_start_is_not_taken() {
+    for [a1, a2, p1, p2] in [[3.0, 2.3, 52.0, 135.0], [2.2, 1.5, 72.0, 147.0]] {
+        let parameters = Parameters::equal_rods(2.0, 1.0, 0.0);
+        let mut shown = Misprinted::new(&parameters, &State { a1, a2, p1, p2 });
+        let start = shown.directions();
+        shown.tick();
+        assert!(shown.is_lost());
+        assert_eq!(shown.directions(), start);
     }
 }
 

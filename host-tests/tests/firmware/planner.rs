@@ -7,7 +7,7 @@ use firmware::config::{
     CORTEX_M0PLUS, CORTEX_M3, CORTEX_M4F, PLANNED, PROCESSORS, Processor, SETTLED_TICKS, STM32F405,
     TICK_RATE,
 };
-use firmware::motion::{CatchingUp, Planner, Settings};
+use firmware::motion::{CatchingUp, Horizon, Planner, Resources, Settings, Simulation};
 use firmware::protocol::{Command, Field};
 use firmware::scenes::SceneName;
 
@@ -45,6 +45,18 @@ fn nothing_is_planned_before_the_start_has_settled() {
                 .planned()
                 .is_some_and(|answer| answer.found.is_none())
     );
+    assert!((0..PATIENCE).any(|_| planner.tick().is_some() || planner.horizon(LASTING) > 0.0));
+}
+
+/// A tick that pays for exactly one preparation is enough to begin: a preparation may use the whole
+/// budget of a tick that has not spent anything yet.
+#[test]
+fn a_preparation_may_use_the_whole_budget_of_a_tick() {
+    let processor = Processor {
+        look_ahead: CORTEX_M3.costs.preparation,
+        ..CORTEX_M3
+    };
+    let mut planner = planner(processor, &Settings::default());
     assert!((0..PATIENCE).any(|_| planner.tick().is_some() || planner.horizon(LASTING) > 0.0));
 }
 
@@ -109,8 +121,36 @@ fn reports_do_not_depend_on_work_in_advance_at_any_speed() {
     }
 }
 
+/// A paused scene is still, and plans nothing in advance. A scene that plays does, and one piece
+/// does not spend the budget of a tick.
+#[test]
+fn a_paused_scene_plans_nothing_in_advance() {
+    let mut show = Show::new(SceneName::Page, &Settings::default()).expect("good settings");
+    for _ in 0..=SETTLED_TICKS {
+        show.tick();
+    }
+    for paused in [false, true, false] {
+        assert_eq!(show.player.execute(Command::Pause(paused)), Ok(false));
+        assert_eq!(
+            (show.player.is_still(), show.player.look_ahead()),
+            (paused, !paused)
+        );
+    }
+}
+
+/// A scene whose pendulum hangs at rest has nothing to plan: its frames are always accurate.
+#[test]
+fn a_pendulum_at_rest_is_always_accurate() {
+    let mut show =
+        Show::new(SceneName::Beats2To1, &Settings::equal_rods(1.0, 0.0)).expect("good settings");
+    assert_eq!(show.report().horizon, Horizon::Always);
+    show.tick();
+    assert_eq!(show.report().horizon, Horizon::Always);
+}
+
 /// A planner without a task plans nothing. After the last result is found, one tick reports it, and
-/// nothing more is done until a new motion starts, which has no result and no horizon yet.
+/// nothing more is done until a new motion starts, which has no result and no horizon yet. The
+/// initial stepping keeps the horizon that the search has verified.
 #[test]
 fn nothing_is_planned_without_a_motion_or_after_the_plan() {
     let mut still = Planner::new(CORTEX_M3);
@@ -123,16 +163,14 @@ fn nothing_is_planned_without_a_motion_or_after_the_plan() {
     while planner.is_searching() {
         planner.tick();
     }
-    assert!(
-        planner
-            .planned()
-            .is_some_and(|answer| answer.found.is_some())
-    );
+    let found = planner.planned().and_then(|answer| answer.found);
+    let plan = found.expect("a result").expect("a plan");
     assert!(
         !planner.work_ahead() && planner.tick().is_some(),
         "the result has a tick of its own"
     );
     assert!(!planner.work_ahead() && planner.tick().is_none());
+    assert!(plan.stepping() != LASTING && planner.horizon(LASTING) >= plan.horizon);
 
     // A new motion must not inherit the result of the one before.
     planner.start(
@@ -273,6 +311,75 @@ fn final_result_is_about_the_initial_method_if_the_plan_is_too_late() {
     assert!(last.horizon > 0.0 && planner.horizon(REPLACED) == last.horizon);
 }
 
+/// A first plan that ends early, in steps that do not resolve the motion, is not followed, although
+/// it could catch up in time. The result is the horizon of the initial method. Without an initial
+/// method the plan is reported.
+#[test]
+fn a_plan_that_ends_early_and_does_not_resolve_the_motion_is_not_followed() {
+    let processor = CORTEX_M4F;
+    let settings = Settings::equal_rods(100.0, 105.0);
+    let problem = settings.problem(HEIGHT);
+    let initial = Stepping::initial(&problem, &processor.costs, processor.frame);
+    let initial = initial.expect("good settings").expect("a method");
+    assert_eq!(initial.resolves(&problem), Ok(true));
+    // The first result, and the tick of its report.
+    let first = |initial| {
+        let mut planner = Planner::new(processor);
+        planner.start(&settings, Some(HEIGHT), initial, false);
+        let found = (0..PATIENCE).find_map(|_| planner.tick());
+        (found.expect("a result").expect("a plan"), planner.ticks)
+    };
+
+    let (plan, tick) = first(None);
+    assert!(plan.limit != Limit::End && plan.stepping().resolves(&problem) == Ok(false));
+    assert!(CatchingUp::arrival(plan.stepping(), &processor, tick) <= plan.horizon);
+
+    let (kept, _) = first(Some(initial));
+    assert_eq!((kept.stepping(), kept.limit), (initial, Limit::Method));
+}
+
+/// A plan for the initial method itself is never too late, because nothing has to catch up. It is
+/// the result, and the method is not searched again.
+#[test]
+fn a_late_plan_for_the_initial_method_is_the_result() {
+    let initial = Stepping {
+        method: Method::Extrapolation10Fixed64,
+        steps: 3,
+    };
+    let mut planner = Planner::new(CORTEX_M0PLUS);
+    planner.start(&Settings::default(), Some(HEIGHT), Some(initial), false);
+    let found = (0..2 * PATIENCE).find_map(|_| planner.tick());
+    let plan = found.expect("a result").expect("a plan");
+    let arrival = CatchingUp::arrival(initial, &CORTEX_M0PLUS, planner.ticks);
+    assert!(arrival > plan.horizon, "{plan:?}");
+    assert_eq!((plan.stepping(), plan.limit), (initial, Limit::Growth));
+}
+
+/// After its horizon, a motion in 64 bits continues as it is. One in 32 bits continues by the
+/// initial stepping if that is in 64 bits, or if its own steps do not resolve the motion.
+#[test]
+fn a_motion_changes_its_method_after_the_horizon_only_to_keep_its_energy() {
+    let stepping = |method, steps| Stepping { method, steps };
+    let in_64_bits = |steps| stepping(Method::Extrapolation10Fixed64, steps);
+    let in_32_bits = |steps| stepping(Method::Rk4Fixed32, steps);
+    for (initial, stepping, expected) in [
+        (in_64_bits(3), in_64_bits(3), None),
+        (in_64_bits(3), in_64_bits(4), None),
+        (in_64_bits(3), in_32_bits(8), Some(in_64_bits(3))),
+        (in_32_bits(4), in_64_bits(3), None),
+        (in_32_bits(4), in_32_bits(8), None),
+        (in_32_bits(4), in_32_bits(1), Some(in_32_bits(4))),
+    ] {
+        let mut planner = Planner::new(CORTEX_M3);
+        planner.start(&Settings::default(), Some(HEIGHT), Some(initial), false);
+        assert_eq!(
+            planner.resolving(stepping),
+            expected,
+            "{stepping:?} after {initial:?}"
+        );
+    }
+}
+
 /// Settings with a mass ratio of NaN have one result in all ticks: the error.
 #[test]
 fn a_refused_motion_is_reported_once() {
@@ -329,6 +436,23 @@ fn a_requested_stepping_is_kept() {
         (Method::Rk4F32Direction, 4, Limit::Method)
     );
     assert!((9.5..=10.5).contains(&plan.horizon), "{plan:?}");
+}
+
+/// A requested method may cost the whole budget of a frame, but not more.
+#[test]
+fn a_requested_method_may_cost_the_budget_of_a_frame() {
+    let method = Method::Rk4Fixed32;
+    let settings = Settings::default();
+    let stepping = Stepping::of(&settings.problem(HEIGHT), method).expect("good settings");
+    let cost = CORTEX_M3.costs.of_frame(stepping);
+    for (frame, is_affordable) in [(cost, true), (cost - 1.0, false)] {
+        let resources = Resources {
+            processor: Processor { frame, ..CORTEX_M3 },
+            method: Some(method),
+        };
+        let simulation = Simulation::new(&settings, &resources);
+        assert_eq!(simulation.is_ok(), is_affordable, "{frame} of {cost}");
+    }
 }
 
 /// The code of a class of processors on the link is its index in [`PROCESSORS`].

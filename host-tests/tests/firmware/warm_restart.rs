@@ -145,26 +145,26 @@ fn a_scene_that_ends_the_board_each_time_is_given_up() {
     }
 }
 
-/// The records after each frame have the count of restarts until frame [`SOUND_FRAMES`], and 0 from
-/// then on.
+/// The records after each frame have the state and the step that are noted, and the count of
+/// restarts until frame [`SOUND_FRAMES`]. From then on, after a minute, the count is 0.
 #[test]
 fn a_minute_without_a_restart_clears_the_count() {
-    let player = player();
+    assert_eq!(SOUND_FRAMES, 3600);
+    let played = status();
     let restart = record().restart(false);
     let mut journal = Journal::new(restart.as_ref());
     for frame in 1..=SOUND_FRAMES + 10 {
         let restarts = if frame < SOUND_FRAMES { 2 } else { 0 };
+        let step = 480 + u64::from(frame);
         let end = Restarted {
             restarts,
-            scene: SceneName::Page,
+            scene: SceneName::Butterfly,
+            step,
             ..Restarted::default()
         };
         assert_eq!(
-            journal.note(player.status(), player.report.step),
-            Record {
-                played: player.status(),
-                end
-            },
+            journal.note(played, step),
+            Record { played, end },
             "frame {frame}"
         );
     }
