@@ -124,20 +124,8 @@ impl DrawnMotion32 {
     ///
     /// # Errors
     ///
-    /// Refuses:
-    ///
-    /// - a step that is NaN or infinite or, by [`Error::OutOfRange`], zero, subnormal or too large
-    ///   in the method's numbers (`f64` for fixed point and the closed form);
-    /// - a start that is not finite;
-    /// - masses and lengths that are not positive and finite, gravity that is negative or not
-    ///   finite and, by the closed form, a pendulum without gravity;
-    /// - a pendulum or start out of the range of the method's numbers;
-    /// - by `rk4-fixed32`, a step that is too long: [`Error::TooLarge`] contains the longest, s;
-    /// - by the closed form, a start from which an angle may exceed 2^31 - 1 turns;
-    /// - by [`Error::NotDrawn`], methods that are not in [`Method::DRAWN`] or not in 32 bits.
-    ///
-    /// Unlike [`Pendulum::run`](crate::Pendulum::run), RK4 accepts a start of any number of turns
-    /// and, in `f32`, a step beyond the limit of stability.
+    /// Refuses what [`DrawnMotion::new`] refuses and, by [`Error::NotDrawn`], the method in 64
+    /// bits.
     #[inline(never)] // Inlined, the motions of all kinds would share a stack frame.
     pub fn new(
         method: Method,
