@@ -43,8 +43,8 @@ fn crc(message: &[u8]) -> u32 {
     u32::from_le_bytes(*crc)
 }
 
-/// The longest message is read, and fills its buffer for the wire. A longer one is malformed, even
-/// if its check is right.
+/// The longest message is decoded; on the wire it has exactly [`MAX_WIRE`] bytes. A longer one is
+/// malformed, even if its CRC is correct.
 #[test]
 fn a_message_longer_than_the_longest_is_malformed() {
     let longest = wire(&[9; MAX_MESSAGE]);

@@ -334,6 +334,9 @@ fn a_pendulum_at_rest_has_no_amplitude() {
         };
         let frame = Show::new(name, &settings).expect("a scene").frame();
         assert!(has_text(&frame, label, anchor), "{}", name.name());
+        // A label such as 10° ends like 0°, so that no digit may stand before it.
+        let is_longer = (1..=9).any(|tens| has_text(&frame, &format!("{tens}0°"), anchor));
+        assert!(!is_longer, "{}", name.name());
     }
 }
 
@@ -362,8 +365,8 @@ fn newest_rows(frame: &Canvas) -> [(i32, i32); 2] {
     })
 }
 
-/// Each curve of small oscillations stays within its envelope, also if the pendulum starts in
-/// motion: in the newest column, the ink reaches as far above the axis as below it.
+/// In the newest column of small oscillations the ink reaches as far above the axis as below it, to
+/// 2 pixels, also if the pendulum starts in motion. A curve outside its envelope would break this.
 #[test]
 fn curves_of_small_oscillations_stay_within_their_envelopes() {
     let settings = Settings {
@@ -446,7 +449,7 @@ fn beats_have_no_line_across_the_figure() {
 }
 
 /// The separation of the two pendulums is at most 15.3 e-foldings, because whole turns are not
-/// counted. During the first 15 s the curve stays below the row 12.
+/// counted. The curve of the first 15 s therefore has no pixel above row 12.
 #[test]
 fn the_separation_of_the_butterfly_does_not_count_whole_turns() {
     let frame = after(SceneName::Butterfly, 15 * TICK_RATE).frame();

@@ -259,9 +259,9 @@ fn the_admissible_step_is_in_proportion_to_the_order_of_extrapolation() {
     assert_eq!(step(Method::ClosedFormF64), None);
 }
 
-/// A request of a method that boards lack, of impossible parameters, of a start that is not finite,
-/// or of a step of 0 or of 9 s is refused with its field, and all samples of the request before it
-/// follow.
+/// A request of a method that boards lack, of impossible parameters, of a start that is not finite
+/// or whose momentum is beyond the range of the numbers, or of a step of 0 or of 9 s is refused
+/// with its field, and all samples of the request before it follow.
 #[test]
 fn a_refusal_names_the_field_and_does_not_end_the_previous_request() {
     let pendulum = |m1, m2, l1, l2, g| Request {

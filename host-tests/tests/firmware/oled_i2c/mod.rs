@@ -387,7 +387,8 @@ fn panel_that_lost_its_power_is_set_up_again() {
 }
 
 /// A panel with a useless status byte loses its power, and acknowledges all the same. Within 70
-/// ticks it has the settings that a lit display accepts and the whole picture again.
+/// ticks it has the number of rows and the layout of its pins, which may be sent to a lit display,
+/// and the whole picture again.
 #[test]
 fn panel_without_a_status_is_set_up_again_by_repetition() {
     for says in [Says::Always(0x43), Says::Always(0x03), Says::Nothing] {
@@ -780,10 +781,10 @@ fn a_bus_that_hangs_during_identification_is_reported() {
     }
 }
 
-/// The first byte of memory is read before anything is written: the third frame sends the place, a
-/// read of memory, and the address for two bytes of answer.
+/// The third frame of an identification only reads: it has the length of a place in memory, of a
+/// command that begins a read, and of an answer of two bytes, with their addresses.
 #[test]
-fn identification_reads_before_it_writes() {
+fn third_frame_of_an_identification_has_the_length_of_a_read() {
     let mut panel = panel(Controller::new(SH1106, 0x3C));
     (0..3).for_each(|_| assert_eq!(tick(&mut panel, &scene(1)), Ok(())));
     let [place, read, answer] = [5, 4, 3].map(|bytes| 1 + bytes * BYTE);
