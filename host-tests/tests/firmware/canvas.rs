@@ -311,7 +311,7 @@ fn a_gap_sets_a_disc_off() {
 }
 
 /// A stroke of a subpixel in both directions looks like a disc: its greys differ by 1 at most from
-/// those of a stroke without a length.
+/// a stroke without a length.
 #[test]
 fn the_shortest_stroke_looks_like_a_disc() {
     let from = Spot::at(10.0, 10.0);

@@ -26,8 +26,8 @@ fn the_build_names_a_controller_as_a_command_does() {
     }
 }
 
-/// Only a missing answer and a lost arbitration are named. Every other error of the bus is a
-/// transfer that does not end.
+/// A missing answer and a lost arbitration have causes of their own. Every other error of the bus
+/// counts as a transfer that does not end.
 #[test]
 fn errors_of_the_bus_have_three_causes() {
     for (error, fault) in [

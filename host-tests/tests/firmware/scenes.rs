@@ -334,7 +334,7 @@ fn a_pendulum_at_rest_has_no_amplitude() {
         };
         let frame = Show::new(name, &settings).expect("a scene").frame();
         assert!(has_text(&frame, label, anchor), "{}", name.name());
-        // A label such as 10° ends like 0°, so that no digit may stand before it.
+        // A label such as 10° also ends in 0°.
         let is_longer = (1..=9).any(|tens| has_text(&frame, &format!("{tens}0°"), anchor));
         assert!(!is_longer, "{}", name.name());
     }

@@ -350,7 +350,7 @@ mod tests {
     use crate::pendulum::Motion;
 
     /// A motion counts as diverged if its energy H exceeds 100 times the energy above rest of its
-    /// start, whether that is small or large.
+    /// start, at small and at large energies.
     #[test]
     fn most_energy_is_in_proportion_to_that_of_the_start() -> Result<(), Error> {
         let pendulum = Pendulum::<f64>::new(&Parameters::equal_rods(1.0, 1.0, 9.81))?;

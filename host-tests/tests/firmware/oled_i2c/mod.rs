@@ -761,12 +761,12 @@ fn a_bus_that_hangs_delays_nothing_and_is_freed() {
     assert!(last == Some(Ok(())) && shows(&panel, &scene(21)));
 }
 
-/// If the bus hangs while the panel is identified, the panel is absent with this error, although it
-/// has answered before.
+/// A panel counts as absent if the bus hangs during its identification, even though it has answered
+/// before.
 #[test]
 fn a_bus_that_hangs_during_identification_is_reported() {
-    // The display is switched off by the first frame. The status is asked for with the second one,
-    // and the memory with the third.
+    // The first frame switches the display off, the second one requests the status, and the third
+    // one the memory.
     for before in [1, 2] {
         let mut panel = panel(Controller::new(SSD1306, 0x3C));
         (0..before).for_each(|_| assert_eq!(tick(&mut panel, &scene(1)), Ok(())));
