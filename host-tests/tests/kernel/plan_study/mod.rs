@@ -19,6 +19,9 @@ const VIOLATIONS: usize = 1;
 const LARGEST: f64 = 1.5;
 /// The smallest ratio of the predicted horizon to the longest true one of any method that a frame
 /// can pay for: in the median of the scenes that end early, and for 95 % of them.
+///
+/// Of high starts on the fast Cortex-M4F, where rounding alone ends the horizons, the median is
+/// 0.88. A bound half as large makes it 0.90, but more plans wrong than [`VIOLATIONS`].
 const SHARE: [f64; 2] = [0.8, 0.5];
 /// The smallest number of scenes that end early for an assertion about their shares.
 const LEAST_ENDING: usize = 20;
@@ -380,6 +383,25 @@ fn unlike_masses_keep_their_horizons() {
             plan.horizon >= least && case.error <= PLAN_ERROR,
             "{index}, {name}: {case:?}"
         );
+    }
+}
+
+/// Near upright, with a heavy bob 2, a frame of the slow processors cannot pay for steps in 64 bits
+/// that resolve every motion of the energy, and 32 bits of fixed point do not show the fall. Longer
+/// steps in 64 bits do: of 30 scenes at most one has no method on a Cortex-M3, and at most three on
+/// a Cortex-M0+. No frame is wrong by more than half a pixel before the predicted horizon.
+#[test]
+fn motions_near_upright_have_a_method() {
+    for (name, most) in [("m3", 1), ("pico", 3)] {
+        let chip = CHIPS.iter().find(|chip| chip.name == name).expect("a chip");
+        let cases: Vec<_> = Class::Upright
+            .scenes(1)
+            .take(30)
+            .map(|scene| Case::new(&scene, chip, &mut Exact::new(&scene)))
+            .collect();
+        let nothing = cases.iter().filter(|case| case.plan.is_none()).count();
+        assert!(nothing <= most, "{name}: {nothing}");
+        assert!(!cases.iter().any(Case::is_violation), "{cases:#?}");
     }
 }
 

@@ -1,7 +1,9 @@
 //! Tests of the decisions of a search.
 
+use core::f64::consts::PI;
+
 use super::*;
-use crate::pendulum::{Motion, Parameters};
+use crate::pendulum::Parameters;
 
 /// Returns `candidate` after `frames` accurate frames, followed by an inaccurate one if it
 /// `fails`.
@@ -378,6 +380,33 @@ fn fewest_steps_in_64_bits_are_enough() -> Result<(), PlanError> {
     for (steps, is_enough) in [(least as f32 + 0.5, true), (least as f32 - 0.5, false)] {
         search.budget.frame = steps * search.costs.fixed64;
         assert_eq!(search.judging_pair(search.stepping).is_some(), is_enough);
+    }
+    Ok(())
+}
+
+/// Candidates in 64 bits make steps of at most four admissible steps, or longer ones if a rod
+/// starts within 2^-20 rad of upright, to either side.
+#[test]
+fn steps_in_64_bits_may_be_longer_near_upright() -> Result<(), PlanError> {
+    let mut problem = in_first_trial()?.problem;
+    // At a low rate a frame has many steps.
+    problem.rate = 1;
+    let budget = Budget {
+        frame: 1e6,
+        planning: 1e10,
+    };
+    let near = 1.0 / (1 << 20) as f64;
+    for (a1, a2, is_longer) in [
+        (PI + 0.999 * near, 0.0, true),
+        (0.0, PI - 0.999 * near, true),
+        (PI + 1.001 * near, 0.0, false),
+        (0.999 * near, 1.0, false),
+    ] {
+        problem.start = Motion::at_rest(a1, a2);
+        let search = Search::new(&problem, &Costs::CORTEX_M3, &budget)?;
+        let steps = search.least_in_64_bits.expect("64 bits accept the motion");
+        let four = 1.0 / (4.0 * search.admissible);
+        assert_eq!(f64::from(steps) < four, is_longer, "{a1} {a2}: {steps}");
     }
     Ok(())
 }
