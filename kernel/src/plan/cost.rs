@@ -116,8 +116,8 @@ const LONGEST_IN_64_BITS: f64 = 1.1;
 /// The longest step of a candidate in 64 bits if a rod starts near upright, in admissible steps.
 ///
 /// Steps longer than [`FIRST_STEP`] do not resolve every motion of the energy, but the fine run
-/// that they are compared with does. They are for scenes in which a frame cannot pay for shorter
-/// ones, as with a heavy bob 2 on a slow processor. Elsewhere 32 bits are accurate for longer.
+/// that they are compared with does. They are for frames that cannot pay for shorter ones, as with
+/// a heavy bob 2 on a slow processor. Elsewhere 32 bits are accurate for longer.
 pub(super) const LONGEST_NEAR_UPRIGHT: f64 = 16.0;
 
 /// The usual longest step of the first trial, in admissible steps.

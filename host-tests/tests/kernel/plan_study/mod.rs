@@ -21,7 +21,8 @@ const LARGEST: f64 = 1.5;
 /// can pay for: in the median of the scenes that end early, and for 95 % of them.
 ///
 /// Of high starts on the fast Cortex-M4F, where rounding alone ends the horizons, the median is
-/// 0.88. A bound half as large makes it 0.90, but more plans wrong than [`VIOLATIONS`].
+/// 0.88. A bound half as large makes it 0.90, but then more plans are wrong than [`VIOLATIONS`]
+/// allows.
 const SHARE: [f64; 2] = [0.8, 0.5];
 /// The smallest number of scenes that end early for an assertion about their shares.
 const LEAST_ENDING: usize = 20;
