@@ -20,9 +20,9 @@ const LARGEST: f64 = 1.5;
 /// The smallest ratio of the predicted horizon to the longest true one of any method that a frame
 /// can pay for: in the median of the scenes that end early, and for 95 % of them.
 ///
-/// Of high starts on the fast Cortex-M4F, where rounding alone ends the horizons, the median is
-/// 0.88. A bound half as large makes it 0.90, but then more plans are wrong than [`VIOLATIONS`]
-/// allows.
+/// High starts on the fast Cortex-M4F have a median of 0.88, because rounding in 64 bits ends their
+/// horizons. With half the assumed rounding error it is 0.90, but then more plans are wrong than
+/// [`VIOLATIONS`] allows.
 const SHARE: [f64; 2] = [0.8, 0.5];
 /// The smallest number of scenes that end early for an assertion about their shares.
 const LEAST_ENDING: usize = 20;
@@ -388,9 +388,9 @@ fn unlike_masses_keep_their_horizons() {
 }
 
 /// Near upright, with a heavy bob 2, a frame of the slow processors cannot pay for steps in 64 bits
-/// that resolve every motion of the energy, and 32 bits of fixed point do not show the fall. Longer
-/// steps in 64 bits do: of 30 scenes at most one has no method on a Cortex-M3, and at most three on
-/// a Cortex-M0+. No frame is wrong by more than half a pixel before the predicted horizon.
+/// that resolve every motion of the energy, and 32 bits of fixed point are not trusted. Longer
+/// steps in 64 bits are tried: of 30 scenes at most one has no method on a Cortex-M3, and at most
+/// three on a Cortex-M0+. No frame is wrong by more than half a pixel before the predicted horizon.
 #[test]
 fn motions_near_upright_have_a_method() {
     for (name, most) in [("m3", 1), ("pico", 3)] {
