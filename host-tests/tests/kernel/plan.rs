@@ -149,14 +149,14 @@ fn planner_chooses_the_cheapest_method_with_the_longest_horizon() {
             Limit::End,
             2.0..=2.0,
         ),
-        // Twice the steps have a longer horizon, but not by a tenth.
+        // Finer steps help, although rounding seems to be the larger error.
         (
             M4F,
             13e3,
             scene(1.0, 120.0, 30.0),
-            (Rk4F32Direction, 2),
+            (Rk4F32Direction, 16),
             Limit::Budget,
-            5.0..=10.0,
+            11.0..=12.0,
         ),
         // A pendulum out of the range of fixed point. The closed form is compared with runs in
         // `f32`, in long steps, because planning cannot pay for steps that resolve its energy.
@@ -213,7 +213,7 @@ fn planner_keeps_to_the_frame_budget_and_pays_for_the_end() {
     // A small budget gives a shorter horizon.
     let frugal = within(&figure7, 5e3).expect("a good scene");
     assert!(
-        frugal.limit == Limit::Budget && frugal.spent < 1e8,
+        frugal.limit == Limit::Budget && frugal.spent < 1.2e8,
         "{frugal:?}"
     );
     let elbow = scene(1e4, 171.0, 30.0);
@@ -320,8 +320,8 @@ fn plans_keep_to_both_budgets() {
 }
 
 /// A frame budget that equals the cost of a plan gives the same plan, or one that costs less and
-/// has no shorter horizon. It may differ, because the search begins in longer steps if the budget
-/// does not pay for the usual ones. A slightly smaller budget gives a plan that costs less.
+/// has no shorter horizon. It may differ, because the search begins in longer steps, or refines
+/// them by less, if the budget does not pay for the usual ones. A slightly smaller budget gives a plan that costs less.
 #[test]
 fn frame_budget_of_the_exact_cost_is_enough() {
     for (mass_ratio, degrees) in [(1.0, 60.0), (1.0, 120.0), (2.75, 171.0), (1e3, 30.0)] {

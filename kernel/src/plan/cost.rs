@@ -135,8 +135,11 @@ pub(super) const FIRST_STEP: f64 = 4.0;
 /// Steps longer than [`FIRST_STEP`] are useful because, with very unlike masses, a motion is far
 /// slower than the fastest rate that its energy allows: with a heavy bob 2 on a short rod, steps of
 /// 2000 admissible steps were accurate enough (measured). Test `plan_study` checks the predictions
-/// of such trials against the exact motion.
-pub(super) const FIRST_STEPS: [f64; 5] = [FIRST_STEP, 8.0, 16.0, 32.0, 64.0];
+/// of such trials against the exact motion. Fixed point refuses steps of 16 admissible steps or
+/// more; these are for `f32`.
+pub(super) const FIRST_STEPS: [f64; 10] = [
+    FIRST_STEP, 8.0, 16.0, 32.0, 64.0, 128.0, 256.0, 512.0, 1024.0, 2048.0,
+];
 
 /// The longest steps of RK4 in 32 bits that a motion may start with, in admissible steps. The first
 /// of them is used if a frame can pay for it. In twice as long steps the error is 16 times as
@@ -150,7 +153,8 @@ pub(super) const MOST_STEPS: u32 = 1 << 16;
 /// Returns the smallest number of steps per frame that makes steps of at most `longest` s, at
 /// `rate` frames per second.
 ///
-/// Except in 64 bits it is a power of two, because steps are refined by powers of two. The result
+/// Except in 64 bits it is a power of two, because steps are usually refined by powers of
+/// two. The result
 /// is from 1 to [`MOST_STEPS`], 65,536; at the largest number the steps may be longer than
 /// `longest`. A `longest` that is infinite, NaN or negative gives 1. Otherwise, a `longest` or a
 /// `rate` of 0 gives the largest number.

@@ -227,6 +227,12 @@ impl Search {
 
     /// Returns the number of steps in 64 bits that a frame can pay for.
     pub(super) fn most_in_64_bits(&self) -> u32 {
-        (self.budget.frame / self.costs.fixed64) as u32
+        self.most_steps(Method::Extrapolation10Fixed64)
+    }
+
+    /// Returns the number of steps by `method` that a frame can pay for. By rounding it may be one
+    /// less.
+    pub(super) fn most_steps(&self, method: Method) -> u32 {
+        (self.budget.frame / self.costs.of_frame(Stepping { method, steps: 1 })) as u32
     }
 }

@@ -597,21 +597,21 @@ fn expensive_reference_waits_until_finer_runs_have_measured() -> Result<(), Plan
 }
 
 /// The first trial takes steps of at most 4 admissible steps if a frame can pay for them, and
-/// planning can for all 600 frames. Otherwise it takes steps that are 2, 4, 8 or 16 times as
-/// long: the shortest that both can pay for, or the longest. In the faster normal mode, which
-/// limits them in small oscillations, they are a radian.
+/// planning can for all 600 frames. Otherwise it takes steps that are 2 to 512 times as long: the
+/// shortest that both can pay for, or the longest. In the faster normal mode, which limits them in
+/// small oscillations, they are a radian.
 #[test]
 fn first_steps_are_the_shortest_that_both_budgets_pay_for() -> Result<(), PlanError> {
     let mut search = in_first_trial()?;
-    // The start is so fast that all five steps are short in comparison with the normal modes.
+    // The start is so fast that all ten steps are short in comparison with the normal modes.
     search.problem.start = Motion {
         a1: 0.0,
         a2: 0.0,
-        w1: 60.0,
-        w2: -60.0,
+        w1: 1500.0,
+        w2: -1500.0,
     };
-    search.problem.rate = 6;
-    search.problem.duration = 100.0;
+    search.problem.rate = 1;
+    search.problem.duration = 600.0;
     let first = |budget: &Budget| {
         let search = Search::new(&search.problem, &search.costs, budget)?;
         Ok::<_, PlanError>(search.stepping)
@@ -621,11 +621,10 @@ fn first_steps_are_the_shortest_that_both_budgets_pay_for() -> Result<(), PlanEr
         planning: f32::MAX,
     };
     let Stepping { method, steps } = first(&rich)?;
-    assert!(steps >= 16, "{steps} steps are too few for this test");
-    for times in [1, 2, 4, 8, 16] {
+    for power in 0..10 {
         let expected = Stepping {
             method,
-            steps: steps / times,
+            steps: steps >> power,
         };
         let frame = search.costs.of_frame(expected);
         let judges = Judges::FinerRuns(MOST_FINER_RUNS);
@@ -637,13 +636,190 @@ fn first_steps_are_the_shortest_that_both_budgets_pay_for() -> Result<(), PlanEr
         frame: 1.0,
         planning: 1.0,
     };
-    assert_eq!(first(&poor)?.steps, steps / 16);
+    assert_eq!(first(&poor)?.steps, steps >> 9);
+    assert!(steps >> 9 > 8, "{steps} steps are too few for this test");
 
     // In a small oscillation of equal rods, the faster mode has 5.79 rad/s.
     search.problem.start = Motion::at_rest(0.01, 0.01);
-    search.problem.rate = 1;
     let small = Search::new(&search.problem, &search.costs, &poor)?;
     assert_eq!(small.stepping.steps, 8);
+    Ok(())
+}
+
+/// If a frame cannot pay for the usual finer steps, the next trial takes as many as it can pay for.
+/// They must be at least a quarter more than the finest steps that the last trial tried and that a
+/// frame can pay for.
+#[test]
+fn finer_steps_are_as_many_as_a_frame_pays_for() -> Result<(), PlanError> {
+    // A trial with a reference tries 1, 2 and 4 times the steps, one without only the steps
+    // themselves.
+    let with_reference = [
+        (800, Some(800)),
+        (799, Some(799)),
+        (500, Some(500)),
+        (499, None),
+        (400, None),
+        (399, Some(399)),
+        (250, Some(250)),
+        (249, None),
+    ];
+    let without = [(201, Some(200)), (125, Some(125)), (124, None)];
+    for (mut search, factor, limits) in [
+        (in_first_trial()?, 8, with_reference.as_slice()),
+        (without_reference(MOST_FINER_RUNS)?, 2, &without),
+    ] {
+        search.stepping.steps = 100;
+        // A frame cannot pay for 64 bits. Budgets of whole steps are not rounded at these prices.
+        search.costs.fixed32 = 1.0;
+        search.costs.fixed64 = 1e9;
+        for &(most, expected) in limits {
+            search.budget.frame = most as f32;
+            let expected = expected.map(|steps| Stepping {
+                steps,
+                ..search.stepping
+            });
+            assert_eq!(search.finer(Some(factor)), expected, "{factor}: {most}");
+        }
+    }
+    Ok(())
+}
+
+/// If 64 bits are not possible and rounding seems to be the larger error, `f32` follows fixed
+/// point, also in the shadows. After `f32`, finer steps of it follow: twice as many, or 8 times
+/// after a trial with a reference. If a frame cannot pay for the next one of these, or if the last
+/// one has not helped, the frame budget is the limit. It is also the limit if `f32` refuses the
+/// motion and a candidate is known.
+#[test]
+fn last_resort_is_f32() -> Result<(), PlanError> {
+    let refused = without_reference(MOST_FINER_RUNS)?;
+    let mut too_expensive = refused;
+    too_expensive.least_in_64_bits = in_first_trial()?.least_in_64_bits;
+    too_expensive.costs.fixed64 = 1e9;
+
+    for mut search in [refused, too_expensive] {
+        let state = search.state;
+        let in_fixed_point = search.stepping;
+        let in_f32 = search.first_in(Method::Rk4F32Direction);
+        let price = search.costs.direction;
+        search.costs.direction = 1e9;
+        assert_eq!(search.refine(None), Some(Limit::Budget));
+        assert_eq!(search.stepping, in_fixed_point);
+        assert_eq!(search.shadow().method, Method::Rk4Fixed32);
+
+        search.costs.direction = price;
+        search.budget.frame = search.costs.of_frame(in_f32);
+        assert_eq!(search.refine(None), None);
+        assert_eq!(search.stepping, in_f32);
+        assert_eq!(search.shadow().method, Method::Rk4F32Direction);
+
+        for (state, factor) in [(state, 2), (in_first_trial()?.state, 8)] {
+            search.state = state;
+            search.stepping = in_f32;
+            let finer = Stepping {
+                steps: factor * in_f32.steps,
+                ..in_f32
+            };
+            search.budget.frame = search.costs.of_frame(finer);
+            assert_eq!(search.refine(None), None);
+            assert_eq!(search.stepping, finer);
+
+            search.state = state;
+            assert_eq!(search.refine(None), Some(Limit::Budget));
+            assert_eq!(search.stepping, finer);
+        }
+
+        // Finer steps are not refined further if they have not helped.
+        search.state = state;
+        search.stepping.steps = 2 * in_f32.steps;
+        search.budget.frame = 8.0 * search.costs.of_frame(in_f32);
+        let best = Candidate::new(in_f32);
+        search.goal.set_best(measured(best, 100, true));
+        assert_eq!(search.refine(None), Some(Limit::Budget));
+
+        let error = Error::OutOfRange {
+            parameter: Parameter::M1,
+            value: 1e39,
+        };
+        assert_eq!(search.after_refusal(error), Ok(Some(Limit::Budget)));
+        search.goal = Goal::FindBest { best: None };
+        assert_eq!(search.after_refusal(error), Err(error));
+    }
+    Ok(())
+}
+
+/// If a frame can pay for `f32` but not for the steps that fixed point accepts, `f32` is tried
+/// first, and fixed point after the last steps of `f32`. Its steps are doubled while they are
+/// refused, also if a candidate is known. After that, the frame budget is the limit. Fixed point is
+/// not tried again if the motion is out of its range.
+#[test]
+fn fixed_point_waits_if_a_frame_cannot_pay_for_it() -> Result<(), PlanError> {
+    let too_long = Error::TooLarge {
+        parameter: Parameter::Dt,
+        value: 1.0,
+        limit: 0.5,
+    };
+    let out_of_range = Error::OutOfRange {
+        parameter: Parameter::M1,
+        value: 1e39,
+    };
+    for (error, is_postponed) in [(too_long, true), (out_of_range, false)] {
+        let mut search = without_reference(MOST_FINER_RUNS)?;
+        let state = search.state;
+        let first = search.stepping;
+        let in_f32 = search.first_in(Method::Rk4F32Direction);
+        search.stepping.steps = 1000;
+        search.budget.frame = search.costs.of_frame(in_f32);
+        assert!(search.can_only_pay_for_f32());
+        assert_eq!(search.after_refusal(error), Ok(None));
+        assert_eq!(search.stepping, in_f32);
+
+        // Finer steps of `f32` come before fixed point.
+        search.state = state;
+        search.budget.frame *= 2.0;
+        assert_eq!(search.refine(None), None);
+        assert_eq!(search.stepping.method, Method::Rk4F32Direction);
+        assert_eq!(search.stepping.steps, 2 * in_f32.steps);
+
+        if is_postponed {
+            search.state = state;
+            assert_eq!(search.refine(None), None);
+            assert_eq!(search.stepping, first);
+            // A frame cannot pay for any of its steps.
+            search.costs.fixed32 = 1e9;
+            for times in [2, 4] {
+                assert_eq!(search.after_refusal(too_long), Ok(None));
+                assert_eq!(search.stepping.method, first.method);
+                assert_eq!(search.stepping.steps, times * first.steps);
+            }
+        }
+        search.state = state;
+        assert_eq!(search.refine(None), Some(Limit::Budget));
+    }
+    Ok(())
+}
+
+/// A rough trial in fixed point after `f32` measures only the closed form. Planning, which ends it
+/// or does not pay for its repetition, is its limit, but not that of a plan in `f32`. The
+/// evaluation of one method has no such trial.
+#[test]
+fn postponed_trial_is_no_limit_of_another_method() -> Result<(), PlanError> {
+    let mut search = without_reference(1)?;
+    search.method_in_32_bits = Method::Rk4F32Direction;
+    search.budget.frame = search.costs.of_frame(search.stepping);
+    search.budget.planning = search.spent;
+    for (method, expected) in [
+        (Method::Rk4F32Direction, Limit::Budget),
+        (Method::ClosedFormF32, Limit::Planning),
+    ] {
+        let mut search = search;
+        let best = Candidate::new(Stepping { method, steps: 8 });
+        search.goal.set_best(measured(best, 200, true));
+        assert_eq!(search.piece(1.0), Ok(Some(expected)), "{method:?}");
+        assert_eq!(search.end_trial(), Some(expected), "{method:?}");
+    }
+    let only = Candidate::new(search.stepping);
+    search.goal = Goal::Evaluate { only };
+    assert_eq!(search.piece(1.0), Ok(Some(Limit::Planning)));
     Ok(())
 }
 

@@ -3,6 +3,7 @@
 use super::*;
 use crate::methods::Fixed32;
 use crate::pendulum::{Motion, Parameters};
+use crate::plan::cost::admissible_step;
 use crate::plan::problem::Perturbation;
 
 /// Oscillations of equal rods, for a second.
@@ -31,6 +32,35 @@ fn errors_in_common_do_not_change_the_factor_of_a_single_finer_run() {
         trial.alike = 4.0;
         assert_eq!(trial.factor(), expected, "{number}");
     }
+}
+
+/// The bound has a factor of 8 if the steps are longer than 64 admissible steps.
+#[test]
+fn bound_is_larger_in_very_long_steps() -> Result<(), Error> {
+    for (length, expected) in [(63.9, 1.0), (64.1, 8.0)] {
+        // A step lasts a third of a second. Without gravity, the admissible step is inversely
+        // proportional to the velocity.
+        let mut problem = Problem {
+            rate: 1,
+            ..oscillation()
+        };
+        problem.pendulum.g = 0.0;
+        problem.start = Motion {
+            a1: 1.0,
+            a2: 0.5,
+            w1: 1.0,
+            w2: 0.0,
+        };
+        problem.start.w1 *= 3.0 * length * admissible_step(&problem)?;
+        let stepping = Stepping {
+            method: Method::Rk4F32Direction,
+            steps: 3,
+        };
+        let judges = Judges::FinerRuns(MOST_FINER_RUNS);
+        let trial = Trial::new(stepping, &problem, judges, stepping);
+        assert_eq!(trial.alike, expected, "{length}");
+    }
+    Ok(())
 }
 
 /// Asserts that the frame of `motion` is valid at first, and NaN after the steps of `stepping`,
