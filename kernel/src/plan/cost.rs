@@ -153,9 +153,8 @@ pub(super) const MOST_STEPS: u32 = 1 << 16;
 /// Returns the smallest number of steps per frame that makes steps of at most `longest` s, at
 /// `rate` frames per second.
 ///
-/// Except in 64 bits it is a power of two, because steps are usually refined by powers of
-/// two. The result
-/// is from 1 to [`MOST_STEPS`], 65,536; at the largest number the steps may be longer than
+/// Except in 64 bits it is a power of two, because steps are usually refined by powers of two. The
+/// result is from 1 to [`MOST_STEPS`], 65,536; at the largest number the steps may be longer than
 /// `longest`. A `longest` that is infinite, NaN or negative gives 1. Otherwise, a `longest` or a
 /// `rate` of 0 gives the largest number.
 #[inline(never)] // 3 KB more flash without.

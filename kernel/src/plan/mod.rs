@@ -45,8 +45,8 @@
 //! The search changes to 64 bits if rounding is the larger error, if 64 bits cost less, or if 32
 //! bits fail early and planning can pay for 64 bits but not for finer steps in 32 bits as well. It
 //! then takes the finest steps that both budgets can pay for. If a frame cannot pay for 64 bits, or
-//! if these refuse the motion, the search continues in `f32` and refines its steps until a frame
-//! cannot pay for finer ones.
+//! if these refuse the motion, the search continues in `f32`. It refines the steps as long as finer
+//! ones help and a frame can pay for them.
 //!
 //! Planning needs no heap. It is divided into pieces that a busy caller can afford ([`Search`]).
 //! The caller provides the cost of a step: [`Costs`] is a price list in any unit. The kernel has
