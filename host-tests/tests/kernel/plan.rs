@@ -321,7 +321,8 @@ fn plans_keep_to_both_budgets() {
 
 /// A frame budget that equals the cost of a plan gives the same plan, or one that costs less and
 /// has no shorter horizon. It may differ, because the search begins in longer steps, or refines
-/// them by less, if the budget does not pay for the usual ones. A slightly smaller budget gives a plan that costs less.
+/// them by less, if the budget does not pay for the usual ones. A slightly smaller budget gives a
+/// plan that costs less.
 #[test]
 fn frame_budget_of_the_exact_cost_is_enough() {
     for (mass_ratio, degrees) in [(1.0, 60.0), (1.0, 120.0), (2.75, 171.0), (1e3, 30.0)] {
