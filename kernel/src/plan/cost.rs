@@ -122,24 +122,37 @@ const LONGEST_IN_64_BITS: f64 = 1.1;
 /// upright.
 pub(super) const LONGEST_NEAR_UPRIGHT: f64 = 16.0;
 
-/// The usual longest step of the first trial, in admissible steps.
+/// The preferred longest step of the first trial, in admissible steps.
 ///
 /// In this step the fastest rate that the energy allows advances a phase by a radian. In longer
 /// steps, two runs could miss the same fast motion and agree.
 pub(super) const FIRST_STEP: f64 = 4.0;
 
-/// The longest steps of the first trial in 32 bits, in admissible steps. The first of them is used
-/// that a frame can pay for and that planning can pay for in a trial of all frames with three finer
-/// runs. If the budgets pay for none of them, the last one is used.
+/// The longest of the usual first steps ([`FIRST_STEPS`]), in admissible steps. A search begins in
+/// longer ones only if a frame cannot pay for these. In longer steps the error bounds have a larger
+/// factor (`MISSED_ALIKE` of the trial).
+pub(super) const LONGEST_USUAL: f64 = 64.0;
+
+/// The usual longest steps of the first trial in 32 bits, in admissible steps.
+///
+/// The first one is used that both budgets can pay for: a frame, and planning in a trial of all
+/// frames with three finer runs. If planning cannot pay for the last one but a frame can, the last
+/// one is used.
 ///
 /// Steps longer than [`FIRST_STEP`] are useful because, with very unlike masses, a motion is far
-/// slower than the fastest rate that its energy allows: with a heavy bob 2 on a short rod, steps of
-/// 2000 admissible steps were accurate enough (measured). Test `plan_study` checks the predictions
-/// of such trials against the exact motion. Fixed point refuses steps of 16 admissible steps or
-/// more; these are for `f32`.
-pub(super) const FIRST_STEPS: [f64; 10] = [
-    FIRST_STEP, 8.0, 16.0, 32.0, 64.0, 128.0, 256.0, 512.0, 1024.0, 2048.0,
-];
+/// slower than the fastest rate that its energy allows. Fixed point refuses steps of 16 admissible
+/// steps or more. The search then doubles the step count, or changes to `f32` if a frame can only
+/// pay for that.
+pub(super) const FIRST_STEPS: [f64; 5] = [FIRST_STEP, 8.0, 16.0, 32.0, LONGEST_USUAL];
+
+/// The longest steps of the first trial in 32 bits if a frame cannot pay for the last of the
+/// [`FIRST_STEPS`], in admissible steps. The first one is used that both budgets can pay for, or
+/// else the last one.
+///
+/// With a heavy bob 2 on a short rod, steps of 2000 admissible steps were accurate enough
+/// (measured). Test `plan_study` checks the predictions of such trials against the exact motion.
+/// They are for `f32`, because fixed point refuses them.
+pub(super) const LONG_FIRST_STEPS: [f64; 5] = [128.0, 256.0, 512.0, 1024.0, 2048.0];
 
 /// The longest steps of RK4 in 32 bits that a motion may start with, in admissible steps. The first
 /// of them is used if a frame can pay for it. In twice as long steps the error is 16 times as

@@ -30,7 +30,7 @@
 //! that all of them have the error of the candidate by chance.
 
 use super::candidate::{Candidate, distance, greater};
-use super::cost::{Costs, Pair, Stepping};
+use super::cost::{Costs, LONGEST_USUAL, Pair, Stepping};
 use super::problem::{NONE, PERTURBATIONS, Problem};
 use super::run::Directions;
 use super::shadow::{Shadows, scales};
@@ -170,11 +170,8 @@ const SHORT_ROD_2: f64 = 12.0;
 /// Test `short_rods_keep_their_horizons` checks some of them against the exact motion.
 const SHORT_AND_ROUNDED_ALIKE: [f32; 2] = [6.0, 4.0];
 
-/// The longest steps of a candidate, in admissible steps, without the factor [`MISSED_ALIKE`].
-const LONGEST_USUAL: f64 = 64.0;
-
-/// The smallest factor on the bound of the error of a candidate in longer steps that is compared
-/// with two or three finer runs.
+/// The smallest factor on the bound of the error of a candidate whose steps are longer than 64
+/// admissible steps ([`LONGEST_USUAL`]), if it is compared with two or three finer runs.
 ///
 /// With a heavy bob 2 such steps can be longer than the moments in which it drives rod 1 fast. In
 /// the first frame after such a moment, all these runs may have a similar error. The value is

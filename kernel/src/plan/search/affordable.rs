@@ -5,7 +5,7 @@ use core::ops::Range;
 
 use super::{Goal, Search};
 use crate::bounds::stable_step;
-use crate::plan::cost::{FIRST_STEPS, JUDGING, Pair, RESOLVING, steps_to_frame};
+use crate::plan::cost::{FIRST_STEPS, JUDGING, LONG_FIRST_STEPS, Pair, RESOLVING, steps_to_frame};
 use crate::plan::shadow::Shadows;
 use crate::plan::trial::{Judges, MOST_FINER_RUNS, Trial};
 use crate::plan::{Budget, Costs, Problem, Stepping};
@@ -23,10 +23,15 @@ pub(super) const MARGINS: [f32; 2] = [2.75, 1.25];
 /// Above this ratio, the reference is too expensive if planning cannot pay for half of all frames.
 const EXPENSIVE: f32 = 5.0;
 
-/// Returns the steps per frame of the first trial in 32 bits, by `method`: the shortest of
-/// [`FIRST_STEPS`] that a frame can pay for, and planning to the end of the problem, or the
-/// longest. The faster normal mode advances by at most a radian in a step. `admissible` is the
-/// admissible step, s.
+/// Returns the steps per frame of the first trial in 32 bits, by `method`.
+///
+/// The step is the shortest of the [`FIRST_STEPS`] that both budgets can pay for: a frame, and
+/// planning to the end of the problem. If planning cannot pay for the longest one but a frame can,
+/// it is that one. If a frame cannot, it is the shortest of the [`LONG_FIRST_STEPS`] that both can
+/// pay for, or the longest.
+///
+/// The faster normal mode advances by at most a radian in a step. `admissible` is the admissible
+/// step, s.
 pub(super) fn first_steps(
     method: Method,
     problem: &Problem,
@@ -35,18 +40,30 @@ pub(super) fn first_steps(
     budget: &Budget,
 ) -> u32 {
     let longest = stable_step(&problem.pendulum, 1.0);
-    let steps = FIRST_STEPS.map(|step| {
+    let to_frame = |step: f64| {
         let step = f64::min(step * admissible, longest);
         steps_to_frame(method, problem.rate, step)
-    });
-    let can_pay = |&steps: &u32| {
-        let stepping = Stepping { method, steps };
-        let cost = Trial::cost(costs, stepping, Judges::FinerRuns(MOST_FINER_RUNS));
-        costs.of_frame(stepping) <= budget.frame
-            && cost * problem.frames() as f32 <= budget.planning
     };
-    let [.., fewest] = steps;
-    steps.into_iter().find(can_pay).unwrap_or(fewest)
+    let frame_can_pay = |steps| costs.of_frame(Stepping { method, steps }) <= budget.frame;
+    let both_can_pay = |&steps: &u32| {
+        let judges = Judges::FinerRuns(MOST_FINER_RUNS);
+        let cost = Trial::cost(costs, Stepping { method, steps }, judges);
+        frame_can_pay(steps) && cost * problem.frames() as f32 <= budget.planning
+    };
+
+    // Longer steps than usual are only for frames that cannot pay for the usual ones. If only
+    // planning cannot, they seldom give a longer horizon (measured).
+    let usual = FIRST_STEPS.map(to_frame);
+    let [.., fewest] = usual;
+    if let Some(steps) = usual.into_iter().find(both_can_pay) {
+        return steps;
+    }
+    if frame_can_pay(fewest) {
+        return fewest;
+    }
+    let long = LONG_FIRST_STEPS.map(to_frame);
+    let [.., fewest] = long;
+    long.into_iter().find(both_can_pay).unwrap_or(fewest)
 }
 
 impl Search {
