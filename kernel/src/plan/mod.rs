@@ -36,17 +36,19 @@
 //! The first steps are usually as long as four steps of
 //! [`Pendulum::admissible_step`](crate::Pendulum::admissible_step). In such a step the fastest rate
 //! that the energy allows, a proven bound, advances a phase by a radian. If the budgets do not pay
-//! for steps of this length, the first steps are longer, up to 512 times. In all first steps the
-//! faster normal mode advances by at most a radian. The first trial uses these steps and, if it has
-//! a run in 64 bits, steps of a half and a quarter of their length. Its method is compensated `f32`
-//! or 32 bits of fixed point, by their costs. If fixed point refuses the motion, or all steps that
-//! a frame can pay for, it is `f32`.
+//! for steps of this length, the first steps are up to 16 times as long. If a frame cannot pay for
+//! these either, they are up to 512 times as long. In all first steps the faster normal mode
+//! advances by at most a radian. The first trial uses these steps and, if it has a run in 64 bits,
+//! steps of a half and a quarter of their length. Its method is compensated `f32` or 32 bits of
+//! fixed point, by their costs. If fixed point refuses the motion, or all steps that a frame can
+//! pay for, it is `f32`.
 //!
 //! The search changes to 64 bits if rounding is the larger error, if 64 bits cost less, or if 32
-//! bits fail early and planning can pay for 64 bits but not for finer steps in 32 bits as well. It
-//! then takes the finest steps that both budgets can pay for. If a frame cannot pay for 64 bits, or
-//! if these refuse the motion, the search continues in `f32`. It refines the steps as long as finer
-//! ones help and a frame can pay for them.
+//! bits fail early and planning can pay for 64 bits but not for finer steps in 32 bits as well,
+//! unless 64 bits are too expensive and finer steps gain much. It then takes the finest steps that
+//! both budgets can pay for. If a frame cannot pay for 64 bits, or if these refuse the motion, the
+//! search continues in `f32`. It refines the steps as long as finer ones help and a frame can pay
+//! for them.
 //!
 //! Planning needs no heap. It is divided into pieces that a busy caller can afford ([`Search`]).
 //! The caller provides the cost of a step: [`Costs`] is a price list in any unit. The kernel has

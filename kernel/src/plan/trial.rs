@@ -180,6 +180,15 @@ const SHORT_AND_ROUNDED_ALIKE: [f32; 2] = [6.0, 4.0];
 /// for these.
 const MISSED_ALIKE: f32 = 8.0;
 
+/// The ratio of the horizons with 4 times and with twice the steps below which finer steps gain
+/// little.
+///
+/// In a chaotic motion each doubling of the steps adds about the same time to the horizon. Below a
+/// ratio of 1.5, 32 times the steps, the finest of the next trial, then have less than twice the
+/// horizon of 4 times the steps. In a regular motion, errors usually grow at most with the square
+/// of the time. A doubling reduces the truncation error to 1/16, so that the ratio is at least 4.
+const LITTLE: f32 = 1.5;
+
 /// The largest number of finer runs.
 pub(super) const MOST_FINER_RUNS: u8 = 3;
 
@@ -735,6 +744,14 @@ impl Trial {
             !self.by_rounding
         };
         helps.then_some(self.usual_factor())
+    }
+
+    /// Returns true if the candidate with 4 times the steps has a horizon less than 1.5 times
+    /// ([`LITTLE`]) that of the candidate with twice the steps. An excluded candidate counts as 0
+    /// frames. Returns false if neither has a frame, as without a reference or in 64 bits.
+    pub fn finer_steps_gain_little(&self) -> bool {
+        let [_, second, third, ..] = self.candidates.map(|one| one.accurate_frames as f32);
+        third < LITTLE * second
     }
 
     /// Returns the factor on the step count of a next trial in finer steps: 8 with a reference,

@@ -389,14 +389,29 @@ const UNLIKE: [(u64, usize, &str, f64); 15] = [
 #[test]
 fn unlike_masses_keep_their_horizons() {
     for (seed, index, name, least) in UNLIKE {
-        let scene = Class::Broad.scenes(seed).nth(index).expect("no end");
-        let chip = CHIPS.iter().find(|chip| chip.name == name).expect("a chip");
-        let case = Case::new(&scene, chip, &mut Exact::new(&scene));
-        let horizon = case.plan.map_or(0.0, |plan| plan.horizon);
-        assert!(
-            horizon >= least && case.error <= PLAN_ERROR,
-            "{seed} {index}, {name}: {case:?}"
-        );
+        assert_horizon(Class::Broad, (seed, index), name, least);
+    }
+}
+
+/// Asserts that the plan of a scene, with this seed and index, has at least the predicted horizon
+/// `least`, s, on a processor, and errors of at most [`PLAN_ERROR`] half pixels until then.
+fn assert_horizon(class: Class, (seed, index): (u64, usize), name: &str, least: f64) {
+    let scene = class.scenes(seed).nth(index).expect("no end");
+    let chip = CHIPS.iter().find(|chip| chip.name == name).expect("a chip");
+    let case = Case::new(&scene, chip, &mut Exact::new(&scene));
+    let horizon = case.plan.map_or(0.0, |plan| plan.horizon);
+    assert!(
+        horizon >= least && case.error <= PLAN_ERROR,
+        "{seed} {index}, {name}: {case:?}"
+    );
+}
+
+/// With high starts on a slow Cortex-M4F, planning is spent on 64 bits instead of finer steps in 32
+/// bits that gain little. Without this rule the predicted horizons were 9.5, 8.9 and 8.8 s.
+#[test]
+fn high_starts_keep_their_horizons() {
+    for (index, least) in [(5, 13.2), (29, 11.7), (44, 12.4)] {
+        assert_horizon(Class::High, (2, index), "slow-m4f", least);
     }
 }
 

@@ -213,7 +213,8 @@ fn refused_steps_are_doubled_up_to_their_limit() -> Result<(), PlanError> {
 
 /// Finer steps in 32 bits are not tried if planning can pay for a trial of 64 bits, but not for
 /// one that tries both: they would spend what 64 bits need. They are tried if planning can pay
-/// for both or for neither, and if no frame was accurate before.
+/// for both or for neither, and if no frame was accurate before. Here 64 bits are not too
+/// expensive.
 #[test]
 fn finer_steps_do_not_spend_the_budget_of_64_bits() -> Result<(), PlanError> {
     const FACTOR: u32 = 8;
@@ -240,6 +241,40 @@ fn finer_steps_do_not_spend_the_budget_of_64_bits() -> Result<(), PlanError> {
         cases[usize::from(alone) + usize::from(both)] += 1;
     }
     assert!(cases.iter().all(|&count| count > 0), "{cases:?}");
+    Ok(())
+}
+
+/// If planning cannot pay for half of all frames in an expensive trial of 64 bits, finer steps in
+/// 32 bits are tried first. If 4 times the steps had a horizon less than 1.5 times that of twice
+/// the steps, 64 bits are tried at once.
+#[test]
+fn expensive_64_bits_wait_for_finer_steps_that_gain_much() -> Result<(), PlanError> {
+    const FACTOR: u32 = 8;
+    let mut search = in_first_trial()?;
+    let first = Candidate::new(search.stepping);
+    search.goal.set_best(measured(first, 60, true));
+
+    // A frame can pay for 64 bits, and planning for 1.25 times the known horizon of 60 of the 600
+    // frames.
+    search.costs.fixed64 *= 100.0;
+    search.budget.frame = f32::MAX;
+    let in_64_bits = search.in_64_bits().expect("a frame can pay for it");
+    let pair = judging_pairs(&search).last().expect("there is a pair");
+    let cost = Trial::cost(&search.costs, in_64_bits, Judges::Reference(pair));
+    search.budget.planning = search.spent + 100.0 * cost;
+    assert!(search.judging_pair(in_64_bits).is_some());
+
+    for (second, third, is_tried) in [(40, 59, false), (40, 60, true)] {
+        let SearchState::Trying { trial, .. } = &mut search.state else {
+            panic!("the trial is not created");
+        };
+        assert!(trial.has_reference());
+        for (candidate, frames) in trial.candidates[1..].iter_mut().zip([second, third]) {
+            *candidate = measured(Candidate::new(candidate.stepping), frames, true);
+        }
+        let finer = search.finer(Some(FACTOR));
+        assert_eq!(finer.is_some(), is_tried, "{second} {third}");
+    }
     Ok(())
 }
 
@@ -597,11 +632,13 @@ fn expensive_reference_waits_until_finer_runs_have_measured() -> Result<(), Plan
 }
 
 /// The first trial takes steps of at most 4 admissible steps if a frame can pay for them, and
-/// planning can for all 600 frames. Otherwise it takes steps that are 2 to 512 times as long: the
-/// shortest that both can pay for, or the longest. In the faster normal mode, which limits them in
-/// small oscillations, they are a radian.
+/// planning for all 600 frames. Otherwise it takes the shortest steps that both can pay for, 2 to
+/// 16 times as long. If planning cannot pay for the longest of these but a frame can, it takes
+/// those. If a frame cannot, it takes steps that are 32 to 512 times as long: the shortest that
+/// both can pay for, or the longest. In the faster normal mode, which limits them in small
+/// oscillations, they are a radian.
 #[test]
-fn first_steps_are_the_shortest_that_both_budgets_pay_for() -> Result<(), PlanError> {
+fn first_steps_are_longer_if_a_budget_is_small() -> Result<(), PlanError> {
     let mut search = in_first_trial()?;
     // The start is so fast that all ten steps are short in comparison with the normal modes.
     search.problem.start = Motion {

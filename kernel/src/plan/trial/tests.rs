@@ -302,6 +302,29 @@ fn estimated_errors_contain_those_of_the_compared_runs() -> Result<(), Error> {
     Ok(())
 }
 
+/// Finer steps gain little if 4 times the steps have a horizon less than 1.5 times that of twice
+/// the steps. This is not known if neither has one.
+#[test]
+fn finer_steps_gain_little_if_four_times_the_steps_do() {
+    let stepping = Stepping {
+        method: Method::Rk4Fixed32,
+        steps: 4,
+    };
+    let judges = Judges::Reference(Pair::new(6, 8));
+    for (horizons, expected) in [
+        ([10, 14], true),
+        ([10, 15], false),
+        ([10, 0], true),
+        ([0, 0], false),
+    ] {
+        let mut trial = Trial::new(stepping, &oscillation(), judges, stepping);
+        for (candidate, frames) in trial.candidates[1..].iter_mut().zip(horizons) {
+            candidate.accurate_frames = frames;
+        }
+        assert_eq!(trial.finer_steps_gain_little(), expected, "{horizons:?}");
+    }
+}
+
 /// [`Trial::cost`] estimates the cost of a frame exactly, with each number of finer runs and
 /// with a reference, except for the closed form and the shadows. The cost of a whole frame
 /// includes both.
