@@ -65,7 +65,7 @@ type Row = (
     RangeInclusive<f64>,
 );
 
-/// Ten scenes, each with a price list and a frame budget: the plan must have exactly the method,
+/// Eleven scenes, each with a price list and a frame budget: the plan must have exactly the method,
 /// step count and limit of its row, a horizon in the row's range, an error from 1e-6 to 1
 /// tolerances, and the cost of the price list. The planning budget is large.
 #[test]
@@ -80,7 +80,7 @@ fn planner_chooses_the_cheapest_method_with_the_longest_horizon() {
         fixed32: 20e3,
         ..M3
     };
-    let rows: [Row; 10] = [
+    let rows: [Row; 11] = [
         // A step costs less than the closed form if it uses integers or a floating-point unit.
         (
             costly,
@@ -148,6 +148,16 @@ fn planner_chooses_the_cheapest_method_with_the_longest_horizon() {
             (Rk4F32DirectionPlain, 1),
             Limit::End,
             2.0..=2.0,
+        ),
+        // Twice the steps have a longer horizon, but not by a tenth. Four times the steps cost too
+        // much.
+        (
+            M4F,
+            1e3,
+            scene(1.0, 120.0, 30.0),
+            (Rk4F32Direction, 2),
+            Limit::Budget,
+            5.0..=10.0,
         ),
         // Finer steps help, although rounding seems to be the larger error.
         (
