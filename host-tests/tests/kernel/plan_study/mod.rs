@@ -248,7 +248,7 @@ fn evaluated(stepping: Stepping, scene: &Problem, chip: &Chip) -> f64 {
             }
         }
     };
-    // The step count of the closed form is that of the run that it is compared with.
+    // The closed form has no steps. Its step count belongs to the run that it is compared with.
     if stepping.method == Method::ClosedFormF32 {
         powers().map(horizon).fold(0.0, f64::max)
     } else {
@@ -283,8 +283,8 @@ fn judged(scene: &Problem, by_force: bool, is_checked: bool) -> Vec<Case> {
             for (case, chip) in cases.iter_mut().zip(&CHIPS) {
                 if needed(case, chip) {
                     case.longest = case.longest.max(horizon);
-                    // Skip methods that cannot raise it: a prediction is hardly ever longer than
-                    // the true horizon.
+                    // A prediction is hardly ever longer than the true horizon, so that other
+                    // methods cannot raise it.
                     if horizon > case.reachable {
                         let reachable = evaluated(stepping, scene, chip);
                         case.reachable = case.reachable.max(reachable);
@@ -306,7 +306,7 @@ struct Results {
     ending: usize,
     /// The median and the 5 % quantile of the [shares](Case::shares) of these plans.
     planned: [f64; 2],
-    /// Those of the reachable horizons; equal to `planned` without brute force.
+    /// The same of the reachable horizons. It equals `planned` without brute force.
     reachable: [f64; 2],
 }
 
