@@ -3,7 +3,10 @@
 use core::f64::consts::PI;
 
 use super::*;
+use crate::error::Parameter;
 use crate::pendulum::Parameters;
+use crate::plan::cost::MOST_STEPS;
+use crate::plan::trial::MOST_FINER_RUNS;
 
 /// Returns `candidate` after `frames` accurate frames, followed by an inaccurate one if it
 /// `fails`.
