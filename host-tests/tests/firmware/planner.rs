@@ -344,7 +344,7 @@ fn a_plan_that_ends_early_and_does_not_resolve_the_motion_is_not_followed() {
 fn a_late_plan_for_the_initial_method_is_the_result() {
     let initial = Stepping {
         method: Method::Extrapolation10Fixed64,
-        steps: 3,
+        steps: 2,
     };
     let mut planner = Planner::new(CORTEX_M0PLUS);
     planner.start(&Settings::default(), Some(HEIGHT), Some(initial), false);

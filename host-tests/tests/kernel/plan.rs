@@ -729,7 +729,7 @@ fn a_horizon_that_finer_steps_would_extend_is_limited_by_planning() -> Result<()
     };
     let budget = Budget {
         frame: 7e5,
-        planning: 2.1e9,
+        planning: 1.4e9,
     };
     let plan = Plan::search(&problem, &Costs::CORTEX_M0PLUS, &budget)?;
     assert_eq!(

@@ -235,7 +235,7 @@ impl Pair {
         admissible: f64,
         least: u32,
         most: u32,
-    ) -> impl DoubleEndedIterator<Item = Self> {
+    ) -> impl DoubleEndedIterator<Item = Self> + Clone {
         let steps = move |longest: f64| {
             let method = Method::Extrapolation10Fixed64;
             steps_to_frame(method, rate, longest * admissible).max(2)

@@ -17,8 +17,8 @@
 //! | truncation in 64 bits | the distance to a second run in 64 bits, in other steps |
 //! | rounding in 64 bits | its size where it arises, times the later growth of small distances |
 //!
-//! The runs in finer steps are used if planning cannot pay for a run in 64 bits, or if that would
-//! be too expensive. Their inputs are perturbed by an ulp. There are three of them, or fewer if
+//! The runs in finer steps are used if planning cannot pay for a run in 64 bits, if that would be
+//! too expensive, or to find out first how fast errors grow. Their inputs are perturbed by an ulp. There are three of them, or fewer if
 //! planning cannot pay for three. With fewer runs, the bound is a larger multiple of the distance.
 //!
 //! No run is assumed to be exact. Errors grow along a single direction, and along it two equally
@@ -43,7 +43,8 @@
 //! fixed point, by their costs. If fixed point refuses the motion, or all steps that a frame can
 //! pay for, it is `f32`.
 //!
-//! The search changes to 64 bits if rounding is the larger error, if 64 bits cost less, or if 32
+//! The search changes to 64 bits if the first trial shows that errors grow faster than the cube of
+//! the time, as in chaotic motions; if rounding is the larger error; if 64 bits cost less; or if 32
 //! bits fail early and planning can pay for 64 bits but not for finer steps in 32 bits as well,
 //! unless 64 bits are too expensive and finer steps gain much. It then takes the finest steps that
 //! both budgets can pay for. If a frame cannot pay for 64 bits, or if these refuse the motion, the

@@ -189,6 +189,10 @@ const MISSED_ALIKE: f32 = 8.0;
 /// of the time. A doubling reduces the truncation error to 1/16, so that the ratio is at least 4.
 const LITTLE: f32 = 1.5;
 
+/// The bound of an error that counts as small, in units of the tolerance, where the growth of errors
+/// is measured ([`Trial::errors_grow_fast`]).
+const SMALL: f32 = 1.0 / 64.0;
+
 /// The largest number of finer runs.
 pub(super) const MOST_FINER_RUNS: u8 = 3;
 
@@ -232,8 +236,10 @@ fn tried(stepping: Stepping) -> [Stepping; 3] {
     })
 }
 
-/// The indices in [`Trial::candidates`] of plain `f32`, of the closed form, and of the coarse and
-/// the fine run of the reference. The run of plain `f32` has the same index.
+/// The indices in [`Trial::candidates`] of the method and step count on trial, of plain `f32`, of
+/// the closed form, and of the coarse and the fine run of the reference. Runs in 32 bits have the
+/// same indices.
+const OWN: usize = 0;
 const PLAIN: usize = 3;
 const CLOSED: usize = 4;
 const COARSE: usize = 5;
@@ -271,6 +277,9 @@ pub(super) struct Trial {
     /// True if the rounding error is larger than the truncation error, of the single candidate or
     /// of the fine run.
     by_rounding: bool,
+    /// The number of frames before the bound of the single candidate first exceeded 1/64
+    /// ([`SMALL`]). 0 with a reference.
+    pub(super) small_frames: u32,
     /// The share of the distance of the reference's runs that bounds the error of the fine run.
     share_of_fine: f32,
     /// True if bob 2 is heavy.
@@ -386,6 +395,7 @@ impl Trial {
             rods: [pendulum.l1, pendulum.l2].map(|l| (l / problem.tolerance) as f32),
             candidates,
             by_rounding: false,
+            small_frames: 0,
             share_of_fine: pair.share_of_fine(*rate, admissible),
             is_heavy,
             alike,
@@ -646,6 +656,13 @@ impl Trial {
             // is less than half of another one, rounding is the larger error.
             self.by_rounding = distances.clone().any(|distance| 2.0 * distance < greatest);
             let bound = self.factor() * greatest;
+
+            let candidate = &self.candidates[OWN];
+            let was_small =
+                candidate.is_accurate() && self.small_frames == candidate.accurate_frames;
+            if was_small && bound <= SMALL {
+                self.small_frames += 1;
+            }
             for (candidate, shown) in self.candidates.iter_mut().zip(in_32_bits) {
                 let beside = distance(self.rods, &shown, &own);
                 candidate.note(beside + greatest, beside + bound);
@@ -752,6 +769,17 @@ impl Trial {
     pub fn finer_steps_gain_little(&self) -> bool {
         let [_, second, third, ..] = self.candidates.map(|one| one.accurate_frames as f32);
         third < LITTLE * second
+    }
+
+    /// Returns true if the error of the single candidate grows faster than the cube of the time: if
+    /// its bound first exceeded 1/64 of the tolerance later than at a quarter of its accurate
+    /// frames, or has not exceeded it yet. Returns false with a reference, and before a frame is
+    /// accurate.
+    ///
+    /// In a regular motion errors usually grow at most with the square of the time. In a chaotic
+    /// one they grow exponentially.
+    pub fn errors_grow_fast(&self) -> bool {
+        self.small_frames > self.candidates[OWN].accurate_frames / 4
     }
 
     /// Returns the factor on the step count of a next trial in finer steps: 8 with a reference,

@@ -3,7 +3,7 @@
 
 use core::ops::Range;
 
-use super::{Goal, Search};
+use super::{Goal, Purpose, Search};
 use crate::bounds::stable_step;
 use crate::plan::cost::{FIRST_STEPS, JUDGING, LONG_FIRST_STEPS, Pair, RESOLVING, steps_to_frame};
 use crate::plan::shadow::Shadows;
@@ -18,6 +18,13 @@ use crate::table::Method;
 /// The first is 2.75 because 64 bits are accurate for more than twice as long as the first trial in
 /// 32 bits. The second is 1.25 because finer steps in 32 bits may be accurate for that long.
 pub(super) const MARGINS: [f32; 2] = [2.75, 1.25];
+
+/// The margin that comes before these in a trial in 64 bits, while only horizons of 32 bits are
+/// known.
+///
+/// In chaotic motions 64 bits are often accurate for four times as long as coarse steps in 32 bits,
+/// and longer. The value is measured: 4.5 and 8 give horizons of about the same length.
+const FIRST_MARGIN_IN_64_BITS: f32 = 6.0;
 
 /// The cost of a trial with a reference, divided by the cost of a trial with three finer runs.
 /// Above this ratio, the reference is too expensive if planning cannot pay for half of all frames.
@@ -83,10 +90,7 @@ impl Search {
         }
 
         // A trial in 64 bits uses the coarsest pair that can judge it if planning can pay for none.
-        let coarsest = || {
-            let [least, most] = [self.least_in_64_bits?, self.most_in_64_bits()];
-            Pair::all(self.problem.rate, self.admissible, least, most).nth(JUDGING - 1)
-        };
+        let coarsest = || self.pairs()?.nth(JUDGING - 1);
         self.pair_within_budget(self.stepping)
             .or_else(|| coarsest().filter(|_| is_in_64_bits))
     }
@@ -126,9 +130,16 @@ impl Search {
         self.first_affordable(stepping, 0..JUDGING, shadows)
     }
 
+    /// Returns all possible references, the finest first, or `None` if 64 bits refuse the motion. A
+    /// frame can pay for the coarse run of each, if it can pay for 64 bits at all.
+    pub(super) fn pairs(&self) -> Option<impl DoubleEndedIterator<Item = Pair> + Clone> {
+        let [least, most] = [self.least_in_64_bits?, self.most_in_64_bits()];
+        Some(Pair::all(self.problem.rate, self.admissible, least, most))
+    }
+
     /// Returns the first pair with an index in `indices` ([`Pair::all`]) that planning can pay for
-    /// in a trial of `stepping`, at the largest possible margin ([`MARGINS`]). `shadows` is the
-    /// cost of a frame of the shadows. Pairs that are [too expensive](Self::is_too_expensive) are
+    /// in a trial of `stepping`, at the largest possible margin ([`FIRST_MARGIN_IN_64_BITS`],
+    /// [`MARGINS`]). `shadows` is the cost of a frame of the shadows. Pairs that are [too expensive](Self::is_too_expensive) are
     /// left out if `stepping` is in 32 bits, unless it is [well
     /// measured](Self::is_well_measured) already.
     fn first_affordable(
@@ -137,31 +148,26 @@ impl Search {
         indices: Range<usize>,
         shadows: f32,
     ) -> Option<Pair> {
-        let least = self.least_in_64_bits?;
-        // A frame must be able to pay for the coarse run of a pair, if it can pay for 64 bits at
-        // all.
-        let pairs = || {
-            Pair::all(
-                self.problem.rate,
-                self.admissible,
-                least,
-                self.most_in_64_bits(),
-            )
-        };
+        let pairs = self.pairs()?.take(indices.end).skip(indices.start);
 
         // Steps in 32 bits are first measured with finer runs if a reference is too expensive.
         let may_be_expensive = stepping.method == Method::Extrapolation10Fixed64
             || self.is_well_measured(stepping.steps);
 
-        // If the best candidate is in 64 bits, the horizon of 64 bits is known, and the smaller
+        // If the best candidate is in 64 bits, the horizon of 64 bits is known, and the smallest
         // margin is enough.
-        let best = self.goal.best();
+        let best = self.known();
         let is_known =
             best.is_some_and(|best| best.stepping.method == Method::Extrapolation10Fixed64);
-        let mut margins = MARGINS.into_iter().skip(usize::from(is_known));
-        margins.find_map(|margin| {
-            let mut pairs = pairs().take(indices.end).skip(indices.start);
-            pairs.find(|&pair| {
+        let is_in_64_bits = stepping.method == Method::Extrapolation10Fixed64;
+        let margins = [FIRST_MARGIN_IN_64_BITS].into_iter().chain(MARGINS);
+        let skipped = match (is_in_64_bits, is_known) {
+            (true, false) => 0,
+            (false, false) => 1,
+            (_, true) => 2,
+        };
+        margins.skip(skipped).find_map(|margin| {
+            pairs.clone().find(|&pair| {
                 let judges = Judges::Reference(pair);
                 let cost = Trial::cost(&self.costs, stepping, judges) + shadows;
                 cost * self.frames_to_pay(margin) <= self.budget.planning - self.spent
@@ -173,7 +179,7 @@ impl Search {
     /// Returns true if the best known candidate is in 32 bits, by any method, has these steps per
     /// frame, and was measured with a reference or with three finer runs.
     fn is_well_measured(&self, steps: u32) -> bool {
-        self.goal.best().is_some_and(|best| {
+        self.known().is_some_and(|best| {
             best.stepping.method != Method::Extrapolation10Fixed64
                 && best.stepping.steps == steps
                 && !(1..MOST_FINER_RUNS).contains(&best.finer_runs)
@@ -190,6 +196,35 @@ impl Search {
             && cost > EXPENSIVE * Trial::cost(&self.costs, stepping, finer_runs)
     }
 
+    /// Returns true if the trial of `self.stepping` has to measure how fast errors grow, before
+    /// `reference` measures the horizons.
+    ///
+    /// It is the first trial in 32 bits. If errors grow fast, the motion is probably chaotic, and
+    /// planning pays for 64 bits instead of `reference`. That helps only if a frame can pay for
+    /// them, and if planning cannot pay for the finest reference to the end of the problem. If
+    /// errors grow slowly, planning must still be able to pay for `reference` to the end.
+    pub(super) fn must_measure_growth(&self, reference: Pair) -> bool {
+        let is_first = self.purpose == Purpose::Horizon
+            && matches!(self.goal, Goal::FindBest { best: None })
+            && !self.stepping_is_in_64_bits();
+        if !is_first || self.in_64_bits().is_none() {
+            return false;
+        }
+        let Some(finest) = self.pairs().and_then(|mut pairs| pairs.next()) else {
+            return false;
+        };
+
+        let cost = |judges| Trial::cost(&self.costs, self.stepping, judges);
+        let of_growth = cost(Judges::FinerRuns(MOST_FINER_RUNS));
+        let of_finest = cost(Judges::Reference(finest));
+
+        // The trial that measures the growth ends in the middle of the problem at the latest.
+        let of_both = cost(Judges::Reference(reference)) + 0.5 * of_growth;
+        let all = self.problem.frames() as f32;
+        let left = self.budget.planning - self.spent;
+        of_finest > EXPENSIVE * of_growth && of_finest * all > left && of_both * all <= left
+    }
+
     /// Returns the number of finer runs for the trial of `self.stepping`: the largest that planning
     /// can pay for, at the largest possible margin ([`MARGINS`]). If planning can pay for none, it
     /// is the smallest allowed number. The evaluation of one method has three.
@@ -200,7 +235,7 @@ impl Search {
 
         // After a better measurement, a single finer run shows no longer horizon: in twice the
         // steps the truncation error is 1/16, but the factor of the bound is 37 times as large.
-        let is_rough = self.goal.best().is_none_or(|best| best.finer_runs == 1);
+        let is_rough = self.known().is_none_or(|best| best.finer_runs == 1);
         let least = self.least_finer_runs.max(if is_rough { 1 } else { 2 });
         let numbers = || (least..=MOST_FINER_RUNS).rev();
         let affordable = MARGINS.into_iter().find_map(|margin| {
@@ -221,8 +256,7 @@ impl Search {
     /// horizon, but at most all frames, or all of them if no frame is known to be accurate.
     pub(super) fn frames_to_pay(&self, margin: f32) -> f32 {
         let all = self.problem.frames() as f32;
-        let best = self.goal.best();
-        let longer = margin * best.map_or(0, |best| best.accurate_frames) as f32;
+        let longer = margin * self.known().map_or(0, |best| best.accurate_frames) as f32;
         if 0.0 < longer && longer < all {
             longer
         } else {

@@ -1,7 +1,7 @@
 //! The choice of the next trial, or of the limit that ends a search.
 
 use super::affordable::{MARGINS, first_steps};
-use super::{Goal, Search, SearchState};
+use super::{Goal, Purpose, Search, SearchState};
 use crate::error::{Error, Parameter};
 use crate::plan::candidate::Candidate;
 use crate::plan::cost::{MOST_STEPS, Pair};
@@ -18,6 +18,17 @@ impl Search {
         if self.goal.best().is_some_and(reaches_end) {
             return Some(Limit::End);
         }
+        if let Some(in_64_bits) = self.in_64_bits_after_growth() {
+            self.begin_trial(in_64_bits);
+            return None;
+        }
+        if self.purpose == Purpose::Growth {
+            self.begin_trial(self.stepping);
+            self.purpose = Purpose::HorizonAfterGrowth;
+            return None;
+        }
+        self.purpose = Purpose::Horizon;
+
         let factor = match &self.state {
             SearchState::NoTrial => None,
             SearchState::Trying { trial, .. } => trial.refinement(),
@@ -40,6 +51,33 @@ impl Search {
             Limit::Budget if is_rough => Limit::Planning,
             limit => limit,
         })
+    }
+
+    /// Returns the trial in 64 bits that follows a trial with three finer runs at once: if errors
+    /// grow fast, as in a chaotic motion, so that 32 bits fail in the first half of the problem,
+    /// and if planning can pay for 64 bits for 2.75 times the known horizon.
+    ///
+    /// Returns `None` as well if 32 bits fail in the first 1/16 of the problem. A heavy bob 2 can
+    /// make errors grow fast for moments, in a regular motion too.
+    pub(super) fn in_64_bits_after_growth(&self) -> Option<Stepping> {
+        let SearchState::Trying { trial, .. } = &self.state else {
+            return None;
+        };
+        let frames = trial.frames_in_32_bits();
+        let is_early = self.fails_early(trial) && frames > self.problem.frames() / 16;
+        let is_measured =
+            trial.finer_runs() == MOST_FINER_RUNS && !trial.has_candidate_in_32_bits();
+        let is_evaluation = matches!(self.goal, Goal::Evaluate { .. });
+        if is_evaluation || !is_early || !is_measured || !trial.errors_grow_fast() {
+            return None;
+        }
+
+        let [margin, _] = MARGINS;
+        let in_64_bits = self.in_64_bits()?;
+        let pair = self.judging_pair(in_64_bits)?;
+        let cost = Trial::cost(&self.costs, in_64_bits, Judges::Reference(pair));
+        let left = self.budget.planning - self.spent;
+        (cost * self.frames_to_pay(margin) <= left).then_some(in_64_bits)
     }
 
     /// Continues the search after a method has refused the motion with `error`.
@@ -262,8 +300,7 @@ impl Search {
                             })
                         })
                 };
-                trial.frames_in_32_bits() < self.problem.frames() / 2
-                    && (trial.tries_64_bits || is_worth_it && is_next())
+                self.fails_early(trial) && (trial.tries_64_bits || is_worth_it && is_next())
             }
             SearchState::NoTrial => false,
         };

@@ -899,3 +899,198 @@ fn extension_is_added_to_the_duration() -> Result<(), PlanError> {
     assert_eq!(finish(&mut search)?, (Limit::End, 5.0));
     Ok(())
 }
+
+/// Returns the trial in progress.
+fn on_trial(search: &mut Search) -> &mut Trial {
+    match &mut search.state {
+        SearchState::Trying { trial, .. } => trial,
+        SearchState::NoTrial => panic!("the trial is not created"),
+    }
+}
+
+/// Returns a search before its first trial, and the costs of all frames of three trials: with the
+/// finest reference, with the coarsest one, and with three finer runs.
+fn before_first_trial() -> Result<(Search, [f32; 3]), PlanError> {
+    let mut search = in_first_trial()?;
+    search.begin_trial(search.stepping);
+    search.spent = 0.0;
+    let mut pairs = search.pairs().expect("64 bits accept the motion");
+    let (Some(finest), Some(coarsest)) = (pairs.next(), pairs.next_back()) else {
+        panic!("there are six pairs");
+    };
+    let costs = [
+        Judges::Reference(finest),
+        Judges::Reference(coarsest),
+        Judges::FinerRuns(MOST_FINER_RUNS),
+    ];
+    let frames = search.problem.frames() as f32;
+    let costs = costs.map(|judges| frames * Trial::cost(&search.costs, search.stepping, judges));
+    Ok((search, costs))
+}
+
+/// The growth of errors is measured if planning can pay for that and for the reference, but not for
+/// the finest reference.
+#[test]
+fn growth_is_measured_if_the_finest_reference_is_not_affordable() -> Result<(), PlanError> {
+    let (search, [finest, coarsest, finer_runs]) = before_first_trial()?;
+    let reference = search.pairs().and_then(Iterator::last).expect("six pairs");
+    let least = coarsest + 0.5 * finer_runs;
+    assert!(least < finest && finest > 5.0 * finer_runs);
+    let measures = |search: &Search, planning| {
+        let mut search = *search;
+        search.budget.planning = planning;
+        search.must_measure_growth(reference)
+    };
+    for (planning, expected) in [
+        (0.99 * least, false),
+        (1.01 * least, true),
+        (0.99 * finest, true),
+        (1.01 * finest, false),
+    ] {
+        assert_eq!(measures(&search, planning), expected, "{planning}");
+    }
+
+    // A horizon is known; one method is evaluated; the trial is in 64 bits, or is repeated; a frame
+    // cannot pay for 64 bits; finer runs cost almost as much as the reference.
+    let candidate = Candidate::new(search.stepping);
+    let changes: [fn(&mut Search, Candidate); 6] = [
+        |search, best| search.goal = Goal::FindBest { best: Some(best) },
+        |search, only| search.goal = Goal::Evaluate { only },
+        |search, _| search.stepping.method = Method::Extrapolation10Fixed64,
+        |search, _| search.purpose = Purpose::HorizonAfterGrowth,
+        |search, _| search.budget.frame = search.costs.fixed64,
+        |search, _| search.costs.fixed32 = search.costs.fixed64,
+    ];
+    for (i, change) in changes.into_iter().enumerate() {
+        let mut search = search;
+        change(&mut search, candidate);
+        assert!(!measures(&search, 0.99 * finest), "change {i}");
+    }
+    Ok(())
+}
+
+/// Returns a search in a first trial that measures the growth of errors, after `frames` accurate
+/// frames of 600. In the first `small` ones the bound was small.
+fn measuring_growth(frames: u32, small: u32, fails: bool) -> Result<Search, PlanError> {
+    let (mut search, [finest, ..]) = before_first_trial()?;
+    search.budget.planning = 0.99 * finest;
+    search.create_trial();
+    assert_eq!(search.purpose, Purpose::Growth);
+    let trial = on_trial(&mut search);
+    assert_eq!(trial.finer_runs(), MOST_FINER_RUNS);
+    trial.retain(|candidate| candidate.stepping.method == Method::Rk4Fixed32);
+    trial.candidates[0] = measured(trial.candidates[0], frames, fails);
+    trial.small_frames = small;
+    Ok(search)
+}
+
+/// A trial that measures the growth of errors is over when the candidate fails, when errors have
+/// grown slowly, or in the middle of the problem. After fast growth 64 bits follow. Otherwise the
+/// trial is repeated with a reference, as if it had not been.
+#[test]
+fn sixty_four_bits_follow_fast_growth() -> Result<(), PlanError> {
+    for (frames, small, fails, is_decided, is_fast) in [
+        (100, 26, false, false, false),
+        (100, 26, true, true, true),
+        (100, 25, false, true, false),
+        (100, 25, true, true, false),
+        (299, 299, false, false, false),
+        (300, 300, false, true, false),
+        (299, 100, true, true, true),
+        (300, 100, true, true, false),
+        (38, 30, true, true, true),
+        (37, 30, true, true, false),
+    ] {
+        let mut search = measuring_growth(frames, small, fails)?;
+        let context = (frames, small, fails);
+        assert_eq!(search.is_decided(), is_decided, "{context:?}");
+        if !is_decided {
+            continue;
+        }
+
+        let first = search.stepping;
+        assert_eq!(search.end_trial(), None);
+        if is_fast {
+            assert_eq!(Some(search.stepping), search.in_64_bits(), "{context:?}");
+        } else {
+            assert_eq!(search.stepping, first, "{context:?}");
+            assert!(search.known().is_none() && !search.is_refined());
+            search.create_trial();
+            let trial = on_trial(&mut search);
+            assert!(trial.has_reference() && !trial.tries_64_bits);
+        }
+    }
+    Ok(())
+}
+
+/// The end of a trial that was repeated with a reference makes its horizon known.
+#[test]
+fn repeated_trial_makes_the_horizon_known() -> Result<(), PlanError> {
+    let mut search = measuring_growth(100, 0, false)?;
+    assert_eq!(search.end_trial(), None);
+    search.create_trial();
+    on_trial(&mut search).candidates[0].accurate_frames = 60;
+    assert_eq!(search.purpose, Purpose::HorizonAfterGrowth);
+    assert_eq!(search.end_trial(), None);
+    assert_eq!(search.purpose, Purpose::Horizon);
+    assert!(search.is_refined());
+    Ok(())
+}
+
+/// 64 bits do not follow fast growth at once if planning cannot pay for 2.75 times the known
+/// horizon, with fewer than three finer runs, or in the evaluation of one method.
+#[test]
+fn sixty_four_bits_wait_if_planning_cannot_pay_for_them() -> Result<(), PlanError> {
+    let mut search = measuring_growth(100, 50, true)?;
+    search.keep_best();
+    assert!(search.in_64_bits_after_growth().is_some());
+
+    // The coarsest pair that judges 64 bits. The cost of the shadows is small.
+    let in_64_bits = search.in_64_bits().expect("a frame can pay for it");
+    let pair = judging_pairs(&search).next_back().expect("a pair");
+    let cost = Trial::cost(&search.costs, in_64_bits, Judges::Reference(pair));
+    for (margin, expected) in [(2.5, false), (3.5, true)] {
+        search.budget.planning = search.spent + margin * 100.0 * cost;
+        assert_eq!(
+            search.in_64_bits_after_growth().is_some(),
+            expected,
+            "{margin}"
+        );
+    }
+
+    let mut evaluation = search;
+    let only = *search.goal.best().expect("a candidate");
+    evaluation.goal = Goal::Evaluate { only };
+    assert_eq!(evaluation.in_64_bits_after_growth(), None);
+
+    let judges = Judges::FinerRuns(2);
+    let mut with_two = search;
+    let mut trial = Trial::new(search.stepping, &search.problem, judges, search.shadow());
+    trial.candidates = on_trial(&mut search).candidates;
+    trial.small_frames = 50;
+    *on_trial(&mut with_two) = trial;
+    assert_eq!(with_two.in_64_bits_after_growth(), None);
+    Ok(())
+}
+
+/// The first trial in 64 bits has the finest reference that planning can pay for, for 6 times the
+/// known horizon of 32 bits. The next one has it for 1.25 times the horizon of 64 bits.
+#[test]
+fn first_trial_in_64_bits_may_last_six_times_as_long() -> Result<(), PlanError> {
+    const FRAMES: u32 = 5;
+    let mut search = at_a_low_rate()?;
+    let in_64_bits = search.stepping;
+    let finest = judging_pairs(&search).next().expect("a pair");
+    let cost = Trial::cost(&search.costs, in_64_bits, Judges::Reference(finest));
+    let method = search.method_in_32_bits;
+    for (method, margin) in [(method, 6.0), (in_64_bits.method, 1.25)] {
+        let best = Candidate::new(Stepping { method, steps: 1 });
+        search.goal.set_best(measured(best, FRAMES, true));
+        for (factor, expected) in [(0.95, false), (1.1, true)] {
+            search.budget.planning = search.spent + factor * margin * FRAMES as f32 * cost;
+            let pair = search.pair_within_budget(in_64_bits);
+            assert_eq!(pair == Some(finest), expected, "{method:?}, {factor}");
+        }
+    }
+    Ok(())
+}

@@ -325,6 +325,57 @@ fn finer_steps_gain_little_if_four_times_the_steps_do() {
     }
 }
 
+/// Errors grow fast if the bound first exceeded 1/64 of the tolerance later than at a quarter of the
+/// accurate frames.
+#[test]
+fn errors_grow_fast_if_they_are_small_for_more_than_a_quarter() {
+    let stepping = Stepping {
+        method: Method::Rk4Fixed32,
+        steps: 4,
+    };
+    let mut trial = Trial::new(stepping, &oscillation(), Judges::FinerRuns(3), stepping);
+    for (small, accurate, expected) in [
+        (0, 0, false),
+        (0, 1, false),
+        (1, 1, true),
+        (5, 20, false),
+        (6, 20, true),
+    ] {
+        trial.small_frames = small;
+        trial.candidates[OWN].accurate_frames = accurate;
+        assert_eq!(trial.errors_grow_fast(), expected, "{small} of {accurate}");
+    }
+}
+
+/// A frame counts as small if no bound until then has exceeded 1/64 of the tolerance.
+#[test]
+fn small_frames_end_at_the_first_larger_bound() -> Result<(), Error> {
+    let problem = Problem {
+        rate: 30,
+        tolerance: 2e-4,
+        ..oscillation()
+    };
+    let stepping = Stepping {
+        method: Method::Rk4Fixed32,
+        steps: 1,
+    };
+    let mut trial = Trial::new(stepping, &problem, Judges::FinerRuns(3), stepping);
+    let mut small = 0;
+    for frame in 1..=60 {
+        while trial.prepare(&problem)? {}
+        while trial.advance(&Costs::CORTEX_M3, f32::INFINITY) > 0.0 {}
+        trial.compare(problem.time(frame));
+
+        // The estimated error is the largest distance until now.
+        if trial.factor() * trial.candidates[OWN].error <= SMALL {
+            small = frame;
+        }
+        assert_eq!(trial.small_frames, small, "{frame}");
+    }
+    assert!((1..60).contains(&small), "{small}");
+    Ok(())
+}
+
 /// [`Trial::cost`] estimates the cost of a frame exactly, with each number of finer runs and
 /// with a reference, except for the closed form and the shadows. The cost of a whole frame
 /// includes both.
