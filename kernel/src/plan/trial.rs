@@ -189,8 +189,8 @@ const MISSED_ALIKE: f32 = 8.0;
 /// of the time. A doubling reduces the truncation error to 1/16, so that the ratio is at least 4.
 const LITTLE: f32 = 1.5;
 
-/// The bound of an error that counts as small, in units of the tolerance, where the growth of errors
-/// is measured ([`Trial::errors_grow_fast`]).
+/// The largest bound of an error that counts as small, in units of the tolerance, where the growth
+/// of errors is measured ([`Trial::errors_grow_fast`]).
 const SMALL: f32 = 1.0 / 64.0;
 
 /// The largest number of finer runs.
@@ -234,6 +234,16 @@ fn tried(stepping: Stepping) -> [Stepping; 3] {
         steps: stepping.steps.saturating_mul(times),
         ..stepping
     })
+}
+
+/// Returns the candidates that are still accurate, each with its directions. Distances of the
+/// others would not be used, and take long without a floating-point unit.
+fn accurate<'a>(
+    candidates: &'a mut [Candidate],
+    directions: &'a [Directions],
+) -> impl Iterator<Item = (&'a mut Candidate, &'a Directions)> {
+    let all = candidates.iter_mut().zip(directions);
+    all.filter(|(candidate, _)| candidate.is_accurate())
 }
 
 /// The indices in [`Trial::candidates`] of the method and step count on trial, of plain `f32`, of
@@ -642,8 +652,10 @@ impl Trial {
     /// compared with has diverged.
     pub fn compare(&mut self, t: f64) {
         let [own, second, third, plain, fourth] = self.single.each_mut().map(Run::frame);
+        let has_closed = self.candidates[CLOSED].is_accurate();
         let closed = self
             .closed
+            .filter(|_| has_closed)
             .map_or([[f32::NAN; 2]; 2], |motion| motion.directions(t));
         let in_32_bits = [own, second, third, plain, closed];
 
@@ -663,8 +675,8 @@ impl Trial {
             if was_small && bound <= SMALL {
                 self.small_frames += 1;
             }
-            for (candidate, shown) in self.candidates.iter_mut().zip(in_32_bits) {
-                let beside = distance(self.rods, &shown, &own);
+            for (candidate, shown) in accurate(&mut self.candidates, &in_32_bits) {
+                let beside = distance(self.rods, shown, &own);
                 candidate.note(beside + greatest, beside + bound);
             }
             return;
@@ -676,8 +688,8 @@ impl Trial {
         let of_fine = spread * self.share_of_fine;
         let unresolved = if self.is_heavy { UNRESOLVED } else { 1.0 };
         let bound_of_fine = unresolved * of_fine;
-        for (candidate, shown) in self.candidates.iter_mut().zip(in_32_bits) {
-            let beside = distance(self.rods, &shown, &fine);
+        for (candidate, shown) in accurate(&mut self.candidates, &in_32_bits) {
+            let beside = distance(self.rods, shown, &fine);
             candidate.note(beside + of_fine, BESIDE_REFERENCE * beside + bound_of_fine);
         }
 
