@@ -18,8 +18,9 @@
 //! | rounding in 64 bits | its size where it arises, times the later growth of small distances |
 //!
 //! The runs in finer steps are used if planning cannot pay for a run in 64 bits, if that would be
-//! too expensive, or to find out first how fast errors grow. Their inputs are perturbed by an ulp. There are three of them, or fewer if
-//! planning cannot pay for three. With fewer runs, the bound is a larger multiple of the distance.
+//! too expensive, or to find out first how fast errors grow. Their inputs are perturbed by an ulp.
+//! There are three of them, or fewer if planning cannot pay for three. With fewer runs, the bound
+//! is a larger multiple of the distance.
 //!
 //! No run is assumed to be exact. Errors grow along a single direction, and along it two equally
 //! wrong runs may agree by chance. The growth is measured by *shadows*: motions in 32 bits that are

@@ -125,9 +125,7 @@ impl Search {
         if !has_candidates || self.most_in_64_bits() < self.least_in_64_bits? {
             return None;
         }
-        let rate = self.problem.rate;
-        let shadows = Shadows::cost_of_frame(self.shadow(), self.admissible, rate, &self.costs);
-        self.first_affordable(stepping, 0..JUDGING, shadows)
+        self.first_affordable(stepping, 0..JUDGING, self.cost_of_shadows())
     }
 
     /// Returns all possible references, the finest first, or `None` if 64 bits refuse the motion. A
@@ -139,9 +137,9 @@ impl Search {
 
     /// Returns the first pair with an index in `indices` ([`Pair::all`]) that planning can pay for
     /// in a trial of `stepping`, at the largest possible margin ([`FIRST_MARGIN_IN_64_BITS`],
-    /// [`MARGINS`]). `shadows` is the cost of a frame of the shadows. Pairs that are [too expensive](Self::is_too_expensive) are
-    /// left out if `stepping` is in 32 bits, unless it is [well
-    /// measured](Self::is_well_measured) already.
+    /// [`MARGINS`]). `shadows` is the cost of a frame of the shadows. Pairs that are [too
+    /// expensive](Self::is_too_expensive) are left out if `stepping` is in 32 bits, unless it is
+    /// [well measured](Self::is_well_measured) already.
     fn first_affordable(
         &self,
         stepping: Stepping,
@@ -243,6 +241,24 @@ impl Search {
             numbers().find(|&number| self.can_pay(self.stepping, number, frames))
         });
         affordable.unwrap_or(least)
+    }
+
+    /// Returns true if planning can pay for a trial of `in_64_bits` with the coarsest reference
+    /// that judges 64 bits, at the larger one of the [`MARGINS`].
+    pub(super) fn can_pay_for_64_bits(&self, in_64_bits: Stepping) -> bool {
+        let [margin, _] = MARGINS;
+        let Some(coarsest) = self.pairs().and_then(|mut pairs| pairs.nth(JUDGING - 1)) else {
+            return false;
+        };
+        let cost = Trial::cost(&self.costs, in_64_bits, Judges::Reference(coarsest));
+        (cost + self.cost_of_shadows()) * self.frames_to_pay(margin)
+            <= self.budget.planning - self.spent
+    }
+
+    /// Returns the cost of a frame of the shadows.
+    fn cost_of_shadows(&self) -> f32 {
+        let rate = self.problem.rate;
+        Shadows::cost_of_frame(self.shadow(), self.admissible, rate, &self.costs)
     }
 
     /// Returns true if planning can pay for a trial of `stepping` with this number of finer runs,

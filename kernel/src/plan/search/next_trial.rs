@@ -72,12 +72,8 @@ impl Search {
             return None;
         }
 
-        let [margin, _] = MARGINS;
         let in_64_bits = self.in_64_bits()?;
-        let pair = self.judging_pair(in_64_bits)?;
-        let cost = Trial::cost(&self.costs, in_64_bits, Judges::Reference(pair));
-        let left = self.budget.planning - self.spent;
-        (cost * self.frames_to_pay(margin) <= left).then_some(in_64_bits)
+        self.can_pay_for_64_bits(in_64_bits).then_some(in_64_bits)
     }
 
     /// Continues the search after a method has refused the motion with `error`.

@@ -325,8 +325,8 @@ fn finer_steps_gain_little_if_four_times_the_steps_do() {
     }
 }
 
-/// Errors grow fast if the bound first exceeded 1/64 of the tolerance later than at a quarter of the
-/// accurate frames.
+/// Errors grow fast if the bound first exceeded 1/64 of the tolerance later than at a quarter of
+/// the accurate frames.
 #[test]
 fn errors_grow_fast_if_they_are_small_for_more_than_a_quarter() {
     let stepping = Stepping {
