@@ -44,7 +44,7 @@
 //! fixed point, by their costs. If fixed point refuses the motion, or all steps that a frame can
 //! pay for, it is `f32`.
 //!
-//! The search changes to 64 bits if the first trial shows that errors grow faster than the cube of
+//! The search changes to 64 bits if three finer runs show that errors grow faster than the cube of
 //! the time, as in chaotic motions; if rounding is the larger error; if 64 bits cost less; or if 32
 //! bits fail early and planning can pay for 64 bits but not for finer steps in 32 bits as well,
 //! unless 64 bits are too expensive and finer steps gain much. It then takes the finest steps that

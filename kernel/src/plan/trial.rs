@@ -236,8 +236,8 @@ fn tried(stepping: Stepping) -> [Stepping; 3] {
     })
 }
 
-/// Returns the candidates that are still accurate, each with its directions. Distances of the
-/// others would not be used, and take long without a floating-point unit.
+/// Returns the candidates that are still accurate, each with its directions. The distances of the
+/// others are not needed, and slow to compute without a floating-point unit.
 fn accurate<'a>(
     candidates: &'a mut [Candidate],
     directions: &'a [Directions],
@@ -247,8 +247,8 @@ fn accurate<'a>(
 }
 
 /// The indices in [`Trial::candidates`] of the method and step count on trial, of plain `f32`, of
-/// the closed form, and of the coarse and the fine run of the reference. Runs in 32 bits have the
-/// same indices.
+/// the closed form, and of the coarse and the fine run of the reference. The first two are also
+/// indices in [`Trial::single`].
 const OWN: usize = 0;
 const PLAIN: usize = 3;
 const CLOSED: usize = 4;
@@ -287,8 +287,8 @@ pub(super) struct Trial {
     /// True if the rounding error is larger than the truncation error, of the single candidate or
     /// of the fine run.
     by_rounding: bool,
-    /// The number of frames before the bound of the single candidate first exceeded 1/64
-    /// ([`SMALL`]). 0 with a reference.
+    /// The number of frames before the bound of the single candidate first exceeded 1/64 of the
+    /// tolerance ([`SMALL`]). It is 0 with a reference.
     pub(super) small_frames: u32,
     /// The share of the distance of the reference's runs that bounds the error of the fine run.
     share_of_fine: f32,
@@ -669,6 +669,7 @@ impl Trial {
             self.by_rounding = distances.clone().any(|distance| 2.0 * distance < greatest);
             let bound = self.factor() * greatest;
 
+            // Count the frames until the bound is no longer small. They show how errors grow.
             let candidate = &self.candidates[OWN];
             let was_small =
                 candidate.is_accurate() && self.small_frames == candidate.accurate_frames;
@@ -783,10 +784,10 @@ impl Trial {
         third < LITTLE * second
     }
 
-    /// Returns true if the error of the single candidate grows faster than the cube of the time: if
-    /// its bound first exceeded 1/64 of the tolerance later than at a quarter of its accurate
-    /// frames, or has not exceeded it yet. Returns false with a reference, and before a frame is
-    /// accurate.
+    /// Returns true if the bound of the single candidate was at most 1/64 of the tolerance for more
+    /// than a quarter of its accurate frames. If it has failed, its error has then grown faster
+    /// than the cube of the time, because 1/64 is the cube of a quarter. Returns false with a
+    /// reference, and before a frame is accurate.
     ///
     /// In a regular motion errors usually grow at most with the square of the time. In a chaotic
     /// one they grow exponentially.

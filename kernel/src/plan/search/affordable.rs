@@ -19,8 +19,8 @@ use crate::table::Method;
 /// 32 bits. The second is 1.25 because finer steps in 32 bits may be accurate for that long.
 pub(super) const MARGINS: [f32; 2] = [2.75, 1.25];
 
-/// The margin that comes before these in a trial in 64 bits, while only horizons of 32 bits are
-/// known.
+/// The margin that comes before the [`MARGINS`] in a trial in 64 bits, unless the best known
+/// candidate is in 64 bits.
 ///
 /// In chaotic motions 64 bits are often accurate for four times as long as coarse steps in 32 bits,
 /// and longer. The value is measured: 4.5 and 8 give horizons of about the same length.
@@ -152,8 +152,8 @@ impl Search {
         let may_be_expensive = stepping.method == Method::Extrapolation10Fixed64
             || self.is_well_measured(stepping.steps);
 
-        // If the best candidate is in 64 bits, the horizon of 64 bits is known, and the smallest
-        // margin is enough.
+        // The first margin is for 64 bits only. If the best candidate is in 64 bits, their horizon
+        // is known, and the last margin is enough.
         let best = self.known();
         let is_known =
             best.is_some_and(|best| best.stepping.method == Method::Extrapolation10Fixed64);
@@ -197,14 +197,15 @@ impl Search {
     /// Returns true if the trial of `self.stepping` has to measure how fast errors grow, before
     /// `reference` measures the horizons.
     ///
-    /// It is the first trial in 32 bits. If errors grow fast, the motion is probably chaotic, and
-    /// planning pays for 64 bits instead of `reference`. That helps only if a frame can pay for
-    /// them, and if planning cannot pay for the finest reference to the end of the problem. If
-    /// errors grow slowly, planning must still be able to pay for `reference` to the end.
+    /// It has to if no frame is known to be accurate yet. If errors grow fast, the motion is
+    /// probably chaotic, and planning pays for 64 bits instead of `reference`. That helps only if a
+    /// frame can pay for them, if planning cannot pay for the finest reference to the end of the
+    /// problem, and if that reference costs more than 5 times as much as three finer runs
+    /// ([`EXPENSIVE`]), which a trial in 64 bits never does. If errors grow slowly, planning must
+    /// still be able to pay for `reference` to the end.
     pub(super) fn must_measure_growth(&self, reference: Pair) -> bool {
-        let is_first = self.purpose == Purpose::Horizon
-            && matches!(self.goal, Goal::FindBest { best: None })
-            && !self.stepping_is_in_64_bits();
+        let is_first =
+            self.purpose == Purpose::Horizon && matches!(self.goal, Goal::FindBest { best: None });
         if !is_first || self.in_64_bits().is_none() {
             return false;
         }

@@ -14,20 +14,22 @@ impl Search {
     /// the search, if one does.
     pub(super) fn end_trial(&mut self) -> Option<Limit> {
         self.keep_best();
+        let purpose = core::mem::replace(&mut self.purpose, Purpose::Horizon);
         let reaches_end = |best: &Candidate| best.accurate_frames >= self.problem.frames();
         if self.goal.best().is_some_and(reaches_end) {
             return Some(Limit::End);
         }
+
+        // After fast growth, try 64 bits. Otherwise repeat a trial that measured only the growth.
         if let Some(in_64_bits) = self.in_64_bits_after_growth() {
             self.begin_trial(in_64_bits);
             return None;
         }
-        if self.purpose == Purpose::Growth {
+        if purpose == Purpose::Growth {
             self.begin_trial(self.stepping);
             self.purpose = Purpose::HorizonAfterGrowth;
             return None;
         }
-        self.purpose = Purpose::Horizon;
 
         let factor = match &self.state {
             SearchState::NoTrial => None,
@@ -53,22 +55,23 @@ impl Search {
         })
     }
 
-    /// Returns the trial in 64 bits that follows a trial with three finer runs at once: if errors
-    /// grow fast, as in a chaotic motion, so that 32 bits fail in the first half of the problem,
-    /// and if planning can pay for 64 bits for 2.75 times the known horizon.
+    /// Returns the steps in 64 bits that follow a trial with three finer runs, which is over: if
+    /// errors have grown fast, as in a chaotic motion, if 32 bits have failed in the first half of
+    /// the problem, if a frame can pay for 64 bits, and if planning can pay for them for 2.75 times
+    /// the known horizon.
     ///
-    /// Returns `None` as well if 32 bits fail in the first 1/16 of the problem. A heavy bob 2 can
-    /// make errors grow fast for moments, in a regular motion too.
+    /// Returns `None` as well if one method is evaluated, or if 32 bits have failed in the first
+    /// 1/16 of the problem. A heavy bob 2 can make errors grow fast for moments, also in a regular
+    /// motion.
     pub(super) fn in_64_bits_after_growth(&self) -> Option<Stepping> {
         let SearchState::Trying { trial, .. } = &self.state else {
             return None;
         };
         let frames = trial.frames_in_32_bits();
-        let is_early = self.fails_early(trial) && frames > self.problem.frames() / 16;
-        let is_measured =
-            trial.finer_runs() == MOST_FINER_RUNS && !trial.has_candidate_in_32_bits();
+        let is_in_range = self.fails_early(trial) && frames > self.problem.frames() / 16;
+        let is_measured = trial.finer_runs() == MOST_FINER_RUNS;
         let is_evaluation = matches!(self.goal, Goal::Evaluate { .. });
-        if is_evaluation || !is_early || !is_measured || !trial.errors_grow_fast() {
+        if is_evaluation || !is_in_range || !is_measured || !trial.errors_grow_fast() {
             return None;
         }
 

@@ -305,12 +305,12 @@ fn planning_pays_for_the_shadows_of_64_bits() -> Result<(), PlanError> {
     Ok(())
 }
 
-/// A trial in 64 bits takes the finest reference that is affordable for 2.75 times the known
-/// horizon, or for 1.25 times if the best candidate is in 64 bits already. Of the four references
-/// that judge candidates in 64 bits, it is here the coarsest in the first case and the finest in
-/// the second.
+/// A trial in 64 bits takes the finest reference that is affordable for 6 or else 2.75 times the
+/// known horizon, or for 1.25 times if the best candidate is in 64 bits already. Of the four
+/// references that judge candidates in 64 bits, it is here the coarsest in the first case and the
+/// finest in the second.
 #[test]
-fn known_horizon_of_64_bits_needs_the_smaller_margin() -> Result<(), PlanError> {
+fn known_horizon_of_64_bits_needs_the_smallest_margin() -> Result<(), PlanError> {
     let mut search = at_a_low_rate()?;
     search.problem.duration = 120.0;
     let mut pairs = judging_pairs(&search);
@@ -908,71 +908,105 @@ fn on_trial(search: &mut Search) -> &mut Trial {
     }
 }
 
-/// Returns a search before its first trial, and the costs of all frames of three trials: with the
-/// finest reference, with the coarsest one, and with three finer runs.
-fn before_first_trial() -> Result<(Search, [f32; 3]), PlanError> {
+/// Returns a search before its first trial, without a planning budget.
+fn before_first_trial() -> Result<Search, PlanError> {
     let mut search = in_first_trial()?;
     search.begin_trial(search.stepping);
     search.spent = 0.0;
+    search.budget.planning = 0.0;
+    Ok(search)
+}
+
+/// Returns the costs of all frames of three trials: with the finest reference, with the coarsest
+/// one, and with three finer runs.
+fn costs_of_first_trials(search: &Search) -> [f32; 3] {
     let mut pairs = search.pairs().expect("64 bits accept the motion");
     let (Some(finest), Some(coarsest)) = (pairs.next(), pairs.next_back()) else {
-        panic!("there are six pairs");
+        panic!("there are several pairs");
     };
-    let costs = [
+    let frames = search.problem.frames() as f32;
+    [
         Judges::Reference(finest),
         Judges::Reference(coarsest),
         Judges::FinerRuns(MOST_FINER_RUNS),
-    ];
-    let frames = search.problem.frames() as f32;
-    let costs = costs.map(|judges| frames * Trial::cost(&search.costs, search.stepping, judges));
-    Ok((search, costs))
+    ]
+    .map(|judges| frames * Trial::cost(&search.costs, search.stepping, judges))
 }
 
-/// The growth of errors is measured if planning can pay for that and for the reference, but not for
-/// the finest reference.
+/// Returns true if the first trial measures the growth of errors, with this planning budget and the
+/// coarsest reference.
+fn measures_growth(search: &Search, planning: f32) -> bool {
+    let mut search = *search;
+    search.budget.planning = planning;
+    let coarsest = search.pairs().and_then(Iterator::last).expect("pairs");
+    search.must_measure_growth(coarsest)
+}
+
+/// The growth of errors is measured if planning can pay for half of that and for the reference, but
+/// not for the finest reference.
 #[test]
 fn growth_is_measured_if_the_finest_reference_is_not_affordable() -> Result<(), PlanError> {
-    let (search, [finest, coarsest, finer_runs]) = before_first_trial()?;
-    let reference = search.pairs().and_then(Iterator::last).expect("six pairs");
+    let search = before_first_trial()?;
+    let [finest, coarsest, finer_runs] = costs_of_first_trials(&search);
     let least = coarsest + 0.5 * finer_runs;
-    assert!(least < finest && finest > 5.0 * finer_runs);
-    let measures = |search: &Search, planning| {
-        let mut search = *search;
-        search.budget.planning = planning;
-        search.must_measure_growth(reference)
-    };
     for (planning, expected) in [
         (0.99 * least, false),
         (1.01 * least, true),
         (0.99 * finest, true),
         (1.01 * finest, false),
     ] {
-        assert_eq!(measures(&search, planning), expected, "{planning}");
+        assert_eq!(measures_growth(&search, planning), expected, "{planning}");
     }
 
-    // A horizon is known; one method is evaluated; the trial is in 64 bits, or is repeated; a frame
-    // cannot pay for 64 bits; finer runs cost almost as much as the reference.
+    // A candidate is known; one method is evaluated; the trial is repeated.
     let candidate = Candidate::new(search.stepping);
-    let changes: [fn(&mut Search, Candidate); 6] = [
+    let changes: [fn(&mut Search, Candidate); 3] = [
         |search, best| search.goal = Goal::FindBest { best: Some(best) },
         |search, only| search.goal = Goal::Evaluate { only },
-        |search, _| search.stepping.method = Method::Extrapolation10Fixed64,
         |search, _| search.purpose = Purpose::HorizonAfterGrowth,
-        |search, _| search.budget.frame = search.costs.fixed64,
-        |search, _| search.costs.fixed32 = search.costs.fixed64,
     ];
     for (i, change) in changes.into_iter().enumerate() {
         let mut search = search;
         change(&mut search, candidate);
-        assert!(!measures(&search, 0.99 * finest), "change {i}");
+        assert!(!measures_growth(&search, 0.99 * finest), "change {i}");
     }
+    Ok(())
+}
+
+/// The growth of errors is measured only if the finest reference costs more than 5 times as much as
+/// three finer runs, and if a frame can pay for 64 bits.
+#[test]
+fn growth_is_measured_before_expensive_references_only() -> Result<(), PlanError> {
+    let search = before_first_trial()?;
+    let measures = |change: fn(&mut Search)| {
+        let mut search = search;
+        change(&mut search);
+        let [finest, coarsest, finer_runs] = costs_of_first_trials(&search);
+        let planning = 0.99 * finest;
+        assert!(coarsest + 0.5 * finer_runs < planning);
+        (finest / finer_runs, measures_growth(&search, planning))
+    };
+
+    // Four times the price of 32 bits makes the finest reference cheap by comparison.
+    let (ratio, is_measured) = measures(|_| ());
+    assert!(ratio > 5.0 && is_measured, "{ratio}");
+    let (ratio, is_measured) = measures(|search| search.costs.fixed32 *= 4.0);
+    assert!(ratio < 5.0 && !is_measured, "{ratio}");
+
+    // A frame cannot pay for a single step in 64 bits.
+    let (ratio, is_measured) = measures(|search| {
+        search.costs.fixed64 *= 10.0;
+        search.budget.frame = 0.5 * search.costs.fixed64;
+    });
+    assert!(ratio > 5.0 && !is_measured, "{ratio}");
     Ok(())
 }
 
 /// Returns a search in a first trial that measures the growth of errors, after `frames` accurate
 /// frames of 600. In the first `small` ones the bound was small.
 fn measuring_growth(frames: u32, small: u32, fails: bool) -> Result<Search, PlanError> {
-    let (mut search, [finest, ..]) = before_first_trial()?;
+    let mut search = before_first_trial()?;
+    let [finest, ..] = costs_of_first_trials(&search);
     search.budget.planning = 0.99 * finest;
     search.create_trial();
     assert_eq!(search.purpose, Purpose::Growth);
@@ -985,8 +1019,8 @@ fn measuring_growth(frames: u32, small: u32, fails: bool) -> Result<Search, Plan
 }
 
 /// A trial that measures the growth of errors is over when the candidate fails, when errors have
-/// grown slowly, or in the middle of the problem. After fast growth 64 bits follow. Otherwise the
-/// trial is repeated with a reference, as if it had not been.
+/// grown slowly, or in the middle of the problem. After fast growth 64 bits follow, if 32 bits have
+/// failed between 1/16 and 1/2 of the problem. Otherwise the trial is repeated with a reference.
 #[test]
 fn sixty_four_bits_follow_fast_growth() -> Result<(), PlanError> {
     for (frames, small, fails, is_decided, is_fast) in [
@@ -1037,6 +1071,16 @@ fn repeated_trial_makes_the_horizon_known() -> Result<(), PlanError> {
     Ok(())
 }
 
+/// If a trial that measures the growth of errors reaches the end of the problem, the search is over
+/// and may be extended: the purpose is the horizon then.
+#[test]
+fn growth_is_not_measured_beyond_the_end() -> Result<(), PlanError> {
+    let mut search = measuring_growth(600, 0, false)?;
+    assert_eq!(search.end_trial(), Some(Limit::End));
+    assert_eq!(search.purpose, Purpose::Horizon);
+    Ok(())
+}
+
 /// 64 bits do not follow fast growth at once if planning cannot pay for 2.75 times the known
 /// horizon, with fewer than three finer runs, or in the evaluation of one method.
 #[test]
@@ -1045,16 +1089,18 @@ fn sixty_four_bits_wait_if_planning_cannot_pay_for_them() -> Result<(), PlanErro
     search.keep_best();
     assert!(search.in_64_bits_after_growth().is_some());
 
-    // The coarsest pair that judges 64 bits. The cost of the shadows is small.
+    // The coarsest pair that judges 64 bits, and the shadows.
     let in_64_bits = search.in_64_bits().expect("a frame can pay for it");
     let pair = judging_pairs(&search).next_back().expect("a pair");
-    let cost = Trial::cost(&search.costs, in_64_bits, Judges::Reference(pair));
-    for (margin, expected) in [(2.5, false), (3.5, true)] {
-        search.budget.planning = search.spent + margin * 100.0 * cost;
+    let (rate, admissible) = (search.problem.rate, search.admissible);
+    let cost = Trial::cost(&search.costs, in_64_bits, Judges::Reference(pair))
+        + Shadows::cost_of_frame(search.shadow(), admissible, rate, &search.costs);
+    for (share, expected) in [(0.999, false), (1.001, true)] {
+        search.budget.planning = search.spent + share * 2.75 * 100.0 * cost;
         assert_eq!(
             search.in_64_bits_after_growth().is_some(),
             expected,
-            "{margin}"
+            "{share}"
         );
     }
 
@@ -1073,8 +1119,8 @@ fn sixty_four_bits_wait_if_planning_cannot_pay_for_them() -> Result<(), PlanErro
     Ok(())
 }
 
-/// The first trial in 64 bits has the finest reference that planning can pay for, for 6 times the
-/// known horizon of 32 bits. The next one has it for 1.25 times the horizon of 64 bits.
+/// The first trial in 64 bits has the finest reference that is affordable for 6 times the known
+/// horizon of 32 bits; the next one, for 1.25 times that of 64 bits.
 #[test]
 fn first_trial_in_64_bits_may_last_six_times_as_long() -> Result<(), PlanError> {
     const FRAMES: u32 = 5;
@@ -1091,6 +1137,35 @@ fn first_trial_in_64_bits_may_last_six_times_as_long() -> Result<(), PlanError> 
             let pair = search.pair_within_budget(in_64_bits);
             assert_eq!(pair == Some(finest), expected, "{method:?}, {factor}");
         }
+    }
+    Ok(())
+}
+
+/// A trial in 32 bits has the finest reference that is affordable for 2.75 times the known horizon,
+/// even if 6 times are affordable with a coarser one.
+#[test]
+fn trial_in_32_bits_may_last_2_75_times_as_long() -> Result<(), PlanError> {
+    const FRAMES: u32 = 5;
+    let mut search = at_a_low_rate()?;
+    let in_32_bits = in_first_trial()?.stepping;
+    let best = measured(Candidate::new(in_32_bits), FRAMES, true);
+    search.goal.set_best(best);
+    let mut pairs = judging_pairs(&search);
+    let finest = pairs.next().expect("several pairs");
+    let coarsest = pairs.next_back().expect("several pairs");
+    let (rate, admissible) = (search.problem.rate, search.admissible);
+    let shadows = Shadows::cost_of_frame(search.shadow(), admissible, rate, &search.costs);
+    let [finest_costs, coarsest_costs] = [finest, coarsest].map(|pair| {
+        let cost = Trial::cost(&search.costs, in_32_bits, Judges::Reference(pair)) + shadows;
+        FRAMES as f32 * cost
+    });
+
+    let enough = search.spent + f32::max(1.001 * 2.75 * finest_costs, 6.001 * coarsest_costs);
+    let too_little = search.spent + 0.999 * 2.75 * finest_costs;
+    for (planning, expected) in [(too_little, false), (enough, true)] {
+        search.budget.planning = planning;
+        let pair = search.judging_pair(in_32_bits);
+        assert_eq!(pair == Some(finest), expected, "{planning}");
     }
     Ok(())
 }

@@ -325,8 +325,8 @@ fn finer_steps_gain_little_if_four_times_the_steps_do() {
     }
 }
 
-/// Errors grow fast if the bound first exceeded 1/64 of the tolerance later than at a quarter of
-/// the accurate frames.
+/// Errors grow fast if the bound was at most 1/64 of the tolerance for more than a quarter of the
+/// accurate frames.
 #[test]
 fn errors_grow_fast_if_they_are_small_for_more_than_a_quarter() {
     let stepping = Stepping {
@@ -367,7 +367,7 @@ fn small_frames_end_at_the_first_larger_bound() -> Result<(), Error> {
         trial.compare(problem.time(frame));
 
         // The estimated error is the largest distance until now.
-        if trial.factor() * trial.candidates[OWN].error <= SMALL {
+        if trial.factor() * trial.candidates[OWN].error <= 1.0 / 64.0 {
             small = frame;
         }
         assert_eq!(trial.small_frames, small, "{frame}");
