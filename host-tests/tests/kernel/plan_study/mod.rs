@@ -1,9 +1,11 @@
 //! The planner's predictions against the exact motion, over scenes of all kinds, for every
 //! processor.
 
+mod limits;
 mod scenes;
 
 use std::env;
+use std::ops::RangeInclusive;
 
 use double_pendulum::Method;
 use double_pendulum::plan::{Plan, PlanError, PlannedRun, Problem, Search, Stepping};
@@ -465,8 +467,8 @@ fn assert_horizon(class: Class, (seed, index): (u64, usize), name: &str, least: 
     );
 }
 
-/// With high starts, planning is spent on 64 bits as soon as errors grow fast: in the first three
-/// scenes after a trial with three finer runs, in the other two after finer steps in 32 bits have
+/// With high starts, planning is spent on 64 bits: in the first three scenes after fast growth of
+/// errors in a trial with three finer runs, in the other two after finer steps in 32 bits have
 /// gained little. Without these rules the predicted horizons were 16.4, 17.4, 18.5, 8.9 and 8.8 s.
 #[test]
 fn high_starts_keep_their_horizons() {
@@ -516,6 +518,19 @@ fn motions_near_upright_have_a_method() {
     }
 }
 
+/// Returns the number of scenes and the seeds of a long run. The environment variables
+/// `SCENES=200 SEED=1` select fewer scenes or a single seed.
+fn in_environment() -> (usize, RangeInclusive<u64>) {
+    let number = |name: &str| {
+        env::var(name)
+            .ok()
+            .and_then(|text| text.parse::<u64>().ok())
+    };
+    let count = number("SCENES").map_or(SCENES, |count| count as usize);
+    let seeds = number("SEED").map_or(1..=SEEDS, |seed| seed..=seed);
+    (count, seeds)
+}
+
 /// Studies a whole class. At most [`VIOLATIONS`] plans for each processor and seed may have an
 /// inaccurate frame before the predicted horizon, of at most [`LARGEST`] half pixels.
 ///
@@ -531,14 +546,7 @@ fn motions_near_upright_have_a_method() {
 ///
 /// The environment variables `SCENES=200 SEED=1` select fewer scenes.
 fn thousands(class: Class) {
-    let number = |name: &str| {
-        env::var(name)
-            .ok()
-            .and_then(|text| text.parse::<u64>().ok())
-    };
-    // The environment may select fewer scenes or a single seed.
-    let count = number("SCENES").map_or(SCENES, |count| count as usize);
-    let seeds = number("SEED").map_or(1..=SEEDS, |seed| seed..=seed);
+    let (count, seeds) = in_environment();
     println!(
         "| class, seed | processor | no method | end early | violations | largest error \
         | median share | 5 % | median reachable | 5 % |"
