@@ -1,7 +1,7 @@
 //! The planner's predictions against the exact motion, over scenes of all kinds, for every
 //! processor.
 
-mod limits;
+mod ideal_search;
 mod scenes;
 
 use std::env;
@@ -519,7 +519,7 @@ fn motions_near_upright_have_a_method() {
 }
 
 /// Returns the number of scenes and the seeds of a long run. The environment variables
-/// `SCENES=200 SEED=1` select fewer scenes or a single seed.
+/// `SCENES=200 SEED=1` select fewer scenes or a single seed. A value that is no number is ignored.
 fn in_environment() -> (usize, RangeInclusive<u64>) {
     let number = |name: &str| {
         env::var(name)
@@ -535,11 +535,11 @@ fn in_environment() -> (usize, RangeInclusive<u64>) {
 /// inaccurate frame before the predicted horizon, of at most [`LARGEST`] half pixels.
 ///
 /// The shares of the horizons must be at least [`SHARE`] if [`LEAST_ENDING`] plans or more end
-/// early. This is a known failure of all classes but high starts: most plans end early because
+/// early. This is a known failure of all classes but high starts. Most plans end early because
 /// their planning budget is used up: the cycles that a board can spare while it plays the scene.
-/// The reachable shares show how much longer the horizons could be if planning measured a single
-/// method. A search can do slightly better: it knows a horizon from earlier trials, and needs a
-/// reference only for that long.
+/// The reachable shares are those of a plan that measures a single method as the planner does. They
+/// are no upper limit: a search knows a horizon from earlier trials, and needs a reference only for
+/// that long. The study [`ideal_search`] measures a search that knows the best method.
 ///
 /// `cargo test -p host-tests --test kernel plan_study::thousands --
 /// --ignored --nocapture` prints the README's table.

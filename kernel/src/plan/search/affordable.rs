@@ -200,9 +200,9 @@ impl Search {
     /// It has to if no frame is known to be accurate yet. If errors grow fast, the motion is
     /// probably chaotic, and planning pays for 64 bits instead of `reference`. That helps only if a
     /// frame can pay for them, if planning cannot pay for the finest reference to the end of the
-    /// problem, and if that reference costs more than 5 times as much as three finer runs
-    /// ([`EXPENSIVE`]), which a trial in 64 bits never does. If errors grow slowly, planning must
-    /// still be able to pay for `reference` to the end.
+    /// problem, and if a trial with that reference costs more than 5 times as much as one with
+    /// three finer runs ([`EXPENSIVE`]), which a trial in 64 bits never does. If errors grow
+    /// slowly, planning must still be able to pay for `reference` to the end.
     pub(super) fn must_measure_growth(&self, reference: Pair) -> bool {
         let is_first =
             self.purpose == Purpose::Horizon && matches!(self.goal, Goal::FindBest { best: None });

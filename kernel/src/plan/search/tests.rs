@@ -942,8 +942,8 @@ fn measures_growth(search: &Search, planning: f32) -> bool {
     search.must_measure_growth(coarsest)
 }
 
-/// The growth of errors is measured if planning can pay for half of that and for the reference, but
-/// not for the finest reference.
+/// The growth of errors is measured if planning can pay for three finer runs to the middle of the
+/// problem and for the reference to its end, but not for the finest reference to the end.
 #[test]
 fn growth_is_measured_if_the_finest_reference_is_not_affordable() -> Result<(), PlanError> {
     let search = before_first_trial()?;
@@ -973,8 +973,8 @@ fn growth_is_measured_if_the_finest_reference_is_not_affordable() -> Result<(), 
     Ok(())
 }
 
-/// The growth of errors is measured only if the finest reference costs more than 5 times as much as
-/// three finer runs, and if a frame can pay for 64 bits.
+/// The growth of errors is measured only if a trial with the finest reference costs more than 5
+/// times as much as one with three finer runs, and if a frame can pay for 64 bits.
 #[test]
 fn growth_is_measured_before_expensive_references_only() -> Result<(), PlanError> {
     let search = before_first_trial()?;
@@ -987,9 +987,10 @@ fn growth_is_measured_before_expensive_references_only() -> Result<(), PlanError
         (finest / finer_runs, measures_growth(&search, planning))
     };
 
-    // Four times the price of 32 bits makes the finest reference cheap by comparison.
     let (ratio, is_measured) = measures(|_| ());
     assert!(ratio > 5.0 && is_measured, "{ratio}");
+
+    // Four times the price of 32 bits makes the finest reference cheap by comparison.
     let (ratio, is_measured) = measures(|search| search.costs.fixed32 *= 4.0);
     assert!(ratio < 5.0 && !is_measured, "{ratio}");
 
@@ -1003,7 +1004,8 @@ fn growth_is_measured_before_expensive_references_only() -> Result<(), PlanError
 }
 
 /// Returns a search in a first trial that measures the growth of errors, after `frames` accurate
-/// frames of 600. In the first `small` ones the bound was small.
+/// frames of 600. In the first `small` ones the bound was small. If `fails` is true, the next frame
+/// was inaccurate.
 fn measuring_growth(frames: u32, small: u32, fails: bool) -> Result<Search, PlanError> {
     let mut search = before_first_trial()?;
     let [finest, ..] = costs_of_first_trials(&search);
@@ -1071,11 +1073,12 @@ fn repeated_trial_makes_the_horizon_known() -> Result<(), PlanError> {
     Ok(())
 }
 
-/// If a trial that measures the growth of errors reaches the end of the problem, the search is over
-/// and may be extended: the purpose is the horizon then.
+/// A problem of one frame may end with the trial that measures the growth of errors. The purpose is
+/// then the horizon, so that the search may be extended.
 #[test]
 fn growth_is_not_measured_beyond_the_end() -> Result<(), PlanError> {
-    let mut search = measuring_growth(600, 0, false)?;
+    let mut search = measuring_growth(1, 0, false)?;
+    search.problem.duration = search.problem.time(1);
     assert_eq!(search.end_trial(), Some(Limit::End));
     assert_eq!(search.purpose, Purpose::Horizon);
     Ok(())
@@ -1120,7 +1123,8 @@ fn sixty_four_bits_wait_if_planning_cannot_pay_for_them() -> Result<(), PlanErro
 }
 
 /// The first trial in 64 bits has the finest reference that is affordable for 6 times the known
-/// horizon of 32 bits; the next one, for 1.25 times that of 64 bits.
+/// horizon of 32 bits. The next trial has the finest one that is affordable for 1.25 times the
+/// horizon of 64 bits.
 #[test]
 fn first_trial_in_64_bits_may_last_six_times_as_long() -> Result<(), PlanError> {
     const FRAMES: u32 = 5;
@@ -1162,6 +1166,7 @@ fn trial_in_32_bits_may_last_2_75_times_as_long() -> Result<(), PlanError> {
 
     let enough = search.spent + f32::max(1.001 * 2.75 * finest_costs, 6.001 * coarsest_costs);
     let too_little = search.spent + 0.999 * 2.75 * finest_costs;
+    assert!(enough < search.spent + 6.0 * finest_costs);
     for (planning, expected) in [(too_little, false), (enough, true)] {
         search.budget.planning = planning;
         let pair = search.judging_pair(in_32_bits);
