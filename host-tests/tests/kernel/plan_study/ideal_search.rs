@@ -162,13 +162,13 @@ fn shares(scene: &Problem) -> Vec<Option<(f64, bool)>> {
 
 /// Of the scenes that even the ideal search does not verify to the end, it does not verify three
 /// quarters of the longest horizon in 95 %: the planning budgets, which are the cycles that a board
-/// can spare while it plays the scene, are too small. This is a known failure of at least one
-/// processor.
+/// can spare while it plays the scene, are too small. This is a known failure; the test requires
+/// it of one processor at least.
 ///
 /// `SEED=1 cargo test -p host-tests --test kernel plan_study::ideal -- --ignored --nocapture`
 /// prints the numbers of the README. `SCENES=200` selects fewer scenes.
 #[test]
-#[ignore = "half an hour"]
+#[ignore = "an hour"]
 fn ideal_search_misses_three_quarters() {
     let (count, seeds) = in_environment();
     println!(
