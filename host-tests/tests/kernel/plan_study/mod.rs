@@ -84,30 +84,39 @@ impl Exact {
         self.frames[frame as usize - 1]
     }
 
+    /// Returns the error of each frame of a run, half pixels, or `None` if the run is refused. The
+    /// errors are infinite after the motion has diverged.
+    fn errors(&mut self, stepping: Stepping) -> Option<impl Iterator<Item = f64>> {
+        let scene = self.scene;
+        let mut run = PlannedRun::new(&scene, stepping).ok()?;
+        Some((1..=scene.frames()).map(move |frame| {
+            let exact = self.frame(frame);
+            match run.advance(1) {
+                Ok(()) => distance(&scene, run.directions(), exact),
+                Err(_) => f64::INFINITY,
+            }
+        }))
+    }
+
     /// Returns the number of frames of a run before the first inaccurate one, and its largest error
     /// in the first `until` frames, half pixels. A run that is refused has no accurate frame and an
     /// infinite error; so has a frame after the motion has diverged.
     fn judge(&mut self, stepping: Stepping, until: u32) -> (u32, f64) {
-        let Ok(mut run) = PlannedRun::new(&self.scene, stepping) else {
+        let Some(errors) = self.errors(stepping) else {
             return (0, f64::INFINITY);
         };
         let mut accurate = 0;
         let mut is_accurate = true;
         let mut largest = 0.0_f64;
-        for frame in 1..=self.scene.frames() {
-            if !is_accurate && frame > until {
-                break;
-            }
-            let exact = self.frame(frame);
-            let error = match run.advance(1) {
-                Ok(()) => distance(&self.scene, run.directions(), exact),
-                Err(_) => f64::INFINITY,
-            };
+        for (frame, error) in (1..).zip(errors) {
             // The count ends with the first inaccurate frame.
             is_accurate &= error <= 1.0;
             accurate += u32::from(is_accurate);
             if frame <= until {
                 largest = largest.max(error);
+            }
+            if !is_accurate && frame >= until {
+                break;
             }
         }
         (accurate, largest)

@@ -149,15 +149,14 @@ impl Search {
         let pairs = self.pairs()?.take(indices.end).skip(indices.start);
 
         // Steps in 32 bits are first measured with finer runs if a reference is too expensive.
-        let may_be_expensive = stepping.method == Method::Extrapolation10Fixed64
-            || self.is_well_measured(stepping.steps);
+        let is_in_64_bits = stepping.method == Method::Extrapolation10Fixed64;
+        let may_be_expensive = is_in_64_bits || self.is_well_measured(stepping.steps);
 
         // The first margin is for 64 bits only. If the best candidate is in 64 bits, their horizon
         // is known, and the last margin is enough.
         let best = self.known();
         let is_known =
             best.is_some_and(|best| best.stepping.method == Method::Extrapolation10Fixed64);
-        let is_in_64_bits = stepping.method == Method::Extrapolation10Fixed64;
         let margins = [FIRST_MARGIN_IN_64_BITS].into_iter().chain(MARGINS);
         let skipped = match (is_in_64_bits, is_known) {
             (true, false) => 0,
@@ -245,7 +244,7 @@ impl Search {
     }
 
     /// Returns true if planning can pay for a trial of `in_64_bits` with the coarsest reference
-    /// that judges 64 bits, at the larger one of the [`MARGINS`].
+    /// that judges 64 bits, at the first of the [`MARGINS`].
     pub(super) fn can_pay_for_64_bits(&self, in_64_bits: Stepping) -> bool {
         let [margin, _] = MARGINS;
         let Some(coarsest) = self.pairs().and_then(|mut pairs| pairs.nth(JUDGING - 1)) else {
