@@ -121,7 +121,6 @@
 //! - **rate-limited log**: a log line that appears at most once a second, such as lost bytes.
 #![cfg_attr(not(test), no_std)]
 #![deny(unsafe_code)]
-#![allow(missing_docs, reason = "what name and type say is not said again")]
 
 /// Defines an enum of named choices. Each row gives a variant and its name for people. The first
 /// variant is the default. The call also contains the documentation of the enum and of its

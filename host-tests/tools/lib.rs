@@ -19,10 +19,6 @@
 
 #![forbid(unsafe_code)]
 #![deny(clippy::print_stdout, clippy::print_stderr)]
-#![allow(
-    missing_docs,
-    reason = "no other package uses this one, and most names and types explain themselves"
-)]
 
 pub mod commands;
 pub mod oracle;

@@ -18,29 +18,14 @@ pub struct Job<R = OnBoards> {
     turns: Option<[Turns; 2]>,
     /// The number of steps from one sample to the next.
     stride: u32,
-    /// The number of samples returned, including the initial one, at most 2^32 - 1. A reading that
-    /// is not finite counts, too.
     pub given: u32,
-    /// The number of samples left, including the initial one.
     left: u32,
     /// The number of steps until the next sample.
     steps: u32,
 }
 
 impl<R: Run> Job<R> {
-    /// Creates the job of a request, where `run` is its motion at the start. Of the request it uses
-    /// the parameters, the method, the angles (rad), `stride` and `samples`. If the stride is 0,
-    /// every reading is the initial one. The job returns the initial reading and `samples`
-    /// more, in all at most 2^32 - 1: of `u32::MAX` the last is left out.
-    ///
-    /// Not checked: `run` is the motion of this request, by its method, before the first step. Its
-    /// angles are then finite.
-    ///
-    /// # Errors
-    ///
-    /// Refuses parameters that [`Pendulum::new`] refuses after they are rounded to the precision of
-    /// the method. If the job counts turns, refuses angles of 2^31 - 1 turns or more, by
-    /// [`Error::OutOfRange`].
+    /// Creates the job of a request, where `run` is its motion at the start.
     pub fn new(run: R, request: &Request) -> Result<Self, Error> {
         let Request {
             method,
@@ -71,20 +56,13 @@ impl<R: Run> Job<R> {
         })
     }
 
-    /// Returns true if every sample has been returned, or if an error or a
-    /// [measurement](Self::measure) has ended the job.
     pub fn is_finished(&self) -> bool {
         self.left == 0
     }
 
-    /// Computes at most one step. Returns the reading if a sample is due, and `None` if none is or
-    /// if the job is finished. The first call computes no step and returns the initial reading.
-    ///
-    /// # Errors
-    ///
-    /// Returns [`Error::Diverged`] instead of a reading with a number that is not finite, and ends
-    /// the job. All earlier readings are finite. A motion whose numbers are finite but meaningless
-    /// is not noticed.
+    /// Computes at most one step, and returns the reading if a sample is due. The first call
+    /// computes no step and returns the initial reading. A reading with a number that is not finite
+    /// ends the job.
     pub fn advance(&mut self) -> Result<Option<Reading>, Error> {
         if self.is_finished() {
             return Ok(None);
@@ -104,15 +82,13 @@ impl<R: Run> Job<R> {
         self.reading().map(Some).inspect_err(|_| self.left = 0)
     }
 
-    /// Runs `advance` on the motion, so that its time can be measured, and returns its result. The
-    /// job ends, because its later samples would be wrong. It can be measured again, and so can a
-    /// job that has ended otherwise, also by divergence.
+    /// Runs `advance` on the motion, so that its time can be measured. The job ends, because its
+    /// later samples would be wrong.
     pub fn measure<T>(&mut self, advance: impl FnOnce(&mut R) -> T) -> T {
         self.left = 0;
         advance(&mut self.run)
     }
 
-    /// Computes one step.
     fn step(&mut self) {
         self.run.advance(1);
         self.steps -= 1;
@@ -121,7 +97,6 @@ impl<R: Run> Job<R> {
         }
     }
 
-    /// Returns the reading now, or the error of a number that is not finite.
     fn reading(&self) -> Result<Reading, Error> {
         let state = self.run.state();
         let state = self
@@ -148,8 +123,7 @@ impl<R: Run> Job<R> {
     }
 }
 
-/// Calls `each` with every reading of `request`, the initial one first. Returns the first error: of
-/// `each`, or of the [`Job`].
+/// Calls `each` with every reading of `request`, the initial one first.
 pub(super) fn readings<E: From<Error>>(
     run: impl Run,
     request: &Request,

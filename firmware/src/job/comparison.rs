@@ -7,12 +7,8 @@ use libm::{cosf, sinf};
 use micromath::F32Ext;
 
 /// Hamilton's equations for any rods as the page prints them, not simplified: five sines and
-/// cosines of the `libm` crate, and four divisions. They are correct; none of the page's three
-/// misprints is in them.
-///
-/// The other methods are compared with it. No device should run it. It accepts any parameters; the
-/// caller checks that they describe a pendulum, as [`Pendulum::new`] does. A mass or length of 0,
-/// and numbers that overflow, can give derivatives that are NaN or infinite.
+/// cosines of the `libm` crate, and four divisions. None of the page's three misprints is in them.
+/// For comparison: no device should run it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Textbook(Parameters<f32>);
 
@@ -52,8 +48,7 @@ impl Derivatives<f32> for Textbook {
 }
 
 /// [`Pendulum::derivatives`] with the sines and cosines of the `micromath` crate, which cost little
-/// and have an absolute error of up to 1.2e-3 for angles within 1,000 rad, and more beyond. It
-/// refuses the parameters that [`Pendulum::new`] refuses.
+/// and have an absolute error of up to 1.2e-3 for angles within 1,000 rad, and more beyond.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Micromath(Pendulum<f32>);
 

@@ -7,8 +7,8 @@
 //! - `cargo count` counts the cycles of its steps.
 //! - [`Request::crc`] serves to compare its bits on host and chip.
 //!
-//! All of them run the same code. So errors can be computed on the host, and costs can be counted
-//! on the chip.
+//! All of them run the same code, so that errors can be computed on the host and costs can be
+//! counted on the chip.
 
 mod answer;
 mod comparison;
@@ -32,38 +32,30 @@ pub use table::{ON_BOARDS, OnBoards, visit};
 /// Ethernet.
 pub const CRC: Crc<u32, Table<1>> = Crc::<u32, Table<1>>::new(&CRC_32_ISO_HDLC);
 
-/// A motion to compute. Any values can be stored; the start of the motion checks them
-/// ([`OnBoards::start`], [`Request::readings`]). The application of a board may lack the method
-/// ([`ON_BOARDS`]).
+/// A motion to compute.
 ///
 /// The text form of a request is also read by the C programs (`host-tests/peers/c/measure.c`).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "application", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(target_os = "none", derive(defmt::Format))]
 pub struct Request {
-    /// The method that computes the motion.
     pub method: Method,
-    /// m1, m2 (kg), l1, l2 (m), g (m/s^2), in this order.
+    /// m1, m2 (kg), l1, l2 (m), g (m/s^2).
     pub parameters: Parameters<f64>,
-    /// The initial angles a1 and a2, rad (not degrees), from the downward vertical, positive
-    /// counter-clockwise.
+    /// The initial angles a1 and a2, rad.
     pub angles: [f64; 2],
     /// The initial angular velocities w1 and w2, rad/s.
     pub velocities: [f64; 2],
-    /// The step size, s: positive, and within the limit of the method. Of the closed form it may
-    /// also be negative, and has no limit.
+    /// The step size, s. Of the closed form it may be negative, and has no limit.
     pub dt: f64,
     /// The number of steps from one sample to the next; 0 repeats the initial sample.
     pub stride: u32,
-    /// The number of samples after the initial one; 0 leaves only that one.
+    /// The number of samples after the initial one.
     pub samples: u32,
 }
 
-/// The numbers of a requested motion at one time.
-///
-/// The state has all digits that the method carries; `f32` is widened to `f64` without loss. The
-/// other numbers are computed from the state in double precision. The numbers of a [`Job`] are
-/// finite.
+/// The numbers of a requested motion at one time. The state has all digits that the method carries;
+/// the other numbers are computed from it in double precision.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "application", derive(serde::Serialize, serde::Deserialize))]
 pub struct Reading {
@@ -76,9 +68,7 @@ pub struct Reading {
 }
 
 impl Request {
-    /// Returns a request for 10 s of a chaotic motion that every method can compute: equal rods and
-    /// bobs (1 m, 1 kg) at 9.81 m/s^2, both released from rest at 2 rad; 2,560 steps of 1/256 s and
-    /// 33 samples with the initial one, one every 80 steps.
+    /// Returns a request for 10 s of a chaotic motion that every method can compute.
     pub fn on_any_core(method: Method) -> Self {
         let parameters = Parameters {
             m1: 1.0,
@@ -101,13 +91,10 @@ impl Request {
     }
 
     /// Returns the longest step, s, that resolves every motion of this energy; `None` for the
-    /// closed form, which takes any step, and for parameters that the kernel refuses in `f64`, also
-    /// if the method is in `f32`. The method may refuse such a step as too long.
+    /// closed form, and for parameters that the kernel refuses.
     ///
     /// For RK4 it is [`Pendulum::admissible_step`]; for extrapolation of order 2 K it is K times
-    /// that step, which errs as little. The `dt` of the request is not used. The start is not
-    /// checked: the step is infinite if nothing can move, and NaN or 0 for a start that is not
-    /// finite.
+    /// that step, which errs as little.
     pub fn admissible_step(&self) -> Option<f64> {
         let ([a1, a2], [w1, w2]) = (self.angles, self.velocities);
         let share = match self.method.integrator() {
@@ -123,7 +110,7 @@ impl Request {
 }
 
 /// Returns the CRC-32 of all numbers that the method carries, at every sample except the initial
-/// one, and of the last state. A diverged motion has a CRC, too.
+/// one, and of the last state.
 fn crc<F: Form>(mut run: F, request: &Request) -> u32 {
     let mut digest = CRC.digest();
     for _ in 0..request.samples {

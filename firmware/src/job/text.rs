@@ -11,10 +11,7 @@ const MAX_BYTES: usize = 1 + 10 * 8 + 2 * 5;
 
 impl Request {
     /// Returns the request in `text`: its bytes in the postcard format, each as two hexadecimal
-    /// digits of either case, without separators. Returns `None` if the bytes are not exactly one
-    /// request, or for any other character, such as a final line feed. The values of the request
-    /// are not checked. Of a byte below 16 the digit 0 may be a plus sign, and may be missing at
-    /// the end of the text.
+    /// digits.
     pub fn parse(text: &str) -> Option<Self> {
         let mut bytes = Vec::<u8, MAX_BYTES>::new();
         let byte = |digits: &[u8]| u8::from_str_radix(core::str::from_utf8(digits).ok()?, 16).ok();
@@ -29,7 +26,6 @@ impl Request {
     }
 }
 
-/// Writes the text that [`Request::parse`] reads, in lower case, without a line feed.
 impl fmt::Display for Request {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let bytes = &mut [0; MAX_BYTES];

@@ -14,13 +14,9 @@ use crate::scenes::{Report, SceneName};
 /// A message to the host.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum ToHost {
-    /// A drawn frame, sent after the picture was given to the driver of the panel, also if the
-    /// driver failed. The panel may show it a little later, or not at all.
+    /// A drawn frame, sent after the picture was given to the driver of the panel.
     Frame(Frame),
-    /// The board has restarted on its own, and plays its scene from the start. Later frames are
-    /// counted from 0 again. After more than 3 ([`MOST_RESTARTS`](crate::app::MOST_RESTARTS))
-    /// restarts in a row, or if that scene is refused, it plays the first scene instead; only the
-    /// frames show this.
+    /// The board has restarted on its own, and counts frames from 0 again.
     ///
     /// Over USB no host receives this message, because a restart ends the connection. A host that
     /// opens the port asks with [`Command::AskRestart`](super::Command::AskRestart).
@@ -32,41 +28,29 @@ pub enum ToHost {
 /// An answer to a command.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Answer {
-    /// The command has been executed, or the scene ignores it. Commands that request something have
-    /// the answers below instead.
+    /// The command has been executed, or the scene ignores it.
     Done,
-    /// The field that is wrong. The command is not executed, and nothing has changed. Of a
-    /// requested motion it may also come after samples: the motion has diverged, and the field is
-    /// [`Field::Dt`].
+    /// The field that is wrong. It may also come after samples of a requested motion, which has
+    /// then diverged ([`Field::Dt`]).
     Refused(Field),
-    /// The scene and its settings, and the state of the panel.
     Status(Status),
-    /// The plan of the scene; `None` if it shows no motion that is planned, or is too fast from its
-    /// start.
+    /// The plan of the scene; `None` if it shows no motion that is planned.
     Planned(Option<Planned>),
-    /// The identity of the board.
     Identity(Identity),
-    /// A sample of the requested motion. The first one, with index 0, is the start. The last one
-    /// has the index [`Request::samples`](crate::job::Request::samples), unless the motion is
-    /// refused before, measured or replaced.
+    /// A sample of the requested motion. The first one, with index 0, is the start.
     Sample { index: u32, reading: Reading },
-    /// The longest step that resolves every motion of the energy of the requested one, s. The step
-    /// of the request is longer. The samples follow all the same. It is not sent if the step is
-    /// short enough, or by the closed form.
+    /// The step of the request is longer than this one, s, the longest that resolves every motion
+    /// of that energy. The samples follow all the same.
     StepTooLong(f64),
     /// The time of all `steps` steps together in processor cycles, including the call; on a
-    /// Cortex-M0+ modulo 2^24. `steps` is the requested number, at most 16
-    /// ([`MOST_MEASURED_STEPS`](crate::config::MOST_MEASURED_STEPS)). `cycles` is 0 if there is no
-    /// cycle counter, as in QEMU, or if the board does not have the code in the memory that the
-    /// command names, flash or RAM; in the latter case no step is made.
+    /// Cortex-M0+ modulo 2^24. It is 0 without a cycle counter, as in QEMU.
     Measured { steps: u32, cycles: u32 },
-    /// The last restart that the board made on its own; `None` if it has made none since it was
-    /// switched on or reset from outside.
+    /// The last restart that the board made on its own since it was switched on or reset from
+    /// outside.
     Restart(Option<Restarted>),
 }
 
 impl ToHost {
-    /// Returns the frame; `None` for another message.
     pub fn frame(self) -> Option<Frame> {
         if let Self::Frame(frame) = self {
             Some(frame)
@@ -75,7 +59,6 @@ impl ToHost {
         }
     }
 
-    /// Returns the restart; `None` for another message.
     pub fn restarted(self) -> Option<Restarted> {
         if let Self::Restarted(restarted) = self {
             Some(restarted)
@@ -84,7 +67,6 @@ impl ToHost {
         }
     }
 
-    /// Returns the answer and the number of its command; `None` for another message.
     pub fn answer(self) -> Option<(u16, Answer)> {
         if let Self::Answer(request, answer) = self {
             Some((request, answer))
@@ -128,33 +110,28 @@ impl ToHost {
 ///    `firmware/README.md`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Frame {
-    /// The number of frames drawn since reset before this one; wraps. A gap means that a frame was
-    /// lost on the way, unless the board has [`Restarted`].
+    /// The number of frames drawn since reset before this one; wraps. A gap is a frame lost on the
+    /// way.
     pub sequence: u32,
-    /// The number of ticks of the clock since reset whose frame was not drawn, because the board
-    /// was late; wraps.
+    /// The number of ticks since reset whose frame was not drawn, because the board was late;
+    /// wraps.
     pub dropped: u32,
-    /// A lower bound of the number of bytes from the host that were lost since reset because they
-    /// came faster than they were taken; wraps.
+    /// A lower bound of the number of bytes from the host that came faster than they were taken,
+    /// since reset; wraps.
     pub lost: u32,
-    /// The scene that is shown.
     pub scene: SceneName,
-    /// The state of the scene's time.
     pub state: PlayState,
-    /// The mass ratio m2/m1 of the settings.
+    /// m2/m1 of the settings.
     pub mass_ratio: f32,
-    /// The start angle of rod 1 in the settings, rad (not degrees), from the downward vertical,
-    /// positive counter-clockwise. In the page's settings both rods have it.
+    /// The start angle of rod 1 in the settings, rad.
     pub start_angle: f32,
-    /// The report of the scene, to the last bit. While the scene is stopped, it does not change.
+    /// The report of the scene, to the last bit.
     pub report: Report,
-    /// The time that the scene took for this frame, to advance by all ticks since the previous
-    /// frame and to be drawn, in counts of the processor clock. They are cycles on a chip. QEMU
-    /// does not model cycles; there they are the time by its own clock. It is 0 on a host.
+    /// The time to advance the scene and to draw it, in counts of the processor clock. QEMU does
+    /// not model cycles; there it is the time by its own clock.
     pub scene_cycles: u32,
     /// The same for the whole previous frame, including the calls that pass it to the panel and to
-    /// the link; 0 in the first frame since reset. A transfer that continues after these calls, by
-    /// interrupts, is not included.
+    /// the link.
     pub busy_cycles: u32,
 }
 
@@ -162,33 +139,25 @@ pub struct Frame {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Status {
     pub scene: SceneName,
-    /// The settings of the scene. Their angles are in degrees, other than in a [`Frame`].
+    /// Angles are in degrees, other than in a [`Frame`].
     pub settings: Settings,
     /// The requested method; `None` leaves the choice to the plan.
     pub method: Option<Method>,
     /// The class of the processor, as an index in [`PROCESSORS`](crate::config::PROCESSORS).
     pub processor: u8,
     pub state: PlayState,
-    /// The number of ticks left of a [`Step`](super::Command::Step) command; 0 without one.
     pub steps: u32,
-    /// The simulated time per real time, 0.01 to 4, while the scene plays; 1 is full speed. A pause
-    /// does not change it.
+    /// The simulated time per real time; 1 is full speed.
     pub speed: f32,
-    /// The state of the panel.
     pub panel: PanelReport,
 }
 
 choice! {
     /// The state of the scene's time.
     PlayState {
-        /// The scene advances.
         Playing = "playing";
-        /// The scene is paused until a command lets it continue. It is also paused while a
-        /// [`Step`](super::Command::Step) advances it.
         Paused = "paused";
-        /// The scene has stopped because the motion is too fast for this chip, or for the method
-        /// that the user has selected. Other settings or another scene start again. Such
-        /// a scene is reported as stopped even if it is paused.
+        /// The motion is too fast for this chip or for the selected method.
         Stopped = "stopped";
     }
 }
@@ -196,8 +165,8 @@ choice! {
 choice! {
     /// The reason why a board restarted.
     Cause {
-        /// The board finished no frame for
-        /// [`WATCHDOG_SECONDS`](crate::config::WATCHDOG_SECONDS), 1 s, or longer.
+        /// No frame was finished for [`WATCHDOG_SECONDS`](crate::config::WATCHDOG_SECONDS) or
+        /// longer.
         Hang = "hang";
         /// The program reached a state that should be impossible.
         Panic = "panic";
@@ -209,27 +178,20 @@ choice! {
 /// A restart, and the state of the program and of the scene before it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Restarted {
-    /// The cause; `None` if it is unknown.
     pub cause: Option<Cause>,
-    /// The number of restarts in a row, including this one, at most 255. After 3,600 frames without
-    /// a restart, a minute at full rate, the board counts from 0.
+    /// The number of restarts in a row, including this one. After a minute without a restart the
+    /// board counts from 0.
     pub restarts: u8,
-    /// The program counter when the cause came; 0 if it is unknown.
+    /// 0 if unknown, like the two below.
     pub pc: u32,
-    /// The return address (link register) at that moment; 0 if it is unknown.
     pub lr: u32,
-    /// The processor's Configurable Fault Status Register; 0 if it is unknown.
     pub cfsr: u32,
-    /// The scene of the last frame that was shown; before the first frame, the scene that was
-    /// started.
+    /// The scene of the last frame that was shown.
     pub scene: SceneName,
-    /// The tick of that frame: the number of ticks of the scene since its start; 0 before the first
-    /// frame.
+    /// The tick of that frame, since the start of the scene.
     pub step: u64,
 }
 
-/// Writes the scene and the tick of the last frame, such as `scene page, step 60`, without a line
-/// feed.
 impl fmt::Display for Restarted {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "scene {}, step {}", self.scene.name(), self.step)
@@ -254,16 +216,14 @@ choice! {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Identity {
     pub board: BoardName,
-    /// The frequency of the processor clock, Hz.
     pub hertz: u32,
-    /// The CPUID register of the processor.
+    /// The CPUID register.
     pub processor: u32,
     /// The identification of the chip and its unique number: DID0 and DID1 of an LM3S6965, CHIP_ID
-    /// of a Pico, IDCODE and the three words of the number of an STM32F405. The other words are
-    /// zeros, and so are all of an emulated STM32F405 and of an MPS2.
+    /// of a Pico, IDCODE and the three words of the number of an STM32F405; otherwise zeros.
     pub chip: [u32; 4],
-    /// The CRC-32/ISO-HDLC of the program in flash, code and constants; 0 if it is not known.
+    /// The CRC-32/ISO-HDLC of the program in flash; 0 if it is not known.
     pub image: u32,
-    /// The size of the program, bytes; 0 if it is not known.
+    /// 0 if it is not known.
     pub image_bytes: u32,
 }

@@ -10,44 +10,36 @@ use object::{
 
 use crate::instruction::{Instruction, is_long};
 
-/// A program for an ARM processor, read from its ELF file.
-///
-/// Addresses are those at which the program uses its code and data, also if these are stored
-/// elsewhere and copied at the start. Memory that starts as zeros is not a part of the image.
+/// A program for an ARM processor, read from its ELF file. Addresses are those at which it uses its
+/// code and data, also if these are stored elsewhere and copied at the start.
 #[derive(Debug)]
 pub struct Image {
     path: PathBuf,
-    /// The start address and bytes of everything that is loaded, including functions that run in
-    /// RAM.
+    /// The start address and bytes of everything that is loaded.
     loaded: Vec<(u32, Vec<u8>)>,
     /// The start address and bytes of every section with code.
     code: Vec<(u32, Vec<u8>)>,
-    /// All functions and labels, sorted by address.
     functions: Vec<Function>,
-    /// The beginnings of code (`true`) and of data between code (`false`), by address, from the
-    /// mapping symbols `$t` and `$d`.
+    /// The beginnings of code (`true`) and of data between code (`false`): the mapping symbols `$t`
+    /// and `$d`.
     marks: BTreeMap<u32, bool>,
 }
 
-/// A function, including its literal pools and the paths that are never taken. It may also be any
-/// other symbol in a section with code: a label that is not declared as a function, a constant, or
-/// the beginning of the section, which has no name.
+/// A function with its literal pools, or any other symbol in a section with code.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Function {
-    /// The address of its first instruction, without the Thumb bit.
+    /// Without the Thumb bit.
     pub address: u32,
-    /// The size in bytes, or 0 if the file does not declare it.
+    /// 0 if the file does not declare it.
     pub size: u32,
-    /// The demangled name, without a hash; the symbol itself if it is not mangled.
+    /// Demangled.
     pub name: String,
     /// The name that the linker uses, mangled or not.
     pub symbol: String,
 }
 
 impl Image {
-    /// Reads an ELF file. An error, which names the file, means that it is unreadable, damaged or
-    /// no program for a 32-bit ARM. A file without symbols is no error: it has no functions and no
-    /// [`words`](Self::words). Not checked: that the program is linked and little-endian.
+    /// Reads an ELF file for a 32-bit ARM.
     pub fn read(path: &Path) -> Result<Self> {
         Self::parse(path).with_context(|| path.display().to_string())
     }
@@ -109,18 +101,15 @@ impl Image {
         })
     }
 
-    /// Returns all functions and labels whose demangled names contain `part`, with the same
-    /// capitals, by address. All names of an address are returned. An empty `part` gives all.
+    /// Returns all functions and labels whose demangled names contain `part`.
     pub fn functions_named(&self, part: &str) -> impl Iterator<Item = &Function> {
         self.functions
             .iter()
             .filter(move |function| function.name.contains(part))
     }
 
-    /// Returns the function or label with this name, mangled or demangled. If no name is equal,
-    /// returns the only function whose demangled name contains `name`. It is an error if there is
-    /// none, or if several functions are possible. Names of the same address count as one; the one
-    /// with the smallest size is returned.
+    /// Returns the function with this name, mangled or demangled, or the only one whose demangled
+    /// name contains it.
     pub fn function(&self, name: &str) -> Result<&Function> {
         let is_it = |function: &&Function| function.name == name || function.symbol == name;
         let mut found: Vec<_> = self.functions.iter().filter(is_it).collect();
@@ -141,15 +130,13 @@ impl Image {
         }
     }
 
-    /// Returns true if something is loaded at this address, code or data.
     pub fn holds(&self, address: u32) -> bool {
         self.loaded
             .iter()
             .any(|(start, bytes)| address.wrapping_sub(*start) < bytes.len() as u32)
     }
 
-    /// Returns the word of four bytes (little-endian) at an address, which need not be a multiple
-    /// of four, or `None` unless one segment of the file has all of them.
+    /// Returns the little-endian word at an address.
     pub fn word(&self, address: u32) -> Option<u32> {
         self.loaded.iter().find_map(|(start, bytes)| {
             let at = address.checked_sub(*start)? as usize;
@@ -158,15 +145,12 @@ impl Image {
         })
     }
 
-    /// Returns the error that the program has no such function. It names the program's file and the
-    /// function. Not checked: that the function is missing.
+    /// Returns the error that the program has no such function.
     pub fn lacks(&self, function: &str) -> anyhow::Error {
         anyhow!("{}: no function {function}", self.path.display())
     }
 
-    /// Returns the function that contains this address, even or odd, or `None`. A label without a
-    /// size contains no address. Of several functions, it is the one that begins last and, of
-    /// these, the largest.
+    /// Returns the function that contains this address. Of several, it is the one that begins last.
     pub fn function_at(&self, address: u32) -> Option<&Function> {
         let before = self
             .functions
@@ -177,10 +161,7 @@ impl Image {
             .rfind(|function| address - function.address < function.size)
     }
 
-    /// Returns every instruction as its address, its first halfword, and its second halfword if it
-    /// has one and the section has not ended. They are in the order of the sections, and by address
-    /// in each. Data between code is left out, and so is everything before the first mapping symbol
-    /// `$t` of the program.
+    /// Returns the address and the halfwords of every instruction.
     pub fn words(&self) -> Vec<(u32, u16, Option<u16>)> {
         let mut words = Vec::new();
         for (start, bytes) in &self.code {
@@ -190,7 +171,6 @@ impl Image {
                 .iter()
                 .map(|half| u16::from_le_bytes(*half));
             let mut halfwords = (*start..).step_by(2).zip(halfwords);
-            // Data between code has no instructions.
             while let Some((address, first)) = halfwords.next() {
                 if self
                     .marks
@@ -210,10 +190,7 @@ impl Image {
         words
     }
 
-    /// Returns the instruction at this address, which is without the Thumb bit. A second halfword
-    /// that is not loaded counts as 0. It is an error if nothing is loaded there, or if the table
-    /// of timings does not have the instruction. Not checked: that the address is even, and that it
-    /// is code; data is decoded, too.
+    /// Returns the instruction at this address.
     pub fn instruction_at(&self, address: u32) -> Result<Instruction> {
         let halfword = |address: u32| {
             self.loaded.iter().find_map(|(start, bytes)| {

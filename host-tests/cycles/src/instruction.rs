@@ -33,9 +33,7 @@ pub struct Instruction {
 }
 
 impl Instruction {
-    /// Returns the instruction of these halfwords, or `None` if the table has no row for it. The
-    /// second halfword is ignored if the first is a 16-bit instruction. A core need not have the
-    /// instruction ([`is_missing_on`](Self::is_missing_on)).
+    /// Returns the instruction of these halfwords, if the table has a row for it.
     pub fn decode(first: u16, second: u16) -> Option<Self> {
         let word = u32::from(first) << 16 | if is_long(first) { u32::from(second) } else { 0 };
         let row = ROWS[(word >> 24) as usize]
@@ -44,7 +42,6 @@ impl Instruction {
         Some(Self { word, row })
     }
 
-    /// Returns its size in bytes: 2 or 4.
     pub fn size(&self) -> u32 {
         if is_long((self.word >> 16) as u16) {
             4
@@ -53,12 +50,9 @@ impl Instruction {
         }
     }
 
-    /// Returns the cycles of the instruction alone, for these contents of the registers: with those
-    /// for each register of a list, and without the refill after a branch. For a floating-point
-    /// quotient or root they are the cycles of the unit, not of the core. The effects of the
-    /// neighbouring instructions are not included ([`Pipeline`](crate::Pipeline)). The registers,
-    /// before the instruction, affect a division only; a division by 0 takes 2 cycles. The result
-    /// has no meaning if the core [lacks](Self::is_missing_on) the instruction.
+    /// Returns the cycles of the instruction alone, without a refill after a branch and without the
+    /// effects of its neighbours ([`Pipeline`](crate::Pipeline)). They depend on the registers for
+    /// a division only.
     pub fn cycles(&self, core: Core, registers: &Registers) -> u64 {
         let more = match self.row.class {
             Class::LoadList | Class::StoreList => {
@@ -71,8 +65,7 @@ impl Instruction {
         self.row.cycles(core) + more
     }
 
-    /// Returns true if it is a load of one word or less, a pair or a list, also of floating-point
-    /// registers. It is false for ldrex and for table branches, although they read memory.
+    /// Returns true for loads that can delay the next one. ldrex and table branches cannot.
     pub fn loads(&self) -> bool {
         match self.row.class {
             Class::Load | Class::LoadPair | Class::LoadList => true,
@@ -81,26 +74,18 @@ impl Instruction {
         }
     }
 
-    /// Returns true if it uses the floating-point unit, for a load, a store or a move, too.
+    /// Returns true if it uses the floating-point unit, for a move, too.
     pub fn is_float(&self) -> bool {
         self.word >> 26 == 0b11_1011
     }
 
-    /// Returns true if the core does not have this instruction. A division is missing on the M0+
-    /// only. Some instructions that share a row with others are not recognised as missing, such as
-    /// smmul and others for signal processing on the M3, and b.w on the M0+.
+    /// Returns true if the core does not have this instruction. Rows that several instructions
+    /// share are not told apart.
     pub fn is_missing_on(&self, core: Core) -> bool {
         self.row.cycles(core) == 0 && (self.row.class != Class::Divide || core == Core::M0Plus)
     }
 
-    /// Returns true if its address, as a load, a store or a table branch, depends on a core
-    /// register that the instruction `before` writes, on any core. The updated base of a single
-    /// access counts.
-    ///
-    /// It is false for an instruction without an address. The program counter as a base does not
-    /// count, but the index of a table branch does. It is also false after instructions whose
-    /// written registers are not in the table: loads and stores of pairs and lists, ldrex, strex,
-    /// vmrs and calls. After msr or nop.w, which write none, it may be true.
+    /// Returns true if its address depends on a core register that the instruction `before` writes.
     pub fn is_addressed_by(&self, before: &Self) -> bool {
         let registers =
             |fields: &'static [Field], word| fields.iter().map(move |field| field.register(word));
@@ -112,19 +97,15 @@ impl Instruction {
         registers(self.row.address, self.word).any(written)
     }
 
-    /// Returns the number of the floating-point register with a late result, 0 to 31 for s0 to s31:
-    /// the destination of arithmetic, a conversion, a quotient or a root. Returns `None` for other
-    /// instructions, such as loads, moves and comparisons. A late result stalls an instruction that
-    /// consumes it before it is ready: the next one or, after a quotient or a root, also a later
-    /// one.
+    /// Returns the floating-point register with a late result: the destination of arithmetic, a
+    /// quotient or a root. It stalls an instruction that consumes it too early.
     pub fn late_result(&self) -> Option<u32> {
         matches!(self.row.class, Class::Arithmetic(_) | Class::Aside(_))
             .then(|| Float::D.register(self.word))
     }
 
-    /// Returns true if the instruction needs the floating-point register `s`, 0 to 31, at its
-    /// start. A store needs the registers that it stores. An addend is needed later and does not
-    /// count, nor does the second register of a move of two to core registers.
+    /// Returns true if the instruction needs the floating-point register `s` at its start. An
+    /// addend is needed later.
     pub fn consumes(&self, s: u32) -> bool {
         match self.row.class {
             Class::Arithmetic(reads) | Class::Aside(reads) | Class::Move(reads) => {
@@ -165,7 +146,7 @@ impl Instruction {
     }
 
     /// Returns the bits that each represent one register. push and pop have one more than stm and
-    /// ldm: lr or pc.
+    /// ldm.
     fn register_list(&self) -> u32 {
         match self.word >> 28 {
             0xb => 0x01ff_0000,
@@ -174,7 +155,6 @@ impl Instruction {
         }
     }
 
-    /// Returns true if the instruction is a vstr, vstm or vpush that stores `s`.
     fn stores(&self, s: u32) -> bool {
         let is_float_store = self.word & 0xfe10_0e00 == 0xec00_0a00;
         let double = self.word & 0x100 != 0;

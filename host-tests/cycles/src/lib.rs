@@ -7,10 +7,6 @@
 //! instructions.
 
 #![forbid(unsafe_code)]
-#![allow(
-    missing_docs,
-    reason = "nobody builds on this package: what name and type say is not said again"
-)]
 
 mod image;
 mod instruction;
@@ -26,20 +22,15 @@ pub use instruction::Instruction;
 pub use pipeline::{Cost, ERROR_BAR, Pipeline};
 pub use stream::{Calls, Registers, Stream, for_each_instruction};
 
-/// The processors whose timings are known.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Core {
-    /// Cortex-M3, no floating-point unit.
     M3,
-    /// Cortex-M4 with the single-precision floating-point unit.
     M4F,
-    /// Cortex-M0+ with the 1-cycle multiplier and without a floating-point unit. In QEMU it is the
-    /// Cortex-M0, which has the same instructions.
+    /// With the 1-cycle multiplier. In QEMU it is the Cortex-M0, which has the same instructions.
     M0Plus,
 }
 
 impl Core {
-    /// Returns the name: `Cortex-M3`, `Cortex-M4F` or `Cortex-M0+`.
     pub fn name(self) -> &'static str {
         match self {
             Self::M3 => "Cortex-M3",

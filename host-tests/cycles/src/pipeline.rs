@@ -43,10 +43,9 @@
 //! flash, the error is -2.0 to -0.5 %. On an STM32L100 it is -2.8 % at worst. An STM32L4R5 takes 3
 //! to 5 % more than an STM32F407 for the same code, and no rule here explains it.
 //!
-//! To repeat the comparison, run `cargo count --elf FILE --function NAME`, and add 1 cycle for each
-//! argument and 2 for the call. The 76 kernels do not include dilithium-cortexm on an ATSAM3X8E (3
-//! figures, -9.2 to -2.7 %). The bus matrix of that chip delays the first load of each group by a
-//! cycle; with that cycle the figures are within 0.2 %.
+//! The 76 kernels do not include dilithium-cortexm on an ATSAM3X8E (3 figures, -9.2 to -2.7 %). The
+//! bus matrix of that chip delays the first load of each group by a cycle; with that cycle the
+//! figures are within 0.2 %.
 
 use std::ops::AddAssign;
 
@@ -66,12 +65,10 @@ pub const ERROR_BAR: &str = "\
 /// The cost of executed code: an exact number of instructions and an estimated number of cycles.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Cost {
-    /// The number of executed instructions. An instruction whose condition fails counts as well.
+    /// An instruction whose condition fails counts as well.
     pub instructions: u64,
-    /// The estimated number of cycles, including the stalls.
     pub cycles: u64,
-    /// The part of the cycles that waits for a floating-point result or for the floating-point
-    /// unit.
+    /// The part of the cycles that waits for the floating-point unit or its results.
     pub stalls: u64,
 }
 
@@ -87,11 +84,9 @@ impl AddAssign for Cost {
 #[derive(Clone, Copy, Debug)]
 pub struct Pipeline {
     core: Core,
-    /// The instruction before; `None` at the start.
     previous: Option<Instruction>,
     /// True if a branch led to the next instruction.
     branched: bool,
-    /// The number of cycles so far.
     now: u64,
     /// The first cycle in which the floating-point unit is free.
     unit_free: u64,
@@ -100,7 +95,6 @@ pub struct Pipeline {
 }
 
 impl Pipeline {
-    /// Returns a processor that has executed nothing yet.
     pub fn new(core: Core) -> Self {
         Self {
             core,
@@ -112,14 +106,8 @@ impl Pipeline {
         }
     }
 
-    /// Executes the next instruction and returns its cost, which counts 1 instruction. A folded
-    /// `it` costs 0 cycles, and so does a store with an immediate offset in the second cycle of a
-    /// load.
-    ///
-    /// `registers` are the contents of the registers before it, with its address as the program
-    /// counter. `branches` is true if the instruction executed after it is not the next one in
-    /// memory, also because of an interrupt. Not checked: that the core has the instruction
-    /// ([`Instruction::is_missing_on`]); otherwise the cycles have no meaning, or it may panic.
+    /// Executes the next instruction and returns its cost. `registers` are their contents before
+    /// it. `branches` is true if the instruction executed after it is not the next one in memory.
     pub fn execute(
         &mut self,
         instruction: Instruction,
@@ -130,7 +118,6 @@ impl Pipeline {
         let stalls = self.start_of_float(&instruction) - start;
         let own = instruction.cycles(self.core, registers);
 
-        // The cycles of the instruction, and those to refill the pipeline after a branch.
         let taken = match instruction.row.class {
             Class::IfThen if self.previous.is_some_and(|previous| previous.size() == 2) => 0,
             Class::Aside(_) => 1,
@@ -155,7 +142,6 @@ impl Pipeline {
             .previous
             .map_or((0, 0), |previous| self.neighbours(&previous, &instruction));
 
-        // Update the state of the processor.
         if let Some(register) = instruction.late_result() {
             self.unit_free = start + stalls + own;
             self.result = Some((register, self.unit_free + RESULT_USE_STALL));
@@ -171,8 +157,7 @@ impl Pipeline {
         }
     }
 
-    /// Returns the first cycle with the floating-point unit and the operands of `instruction`
-    /// ready.
+    /// Returns the first cycle in which the floating-point unit and the operands are ready.
     fn start_of_float(&self, instruction: &Instruction) -> u64 {
         let unit = if instruction.is_float() {
             self.unit_free
@@ -186,8 +171,8 @@ impl Pipeline {
         self.now.max(unit).max(result)
     }
 
-    /// Returns the cycles that `instruction` waits for `previous`, and the cycles it saves by
-    /// following `previous`.
+    /// Returns the cycles that `instruction` waits for `previous`, and the cycles that it saves by
+    /// following it.
     fn neighbours(&self, previous: &Instruction, instruction: &Instruction) -> (u64, u64) {
         if self.core == Core::M0Plus {
             return (0, 0);

@@ -2,45 +2,34 @@
 
 use crate::Core;
 
-/// The effect on the time of an instruction in addition to the cycles of its [`Row`]. On the M0+
-/// neighbours have no effect. A load or store is pipelined with the load before it if their cycles
-/// overlap: if its address does not depend on that load.
+/// The effect on the time of an instruction in addition to the cycles of its [`Row`]. A load or
+/// store is pipelined with the load before it if their cycles overlap: if its address does not
+/// depend on that load.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Class {
-    /// It has no effect of its own. It may write an address register of the next instruction, or
-    /// branch to an address in a register.
+    /// No effect of its own.
     Fixed,
-    /// A branch to an address in the instruction. On the M3 and the M4F it refills the pipeline
-    /// sooner than a branch to an address in a register.
+    /// A branch to an address in the instruction. It refills the pipeline sooner than one to an
+    /// address in a register.
     Branch,
-    /// An `it` instruction, which takes no time after a 16-bit instruction.
+    /// It takes no time after a 16-bit instruction.
     IfThen,
-    /// A division of integers. Its time depends on the lengths of the operands.
     Divide,
-    /// A single load. It takes 1 cycle less if it follows another one and is pipelined with it; on
-    /// the M3 it is not if it updates its base register.
     Load,
-    /// A single store. It takes 1 cycle less if it follows a single load, as a [`Self::Load`] does.
-    /// A load of any kind after it takes 1 cycle more, unless the store has an offset in a
-    /// register.
+    /// A load after it takes 1 cycle more, if the store has a constant offset.
     Store,
-    /// A load of two words, which is not pipelined. A store of two words is [`Self::Fixed`].
+    /// It is not pipelined. A store of two words is [`Self::Fixed`].
     LoadPair,
-    /// Several loads, with 1 cycle more for each core register in the list.
+    /// 1 cycle more for each core register in the list.
     LoadList,
-    /// Several stores, with 1 cycle more for each core register in the list.
     StoreList,
-    /// A load or store of the floating-point registers in the list, with 1 cycle more for each
-    /// word.
+    /// 1 cycle more for each word.
     FloatList,
-    /// Floating-point arithmetic and conversions. The next instruction may have to wait for the
-    /// result.
+    /// The next instruction may have to wait for the result.
     Arithmetic(Reads),
-    /// A floating-point quotient or root. The unit is busy for the whole time, and the core
-    /// continues after 1 cycle.
+    /// A quotient or root: the unit is busy, and the core continues after 1 cycle.
     Aside(Reads),
-    /// Other uses of floating-point registers. They consume results, and their own result is not
-    /// late.
+    /// Consumes results; its own result is not late.
     Move(Reads),
 }
 
@@ -53,22 +42,16 @@ pub type Reads = &'static [Float];
 /// The position of a single-precision register in an encoding.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Float {
-    /// The destination. In a comparison it is the first operand, and in a conversion from or to
-    /// fixed point also the operand.
+    /// The destination, and in some instructions an operand.
     D,
-    /// The first operand.
     N,
-    /// The half of a double register that the first operand's field names, in a move between it and
-    /// a core register.
+    /// The half of a double register, in a move between it and a core register.
     Half,
-    /// The second operand, or the only one.
     M,
 }
 
 impl Float {
-    /// Returns the number of the floating-point register, 0 to 31 for s0 to s31, in the word of an
-    /// instruction ([`Row`]). For a double register, d0 to d15, it is the lower half, except by
-    /// [`Self::Half`]. Not checked: that the instruction has this position.
+    /// Returns the number of the floating-point register, 0 to 31.
     pub fn register(self, word: u32) -> u32 {
         match self {
             Self::D => (word >> 12 & 0xf) << 1 | word >> 22 & 1,
@@ -99,8 +82,7 @@ pub enum Field {
 }
 
 impl Field {
-    /// Returns the number of the core register, 0 to 15, in the word of an instruction; 13 for
-    /// `Sp`. Not checked: that the instruction has this position.
+    /// Returns the number of the core register.
     pub fn register(self, word: u32) -> u32 {
         match self {
             Self::Low0 => word >> 16 & 7,
@@ -123,43 +105,30 @@ impl Field {
 /// `word` has the first halfword in its upper half, and the second halfword or 0 in its lower half.
 #[derive(Clone, Copy, Debug)]
 pub struct Row {
-    /// The mnemonics.
     pub name: &'static str,
-    /// The bits of the word that identify these instructions.
     pub(super) mask: u32,
-    /// The values of those bits.
     pub(super) value: u32,
-    /// The cycles on the M3, the M4F and the M0+; 0 if the core does not have the instruction, and
-    /// for a division.
+    /// On the M3, the M4F and the M0+; 0 if the core does not have the instruction, and for a
+    /// division.
     pub(super) cycles: [u64; 3],
-    /// The additional effect.
     pub class: Class,
-    /// The core registers that it writes; none for loads and stores of pairs and lists, ldrex,
-    /// strex, vmrs and calls. In a 32-bit comparison such a field has 15, which is not written.
+    /// The core registers that it writes. Lists and pairs are left out.
     pub(super) writes: &'static [Field],
-    /// The registers that form the address of a load, a store or a table branch. If the number in
-    /// such a field is 15, the program counter, it does not count.
+    /// The registers that form the address of a load, a store or a table branch. 15 does not count.
     pub(super) address: &'static [Field],
 }
 
 impl Row {
-    /// Returns the cycles without the effects of the [`Class`], a refill or the previous
-    /// instruction; for a floating-point quotient or root, those of the unit. They are 0 if the
-    /// core does not have the instruction, and for a division.
     pub fn cycles(&self, core: Core) -> u64 {
         self.cycles[core as usize]
     }
 
-    /// Returns true if the instruction writes a new address to the register of its address (pre-
-    /// and post-indexed). It is false for a load that overwrites this register with the loaded
-    /// word, and for loads and stores of pairs and lists, whose written registers are not in the
-    /// table.
+    /// Returns true if it writes a new address to its address register (pre- and post-indexed).
     pub fn updates_base(&self) -> bool {
         self.address.iter().any(|field| self.writes.contains(field))
     }
 }
 
-/// Returns a row with these fields.
 pub(super) const fn row(
     name: &'static str,
     mask: u32,

@@ -73,8 +73,7 @@ fn decoded(word: Word) -> Instruction {
     instruction.unwrap_or_else(|| panic!("no row for {word:#010x}"))
 }
 
-/// Returns the cost of straight code that is executed `times` times, with constant contents of r0
-/// to r2.
+/// Returns the cost of straight code that is executed `times` times.
 fn run(core: Core, times: usize, code: &[Word], [r0, r1, r2]: [u32; 3]) -> Cost {
     let mut registers = Registers::default();
     registers.general[..3].copy_from_slice(&[r0, r1, r2]);
@@ -94,8 +93,6 @@ fn taken(core: Core, word: Word) -> u64 {
 
 const BOTH: &[Core] = &[M3, M4F];
 
-/// A test of a rule: its name, the cores, the number of repetitions, the code, the total cycles,
-/// and the cycles that wait for a floating-point result.
 type Row = (
     &'static str,
     &'static [Core],
@@ -207,8 +204,6 @@ const RULES: &[Row] = &[
         &[M4F], 200, &[VADD_S0_S1_S2], 200, 0),
 ];
 
-/// Every row of [`RULES`] takes exactly its cycles and stalls on each of its cores, and 14
-/// instructions of the core take no time during a quotient.
 #[test]
 fn straight_code_takes_the_cycles_of_the_rules() {
     for (rule, cores, times, code, cycles, stalls) in RULES {
@@ -222,7 +217,6 @@ fn straight_code_takes_the_cycles_of_the_rules() {
         }
     }
 
-    // The core executes 14 other instructions during a quotient, in the same time.
     let during = [
         [VDIV_S0_S1_S2].as_slice(),
         &[ADDS_R4_R5_R6; 14],
@@ -232,8 +226,6 @@ fn straight_code_takes_the_cycles_of_the_rules() {
     assert_eq!(run(M4F, 1, &during, [0; 3]).cycles, 16);
 }
 
-/// The cycles of four taken branches on each core, and of two published delay loops, are exactly
-/// the published ones.
 #[test]
 fn a_taken_branch_refills_in_a_cycle_and_a_return_in_two() {
     // Each branch alone, then in a loop.
@@ -261,11 +253,8 @@ fn a_taken_branch_refills_in_a_cycle_and_a_return_in_two() {
     );
 }
 
-/// The extra cycle is taken once, at the target, by 32-bit instructions only, on the M3 and the
-/// M4F.
 #[test]
 fn a_branch_to_a_32_bit_instruction_off_a_word_s_boundary_takes_a_cycle_more() {
-    // The cycles of a branch and of two instructions at its target.
     let turn = |core, target, address| {
         let mut registers = Registers::default();
         let mut pipeline = Pipeline::new(core);
@@ -286,8 +275,6 @@ fn a_branch_to_a_32_bit_instruction_off_a_word_s_boundary_takes_a_cycle_more() {
     }
 }
 
-/// Signed and unsigned divisions take exactly the measured cycles, from 2 with a zero to 12 with
-/// the longest quotient.
 #[test]
 fn the_time_of_a_division_depends_on_the_length_of_its_quotient() {
     for (word, dividend, divisor, expected) in [
@@ -307,7 +294,6 @@ fn the_time_of_a_division_depends_on_the_length_of_its_quotient() {
     }
 }
 
-/// The encodings are those of LLVM's assembler.
 #[test]
 fn multiply_accumulate_is_recognised() {
     for (name, encodings) in [
@@ -326,7 +312,6 @@ fn multiply_accumulate_is_recognised() {
     }
 }
 
-/// A sum in double precision has no row in the table, so it is not decoded.
 #[test]
 fn an_instruction_that_no_m4f_has_is_refused() {
     assert!(Instruction::decode((VADD_D0 >> 16) as u16, VADD_D0 as u16).is_none());

@@ -19,23 +19,19 @@ use crate::pipeline::{Cost, Pipeline};
 /// The contents of the core registers before an instruction.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Registers {
-    /// r0 to r15.
     pub general: [u32; 16],
 }
 
 impl Registers {
-    /// Returns the stack pointer.
     pub fn sp(&self) -> u32 {
         self.general[13]
     }
 
-    /// Returns the link register. Before the first instruction of a function it is the return
-    /// address with its Thumb bit.
+    /// Returns the link register: before the first instruction of a function its return address.
     pub fn lr(&self) -> u32 {
         self.general[14]
     }
 
-    /// Returns the address of the instruction that is about to be executed, without the Thumb bit.
     pub fn pc(&self) -> u32 {
         self.general[15]
     }
@@ -49,8 +45,8 @@ impl Registers {
     }
 }
 
-/// The number of bytes of a word such as `R01=00000002` and its separator. The log has four lines
-/// of four words for each instruction.
+/// The size of a word such as `R01=00000002` with its separator. The log has four lines of four
+/// words for each instruction.
 const WORD: usize = 13;
 
 /// Returns the value of a word's eight digits. They are computed together for speed, because
@@ -85,13 +81,7 @@ impl Read for Pieces<'_> {
 }
 
 /// Calls `each` with the registers before every instruction of a log, until the log ends or `each`
-/// returns an error, which is returned. A log that cannot be read is an error, too. A log ends when
-/// a read returns no bytes: a pipe when all its writers have closed it, for which this waits, and a
-/// file at its present end. An instruction whose lines are incomplete, or cannot be read to their
-/// end, is left out without an error. This sleeps for 0.5 ms before each read of up to 1 MiB.
-///
-/// The first of the four lines of an instruction begins with `R00=`; other lines before it are
-/// skipped. Not checked: the format of the four lines; others give meaningless registers.
+/// returns an error. It waits for a pipe until all its writers have closed it.
 pub fn for_each_instruction(
     log: &mut dyn Read,
     each: &mut dyn FnMut(Registers) -> Result<()>,
@@ -99,7 +89,6 @@ pub fn for_each_instruction(
     let mut log = BufReader::with_capacity(1 << 20, Pieces(log));
     let mut first = Vec::new();
     let mut rest = [0; 12 * WORD];
-    // An instruction begins with a line of r0 to r3. Other lines are QEMU's own messages.
     while log.read_until(b'\n', &mut first).context("QEMU's log")? > 0 {
         if first.starts_with(b"R00=") && log.read_exact(&mut rest).is_ok() {
             each(Registers::read(&first, &rest))?;
@@ -109,41 +98,32 @@ pub fn for_each_instruction(
     Ok(())
 }
 
-/// The calls of the functions that begin at some addresses. A call lasts until its function
-/// returns. Its cost, instructions and stack include the functions that it calls and the interrupts
-/// in this time. A call within another counted call is a part of that call and is not counted
-/// again.
+/// The calls of the functions that begin at some addresses, each with all that it calls and all
+/// interrupts in this time. A call within a counted call is a part of it.
 #[derive(Debug)]
 pub struct Calls<'a> {
     image: &'a Image,
     core: Core,
     entries: BTreeSet<u32>,
     /// The running call: the registers at its entry, its stream since then, and its cost so far.
-    /// `None` between calls.
     pub running: Option<(Registers, Stream<'a>, Cost)>,
-    /// The cost of each call that has returned, in the order of the returns.
+    /// In the order of the returns.
     pub ended: Vec<Cost>,
-    /// The instructions by address, each with the total cost of its executions in calls, including
-    /// a running one.
+    /// The total cost of the executions of each instruction in calls.
     pub spots: BTreeMap<u32, (Instruction, Cost)>,
-    /// The largest distance of the stack pointer below its value at the entry of a call, bytes. A
-    /// running call and interrupts are included.
+    /// The largest distance of the stack pointer below its value at the entry of a call.
     pub stack_bytes: u32,
 }
 
-/// The instructions that a core executes, one after the other. Costs are estimated as if the first
-/// one followed nothing.
 #[derive(Debug)]
 pub struct Stream<'a> {
     image: &'a Image,
     core: Core,
     pipeline: Pipeline,
-    /// The registers before the instruction that is about to be executed.
     before: Option<Registers>,
 }
 
 impl<'a> Stream<'a> {
-    /// Returns a stream that begins with the next instruction.
     pub fn of(image: &'a Image, core: Core) -> Self {
         Self {
             image,
@@ -154,9 +134,7 @@ impl<'a> Stream<'a> {
     }
 
     /// Takes the registers before the next instruction. Returns the address, the instruction and
-    /// the cost of the previous instruction, or `None` at the first call. It is an error if the
-    /// previous instruction is not in the program, has no known timing, or is missing on the core
-    /// ([`Instruction::is_missing_on`]); a further call continues after it.
+    /// the cost of the previous one. A previous instruction without a known timing is an error.
     pub fn see(&mut self, next: Registers) -> Result<Option<(u32, Instruction, Cost)>> {
         let Some(before) = self.before.replace(next) else {
             return Ok(None);
@@ -179,8 +157,6 @@ impl<'a> Stream<'a> {
 }
 
 impl<'a> Calls<'a> {
-    /// Returns the calls of the functions that begin at these addresses, without the Thumb bit;
-    /// none so far. Not checked: that functions begin there.
     pub fn of(image: &'a Image, core: Core, entries: BTreeSet<u32>) -> Self {
         let ended = Vec::new();
         let spots = BTreeMap::new();
@@ -195,12 +171,8 @@ impl<'a> Calls<'a> {
         }
     }
 
-    /// Takes the registers before the next instruction. A call begins at an entry, unless another
-    /// call is running. It ends at the caller's return address if the stack pointer is as at the
-    /// entry; that instruction does not begin a call, even at an entry. An interrupt handler does
-    /// not return like this, so its call never ends. Errors are as in [`Stream::see`], during a
-    /// call only. After an error the call is still running, without the instruction that failed,
-    /// and these registers do not end it.
+    /// Takes the registers before the next instruction. A call ends at the caller's return address,
+    /// if the stack pointer is as at the entry.
     pub fn see(&mut self, registers: Registers) -> Result<()> {
         if self.running.is_none() && self.entries.contains(&registers.pc()) {
             self.running = Some((
@@ -210,7 +182,6 @@ impl<'a> Calls<'a> {
             ));
         }
 
-        // Count the executed instruction for the running call.
         let Some((caller, stream, cost)) = &mut self.running else {
             return Ok(());
         };
@@ -226,7 +197,6 @@ impl<'a> Calls<'a> {
             .max(caller.sp().saturating_sub(registers.sp()));
         *cost += executed;
 
-        // The call has returned.
         if registers.pc() == caller.lr() & !1 && registers.sp() == caller.sp() {
             self.ended.push(*cost);
             self.running = None;
@@ -234,16 +204,13 @@ impl<'a> Calls<'a> {
         Ok(())
     }
 
-    /// Returns the total cost of all calls that have returned. It is zero if none has. A running
-    /// call is not included.
     pub fn cost(&self) -> Cost {
         let mut all = Cost::default();
         self.ended.iter().for_each(|call| all += *call);
         all
     }
 
-    /// Returns the size of all instructions executed in calls, each address once, in bytes. A
-    /// running call is included.
+    /// Returns the size of all instructions executed in calls, each address once, bytes.
     pub fn hot_bytes(&self) -> u32 {
         self.spots
             .values()
@@ -251,8 +218,7 @@ impl<'a> Calls<'a> {
             .sum()
     }
 
-    /// Returns the size of all functions in which an instruction of a call was executed, in bytes.
-    /// Code outside of any function with a known size does not count. A running call is included.
+    /// Returns the size of all functions in which an instruction of a call was executed, bytes.
     pub fn code_bytes(&self) -> u32 {
         let functions: BTreeSet<_> = self
             .spots

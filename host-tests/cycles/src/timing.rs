@@ -24,20 +24,18 @@ use crate::row::{Row, row};
 /// The cycles to refill the pipeline after a taken branch to an address in the instruction:
 /// "normally 1" (DDI 0337, table 3-1 of older issues).
 pub const DIRECT_REFILL: u64 = 1;
-/// The cycles to refill the pipeline after any other instruction that is not followed by the next
-/// one in memory, such as bx, a pop of pc, or one before an interrupt: "normally 2". On the M0+
-/// only a pop of pc takes them, and the others [`DIRECT_REFILL`].
+/// The cycles to refill the pipeline after bx, a pop of pc or an interrupt: "normally 2". On the
+/// M0+ only a pop of pc takes them.
 pub const INDIRECT_REFILL: u64 = 2;
-/// The additional cycles if a taken branch of any kind leads to a 32-bit instruction off a word's
-/// boundary. The first fetch then brings only half of it. The M0+ does not take them.
+/// The additional cycles if a taken branch leads to a 32-bit instruction off a word's boundary: the
+/// first fetch brings only half of it. The M0+ does not take them.
 pub const UNALIGNED_TARGET: u64 = 1;
 /// The additional cycles until a floating-point result can be consumed (DDI 0439, notes of table
 /// 7-1).
 pub const RESULT_USE_STALL: u64 = 1;
 
-/// The table of timings: the mnemonics, the mask and the value of the encoding, the cycles on the
-/// M3, the M4F and the M0+, and the effects on neighbours ([`Row`]). 0 cycles mean that the core
-/// does not have the instruction, or a division. The first row that matches an instruction is used.
+/// The first row that matches an instruction is used. 0 cycles mean that the core does not have it,
+/// or a division.
 #[rustfmt::skip]
 pub const TIMINGS: &[Row] = &[
     // 16-bit loads and stores

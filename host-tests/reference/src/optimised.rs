@@ -7,8 +7,7 @@ use double_pendulum::{Pendulum, Real, State};
 
 /// A number type, `f32` or `f64`, whose steps of RK4 are compiled in this package.
 pub trait Step: Real {
-    /// Returns the state after a step of RK4 of `dt` seconds: [`Pendulum::step`]. A negative `dt`
-    /// steps backwards. Not checked: the state, the step, and that the result is finite.
+    /// Returns the state after a step of RK4: [`Pendulum::step`].
     fn step(pendulum: &Pendulum<Self>, state: &State<Self>, dt: Self) -> State<Self>;
 }
 

@@ -35,10 +35,8 @@ pub struct Equations {
 
 impl Equations {
     /// Returns the coefficients 0 to `order` of the power series of the six numbers (sin a1, cos
-    /// a1, S, C, P1, P2) from `start`. The time of the series is in units of `step` T. The first
-    /// index is the number, the second the power. Each ball contains the coefficient for every
-    /// start and step in their balls. Coefficients of powers above 48 are unknown. All of powers
-    /// above 0 are if the balls are so wide that k + l S^2 may be 0.
+    /// a1, S, C, P1, P2) from `start`, in time in units of `step` T: first the number, then the
+    /// power. Each ball contains the coefficient for every start and step in their balls.
     pub fn series(&self, start: &[Fixed; 6], order: usize, step: Fixed) -> [Vec<Fixed>; 6] {
         let &Self {
             upper,
@@ -51,8 +49,6 @@ impl Equations {
         let [mut den, mut u, mut v, mut uv, mut turn] = [(); 5].map(|()| Vec::new());
 
         for k in 0..order {
-            // Coefficient k of each intermediate quantity, then coefficient k + 1 of the six
-            // numbers.
             let [sin1, cos1, s, c, p1, p2] = &z;
             let square = lower * Fixed::product(s, s);
             den.push(if k == 0 {
@@ -66,7 +62,6 @@ impl Equations {
             uv.push(Fixed::product(&u, &v));
             turn.push(u[k] - v[k]);
 
-            // The torque of the rods on each other, and the slopes.
             let force = Fixed::product(&uv, s);
             let sin2 = Fixed::product(sin1, c) - Fixed::product(cos1, s);
             let slopes = [
@@ -86,8 +81,7 @@ impl Equations {
     }
 
     /// Returns the energy of the six numbers `z`, divided by M l1^2/T^2. The potential energy is 0
-    /// where both bobs are level with the pivot. It is unknown if one of the numbers is, if it or
-    /// a term of it is out of range, or if their balls are so wide that k + l S^2 may be 0.
+    /// where both bobs are level with the pivot.
     pub fn energy(&self, &[sin1, cos1, s, c, p1, p2]: &[Fixed; 6]) -> Fixed {
         let &Self {
             upper,
@@ -97,7 +91,6 @@ impl Equations {
             gravity: [gravity1, gravity2],
         } = self;
 
-        // The velocities, then the kinetic and the potential energy.
         let u = (p1 - coupling * c * p2) * (upper + lower * s * s).inverse();
         let v = p2 - rods * c * u;
         let square = coupling * rods.inverse();
@@ -107,7 +100,7 @@ impl Equations {
     }
 }
 
-/// The part of the discs' radii within which solutions may start: a sixteenth.
+/// The part of the discs' radii within which solutions may start.
 pub const STARTS: f64 = 0.0625;
 /// The smallest radius, and the smallest ratio of a radius to the extent of the set. The extent is
 /// then at most 1/4 of the region where solutions may start.
@@ -119,13 +112,10 @@ const TRIES: usize = 12;
 /// The shortest usable time, in steps. With it, a power series of 48 terms ends at 2^-116.
 const SHORTEST: f64 = 6.0;
 
-/// Returns the longest time found, 6 to 24, in steps of `step` T, and the radii of discs about
-/// `middle`. No solution that starts within [`STARTS`] of these radii leaves the discs in complex
-/// times up to that time. `extent` is the largest distance of each number of the starts from
-/// `middle`. The radius of that number is at least 64 times as large, and at least 2^-16. Returns
-/// `None` if the time is shorter than 6 steps, as it is with unknown numbers or with some infinite
-/// extents. If all extents are infinite, which is not checked, so are the radii, and nothing is
-/// proved. An extent that is NaN or negative counts as 0, which is not checked, either.
+/// Returns the longest time found, in steps of `step` T, and the radii of discs about `middle`;
+/// `None` if no time is usable. No solution that starts within [`STARTS`] of these radii leaves the
+/// discs in complex times up to that time. `extent` is the largest distance of each number of the
+/// starts from `middle`.
 ///
 /// Theorem (Picard and Lindeloef for analytic equations; Hille, Ordinary Differential Equations in
 /// the Complex Domain, 2.3): if z0 + t f(B) is in the product of discs B for |t| <= T, one solution
@@ -142,7 +132,6 @@ pub fn discs(
     for time in TIMES {
         let mut radii = least;
         for _ in 0..TRIES {
-            // The largest slopes within the discs of these radii.
             let slopes = equations
                 .series(&from_fn(|i| middle[i].wider(radii[i])), 1, step)
                 .map(|z| z[1].size());
@@ -155,7 +144,6 @@ pub fn discs(
                 best = (held, radii);
             }
 
-            // A slope was infinite.
             if held == 0.0 {
                 break;
             }

@@ -12,8 +12,7 @@ pub const MOST_TERMS: usize = 48;
 pub const ULP: f64 = 1.0 / (1_u128 << FRACTION) as f64;
 
 /// Returns a number that is no less than the sum of products of numbers >= 0 that `f64` computed as
-/// `value` in fewer than 2^20 operations. Not checked: that `value` is not negative. Infinity and
-/// NaN are returned as they are.
+/// `value` in fewer than 2^20 operations.
 ///
 /// Each operation may have reduced it by a factor of 1 - u, u = 2^-53: (1 - u)^(2^20 + 2) (1 +
 /// 2^-32) > 1 (N. Higham, Accuracy and Stability of Numerical Algorithms, 2002, lemma 3.1). The
@@ -23,11 +22,9 @@ pub fn up(value: f64) -> f64 {
 }
 
 /// A ball: all numbers within `radius` units of the last place of `middle`, which is in the same
-/// units. Midpoints are between -256 and 256, without these two. A result whose midpoint leaves
-/// this range, or whose radius overflows, is unknown: its midpoint is 0, its radius is infinite,
-/// and so are the radii of all results from it. `+`, `-` and `*` give a ball that contains the
-/// result for every two numbers in the balls. `==` compares midpoints and radii, not the true
-/// numbers, so two unknown balls are equal.
+/// units. A result whose midpoint leaves the range, -256 to 256, is unknown: its radius is
+/// infinite, and so are the radii of all results from it. `+`, `-` and `*` give a ball that
+/// contains the result for every two numbers in the balls.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fixed {
     middle: i128,
@@ -35,28 +32,23 @@ pub struct Fixed {
 }
 
 impl Fixed {
-    /// The exact number 0.
     pub const ZERO: Self = Self {
         middle: 0,
         radius: 0.0,
     };
-    /// The exact number 1.
     pub const ONE: Self = Self {
         middle: 1 << FRACTION,
         radius: 0.0,
     };
-    /// The number pi, cut after 116 bits, with a radius of one unit of the last place.
+    /// Pi, cut after 116 bits.
     pub const PI: Self = Self {
         middle: 0x32_43F6_A888_5A30_8D31_3198_A2E0_3707,
         radius: 1.0,
     };
 
-    /// Makes a ball. If it leaves the range, its radius is infinite, which means that the number is
-    /// unknown.
     fn new(middle: i128, radius: f64) -> Self {
         let is_known = middle.abs() < LIMIT && radius < f64::INFINITY;
 
-        // A value out of range becomes the interval that contains every number.
         if is_known {
             Self {
                 middle,
@@ -70,8 +62,7 @@ impl Fixed {
         }
     }
 
-    /// Makes a ball of an `f64` number, with all its bits down to 2^-116; smaller bits are covered
-    /// by the radius. A number outside the range or NaN gives an unknown ball.
+    /// Makes a ball of an `f64` number.
     pub fn of(number: f64) -> Self {
         let scaled = number / ULP;
         let middle = if scaled.abs() < LIMIT as f64 {
@@ -82,16 +73,13 @@ impl Fixed {
         Self::new(middle, if scaled.fract() == 0.0 { 0.0 } else { 1.0 })
     }
 
-    /// Makes a ball of a fraction times 2^`exponent`, computed bit by bit. Bits below 2^-116 are
-    /// cut and covered by the radius. A value outside the range, or an exponent below -116, gives
-    /// an unknown ball. With any other exponent a denominator of 0 panics.
+    /// Makes a ball of a fraction times 2^`exponent`.
     pub fn fraction(numerator: i64, denominator: u64, exponent: i32) -> Self {
         let above = u128::from(numerator.unsigned_abs());
         let below = u128::from(denominator);
         let Some(places) = FRACTION.checked_add_signed(exponent) else {
             return Self::new(LIMIT, 0.0);
         };
-        // Long division, one bit at a time.
         let next = |(whole, rest): (u128, u128), _| {
             (
                 (2 * whole + 2 * rest / below).min(LIMIT as u128),
@@ -106,7 +94,7 @@ impl Fixed {
         )
     }
 
-    /// Returns the midpoint without a radius. For an unknown ball that is the exact number 0.
+    /// Returns the midpoint without a radius.
     pub fn middle(self) -> Self {
         Self {
             radius: 0.0,
@@ -114,34 +102,27 @@ impl Fixed {
         }
     }
 
-    /// Returns the `f64` nearest to the midpoint. It is 0 for an unknown ball.
+    /// Returns the `f64` nearest to the midpoint.
     pub fn about(self) -> f64 {
         self.middle as f64 * ULP
     }
 
-    /// Returns an upper bound of the distance of the true number from the midpoint, as a number
-    /// (not in units of the last place). It is slightly above 0 for an exact number, and infinite
-    /// if the number is unknown.
+    /// Returns an upper bound of the distance of the true number from the midpoint.
     pub fn radius(self) -> f64 {
         up(self.radius * ULP)
     }
 
-    /// Returns an upper bound of the absolute value of the numbers in the ball. It is infinite if
-    /// the number is unknown.
+    /// Returns an upper bound of the absolute value of the numbers in the ball.
     pub fn size(self) -> f64 {
         up(self.about().abs() + self.radius())
     }
 
-    /// Returns the ball with its radius increased by `radius` or slightly more. `radius` is a
-    /// number as [`Self::radius`] returns it. An infinite one or NaN gives an unknown ball. Not
-    /// checked: that it is not negative; a negative one shrinks the ball, which then proves
-    /// nothing.
+    /// Returns the ball with its radius increased.
     pub fn wider(self, radius: f64) -> Self {
         Self::new(self.middle, self.radius + up(radius / ULP))
     }
 
-    /// Returns `Some(true)` if every number in the ball is above zero, and `Some(false)` if every
-    /// number is below zero. Returns `None` if the ball may contain 0 or is unknown.
+    /// Returns the sign of every number in the ball; `None` if the ball may contain 0.
     ///
     /// The midpoint is compared as an `f64`, which may exceed it by 2^-53 of itself. [`up`]
     /// enlarges the radius by more than that, so the result is proved.
@@ -149,14 +130,9 @@ impl Fixed {
         (up(self.radius) < (self.middle as f64).abs()).then_some(self.middle > 0)
     }
 
-    /// Returns the decimal with all known digits, but no more than `most` significant ones; zeros
-    /// before the first other digit do not count. It is cut, not rounded, and the last digit after
-    /// the point is accurate to two units. The digits before the point and the point itself are
-    /// always written, even if they are not known or nothing follows; a minus sign precedes a
-    /// negative midpoint. A midpoint of 0 gives zeros down to the radius, 307 if it is exact,
-    /// whatever `most` is. Not checked: that the ball is not unknown; an unknown one gives `0.`.
+    /// Returns the decimal with all known digits, but no more than `most` significant ones. It is
+    /// cut, not rounded, and the last digit is accurate to two units.
     pub fn decimal(self, most: f64) -> String {
-        // Decimals down to the radius, but not more than `most` significant digits.
         let places = (-self.radius().log10())
             .min(most - self.about().abs().log10().floor() - 1.0)
             .max(0.0) as usize;
@@ -173,8 +149,7 @@ impl Fixed {
         )
     }
 
-    /// Returns a ball that contains every number of this one divided by a whole number. A divisor
-    /// of 0 panics.
+    /// Returns a ball that contains every number of this one divided by a whole number.
     pub fn over(self, whole: u32) -> Self {
         Self::new(
             self.middle / i128::from(whole),
@@ -182,16 +157,13 @@ impl Fixed {
         )
     }
 
-    /// Returns a ball that contains the inverse of every number of this one. It is unknown if this
-    /// one may contain 0, if its radius is about half its midpoint or more, or if the inverse is
-    /// out of range.
+    /// Returns a ball that contains the inverse of every number of this one.
     ///
     /// For any x about 1/b: |1/b - x| = |x| |1 - b x|/|b x|, and |b x| >= 1 - |1 - b x|. Newton's
     /// iteration makes x accurate.
     pub fn inverse(self) -> Self {
         let middle = self.middle();
         let mut inverse = Self::of(1.0 / middle.about()).middle();
-        // Each iteration doubles the number of correct bits.
         for _ in 0..2 {
             inverse = (inverse + inverse * (Self::ONE - middle * inverse)).middle();
         }
@@ -205,9 +177,8 @@ impl Fixed {
         })
     }
 
-    /// Returns coefficient k of the product of two power series; `a` and `b` are their coefficients
-    /// 0 to k. It is unknown if there are more than 48, and a ball about 0 if there are none. Not
-    /// checked: that both have the same length; otherwise it is another number.
+    /// Returns coefficient k of the product of two power series, whose coefficients 0 to k are `a`
+    /// and `b`.
     ///
     /// |a b - a0 b0| <= |a0| rb + ra (|b0| + rb). With a = a1 2^64 + a0 the sum of a1 b1 is exact:
     /// 48 terms up to 2^120. The terms a1 b0, a0 b1 and a0 b0 2^-64 are up to 2^124. Each of them
@@ -218,7 +189,6 @@ impl Fixed {
         let mut cross = 0_i128;
         let mut radius = 0.0;
         for (a, b) in a.iter().zip(b.iter().rev()) {
-            // The halves of each midpoint.
             let [(a1, a0), (b1, b0)] = [a, b].map(|x| ((x.middle >> 64) as i64, x.middle as u64));
             high += i128::from(a1) * i128::from(b1);
             let low = ((u128::from(a0) * u128::from(b0)) >> 72) as i128;
@@ -226,13 +196,11 @@ impl Fixed {
                 + ((i128::from(b1) * i128::from(a0)) >> 8)
                 + low;
 
-            // The upper halves, plus one.
             let [size_a, size_b] =
                 [a1, b1].map(|x| (x.unsigned_abs() + 1) as f64 * ((1_u128 << 64) as f64 * ULP));
             radius += size_a * b.radius + a.radius * (size_b + b.radius * ULP);
         }
 
-        // The sum is exact in its upper part, and rounded in its lower part.
         let fits = a.len() <= MOST_TERMS && high.abs() < LIMIT >> (128 - FRACTION);
         let middle = if fits {
             (high << (128 - FRACTION)) + (cross >> (FRACTION - 72))

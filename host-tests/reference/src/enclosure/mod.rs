@@ -21,8 +21,7 @@ pub use fixed::up;
 use fixed::{MOST_TERMS, ULP};
 pub use start::{Start, fastest_rate, sin_cos};
 
-/// The number of steps whose errors are collected in a box, before the box is converted to
-/// segments.
+/// The number of steps whose errors are collected in a box before it becomes segments.
 const STEPS: u32 = 64;
 /// The largest number of segments. Beyond it, a box replaces all segments except the six of the
 /// start.
@@ -30,22 +29,19 @@ const SEGMENTS: usize = 6 * 2048;
 /// The binary logarithm of the largest number of steps in a frame.
 const MOST_HALVINGS: i32 = 24;
 
-/// The precision of the arithmetic. The ranges of the fields are not checked; outside of them
-/// nothing is proved, and [`Enclosure::advance`] may fail or panic. The default has 48 terms,
-/// tangents up to the power 10, an offset of 2^-56, and all allowances 1.
+/// The precision of the arithmetic.
 #[derive(Clone, Copy, Debug)]
 pub struct Fineness {
-    /// The largest number of terms of the midpoint's power series, 2 to 48.
+    /// The largest number of terms of the midpoint's power series, at most 48.
     pub terms: usize,
-    /// The highest power of the derivatives' power series, 0 or more. At most that of the midpoint
-    /// is used.
+    /// The highest power of the derivatives' power series.
     pub tangents: usize,
     /// The distance from the midpoint for a difference quotient in place of a derivative, relative
-    /// to the radius of the disc; 2^-100 to 1/32.
+    /// to the radius of the disc.
     pub offset: f64,
-    /// The factors of the allowances, all 1 except in tests that remove one; below 1 nothing is
-    /// proved. They are for the roundings of the midpoint, the remainder of its series, the errors
-    /// of the derivatives, and the roundings of the segments.
+    /// The factors of the allowances, all 1 except in tests that remove one: for the roundings of
+    /// the midpoint, the remainder of its series, the errors of the derivatives, and the roundings
+    /// of the segments.
     pub allowances: [f64; 4],
 }
 
@@ -66,16 +62,13 @@ impl Default for Fineness {
 /// These are at middle + the sum of y_k segment_k + d, where |y_k| <= 1 and |d_i| <= about_i.
 #[derive(Clone, Debug)]
 pub struct Enclosure {
-    /// The equations of motion.
     pub equations: Equations,
     /// The number of units of time in a second, as the exponent of a power of two, and the number
-    /// of frames in a second. A frame takes 2^`frame.0`/`frame.1` units of the time of the
-    /// equations, and may be changed before an advance.
+    /// of frames in a second.
     pub frame: (i32, u16),
     middle: [Fixed; 6],
-    /// The segments. The first six belong to the start.
+    /// The first six belong to the start.
     segments: Vec<[f64; 6]>,
-    /// The lengths of the six segments of the start.
     start: [f64; 6],
     about: [f64; 6],
     steps: u32,
@@ -83,11 +76,8 @@ pub struct Enclosure {
 }
 
 impl Enclosure {
-    /// Makes an enclosure of all motions that begin in `start`, with 2^`frame.0` units of time and
-    /// `frame.1` frames, at least 1, in a second. `start` has the six numbers of the struct.
-    /// Numbers that are unknown or out of range make the first [`advance`](Self::advance) fail.
-    /// With 0 frames in a second the first advance panics. Not checked: that the unit of time is
-    /// the T of the equations.
+    /// Makes an enclosure of all motions that begin in `start`, in the unit of time of the
+    /// equations.
     pub fn new(
         equations: Equations,
         frame: (i32, u16),
@@ -112,8 +102,7 @@ impl Enclosure {
         set
     }
 
-    /// Returns the smallest box that contains the set: (sin a1, cos a1, S, C, P1, P2), as the
-    /// struct defines them. A number that has left the range of [`Fixed`] is unknown.
+    /// Returns the smallest box that contains the set.
     pub fn hull(&self) -> [Fixed; 6] {
         let extent = self.extent(0);
         from_fn(|i| self.middle[i].wider(extent[i]))
@@ -129,10 +118,8 @@ impl Enclosure {
             .map(up)
     }
 
-    /// Returns about the factor by which a small error of the start has grown: for each of the six
-    /// numbers, the sum of its absolute derivatives with respect to those of the start, and of
-    /// these sums the largest. It is 1 at the start. It is an estimate; nothing is proved about it,
-    /// and it has no meaning if a number of the start is unknown.
+    /// Returns about the factor by which a small error of the start has grown, for information
+    /// only.
     pub fn growth(&self) -> f64 {
         let of = |i: usize| {
             self.segments
@@ -144,27 +131,20 @@ impl Enclosure {
         (0..6).map(of).fold(0.0, f64::max)
     }
 
-    /// Returns the directions of the rods: `[[sin a1, cos a1], [sin a2, cos a2]]`. The second one
-    /// is computed from the sine and cosine of a1 - a2. They have no unit, and are unknown if a
-    /// number of [`hull`](Self::hull) in them is.
+    /// Returns the directions of the rods: `[[sin a1, cos a1], [sin a2, cos a2]]`.
     pub fn directions(&self) -> [[Fixed; 2]; 2] {
         let [sin1, cos1, s, c, ..] = self.hull();
         [[sin1, cos1], [sin1 * c - cos1 * s, cos1 * c + sin1 * s]]
     }
 
     /// Advances by a frame, in pieces of 1 to 2^-24 frames, as large as can be enclosed. Returns
-    /// `None` if not even the smallest piece can be: the set has become too large to be followed (1
-    /// or more in one of the numbers is always too large), or its numbers too large for the
-    /// arithmetic. The set is then somewhere within the frame and must not be used any more.
+    /// `None` if the set has become too large to be followed. It must not be used any more then.
     pub fn advance(&mut self) -> Option<()> {
         self.advance_unless(&AtomicUsize::new(0))
     }
 
-    /// Advances like [`advance`](Self::advance), and returns `None` if `stopped` is not zero, which
-    /// is read before each piece of the frame. The set must not be used any more after either
-    /// `None`.
+    /// Advances like [`advance`](Self::advance), and stops with `None` if `stopped` is not zero.
     pub fn advance_unless(&mut self, stopped: &AtomicUsize) -> Option<()> {
-        // The frame is divided into halves until every piece can be enclosed.
         let mut left = vec![0];
         while let Some(halvings) = left.pop() {
             (stopped.load(Ordering::Relaxed) == 0).then_some(())?;
@@ -260,7 +240,6 @@ impl Enclosure {
         Some(())
     }
 
-    /// Converts the box to segments along the axes.
     fn settle(&mut self) {
         if self.segments.len() >= SEGMENTS {
             self.about = self.extent(6);
@@ -273,7 +252,6 @@ impl Enclosure {
     }
 }
 
-/// Returns the sum of a series after one step.
 fn sum(terms: &[Fixed]) -> Fixed {
     terms
         .iter()

@@ -9,9 +9,7 @@ use super::fixed::Fixed;
 use super::{Enclosure, Fineness};
 
 /// Returns the fastest rate in a motion, rad/s: the fast normal frequency or the largest angular
-/// velocity that its energy allows, whichever is larger. Arguments are in SI units. Without gravity
-/// only the velocities count, so it is 0 at rest. It is 1 if the kernel refuses the parameters
-/// ([`Pendulum::new`]). Not checked: that the motion is finite.
+/// velocity that its energy allows.
 pub fn fastest_rate(parameters: &Parameters<f64>, motion: &Motion<f64>) -> f64 {
     Pendulum::new(parameters).map_or(1.0, |pendulum| {
         let Bounds { w1, w2, .. } = pendulum.bounds(&pendulum.to_state(motion));
@@ -28,12 +26,10 @@ pub fn fastest_rate(parameters: &Parameters<f64>, motion: &Motion<f64>) -> f64 {
 pub struct Start {
     /// The numbers in SI units (angles in rad, velocities in rad/s), rounded to `f64`.
     pub about: (Parameters<f64>, Motion<f64>),
-    /// The exact numbers in the same units, if they were not given in `f64`: numerators and
-    /// denominators of a1, a2; w1, w2; m1, m2; l1, l2; g. A denominator of 0 makes
-    /// [`enclose`](Self::enclose) panic. Not checked: that they agree with `about`.
+    /// The exact numbers, if they were not given in `f64`: numerators and denominators of a1, a2;
+    /// w1, w2; m1, m2; l1, l2; g.
     pub fractions: Option<[(i64, u64); 9]>,
-    /// True if the angles (first) and the velocities (second) of the fractions are in degrees, and
-    /// degrees per second. Without fractions both must be false, which is not checked.
+    /// True if the angles (first) and the velocities (second) of the fractions are in degrees.
     pub degrees: [bool; 2],
 }
 
@@ -47,26 +43,20 @@ impl Start {
         }
     }
 
-    /// Returns the set that contains the start, for `rate` frames a second, at least 1
-    /// ([`Enclosure::new`]), with the default [`Fineness`].
+    /// Returns the set that contains the start, for `rate` frames a second.
     ///
     /// The unit of time is so short that no rod turns by more than 4 rad in it, and 2^e is near the
     /// root of (m1 + m2)/m1. The numbers of the equations are then neither large nor small, for
-    /// masses within a factor of 1000 and lengths within a factor of 30 of each other. Outside of
-    /// these, or if the motion is too fast, its first [`advance`](Enclosure::advance) may fail. Not
-    /// checked: that the numbers are finite, and masses and lengths positive; otherwise it may
-    /// panic, or the result has no meaning.
+    /// masses within a factor of 1000 and lengths within a factor of 30 of each other.
     pub fn enclose(&self, rate: u16) -> Enclosure {
         let (parameters @ Parameters { m1, m2, l1, l2, g }, motion @ Motion { a1, a2, w1, w2 }) =
             self.about;
 
-        // If almost nothing moves, any unit is suitable.
         let unit = (fastest_rate(&parameters, &motion) / 4.0)
             .log2()
             .ceil()
             .max(-64.0) as i32;
         let e = (0.5 * (1.0 + m2 / m1).log2()).clamp(0.0, 7.0).round() as i32;
-        // Powers of two near the mass and the lengths.
         let [by, by1, by2] = [m1.max(m2), l1, l2].map(|x| x.log2() as i32);
 
         // The given numbers, exact if possible, with angles less than a whole circle.
@@ -134,8 +124,7 @@ impl Start {
     }
 }
 
-/// Returns an angle in degrees without whole circles, exactly. The result is between -180 and 180
-/// degrees.
+/// Returns an angle in degrees without whole circles, exactly.
 fn without_whole_circles((numerator, denominator): (i64, u64)) -> (i64, u64) {
     // The nearest multiple of a circle is removed.
     let circle = 360 * i128::from(denominator);
@@ -150,7 +139,6 @@ fn without_whole_circles((numerator, denominator): (i64, u64)) -> (i64, u64) {
     (i64::try_from(nearest).unwrap_or(numerator), denominator)
 }
 
-/// The largest angle, rad, that is enclosed without taking whole turns away.
 const LARGEST_ANGLE: f64 = 64.0;
 
 /// Returns an angle of about `about` rad without whole turns. `angle(n)` returns the angle times
@@ -162,21 +150,18 @@ fn without_turns(angle: impl Fn(i32) -> Fixed, about: f64) -> Fixed {
         return angle(0);
     }
 
-    // Scale the angle into the range of `Fixed` before subtracting the turns.
     let places = (about.abs() / LARGEST_ANGLE).log2().ceil() as i32;
     let turns = (about / std::f64::consts::TAU).round();
     let share = Fixed::of(turns * f64::from(-places).exp2());
     let mut rest = angle(-places) - share * (Fixed::PI + Fixed::PI);
 
-    // Undo the scaling, now that the rest is small.
     for _ in 0..places {
         rest = rest + rest;
     }
     rest
 }
 
-/// Returns balls that contain the sine and the cosine of every angle, rad, in the ball. They are
-/// unknown if the angle is.
+/// Returns balls that contain the sine and the cosine of every angle in the ball.
 ///
 /// Theorem (Leibniz): the remainder of an alternating series with decreasing terms is smaller than
 /// the last term added. The terms decrease from the fifth on, because |x| is below 4 without whole
@@ -185,7 +170,6 @@ pub fn sin_cos(angle: Fixed) -> [Fixed; 2] {
     let turn = Fixed::PI + Fixed::PI;
     let x = angle - turn * Fixed::of((angle.about() / turn.about()).round());
     let square = x * x;
-    // The sine and the cosine have the same series, with different first terms.
     [(x, 1), (Fixed::ONE, 0)].map(|(first, power)| {
         let mut sum = first;
         let mut term = first;
