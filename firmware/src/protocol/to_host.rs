@@ -38,13 +38,19 @@ pub enum Answer {
     Planned(Option<Planned>),
     Identity(Identity),
     /// A sample of the requested motion. The first one, with index 0, is the start.
-    Sample { index: u32, reading: Reading },
+    Sample {
+        index: u32,
+        reading: Reading,
+    },
     /// The step of the request is longer than this one, s, the longest that resolves every motion
     /// of that energy. The samples follow all the same.
     StepTooLong(f64),
     /// The time of all `steps` steps together in processor cycles, including the call; on a
     /// Cortex-M0+ modulo 2^24. It is 0 without a cycle counter, as in QEMU.
-    Measured { steps: u32, cycles: u32 },
+    Measured {
+        steps: u32,
+        cycles: u32,
+    },
     /// The last restart that the board made on its own since it was switched on or reset from
     /// outside.
     Restart(Option<Restarted>),
