@@ -145,9 +145,6 @@ pub enum Method {
     Rk4F32Micromath,
     /// `textbook-f32`
     TextbookF32,
-    /// `rk4-f32-lagrange`, only in the unit tests of this crate.
-    #[cfg(test)]
-    Rk4F32Lagrange,
 }
 
 /// A method that scenes are drawn by: the [`Method`] of the same name.
@@ -161,8 +158,6 @@ pub(crate) enum DrawnMethod {
     Rk4Fixed32,
     Extrapolation10Fixed64,
     ClosedFormF32,
-    #[cfg(test)]
-    Rk4F32Lagrange,
 }
 
 /// The properties of a method: its row of the table.
@@ -196,8 +191,6 @@ impl Method {
         Method::ClosedFormF32,
         Method::Rk4F32Micromath,
         Method::TextbookF32,
-        #[cfg(test)]
-        Method::Rk4F32Lagrange,
     ];
 
     /// The methods that draw scenes, in the order of the table. A [plan](crate::plan) chooses from
@@ -208,8 +201,6 @@ impl Method {
         Method::Rk4Fixed32,
         Method::Extrapolation10Fixed64,
         Method::ClosedFormF32,
-        #[cfg(test)]
-        Method::Rk4F32Lagrange,
     ];
 
     /// Returns the row of the table.
@@ -334,15 +325,6 @@ impl Method {
                 integrator: Integrator::Rk4,
                 order: 4,
                 drawn: None,
-            },
-            #[cfg(test)]
-            Method::Rk4F32Lagrange => Row {
-                name: "rk4-f32-lagrange",
-                equations: Equations::Hamilton,
-                numbers: Numbers::F32,
-                integrator: Integrator::Rk4,
-                order: 4,
-                drawn: Some(DrawnMethod::Rk4F32Lagrange),
             },
         }
     }
@@ -484,6 +466,14 @@ mod tests {
                 [equations, numbers, integrator],
                 "{method}"
             );
+        }
+    }
+
+    /// Each name of the table must lead back to its method by `Method::from_name`.
+    #[test]
+    fn method_names_are_unique() {
+        for method in Method::ALL {
+            assert_eq!(Method::from_name(method.name()), Some(*method));
         }
     }
 }

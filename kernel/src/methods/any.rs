@@ -72,8 +72,6 @@ impl Method {
             Method::ClosedFormF64 => visitor.visit::<ClosedFormF64>(),
             Method::ClosedFormF32 => visitor.visit::<ClosedFormF32>(),
             Method::Rk4F32Micromath | Method::TextbookF32 => return None,
-            #[cfg(test)]
-            Method::Rk4F32Lagrange => visitor.visit::<super::lagrange::LagrangeF32>(),
         })
     }
 }
@@ -92,9 +90,6 @@ pub enum DrawnMotion32 {
     Rk4F32Direction(DirectionF32),
     /// [`Method::Rk4Fixed32`].
     Rk4Fixed32(Fixed32),
-    /// [`Method::Rk4F32Lagrange`], in the unit tests.
-    #[cfg(test)]
-    Rk4F32Lagrange(super::lagrange::LagrangeF32),
 }
 
 /// A motion by the method of [`Method::DRAWN`] in 64 bits, `extrapolation10-fixed64`.
@@ -151,10 +146,6 @@ impl DrawnMotion32 {
             }
             // In 64 bits: `DrawnMotion::new` creates its motion.
             DrawnMethod::Extrapolation10Fixed64 => return Err(Error::NotDrawn { method }),
-            #[cfg(test)]
-            DrawnMethod::Rk4F32Lagrange => {
-                Self::Rk4F32Lagrange(FormOperations::new(parameters, start, dt)?)
-            }
         })
     }
 
@@ -173,8 +164,6 @@ impl DrawnMotion32 {
             Self::Rk4F32DirectionPlain(motion) => *motion = motion.started(start)?,
             Self::Rk4F32Direction(motion) => *motion = motion.started(start)?,
             Self::Rk4Fixed32(motion) => *motion = motion.started(start)?,
-            #[cfg(test)]
-            Self::Rk4F32Lagrange(motion) => *motion = motion.started(start)?,
         }
         Ok(())
     }
@@ -190,8 +179,6 @@ impl DrawnMotion32 {
             Self::Rk4F32DirectionPlain(motion) => motion.advance(steps),
             Self::Rk4F32Direction(motion) => motion.advance(steps),
             Self::Rk4Fixed32(motion) => motion.advance(steps),
-            #[cfg(test)]
-            Self::Rk4F32Lagrange(motion) => motion.advance(steps),
         }
     }
 
@@ -207,8 +194,6 @@ impl DrawnMotion32 {
             Self::Rk4F32DirectionPlain(motion) => motion.check(),
             Self::Rk4F32Direction(motion) => motion.check(),
             Self::Rk4Fixed32(motion) => motion.check(),
-            #[cfg(test)]
-            Self::Rk4F32Lagrange(motion) => motion.check(),
         }
     }
 
@@ -220,8 +205,6 @@ impl DrawnMotion32 {
             Self::Rk4F32DirectionPlain(motion) => motion.sides(),
             Self::Rk4F32Direction(motion) => motion.sides(),
             Self::Rk4Fixed32(motion) => motion.sides(),
-            #[cfg(test)]
-            Self::Rk4F32Lagrange(motion) => motion.sides(),
         }
     }
 
@@ -242,8 +225,6 @@ impl DrawnMotion32 {
             Self::Rk4F32DirectionPlain(motion) => motion.directions(),
             Self::Rk4F32Direction(motion) => motion.directions(),
             Self::Rk4Fixed32(motion) => motion.directions(),
-            #[cfg(test)]
-            Self::Rk4F32Lagrange(motion) => motion.directions(),
         }
     }
 
@@ -255,8 +236,6 @@ impl DrawnMotion32 {
             Self::Rk4F32DirectionPlain(motion) => motion.momenta(),
             Self::Rk4F32Direction(motion) => motion.momenta(),
             Self::Rk4Fixed32(motion) => motion.momenta(),
-            #[cfg(test)]
-            Self::Rk4F32Lagrange(motion) => motion.momenta(),
         }
     }
 
@@ -272,8 +251,6 @@ impl DrawnMotion32 {
             Self::Rk4F32DirectionPlain(motion) => motion.state(),
             Self::Rk4F32Direction(motion) => motion.state(),
             Self::Rk4Fixed32(motion) => motion.state(),
-            #[cfg(test)]
-            Self::Rk4F32Lagrange(motion) => motion.state(),
         }
     }
 
@@ -284,8 +261,6 @@ impl DrawnMotion32 {
             Self::Rk4F32DirectionPlain(motion) => motion.energy_above_rest(pendulum),
             Self::Rk4F32Direction(motion) => motion.energy_above_rest(pendulum),
             Self::Rk4Fixed32(motion) => motion.energy_above_rest(pendulum),
-            #[cfg(test)]
-            Self::Rk4F32Lagrange(motion) => motion.energy_above_rest(pendulum),
         }
     }
 
@@ -296,8 +271,6 @@ impl DrawnMotion32 {
             Self::Rk4F32DirectionPlain(_) => DirectionF32Plain::HAS_TURNS,
             Self::Rk4F32Direction(_) => DirectionF32::HAS_TURNS,
             Self::Rk4Fixed32(_) => Fixed32::HAS_TURNS,
-            #[cfg(test)]
-            Self::Rk4F32Lagrange(_) => super::lagrange::LagrangeF32::HAS_TURNS,
         }
     }
 }

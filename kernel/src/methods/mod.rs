@@ -11,8 +11,6 @@ pub(crate) mod direction;
 pub mod extrapolation;
 mod extrapolation_f64;
 mod extrapolation_fixed64;
-#[cfg(test)]
-pub(crate) mod lagrange;
 pub mod rk4;
 mod rk4_direction;
 mod rk4_fixed32;
@@ -21,8 +19,6 @@ mod scaling;
 pub(crate) mod turns;
 
 pub use any::{DrawnMotion, FormVisitor};
-#[cfg(test)]
-pub(crate) use canonical::Hamilton;
 pub use canonical::{Canonical, Derivatives, Rk4, RungeKutta};
 pub use closed_form::{ClosedForm, SmallOscillations};
 pub use extrapolation_f64::ExtrapolationF64;

@@ -47,8 +47,6 @@ impl Costs {
             DrawnMethod::Rk4F32Direction => self.direction,
             DrawnMethod::Rk4Fixed32 => self.fixed32,
             DrawnMethod::Extrapolation10Fixed64 => self.fixed64,
-            #[cfg(test)]
-            DrawnMethod::Rk4F32Lagrange => crate::methods::lagrange::PRICE,
         })
     }
 

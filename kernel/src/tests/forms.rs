@@ -60,7 +60,7 @@ const MOTIONS: [(Parameters<f64>, Motion<f64>); 2] = [
 ///
 /// It covers the truncation error in steps of 1/256 s and rounding to 24 bits. Measured: 1.1e-8,
 /// and 5e-9 for fixed point with 30 bits.
-pub const RK4: f64 = 3e-8;
+const RK4: f64 = 3e-8;
 /// The tolerance of extrapolation. It covers the truncation error of the finer RK4, and the
 /// rounding to 53 and 61 bits. Measured: 4e-14.
 const ORDER_12: f64 = 2e-13;
@@ -75,7 +75,7 @@ const ORDER_12: f64 = 2e-13;
 /// Panics if the rates differ by more or are NaN; the message names the worst of the four
 /// equations. Also panics if `F` refuses a motion or it diverges.
 #[track_caller]
-pub fn is_that_of_hamiltons_equations<F: Form>(tolerance: f64) {
+fn is_that_of_hamiltons_equations<F: Form>(tolerance: f64) {
     let form = core::any::type_name::<F>();
     for (parameters, motion) in MOTIONS {
         // Start from numbers that the form can represent.

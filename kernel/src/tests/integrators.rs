@@ -11,12 +11,8 @@ use std::format;
 use std::string::String;
 use std::vec::Vec;
 
-use double_pendulum::parts::{Canonical, Rk4, RungeKutta};
+use double_pendulum::parts::{Rk4, RungeKutta};
 use double_pendulum::{Extrapolation, Integrator, Method};
-
-use super::forms;
-use super::three_eighths::ThreeEighths;
-use crate::methods::Hamilton;
 
 /// The number of equations: more than the 65 stages of extrapolation of order 16.
 const N: usize = 72;
@@ -261,50 +257,28 @@ fn every_integrator_meets_its_order_conditions() {
     }
 }
 
-/// The 3/8 rule meets the conditions of order 4, has its limit of stability and the weights of the
-/// book to 1e-12, and moves a pendulum as Hamilton's equations do, to 3e-8 ([`forms::RK4`]).
-#[test]
-fn added_integrator_needs_only_a_type() {
-    check::<ThreeEighths>(4);
-    let book = Tableau {
-        a: [&[][..], &[1.0 / 3.0], &[-1.0 / 3.0, 1.0], &[1.0, -1.0, 1.0]]
-            .map(Vec::from)
-            .into(),
-        b: [1.0, 3.0, 3.0, 1.0].map(|weight| weight / 8.0).into(),
-    };
-    let mut read = tableau::<ThreeEighths>();
-    for weight in book.weights() {
-        let error = *read.weight(weight) - *book.clone().weight(weight);
-        assert!(error.abs() <= ROUNDING, "{weight:?}: {error}");
-    }
-    forms::is_that_of_hamiltons_equations::<Canonical<f64, Hamilton<f64>, ThreeEighths>>(
-        forms::RK4,
-    );
-}
-
-/// A test of the test: if a single weight of RK4 or of the 3/8 rule is changed by 0.25 up or down,
-/// the message names this weight with its right value, and no other weight.
+/// A test of the test: if a single weight of RK4 is changed by 0.25 up or down, the message names
+/// this weight with its right value, and no other weight.
 #[test]
 fn a_single_wrong_weight_is_named() {
-    for right in [tableau::<Rk4>(), tableau::<ThreeEighths>()] {
-        for weight in right.weights() {
-            for change in [0.25, -0.25] {
-                let mut wrong = right.clone();
-                *wrong.weight(weight) += change;
-                let error = wrong.check(4).expect_err("one weight is wrong");
-                let now = *wrong.weight(weight);
-                let value = *right.clone().weight(weight);
+    let right = tableau::<Rk4>();
+    for weight in right.weights() {
+        for change in [0.25, -0.25] {
+            let mut wrong = right.clone();
+            *wrong.weight(weight) += change;
+            let error = wrong.check(4).expect_err("one weight is wrong");
+            let now = *wrong.weight(weight);
+            let value = *right.clone().weight(weight);
 
-                // The message must end with the right value of this weight and name no other.
-                let named = format!("; {weight:?} = {now} should be {value:.9}");
-                assert!(
-                    error
-                        .replace("-0.000000000", "0.000000000")
-                        .ends_with(&named)
-                        && error.matches(" should be ").count() == 1,
-                    "{weight:?} = {now}: {error}"
-                );
-            }
+            // The message must end with the right value of this weight and name no other.
+            let named = format!("; {weight:?} = {now} should be {value:.9}");
+            assert!(
+                error
+                    .replace("-0.000000000", "0.000000000")
+                    .ends_with(&named)
+                    && error.matches(" should be ").count() == 1,
+                "{weight:?} = {now}: {error}"
+            );
         }
     }
 }

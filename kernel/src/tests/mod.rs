@@ -4,7 +4,6 @@
 //! `kernel/tests`, because cargo runs them here together with the unit tests. If a unit test fails,
 //! cargo does not run the programs of that folder.
 
-mod added_method;
 mod forms;
 mod golden;
 mod hamilton;
@@ -15,7 +14,6 @@ mod refusals;
 mod runs;
 mod small_oscillations;
 mod symmetries;
-mod three_eighths;
 mod tolerances;
 mod trigonometry;
 
