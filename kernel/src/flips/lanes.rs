@@ -4,11 +4,10 @@
 //! [`Rk4Direction`](crate::methods::Rk4Direction) in plain `f32`, whose page explains the equations
 //! and the step.
 //!
-//! The code uses loops and functions instead of array methods and closures, which are not always
-//! inlined in code for a processor's vectors. A function that is not inlined is not compiled for
-//! the vectors of the caller's processor. Each `inline(always)` of this folder is therefore needed:
-//! with AVX2 a map takes 1.4 times as long if `step` is not inlined, 1.6 times if the stages are
-//! not, and 1.8 times if `ahead`, `changes` and `rates` are not.
+//! A function that is not inlined is not compiled for the vectors of the caller's processor. Each
+//! `inline(always)` of this folder is therefore needed: with AVX2 a map takes 1.4 times as long if
+//! `step` is not inlined, 1.6 times if the stages are not, and 1.8 times if `ahead`, `changes` and
+//! `rates` are not. For the same reason the code uses loops instead of array methods.
 
 use crate::methods::DirectionF32Plain;
 use crate::numbers::Lanes;
@@ -26,13 +25,9 @@ struct Point<const N: usize> {
 /// The constants of the equations, the same in all lanes.
 #[derive(Clone, Copy, Debug)]
 struct Constants<const N: usize> {
-    /// The length nu of (S, C).
     norm: Numbers<N>,
-    /// m.
     inertia: Numbers<N>,
-    /// G1 and G2.
     gravity: [Numbers<N>; 2],
-    /// 1/(2 nu^2).
     half_inverse_square: Numbers<N>,
 }
 
@@ -46,31 +41,24 @@ struct Stage<const N: usize> {
 /// `ROWS` times `N` motions of one pendulum.
 ///
 /// Each stage is computed for all rows before the next stage of any row. A stage must wait for the
-/// one before it, and meanwhile the processor computes the other rows. `N` must not be 0, otherwise
-/// [`put`](Self::put) and [`keep`](Self::keep) panic.
+/// one before it, and meanwhile the processor computes the other rows.
 ///
-/// After every 32 steps since the start of a motion, the caller restores the lengths
-/// ([`restore_lengths`](Self::restore_lengths)). Before that it leaves out the last of these steps
-/// in the lanes where a single motion would ([`keep`](Self::keep)).
+/// After every 32 steps since the start of a motion, the caller restores the lengths.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct DirectionLanes<const N: usize, const ROWS: usize> {
     constants: Constants<N>,
-    /// The motions at the start of a step, and within it.
     rows: [(Point<N>, Stage<N>); ROWS],
 }
 
 impl<const N: usize, const ROWS: usize> DirectionLanes<N, ROWS> {
-    /// Returns lanes that all follow `motion`.
     pub fn new(motion: &DirectionF32Plain) -> Self {
         let (coefficients, half_inverse_square, z, inverse) = motion.parts();
-        // The same constants for all lanes.
         let constants = Constants {
             norm: Lanes::splat(coefficients.norm),
             inertia: Lanes::splat(coefficients.inertia),
             gravity: coefficients.gravity.map(Lanes::splat),
             half_inverse_square: Lanes::splat(half_inverse_square),
         };
-        // The same motion in all lanes.
         let start = Point {
             z: z.map(Lanes::splat),
             inverse: Lanes::splat(inverse),
@@ -79,10 +67,9 @@ impl<const N: usize, const ROWS: usize> DirectionLanes<N, ROWS> {
         Self { constants, rows }
     }
 
-    /// Puts another motion of the same pendulum and step into a lane, counted from 0 through all
-    /// rows: row 0 has the lanes 0 to `N` - 1. Ignores a lane that does not exist. The pendulum and
-    /// the step are not checked. Call it only before the first step or after the lengths are
-    /// restored, because they are restored in all lanes at once.
+    /// Puts another motion of the same pendulum and step into a lane, counted through all rows.
+    /// Called before the first step or after the lengths are restored, because they are restored in
+    /// all lanes at once.
     pub fn put(&mut self, lane: usize, motion: &DirectionF32Plain) {
         let (_, _, z, inverse) = motion.parts();
         let numbers = z.into_iter().chain([inverse]);
@@ -91,16 +78,14 @@ impl<const N: usize, const ROWS: usize> DirectionLanes<N, ROWS> {
         }
     }
 
-    /// Resets a lane, counted from 0 through all rows, to its motion in `before`, a copy that was
-    /// made before the step to leave out. `before` is unchanged. Ignores a lane that does not
-    /// exist. Call it before the lengths are restored.
+    /// Resets a lane to its motion in `before`, to leave out the last step before the lengths are
+    /// restored, as a single motion would.
     pub fn keep(&mut self, lane: usize, before: &mut Self) {
         for (place, number) in self.lane(lane).zip(before.lane(lane)) {
             *place = *number;
         }
     }
 
-    /// Advances all motions by one step of RK4. A motion that diverges is not reported.
     #[inline(always)]
     pub fn step(&mut self) {
         // All rows finish a stage before the next stage begins.
@@ -119,8 +104,7 @@ impl<const N: usize, const ROWS: usize> DirectionLanes<N, ROWS> {
         }
     }
 
-    /// Restores the lengths of all directions, to first order in their errors, which must be small.
-    /// NaN stays NaN. Call it after every 32 steps.
+    /// Restores the lengths of all directions, to first order in their errors.
     pub fn restore_lengths(&mut self) {
         for (start, _) in &mut self.rows {
             self.constants.restore_lengths(start);
@@ -128,13 +112,12 @@ impl<const N: usize, const ROWS: usize> DirectionLanes<N, ROWS> {
     }
 
     /// Returns (sin, cos) of both rods in the lanes of a row; those of rod 2 are nu = l1/l2 times
-    /// as long. Panics if `row` is not less than `ROWS`.
+    /// as long.
     pub fn rods(&self, row: usize) -> [[Numbers<N>; 2]; 2] {
         let [sin1, cos1, s, c, ..] = self.rows[row].0.z;
         [[sin1, cos1], [sin1 * c - cos1 * s, cos1 * c + sin1 * s]]
     }
 
-    /// Returns the numbers of one motion; none if the lane does not exist.
     fn lane(&mut self, lane: usize) -> impl Iterator<Item = &mut f32> {
         let row = self
             .rows
@@ -147,7 +130,6 @@ impl<const N: usize, const ROWS: usize> DirectionLanes<N, ROWS> {
 }
 
 impl<const N: usize> Constants<N> {
-    /// Computes the first of the four stages of RK4 from `start`.
     #[inline(always)]
     fn first_stage(&self, start: &Point<N>) -> Stage<N> {
         let k1 = changes(&start.z, self.rates(start));
@@ -157,7 +139,6 @@ impl<const N: usize> Constants<N> {
         }
     }
 
-    /// Computes the second stage, and adds it to the sum.
     #[inline(always)]
     fn second_stage(&self, start: &Point<N>, stage: &mut Stage<N>) {
         let k2 = changes(&stage.at.z, self.rates(&stage.at));
@@ -168,7 +149,6 @@ impl<const N: usize> Constants<N> {
         stage.at = start.ahead(&k2, &stage.at);
     }
 
-    /// Computes the third stage, doubled, and adds it to the sum.
     #[inline(always)]
     fn third_stage(&self, start: &Point<N>, stage: &mut Stage<N>) {
         let [u, v, p1, p2] = self.rates(&stage.at);
@@ -180,7 +160,6 @@ impl<const N: usize> Constants<N> {
         stage.at = start.ahead(&twice_k3, &stage.at);
     }
 
-    /// Computes the last stage, and moves `start` to the end of the step.
     #[inline(always)]
     fn last_stage(&self, start: &mut Point<N>, stage: &Stage<N>) {
         let k4 = changes(&stage.at.z, self.rates(&stage.at));
@@ -197,7 +176,6 @@ impl<const N: usize> Constants<N> {
         start.inverse = r4 + r4 * ((one - self.inertia * r4) - (s * r4) * s);
     }
 
-    /// Returns u, v, P1' and P2', the rates of the [direction form](crate::methods::direction).
     #[inline(always)]
     fn rates(&self, at: &Point<N>) -> [Numbers<N>; 4] {
         let [sin1, cos1, s, c, p1, p2] = at.z;
@@ -205,7 +183,6 @@ impl<const N: usize> Constants<N> {
         let u = (p1 - c * p2) * at.inverse;
         let v = p2 - c * u;
         let force = u * v * s;
-        // sin a2 is this number divided by nu.
         let nu_sin2 = sin1 * c - cos1 * s;
         [u, v, -(gravity1 * sin1) - force, force - gravity2 * nu_sin2]
     }

@@ -24,7 +24,6 @@ const ROWS: usize = 3;
 /// The start that a lane follows, and the number of steps left.
 #[derive(Clone, Copy)]
 struct Lane {
-    /// The index of the start.
     start: usize,
     /// The number of steps until the flip counts as later.
     left: u32,
@@ -56,7 +55,6 @@ impl Flips<DirectionF32Plain> {
         let hanging = self.highest.started(&State::at_rest(0.0, 0.0))?;
         let mut motions = Motions::<N>::new(&hanging);
         let mut lanes: [[Option<Lane>; N]; ROWS] = [[None; N]; ROWS];
-        // Each round fills the free lanes, and then computes a block of steps.
         loop {
             for (place, lane) in lanes.as_flattened_mut().iter_mut().enumerate() {
                 // The lane's steps are used up.
@@ -80,8 +78,8 @@ impl Flips<DirectionF32Plain> {
         }
     }
 
-    /// Returns the next start that may flip, with its motion. The starts before it, which cannot
-    /// flip, are passed to `give`. Returns `None` if no start is left.
+    /// Returns the next start that may flip, with its motion, and passes the starts before it to
+    /// `give`.
     fn next(
         &self,
         starts: &mut impl Iterator<Item = (usize, [f32; 2])>,
@@ -111,7 +109,6 @@ impl Flips<DirectionF32Plain> {
             let kept = (step + 1 == BLOCK).then_some(*motions);
             motions.step();
             if let Some(mut kept) = kept {
-                // Undo the last step in those lanes.
                 for (place, lane) in lanes.as_flattened().iter().enumerate() {
                     let count = |lane: &Lane| {
                         u64::from(self.steps) - u64::from(lane.left) + u64::from(BLOCK)
@@ -126,7 +123,6 @@ impl Flips<DirectionF32Plain> {
                 motions.restore_lengths();
             }
 
-            // Look for flips in each row.
             for (row, before) in before.iter_mut().enumerate() {
                 let rods = motions.rods(row);
                 // A flip is rare, so the lanes are examined only if any has one.
@@ -148,7 +144,6 @@ impl Flips<DirectionF32Plain> {
             }
         }
 
-        // Count the block in all lanes.
         lanes
             .as_flattened_mut()
             .iter_mut()
@@ -181,14 +176,13 @@ mod tests {
     use crate::pendulum::Parameters;
     use std::vec::Vec;
 
-    /// The computed times of each start, s. Within 30 s, chaotic motions flip late. After 5 s, some
-    /// motions flip in every remaining step of the last block, which must not count.
+    /// Within 30 s, chaotic motions flip late. After 5 s, some motions flip in every remaining step
+    /// of the last block, which must not count.
     const LIMITS: [f64; 2] = [30.0, 5.0];
     /// The side of the square of starts: enough for flips in the step after which lengths are
     /// restored.
     const SIDE: usize = 91;
 
-    /// Returns a square of `side` times `side` starts over a whole turn of both angles.
     fn starts(side: usize) -> impl Iterator<Item = [f32; 2]> + Clone {
         let angle = move |i: usize| ((i as f64 + 0.5) / side as f64 * 6.4 - 3.2) as f32;
         (0..side * side).map(move |i| [angle(i % side), angle(i / side)])
@@ -206,8 +200,6 @@ mod tests {
         any(flips)
     }
 
-    /// Returns the flips of all starts, in the vectors that the tests are compiled for. Asserts
-    /// that each start is given once.
     fn any(flips: &Flips<DirectionF32Plain>) -> Result<Vec<Option<Flip<f32>>>, Error> {
         let mut found = std::vec![None; SIDE * SIDE];
         flips.of_each::<8>(starts(SIDE), |start, flip| {
@@ -216,11 +208,8 @@ mod tests {
         Ok(found)
     }
 
-    /// The first flip of each of 91 times 91 starts, computed in lanes, is bit-identical to that of
-    /// the start alone, for two pendulums and two times, in the compiled vectors and in the widest
-    /// ones. The number of starts is no multiple of the lanes. A hundredth of the steps is left
-    /// out, so that lanes leave out steps at different times. Starts that never flip, that flip,
-    /// and that flip later must all occur.
+    /// The number of starts is no multiple of the lanes. A hundredth of the steps is left out, so
+    /// that lanes leave out steps at different times.
     #[test]
     fn lanes_equal_single_motions() -> Result<(), Error> {
         let equal = Parameters::equal_rods(1.0, 1.0, 1.0);
@@ -238,21 +227,18 @@ mod tests {
             (different, late),
             (different, early),
         ] {
-            // Some motions leave out steps.
             let flips = flips(&parameters, limit)?;
             let flips = Flips {
                 highest: flips.highest.leaving_out_more(),
                 ..flips
             };
 
-            // The same results in lanes and alone.
             let found = any(&flips)?;
             assert_eq!(found, all(&flips)?, "vectors as this processor has them");
             for (flip, [a1, a2]) in found.iter().zip(starts(SIDE)) {
                 assert_eq!(*flip, Some(flips.of(a1, a2)?), "{a1} {a2}");
             }
 
-            // Each kind of result occurs.
             let count = |kind: fn(&Flip<f32>) -> bool| {
                 found.iter().flatten().filter(|flip| kind(flip)).count()
             };
@@ -263,9 +249,6 @@ mod tests {
         Ok(())
     }
 
-    /// The maps of 20 times 20 starts in plain `f32` and in fixed point agree at four mass ratios,
-    /// within 10 s at g/l = 1/s^2. At most 4 of the 400 starts may differ: in the kind of result,
-    /// or in the time by more than 0.05 s.
     #[test]
     fn fixed_point_agrees_except_in_chaos() -> Result<(), Error> {
         for mass_ratio in [0.01, 0.1, 1.0, 3.0] {

@@ -65,60 +65,43 @@ pub trait RealOperations:
     + Into<f64>
     + 'static
 {
-    /// The number 0.
     const ZERO: Self;
-    /// The number 1.
     const ONE: Self;
-    /// The number 2.
     const TWO: Self;
-    /// The number 1/2.
     const HALF: Self;
     /// The number nearest to pi.
     const PI: Self;
-    /// The distance from 1 to the next larger number.
     const EPSILON: Self;
 
-    /// Returns the number nearest to `value`; infinity beyond the largest number, NaN for NaN.
+    /// Rounds to nearest.
     fn from_f64(value: f64) -> Self;
-    /// Returns the same number as an `f64`, exactly.
     fn to_f64(self) -> f64;
-    /// Returns the number nearest to `value`.
     fn from_i64(value: i64) -> Self;
-    /// Returns the nearest number of the arithmetic `S`, as [`from_f64`](Self::from_f64) does.
     fn cast<S: Real>(self) -> S {
         S::from_f64(self.to_f64())
     }
-    /// Returns the magnitude.
     #[must_use]
     fn abs(self) -> Self;
-    /// Returns twice the number; infinity beyond the largest number. If an addition is a call of a
-    /// library, the exponent is increased instead, with the same bits as the sum.
+    /// Returns twice the number. If an addition is a call of a library, the exponent is increased
+    /// instead, with the same bits.
     #[must_use]
     fn twice(self) -> Self;
-    /// Returns a word with the sign of the number in its highest bit.
-    /// [`from_side`](Self::from_side) returns the number again, but the fraction of an `f64` is cut
-    /// to 20 bits.
+    /// Returns a word with the sign of the number in its highest bit. The fraction of an `f64` is
+    /// cut to 20 bits.
     fn side(self) -> i32;
-    /// Returns the number whose [`side`](Self::side) is the word `side`. Some words give NaN or
-    /// infinity.
+    /// Returns the number whose [`side`](Self::side) is this word.
     fn from_side(side: i32) -> Self;
-    /// Returns the square root, correctly rounded; NaN below 0 and for NaN.
+    /// Correctly rounded.
     #[must_use]
     fn sqrt(self) -> Self;
-    /// Returns the bits of the IEEE 754 format. The bits of an `f32` are the lower 32; the upper 32
-    /// are 0.
+    /// The IEEE 754 format; the upper half is 0 for an `f32`.
     fn bits(self) -> u64;
-    /// Returns true if the number is neither infinite nor NaN.
     fn is_finite(self) -> bool;
-    /// Returns true if the number has its full relative precision: it is finite, not zero and not
-    /// subnormal.
+    /// Returns true if the number has its full relative precision.
     fn is_normal(self) -> bool;
-    /// Returns the angle of the point (`x`, `self`) from the positive x axis, rad, in [-pi, pi]. It
-    /// is computed by the `libm` crate. NaN gives NaN; two zeros give 0 or pi with a sign, and
-    /// infinity a multiple of pi/4, as in C.
+    /// Returns the angle of the point (`x`, `self`) from the positive x axis, by the `libm` crate.
     #[must_use]
     fn atan2(self, x: Self) -> Self;
-    /// Returns (sin, cos) of the angle, rad, as [`sin_cos`] does.
     fn own_sin_cos(self) -> (Self, Self);
 }
 
@@ -237,13 +220,10 @@ real!(
 mod tests {
     use super::*;
 
-    /// Compares `twice_single` and `twice_double` with `x` + `x`, bit for bit; NaN must give NaN.
-    /// The numbers have every sign and exponent, and a spread of fractions that includes the ends.
     #[test]
     fn twice_by_bits_is_the_sum() {
         for high in 0..=u16::MAX {
             for low in [0, 1, 0x1234, 0x7fff, 0x8000, 0xffff_u32] {
-                // Single precision, with every upper half of the word.
                 let x = f32::from_bits(u32::from(high) << 16 | low);
                 let twice = twice_single(x);
                 assert!(
@@ -251,7 +231,6 @@ mod tests {
                     "{x:e}"
                 );
 
-                // Double precision, with every upper quarter of the word.
                 let x =
                     f64::from_bits(u64::from(high) << 48 | u64::from(low) << 32 | u64::from(low));
                 let twice = twice_double(x);

@@ -1,7 +1,7 @@
 //! Fixed-point numbers of 32 and 64 bits.
 
-/// Defines a number with the sums of its word. `$narrowed` converts a sum, which is twice as wide,
-/// back to a word: it decides what happens to a sum that does not fit.
+/// Defines a number with the sums of its word. `$narrowed` decides what happens to a sum that does
+/// not fit.
 macro_rules! fixed_point {
     ($(#[$doc:meta])* $type:ident($word:ident), $narrowed:ident($wide:ident)) => {
         $(#[$doc])*
@@ -37,14 +37,12 @@ pub(crate) use q30::watch;
 pub(crate) use q30::{Gravity, Q30, Slope, Torque, word};
 pub(crate) use q64::Q64;
 
-/// Returns `value` times 2^`exponent`. It is exact if the result is normal, infinite beyond the
-/// range of `f64`, and rounded, at the least to 0, below the normal numbers. NaN gives NaN.
+/// Returns `value` times 2^`exponent`.
 pub(crate) fn scaled(value: f64, exponent: i32) -> f64 {
     libm::scalbn(value, exponent)
 }
 
-/// Returns the whole number nearest to `value`, the even one of two. NaN and infinity are
-/// unchanged.
+/// Rounds to the nearest whole number, ties to even.
 #[inline(never)] // With `Q64::from_f64`: 3.9 KB more flash on an M4F without.
 pub(crate) fn nearest(value: f64) -> f64 {
     libm::rint(value)
@@ -64,7 +62,6 @@ pub(crate) fn upper(a: i32, b: i32) -> i32 {
     (product(a, b) >> 32) as i32
 }
 
-/// Returns the product of two words, which always fits.
 pub(crate) fn product(a: i32, b: i32) -> i64 {
     if IN_HALVES {
         product_of_halves(a, b)
@@ -73,15 +70,13 @@ pub(crate) fn product(a: i32, b: i32) -> i64 {
     }
 }
 
-/// Returns the product of two words from four products of half words. No intermediate sum
-/// overflows.
+/// No intermediate sum overflows.
 fn product_of_halves(a: i32, b: i32) -> i64 {
     // The lower half is without sign, the upper half has the sign.
     let halves = |word: i32| (word & 0xffff, word >> 16);
     let (a0, a1) = halves(a);
     let (b0, b1) = halves(b);
 
-    // The four products. The first has no sign.
     let lowest = a0.wrapping_mul(b0) as u32;
     // Each sum carries the upper half of the product below it.
     let (middle, carried) = halves(a1 * b0 + (lowest >> 16) as i32);
@@ -96,8 +91,6 @@ fn product_of_halves(a: i32, b: i32) -> i64 {
 mod tests {
     use super::*;
 
-    /// Compares [`product_of_halves`] with the 64-bit product, for all pairs of the words at the
-    /// ends of a range and of 64 random ones.
     #[test]
     fn product_of_halves_is_the_product() {
         let ends = [
@@ -115,7 +108,6 @@ mod tests {
             i32::MIN + 1,
         ];
 
-        // Random numbers of all sizes, and numbers at the ends of a range.
         let mut rng = fastrand::Rng::with_seed(1);
         let drawn: [i32; 64] = core::array::from_fn(|_| rng.i32(..) >> rng.u8(..16));
         for a in ends.into_iter().chain(drawn) {

@@ -1,9 +1,7 @@
 //! Fractions of 64 bits: more digits than an `f64`, and much faster where `f64` is software.
 //!
-//! A `Q64` is from -1/2 to below 1/2, in multiples of 2^-64. A number of 1/2 - 2^-33 or more is
-//! too large for `*`, `times_word` and `down`, whose results may be wrong. This is not checked, nor
-//! are the ranges of `by` and `places`: beyond them debug builds panic, and others return a wrong
-//! number.
+//! A `Q64` is from -1/2 to below 1/2, in multiples of 2^-64. A number of 1/2 - 2^-33 or more is too
+//! large for `*`, `times_word` and `down`: the units of a motion keep all numbers below.
 
 use core::ops::Mul;
 
@@ -17,7 +15,6 @@ fixed_point! {
     Q64(i64), wrapped(i128)
 }
 
-/// Returns the lower 64 bits of a sum.
 fn wrapped(sum: i128) -> i64 {
     sum as i64
 }
@@ -26,14 +23,12 @@ fn wrapped(sum: i128) -> i64 {
 const UNIT: f64 = 18_446_744_073_709_551_616.0;
 
 impl Q64 {
-    /// Returns the number as an `f64`, rounded to nearest.
     pub fn value(self) -> f64 {
         self.over(1.0)
     }
 
-    /// Returns the number over `divisor` in the numbers `R`, rounded once if `divisor` is a power
-    /// of two and the result is normal, and otherwise a few times. A result beyond the range of `R`
-    /// is infinite or 0. A divisor of 0 gives infinity or NaN, infinity gives 0, and NaN gives NaN.
+    /// Returns the number over `divisor` in the numbers `R`. It is rounded once if `divisor` is a
+    /// power of two.
     pub fn over<R: Real>(self, divisor: f64) -> R {
         R::from_i64(self.0) * R::from_f64(1.0 / (UNIT * divisor))
     }
@@ -47,7 +42,6 @@ impl Q64 {
         ]
     }
 
-    /// Returns the number times `factor` 2^-32, rounded down.
     pub fn times_word(self, factor: i32) -> Self {
         let [upper, lower] = self.words().map(|word| product(word, factor));
         Self(upper + (lower >> 32))
@@ -60,9 +54,8 @@ impl Q64 {
         (((self.0 >> 32) as u32).wrapping_add(1 << (32 - places))) >> (33 - places)
     }
 
-    /// Returns 1/(4 d), where d = 2^6 `self` is from 1 to 8, both included, with a relative error
-    /// of at most 2^-55. Outside that range, also for 0 and negative numbers, the result is
-    /// meaningless; the function never panics.
+    /// Returns 1/(4 d), where d = 2^6 `self` is from 1 to 8, with a relative error of at most
+    /// 2^-55. Outside of that range the result is meaningless.
     ///
     /// A quotient of words is improved by one step of Newton's method on words and one step of
     /// third order, whose residue 1 - d r has 32 bits.
@@ -106,30 +99,27 @@ impl Mul for Q64 {
 }
 
 impl Q64 {
-    /// Returns the number nearest to `value`; the first or last number beyond the range, 0 for NaN.
     #[inline(never)] // With `nearest`: 3.9 KB more flash on an M4F without.
     pub fn from_f64(value: f64) -> Self {
         Self(nearest(value * UNIT) as i64)
     }
 
-    /// Returns half the number, rounded down.
     pub fn half(self) -> Self {
         Self(self.0 >> 1)
     }
 
-    /// Returns the product with a whole number. It wraps if it does not fit.
+    /// The product wraps if it does not fit.
     pub fn times(self, whole: i32) -> Self {
         Self(self.0.wrapping_mul(i64::from(whole)))
     }
 
-    /// Returns the number over 2^`by`, rounded to nearest, and a tie up. `by` is from 0 to 31.
+    /// Rounds to nearest, and a tie up.
     pub fn down(self, by: u32) -> Self {
         Self(self.0.wrapping_add(i64::from(1_u32 << by >> 1)) >> by)
     }
 
     /// Returns the number times 2^`by`, moved to the middle of the values that it may have had
-    /// before it was rounded down, so that no bias is left. `by` is from 1 to 63. Bits that do not
-    /// fit are lost; the caller checks with [`reach`](Self::reach).
+    /// before it was rounded down, so that no bias is left.
     pub fn up(self, by: u32) -> Self {
         Self(self.0 << by | 1 << (by - 1))
     }
@@ -139,12 +129,8 @@ impl Q64 {
 mod tests {
     use super::*;
 
-    /// Compares products of numbers of all sizes with products of 128 bits. A product of two
-    /// numbers may be 1.25 too small or 0.25 too large, in the last digit; a product with a word is
-    /// exactly the true product, rounded down.
     #[test]
     fn products_are_exact_to_the_last_digit() {
-        // Numbers of every size, with either sign.
         let numbers = (0..64).flat_map(|bits| {
             [1, -1, 3, -5, 0x1234_5678_9abc_def1, -0x0fed_cba9_8765_4321].map(|x: i64| x >> bits)
         });
@@ -171,8 +157,7 @@ mod tests {
         }
     }
 
-    /// For 17,000 numbers d from 1 to 8, the product of d and its inverse must be 1 within 2.7e-16.
-    /// Most of that is for the roundings of the test, which computes in `f64`.
+    /// The tolerance is mostly for the roundings of the test, which computes in `f64`.
     #[test]
     fn inverses_are_within_two_ulp() {
         let mut d = 1.0;
