@@ -32,20 +32,12 @@ fn main() {
         println!("cargo:rustc-link-arg-bin=stm32f405={argument}");
     }
     // The Pico's flash begins with the boot stage, which its boot ROM runs first.
-    let pico = [
+    for argument in [
         "--defsym=flash_origin=0x10000100",
         "--defsym=flash_length=0x001fff00",
         "-Tpico/pico.x",
-    ];
-    // The relocations show the tests which functions call or address another. They take no flash.
-    let any = ["-Tlink.x", "-Tdefmt.x", "--nmagic", "--emit-relocs"];
-    pico.iter()
-        .for_each(|argument| println!("cargo:rustc-link-arg-bin=pico={argument}"));
-    // The example with a colour panel is also for the Pico.
-    if env::var_os("CARGO_FEATURE_COLOUR_PANEL").is_some() {
-        pico.iter()
-            .chain(&any)
-            .for_each(|argument| println!("cargo:rustc-link-arg-examples={argument}"));
+    ] {
+        println!("cargo:rustc-link-arg-bin=pico={argument}");
     }
     // A Cortex-M33 or M55 starts in its secure state, with its memory at these addresses.
     if is("TARGET", "thumbv8m.main-none-eabihf") {
@@ -58,6 +50,8 @@ fn main() {
         }
     }
 
-    any.iter()
-        .for_each(|argument| println!("cargo:rustc-link-arg-bins={argument}"));
+    // The relocations show the tests which functions call or address another. They take no flash.
+    for argument in ["-Tlink.x", "-Tdefmt.x", "--nmagic", "--emit-relocs"] {
+        println!("cargo:rustc-link-arg-bins={argument}");
+    }
 }

@@ -8,14 +8,10 @@ use serde::{Deserialize, Serialize};
 
 use crate::graphics::Canvas;
 
-#[cfg(feature = "colour-panel")]
-mod any_panel;
 mod bus;
 mod oled_i2c;
 mod ssd0323;
 
-#[cfg(feature = "colour-panel")]
-pub use any_panel::AnyPanel;
 pub use bus::{OutByte, Outbox, PanelBus, SILENCE, Sent, free_bus};
 pub use oled_i2c::{OledError, OledI2c};
 pub use ssd0323::Ssd0323;

@@ -1,6 +1,5 @@
 //! The portable firmware on the host: motion, scenes, protocol, panels.
 
-mod any_panel;
 mod app;
 mod bench;
 mod canvas;

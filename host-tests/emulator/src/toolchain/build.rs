@@ -17,7 +17,7 @@ use anyhow::{anyhow, ensure};
 
 use super::bring::{quick_output, run_shown};
 use super::{TARGETS, Toolchain, WASM, remap, set_up_for, target, workspace};
-use crate::boards::{Board, PICO, every_board};
+use crate::boards::{Board, every_board};
 
 /// The binaries that this process has built, each with its target. The list saves time: another
 /// call of cargo takes half a second.
@@ -307,10 +307,6 @@ impl Toolchain {
             let mut command =
                 self.for_targets(if is_ready_made { "clippy" } else { "check" }, &[target])?;
             command.args(["--bins", "--example", "embassy", "--features", &features]);
-            // One example is for the Pico only.
-            if features.contains(PICO.feature) {
-                command.args(["--example", "colour_panel", "--features", "colour-panel"]);
-            }
             if is_ready_made {
                 command.args(["--", "--deny", "warnings"]);
             } else {
