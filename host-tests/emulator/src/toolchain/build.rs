@@ -291,7 +291,7 @@ impl Toolchain {
             .try_for_each(|target| self.build_minimal(target).map(drop))
     }
 
-    /// Checks the firmware's binaries and its examples for microcontrollers, for all [`TARGETS`],
+    /// Checks the firmware's binaries for microcontrollers, for all [`TARGETS`],
     /// with Clippy, which must be installed. If the core library is built by Debian's compiler, the
     /// check is `cargo check`, without Clippy. A warning is an error. The error contains the
     /// warnings of the first target that has any; the targets after it are not checked.
@@ -306,7 +306,7 @@ impl Toolchain {
 
             let mut command =
                 self.for_targets(if is_ready_made { "clippy" } else { "check" }, &[target])?;
-            command.args(["--bins", "--example", "embassy", "--features", &features]);
+            command.args(["--bins", "--features", &features]);
             if is_ready_made {
                 command.args(["--", "--deny", "warnings"]);
             } else {
