@@ -24,7 +24,7 @@ pub const MOST_TICKS_PER_FRAME: u32 = 15;
 /// The time without a finished frame that counts as a hang, s. It is four times the time of the
 /// slowest frame allowed, 15/60 s.
 ///
-/// A watchdog of two stages (LM3S6965, MPS2) reports a hang after this time, and resets the board
+/// A watchdog of two stages (LM3S6965) reports a hang after this time, and resets the board
 /// after twice this time. One without an interrupt (Pico, STM32F405) does nothing until it resets
 /// the board after twice this time; by the STM32F405's own oscillator that is 1.4 to 3.8 s.
 pub const WATCHDOG_SECONDS: u32 = 1;
@@ -133,7 +133,7 @@ pub const CORTEX_M0PLUS: Processor = Processor {
     flips: FlipsPace { start: 46, ..FIXED },
 };
 /// A Cortex-M4F, whose floating-point unit computes in `f32` only. The budgets are for a clock of
-/// 25 MHz or more, as on the slowest board. At 25 MHz a tick has 417,000 cycles: 150,000 for the
+/// 25 MHz or more. At 25 MHz a tick has 417,000 cycles: 150,000 for the
 /// motion, and 190,000 for planning.
 pub const CORTEX_M4F: Processor = Processor {
     code: 1,
@@ -286,8 +286,7 @@ pub const BAUD: u32 = 460_800;
 /// The largest number of steps whose time is measured at once; a request for more measures this
 /// number. They block the board, and may take longer than a tick, 16.7 ms. On a Cortex-M3 at 50 MHz
 /// order 16 in 64 bits of fixed point takes 16 x 46,800/50e6 = 15 ms, and `rk4-f64` 21 ms. On a
-/// Cortex-M4F at 25 MHz `rk4-f64` takes 16 x 64,800/25e6 = 41 ms, and on a Cortex-M0+ at 125 MHz
-/// order 16 takes 16 x 177,400/125e6 = 23 ms.
+/// Cortex-M0+ at 125 MHz order 16 takes 16 x 177,400/125e6 = 23 ms.
 ///
 /// The number is not smaller because the measured time includes the call. On a Cortex-M4F a call of
 /// `rk4-f32-direction` takes about 550 cycles in addition to its steps of 206. This adds 17 % to

@@ -3,7 +3,7 @@
 //! | module | contents |
 //! |---|---|
 //! | `main_loop` | the main loop and the log lines of the application, for every board |
-//! | [`lm3s6965evb`], [`mps2_an386`], `stm32f405`, `pico` | a board: its clocks, pins and devices |
+//! | [`lm3s6965evb`], `stm32f405`, `pico` | a board: its clocks, pins and devices |
 //! | `log` | the output of the log on a real chip |
 //! | `steps` | the code of the steps, which real chips have twice, in flash and in RAM |
 //! | [`cortex_m`] | parts for every Cortex-M: tick, stack guard, crash reports, retained record |
@@ -16,7 +16,6 @@
 
 pub mod cortex_m;
 pub mod lm3s6965evb;
-pub mod mps2_an386;
 #[cfg(any(feature = "pico", feature = "stm32f405"))]
 mod panel_bus;
 #[cfg(feature = "pico")]

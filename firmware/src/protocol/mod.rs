@@ -34,7 +34,7 @@ pub use to_host::{
 };
 
 /// The version of the protocol: the first byte of every message. A receiver refuses any other.
-pub const VERSION: u8 = 12;
+pub const VERSION: u8 = 13;
 /// The largest size of a message without version and CRC, bytes.
 pub const MAX_MESSAGE: usize = 97;
 /// The largest size of a message before framing, with version and CRC, bytes.

@@ -107,7 +107,7 @@ impl ToHost {
 /// COBS then replaces the zeros, and a zero before and after marks the ends
 /// ([`encode`](super::encode)): at most 94 bytes in all. `report` is a [`Report`].
 ///
-/// The numbers of all kinds are in `wire-12.txt` in this folder (test `link`). To add a field:
+/// The numbers of all kinds are in `wire-13.txt` in this folder (test `link`). To add a field:
 ///
 /// 1. Add it here, and to `Player::frame`. If only the board knows it, such as its cycles, add it
 ///    to `App::show`, and to `Show::expected` of the host's emulator.
@@ -209,8 +209,6 @@ choice! {
     BoardName {
         /// The Stellaris LM3S6965 evaluation board.
         Lm3s6965evb = "lm3s6965evb";
-        /// The ARM MPS2 with image AN386.
-        Mps2An386 = "mps2-an386";
         /// A board with an STM32F405 or F407.
         Stm32f405 = "stm32f405";
         /// The Raspberry Pi Pico.

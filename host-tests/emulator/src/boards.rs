@@ -45,7 +45,7 @@ impl Board {
     /// for the Pico.
     ///
     /// It is 3 on the STM32F405 (8 ns, 1.3 of its cycles), 4 on the Cortex-M0+ (16 ns, 2 cycles of
-    /// 125 MHz), and 5 on the others (32 ns, 1.6 cycles of 50 MHz or 0.8 of 25 MHz).
+    /// 125 MHz), and 5 on the others (32 ns, 1.6 cycles of 50 MHz).
     pub fn instruction_shift(&self) -> u32 {
         match self.processor_hertz() {
             ..=50_000_000 => 5,
@@ -113,22 +113,9 @@ pub const LM3S6965EVB: Board = Board {
     has_panel: true,
 };
 
-/// ARM's board with a Cortex-M4F at 25 MHz, without a panel and buttons. It is quick to emulate.
-pub const MPS2_AN386: Board = Board {
-    name: "mps2-an386",
-    machine: "mps2-an386",
-    cpu: "cortex-m4",
-    target: "thumbv7em-none-eabihf",
-    binary: "mps2-an386",
-    hertz: 25_000_000,
-    has_panel: false,
-    ..LM3S6965EVB
-};
-
 /// The boards of QEMU: the LM3S6965 with a Cortex-M3 (`lm3s6965evb`), then with a Cortex-M4F
-/// (`lm3s6965evb-m4`), [`MPS2_AN386`], [`STM32F405`], and the LM3S6965 with a Cortex-M0+
-/// (`lm3s6965evb-m0`). The first one is the default of most commands.
-pub const BOARDS: [Board; 5] = [
+/// (`lm3s6965evb-m4`), [`STM32F405`], and the LM3S6965 with a Cortex-M0+ (`lm3s6965evb-m0`). The first one is the default of most commands.
+pub const BOARDS: [Board; 4] = [
     LM3S6965EVB,
     Board {
         name: "lm3s6965evb-m4",
@@ -136,7 +123,6 @@ pub const BOARDS: [Board; 5] = [
         target: "thumbv7em-none-eabihf",
         ..LM3S6965EVB
     },
-    MPS2_AN386,
     STM32F405,
     Board {
         name: "lm3s6965evb-m0",

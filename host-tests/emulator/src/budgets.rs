@@ -53,7 +53,7 @@ pub struct Memory {
 ///
 /// The Pico has 2 MiB of flash and more memory than the others. Its limits of text and bss are
 /// higher because an M0+ takes more instructions and because of USB.
-pub const MEMORY: [(&str, Memory); 6] = [
+pub const MEMORY: [(&str, Memory); 5] = [
     (
         "lm3s6965evb",
         Memory {
@@ -69,15 +69,6 @@ pub const MEMORY: [(&str, Memory); 6] = [
             text: 240 * KIB,
             data: 256,
             bss: 24 * KIB,
-            stack: 28 * KIB,
-        },
-    ),
-    (
-        "mps2-an386",
-        Memory {
-            text: 240 * KIB,
-            data: 256,
-            bss: 20 * KIB,
             stack: 28 * KIB,
         },
     ),

@@ -122,7 +122,7 @@ const COMMANDS: [&str; 12] = [
     "demo --headless --seconds 0.1",
     "figures --out FOLDER",
     "flash-f4 --help",
-    "fw mps2-an386 --seconds 5",
+    "fw lm3s6965evb --seconds 5",
     "plan --angles 1,1",
     "write-report --help",
     "setup",

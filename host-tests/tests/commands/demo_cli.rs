@@ -239,15 +239,7 @@ fn a_motion_of_the_user_is_played_recorded_and_compared() {
 #[test]
 fn half_speed_simulates_half_the_time() {
     toolchain();
-    let output = output(program("demo").args([
-        "--board",
-        "mps2-an386",
-        "--speed",
-        "1/2",
-        "--headless",
-        "--seconds",
-        "2",
-    ]));
+    let output = output(program("demo").args(["--speed", "1/2", "--headless", "--seconds", "2"]));
     assert_eq!(output.status.code(), Some(0), "{output:?}");
     // The summary must have about 1 s: 2 s at half the speed.
     let summary = &output.stdout;
@@ -274,7 +266,7 @@ fn without_a_terminal_the_reason_and_the_options_are_printed() {
     toolchain();
     let messages = |arguments: &[&str]| {
         let mut command = program("demo");
-        command.args(["--board", "mps2-an386", "--seconds", "0.1"]);
+        command.args(["--seconds", "0.1"]);
         let output = output(command.args(arguments));
         assert_eq!(output.status.code(), Some(0), "{output:?}");
         assert!(!output.stdout.contains("no terminal"), "{output:?}");

@@ -31,10 +31,10 @@ fn fw(arguments: &[&str]) -> Output {
 /// fails before its time has exit code 1.
 #[test]
 fn a_program_without_end_is_stopped_with_success_on_request() {
-    let output = fw(&["mps2-an386", "--seconds", "5"]);
+    let output = fw(&["lm3s6965evb", "--seconds", "5"]);
     assert_eq!(output.status.code(), Some(0), "{}", output.stderr);
     assert!(
-        output.stdout.contains("boot: mps2-an386"),
+        output.stdout.contains("boot: lm3s6965evb"),
         "{}",
         output.stdout
     );
@@ -136,7 +136,7 @@ fn the_folder_of_a_killed_command_is_removed_by_the_next_command() {
         .set_modified(SystemTime::now() - LONG_AGO)
         .expect("its time");
     let mut next = program("fw");
-    next.args(["mps2-an386", "--seconds", "1"])
+    next.args(["lm3s6965evb", "--seconds", "1"])
         .env("TMPDIR", temporary.path());
     assert_eq!(output(&mut next).status.code(), Some(0));
     assert_eq!(left(temporary.path()), [""; 0].map(PathBuf::from));

@@ -30,7 +30,7 @@ fn a_board_with_the_hosts_bits_is_verified_and_reported() {
     let mut command = program("verify-board");
     command
         .args(["--no-questions", "--report"])
-        .arg(folder.path().join("mps2"));
+        .arg(folder.path().join("board"));
     // The board's panel is absent.
     let output = at_port(&mut Bench::new(), &mut command, |bench| {
         bench.carry(|mut message| {
@@ -48,7 +48,7 @@ fn a_board_with_the_hosts_bits_is_verified_and_reported() {
     );
 
     // The report has every method without a cycle count, and the board's data.
-    let markdown = fs::read_to_string(folder.path().join("mps2.md")).expect("the report");
+    let markdown = fs::read_to_string(folder.path().join("board.md")).expect("the report");
     assert_eq!(
         markdown.matches(UNCOUNTED).count(),
         ON_BOARDS.len(),

@@ -287,7 +287,7 @@ fn variants<T: Debug>(read: fn(&[u8]) -> Option<T>) -> String {
 }
 
 /// The value that each number of every kind is read as equals the stored table of this version,
-/// `wire-12.txt`. A change of a number's meaning requires a new version, by which the two sides
+/// `wire-13.txt`. A change of a number's meaning requires a new version, by which the two sides
 /// recognise each other. Every method has a number.
 #[test]
 fn numbers_keep_their_meaning_within_a_version() -> Result<(), String> {

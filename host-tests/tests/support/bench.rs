@@ -10,7 +10,7 @@ use std::process::Command;
 use std::thread::{scope, sleep};
 use std::time::Duration;
 
-use emulator::boards::{Board, MPS2_AN386};
+use emulator::boards::{Board, LM3S6965EVB};
 use emulator::pico::PicoMachine;
 use emulator::process::{Output, run};
 use emulator::qemu::{Clock, Machine, Settings};
@@ -21,8 +21,8 @@ use nix::sys::termios::{SetArg, cfmakeraw, tcgetattr, tcsetattr};
 
 use crate::support::{LIMIT, on};
 
-/// A board that is quick to emulate and has no panel and no buttons.
-pub const BOARD: &Board = &MPS2_AN386;
+/// The board of most tests.
+pub const BOARD: &Board = &LM3S6965EVB;
 /// The interval between two checks of the cable.
 pub const WAIT: Duration = Duration::from_millis(1);
 /// An emulated board that receives bytes and sends messages.

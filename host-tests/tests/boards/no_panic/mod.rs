@@ -18,12 +18,11 @@ use crate::support::code::Code;
 
 /// The code that may contain a panic, by the beginning of its name, with the reason why the panic
 /// never happens.
-const PERMITTED: [(&str, &str); 17] = [
+const PERMITTED: [(&str, &str); 16] = [
     (
         "lm3s6965evb::__cortex_m_rt_main",
         "start-up: the board is taken once",
     ),
-    ("mps2_an386::__cortex_m_rt_main", "as above"),
     ("stm32f405::__cortex_m_rt_main", "as above"),
     ("pico::__cortex_m_rt_main", "as above"),
     (

@@ -198,7 +198,7 @@ fn chip() -> impl TypedValueParser<Value = Chip> {
 
 /// Every chip; the first is the default. They are `m3`, the LM3S6965 without a floating-point unit
 /// at 50 MHz; `m4f`, the STM32F405 with a floating-point unit for `f32` at 168 MHz; `slow-m4f`, a
-/// Cortex-M4F with the same unit at 25 MHz, as on the slowest board; and `pico`, the chip of the
+/// Cortex-M4F with the same unit at 25 MHz; and `pico`, the chip of the
 /// Raspberry Pi Pico at 125 MHz, whose products of two integers have only 32 bits. On the command
 /// line the name of a board with the chip is accepted, too.
 pub const CHIPS: [Chip; 4] = [
