@@ -15,13 +15,12 @@ use crate::methods::FormOperations;
 /// The number of steps. It is so small that an error in one equation has not spread to the others
 /// yet.
 const STEPS: u32 = 8;
-/// The step of the form, s.
 const DT: f64 = 1.0 / 256.0;
 /// The number of steps by `Pendulum::step` per step of the form.
 const FINER: u32 = 10;
 
-/// The motions: one with different masses, rods and rates, and one with a heavy bob 2 on equal
-/// rods. No term is small, and almost no ratio is 1.
+/// One with different masses, rods and rates, and one with a heavy bob 2 on equal rods. No term is
+/// small, and almost no ratio is 1.
 const MOTIONS: [(Parameters<f64>, Motion<f64>); 2] = [
     (
         Parameters {
@@ -65,25 +64,17 @@ const RK4: f64 = 3e-8;
 /// rounding to 53 and 61 bits. Measured: 4e-14.
 const ORDER_12: f64 = 2e-13;
 
-/// Asserts that the average rates of change of angles and momenta in 8 steps of `F` of 1/256 s are
-/// those of Hamilton's equations by RK4 in `f64` in ten times finer steps, for each of the
-/// [`MOTIONS`].
-///
-/// The allowance is `tolerance` times the largest angular velocity of the rod that the energy
-/// allows or, for the rates of the momenta, times K + |min V|, J, where K is the energy above rest.
-///
-/// Panics if the rates differ by more or are NaN; the message names the worst of the four
-/// equations. Also panics if `F` refuses a motion or it diverges.
+/// Asserts that the average rates of change in 8 steps of `F` are those of Hamilton's equations by
+/// RK4 in `f64` in finer steps, relative to the bounds of the velocities or, for the momenta, to K
+/// - min V. The message names the worst of the four equations.
 #[track_caller]
 fn is_that_of_hamiltons_equations<F: Form>(tolerance: f64) {
     let form = core::any::type_name::<F>();
     for (parameters, motion) in MOTIONS {
-        // Start from numbers that the form can represent.
         let pendulum =
             Pendulum::new(&parameters.cast::<F::Real>().cast::<f64>()).expect("valid parameters");
         let start = pendulum.to_state(&motion).cast::<F::Real>().cast();
 
-        // Step Hamilton's equations and the form.
         let mut exact = start;
         for _ in 0..STEPS * FINER {
             exact = pendulum.step(&exact, DT / f64::from(FINER));
@@ -93,7 +84,6 @@ fn is_that_of_hamiltons_equations<F: Form>(tolerance: f64) {
             .expect("a motion that it accepts");
         run.advance(STEPS).expect("finite");
 
-        // Compare the average rates of change.
         let bounds = pendulum.bounds(&start);
         let range = pendulum.energy_above_rest(&start) - pendulum.least_energy();
         let scales = [bounds.w1, bounds.w2, range, range];
@@ -103,7 +93,6 @@ fn is_that_of_hamiltons_equations<F: Form>(tolerance: f64) {
         });
         let error = |&i: &usize| ((rates[i] - exact[i]) / scales[i]).abs();
 
-        // Report the worst of the four.
         let worst = (0..4)
             .max_by(|i, j| error(i).total_cmp(&error(j)))
             .expect("four");
@@ -121,10 +110,6 @@ fn is_that_of_hamiltons_equations<F: Form>(tolerance: f64) {
     }
 }
 
-/// The average rates of change in 8 steps of each form must be those of Hamilton's equations by RK4
-/// in ten times finer steps: within 3e-8 ([`RK4`]), or 2e-13 by extrapolation ([`ORDER_12`]), of
-/// the bounds of the velocities or, for the momenta, of K - min V. A wrong term in the equations of
-/// a form, or in `Pendulum::derivatives`, fails.
 #[test]
 fn every_form_is_that_of_hamiltons_equations() {
     is_that_of_hamiltons_equations::<DirectionF32>(RK4);
@@ -135,8 +120,7 @@ fn every_form_is_that_of_hamiltons_equations() {
     is_that_of_hamiltons_equations::<Fixed64<12>>(ORDER_12);
 }
 
-/// A motion in closed form stands at its start before its first step. So does one of the same
-/// pendulum from another start. The allowance is the neglected terms of the fourth order.
+/// The allowance is the neglected terms of the fourth order.
 #[test]
 fn closed_form_stands_at_its_start_before_its_first_step() {
     const FOURTH_ORDER: f64 = 1e-8;
@@ -155,8 +139,8 @@ fn closed_form_stands_at_its_start_before_its_first_step() {
     }
 }
 
-/// In closed form the directions are the exact sines and cosines of the angles if the amplitudes of
-/// one rod add up to more than 0.6 rad: here those of rod 2 to 0.71 rad, those of rod 1 to 0.5 rad.
+/// The amplitudes of rod 2 add up to 0.71 rad, more than the 0.6 rad of the series; those of rod 1
+/// to 0.5 rad.
 #[test]
 fn closed_form_is_exact_if_only_rod_2_swings_wide() {
     let parameters = Parameters::equal_rods(1.0, 1.0, 9.8125);
@@ -168,7 +152,6 @@ fn closed_form_is_exact_if_only_rod_2_swings_wide() {
     }
 }
 
-/// Asserts that a motion that has advanced by 5 steps and is started again equals a new one.
 #[track_caller]
 fn starts_anew<F: Form>() {
     let (parameters, motion) = MOTIONS[0];
@@ -181,7 +164,6 @@ fn starts_anew<F: Form>() {
     assert_eq!(moved.started(&start), Ok(new));
 }
 
-/// A motion that has advanced and is started again equals a new one, in every form.
 #[test]
 fn every_form_starts_anew() {
     starts_anew::<DirectionF32>();
@@ -210,10 +192,7 @@ const MOMENTA: f64 = 1e-15;
 /// are a little too long. Measured: 1.4e-7.
 const MOMENTA_IN_F32: f64 = 3e-7;
 
-/// Asserts that the energy above rest and the momenta are those of the state, and that the words of
-/// [`FormOperations::sides`], scaled to length 1, are the directions, for each of the [`MOTIONS`].
-/// `momenta` is the allowance for the momenta. For the closed form the energy and the momenta are
-/// computed from the state, so that only the sides are tested.
+/// The closed form computes energy and momenta from the state, so that only its sides are tested.
 #[track_caller]
 fn energy_momenta_and_sides_are_right<F: Form>(momenta: f64) {
     let form = core::any::type_name::<F>();
@@ -265,9 +244,8 @@ fn energy_momenta_and_sides_are_right<F: Form>(momenta: f64) {
     }
 }
 
-/// The energy above rest and the momenta of each form must be those of its state, and the sides
-/// must be its directions ([`energy_momenta_and_sides_are_right`]). `HamiltonF32` is not tested,
-/// because it computes its energy from directions that are rounded to `f32`.
+/// `HamiltonF32` is not tested, because it computes its energy from directions that are rounded to
+/// `f32`.
 #[test]
 fn energy_and_momenta_are_those_of_the_state_and_sides_are_the_directions() {
     energy_momenta_and_sides_are_right::<DirectionF32>(MOMENTA_IN_F32);
@@ -281,8 +259,6 @@ fn energy_and_momenta_are_those_of_the_state_and_sides_are_the_directions() {
     energy_momenta_and_sides_are_right::<ClosedFormF64>(MOMENTA);
 }
 
-/// Asserts that a motion of 1000 rad/s in steps of 1 s, far beyond the limit of stability, is
-/// reported as diverged after 1000 steps.
 #[track_caller]
 fn reports_a_motion_that_overflows<F: Form>() {
     let (parameters, _) = MOTIONS[0];
@@ -304,7 +280,6 @@ fn reports_a_motion_that_overflows<F: Form>() {
     );
 }
 
-/// Every form in floating point except the closed form reports a motion that overflows.
 #[test]
 fn every_form_in_floating_point_reports_an_overflow() {
     reports_a_motion_that_overflows::<DirectionF32>();

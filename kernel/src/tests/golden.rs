@@ -8,11 +8,9 @@ use std::vec::Vec;
 use double_pendulum::golden::{FNV_OFFSET, Golden, HEADER, Line, MOTIONS, fnv_1a};
 use double_pendulum::{Form, FormVisitor, Method};
 
-/// The methods of the table whose types are in the firmware. The firmware's tests compare them with
-/// the same file.
+/// Their types are in the firmware, whose tests compare them with the same file.
 const ELSEWHERE: [Method; 2] = [Method::Rk4F32Micromath, Method::TextbookF32];
 
-/// Computes a line of the file.
 struct ComputedLine<'a>(Method, &'a Golden);
 
 impl FormVisitor for ComputedLine<'_> {
@@ -27,15 +25,11 @@ impl FormVisitor for ComputedLine<'_> {
     }
 }
 
-/// Returns the text of a file of this package.
 fn read(file: &str) -> String {
     let path = format!("{}/{file}", env!("CARGO_MANIFEST_DIR"));
     fs::read_to_string(&path).unwrap_or_else(|error| panic!("{path}: {error}"))
 }
 
-/// The line of each method and motion must equal the line of the file to the last bit, and the file
-/// must have no other lines. The two methods whose types are in the firmware must have lines, too,
-/// but their bits are not compared here.
 #[test]
 fn every_method_computes_the_golden_bits() {
     let file = read("golden/bits.csv");
@@ -63,7 +57,6 @@ fn every_method_computes_the_golden_bits() {
         }
     }
 
-    // The file has the lines of all methods and no others.
     assert_eq!(file.lines().next(), Some(HEADER));
     assert_eq!(golden.len(), Method::ALL.len() * MOTIONS.len());
 }

@@ -7,7 +7,6 @@ use double_pendulum::{Parameters, Pendulum, Real, State};
 
 use super::{EQUATIONS, assert_near, random, tolerances};
 
-/// The number of random pendulums, each with a random state.
 const STATES: u32 = 100_000;
 
 /// Returns the terms of the derivatives of a1, a2, p1 and p2 as Hamilton's equations are printed in
@@ -32,13 +31,11 @@ fn page_terms(
     let sin_2d = 2.0 * sin_d * cos_d;
     let term_a2 = bracket * sin_2d / (2.0 * l1 * l1 * l2 * l2 * den * den);
 
-    // The rates of the momenta.
     let p1_rate = [-(m1 + m2) * g * l1 * a1.sin(), -term_a1, term_a2];
     let p2_rate = [-m2 * g * l2 * a2.sin(), term_a1, -term_a2];
     [w1, w2, p1_rate, p2_rate]
 }
 
-/// Returns the largest magnitude of `terms`.
 fn largest(terms: &[f64]) -> f64 {
     terms
         .iter()
@@ -54,7 +51,6 @@ fn derivatives_are_the_pages<R: Real>() {
         let parameters = pendulum.parameters().cast::<f64>();
         let z @ [a1, a2, p1, p2]: [f64; 4] = state.cast().into();
 
-        // The directions in the standard library's arithmetic.
         let (s1, c1) = a1.sin_cos();
 
         let (s2, c2) = a2.sin_cos();
@@ -65,10 +61,8 @@ fn derivatives_are_the_pages<R: Real>() {
         let uncancelled = [largest(&[s1 * c2, c1 * s2]), -largest(&[c1 * c2, s1 * s2])];
         let magnitudes = page_terms(&parameters, [a1, a2, p1.abs(), p2.abs()], den, uncancelled);
 
-        // The book's terms, and the derivatives.
         let page = page_terms(&parameters, z, den, [sin_d, cos_d]);
         let values = pendulum.derivatives(&state.into()).map(R::to_f64);
-        // Each derivative.
         for i in 0..4 {
             let exact = page[i].iter().sum();
             let scale = largest(&magnitudes[i]);
@@ -84,8 +78,6 @@ fn derivatives_are_the_pages<R: Real>() {
     }
 }
 
-/// Each of the four derivatives at 100,000 random states must be the sum of the book's terms within
-/// 2e-6 in `f32` and 1e-13 in `f64` times its largest term ([`tolerances::DERIVATIVES`]).
 #[test]
 fn derivatives_are_those_of_the_book_in_either_precision() {
     derivatives_are_the_pages::<f32>();
@@ -101,16 +93,13 @@ const GRADIENT: f64 = 1e-7;
 /// The step of the differences in the angles, rad.
 const STEP: f64 = 1.0 / 131_072.0;
 
-/// The derivatives are (dH/dp1, dH/dp2, -dH/da1, -dH/da2) at 100,000 random states, within 1e-7
-/// ([`GRADIENT`]) times the bounds of the velocities or, for the forces, times the range of
-/// energies. H is quadratic in the momenta, so that a central difference in the momenta is exact
-/// for any step.
+/// H is quadratic in the momenta, so that a central difference in the momenta is exact for any
+/// step.
 #[test]
 fn derivatives_are_the_gradient_of_h() {
     for (pendulum, state) in random::pendulums::<f64>(2, STATES) {
         let z: [f64; 4] = state.into();
         let bounds = pendulum.bounds(&state);
-        // The central difference of H in the variable `i`.
         let slope = |i: usize, step: f64| {
             let [ahead, behind] = [step, -step].map(|by| {
                 let mut moved = z;
@@ -120,7 +109,6 @@ fn derivatives_are_the_gradient_of_h() {
             (ahead - behind) / (2.0 * step)
         };
 
-        // Hamilton's equations, as differences.
         let gradient = [
             slope(2, bounds.p1),
             slope(3, bounds.p2),
@@ -144,8 +132,7 @@ fn derivatives_are_the_gradient_of_h() {
     }
 }
 
-/// The energy above rest at angles of 1e-10 rad in `f32` must equal the energy of the linear
-/// motion, to a relative 4e-6. A difference of cosines would give 0.
+/// A difference of cosines would give 0.
 #[test]
 fn energy_above_rest_is_accurate_in_a_tiny_motion() {
     let pendulum = Pendulum::new(&Parameters {
@@ -166,8 +153,6 @@ fn energy_above_rest_is_accurate_in_a_tiny_motion() {
     );
 }
 
-/// Without gravity it is never certain that no rod turns over, not even at rest. With gravity it is
-/// certain at rest below the turnover energy, but not at that energy: hanging with rod 2 upright.
 #[test]
 fn only_motions_below_the_turnover_energy_are_certain_not_to_turn_over() {
     for (g, a2, is_certain) in [(0.0, 0.0, false), (9.81, 0.0, true), (9.81, PI, false)] {

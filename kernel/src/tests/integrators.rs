@@ -41,7 +41,6 @@ enum Weight {
 }
 
 impl Tableau {
-    /// Reads the weights off from a step.
     fn of(step: impl FnOnce(&dyn Fn(&[f64; N]) -> [f64; N], &[f64; N]) -> [f64; N]) -> Self {
         let points = Cell::new(Vec::new());
         let start = [1.0; N];
@@ -69,7 +68,6 @@ impl Tableau {
         }
     }
 
-    /// Returns A x.
     fn times(&self, x: &[f64]) -> Vec<f64> {
         let row = |row: &Vec<f64>| zip(row, x).map(|(a, x)| a * x).sum();
         self.a.iter().map(row).collect()
@@ -110,20 +108,17 @@ impl Tableau {
             .collect()
     }
 
-    /// Returns the errors of all conditions.
     fn errors(&self, order: u32) -> Vec<f64> {
         let conditions = self.conditions(order).into_iter();
         conditions.map(|(_, sum, value)| sum - value).collect()
     }
 
-    /// Returns true if all conditions up to `order` hold.
     fn is_of_order(&self, order: u32) -> bool {
         self.errors(order)
             .iter()
             .all(|error| error.abs() <= ROUNDING)
     }
 
-    /// Returns all weights of an explicit method with this number of stages.
     fn weights(&self) -> Vec<Weight> {
         let stages = 1..=self.b.len();
         let a = stages
@@ -132,7 +127,6 @@ impl Tableau {
         a.chain(stages.map(Weight::B)).collect()
     }
 
-    /// Returns the value of a weight, to read or to change it.
     fn weight(&mut self, weight: Weight) -> &mut f64 {
         match weight {
             Weight::A(i, j) => &mut self.a[i - 1][j - 1],
@@ -140,8 +134,8 @@ impl Tableau {
         }
     }
 
-    /// Returns the value of a weight that meets all conditions, or `None`. It minimises the squares
-    /// of their errors by the method of Gauss and Newton, from several values.
+    /// Returns the value of a weight that meets all conditions, by the method of Gauss and Newton,
+    /// from several values.
     fn repaired(&self, weight: Weight, order: u32) -> Option<f64> {
         let mut trial = self.clone();
         let now = *trial.weight(weight);
@@ -204,13 +198,11 @@ impl Tableau {
     }
 }
 
-/// Returns the weights of an integrator.
 fn tableau<I: RungeKutta>() -> Tableau {
     Tableau::of(|f, z| I::step(f, z, DT))
 }
 
-/// Checks the order and the limit of stability of an integrator: up to its `STABLE` phase no
-/// oscillation grows, and at 1.01 times that phase one does.
+/// Up to its `STABLE` phase no oscillation grows, and at 1.01 times that phase one does.
 fn check<I: RungeKutta>(order: u32) {
     let integrator = type_name::<I>();
     assert_eq!(I::ORDER, order, "{integrator}");
@@ -238,9 +230,7 @@ fn check<I: RungeKutta>(order: u32) {
     );
 }
 
-/// The weights of RK4 and of extrapolation, as read off from a step, must meet the order conditions
-/// of each method's order to 1e-12: for RK4 all, for extrapolation those of quadrature and all of
-/// order 4 or less. RK4 must also have its limit of stability. The closed form has no steps.
+/// For extrapolation the conditions are those of quadrature and all of order 4 or less.
 #[test]
 fn every_integrator_meets_its_order_conditions() {
     for method in Method::ALL {
@@ -257,8 +247,7 @@ fn every_integrator_meets_its_order_conditions() {
     }
 }
 
-/// A test of the test: if a single weight of RK4 is changed by 0.25 up or down, the message names
-/// this weight with its right value, and no other weight.
+/// A test of the test: the message names the weight that was changed, and its right value.
 #[test]
 fn a_single_wrong_weight_is_named() {
     let right = tableau::<Rk4>();

@@ -6,14 +6,12 @@ use fastrand::Rng;
 
 use super::{assert_near, random, tolerances};
 
-/// Checks all formulas for 20,000 random pendulums and motions. Each paragraph relies on the
-/// paragraphs before it.
+/// Each paragraph relies on the paragraphs before it.
 fn all<R: Real>() {
     let one = R::ONE;
     let half = R::HALF;
     let mut rng = Rng::with_seed(4);
     for _ in 0..20_000 {
-        // Random parameters, and velocities that are not small.
         let parameters @ Parameters { m1, m2, l1, l2, g } =
             random::parameters(&mut rng).cast::<R>();
         let motion: Motion<R> = [0; 4]
@@ -69,7 +67,6 @@ fn all<R: Real>() {
             R::from_f64(8.0) * scale,
         );
 
-        // Back to the velocities.
         let back = pendulum.to_motion(&state);
         let speed = (w1.abs() + w2.abs()) * (m1 + m2) / m1 * (l1 / l2 + l2 / l1);
         same("w1 of (p1, p2)", back.w1, w1, speed);
@@ -118,7 +115,6 @@ fn all<R: Real>() {
         let [[m11, m12], [m21, m22]] = pendulum.mass_matrix(R::from_f64(cos_d));
         let m12_rate = -m2 * l1 * l2 * R::from_f64(sin_d) * (w1 - w2);
 
-        // The two sides of the equation.
         let p1_rate = m11 * acceleration1 + m12 * acceleration2 + m12_rate * w2;
         let p2_rate = m21 * acceleration1 + m22 * acceleration2 + m12_rate * w1;
         let magnitude =
@@ -142,19 +138,12 @@ fn all<R: Real>() {
     }
 }
 
-/// Two ways must agree for 20,000 random pendulums and motions, within 4e-6 in `f32` and 8e-15 in
-/// `f64` ([`tolerances::FORMULAS`]), relative to the terms of the formula: T and V by bobs and by
-/// formula; p by the slopes of L; w from p; H, K, L and w.p by T and V; and the rates of the
-/// momenta by Lagrange's accelerations and by Hamilton's equations. At rest both conversions are
-/// exact.
 #[test]
 fn lagrangian_formulas_agree_in_either_precision() {
     all::<f32>();
     all::<f64>();
 }
 
-/// Positions and velocities of a pendulum with rod 1 straight down and rod 2 to the right are known
-/// by geometry. They must agree to 8e-15 m and m/s.
 #[test]
 fn bobs_follow_the_directions_of_the_rods() {
     let pendulum = Pendulum::new(&Parameters {
@@ -166,7 +155,6 @@ fn bobs_follow_the_directions_of_the_rods() {
     })
     .expect("valid parameters");
 
-    // Rod 1 points down, rod 2 to the right.
     let motion = Motion {
         a1: 0.0,
         a2: core::f64::consts::FRAC_PI_2,

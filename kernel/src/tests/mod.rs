@@ -24,8 +24,6 @@ use double_pendulum::Real;
 /// The names of the equations, in the order of [`double_pendulum::Pendulum::derivatives`].
 const EQUATIONS: [&str; 4] = ["w1", "w2", "p1'", "p2'"];
 
-/// Asserts that `value` is `exact` within `tolerance` times `scale`. In the message, `name` is the
-/// name of the value, and `of` describes the case.
 #[track_caller]
 fn assert_near<R: Real>(
     name: impl Display,

@@ -5,13 +5,11 @@ use double_pendulum::{Parameters, Pendulum, Real, State};
 
 use super::{assert_near, random, tolerances};
 
-/// Returns the state after 256 steps of `dt` s by `Pendulum::step`.
 fn run<R: Real>(parameters: &Parameters<R>, start: State<R>, dt: R) -> State<R> {
     let pendulum = Pendulum::new(parameters).expect("valid parameters");
     (0..256).fold(start, |state, _| pendulum.step(&state, dt))
 }
 
-/// Returns the state with both momenta multiplied by `by`.
 fn stronger<R: Real>(State { a1, a2, p1, p2 }: State<R>, by: R) -> State<R> {
     State {
         a1,
@@ -21,8 +19,7 @@ fn stronger<R: Real>(State { a1, a2, p1, p2 }: State<R>, by: R) -> State<R> {
     }
 }
 
-/// Checks the mirror image, time reversal of the derivatives, and the scaling laws. All results
-/// must be bit-identical, for 200 random pendulums and 256 steps:
+/// The scaling laws:
 ///
 /// - lengths times 4: time times 2, momenta times 8;
 /// - gravity times 4: time divided by 2, momenta times 2;
@@ -72,18 +69,12 @@ fn hold<R: Real>() {
     }
 }
 
-/// Reversed momenta reverse the velocities and keep the rates of the momenta, the mirror image of a
-/// start gives the mirrored motion, and scaled lengths, gravity or masses give the scaled motion:
-/// bit for bit, for 200 random pendulums in `f32` and in `f64` ([`hold`]).
 #[test]
 fn symmetries_hold_in_either_precision() {
     hold::<f32>();
     hold::<f64>();
 }
 
-/// 200 random motions in `f64` run for 256 steps, and again with reversed momenta. The angles must
-/// then equal the initial ones within 1e-10 rad ([`tolerances::RETURN`]), and the momenta within
-/// the same share of their bounds.
 #[test]
 fn reversed_momenta_return_to_the_start() {
     for (pendulum, start) in random::pendulums::<f64>(1, 200) {
@@ -95,7 +86,6 @@ fn reversed_momenta_return_to_the_start() {
             -1.0,
         );
 
-        // All four variables return.
         for (name, back, start, scale) in [
             ("a1", back.a1, start.a1, 1.0),
             ("a2", back.a2, start.a2, 1.0),

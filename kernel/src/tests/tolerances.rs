@@ -2,17 +2,13 @@
 
 use double_pendulum::Real;
 
-/// A tolerance for each precision.
 #[derive(Clone, Copy, Debug)]
 pub struct PerPrecision {
-    /// The tolerance in `f32`.
     pub single: f64,
-    /// The tolerance in `f64`.
     pub double: f64,
 }
 
 impl PerPrecision {
-    /// Returns the tolerance for `R`.
     pub fn of<R: Real>(&self) -> f64 {
         if R::EPSILON.to_f64() > f64::EPSILON {
             self.single

@@ -18,7 +18,6 @@ const FAR: f64 = 1e-7;
 /// error of the reference, 0.6, is subtracted.
 const ULPS: f64 = 2.0 - 0.6;
 
-/// Returns the larger of the absolute errors of sine and cosine.
 fn error(x: f32) -> f64 {
     let (sine, cosine) = sin_cos(x);
     let (true_sine, true_cosine) = f64::from(x).sin_cos();
@@ -27,21 +26,16 @@ fn error(x: f32) -> f64 {
         .max((f64::from(cosine) - true_cosine).abs())
 }
 
-/// Returns the largest error over every `stride`-th float of [-`limit`, `limit`], in ascending
-/// magnitude.
 fn largest_error(limit: f32, stride: usize) -> f64 {
     let positive = (0..=limit.to_bits()).step_by(stride).map(f32::from_bits);
     positive.fold(0.0, |worst: f64, x| worst.max(error(x)).max(error(-x)))
 }
 
-/// Returns |`value` - `truth`| in units of the last place of `truth`.
 fn ulps(value: f64, truth: f64) -> f64 {
     let one = f64::from_bits(truth.abs().to_bits() + 1) - truth.abs();
     (value - truth).abs() / one
 }
 
-/// The larger absolute error of sine and cosine in `f32` is at most 9e-8 ([`NEAR`]) for every
-/// 1009th float of [-pi, pi], and at most 1e-7 ([`FAR`]) for every 251st float of [-1e4, 1e4].
 #[test]
 fn own_f32_is_within_its_bounds_on_a_stride_of_the_floats() {
     for (limit, stride, bound) in [(core::f32::consts::PI, 1009, NEAR), (1e4, 251, FAR)] {
@@ -50,8 +44,6 @@ fn own_f32_is_within_its_bounds_on_a_stride_of_the_floats() {
     }
 }
 
-/// The larger absolute error of sine and cosine in `f32` is at most 9e-8 ([`NEAR`]) for every float
-/// of [-pi, pi].
 #[test]
 #[ignore = "two minutes: every float of [-pi, pi]"]
 fn own_f32_is_within_its_bound_on_every_float_to_pi() {
@@ -60,12 +52,9 @@ fn own_f32_is_within_its_bound_on_every_float_to_pi() {
     assert!(error <= NEAR, "{error:.3e}");
 }
 
-/// The float nearest to each positive multiple of pi/2 up to 1e4, and its two neighbours, have
-/// absolute errors of sine and cosine of at most 1e-7 ([`FAR`]).
 #[test]
 fn own_f32_is_within_its_bound_near_multiples_of_half_pi() {
     for k in 1..=6366 {
-        // The sine or the cosine is small here, so that errors of the reduction show.
         let nearest = (f64::from(k) * core::f64::consts::FRAC_PI_2) as f32;
         for x in [
             nearest.to_bits() - 1,
@@ -79,13 +68,9 @@ fn own_f32_is_within_its_bound_near_multiples_of_half_pi() {
     }
 }
 
-/// Some nine million arguments up to 1.65e6 are compared with the standard library. Sine and cosine
-/// may each differ by 1.4 units of the last place of the result ([`ULPS`]).
 #[test]
 fn own_f64_is_within_two_units_of_the_last_place() {
     let mut worst = 0.0_f64;
-    // Arguments of all ranges: near zero, large, of every size, and near the multiples of pi/2,
-    // where digits cancel.
     let uniform = (-2_000_000..=2_000_000).map(|i| f64::from(i) * 8.1e-7);
     let huge = (0..200_000).map(|i| f64::from(i) * 8.235_490_1);
     let every_size =
@@ -103,10 +88,6 @@ fn own_f64_is_within_two_units_of_the_last_place() {
     assert!(worst <= ULPS, "{worst:.3}");
 }
 
-/// A sample of all bit patterns of `f32`: a finite argument gives a sine and a cosine of at most 1
-/// plus an epsilon, infinities and NaN give NaN, in `f64`, too. Three arguments of each type beyond
-/// the range of the reduction give exactly the results of `libm`. The sine of a tiny argument is
-/// the argument, and its cosine is 1.
 #[test]
 fn every_bit_pattern_has_a_defined_result() {
     for x in (0..=u32::MAX).step_by(65_521).map(f32::from_bits) {
@@ -122,7 +103,6 @@ fn every_bit_pattern_has_a_defined_result() {
         );
     }
 
-    // Huge arguments.
     for x in [f32::MAX, 1e20, 12_868.0] {
         assert_eq!(sin_cos(x), libm::sincosf(x));
     }
@@ -130,13 +110,11 @@ fn every_bit_pattern_has_a_defined_result() {
         assert_eq!(sin_cos(x), libm::sincos(x));
     }
 
-    // Arguments without a sine.
     for x in [f64::INFINITY, f64::NEG_INFINITY, f64::NAN] {
         let (sine, cosine) = sin_cos(x);
         assert!(sine.is_nan() && cosine.is_nan());
     }
 
-    // Tiny arguments.
     for x in [0.0, -0.0, 1e-45, -1e-45, 1e-30, 1e-10_f32] {
         assert_eq!(sin_cos(x), (x, 1.0), "small arguments pass through");
     }
