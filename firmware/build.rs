@@ -27,7 +27,6 @@ fn main() {
     for argument in [
         "--defsym=flash_origin=0x08000000",
         "--defsym=flash_length=0x00100000",
-        "-Tstm32f405/stm32f405.x",
     ] {
         println!("cargo:rustc-link-arg-bin=stm32f405={argument}");
     }

@@ -10,12 +10,9 @@ pub struct Instruments {
     /// Returns the count of the processor clock, for differences; starts anywhere and wraps. The
     /// default always returns 0.
     pub stopwatch: fn() -> u32,
-    /// Makes this number of steps of a motion with interrupts off. Their code is run from RAM
-    /// (`true`) or from flash. If it is not in that memory, no step is made.
-    ///
-    /// Returns the processor cycles taken, on a Cortex-M0+ modulo 2^24; 0 without a cycle counter,
-    /// or if no step is made. The default makes the steps and returns 0.
-    pub timed: fn(&mut OnBoards, u32, bool) -> u32,
+    /// Makes this number of steps of a motion with interrupts off. Returns the processor cycles
+    /// taken, on a Cortex-M0+ modulo 2^24; 0 without a cycle counter, as by default.
+    pub timed: fn(&mut OnBoards, u32) -> u32,
     /// Returns the bytes of the program in flash; none by default.
     pub image: fn() -> &'static [u8],
     /// The identity. The checksum and the size of the image in it are not used;
@@ -25,7 +22,7 @@ pub struct Instruments {
 
 impl Default for Instruments {
     fn default() -> Self {
-        let timed = |motion: &mut OnBoards, steps, _| {
+        let timed = |motion: &mut OnBoards, steps| {
             motion.advance(steps);
             0
         };

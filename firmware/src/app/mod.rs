@@ -327,13 +327,13 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
             Command::AskPlan => Answer::Planned(self.player.plan()),
             Command::Identify => Answer::Identity(self.instruments.identity()),
             Command::AskRestart => Answer::Restart(self.restarted),
-            Command::Measure { steps, in_ram } => {
+            Command::Measure(steps) => {
                 let steps = steps.min(MOST_MEASURED_STEPS);
                 let timed = self.instruments.timed;
                 let (_, job) = self.work.as_mut().ok_or(Field::Message)?;
                 Answer::Measured {
                     steps,
-                    cycles: job.measure(|motion| timed(motion, steps, in_ram)),
+                    cycles: job.measure(|motion| timed(motion, steps)),
                 }
             }
             Command::Panel(controller) => {

@@ -192,7 +192,7 @@ impl<'a> Player<'a> {
             | Command::AskPlan
             | Command::Identify
             | Command::AskRestart
-            | Command::Measure { .. }
+            | Command::Measure(_)
             | Command::Panel(_)
             | Command::Simulate(_) => {}
         }

@@ -5,14 +5,13 @@
 //! | `main_loop` | the main loop and the log lines of the application, for every board |
 //! | [`lm3s6965evb`], `stm32f405`, `pico` | a board: its clocks, pins and devices |
 //! | `log` | the output of the log on a real chip |
-//! | `steps` | the code of the steps, which real chips have twice, in flash and in RAM |
 //! | [`cortex_m`] | parts for every Cortex-M: tick, stack guard, crash reports, retained record |
 //! | `panel_bus` | a panel's bus that is driven by an interrupt |
 //! | `serial` | the bytes received and sent by a serial port |
 //! | `register` | a device register |
 //!
-//! The modules `stm32f405` and `pico` exist only with the features of these names; `log`, `steps`
-//! and `panel_bus` with either of them.
+//! The modules `stm32f405` and `pico` exist only with the features of these names; `log` and
+//! `panel_bus` with either of them.
 
 pub mod cortex_m;
 pub mod lm3s6965evb;
@@ -28,8 +27,6 @@ pub mod stm32f405;
 mod log;
 mod main_loop;
 mod register;
-#[cfg(any(feature = "pico", feature = "stm32f405"))]
-mod steps;
 
 // The boards without a log of their own send it to the debugger.
 #[cfg(not(any(feature = "pico", feature = "stm32f405")))]

@@ -102,8 +102,6 @@ impl OnBoards {
 }
 
 impl Run for OnBoards {
-    // Test `steps` finds it by its name; a board may have it twice, in flash and in RAM.
-    #[inline(never)]
     fn advance(&mut self, steps: u32) {
         match self {
             Self::Drawn(motion) => motion.advance(steps),

@@ -77,12 +77,7 @@ pub enum Command {
     /// that motion follows, also after 0 steps, but it can be measured again. A motion that has
     /// ended or diverged can be measured, too. Refused with [`Field::Message`] if no
     /// [`Simulate`](Self::Simulate) has been executed since reset.
-    Measure {
-        /// The number of steps.
-        steps: u32,
-        /// True to run the code of the steps in RAM, false to run it in flash.
-        in_ram: bool,
-    },
+    Measure(u32),
     /// Drives the panel as this controller from the next frame on; `None` identifies it. The choice
     /// is kept across every reset that leaves memory powered. Refused with [`Field::Panel`] if the
     /// panel has no choice of controllers.

@@ -78,10 +78,7 @@ pub fn exercise(next: Next) -> anyhow::Result<()> {
                 samples: 20,
                 ..Request::on_any_core(method)
             };
-            let measure = Command::Measure {
-                steps: 1,
-                in_ram: true,
-            };
+            let measure = Command::Measure(1);
             play(
                 &[Command::Simulate(request), measure].map(wire).concat(),
                 COMPUTING,

@@ -1,77 +1,10 @@
-//! The steps of every method. Real boards store them twice, in flash and in memory, so they must
-//! run at any address.
+//! The functions that the steps of a method call on the Pico.
 
 use std::collections::BTreeSet;
 
 use crate::support::application;
 use crate::support::code::Code;
-use emulator::boards::{PICO, STM32F405};
-use object::{Object, ObjectSection};
-
-/// The functions that are measured and that take most of the scenes' time, each by a part and the
-/// end of its name.
-const STEPS: [(&str, &str); 5] = [
-    ("OnBoards as firmware::job::run::Run>", "advance"),
-    ("methods::any::DrawnMotion", "advance"),
-    ("double_pendulum::methods::FormOperations>", "advance"),
-    (
-        "Fixed32 as double_pendulum::methods::FormOperations>",
-        "advance",
-    ),
-    ("rows::Rows", "end_in"),
-];
-
-/// The functions of [`STEPS`] are all in the section that is copied to memory, and no branch in it
-/// leads outside, not even by a thunk of the linker.
-#[test]
-fn no_branch_leads_out_of_the_steps() -> anyhow::Result<()> {
-    const RAM: u32 = 0x2000_0000;
-
-    for (board, runs_in_ram) in [(&STM32F405, false), (&PICO, true)] {
-        let elf = application(board);
-        let bytes = std::fs::read(&elf)?;
-        let section = object::File::parse(&*bytes)?;
-        let section = section.section_by_name(".steps").expect("the steps");
-        let steps = section.address() as u32..(section.address() + section.size()) as u32;
-        assert_eq!(
-            steps.start >= RAM,
-            runs_in_ram,
-            "{}: {steps:x?}",
-            board.name
-        );
-        let code = Code::read(&elf)?;
-        // All functions of the steps are in the section.
-        for (name, end) in STEPS {
-            let mut found = code
-                .functions_named(|step| step.contains(name) && step.ends_with(end))
-                .peekable();
-            assert!(found.peek().is_some(), "{}: no {name}", board.name);
-            assert!(
-                found.all(|function| steps.contains(&function)),
-                "{}: {name} is in another section",
-                board.name
-            );
-        }
-
-        // A branch that leaves the section would have the wrong target after a copy.
-        let name = |address| code.function_at(address).map_or("?", |(_, name)| name);
-        let out: Vec<_> = code
-            .leads_out_of(&steps)
-            .map(|(at, to)| (name(at), name(to)))
-            .collect();
-        assert!(out.is_empty(), "{}: {out:#?}", board.name);
-
-        // The linker inserts these functions for targets that are too far for a branch.
-        let far: Vec<_> = code
-            .functions_named(|name| name.contains("Thunk"))
-            .filter(|at| steps.contains(at))
-            .map(name)
-            .collect();
-        assert!(far.is_empty(), "{}: {far:#?}", board.name);
-    }
-
-    Ok(())
-}
+use emulator::boards::PICO;
 
 /// Returns the functions that steps of the form `form` reach in the Pico's application.
 fn reached(code: &Code, form: &str) -> BTreeSet<String> {

@@ -19,7 +19,7 @@ use firmware::protocol::{Answer, Cause, Restarted, ToHost};
 use firmware::scenes::SceneName;
 
 /// The cells of a method without a cycle count.
-const UNCOUNTED: &str = "| no cycle counter | no cycle counter | - |";
+const UNCOUNTED: &str = "| no cycle counter | - |";
 
 /// An emulated board with an absent panel is verified without questions. The exit code is 0, and
 /// the report has the board's data, the panel's fault, all motions and scenes as identical, no
@@ -209,21 +209,16 @@ const HANG: Restarted = Restarted {
 /// Changes the messages of an emulated board into the messages of a chip with a cycle counter. No
 /// emulated board has such a counter.
 ///
-/// The chip counts 100 cycles for a step of the second arithmetic from flash, 50 from RAM, and none
-/// for the others. An arithmetic without a count is measured once for each place, and the others
-/// until 256 steps are made. One bit is flipped in the second motion of the second arithmetic, and
+/// The chip counts 100 cycles for a step of the second arithmetic, and none for the others. An
+/// arithmetic without a count is measured once, and the others until 256 steps are made. One bit is flipped in the second motion of the second arithmetic, and
 /// one in a scene. In another scene a frame takes longer than the run, and the board reports a
 /// restart after it.
 fn counting(mut message: ToHost, measurements: &mut u32) -> Vec<u8> {
     match &mut message {
         ToHost::Answer(_, Answer::Measured { steps, cycles }) => {
-            // The second arithmetic is measured 16 times from flash, then 16 times from RAM.
-            let each = match *measurements {
-                2..18 => 100,
-                18..34 => 50,
-                _ => 0,
-            };
-            *cycles = *steps * each;
+            // The second arithmetic is measured 16 times.
+            let is_counted = (1..17).contains(measurements);
+            *cycles = if is_counted { *steps * 100 } else { 0 };
             *measurements += 1;
         }
         ToHost::Answer(3, Answer::Sample { index: 5, reading }) => {
@@ -376,7 +371,7 @@ fn the_report_has_differences_answers_of_the_person_and_counted_cycles() {
     }
 
     // The counted cycles are next to the estimate.
-    let counted = format!("| {} | 100.0 | 50.0 | ", ON_BOARDS[1]);
+    let counted = format!("| {} | 100.0 | ", ON_BOARDS[1]);
     let estimate: Option<f64> = markdown
         .split_once(&counted)
         .and_then(|(_, rest)| rest.split(' ').next()?.parse().ok());

@@ -123,8 +123,8 @@ fn every_command_of_a_burst_is_obeyed() {
 }
 
 /// `Identify` is answered with the identity, and with size and CRC of the program. `Measure` is
-/// refused before a motion is requested. Later it is answered with the cycles of the code in RAM or
-/// in flash for the largest number of steps, and the motion has no further sample.
+/// refused before a motion is requested. Later it is answered with the cycles of the largest number
+/// of steps, and the motion has no further sample.
 #[test]
 fn a_board_reports_its_identity_and_the_cycles_of_steps() {
     let mut app = app();
@@ -134,9 +134,9 @@ fn a_board_reports_its_identity_and_the_cycles_of_steps() {
         chip: [1, 2, 3, 4],
         ..Identity::default()
     };
-    let timed = |motion: &mut OnBoards, steps, in_ram| {
+    let timed = |motion: &mut OnBoards, steps| {
         motion.advance(steps);
-        if in_ram { 800 } else { 1600 }
+        1600
     };
     app.instruments = Instruments {
         identity,
@@ -157,12 +157,9 @@ fn a_board_reports_its_identity_and_the_cycles_of_steps() {
     );
 
     // The steps of a motion are measured after it was requested.
-    let measure = |in_ram| Command::Measure {
-        steps: u32::MAX,
-        in_ram,
-    };
+    let measure = Command::Measure(u32::MAX);
     assert_eq!(
-        answer(&mut app, measure(false)),
+        answer(&mut app, measure),
         Answer::Refused(Field::Message),
         "no motion was requested"
     );
@@ -175,12 +172,12 @@ fn a_board_reports_its_identity_and_the_cycles_of_steps() {
     while app.work(|_| ()) {}
     assert!(matches!(last(&app, 3), Answer::Sample { index: 1, .. }));
 
-    for (in_ram, cycles) in [(false, 1600), (true, 800), (false, 1600)] {
+    for _ in 0..2 {
         assert_eq!(
-            answer(&mut app, measure(in_ram)),
+            answer(&mut app, measure),
             Answer::Measured {
                 steps: MOST_MEASURED_STEPS,
-                cycles
+                cycles: 1600
             }
         );
     }

@@ -2,7 +2,6 @@
 //! linker's relocations (`--emit-relocs`). Not every test uses all of this module.
 #![allow(dead_code)]
 
-use std::ops::Range;
 use std::path::Path;
 
 use cycles::{Function, Image};
@@ -72,18 +71,6 @@ impl Code {
         self.image
             .function_at(address)
             .map(|Function { address, name, .. }| (*address, &**name))
-    }
-
-    /// Returns the places between these addresses that refer to a function elsewhere. Each result
-    /// is the place and the address of the function.
-    pub fn leads_out_of<'a>(
-        &'a self,
-        addresses: &'a Range<u32>,
-    ) -> impl Iterator<Item = (u32, u32)> + 'a {
-        self.names
-            .iter()
-            .copied()
-            .filter(|(at, to)| addresses.contains(at) && !addresses.contains(to))
     }
 
     /// Returns the places outside of `function` that refer to it. Functions are given by their

@@ -6,8 +6,7 @@ use cortex_m::peripheral::{DCB, DWT};
 use super::clock;
 use super::stack::guard_stack;
 use crate::app::Instruments;
-#[cfg(any(feature = "pico", feature = "stm32f405"))]
-use crate::board::steps::timed;
+use crate::job::Run;
 use crate::protocol::{BoardName, Identity};
 
 unsafe extern "C" {
@@ -37,20 +36,9 @@ pub fn start(core: Peripherals, board: BoardName, hertz: u32, chip: [u32; 4]) ->
     };
     Instruments {
         stopwatch: clock::cycles,
-        timed,
+        timed: |motion, steps| cycles_of(|| motion.advance(steps)),
         image,
         identity,
-    }
-}
-
-/// Makes steps from flash and returns their processor cycles. These boards have no copy of the code
-/// in RAM: for that the result is 0, and no step is made.
-#[cfg(not(any(feature = "pico", feature = "stm32f405")))]
-fn timed(motion: &mut crate::job::OnBoards, steps: u32, in_ram: bool) -> u32 {
-    if in_ram {
-        0
-    } else {
-        cycles_of(|| crate::job::Run::advance(motion, steps))
     }
 }
 
@@ -73,7 +61,7 @@ fn start_counter(mut dcb: DCB, mut dwt: DWT) {
 /// 2^32. QEMU has no cycle counter; there the result is 0, and so it is before [`start`]. Of the
 /// ticks that end meanwhile, the clock counts at most one.
 #[cfg(not(armv6m))]
-pub(in crate::board) fn cycles_of(work: impl FnOnce()) -> u32 {
+fn cycles_of(work: impl FnOnce()) -> u32 {
     cortex_m::interrupt::free(|_| {
         let start = DWT::cycle_count();
         work();
@@ -91,7 +79,7 @@ fn start_counter(_: DCB, _: DWT) {}
 /// The only counter of a Cortex-M0+ is the tick's. The function uses it; the current tick begins
 /// again afterwards. Of the ticks that end meanwhile, the clock counts at most one.
 #[cfg(armv6m)]
-pub(in crate::board) fn cycles_of(work: impl FnOnce()) -> u32 {
+fn cycles_of(work: impl FnOnce()) -> u32 {
     use cortex_m::peripheral::SYST;
     const FULL: u32 = (1 << 24) - 1;
     cortex_m::interrupt::free(|_| {

@@ -92,7 +92,6 @@ pub fn calls(sp: u32) -> impl Iterator<Item = u32> {
 }
 
 /// Returns the halfword at an address of the code in flash; `None` outside it and at odd addresses.
-/// On a board that has the steps twice, in flash and in RAM, it is `None` in both copies.
 pub fn instruction(address: u32) -> Option<u16> {
     let code = &raw const __stext as u32..&raw const __etext as u32;
     // SAFETY: any two bytes of the code are a `u16`.

@@ -129,13 +129,9 @@ const REQUEST: u16 = u16::MAX;
 
 /// Measures on the board, and returns for every method of the boards, in the order of
 /// [`ON_BOARDS`], the average cycles of a step over the first second of the regular motion of
-/// [`methods`]: from flash and from RAM. `None` means that the board has no copy of the method in
-/// this memory, or no cycle counter; then all are `None`. Errors are as in [`Talk::next`].
-pub fn measured(talk: &mut Talk) -> anyhow::Result<Vec<[Option<f64>; 2]>> {
-    ON_BOARDS
-        .iter()
-        .map(|&method| Ok([step(talk, method, false)?, step(talk, method, true)?]))
-        .collect()
+/// [`methods`]; all are `None` without a cycle counter. Errors are as in [`Talk::next`].
+pub fn measured(talk: &mut Talk) -> anyhow::Result<Vec<Option<f64>>> {
+    ON_BOARDS.iter().map(|&method| step(talk, method)).collect()
 }
 
 /// Returns the section of the measured cycles ([`measured`]) with the estimate of `cargo count`.
@@ -147,30 +143,29 @@ pub fn measured(talk: &mut Talk) -> anyhow::Result<Vec<[Option<f64>; 2]>> {
 /// same target as `board`. If `board` is `None` or has no cycle counter, the estimates are left out
 /// and no tools are needed. Nothing is installed. Missing tools are refused. Another error means
 /// that the build or QEMU fails.
-pub fn cycles(measured: &[[Option<f64>; 2]], board: Option<&Board>) -> anyhow::Result<Section> {
+pub fn cycles(measured: &[Option<f64>], board: Option<&Board>) -> anyhow::Result<Section> {
     let note = "Measured with the processor's cycle counter, interrupts off, over 256 steps of the \
-                regular motion: once with the code in flash and, if there is one, once with its \
-                copy in RAM (both read constants from flash). Estimated for memory without wait \
-                states, over the same number of steps or, for an expensive method, fewer.";
+                regular motion. Estimated for memory without wait states, over the same number of \
+                steps or, for an expensive method, fewer.";
     let mut section = Section::new(
         "Cycles of a step",
         note,
-        &["method", "from flash", "from RAM", "estimated"],
+        &["method", "measured", "estimated"],
     );
 
     // The counts come from an emulated board with the same code. Without a cycle counter on the
     // real board there is nothing to compare.
     let board =
         board.and_then(|board| BOARDS.iter().find(|counted| counted.target == board.target));
-    let board = board.filter(|_| measured.iter().any(|[flash, _]| flash.is_some()));
+    let board = board.filter(|_| measured.iter().any(Option::is_some));
 
     let target = board
         .map(|board| Target::build(&toolchain::ready()?, board))
         .transpose()?;
 
     let bar = Progress::of("estimating cycles, methods", measured.len() as u64);
-    for (&method, &[flash, ram]) in ON_BOARDS.iter().zip(measured).inspect(|_| bar.advance(1)) {
-        let target = target.as_ref().filter(|_| flash.is_some());
+    for (&method, &cycles) in ON_BOARDS.iter().zip(measured).inspect(|_| bar.advance(1)) {
+        let target = target.as_ref().filter(|_| cycles.is_some());
         let estimated = target
             .map(|target| affordable_cost(target, &request(method, MOTIONS[0])))
             .transpose()?;
@@ -178,21 +173,16 @@ pub fn cycles(measured: &[[Option<f64>; 2]], board: Option<&Board>) -> anyhow::R
             cycles.map_or(none.to_owned(), |cycles| format!("{cycles:.1}"))
         };
 
-        // A missing copy in RAM is a dash. A missing cycle counter is a property of the board.
-        let none = "no cycle counter";
-        let ram = cell(ram, flash.map_or(none, |_| "-"));
+        let cycles = cell(cycles, "no cycle counter");
         let estimated = cell(estimated.map(|cost| cost.cycles), "-");
-        section.add(
-            vec![method.to_string(), cell(flash, none), ram, estimated],
-            None,
-        );
+        section.add(vec![method.to_string(), cycles, estimated], None);
     }
 
     Ok(section)
 }
 
-/// Returns the cycles of a step, or `None` if the board has no cycle counter or no copy in RAM.
-fn step(talk: &mut Talk, method: Method, in_ram: bool) -> anyhow::Result<Option<f64>> {
+/// Returns the cycles of a step, or `None` if the board has no cycle counter.
+fn step(talk: &mut Talk, method: Method) -> anyhow::Result<Option<f64>> {
     // The request starts the motion whose steps are measured.
     talk.port.send(
         REQUEST,
@@ -207,19 +197,13 @@ fn step(talk: &mut Talk, method: Method, in_ram: bool) -> anyhow::Result<Option<
 
     // The cycles of several measurements are added up.
     while steps < FULL_CYCLE {
-        let (made, taken) = talk.ask(
-            Command::Measure {
-                steps: MOST_MEASURED_STEPS,
-                in_ram,
-            },
-            |answer| {
-                if let Answer::Measured { steps, cycles } = answer {
-                    Some((steps, cycles))
-                } else {
-                    None
-                }
-            },
-        )?;
+        let (made, taken) = talk.ask(Command::Measure(MOST_MEASURED_STEPS), |answer| {
+            if let Answer::Measured { steps, cycles } = answer {
+                Some((steps, cycles))
+            } else {
+                None
+            }
+        })?;
         if taken == 0 || made == 0 {
             return Ok(None);
         }
