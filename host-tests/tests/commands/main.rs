@@ -7,12 +7,10 @@ mod figures;
 mod firmware_cli;
 mod hygiene;
 mod out_file;
-mod process;
 mod random_input;
 mod readmes;
 mod release;
 mod rooms;
-mod set_up;
 mod simulate_cli;
 #[path = "../support/mod.rs"]
 mod support;

@@ -16,40 +16,25 @@ use console::cli::{Refused, choice, complain, say};
 use emulator::boards::{BOARDS, Board};
 use emulator::process;
 use emulator::qemu::{Clock, Machine, Settings};
-use emulator::toolchain::{self, Consent};
+use emulator::toolchain;
 
-/// Finds or fetches everything that builds and runs the firmware: the ARM core library, QEMU, and
-/// rp2040js for the Pico.
+/// Finds or fetches everything that builds and runs the firmware: Rust's core library, QEMU, and
+/// Node.js with rp2040js for the Pico.
 #[derive(Debug, Parser)]
 #[command(
     name = "cargo setup",
-    after_help = "Example: cargo setup --yes
-
-Everything goes into target, host-tests/emulator/rp2040 and rustup's own folder. Only Node.js and
-npm are system packages: if they are missing, apt-get installs them after a question, or with --yes
-without one. Without apt-get nothing is installed."
+    after_help = "Everything goes into target, host-tests/emulator/rp2040 and rustup's own folder. Nothing is
+installed on the system."
 )]
-pub struct SetupOptions {
-    /// Install missing system packages (nodejs, npm) without asking
-    #[arg(long)]
-    yes: bool,
-}
+pub struct SetupOptions {}
 
-/// Returns the consent to install system packages: given by `--yes`, or asked for.
-fn consent(yes: bool) -> Consent {
-    if yes { Consent::Given } else { Consent::Ask }
-}
-
-/// Installs everything that is missing for the emulated boards, and prints where it is. Without
-/// `--yes`, system packages are installed only if the user agrees on the terminal. A tool that
-/// cannot be provided, also for lack of that consent, is [`Refused`]; the tools before it stay
-/// installed.
-pub fn setup(options: &SetupOptions) -> anyhow::Result<()> {
+/// Provides everything that is missing for the emulated boards, and prints where it is.
+pub fn setup(_: &SetupOptions) -> anyhow::Result<()> {
     let is_ready = toolchain::ready().is_ok() && toolchain::ready_for_pico().is_ok();
     say(toolchain::set_up()?)?;
     say(format_args!(
         "Raspberry Pi Pico: rp2040js under {}",
-        toolchain::set_up_pico_with(consent(options.yes))?.display()
+        toolchain::set_up_pico()?.display()
     ))?;
     if is_ready {
         say("everything was ready")?;
@@ -79,8 +64,7 @@ pub struct FwOptions {
     /// Stop it after this many seconds, with exit code 0 [default: fails after one hour]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     seconds: Option<u32>,
-    /// Only check that all binaries compile for all targets without a warning, clippy's included;
-    /// with Debian's compiler without clippy
+    /// Only check that all binaries compile for all targets without a warning, clippy's included
     #[arg(long, conflicts_with = "binary")]
     check: bool,
 }
@@ -101,7 +85,7 @@ pub struct FwOptions {
 /// hour.
 ///
 /// With `--check` nothing is run: all binaries are checked for all targets, and a warning is an
-/// error. Clippy must then be installed, unless Debian's compiler is used.
+/// error. Clippy must then be installed.
 pub fn fw(options: &FwOptions) -> anyhow::Result<ExitCode> {
     let Some(binary) = &options.binary else {
         toolchain::set_up()?.check()?;
@@ -218,9 +202,6 @@ pub struct TestOptions {
     /// Also run the tests that take hours
     #[arg(long)]
     long: bool,
-    /// Install missing system packages (nodejs, npm) without asking
-    #[arg(long)]
-    yes: bool,
 }
 
 /// The time limits of all tests, including their compilation, on a slow, busy machine: without and
@@ -245,8 +226,7 @@ const OF_COMMANDS: &str = "--test=commands";
 /// The examples of the documentation, which cargo does not run together with other tests.
 const IN_DOCUMENTATION: &str = "--doc";
 
-/// Installs missing tools as [`setup`] does, with the same rule for system packages and `--yes`,
-/// builds the firmware, and runs `cargo test` in four parts. The first part, on the host, runs
+/// Installs missing tools as [`setup`] does, builds the firmware, and runs `cargo test` in four parts. The first part, on the host, runs
 /// during the installation and the builds, whose errors are returned only after it has ended. If it
 /// passes, the other three run, all at once: on the boards, of the commands, and of the
 /// documentation. The output of the last two is printed when all three have ended.
@@ -304,7 +284,7 @@ pub fn verify(options: &TestOptions) -> anyhow::Result<ExitCode> {
         });
 
         let toolchain = toolchain::set_up()?;
-        toolchain::set_up_pico_with(consent(options.yes))?;
+        toolchain::set_up_pico()?;
         toolchain.build_ahead()?;
         // An application is linked on a single processor, so other programs are compiled too.
         let others = scope.spawn({

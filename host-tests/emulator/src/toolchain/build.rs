@@ -1,4 +1,4 @@
-//! Builds of the firmware. Both sources of the core library use the same flags.
+//! Builds of the firmware.
 //!
 //! A build runs cargo with the tools of its [`Toolchain`] and installs none, except
 //! [`Toolchain::build_cores_ahead`]. It writes below `firmware` in the target folder, which is
@@ -7,7 +7,7 @@
 //! than 30 minutes is stopped, which is an error, and so is a cargo that cannot be started.
 
 use std::ffi::OsString;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::Command;
 use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
@@ -15,7 +15,7 @@ use std::{env, fs};
 
 use anyhow::{anyhow, ensure};
 
-use super::bring::{quick_output, run_shown};
+use super::run::{quick_output, run_shown};
 use super::{TARGETS, Toolchain, WASM, remap, set_up_for, target, workspace};
 use crate::boards::{Board, every_board};
 
@@ -64,11 +64,7 @@ pub const CORE_IMAGES: [CoreImage; 9] = [
 impl Toolchain {
     /// Returns a command that runs cargo for a microcontroller target in the workspace's folder.
     fn cargo(&self) -> Command {
-        let cargo = self
-            .from_source
-            .as_ref()
-            .map_or("cargo".as_ref(), |own| own.cargo.as_path());
-        let mut command = Command::new(cargo);
+        let mut command = Command::new("cargo");
         // The variables of the surrounding cargo would change the flags of this build.
         for (name, _) in env::vars_os().filter(|(name, _)| is_foreign(name)) {
             command.env_remove(name);
@@ -76,24 +72,7 @@ impl Toolchain {
         command
             .current_dir(workspace())
             .env("RUSTUP_AUTO_INSTALL", "0");
-
-        if let Some(own) = &self.from_source {
-            // Debian's cargo is a stable release, and building the core library is still an
-            // unstable feature.
-            command
-                .env("RUSTC", &own.rustc)
-                .env("RUSTC_BOOTSTRAP", "1")
-                .env("CARGO_UNSTABLE_BUILD_STD", "core");
-            command.env("PATH", path_with(own.linker.clone()));
-        }
         command
-    }
-
-    /// Returns the compiler of the firmware.
-    fn rustc(&self) -> &Path {
-        self.from_source
-            .as_ref()
-            .map_or("rustc".as_ref(), |own| own.rustc.as_path())
     }
 
     /// Returns the folder in which the firmware is built. It is separate from the folder of the
@@ -184,13 +163,10 @@ impl Toolchain {
     }
 
     /// Builds the [`CORE_IMAGES`] ahead, so that [`Self::build_cores`] takes less time. It stops,
-    /// without an error, before the first target whose tools cannot be provided or need another
-    /// compiler: without a network, each further one would wait for it. [`set_up_for`] provides the
-    /// tools, and may ask the user. An error is a build that fails.
+    /// without an error, before the first target whose tools cannot be provided: without a network,
+    /// each further one would wait for it. An error is a build that fails.
     pub fn build_cores_ahead(&self) -> anyhow::Result<()> {
-        let is_ready = |target: &str| {
-            set_up_for(target).is_ok_and(|other| other.from_source == self.from_source)
-        };
+        let is_ready = |target: &str| set_up_for(target).is_ok();
         let (double, any): (Vec<CoreImage>, Vec<CoreImage>) = CORE_IMAGES
             .into_iter()
             .take_while(|(target, _)| is_ready(target))
@@ -224,21 +200,18 @@ impl Toolchain {
         // A folder of their own: where the firmware's flags differ, cargo would compile the common
         // crates anew for either, and link all images again.
         let folder = Self::folder().join("minimal");
-        let rustc = self.rustc();
-        let flags = remap::flags(rustc).map_err(|error| anyhow!(error))?;
+        let flags = remap::flags().map_err(|error| anyhow!(error))?;
 
+        // The compiler of the workspace, which rustup would not choose in another folder.
+        let mut sysroot = Command::new("rustc");
+        sysroot
+            .args(["--print", "sysroot"])
+            .current_dir(workspace());
+        let sysroot = quick_output(&mut sysroot).map_err(|error| anyhow!(error))?;
+        let suffix = env::consts::EXE_SUFFIX;
+        let rustc = PathBuf::from(sysroot.trim()).join(format!("bin/rustc{suffix}"));
         let mut command = self.cargo();
-        if self.from_source.is_none() {
-            // The compiler of the workspace, which rustup would not choose in another folder.
-            let mut sysroot = Command::new(rustc);
-            sysroot
-                .args(["--print", "sysroot"])
-                .current_dir(workspace());
-            let sysroot = quick_output(&mut sysroot).map_err(|error| anyhow!(error))?;
-            let suffix = env::consts::EXE_SUFFIX;
-            let rustc = PathBuf::from(sysroot.trim()).join(format!("bin/rustc{suffix}"));
-            command.env("RUSTC", rustc);
-        }
+        command.env("RUSTC", rustc);
         command
             .current_dir(&nowhere)
             .args(["build", "--release", "--locked", "--target", target])
@@ -291,10 +264,8 @@ impl Toolchain {
             .try_for_each(|target| self.build_minimal(target).map(drop))
     }
 
-    /// Checks the firmware's binaries for microcontrollers, for all [`TARGETS`],
-    /// with Clippy, which must be installed. If the core library is built by Debian's compiler, the
-    /// check is `cargo check`, without Clippy. A warning is an error. The error contains the
-    /// warnings of the first target that has any; the targets after it are not checked.
+    /// Checks the firmware's binaries for microcontrollers, for all [`TARGETS`], with Clippy. A
+    /// warning is an error, which contains the warnings of the first target that has any.
     pub fn check(&self) -> anyhow::Result<()> {
         for target in TARGETS {
             // All boards of a target are checked at once, with the features of all.
@@ -302,16 +273,10 @@ impl Toolchain {
                 .filter(|board| board.target == target)
                 .map(|board| board.feature);
             let features = features.collect::<Vec<_>>().join(",");
-            let is_ready_made = self.from_source.is_none();
 
-            let mut command =
-                self.for_targets(if is_ready_made { "clippy" } else { "check" }, &[target])?;
+            let mut command = self.for_targets("clippy", &[target])?;
             command.args(["--bins", "--features", &features]);
-            if is_ready_made {
-                command.args(["--", "--deny", "warnings"]);
-            } else {
-                command.env("RUSTFLAGS", "-Dwarnings");
-            }
+            command.args(["--", "--deny", "warnings"]);
             self.finish(command, &format!("checking the firmware for {target}"))?;
         }
         Ok(())
@@ -319,7 +284,7 @@ impl Toolchain {
 
     /// Returns a cargo command (`what`) for the optimised firmware on some targets.
     fn for_targets(&self, what: &str, targets: &[&str]) -> anyhow::Result<Command> {
-        let flags = remap::flags(self.rustc()).map_err(|error| anyhow!(error))?;
+        let flags = remap::flags().map_err(|error| anyhow!(error))?;
         let mut command = self.cargo();
         command
             .args([what, "--release", "--package", "firmware"])
@@ -350,10 +315,4 @@ impl Toolchain {
 fn is_foreign(name: &OsString) -> bool {
     let begins = |with: &&str| name.as_encoded_bytes().starts_with(with.as_bytes());
     FOREIGN.iter().any(begins) && !OURS.iter().any(begins)
-}
-
-/// Returns the search path with this folder in front.
-fn path_with(folder: PathBuf) -> OsString {
-    let rest = env::var_os("PATH").unwrap_or_default();
-    env::join_paths([folder].into_iter().chain(env::split_paths(&rest))).unwrap_or(rest)
 }

@@ -9,13 +9,13 @@ use std::path::{Path, PathBuf, absolute};
 use std::process::Command;
 use std::{env, fs};
 
-use super::bring::quick_output;
+use super::run::quick_output;
 use super::{target, workspace};
 
-/// Returns the flags for builds by this compiler, each `--remap-path-prefix=FOLDER=NAME`. If
+/// Returns the flags, each `--remap-path-prefix=FOLDER=NAME`. If
 /// several prefixes match, the compiler uses the last one, so the order matters. An error is the
 /// reason why the compiler does not print its folder or version.
-pub(super) fn flags(rustc: &Path) -> Result<Vec<String>, String> {
+pub(super) fn flags() -> Result<Vec<String>, String> {
     // The workspace and the folder of everything built.
     let mut renamed = vec![
         (workspace().to_owned(), ".".to_owned()),
@@ -38,7 +38,7 @@ pub(super) fn flags(rustc: &Path) -> Result<Vec<String>, String> {
             .into_iter()
             .map(|folder| (folder, "crates".to_owned())),
     );
-    renamed.push(core_library(rustc)?);
+    renamed.push(core_library()?);
 
     // The compiler may name a folder behind a link by the link or by its target.
     let names = |(from, to): (PathBuf, String)| {
@@ -64,9 +64,9 @@ fn cargo_home() -> Option<PathBuf> {
 
 /// Returns the folder for the sources of the core library, and the name that the ready-made core
 /// library has for it.
-fn core_library(rustc: &Path) -> Result<(PathBuf, String), String> {
+fn core_library() -> Result<(PathBuf, String), String> {
     let output = |arguments: &[&str]| {
-        let mut command = Command::new(rustc);
+        let mut command = Command::new("rustc");
         command.args(arguments).current_dir(workspace());
         quick_output(command.env("RUSTUP_AUTO_INSTALL", "0"))
     };

@@ -9,10 +9,10 @@ set -eu
 folder=$1
 programs=$2
 packages=$3
-trap 'rm -rf "$folder.new"' EXIT
-rm -rf "$folder.new"
-mkdir -p "$folder.new"
-cd "$folder.new"
+mkdir -p "$(dirname "$folder")"
+new=$(mktemp -d "$folder.XXXXXX") # two set-ups at the same time do not meet
+trap 'rm -rf "$new"' EXIT
+cd "$new"
 
 # Fetches the packages; $@ are options of apt-get.
 fetch() {
@@ -37,6 +37,11 @@ for package in *.deb; do
 done
 rm -rf -- uris *.deb lists cache
 
+# Debian's Node.js has the folder of its modules compiled in. The programs below open that folder as file 9.
+for library in usr/lib/*/libnode.so.*; do
+    [ ! -f "$library" ] || sed -i 's|/usr/share/nodejs/|/proc/self/fd/9///|g' "$library"
+done
+
 # A program finds its data beside itself, but not its libraries.
 for program in $programs; do
     cat > "$program" <<'END'
@@ -47,6 +52,11 @@ for folder in "$here"/usr/lib/*-linux-gnu* "$here"/usr/lib/*-linux-gnu*/pulseaud
     LD_LIBRARY_PATH=$folder${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}
 done
 export LD_LIBRARY_PATH
+if [ -e "$here/usr/share/nodejs" ]; then
+    exec 9< "$here/usr/share/nodejs"
+    NODE_PATH=$here/usr/share/nodejs PATH=$here:$PATH
+    export NODE_PATH PATH
+fi
 program=$here/usr/lib/chromium/$(basename "$0") # its script in usr/bin runs the installed one
 [ -x "$program" ] || program=$here/usr/bin/$(basename "$0")
 exec "$program" "$@"
@@ -56,4 +66,5 @@ END
 done
 
 rm -rf "$folder"
-mv "$folder.new" "$folder"
+chmod 755 "$new"
+mv "$new" "$folder"
