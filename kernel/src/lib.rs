@@ -163,8 +163,9 @@ pub use table::{Equations, Integrator, Method, Numbers};
 #[doc(hidden)] // Needed by one of these each, not by a user who computes a motion.
 pub mod parts {
     pub use crate::flips::falling::Falling;
+    pub use crate::methods::any::start;
     pub use crate::methods::{
-        Canonical, Derivatives, DirectionF64, DrawnMotion, Rk4, Rk4Direction, RungeKutta, Turns,
+        Advance, Canonical, Derivatives, DirectionF64, Rk4, Rk4Direction, RungeKutta, Turns,
     };
 }
 

@@ -1,8 +1,7 @@
 //! The table of methods: one row of plain data per method.
 //!
 //! To add a method, add a variant to [`Method`], its row and its place in [`Method::ALL`]. The
-//! compiler then reports the missing type that computes it. For a method that scenes are drawn by,
-//! add a variant to [`DrawnMethod`], too. The compiler then reports the missing price and motion.
+//! compiler then reports the missing type that computes it.
 
 use core::fmt;
 
@@ -147,19 +146,6 @@ pub enum Method {
     TextbookF32,
 }
 
-/// A method that scenes are drawn by: the [`Method`] of the same name.
-///
-/// A price list and a motion in progress match on it without a default, so that the compiler asks
-/// for both.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum DrawnMethod {
-    Rk4F32Direction,
-    Rk4F32DirectionPlain,
-    Rk4Fixed32,
-    Extrapolation10Fixed64,
-    ClosedFormF32,
-}
-
 /// The properties of a method: its row of the table.
 struct Row {
     /// The unique name, which users type.
@@ -169,8 +155,6 @@ struct Row {
     integrator: Integrator,
     /// The order of its steps; 0 for the closed form.
     order: u32,
-    /// `None` if no scene is drawn by it.
-    drawn: Option<DrawnMethod>,
 }
 
 impl Method {
@@ -193,16 +177,6 @@ impl Method {
         Method::TextbookF32,
     ];
 
-    /// The methods that draw scenes, in the order of the table. A [plan](crate::plan) chooses from
-    /// them.
-    pub const DRAWN: &[Method] = &[
-        Method::Rk4F32Direction,
-        Method::Rk4F32DirectionPlain,
-        Method::Rk4Fixed32,
-        Method::Extrapolation10Fixed64,
-        Method::ClosedFormF32,
-    ];
-
     /// Returns the row of the table.
     const fn row(self) -> Row {
         match self {
@@ -212,7 +186,6 @@ impl Method {
                 numbers: Numbers::F64,
                 integrator: Integrator::Rk4,
                 order: 4,
-                drawn: None,
             },
             Method::Rk4F32 => Row {
                 name: "rk4-f32",
@@ -220,7 +193,6 @@ impl Method {
                 numbers: Numbers::F32,
                 integrator: Integrator::Rk4,
                 order: 4,
-                drawn: None,
             },
             Method::Rk4F32Direction => Row {
                 name: "rk4-f32-direction",
@@ -228,7 +200,6 @@ impl Method {
                 numbers: Numbers::CompensatedF32,
                 integrator: Integrator::Rk4,
                 order: 4,
-                drawn: Some(DrawnMethod::Rk4F32Direction),
             },
             Method::Rk4F32DirectionPlain => Row {
                 name: "rk4-f32-direction-plain",
@@ -236,7 +207,6 @@ impl Method {
                 numbers: Numbers::F32,
                 integrator: Integrator::Rk4,
                 order: 4,
-                drawn: Some(DrawnMethod::Rk4F32DirectionPlain),
             },
             Method::Rk4Fixed32 => Row {
                 name: "rk4-fixed32",
@@ -244,7 +214,6 @@ impl Method {
                 numbers: Numbers::Fixed32,
                 integrator: Integrator::Rk4,
                 order: 4,
-                drawn: Some(DrawnMethod::Rk4Fixed32),
             },
             Method::Extrapolation8Fixed64 => Row {
                 name: "extrapolation8-fixed64",
@@ -252,7 +221,6 @@ impl Method {
                 numbers: Numbers::Fixed64,
                 integrator: Integrator::Extrapolation,
                 order: 8,
-                drawn: None,
             },
             Method::Extrapolation10Fixed64 => Row {
                 name: "extrapolation10-fixed64",
@@ -260,7 +228,6 @@ impl Method {
                 numbers: Numbers::Fixed64,
                 integrator: Integrator::Extrapolation,
                 order: 10,
-                drawn: Some(DrawnMethod::Extrapolation10Fixed64),
             },
             Method::Extrapolation12Fixed64 => Row {
                 name: "extrapolation12-fixed64",
@@ -268,7 +235,6 @@ impl Method {
                 numbers: Numbers::Fixed64,
                 integrator: Integrator::Extrapolation,
                 order: 12,
-                drawn: None,
             },
             Method::Extrapolation16Fixed64 => Row {
                 name: "extrapolation16-fixed64",
@@ -276,7 +242,6 @@ impl Method {
                 numbers: Numbers::Fixed64,
                 integrator: Integrator::Extrapolation,
                 order: 16,
-                drawn: None,
             },
             Method::Extrapolation12F64 => Row {
                 name: "extrapolation12-f64",
@@ -284,7 +249,6 @@ impl Method {
                 numbers: Numbers::CompensatedF64,
                 integrator: Integrator::Extrapolation,
                 order: 12,
-                drawn: None,
             },
             Method::Extrapolation16F64 => Row {
                 name: "extrapolation16-f64",
@@ -292,7 +256,6 @@ impl Method {
                 numbers: Numbers::CompensatedF64,
                 integrator: Integrator::Extrapolation,
                 order: 16,
-                drawn: None,
             },
             Method::ClosedFormF64 => Row {
                 name: "closed-form-f64",
@@ -300,7 +263,6 @@ impl Method {
                 numbers: Numbers::F64,
                 integrator: Integrator::ClosedForm,
                 order: 0,
-                drawn: None,
             },
             Method::ClosedFormF32 => Row {
                 name: "closed-form-f32",
@@ -308,7 +270,6 @@ impl Method {
                 numbers: Numbers::F32,
                 integrator: Integrator::ClosedForm,
                 order: 0,
-                drawn: Some(DrawnMethod::ClosedFormF32),
             },
             Method::Rk4F32Micromath => Row {
                 name: "rk4-f32-micromath",
@@ -316,7 +277,6 @@ impl Method {
                 numbers: Numbers::F32,
                 integrator: Integrator::Rk4,
                 order: 4,
-                drawn: None,
             },
             Method::TextbookF32 => Row {
                 name: "textbook-f32",
@@ -324,7 +284,6 @@ impl Method {
                 numbers: Numbers::F32,
                 integrator: Integrator::Rk4,
                 order: 4,
-                drawn: None,
             },
         }
     }
@@ -369,12 +328,6 @@ impl Method {
         self.row().order
     }
 
-    /// Returns the method as a method for drawing; `None` if it is not in
-    /// [`DRAWN`](Self::DRAWN).
-    pub(crate) const fn drawn(self) -> Option<DrawnMethod> {
-        self.row().drawn
-    }
-
     /// Returns true if the numbers are `f32`, compensated or not.
     #[must_use]
     pub const fn is_single(self) -> bool {
@@ -394,31 +347,14 @@ impl fmt::Display for Method {
     }
 }
 
-// `Method::ALL` has the order of the variants, and `Method::DRAWN` has the order of the variants
-// of `DrawnMethod`. Each row of a drawn method has the variant of its own.
+// `Method::ALL` has the order of the variants.
 const _: () = {
     let mut i = 0;
-    let mut drawn = 0;
     while i < Method::ALL.len() {
         let method = Method::ALL[i];
         assert!(method as usize == i, "a method is missing in Method::ALL");
-        if let Some(variant) = method.drawn() {
-            assert!(
-                drawn < Method::DRAWN.len() && Method::DRAWN[drawn] as usize == i,
-                "a drawn method is missing in Method::DRAWN"
-            );
-            assert!(
-                variant as usize == drawn,
-                "a row has the DrawnMethod of another method"
-            );
-            drawn += 1;
-        }
         i += 1;
     }
-    assert!(
-        drawn == Method::DRAWN.len(),
-        "Method::DRAWN has a method whose row is not drawn"
-    );
 };
 
 #[cfg(test)]

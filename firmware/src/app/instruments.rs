@@ -1,6 +1,8 @@
 //! The measuring functions that a board provides to the application.
 
-use crate::job::{CRC, OnBoards, Run};
+use double_pendulum::parts::Advance;
+
+use crate::job::{BoardMotion, CRC};
 use crate::protocol::Identity;
 
 /// The measuring functions and the identity of a board. The default, as on a host, measures
@@ -12,7 +14,7 @@ pub struct Instruments {
     pub stopwatch: fn() -> u32,
     /// Makes this number of steps of a motion with interrupts off. Returns the processor cycles
     /// taken, on a Cortex-M0+ modulo 2^24; 0 without a cycle counter, as by default.
-    pub timed: fn(&mut OnBoards, u32) -> u32,
+    pub timed: fn(&mut BoardMotion, u32) -> u32,
     /// Returns the bytes of the program in flash; none by default.
     pub image: fn() -> &'static [u8],
     /// The identity. The checksum and the size of the image in it are not used;
@@ -22,7 +24,7 @@ pub struct Instruments {
 
 impl Default for Instruments {
     fn default() -> Self {
-        let timed = |motion: &mut OnBoards, steps| {
+        let timed = |motion: &mut BoardMotion, steps| {
             motion.advance(steps);
             0
         };

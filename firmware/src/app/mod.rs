@@ -14,7 +14,7 @@ use crate::config::{
 };
 use crate::display::{Controller, Display};
 use crate::graphics::{Canvas, FrameBuffers};
-use crate::job::{Job, OnBoards, Request};
+use crate::job::{BoardMotion, Job, Request};
 use crate::protocol::{
     Answer, Command, Decoder, Field, Frame, LinkError, MAX_WIRE, PlayState, Restarted, Status,
     ToHost, decode_command, encode,
@@ -356,7 +356,7 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
         motion: &Request,
         log: &mut impl Log<Panel, Link>,
     ) -> Result<(), Field> {
-        let run = OnBoards::start(motion).ok_or(Field::Method)??;
+        let run = BoardMotion::start(motion)?;
         self.work = Some((request, Job::new(run, motion)?));
         log(Event::Asked);
         if let Some(admissible_step) = motion.admissible_step().filter(|step| motion.dt > *step) {

@@ -1,16 +1,16 @@
 //! The computation of a request.
 
-use double_pendulum::parts::Turns;
+use double_pendulum::parts::{Advance, Turns};
 use double_pendulum::{Error, Motion, Parameter, Pendulum};
 
-use super::{OnBoards, Reading, Request, Run};
+use super::{BoardMotion, Reading, Request};
 
 /// A request that is being answered.
 ///
 /// The job computes one sample after the other, a bounded amount of work at a time. If the method
 /// does not count whole turns, the job counts them.
 #[derive(Clone, Copy, Debug)]
-pub struct Job<R = OnBoards> {
+pub struct Job<R = BoardMotion> {
     run: R,
     /// The pendulum, with parameters rounded as in the method.
     pendulum: Pendulum<f64>,
@@ -24,7 +24,7 @@ pub struct Job<R = OnBoards> {
     steps: u32,
 }
 
-impl<R: Run> Job<R> {
+impl<R: Advance> Job<R> {
     /// Creates the job of a request, where `run` is its motion at the start.
     pub fn new(run: R, request: &Request) -> Result<Self, Error> {
         let Request {
@@ -41,10 +41,11 @@ impl<R: Run> Job<R> {
             parameters
         };
         let pendulum = Pendulum::new(&parameters)?;
-        let turns = run
-            .sides()
-            .map(|sides| Turns::of(angles, sides))
-            .transpose()?;
+        let turns = if run.has_turns() {
+            None
+        } else {
+            Some(Turns::of(angles, run.sides())?)
+        };
         Ok(Self {
             run,
             pendulum,
@@ -92,8 +93,8 @@ impl<R: Run> Job<R> {
     fn step(&mut self) {
         self.run.advance(1);
         self.steps -= 1;
-        if let (Some(turns), Some(sides)) = (&mut self.turns, self.run.sides()) {
-            Turns::observe(turns, sides);
+        if let Some(turns) = &mut self.turns {
+            Turns::observe(turns, self.run.sides());
         }
     }
 
@@ -125,7 +126,7 @@ impl<R: Run> Job<R> {
 
 /// Calls `each` with every reading of `request`, the initial one first.
 pub(super) fn readings<E: From<Error>>(
-    run: impl Run,
+    run: impl Advance,
     request: &Request,
     mut each: impl FnMut(&Reading) -> Result<(), E>,
 ) -> Result<(), E> {

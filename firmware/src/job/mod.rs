@@ -19,14 +19,14 @@ mod table;
 mod text;
 
 use crc::{CRC_32_ISO_HDLC, Crc, Table};
+use double_pendulum::parts::Advance;
 use double_pendulum::{Form, Integrator, Method, Motion, Parameters, Pendulum};
 
 use crate::config::GRAVITY;
 
 pub use answer::Job;
 pub use golden::write_golden;
-pub use run::Run;
-pub use table::{ON_BOARDS, OnBoards, visit};
+pub use table::{BoardMotion, ON_BOARDS, visit};
 
 /// The CRC of requests, messages and images: CRC-32/ISO-HDLC, the reflected CRC-32 of zip and
 /// Ethernet.
@@ -118,7 +118,7 @@ fn crc<F: Form>(mut run: F, request: &Request) -> u32 {
         run.bits(|word| digest.update(&word.to_le_bytes()));
     }
 
-    <[f64; 4]>::from(Run::state(&run))
+    <[f64; 4]>::from(run.state())
         .iter()
         .for_each(|number| digest.update(&number.to_le_bytes()));
     digest.finalize()
@@ -127,7 +127,7 @@ fn crc<F: Form>(mut run: F, request: &Request) -> u32 {
 /// Makes `steps` steps. The counter of cycles (`cargo count`) finds this function by its name, and
 /// counts from its first instruction to its return.
 #[inline(never)] // Found by its name (`cargo count`, test `count_elf`).
-fn counted_steps<R: Run>(run: &mut R, steps: u32) {
+fn counted_steps<R: Advance>(run: &mut R, steps: u32) {
     let mut local = *run;
     local.advance(steps);
     *run = local;

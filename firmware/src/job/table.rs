@@ -1,14 +1,15 @@
 //! The methods of a job: the type of each method, and the methods that boards have.
 
 use double_pendulum::golden::{Bits, Golden};
-use double_pendulum::parts::{Canonical, DrawnMotion};
+use double_pendulum::parts::Canonical;
 use double_pendulum::{
-    ClosedFormF64, Error, Fixed64, Form, FormVisitor, HamiltonF32, HamiltonF64, Method, State,
+    ClosedFormF32, ClosedFormF64, DirectionF32, DirectionF32Plain, Error, Fixed32, Fixed64, Form,
+    FormVisitor, HamiltonF32, HamiltonF64, Method,
 };
 
 use super::comparison::{Micromath, Textbook};
-use super::run::{start, start_drawn};
-use super::{Reading, Request, Run, answer, crc};
+use super::run::{rounded, start};
+use super::{Reading, Request, answer, crc};
 
 /// Calls `visitor` with the type that computes `method`: a type of the kernel or, for a comparison
 /// with the kernel, of this module. Returns the visitor's result. Every method has a type, so the
@@ -31,111 +32,34 @@ where
 }
 
 /// The methods that every board's application links. The first is the default of `cargo simulate`.
-pub const ON_BOARDS: &[Method] = &[
-    Method::Rk4F64,
-    Method::Rk4F32,
-    Method::Rk4F32Direction,
-    Method::Rk4F32DirectionPlain,
-    Method::Rk4Fixed32,
-    Method::Extrapolation8Fixed64,
-    Method::Extrapolation10Fixed64,
-    Method::Extrapolation12Fixed64,
-    Method::Extrapolation16Fixed64,
-    Method::ClosedFormF64,
-    Method::ClosedFormF32,
-];
+pub const ON_BOARDS: &[Method] = BoardMotion::METHODS;
 
-/// A motion in progress, by a method of [`ON_BOARDS`].
-#[derive(Clone, Copy, Debug)]
-pub enum OnBoards {
-    /// A method that scenes are drawn by ([`Method::DRAWN`]).
-    Drawn(DrawnMotion),
-    /// [`Method::Rk4F64`].
-    Rk4F64(HamiltonF64),
-    /// [`Method::Rk4F32`].
-    Rk4F32(HamiltonF32),
-    /// [`Method::Extrapolation8Fixed64`].
-    Extrapolation8Fixed64(Fixed64<8>),
-    /// [`Method::Extrapolation12Fixed64`].
-    Extrapolation12Fixed64(Fixed64<12>),
-    /// [`Method::Extrapolation16Fixed64`].
-    Extrapolation16Fixed64(Fixed64<16>),
-    /// [`Method::ClosedFormF64`].
-    ClosedFormF64(ClosedFormF64),
-}
-
-impl OnBoards {
-    /// Returns the motion of a request at its start. Returns `None` if boards do not have the
-    /// method. `stride` and `samples` are not used.
+double_pendulum::motions! {
+    /// A motion in progress, by a method of [`ON_BOARDS`].
     ///
-    /// # Errors
-    ///
-    /// The inner result is the kernel's error if it refuses the request: parameters that describe
-    /// no pendulum, a start that is not finite or out of the method's range, or a step that the
-    /// method cannot make. Such a step is NaN, infinite, 0, negative or too long
-    /// ([`Pendulum::check_step`]); only the closed form makes negative and long ones, but it
-    /// refuses a pendulum without gravity.
-    ///
-    /// [`Pendulum::check_step`]: double_pendulum::Pendulum::check_step
-    // Inlined, 1,176 bytes of flash and a stack frame of 5,324 bytes in `begin_work` (M3).
-    #[inline(never)]
-    pub fn start(request: &Request) -> Option<Result<Self, Error>> {
-        Some(match request.method {
-            Method::Rk4F32Direction
-            | Method::Rk4F32DirectionPlain
-            | Method::Rk4Fixed32
-            | Method::Extrapolation10Fixed64
-            | Method::ClosedFormF32 => start_drawn(request).map(Self::Drawn),
-            Method::Rk4F64 => start(request).map(Self::Rk4F64),
-            Method::Rk4F32 => start(request).map(Self::Rk4F32),
-            Method::Extrapolation8Fixed64 => start(request).map(Self::Extrapolation8Fixed64),
-            Method::Extrapolation12Fixed64 => start(request).map(Self::Extrapolation12Fixed64),
-            Method::Extrapolation16Fixed64 => start(request).map(Self::Extrapolation16Fixed64),
-            Method::ClosedFormF64 => start(request).map(Self::ClosedFormF64),
-            // Without these an application is smaller. `f64` in software is slow.
-            Method::Extrapolation12F64
-            | Method::Extrapolation16F64
-            | Method::Rk4F32Micromath
-            | Method::TextbookF32 => return None,
-        })
+    /// Without `extrapolation12-f64` and `extrapolation16-f64` an application is smaller, and `f64`
+    /// in software is slow.
+    pub enum BoardMotion {
+        Rk4F64(HamiltonF64),
+        Rk4F32(HamiltonF32),
+        Rk4F32Direction(DirectionF32),
+        Rk4F32DirectionPlain(DirectionF32Plain),
+        Rk4Fixed32(Fixed32),
+        Extrapolation8Fixed64(Fixed64<8>),
+        Extrapolation10Fixed64(Fixed64<10>),
+        Extrapolation12Fixed64(Fixed64<12>),
+        Extrapolation16Fixed64(Fixed64<16>),
+        ClosedFormF64(ClosedFormF64),
+        ClosedFormF32(ClosedFormF32),
     }
 }
 
-impl Run for OnBoards {
-    fn advance(&mut self, steps: u32) {
-        match self {
-            Self::Drawn(motion) => motion.advance(steps),
-            Self::Rk4F64(motion) => Run::advance(motion, steps),
-            Self::Rk4F32(motion) => Run::advance(motion, steps),
-            Self::Extrapolation8Fixed64(motion) => Run::advance(motion, steps),
-            Self::Extrapolation12Fixed64(motion) => Run::advance(motion, steps),
-            Self::Extrapolation16Fixed64(motion) => Run::advance(motion, steps),
-            Self::ClosedFormF64(motion) => Run::advance(motion, steps),
-        }
-    }
-
-    fn state(&self) -> State<f64> {
-        match self {
-            Self::Drawn(motion) => motion.state(),
-            Self::Rk4F64(motion) => Run::state(motion),
-            Self::Rk4F32(motion) => Run::state(motion),
-            Self::Extrapolation8Fixed64(motion) => Run::state(motion),
-            Self::Extrapolation12Fixed64(motion) => Run::state(motion),
-            Self::Extrapolation16Fixed64(motion) => Run::state(motion),
-            Self::ClosedFormF64(motion) => Run::state(motion),
-        }
-    }
-
-    fn sides(&self) -> Option<[[i32; 2]; 2]> {
-        match self {
-            Self::Drawn(motion) => (!motion.has_turns()).then(|| motion.sides()),
-            Self::Rk4F64(motion) => Run::sides(motion),
-            Self::Rk4F32(motion) => Run::sides(motion),
-            Self::Extrapolation8Fixed64(motion) => Run::sides(motion),
-            Self::Extrapolation12Fixed64(motion) => Run::sides(motion),
-            Self::Extrapolation16Fixed64(motion) => Run::sides(motion),
-            Self::ClosedFormF64(motion) => Run::sides(motion),
-        }
+impl BoardMotion {
+    /// Returns the motion of a request at its start. Refuses, by [`Error::NotDrawn`], methods that
+    /// boards do not have.
+    pub fn start(request: &Request) -> Result<Self, Error> {
+        let (parameters, state) = rounded(request)?;
+        Self::new(request.method, &parameters, &state, request.dt)
     }
 }
 
@@ -183,7 +107,7 @@ impl Request {
     /// # Errors
     ///
     /// Returns the error of `each`; the kernel's error if it refuses the request
-    /// ([`OnBoards::start`], [`Job::new`](super::Job::new)), before any call; or
+    /// ([`BoardMotion::start`], [`Job::new`](super::Job::new)), before any call; or
     /// [`Error::Diverged`] in place of the first reading that is not finite.
     pub fn readings<E: From<Error>>(
         &self,
@@ -203,7 +127,7 @@ impl Request {
     ///
     /// # Errors
     ///
-    /// Returns the kernel's error if it refuses the request, as [`OnBoards::start`] does. A motion
+    /// Returns the kernel's error if it refuses the request, as [`BoardMotion::start`] does. A motion
     /// that diverges is no error.
     pub fn crc(&self) -> Result<u32, Error> {
         visit(self.method, CrcOf(self))

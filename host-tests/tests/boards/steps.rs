@@ -9,7 +9,7 @@ use emulator::boards::PICO;
 /// Returns the functions that steps of the form `form` reach in the Pico's application.
 fn reached(code: &Code, form: &str) -> BTreeSet<String> {
     let is_step = |name: &str| {
-        name.contains(form) && name.contains("FormOperations>") && name.ends_with("advance")
+        name.contains(form) && name.contains("methods::Advance>") && name.ends_with("advance")
     };
     let mut found: Vec<u32> = code.functions_named(is_step).collect();
     // The list grows while it is searched.

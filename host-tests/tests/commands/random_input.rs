@@ -11,7 +11,7 @@ use firmware::app::{App, NoButtons};
 use firmware::config::CORTEX_M4F;
 use firmware::display::NoDisplay;
 use firmware::graphics::FrameBuffers;
-use firmware::job::{Job, ON_BOARDS, OnBoards, Request};
+use firmware::job::{BoardMotion, Job, ON_BOARDS, Request};
 use firmware::motion::Settings;
 use firmware::protocol::{
     Answer, Command, Decoder, Field, MAX_MESSAGE, MAX_WIRE, ToHost, decode_command, encode_command,
@@ -244,7 +244,7 @@ proptest! {
             stride: stride.into(),
             samples,
         };
-        let run = OnBoards::start(&request).expect("a method of the boards");
+        let run = BoardMotion::start(&request);
         // A request that is refused at the start is a valid outcome.
         let Ok(mut job) = run.and_then(|run| Job::new(run, &request)) else { return Ok(()) };
         for _ in 0..24 {

@@ -2,6 +2,7 @@
 
 use std::f64::consts::PI;
 
+use double_pendulum::parts::Advance;
 use double_pendulum::plan::Stepping;
 use double_pendulum::{Error, Method, Parameters};
 use emulator::link::refusal;
@@ -12,7 +13,7 @@ use firmware::config::{
 };
 use firmware::display::Controller;
 use firmware::graphics::{Anchor, Canvas, LINE, text};
-use firmware::job::{OnBoards, Request, Run};
+use firmware::job::{BoardMotion, Request};
 use firmware::motion::{Horizon, Planned, Settings};
 use firmware::protocol::{
     Answer, BoardName, Command, Field, Frame, Identity, MAX_WIRE, PlayState, Status, ToHost,
@@ -134,7 +135,7 @@ fn a_board_reports_its_identity_and_the_cycles_of_steps() {
         chip: [1, 2, 3, 4],
         ..Identity::default()
     };
-    let timed = |motion: &mut OnBoards, steps| {
+    let timed = |motion: &mut BoardMotion, steps| {
         motion.advance(steps);
         1600
     };

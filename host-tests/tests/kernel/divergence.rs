@@ -6,7 +6,7 @@ use emulator::host::frame_buffers;
 use firmware::app::{App, NoButtons};
 use firmware::config::PROCESSOR;
 use firmware::display::NoDisplay;
-use firmware::job::{Job, OnBoards, Reading, Request};
+use firmware::job::{BoardMotion, Job, Reading, Request};
 use firmware::motion::Settings;
 use firmware::protocol::{Command, Field, PlayState};
 use firmware::scenes::SceneName;
@@ -86,9 +86,7 @@ fn failure_of_a_diverged_job_names_the_step_size() {
         samples: MANY,
     };
 
-    let run = OnBoards::start(&request)
-        .expect("of the boards")
-        .expect("within the limit");
+    let run = BoardMotion::start(&request).expect("within the limit");
     let mut job = Job::new(run, &request).expect("a pendulum");
 
     let answers: Vec<_> =

@@ -11,7 +11,7 @@ pub struct Falling<F: Form> {
     /// The motion after [`steps`](Self::steps) steps; one step later once a rod has flipped.
     pub(super) motion: F,
     /// The sides of the rods after the last step
-    /// ([`sides`](crate::methods::FormOperations::sides)).
+    /// ([`sides`](crate::methods::Advance::sides)).
     sides: [[i32; 2]; 2],
     /// The number of steps since the start, without the step of the flip.
     pub steps: u32,

@@ -8,7 +8,7 @@ use super::{Flip, Flips, passes};
 use crate::error::Error;
 use crate::methods::direction::BLOCK;
 use crate::methods::turns::turns_over;
-use crate::methods::{DirectionF32Plain, FormOperations};
+use crate::methods::{Advance, DirectionF32Plain};
 use crate::numbers::RealOperations;
 use crate::pendulum::{Direction, State};
 

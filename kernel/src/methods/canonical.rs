@@ -3,7 +3,7 @@
 use core::fmt::Debug;
 use core::marker::PhantomData;
 
-use super::{FormOperations, rk4};
+use super::{Advance, FormOperations, rk4};
 use crate::bounds::{RK4_STABLE, check_step};
 use crate::error::Error;
 use crate::numbers::Real;
@@ -76,21 +76,9 @@ pub struct Canonical<R, E = Hamilton<R>, I = Rk4> {
     integrator: PhantomData<I>,
 }
 
-impl<R: Real, E: Derivatives<R>, I: RungeKutta> FormOperations for Canonical<R, E, I> {
-    type Real = R;
-    const STABLE: f64 = I::STABLE;
-    const HAS_TURNS: bool = true;
-
-    fn new(parameters: &Parameters<f64>, start: &State<f64>, dt: f64) -> Result<Self, Error> {
-        check_step::<R>(dt)?;
-        let equations = E::prepare(&parameters.cast())?;
-        Self {
-            equations,
-            dt: R::from_f64(dt),
-            state: State::default(),
-            integrator: PhantomData,
-        }
-        .started(start)
+impl<R: Real, E: Derivatives<R>, I: RungeKutta> Advance for Canonical<R, E, I> {
+    fn has_turns(&self) -> bool {
+        true
     }
 
     fn started(&self, start: &State<f64>) -> Result<Self, Error> {
@@ -119,10 +107,6 @@ impl<R: Real, E: Derivatives<R>, I: RungeKutta> FormOperations for Canonical<R, 
             .map(|direction| direction.map(R::side))
     }
 
-    fn side_value(side: i32) -> R {
-        R::from_side(side)
-    }
-
     fn directions<Q: Real>(&self) -> [Direction<Q>; 2] {
         self.state.angles().map(|angle| {
             let (sin, cos) = angle.own_sin_cos();
@@ -136,6 +120,27 @@ impl<R: Real, E: Derivatives<R>, I: RungeKutta> FormOperations for Canonical<R, 
 
     fn state(&self) -> State<f64> {
         self.state.cast()
+    }
+}
+
+impl<R: Real, E: Derivatives<R>, I: RungeKutta> FormOperations for Canonical<R, E, I> {
+    type Real = R;
+    const STABLE: f64 = I::STABLE;
+
+    fn new(parameters: &Parameters<f64>, start: &State<f64>, dt: f64) -> Result<Self, Error> {
+        check_step::<R>(dt)?;
+        let equations = E::prepare(&parameters.cast())?;
+        Self {
+            equations,
+            dt: R::from_f64(dt),
+            state: State::default(),
+            integrator: PhantomData,
+        }
+        .started(start)
+    }
+
+    fn side_value(side: i32) -> R {
+        R::from_side(side)
     }
 
     fn bits(&self, feed: impl FnMut(u64)) {

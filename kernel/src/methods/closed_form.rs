@@ -1,7 +1,7 @@
 //! Small oscillations in closed form: the linear motion at any time, and as a method with steps.
 
-use super::FormOperations;
 use super::scaling::lost;
+use super::{Advance, FormOperations};
 use crate::bounds::check_step;
 use crate::error::{Error, Parameter};
 use crate::numbers::Real;
@@ -251,32 +251,9 @@ impl<R: Real> ClosedForm<R> {
     }
 }
 
-impl<R: Real> FormOperations for ClosedForm<R> {
-    type Real = R;
-    const HAS_TURNS: bool = true;
-    const STABLE: f64 = f64::INFINITY;
-    const CHECKS_ENERGY: bool = true; // The linear motion keeps its own energy.
-
-    fn new(parameters: &Parameters<f64>, start: &State<f64>, dt: f64) -> Result<Self, Error> {
-        check_step::<f64>(dt)?;
-        let oscillations = SmallOscillations::new(Modes::new(parameters)?, &Motion::default());
-
-        // If the rate is a whole number, the times of whole seconds are exact.
-        let whole = libm::rint(1.0 / dt);
-        let rate = if 1.0 / whole == dt { whole } else { 1.0 / dt };
-
-        // `started` replaces the parts that depend on the start.
-        let pendulum = Pendulum::new(&parameters.cast())?;
-        let directions = oscillations.directions(0.0);
-        Self {
-            parameters: *parameters,
-            rate,
-            pendulum,
-            oscillations,
-            directions,
-            steps: 0,
-        }
-        .started(start)
+impl<R: Real> Advance for ClosedForm<R> {
+    fn has_turns(&self) -> bool {
+        true
     }
 
     fn started(&self, start: &State<f64>) -> Result<Self, Error> {
@@ -339,10 +316,6 @@ impl<R: Real> FormOperations for ClosedForm<R> {
         self.directions.map(|direction| direction.map(R::side))
     }
 
-    fn side_value(side: i32) -> R {
-        R::from_side(side)
-    }
-
     fn directions<Q: Real>(&self) -> [Direction<Q>; 2] {
         self.directions.map(|direction| direction.map(R::cast))
     }
@@ -360,6 +333,38 @@ impl<R: Real> FormOperations for ClosedForm<R> {
         self.pendulum
             .to_state(&self.oscillations.at(self.time()))
             .cast()
+    }
+}
+
+impl<R: Real> FormOperations for ClosedForm<R> {
+    type Real = R;
+    const STABLE: f64 = f64::INFINITY;
+    const CHECKS_ENERGY: bool = true; // The linear motion keeps its own energy.
+
+    fn new(parameters: &Parameters<f64>, start: &State<f64>, dt: f64) -> Result<Self, Error> {
+        check_step::<f64>(dt)?;
+        let oscillations = SmallOscillations::new(Modes::new(parameters)?, &Motion::default());
+
+        // If the rate is a whole number, the times of whole seconds are exact.
+        let whole = libm::rint(1.0 / dt);
+        let rate = if 1.0 / whole == dt { whole } else { 1.0 / dt };
+
+        // `started` replaces the parts that depend on the start.
+        let pendulum = Pendulum::new(&parameters.cast())?;
+        let directions = oscillations.directions(0.0);
+        Self {
+            parameters: *parameters,
+            rate,
+            pendulum,
+            oscillations,
+            directions,
+            steps: 0,
+        }
+        .started(start)
+    }
+
+    fn side_value(side: i32) -> R {
+        R::from_side(side)
     }
 
     fn bits(&self, mut feed: impl FnMut(u64)) {

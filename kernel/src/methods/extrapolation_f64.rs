@@ -20,9 +20,9 @@
 //! same on every machine.
 
 use crate::error::{Error, Parameter, check_finite};
-use crate::methods::FormOperations;
 use crate::methods::direction::{Coefficients, Scale, directions, prepare, quantities};
 use crate::methods::extrapolation::{Extrapolation, ROWS, is_order, stable};
+use crate::methods::{Advance, FormOperations};
 use crate::numbers::{Lanes, Real, RealOperations};
 use crate::pendulum::{Direction, Parameters, State};
 
@@ -279,26 +279,7 @@ impl<const ORDER: u32> ExtrapolationF64<ORDER> {
     }
 }
 
-impl<const ORDER: u32> FormOperations for ExtrapolationF64<ORDER> {
-    type Real = f64;
-    const STABLE: f64 = stable(ORDER);
-
-    fn new(parameters: &Parameters<f64>, start: &State<f64>, dt: f64) -> Result<Self, Error> {
-        const { assert!(is_order(ORDER), "the order is 2, 4 .. 16") }
-        let (coefficients, scale) = prepare(parameters, dt, 1.0)?;
-        let motion = Self {
-            coefficients,
-            half_inverse_square: 0.5 / (coefficients.norm * coefficients.norm),
-            scale,
-            method: Extrapolation::new(ORDER)?,
-            z: [0.0; 6],
-            lost: [0.0; 6],
-            inverse: 0.0,
-            steps: 0,
-        };
-        motion.started(start)
-    }
-
+impl<const ORDER: u32> Advance for ExtrapolationF64<ORDER> {
     fn started(&self, start: &State<f64>) -> Result<Self, Error> {
         start.check()?;
         let z = quantities(start, self.coefficients.norm, [self.scale.momentum; 2]);
@@ -347,10 +328,6 @@ impl<const ORDER: u32> FormOperations for ExtrapolationF64<ORDER> {
         [[sin1.side(), cos1.side()], [sin2.side(), cos2.side()]]
     }
 
-    fn side_value(side: i32) -> f64 {
-        f64::from_side(side)
-    }
-
     fn directions<Q: Real>(&self) -> [Direction<Q>; 2] {
         directions(&self.z, self.coefficients.norm).map(|direction| direction.map(f64::cast))
     }
@@ -363,6 +340,31 @@ impl<const ORDER: u32> FormOperations for ExtrapolationF64<ORDER> {
     fn state(&self) -> State<f64> {
         self.scale
             .state(&|z| self.rates(z), &self.z, self.lost, self.steps)
+    }
+}
+
+impl<const ORDER: u32> FormOperations for ExtrapolationF64<ORDER> {
+    type Real = f64;
+    const STABLE: f64 = stable(ORDER);
+
+    fn new(parameters: &Parameters<f64>, start: &State<f64>, dt: f64) -> Result<Self, Error> {
+        const { assert!(is_order(ORDER), "the order is 2, 4 .. 16") }
+        let (coefficients, scale) = prepare(parameters, dt, 1.0)?;
+        let motion = Self {
+            coefficients,
+            half_inverse_square: 0.5 / (coefficients.norm * coefficients.norm),
+            scale,
+            method: Extrapolation::new(ORDER)?,
+            z: [0.0; 6],
+            lost: [0.0; 6],
+            inverse: 0.0,
+            steps: 0,
+        };
+        motion.started(start)
+    }
+
+    fn side_value(side: i32) -> f64 {
+        f64::from_side(side)
     }
 
     fn bits(&self, mut feed: impl FnMut(u64)) {

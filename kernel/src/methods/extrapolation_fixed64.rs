@@ -35,10 +35,10 @@ use core::cell::Cell;
 
 use crate::bounds::{Bounds, check_step};
 use crate::error::{Error, Parameter};
-use crate::methods::FormOperations;
 use crate::methods::direction::{quantities, state_of};
 use crate::methods::extrapolation::{is_order, stable};
 use crate::methods::scaling::{Scaling, check_energy, lost};
+use crate::methods::{Advance, FormOperations};
 use crate::numbers::Real;
 use crate::numbers::fixed::Q64;
 use crate::pendulum::{Direction, Parameters, Pendulum, State};
@@ -238,16 +238,7 @@ fn restored([s, c]: [Q64; 2], square: Q64, gain: Q64) -> ([Q64; 2], Q64) {
     ([restored(s), restored(c)], missing)
 }
 
-impl<const ORDER: u32> FormOperations for Fixed64<ORDER> {
-    type Real = f32;
-    const STABLE: f64 = stable(ORDER);
-    const CHECKS_ENERGY: bool = true;
-
-    fn new(parameters: &Parameters<f64>, start: &State<f64>, dt: f64) -> Result<Self, Error> {
-        const { assert!(is_order(ORDER), "the order is 2, 4 .. 16") }
-        Fixed64State::new(parameters, start, dt, ORDER).map(Self)
-    }
-
+impl<const ORDER: u32> Advance for Fixed64<ORDER> {
     fn started(&self, start: &State<f64>) -> Result<Self, Error> {
         start.check()?;
         Ok(Self(self.0.started(start)))
@@ -265,10 +256,6 @@ impl<const ORDER: u32> FormOperations for Fixed64<ORDER> {
         self.0
             .rods()
             .map(|direction| direction.map(|x| (x.0 >> 32) as i32))
-    }
-
-    fn side_value(side: i32) -> f32 {
-        side as f32
     }
 
     fn directions<R: Real>(&self) -> [Direction<R>; 2] {
@@ -295,6 +282,21 @@ impl<const ORDER: u32> FormOperations for Fixed64<ORDER> {
 
     fn state(&self) -> State<f64> {
         self.0.state()
+    }
+}
+
+impl<const ORDER: u32> FormOperations for Fixed64<ORDER> {
+    type Real = f32;
+    const STABLE: f64 = stable(ORDER);
+    const CHECKS_ENERGY: bool = true;
+
+    fn new(parameters: &Parameters<f64>, start: &State<f64>, dt: f64) -> Result<Self, Error> {
+        const { assert!(is_order(ORDER), "the order is 2, 4 .. 16") }
+        Fixed64State::new(parameters, start, dt, ORDER).map(Self)
+    }
+
+    fn side_value(side: i32) -> f32 {
+        side as f32
     }
 
     fn bits(&self, mut feed: impl FnMut(u64)) {

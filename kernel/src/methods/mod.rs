@@ -18,7 +18,8 @@ mod run;
 mod scaling;
 pub(crate) mod turns;
 
-pub use any::{DrawnMotion, FormVisitor};
+pub(crate) use any::DrawnMotion;
+pub use any::FormVisitor;
 pub use canonical::{Canonical, Derivatives, Rk4, RungeKutta};
 pub use closed_form::{ClosedForm, SmallOscillations};
 pub use extrapolation_f64::ExtrapolationF64;
@@ -82,15 +83,91 @@ pub type ClosedFormF64 = ClosedForm<f64>;
 ///
 /// Fixed point, the closed form and [`HamiltonF64`] are neither ahead nor behind. [`HamiltonF32`]
 /// is, because it rounds dt, and its state is not corrected.
-pub trait Form: FormOperations + Copy + Debug + PartialEq + 'static {}
+pub trait Form: FormOperations {}
 
 impl<F: FormOperations> Form for F {}
 
-/// The operations of a [`Form`]. A motion by them has no checks and no turns.
+/// The operations of a motion in progress, by a type of a method or by an enum of several
+/// ([`motions!`](crate::motions)). They have no checks and no turns.
+pub trait Advance: Copy + Debug + PartialEq + 'static {
+    /// Returns a motion of the same pendulum from another start, in the same units and steps,
+    /// counted from 0. This motion may have diverged. In fixed point the energy must not exceed
+    /// the energy of the first start, otherwise the numbers may leave their range, and a debug
+    /// build may panic; this is not checked. [`Fixed32`] has room for an eighth more.
+    ///
+    /// # Errors
+    ///
+    /// Refuses a start that is not finite, or out of the range of the method's numbers; the closed
+    /// form refuses a start from which an angle may exceed 2^31 - 1 turns.
+    fn started(&self, start: &State<f64>) -> Result<Self, Error>;
+
+    /// Advances the motion by `steps` steps.
+    ///
+    /// `advance(a); advance(b)` is bit-identical to `advance(a + b)`, and 0 steps change nothing. A
+    /// motion that diverges is not reported; [`check`](Self::check) it afterwards. It goes on
+    /// without meaning, except that [`Fixed32`] stops.
+    fn advance(&mut self, steps: u32);
+
+    /// Refuses a motion that has diverged, by [`Error::Diverged`]: its numbers are not finite or,
+    /// in fixed point, were ever out of range. [`Fixed32`] tests its range after every 32 steps
+    /// since the start, [`Fixed64`] after every step. It costs a few comparisons, by the closed
+    /// form about as much as a step.
+    ///
+    /// In floating point a motion whose numbers are finite but meaningless is accepted.
+    fn check(&self) -> Result<(), Error>;
+
+    /// Returns the sine and cosine of both rods as words whose highest bit is the sign.
+    ///
+    /// The order is `[[sin a1, cos a1], [sin a2, cos a2]]`, at the time of the
+    /// [`directions`](Self::directions). The signs show when a rod turns over; a zero may have
+    /// either. The other bits are in the format of the method's numbers. A diverged motion has
+    /// arbitrary words.
+    fn sides(&self) -> [[i32; 2]; 2];
+
+    /// Returns the directions of rod 1 and rod 2, (sin, cos) each, in the numbers `Q`. In the
+    /// direction form this needs no trigonometry. Their length is 1, except for the errors of the
+    /// method, which reach 4e-4 by the closed form.
+    ///
+    /// They may be up to half a step ahead of the [`state`](Self::state) or behind it. A diverged
+    /// motion need not show it: in fixed point its directions are finite. Call
+    /// [`check`](Self::check).
+    fn directions<Q: Real>(&self) -> [Direction<Q>; 2];
+
+    /// Returns the momenta p1 and p2, kg m^2/s, at the time of the
+    /// [`directions`](Self::directions). They are NaN if the motion has diverged in fixed point,
+    /// can be any numbers if it has diverged in floating point, and are infinite beyond the range
+    /// of `Q`.
+    fn momenta<Q: Real>(&self) -> [Q; 2];
+
+    /// Returns the canonical state in SI units at the number of steps times dt, with all digits
+    /// that the method carries. All its numbers are NaN if the motion has diverged in fixed point.
+    /// In floating point a diverged motion can have any numbers. The angles are in [-pi, pi],
+    /// unless it [has turns](Self::has_turns).
+    fn state(&self) -> State<f64>;
+
+    /// Returns the energy above that of hanging at rest, J, with all digits that the method
+    /// carries.
+    ///
+    /// `pendulum` must be the pendulum of this motion; this is not checked. The energy follows from
+    /// the directions and momenta, which may be up to half a step ahead of the
+    /// [`state`](Self::state) or behind it. It is NaN if the motion has diverged in fixed point,
+    /// and can be any number if it has diverged in floating point.
+    fn energy_above_rest(&self, pendulum: &Pendulum<f64>) -> f64 {
+        let [upper, lower] = self.directions();
+        pendulum.energy_above_rest_at([unit(upper), unit(lower)], self.momenta())
+    }
+
+    /// Returns true if the angles of the [`state`](Self::state) include whole turns.
+    fn has_turns(&self) -> bool {
+        false
+    }
+}
+
+/// The operations of a [`Form`] beyond those of every motion.
 ///
 /// No other crate can name this trait, so that [`Form`] is sealed and may get new operations.
 /// Generic code can call them.
-pub trait FormOperations: Copy + Debug + PartialEq + 'static {
+pub trait FormOperations: Advance {
     /// The numbers that [`Run::directions`], [`Run::angles`] and [`Run::energy`] return.
     type Real: Real;
 
@@ -101,7 +178,7 @@ pub trait FormOperations: Copy + Debug + PartialEq + 'static {
     const STABLE: f64 = RK4_STABLE;
 
     /// True if [`Run`] need not check the energy and the lengths of the directions: if
-    /// [`check`](Self::check) refuses those that are far too large or, by the closed form, they
+    /// [`check`](Advance::check) refuses those that are far too large or, by the closed form, they
     /// cannot grow. If it is false, [`Run`] checks both.
     const CHECKS_ENERGY: bool = false;
 
@@ -121,91 +198,21 @@ pub trait FormOperations: Copy + Debug + PartialEq + 'static {
     ///   ([`Derivatives::prepare`]); those of this crate accept none.
     fn new(parameters: &Parameters<f64>, start: &State<f64>, dt: f64) -> Result<Self, Error>;
 
-    /// Returns a motion of the same pendulum from another start, in the same units and steps,
-    /// counted from 0. This motion may have diverged. In fixed point the energy must not exceed
-    /// the energy of the start in [`new`](Self::new), otherwise the numbers may leave their range,
-    /// and a debug build may panic; this is not checked.
-    ///
-    /// # Errors
-    ///
-    /// Refuses a start that is not finite, or out of the range of the method's numbers; the closed
-    /// form refuses a start from which an angle may exceed 2^31 - 1 turns.
-    fn started(&self, start: &State<f64>) -> Result<Self, Error>;
-
-    /// Advances the motion by `steps` steps.
-    ///
-    /// `advance(a); advance(b)` is bit-identical to `advance(a + b)`, and 0 steps change nothing. A
-    /// motion that diverges is not reported; [`check`](Self::check) it afterwards. It goes on
-    /// without meaning, except that [`Fixed32`] stops.
-    fn advance(&mut self, steps: u32);
-
     /// Advances the motion by one step, as `advance(1)` does. A loop that reads the motion after
     /// each step uses it.
     fn advance_one(&mut self) {
         self.advance(1);
     }
 
-    /// Refuses a motion that has diverged, by [`Error::Diverged`]: its numbers are not finite or,
-    /// in fixed point, were ever out of range. [`Fixed32`] tests its range after every 32 steps
-    /// since the start, [`Fixed64`] after every step. It costs a few comparisons, by the closed
-    /// form about as much as a step.
-    ///
-    /// Unless [`CHECKS_ENERGY`](Self::CHECKS_ENERGY), a motion whose numbers are finite but
-    /// meaningless is accepted.
-    fn check(&self) -> Result<(), Error>;
-
-    /// Returns the sine and cosine of both rods as words whose highest bit is the sign.
-    ///
-    /// The order is `[[sin a1, cos a1], [sin a2, cos a2]]`, at the time of the
-    /// [`directions`](Self::directions). The signs show when a rod turns over; a zero may have
-    /// either. The other bits are in the format of the method's numbers. A diverged motion has
-    /// arbitrary words.
-    fn sides(&self) -> [[i32; 2]; 2];
-
-    /// Returns the number that a word of [`sides`](Self::sides) represents, in a unit that may
+    /// Returns the number that a word of [`sides`](Advance::sides) represents, in a unit that may
     /// differ between the rods. The sides of an `f64` are cut to 20 bits of its fraction.
     fn side_value(side: i32) -> Self::Real;
 
-    /// Returns the directions of rod 1 and rod 2, (sin, cos) each, in the numbers `Q`. In the
-    /// direction form this needs no trigonometry.
-    ///
-    /// They may be up to half a step ahead of the [`state`](Self::state) or behind it. A diverged
-    /// motion need not show it: in fixed point its directions are finite. Call
-    /// [`check`](Self::check).
-    fn directions<Q: Real>(&self) -> [Direction<Q>; 2];
-
-    /// Returns the momenta p1 and p2, kg m^2/s, at the time of the
-    /// [`directions`](Self::directions). They are NaN if the motion has diverged in fixed point,
-    /// can be any numbers if it has diverged in floating point, and are infinite beyond the range
-    /// of `Q`.
-    fn momenta<Q: Real>(&self) -> [Q; 2];
-
-    /// Returns the [`momenta`](Self::momenta) with a relative error of a few units in the last
+    /// Returns the [`momenta`](Advance::momenta) with a relative error of a few units in the last
     /// place of the method's numbers. A check of the energy needs no more.
     fn momenta_nearly(&self) -> [Self::Real; 2] {
         self.momenta()
     }
-
-    /// Returns the canonical state in SI units at the number of steps times dt, with all digits
-    /// that the method carries. All its numbers are NaN if the motion has diverged in fixed point.
-    /// In floating point a diverged motion can have any numbers. The angles are in [-pi, pi],
-    /// unless [`HAS_TURNS`](Self::HAS_TURNS).
-    fn state(&self) -> State<f64>;
-
-    /// Returns the energy above that of hanging at rest, J, with all digits that the method
-    /// carries.
-    ///
-    /// `pendulum` must be the pendulum of this motion; this is not checked. The energy follows from
-    /// the directions and momenta, which may be up to half a step ahead of the
-    /// [`state`](Self::state) or behind it. It is NaN if the motion has diverged in fixed point,
-    /// and can be any number if it has diverged in floating point.
-    fn energy_above_rest(&self, pendulum: &Pendulum<f64>) -> f64 {
-        let [upper, lower] = self.directions();
-        pendulum.energy_above_rest_at([unit(upper), unit(lower)], self.momenta())
-    }
-
-    /// True if the angles of [`state`](Self::state) include whole turns.
-    const HAS_TURNS: bool = false;
 
     /// Passes the words that the motion carries from step to step to `feed`, one at a time and
     /// always in the same order, to compare machines. The bits of an `f32` are the lower 32 of a

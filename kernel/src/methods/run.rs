@@ -69,7 +69,7 @@ impl<R: Real> Pendulum<R> {
         // Prepare the motion and count the turns of its start.
         let parameters = self.parameters().cast();
         let motion: F = start_within(&parameters, &start.cast(), dt)?;
-        let angles = if F::HAS_TURNS {
+        let angles = if motion.has_turns() {
             [0.0; 2]
         } else {
             start.angles().map(R::to_f64)
@@ -174,8 +174,10 @@ impl<F: Form> Run<F> {
 }
 
 impl<F: Form, const COUNTS_TURNS: bool> Run<F, COUNTS_TURNS> {
-    /// True if the turns are counted here, because the method does not carry them.
-    const OBSERVES: bool = COUNTS_TURNS && !F::HAS_TURNS;
+    /// Returns true if the turns are counted here, because the method does not carry them.
+    fn observes(&self) -> bool {
+        COUNTS_TURNS && !self.motion.has_turns()
+    }
 
     /// Advances the motion by `steps` steps; 0 steps change nothing.
     ///
@@ -204,7 +206,7 @@ impl<F: Form, const COUNTS_TURNS: bool> Run<F, COUNTS_TURNS> {
             mut turns,
             ..
         } = *self;
-        if Self::OBSERVES {
+        if self.observes() {
             for _ in 0..steps {
                 motion.advance(1);
                 Turns::observe(&mut turns, motion.sides());
@@ -264,13 +266,13 @@ impl<F: Form, const COUNTS_TURNS: bool> Run<F, COUNTS_TURNS> {
     /// They are within [-pi, pi], unless [whole turns](Self#whole-turns) are counted or carried.
     #[must_use]
     pub fn angles(&self) -> [F::Real; 2] {
-        if F::HAS_TURNS {
+        if self.motion.has_turns() {
             return self.state().cast().angles();
         }
 
         // Without a count of turns the angles are within half a turn.
         let directions = self.directions();
-        if Self::OBSERVES {
+        if self.observes() {
             let [direction1, direction2] = directions;
             let [turns1, turns2] = &self.turns;
             [turns1.angle(direction1), turns2.angle(direction2)]
@@ -292,7 +294,7 @@ impl<F: Form, const COUNTS_TURNS: bool> Run<F, COUNTS_TURNS> {
     #[must_use]
     pub fn state(&self) -> State<f64> {
         let state = self.motion.state();
-        if Self::OBSERVES {
+        if self.observes() {
             Turns::unwrap(&self.turns, state)
         } else {
             state

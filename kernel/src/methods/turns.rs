@@ -27,7 +27,7 @@ impl Turns {
     /// result has one count for each rod.
     ///
     /// `now` is the sine and cosine of each rod as words whose highest bit is the sign
-    /// ([`sides`](super::FormOperations::sides)). Rounding may put a direction on the other side of
+    /// ([`sides`](super::Advance::sides)). Rounding may put a direction on the other side of
     /// upright than its angle; the count then follows `now`. The angles must not be NaN; this is
     /// not checked.
     ///
@@ -69,7 +69,7 @@ impl Turns {
     }
 
     /// Observes the signs that the directions have `now`
-    /// ([`sides`](super::FormOperations::sides)). For each rod that has turned over since the last
+    /// ([`sides`](super::Advance::sides)). For each rod that has turned over since the last
     /// call, it counts one turn up if that was counter-clockwise, and one down otherwise.
     ///
     /// The count wraps after 2^31 turns.

@@ -3,7 +3,7 @@
 use super::{PlannedRun, Problem};
 use crate::error::{Error, Parameter};
 use crate::pendulum::Pendulum;
-use crate::table::{DrawnMethod, Method};
+use crate::table::Method;
 
 /// The price list of a processor: the cost of a step by each method of [`Method::DRAWN`], and of a
 /// frame by the closed form.
@@ -38,15 +38,13 @@ impl Costs {
     /// Returns the cost of a step by `method`, or of a frame by the closed form. Returns `None` for
     /// a method that is not in [`Method::DRAWN`].
     pub(crate) const fn step(&self, method: Method) -> Option<f32> {
-        let Some(drawn) = method.drawn() else {
-            return None;
-        };
-        Some(match drawn {
-            DrawnMethod::ClosedFormF32 => self.closed_form,
-            DrawnMethod::Rk4F32DirectionPlain => self.direction_plain,
-            DrawnMethod::Rk4F32Direction => self.direction,
-            DrawnMethod::Rk4Fixed32 => self.fixed32,
-            DrawnMethod::Extrapolation10Fixed64 => self.fixed64,
+        Some(match method {
+            Method::ClosedFormF32 => self.closed_form,
+            Method::Rk4F32DirectionPlain => self.direction_plain,
+            Method::Rk4F32Direction => self.direction,
+            Method::Rk4Fixed32 => self.fixed32,
+            Method::Extrapolation10Fixed64 => self.fixed64,
+            _ => return None,
         })
     }
 
@@ -68,6 +66,16 @@ impl Costs {
         }
     }
 }
+
+// Each method for drawing has a price.
+const _: () = {
+    let mut i = 0;
+    while i < Method::DRAWN.len() {
+        let price = Costs::CORTEX_M3.step(Method::DRAWN[i]);
+        assert!(price.is_some(), "a method of DrawnMotion has no price");
+        i += 1;
+    }
+};
 
 /// The largest costs that are allowed, in the unit of the [`Costs`]. Both must be finite and more
 /// than 0, otherwise a search is refused.

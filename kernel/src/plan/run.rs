@@ -2,7 +2,7 @@
 
 use super::{Problem, Stepping};
 use crate::error::Error;
-use crate::methods::{DrawnMotion, Turns};
+use crate::methods::{Advance, DrawnMotion, Turns};
 use crate::pendulum::{Direction, Pendulum, State};
 use crate::table::Method;
 

@@ -49,7 +49,8 @@ use super::problem::Problem;
 use super::trial::Run;
 use crate::bounds::Bounds;
 use crate::error::{Error, Parameter};
-use crate::methods::any::DrawnMotion32;
+use crate::methods::Advance;
+use crate::methods::any::Motion32;
 use crate::pendulum::{Direction, Parameters, Pendulum, State};
 use crate::table::Method;
 
@@ -111,7 +112,7 @@ type Matrix = [[f64; 4]; 4];
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Shadows {
     /// The central shadow and the other four.
-    runs: [Run<DrawnMotion32>; SHADOWS],
+    runs: [Run<Motion32>; SHADOWS],
     /// The units of the momenta ([`scales`]), kg m^2/s.
     scales: [f64; 2],
     /// u: the error that a distance of 1 rad stands for, rad; NaN after a refused restart.
@@ -184,7 +185,7 @@ impl Shadows {
     }
 
     /// Returns the runs of all shadows. Some may not be prepared yet, or may have diverged.
-    pub fn runs(&mut self) -> impl Iterator<Item = &mut Run<DrawnMotion32>> {
+    pub fn runs(&mut self) -> impl Iterator<Item = &mut Run<Motion32>> {
         self.runs.iter_mut()
     }
 
@@ -232,7 +233,7 @@ impl Shadows {
         let dt = 1.0 / (f64::from(problem.rate) * f64::from(steps));
         let prepared = |sign: f64| {
             let start = beside(start, difference(sign), scales);
-            DrawnMotion32::new(method, &problem.pendulum, &start, dt)
+            Motion32::new(method, &problem.pendulum, &start, dt)
         };
         let prepared = prepared(1.0).or_else(|_| prepared(-1.0));
 
@@ -295,9 +296,9 @@ impl Shadows {
                     Some(column) => factor.map(|row| scale * row[column % 4]),
                     None => [0.0; 4],
                 };
-                let started = shadow.restart(&beside(fine, difference, scales));
-                if started.is_err() {
-                    self.unit = f32::NAN;
+                match shadow.started(&beside(fine, difference, scales)) {
+                    Ok(started) => *shadow = started,
+                    Err(_) => self.unit = f32::NAN,
                 }
             }
         }
@@ -382,7 +383,7 @@ struct Place {
 
 impl Place {
     /// Returns the place of a shadow; it is NaN if that has no motion.
-    fn of(run: &Run<DrawnMotion32>) -> Self {
+    fn of(run: &Run<Motion32>) -> Self {
         const NAN: f64 = f64::NAN;
         run.motion.as_ref().map_or(
             Self {
@@ -390,7 +391,7 @@ impl Place {
                 momenta: [NAN; 2],
             },
             |motion| Self {
-                directions: motion.directions_in(),
+                directions: motion.directions(),
                 momenta: motion.momenta(),
             },
         )

@@ -35,46 +35,10 @@ use super::problem::{NONE, PERTURBATIONS, Problem};
 use super::run::Directions;
 use super::shadow::{Shadows, scales};
 use crate::error::Error;
-use crate::methods::any::{DrawnMotion32, DrawnMotion64};
-use crate::methods::{ClosedFormF32, FormOperations, SmallOscillations};
+use crate::methods::any::{Motion32, Motion64};
+use crate::methods::{Advance, ClosedFormF32, FormOperations, SmallOscillations};
 use crate::pendulum::{Pendulum, State};
 use crate::table::Method;
-
-/// A motion that a trial advances.
-pub(super) trait Motion {
-    /// Advances the motion by `steps` steps. A motion that diverges is not reported.
-    fn advance(&mut self, steps: u32);
-    /// Returns [`Error::Diverged`] if the motion has left the finite numbers or its range. In 32
-    /// bits of fixed point the range is tested after every 32 steps since the start.
-    fn check(&self) -> Result<(), Error>;
-    /// Returns the directions of rod 1 and rod 2, (sin, cos) each. Those of a diverged motion may
-    /// look valid; call [`check`](Self::check).
-    fn directions(&self) -> Directions;
-}
-
-impl Motion for DrawnMotion32 {
-    fn advance(&mut self, steps: u32) {
-        DrawnMotion32::advance(self, steps);
-    }
-    fn check(&self) -> Result<(), Error> {
-        DrawnMotion32::check(self)
-    }
-    fn directions(&self) -> Directions {
-        DrawnMotion32::directions(self)
-    }
-}
-
-impl Motion for DrawnMotion64 {
-    fn advance(&mut self, steps: u32) {
-        FormOperations::advance(self, steps);
-    }
-    fn check(&self) -> Result<(), Error> {
-        FormOperations::check(self)
-    }
-    fn directions(&self) -> Directions {
-        FormOperations::directions(self)
-    }
-}
 
 /// A motion of a trial. It is prepared before its first step, and then advanced from frame to
 /// frame.
@@ -88,7 +52,7 @@ pub(super) struct Run<M> {
     pub motion: Option<M>,
 }
 
-impl<M: Motion> Run<M> {
+impl<M: Advance> Run<M> {
     /// Creates a run that has made no step towards its next frame, and whose motion is not prepared
     /// yet. `stepping` is checked when the motion is prepared, which refuses a step count of 0.
     pub fn new(stepping: Stepping) -> Self {
@@ -135,7 +99,7 @@ impl<M: Motion> Run<M> {
     pub fn frame(&mut self) -> Directions {
         self.made = 0;
         let motion = self.motion.as_ref().filter(|motion| motion.check().is_ok());
-        motion.map_or([[f32::NAN; 2]; 2], Motion::directions)
+        motion.map_or([[f32::NAN; 2]; 2], M::directions)
     }
 }
 
@@ -266,9 +230,9 @@ pub(super) struct Trial {
     /// With a reference they are the first three candidates and plain `f32`; the fifth is unused.
     /// Without one they are a single candidate, two finer runs, plain `f32`, and the third finer
     /// run. If `finer_runs` is 1 or 2, the others are unused.
-    single: [Run<DrawnMotion32>; 5],
+    single: [Run<Motion32>; 5],
     /// The coarse and the fine run of the reference.
-    double: [Run<DrawnMotion64>; 2],
+    double: [Run<Motion64>; 2],
     /// The number of finer runs that the candidate is compared with. The fewer there are, the
     /// rougher the error bounds. It is 0 if the trial has a reference.
     finer_runs: u8,
@@ -484,7 +448,7 @@ impl Trial {
     }
 
     /// Returns the runs in 32 bits that are still needed, with their indices.
-    fn single(&mut self) -> impl Iterator<Item = (usize, &mut Run<DrawnMotion32>)> {
+    fn single(&mut self) -> impl Iterator<Item = (usize, &mut Run<Motion32>)> {
         // Without a reference, the candidate and its finer runs are always needed.
         let has = |number: u8| self.finer_runs >= number;
         let [own, second, third, plain, ..] =
@@ -501,7 +465,7 @@ impl Trial {
     }
 
     /// Returns the runs of the reference, or no runs without a reference.
-    fn double(&mut self) -> &mut [Run<DrawnMotion64>] {
+    fn double(&mut self) -> &mut [Run<Motion64>] {
         if self.has_reference() {
             &mut self.double
         } else {
@@ -510,7 +474,7 @@ impl Trial {
     }
 
     /// Returns the shadows if a candidate in 64 bits needs them, or no runs.
-    fn shadows(&mut self) -> impl Iterator<Item = &mut Run<DrawnMotion32>> {
+    fn shadows(&mut self) -> impl Iterator<Item = &mut Run<Motion32>> {
         let are_needed = self.has_candidate_in_64_bits();
         self.shadows.runs().filter(move |_| are_needed)
     }
@@ -562,7 +526,7 @@ impl Trial {
             let Stepping { method, steps } = run.stepping;
             let prepared = |by| {
                 let (parameters, start) = problem.perturbed(&start, by, method);
-                DrawnMotion32::new(method, &parameters, &start, dt(steps))
+                Motion32::new(method, &parameters, &start, dt(steps))
             };
             run.motion = Some(prepared(by).or_else(|_| prepared(by.map(|by| -by)))?);
             return Ok(true);

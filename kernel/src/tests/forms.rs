@@ -10,7 +10,7 @@ use double_pendulum::{
 };
 
 use super::{EQUATIONS, assert_near};
-use crate::methods::FormOperations;
+use crate::methods::{Advance, FormOperations};
 
 /// The number of steps. It is so small that an error in one equation has not spread to the others
 /// yet.
@@ -181,7 +181,7 @@ fn every_form_starts_anew() {
 /// The largest relative difference between the energy above rest of a motion and that of its state.
 /// Both are computed from all digits that the method carries. Measured: 6e-15.
 const ENERGY: f64 = 1e-13;
-/// The largest difference between a direction and the [sides](FormOperations::sides) scaled to
+/// The largest difference between a direction and the [sides](Advance::sides) scaled to
 /// length 1. The sides of an `f64` keep 20 bits of its fraction.
 const SIDES: f64 = 2e-6;
 

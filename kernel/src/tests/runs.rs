@@ -236,7 +236,7 @@ fn counts_turns_on_request<F: Form>() -> Result<(), Error> {
                 (turns - turns.round()).abs() < 1e-6,
                 "{own} and {counted} rad"
             );
-            if F::HAS_TURNS {
+            if motion.has_turns() {
                 assert_eq!(own, counted);
             } else {
                 assert!(own.abs() <= PI + 1e-6, "{own} rad");

@@ -2,11 +2,11 @@
 
 use cortex_m::Peripherals;
 use cortex_m::peripheral::{DCB, DWT};
+use double_pendulum::parts::Advance;
 
 use super::clock;
 use super::stack::guard_stack;
 use crate::app::Instruments;
-use crate::job::Run;
 use crate::protocol::{BoardName, Identity};
 
 unsafe extern "C" {

@@ -198,7 +198,7 @@ impl Rows {
 
     /// Returns the [`end`](Self::end) of a step from `origin`, for one kind of pendulum
     /// ([`Equations`]).
-    #[inline(never)] // Boards find the step by this name, to run it in memory.
+    #[inline(never)] // Inlined, each order would have a copy.
     fn end_in<const UNLIKE: bool, const INVERSE: bool>(
         &self,
         origin: &[Q64; 6],

@@ -4,7 +4,7 @@ use core::f64::consts::PI;
 
 use super::{Fixed32, Units};
 use crate::error::Error;
-use crate::methods::FormOperations;
+use crate::methods::Advance;
 use crate::numbers::fixed::scaled;
 use crate::pendulum::{Parameters, Pendulum, State};
 use fastrand::Rng;

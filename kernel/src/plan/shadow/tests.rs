@@ -400,7 +400,7 @@ fn refused_shadow_is_prepared_on_the_opposite_side() -> Result<(), Error> {
         pendulum, start, ..
     } = at_speed(1.0);
     let start = Pendulum::new(&pendulum)?.to_state(&start);
-    let refused = DrawnMotion32::new(stepping.method, &pendulum, &start, 1.0);
+    let refused = Motion32::new(stepping.method, &pendulum, &start, 1.0);
     let Err(Error::TooLarge { limit, .. }) = refused else {
         panic!("a step of 1 s is not refused: {refused:?}");
     };

@@ -65,13 +65,13 @@ fn bound_is_larger_in_very_long_steps() -> Result<(), Error> {
 
 /// Asserts that the frame of `motion` is valid at first, and NaN after the steps of `stepping`,
 /// although the directions of the motion still look valid then.
-fn assert_diverges<M: super::Motion>(stepping: Stepping, motion: M) {
+fn assert_diverges<M: Advance>(stepping: Stepping, motion: M) {
     let mut run = Run::new(stepping);
     run.motion = Some(motion);
     assert!(run.frame().as_flattened().iter().all(|part| !part.is_nan()));
     run.advance(&Costs::CORTEX_M3, f32::INFINITY);
     let frame = run.frame();
-    let shown = run.motion.map(|motion| motion.directions());
+    let shown = run.motion.map(|motion| motion.directions::<f32>());
     assert!(
         frame.as_flattened().iter().all(|part| part.is_nan()),
         "{stepping:?}: {frame:?}"
@@ -97,7 +97,7 @@ fn frame_of_a_diverged_motion_is_nan() -> Result<(), Error> {
     let method = Method::Rk4Fixed32;
     assert_diverges(
         Stepping { method, steps: 32 },
-        DrawnMotion32::Rk4Fixed32(fixed32),
+        Motion32::Rk4Fixed32(fixed32),
     );
 
     // In 64 bits the velocities of a fast start have no room in the units of the small one.
@@ -107,7 +107,7 @@ fn frame_of_a_diverged_motion_is_nan() -> Result<(), Error> {
         w1: 20.0,
         w2: 20.0,
     });
-    let fixed64 = DrawnMotion64::new(parameters, &small, dt)?.started(&fast)?;
+    let fixed64 = Motion64::new(parameters, &small, dt)?.started(&fast)?;
     let method = Method::Extrapolation10Fixed64;
     assert_diverges(Stepping { method, steps: 1 }, fixed64);
     Ok(())
@@ -118,11 +118,11 @@ fn perturbed(
     problem: &Problem,
     Stepping { method, steps }: Stepping,
     by: Perturbation,
-) -> Result<DrawnMotion32, Error> {
+) -> Result<Motion32, Error> {
     let start = Pendulum::new(&problem.pendulum)?.to_state(&problem.start);
     let (parameters, start) = problem.perturbed(&start, by, method);
     let dt = 1.0 / (f64::from(problem.rate) * f64::from(steps));
-    DrawnMotion32::new(method, &parameters, &start, dt)
+    Motion32::new(method, &parameters, &start, dt)
 }
 
 /// A single finer run has the third perturbation, and three finer runs have one each. The
