@@ -1,9 +1,11 @@
-//! The table of methods: one row of plain data per method.
-//!
-//! To add a method, add a variant to [`Method`], its row and its place in [`Method::ALL`]. The
-//! compiler then reports the missing type that computes it.
+//! The table of methods: a line for each.
 
 use core::fmt;
+
+use crate::methods::{
+    ClosedFormF32, ClosedFormF64, DirectionF32, DirectionF32Plain, ExtrapolationF64, Fixed32,
+    Fixed64, Form, HamiltonF32, HamiltonF64,
+};
 
 /// The equations that a method integrates. Displays as `Hamilton`, `directions`, `textbook` or
 /// `linear`.
@@ -84,216 +86,165 @@ impl fmt::Display for Integrator {
     }
 }
 
-/// The ways to compute a motion. Displays as the name. [`Method::visit`] calls generic code with
-/// the type that computes each.
-///
-/// | name | equations | numbers | integrator | order | scenes are drawn by it |
-/// |---|---|---|---|---|---|
-/// | `rk4-f64` | Hamilton | F64 | Rk4 | 4 |  |
-/// | `rk4-f32` | Hamilton | F32 | Rk4 | 4 |  |
-/// | `rk4-f32-direction` | Directions | CompensatedF32 | Rk4 | 4 | yes |
-/// | `rk4-f32-direction-plain` | Directions | F32 | Rk4 | 4 | yes |
-/// | `rk4-fixed32` | Directions | Fixed32 | Rk4 | 4 | yes |
-/// | `extrapolation8-fixed64` | Directions | Fixed64 | Extrapolation | 8 |  |
-/// | `extrapolation10-fixed64` | Directions | Fixed64 | Extrapolation | 10 | yes |
-/// | `extrapolation12-fixed64` | Directions | Fixed64 | Extrapolation | 12 |  |
-/// | `extrapolation16-fixed64` | Directions | Fixed64 | Extrapolation | 16 |  |
-/// | `extrapolation12-f64` | Directions | CompensatedF64 | Extrapolation | 12 |  |
-/// | `extrapolation16-f64` | Directions | CompensatedF64 | Extrapolation | 16 |  |
-/// | `closed-form-f64` | Linear | F64 | ClosedForm | 0 |  |
-/// | `closed-form-f32` | Linear | F32 | ClosedForm | 0 | yes |
-/// | `rk4-f32-micromath` | Hamilton | F32 | Rk4 | 4 |  |
-/// | `textbook-f32` | Textbook | F32 | Rk4 | 4 |  |
-///
-/// The order of the closed form, which has no steps, is 0. `rk4-f32-micromath` is `rk4-f32` with
-/// the sines of the `micromath` crate.
-///
-/// Binary formats of `serde` store the position of the variant. A new method is therefore the last
-/// one. Text formats store the name of the variant, such as `Rk4F64`, not that of the table.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub enum Method {
-    /// `rk4-f64`
-    Rk4F64,
-    /// `rk4-f32`
-    Rk4F32,
-    /// `rk4-f32-direction`
-    Rk4F32Direction,
-    /// `rk4-f32-direction-plain`
-    Rk4F32DirectionPlain,
-    /// `rk4-fixed32`
-    Rk4Fixed32,
-    /// `extrapolation8-fixed64`
-    Extrapolation8Fixed64,
-    /// `extrapolation10-fixed64`
-    Extrapolation10Fixed64,
-    /// `extrapolation12-fixed64`
-    Extrapolation12Fixed64,
-    /// `extrapolation16-fixed64`
-    Extrapolation16Fixed64,
-    /// `extrapolation12-f64`
-    Extrapolation12F64,
-    /// `extrapolation16-f64`
-    Extrapolation16F64,
-    /// `closed-form-f64`
-    ClosedFormF64,
-    /// `closed-form-f32`
-    ClosedFormF32,
-    /// `rk4-f32-micromath`
-    Rk4F32Micromath,
-    /// `textbook-f32`
-    TextbookF32,
+/// Generic code that [`Method::visit`] calls with the type of a method.
+pub trait FormVisitor {
+    /// The result of the call.
+    type Output;
+
+    /// Runs the code for the method that the type `F` computes. [`Method::visit`] calls it once, or
+    /// not at all for a method whose type is not in this crate.
+    fn visit<F: Form>(self) -> Self::Output;
 }
 
-/// The properties of a method: its row of the table.
-struct Row {
-    /// The unique name, which users type.
-    name: &'static str,
-    equations: Equations,
-    numbers: Numbers,
-    integrator: Integrator,
-    /// The order of its steps; 0 for the closed form.
-    order: u32,
+/// Writes [`Method`] with a variant for each line:
+///
+/// `number Variant = "name", equations, numbers, integrator, order, type;`
+///
+/// The type is `-` if it is not in this crate.
+macro_rules! methods {
+    ($(
+        $number:literal $method:ident = $name:literal, $equations:ident, $numbers:ident,
+        $integrator:ident, $order:literal, $form:tt $(<$of:literal>)?;
+    )*) => {
+        /// The ways to compute a motion. Displays as the name. [`Method::visit`] calls generic code
+        /// with the type that computes each.
+        ///
+        /// | name | equations | numbers | integrator | order |
+        /// |---|---|---|---|---|
+        $(
+            #[doc = concat!(
+                "| `", $name, "` | ", stringify!($equations), " | ", stringify!($numbers), " | ",
+                stringify!($integrator), " | ", $order, " |",
+            )]
+        )*
+        ///
+        /// The order of the closed form, which has no steps, is 0. `rk4-f32-micromath` is `rk4-f32`
+        /// with the sines of the `micromath` crate. Scenes are drawn by those of
+        /// [`Method::DRAWN`].
+        ///
+        /// Binary formats of `serde` store the number of the line. Text formats store the name of
+        /// the variant, such as `Rk4F64`, not that of the table.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+        #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+        pub enum Method {
+            $(
+                #[doc = concat!("`", $name, "`")]
+                $method,
+            )*
+        }
+
+        // A method goes over the link as the number of its line.
+        $(const _: () = assert!(Method::$method as u32 == $number);)*
+
+        impl Method {
+            /// The methods of the table, in its order.
+            pub const ALL: &[Method] = &[$(Method::$method),*];
+
+            /// Returns the unique name, the first column of the table, such as `rk4-f32-direction`.
+            #[must_use]
+            pub const fn name(self) -> &'static str {
+                match self {
+                    $(Method::$method => $name,)*
+                }
+            }
+
+            /// Returns the equations that the method integrates.
+            #[must_use]
+            pub const fn equations(self) -> Equations {
+                match self {
+                    $(Method::$method => Equations::$equations,)*
+                }
+            }
+
+            /// Returns the numbers that the method computes in.
+            #[must_use]
+            pub const fn numbers(self) -> Numbers {
+                match self {
+                    $(Method::$method => Numbers::$numbers,)*
+                }
+            }
+
+            /// Returns the integrator that computes the steps.
+            #[must_use]
+            pub const fn integrator(self) -> Integrator {
+                match self {
+                    $(Method::$method => Integrator::$integrator,)*
+                }
+            }
+
+            /// Returns the order of the steps; 0 for the closed form.
+            #[must_use]
+            pub const fn order(self) -> u32 {
+                match self {
+                    $(Method::$method => $order,)*
+                }
+            }
+
+        /// Calls `visitor` with the type that computes this method, and returns its result.
+        ///
+        /// Returns `None`, without a call, for `rk4-f32-micromath` and `textbook-f32`. They are listed
+        /// for comparison, and their types are not in this crate.
+        ///
+        /// This links every method. To link one method only, pass its type to
+        /// [`Pendulum::run`](crate::Pendulum::run).
+        ///
+        /// ```
+        /// use double_pendulum::{Form, FormVisitor, Method, Parameters, Pendulum, State};
+        ///
+        /// /// Computes the angle of rod 1 after a second.
+        /// struct AfterOneSecond;
+        ///
+        /// impl FormVisitor for AfterOneSecond {
+        ///     type Output = Result<f64, double_pendulum::Error>;
+        ///
+        ///     fn visit<F: Form>(self) -> Self::Output {
+        ///         let pendulum = Pendulum::<f64>::new(&Parameters::equal_rods(1.0, 1.0, 9.81))?;
+        ///         let mut run = pendulum.run::<F>(&State::at_rest(0.5, 0.5), 1.0 / 128.0)?;
+        ///         run.advance(128)?;
+        ///         Ok(run.state().a1)
+        ///     }
+        /// }
+        ///
+        /// let method = Method::from_name("rk4-fixed32").ok_or("no such method")?;
+        /// let angle = method.visit(AfterOneSecond).ok_or("not in this crate")??;
+        /// assert!(angle.abs() < 0.5);
+        /// # Ok::<(), Box<dyn std::error::Error>>(())
+        /// ```
+            pub fn visit<V: FormVisitor>(self, visitor: V) -> Option<V::Output> {
+                match self {
+                    $(Method::$method => methods!(@visit visitor $form $(<$of>)?),)*
+                }
+            }
+        }
+    };
+    (@visit $visitor:ident -) => {
+        None
+    };
+    (@visit $visitor:ident $form:ty) => {
+        Some($visitor.visit::<$form>())
+    };
+}
+
+methods! {
+    0  Rk4F64 = "rk4-f64", Hamilton, F64, Rk4, 4, HamiltonF64;
+    1  Rk4F32 = "rk4-f32", Hamilton, F32, Rk4, 4, HamiltonF32;
+    2  Rk4F32Direction = "rk4-f32-direction", Directions, CompensatedF32, Rk4, 4, DirectionF32;
+    3  Rk4F32DirectionPlain = "rk4-f32-direction-plain", Directions, F32, Rk4, 4, DirectionF32Plain;
+    4  Rk4Fixed32 = "rk4-fixed32", Directions, Fixed32, Rk4, 4, Fixed32;
+    5  Extrapolation8Fixed64 = "extrapolation8-fixed64", Directions, Fixed64, Extrapolation, 8, Fixed64<8>;
+    6  Extrapolation10Fixed64 = "extrapolation10-fixed64", Directions, Fixed64, Extrapolation, 10, Fixed64<10>;
+    7  Extrapolation12Fixed64 = "extrapolation12-fixed64", Directions, Fixed64, Extrapolation, 12, Fixed64<12>;
+    8  Extrapolation16Fixed64 = "extrapolation16-fixed64", Directions, Fixed64, Extrapolation, 16, Fixed64<16>;
+    9  Extrapolation12F64 = "extrapolation12-f64", Directions, CompensatedF64, Extrapolation, 12, ExtrapolationF64<12>;
+    10 Extrapolation16F64 = "extrapolation16-f64", Directions, CompensatedF64, Extrapolation, 16, ExtrapolationF64<16>;
+    11 ClosedFormF64 = "closed-form-f64", Linear, F64, ClosedForm, 0, ClosedFormF64;
+    12 ClosedFormF32 = "closed-form-f32", Linear, F32, ClosedForm, 0, ClosedFormF32;
+    13 Rk4F32Micromath = "rk4-f32-micromath", Hamilton, F32, Rk4, 4, -;
+    14 TextbookF32 = "textbook-f32", Textbook, F32, Rk4, 4, -;
 }
 
 impl Method {
-    /// The methods of the table, in its order.
-    pub const ALL: &[Method] = &[
-        Method::Rk4F64,
-        Method::Rk4F32,
-        Method::Rk4F32Direction,
-        Method::Rk4F32DirectionPlain,
-        Method::Rk4Fixed32,
-        Method::Extrapolation8Fixed64,
-        Method::Extrapolation10Fixed64,
-        Method::Extrapolation12Fixed64,
-        Method::Extrapolation16Fixed64,
-        Method::Extrapolation12F64,
-        Method::Extrapolation16F64,
-        Method::ClosedFormF64,
-        Method::ClosedFormF32,
-        Method::Rk4F32Micromath,
-        Method::TextbookF32,
-    ];
-
-    /// Returns the row of the table.
-    const fn row(self) -> Row {
-        match self {
-            Method::Rk4F64 => Row {
-                name: "rk4-f64",
-                equations: Equations::Hamilton,
-                numbers: Numbers::F64,
-                integrator: Integrator::Rk4,
-                order: 4,
-            },
-            Method::Rk4F32 => Row {
-                name: "rk4-f32",
-                equations: Equations::Hamilton,
-                numbers: Numbers::F32,
-                integrator: Integrator::Rk4,
-                order: 4,
-            },
-            Method::Rk4F32Direction => Row {
-                name: "rk4-f32-direction",
-                equations: Equations::Directions,
-                numbers: Numbers::CompensatedF32,
-                integrator: Integrator::Rk4,
-                order: 4,
-            },
-            Method::Rk4F32DirectionPlain => Row {
-                name: "rk4-f32-direction-plain",
-                equations: Equations::Directions,
-                numbers: Numbers::F32,
-                integrator: Integrator::Rk4,
-                order: 4,
-            },
-            Method::Rk4Fixed32 => Row {
-                name: "rk4-fixed32",
-                equations: Equations::Directions,
-                numbers: Numbers::Fixed32,
-                integrator: Integrator::Rk4,
-                order: 4,
-            },
-            Method::Extrapolation8Fixed64 => Row {
-                name: "extrapolation8-fixed64",
-                equations: Equations::Directions,
-                numbers: Numbers::Fixed64,
-                integrator: Integrator::Extrapolation,
-                order: 8,
-            },
-            Method::Extrapolation10Fixed64 => Row {
-                name: "extrapolation10-fixed64",
-                equations: Equations::Directions,
-                numbers: Numbers::Fixed64,
-                integrator: Integrator::Extrapolation,
-                order: 10,
-            },
-            Method::Extrapolation12Fixed64 => Row {
-                name: "extrapolation12-fixed64",
-                equations: Equations::Directions,
-                numbers: Numbers::Fixed64,
-                integrator: Integrator::Extrapolation,
-                order: 12,
-            },
-            Method::Extrapolation16Fixed64 => Row {
-                name: "extrapolation16-fixed64",
-                equations: Equations::Directions,
-                numbers: Numbers::Fixed64,
-                integrator: Integrator::Extrapolation,
-                order: 16,
-            },
-            Method::Extrapolation12F64 => Row {
-                name: "extrapolation12-f64",
-                equations: Equations::Directions,
-                numbers: Numbers::CompensatedF64,
-                integrator: Integrator::Extrapolation,
-                order: 12,
-            },
-            Method::Extrapolation16F64 => Row {
-                name: "extrapolation16-f64",
-                equations: Equations::Directions,
-                numbers: Numbers::CompensatedF64,
-                integrator: Integrator::Extrapolation,
-                order: 16,
-            },
-            Method::ClosedFormF64 => Row {
-                name: "closed-form-f64",
-                equations: Equations::Linear,
-                numbers: Numbers::F64,
-                integrator: Integrator::ClosedForm,
-                order: 0,
-            },
-            Method::ClosedFormF32 => Row {
-                name: "closed-form-f32",
-                equations: Equations::Linear,
-                numbers: Numbers::F32,
-                integrator: Integrator::ClosedForm,
-                order: 0,
-            },
-            Method::Rk4F32Micromath => Row {
-                name: "rk4-f32-micromath",
-                equations: Equations::Hamilton,
-                numbers: Numbers::F32,
-                integrator: Integrator::Rk4,
-                order: 4,
-            },
-            Method::TextbookF32 => Row {
-                name: "textbook-f32",
-                equations: Equations::Textbook,
-                numbers: Numbers::F32,
-                integrator: Integrator::Rk4,
-                order: 4,
-            },
-        }
-    }
-
-    /// Returns the unique name, the first column of the table, such as `rk4-f32-direction`.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        self.row().name
-    }
-
     /// Returns the method of exactly this [`name`](Self::name), in lower case; `None` if there is
     /// no such method.
     #[must_use]
@@ -302,30 +253,6 @@ impl Method {
             .iter()
             .copied()
             .find(|method| method.name() == name)
-    }
-
-    /// Returns the equations that the method integrates.
-    #[must_use]
-    pub const fn equations(self) -> Equations {
-        self.row().equations
-    }
-
-    /// Returns the numbers that the method computes in.
-    #[must_use]
-    pub const fn numbers(self) -> Numbers {
-        self.row().numbers
-    }
-
-    /// Returns the integrator that computes the steps.
-    #[must_use]
-    pub const fn integrator(self) -> Integrator {
-        self.row().integrator
-    }
-
-    /// Returns the order of the steps; 0 for the closed form.
-    #[must_use]
-    pub const fn order(self) -> u32 {
-        self.row().order
     }
 
     /// Returns true if the numbers are `f32`, compensated or not.
@@ -346,16 +273,6 @@ impl fmt::Display for Method {
         f.pad(self.name())
     }
 }
-
-// `Method::ALL` has the order of the variants.
-const _: () = {
-    let mut i = 0;
-    while i < Method::ALL.len() {
-        let method = Method::ALL[i];
-        assert!(method as usize == i, "a method is missing in Method::ALL");
-        i += 1;
-    }
-};
 
 #[cfg(test)]
 mod tests {

@@ -164,8 +164,7 @@ fn passes(before: &[[i32; 2]; 2], after: &[[i32; 2]; 2]) -> i32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::methods::FormVisitor;
-    use crate::table::Method;
+    use crate::table::{FormVisitor, Method};
 
     /// Computes the time of the first flip of equal rods and bobs from rest at 2 and 2.5 rad, in
     /// steps of 1/256 s.

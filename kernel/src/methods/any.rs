@@ -1,79 +1,9 @@
-//! The choice of a method at run time.
-//!
-//! A [`Method`] is a name; the code that computes it is a type. This file is the only place of the
-//! crate that leads from the name to the type:
-//!
-//! - [`Method::visit`] calls generic code with the type of a method. It links every method.
-//! - [`DrawnMotion`] stores a motion by a method of [`Method::DRAWN`]. It links only these.
+//! Motions whose method is chosen at run time.
 
-use super::{
-    ClosedFormF32, ClosedFormF64, DirectionF32, DirectionF32Plain, ExtrapolationF64, Fixed32,
-    Fixed64, Form, HamiltonF32, HamiltonF64,
-};
+use super::{ClosedFormF32, DirectionF32, DirectionF32Plain, Fixed32, Fixed64, Form};
 use crate::error::Error;
 use crate::pendulum::{Parameters, State};
 use crate::table::Method;
-
-/// Generic code that [`Method::visit`] calls with the type of a method.
-pub trait FormVisitor {
-    /// The result of the call.
-    type Output;
-
-    /// Runs the code for the method that the type `F` computes. [`Method::visit`] calls it once, or
-    /// not at all for a method whose type is not in this crate.
-    fn visit<F: Form>(self) -> Self::Output;
-}
-
-impl Method {
-    /// Calls `visitor` with the type that computes this method, and returns its result.
-    ///
-    /// Returns `None`, without a call, for `rk4-f32-micromath` and `textbook-f32`. They are listed
-    /// for comparison, and their types are not in this crate.
-    ///
-    /// This links every method. To link one method only, pass its type to
-    /// [`Pendulum::run`](crate::Pendulum::run).
-    ///
-    /// ```
-    /// use double_pendulum::{Form, FormVisitor, Method, Parameters, Pendulum, State};
-    ///
-    /// /// Computes the angle of rod 1 after a second.
-    /// struct AfterOneSecond;
-    ///
-    /// impl FormVisitor for AfterOneSecond {
-    ///     type Output = Result<f64, double_pendulum::Error>;
-    ///
-    ///     fn visit<F: Form>(self) -> Self::Output {
-    ///         let pendulum = Pendulum::<f64>::new(&Parameters::equal_rods(1.0, 1.0, 9.81))?;
-    ///         let mut run = pendulum.run::<F>(&State::at_rest(0.5, 0.5), 1.0 / 128.0)?;
-    ///         run.advance(128)?;
-    ///         Ok(run.state().a1)
-    ///     }
-    /// }
-    ///
-    /// let method = Method::from_name("rk4-fixed32").ok_or("no such method")?;
-    /// let angle = method.visit(AfterOneSecond).ok_or("not in this crate")??;
-    /// assert!(angle.abs() < 0.5);
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
-    pub fn visit<V: FormVisitor>(self, visitor: V) -> Option<V::Output> {
-        Some(match self {
-            Method::Rk4F64 => visitor.visit::<HamiltonF64>(),
-            Method::Rk4F32 => visitor.visit::<HamiltonF32>(),
-            Method::Rk4F32Direction => visitor.visit::<DirectionF32>(),
-            Method::Rk4F32DirectionPlain => visitor.visit::<DirectionF32Plain>(),
-            Method::Rk4Fixed32 => visitor.visit::<Fixed32>(),
-            Method::Extrapolation8Fixed64 => visitor.visit::<Fixed64<8>>(),
-            Method::Extrapolation10Fixed64 => visitor.visit::<Fixed64<10>>(),
-            Method::Extrapolation12Fixed64 => visitor.visit::<Fixed64<12>>(),
-            Method::Extrapolation16Fixed64 => visitor.visit::<Fixed64<16>>(),
-            Method::Extrapolation12F64 => visitor.visit::<ExtrapolationF64<12>>(),
-            Method::Extrapolation16F64 => visitor.visit::<ExtrapolationF64<16>>(),
-            Method::ClosedFormF64 => visitor.visit::<ClosedFormF64>(),
-            Method::ClosedFormF32 => visitor.visit::<ClosedFormF32>(),
-            Method::Rk4F32Micromath | Method::TextbookF32 => return None,
-        })
-    }
-}
 
 /// Defines an enum of motions, with a variant for each of some methods, one of which is chosen at
 /// run time. It implements [`Advance`](crate::parts::Advance), and links only these methods.
@@ -94,7 +24,7 @@ macro_rules! motions {
         #[derive(Clone, Copy, Debug, PartialEq)]
         $visibility enum $motion {
             $(
-                #[doc = concat!("[`Method::", stringify!($method), "`](double_pendulum::Method).")]
+                #[doc = concat!("`Method::", stringify!($method), "`.")]
                 $method($form),
             )*
         }
