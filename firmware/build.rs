@@ -43,7 +43,7 @@ fn main() {
         for place in [
             "flash_origin=0x10000000",
             "ram_origin=0x30000000",
-            "ram_length=0x00008000",
+            "half_of_ram=0x00004000",
         ] {
             println!("cargo:rustc-link-arg-bin=cores=--defsym={place}");
         }

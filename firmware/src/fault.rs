@@ -4,7 +4,7 @@ use core::fmt;
 
 /// The registers that describe a HardFault.
 ///
-/// On a Cortex-M0+, which lacks the last four, they are 0.
+/// On a Cortex-M0+, which lacks the last three, they are 0.
 ///
 /// Source: ARM DDI 0403 (ARMv7-M Architecture Reference Manual), B3.2.15 to B3.2.18; ARM DDI 0419
 /// (ARMv6-M), B3.2.
@@ -16,6 +16,8 @@ pub struct Fault {
     /// registers, also if they could not be stacked. It is 4 bytes too low if the processor has
     /// aligned the stack.
     pub sp: u32,
+    /// The lowest address of the stack.
+    pub stack_end: u32,
     /// The address of the last call instruction found by its return address on the stack; `None` if
     /// none is found. It is the only evidence if the registers are missing. The report prints it
     /// only then.
@@ -24,8 +26,6 @@ pub struct Fault {
     pub cfsr: u32,
     /// The HardFault Status Register.
     pub hfsr: u32,
-    /// The MemManage Address Register, valid while bit 7 of CFSR is set.
-    pub mmfar: u32,
     /// The BusFault Address Register, valid while bit 15 of CFSR is set.
     pub bfar: u32,
 }
@@ -44,12 +44,9 @@ pub struct Stacked {
 }
 
 /// The bits of CFSR that mean that registers are missing on the stack: registers stacked on entry
-/// to an exception, or registers of the floating-point unit, which are stacked later (MSTKERR,
-/// MLSPERR, STKERR, LSPERR).
-const NOT_STACKED: u32 = 1 << 4 | 1 << 5 | 1 << 12 | 1 << 13;
-/// The bits of CFSR that mean that the memory protection unit refused a data access at a known
-/// address (DACCVIOL, MMARVALID).
-const REFUSED: u32 = 1 << 1 | 1 << 7;
+/// to an exception, or registers of the floating-point unit, which are stacked later (STKERR,
+/// LSPERR).
+const NOT_STACKED: u32 = 1 << 12 | 1 << 13;
 
 /// The bit of the program status register that is set while the processor executes Thumb code, the
 /// only code that it has.
@@ -60,16 +57,14 @@ const THUMB: u32 = 1 << 24;
 const LONGEST_PUSH: u32 = 16 * 8;
 
 /// The causes by bit of CFSR, the most specific first.
-const CAUSES: [(u32, &str); 13] = [
+const CAUSES: [(u32, &str); 11] = [
     (16, "undefined instruction"),
     (17, "invalid state (jump to an even address?)"),
     (18, "invalid return from an exception"),
     (19, "no such coprocessor (floating-point unit off?)"),
     (24, "unaligned access"),
     (25, "division by zero"),
-    (0, "instruction fetch refused by the memory protection unit"),
-    (1, "data access refused by the memory protection unit"),
-    (3, "memory protection while returning from an exception"),
+    (0, "instruction fetch from memory that holds no code"),
     (8, "bus fault on an instruction fetch"),
     (9, "bus fault on a data access"),
     (10, "bus fault on an earlier data write"),
@@ -97,12 +92,10 @@ impl Fault {
     }
 
     /// Returns the cause of the fault in a few English words, such as `division by zero`. If
-    /// several bits of CFSR are set, usage faults come before faults of the memory protection, and
-    /// these before bus faults.
+    /// several bits of CFSR are set, usage faults come before bus faults.
     ///
-    /// It is `stack overflow` if CFSR reports that registers are missing on the stack, whatever
-    /// `stacked` is, or if the memory protection refused a data access 1 to 128 bytes below `sp`.
-    /// If no bit of CFSR names a cause, HFSR is used, and then the Thumb bit of the stacked `xpsr`,
+    /// It is `stack overflow` if the registers could not be stacked, or if the stack has no room for
+    /// the longest push. If no bit of CFSR names a cause, HFSR is used, and then the Thumb bit of the stacked `xpsr`,
     /// which should be set. If none of them shows the cause, on any processor, but usual only on a
     /// Cortex-M0+, it is `unknown cause (a Cortex-M0+ tells none)`.
     pub fn cause(&self) -> &'static str {
@@ -125,12 +118,9 @@ impl Fault {
         }
     }
 
-    /// Returns true if the stack was full: the registers of an exception, or the registers of a
-    /// push instruction, did not fit.
+    /// Returns true if the registers of an exception, or of a push instruction, did not fit.
     fn is_stack_overflow(&self) -> bool {
-        let below = self.sp.wrapping_sub(self.mmfar);
-        !Self::has_stacked(self.cfsr)
-            || self.cfsr & REFUSED == REFUSED && (1..=LONGEST_PUSH).contains(&below)
+        self.stacked.is_none() || self.sp < self.stack_end.saturating_add(LONGEST_PUSH)
     }
 }
 
@@ -142,7 +132,6 @@ impl fmt::Display for Fault {
             sp,
             cfsr,
             hfsr,
-            mmfar,
             bfar,
             ..
         } = self;
@@ -169,7 +158,7 @@ impl fmt::Display for Fault {
         }
         write!(
             f,
-            "  cfsr {cfsr:#010x}  hfsr {hfsr:#010x}  mmfar {mmfar:#010x}  bfar {bfar:#010x}"
+            "  cfsr {cfsr:#010x}  hfsr {hfsr:#010x}  bfar {bfar:#010x}"
         )
     }
 }

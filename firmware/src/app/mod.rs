@@ -77,7 +77,7 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
     ///
     /// The start of a scene needs much stack. So it is better done when the application is at its
     /// final place.
-    // Inlined, `application` has a stack frame of 8,740 bytes (test `stack_guard`).
+    // Inlined, `application` has a stack frame of 8,740 bytes.
     #[inline(never)]
     pub fn new(
         processor: Processor,

@@ -5,7 +5,7 @@
 //! | `main_loop` | the main loop and the log lines of the application, for every board |
 //! | [`lm3s6965evb`], `stm32f405`, `pico` | a board: its clocks, pins and devices |
 //! | `log` | the output of the log on a real chip |
-//! | [`cortex_m`] | parts for every Cortex-M: tick, stack guard, crash reports, retained record |
+//! | [`cortex_m`] | parts for every Cortex-M: tick, stack, crash reports, retained record |
 //! | `panel_bus` | a panel's bus that is driven by an interrupt |
 //! | `serial` | the bytes received and sent by a serial port |
 //! | `register` | a device register |

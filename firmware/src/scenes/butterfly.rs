@@ -89,7 +89,7 @@ impl Butterfly {
 
 impl Scene for Butterfly {
     const SHOWS: Shows = Shows::Motion;
-    // With all scenes inlined, `play_by` has a stack frame of 7,604 bytes (test `stack_guard`).
+    // With all scenes inlined, `play_by` has a stack frame of 7,604 bytes.
     #[inline(never)]
     fn new(settings: &Settings, resources: &Resources) -> Result<(Self, Option<f32>), Error> {
         // A frame pays for both motions.

@@ -293,7 +293,7 @@ impl AnyScene {
     }
 
     /// Starts a scene of type `S`, wrapped by `one`, in place of this one.
-    // With all scenes inlined, `play_by` has a stack frame of 7,604 bytes (test `stack_guard`).
+    // With all scenes inlined, `play_by` has a stack frame of 7,604 bytes.
     #[inline(never)]
     fn become_one<S: Scene>(
         &mut self,

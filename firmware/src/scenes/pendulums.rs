@@ -177,7 +177,7 @@ pub struct Figure7 {
 
 impl Scene for Figure7 {
     const SHOWS: Shows = Shows::Motion;
-    #[inline(never)] // As for the butterfly (test `stack_guard`), and 224 bytes of flash (M3).
+    #[inline(never)] // As for the butterfly, and 224 bytes of flash (M3).
     fn new(settings: &Settings, resources: &Resources) -> Result<(Self, Option<f32>), Error> {
         let &Parameters { l1, l2, .. } = &settings.parameters;
         if l1 != l2 {
@@ -303,7 +303,7 @@ fn directions(state: &State<f32>) -> RodDirections {
 
 impl Scene for Upright {
     const SHOWS: Shows = Shows::Motion;
-    #[inline(never)] // As for the butterfly (test `stack_guard`), and 716 bytes of flash (M3).
+    #[inline(never)] // As for the butterfly, and 716 bytes of flash (M3).
     fn new(settings: &Settings, resources: &Resources) -> Result<(Self, Option<f32>), Error> {
         let (pendulum, plain) = settings.start()?;
 

@@ -80,6 +80,7 @@ export class Board {
     BUTTONS.forEach((pin) => chip.gpio[pin].setInputValue(!this.pressed.has(pin)));
     this.due = null;
     this.hungAt = NOWHERE;
+    this.isLocked = false;
     chip.core.VTOR = VECTORS;
     chip.core.reset();
   }
@@ -122,6 +123,7 @@ export class Board {
       const cycle = 1e9 / clkSys;
       while (clock.nanos < end && this.due === null) {
         if (this.isInBootLoader) clock.tick(end - clock.nanos);
+        else if (this.isLocked) clock.tick(Math.max(1, Math.min(clock.nanosToNextAlarm, end - clock.nanos)));
         else if (!core.waiting) {
           this.skipJumps(end, cycle);
           this.execute(end, cycle);
@@ -161,6 +163,7 @@ export class Board {
       const left = (until - clock.nanosCounter) / cycle;
       const cycles = isWhole ? this.fast(Math.ceil(left - ROUNDING)) : 0;
       const time = (cycles || core.executeInstruction()) * cycle;
+      if (!cycles) this.isLocked = this.hasOverflowed();
       const now = clock.nanosCounter + time;
       const alarm = clock.nextAlarm;
       if (alarm !== null && alarm.nanos <= now) return clock.tick(time);
@@ -171,8 +174,23 @@ export class Board {
       this.due === null &&
       chip.clkSys === clkSys &&
       !this.isInBootLoader &&
+      !this.isLocked &&
       core.PC !== hungAt
     );
+  }
+
+  /**
+   * Returns true if the stack has left memory. The chip refuses such an access, and then the registers that go onto the stack on
+   * the way to the handler of that fault. An M0+ locks up; only a reset ends that. The emulator would go on.
+   */
+  hasOverflowed() {
+    const { core, sram } = this.chip;
+    return (core.SP >>> 0) - RAM < 0 || (core.SP >>> 0) - RAM > sram.length;
+  }
+
+  /** Makes the stack frame of the present function larger by so many bytes. */
+  enlargeFrame(bytes) {
+    this.chip.core.SP -= bytes;
   }
 
   restart() {

@@ -41,6 +41,8 @@ const commands = {
   hang: () => board.hang(),
   /** A fault where the processor is. */
   fault: () => board.fault(),
+  /** The function where the processor is gets a stack frame that is larger by so many bytes. */
+  enlargeFrame: (bytes) => board.enlargeFrame(Number(bytes)),
   /** Resets it: 1 after a download, 0 as a debugger does. */
   reset: (isDownload) => board.reset(isDownload === '1'),
   /** The board's memory, from an address on. */

@@ -71,10 +71,8 @@ impl Board {
         }
     }
 
-    /// Returns true if the stack has a guard: a memory protection unit, and a processor that
-    /// reports the cause of a fault. Only the Cortex-M0+ have none: an M0+ does not report the
-    /// cause, and QEMU's M0+ has no memory protection unit.
-    pub fn is_guarded(&self) -> bool {
+    /// Returns true if the processor reports the cause of a fault. Only a Cortex-M0+ does not.
+    pub fn reports_causes(&self) -> bool {
         self.core() != Core::M0Plus
     }
 

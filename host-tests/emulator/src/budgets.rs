@@ -47,7 +47,7 @@ pub struct Memory {
 ///   takes 9 KiB, the queue of received bytes 1 KiB, and the panel's copy of its picture 4 KiB
 ///   more, or 2 KiB on the F405 with its log. A twentieth is left for growth, within the memory
 ///   map's limit for statics.
-/// - Stack: the preparation of a scene takes most of it. The guard leaves 32 KiB to the stack. An
+/// - Stack: the preparation of a scene takes most of it. The memory map gives the stack 32 KiB. An
 ///   eighth of that is for cases that no run has met: an interrupt at the deepest place, the report
 ///   of a crash.
 ///

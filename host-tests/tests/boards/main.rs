@@ -16,7 +16,6 @@ mod qemu_restart;
 mod qemu_stm32f405;
 mod qemu_unread;
 mod scenes;
-mod stack_guard;
 mod steps;
 #[path = "../support/mod.rs"]
 mod support;

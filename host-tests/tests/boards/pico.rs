@@ -581,8 +581,9 @@ fn last_restart(board: &mut PicoMachine) -> anyhow::Result<Option<Restarted>> {
     }
 }
 
-/// A fault resets only the processor, a hang the whole chip. Both end the connection, and the
-/// message about the restart is lost. A host that opens the port later still learns the reason.
+/// A fault resets only the processor, a hang the whole chip. A stack frame that is larger than the
+/// memory below it locks the processor up, which is a hang. They end the connection, and the message
+/// about the restart is lost. A host that opens the port later still learns the reason.
 #[test]
 fn a_host_that_opens_the_port_late_receives_the_cause_of_the_restart() -> anyhow::Result<()> {
     let mut board = board()?;
@@ -592,7 +593,12 @@ fn a_host_that_opens_the_port_late_receives_the_cause_of_the_restart() -> anyhow
     board.send(1, Command::Choose(SceneName::Butterfly))?;
     board.run(10 * TICK)?;
 
-    for (number, (end, cause)) in (1..).zip([("fault", Cause::Fault), ("hang", Cause::Hang)]) {
+    let ends = [
+        ("fault", Cause::Fault),
+        ("hang", Cause::Hang),
+        ("enlargeFrame 100000", Cause::Hang),
+    ];
+    for (number, (end, cause)) in (1..).zip(ends) {
         // The port is closed while the board crashes, and opened long after its restart.
         let before = board.next_frame()?;
         board.set_port(0)?;

@@ -152,8 +152,7 @@ fn received_bytes_that_are_lost_are_counted() -> anyhow::Result<()> {
         assert!(lost < sent, "{}: {lost} of {sent}", board.name);
 
         // The log is complete from the start.
-        let has_no_guard = log.contains("no memory protection unit: the stack has no guard");
-        assert_eq!(has_no_guard, !board.is_guarded(), "{}: {log}", board.name);
+        assert!(log.contains("boot: "), "{}: {log}", board.name);
     }
     Ok(())
 }

@@ -62,22 +62,19 @@ pub fn on<M>(
     start(&settings(&toolchain, board, &elf))
 }
 
-/// The stack's share of memory, from its top (`board/cortex_m/stack.rs`).
-const STACK: u32 = 32 * 1024;
 /// A byte that is rare in memory. Where it is gone, the stack has been used.
 pub const PAINT: u8 = 0xA5;
 
 /// Returns the addresses of a program's stack.
 pub fn stack(elf: &Path) -> Range<u32> {
-    let top = address(elf, "_stack_start");
-    top - STACK..top
+    address(elf, "_stack_end")..address(elf, "_stack_start")
 }
 
 /// Returns the largest number of bytes that a stack has contained since it was painted, from its
 /// memory. `memory` is the content of [`stack`], painted with [`PAINT`]; an unused stack has the
 /// depth 0.
 pub fn depth(memory: &[u8]) -> u32 {
-    STACK - memory.iter().take_while(|byte| **byte == PAINT).count() as u32
+    memory.iter().skip_while(|byte| **byte == PAINT).count() as u32
 }
 
 /// Returns a scene on the host, as this board plays it from its start.

@@ -34,7 +34,7 @@ use cortex_m::register::msp;
 use cortex_m_rt::ExceptionFrame;
 use cortex_m_semihosting::{debug, hio};
 
-use super::stack::{calls, instruction};
+use super::stack::{self, calls, instruction};
 use super::{retained, watchdog};
 use crate::config::WATCHDOG_SECONDS;
 use crate::fault::{Fault, Stacked};
@@ -108,10 +108,12 @@ unsafe extern "C" fn HardFault() {
 
 /// Handles a fault; `exception` is the value of the link register on entry to the handler.
 extern "C" fn hard_fault(frame: *mut ExceptionFrame, exception: u32) {
-    let [cfsr, hfsr, mmfar, bfar] = fault_status(false);
+    let [cfsr, hfsr, bfar] = fault_status(false);
     let sp = (frame as u32).wrapping_add(Stacked::size(exception));
+    let stack_end = stack::end();
+    let has_stacked = frame as u32 >= stack_end && Fault::has_stacked(cfsr);
     // SAFETY: the processor has put the frame there, and no other code refers to it.
-    let mut frame = Fault::has_stacked(cfsr).then(|| unsafe { &mut *frame });
+    let mut frame = has_stacked.then(|| unsafe { &mut *frame });
 
     // A breakpoint is the only fault that leaves CFSR clear, on processors that have a CFSR. (It
     // also sets HFSR.DEBUGEVT, but not in QEMU.)
@@ -140,10 +142,10 @@ extern "C" fn hard_fault(frame: *mut ExceptionFrame, exception: u32) {
         &Fault {
             stacked,
             sp,
+            stack_end,
             last_call,
             cfsr,
             hfsr,
-            mmfar,
             bfar,
         },
     )
@@ -231,10 +233,10 @@ fn say(report: &dyn Display) {
     }
 }
 
-/// Returns the status of a fault: CFSR, HFSR, MMFAR and BFAR. A Cortex-M0+ has no such registers,
+/// Returns the status of a fault: CFSR, HFSR and BFAR. A Cortex-M0+ has no such registers,
 /// and the values are zero. If `clears`, HFSR is cleared.
 #[cfg(not(armv6m))]
-fn fault_status(clears: bool) -> [u32; 4] {
+fn fault_status(clears: bool) -> [u32; 3] {
     // SAFETY: the registers always exist, and no other code uses them.
     let control = unsafe { &*cortex_m::peripheral::SCB::PTR };
     if clears {
@@ -244,12 +246,11 @@ fn fault_status(clears: bool) -> [u32; 4] {
     [
         control.cfsr.read(),
         control.hfsr.read(),
-        control.mmfar.read(),
         control.bfar.read(),
     ]
 }
 
 #[cfg(armv6m)]
-fn fault_status(_: bool) -> [u32; 4] {
-    [0; 4]
+fn fault_status(_: bool) -> [u32; 3] {
+    [0; 3]
 }

@@ -5,7 +5,6 @@ use cortex_m::peripheral::{DCB, DWT};
 use double_pendulum::parts::Advance;
 
 use super::clock;
-use super::stack::guard_stack;
 use crate::app::Instruments;
 use crate::protocol::{BoardName, Identity};
 
@@ -14,14 +13,13 @@ unsafe extern "C" {
     static __erodata: u8;
 }
 
-/// Starts the parts of the processor: the stack guard, the tick and the cycle counter, which a
-/// Cortex-M0+ lacks. `hertz` is its frequency, Hz, limited as in [`clock::start`], and `chip` the
-/// identification of the chip, zeros without one.
+/// Starts the tick and the cycle counter, which a Cortex-M0+ lacks. `hertz` is the frequency of the
+/// processor, Hz, limited as in [`clock::start`], and `chip` the identification of the chip, zeros
+/// without one.
 ///
 /// Returns the measuring functions and the identity. The checksum and the size of the image in it
 /// are 0, and stay so; only the result of [`Instruments::identity()`] contains them.
 pub fn start(core: Peripherals, board: BoardName, hertz: u32, chip: [u32; 4]) -> Instruments {
-    guard_stack(core.MPU);
     clock::start(core.SYST, hertz);
     start_counter(core.DCB, core.DWT);
 
