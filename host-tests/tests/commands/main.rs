@@ -5,12 +5,10 @@ mod demo_cli;
 mod demo_port;
 mod figures;
 mod firmware_cli;
-mod hygiene;
 mod out_file;
 mod random_input;
 mod readmes;
 mod release;
-mod rooms;
 mod simulate_cli;
 #[path = "../support/mod.rs"]
 mod support;
