@@ -23,7 +23,7 @@ const README: [&str; 4] = [
     "host-tests/README.md",
 ];
 /// The commands in READMEs that a user installs.
-const INSTALLED: [&str; 3] = ["deny", "mutants", "public-api"];
+const INSTALLED: [&str; 2] = ["deny", "mutants"];
 
 /// Returns the names of the project's commands.
 fn ours() -> BTreeSet<String> {

