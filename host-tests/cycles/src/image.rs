@@ -130,12 +130,6 @@ impl Image {
         }
     }
 
-    pub fn holds(&self, address: u32) -> bool {
-        self.loaded
-            .iter()
-            .any(|(start, bytes)| address.wrapping_sub(*start) < bytes.len() as u32)
-    }
-
     /// Returns the little-endian word at an address.
     pub fn word(&self, address: u32) -> Option<u32> {
         self.loaded.iter().find_map(|(start, bytes)| {

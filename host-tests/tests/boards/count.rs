@@ -1,4 +1,4 @@
-//! The counter compared with a second way of counting, with goals and with the price lists.
+//! The counter compared with a second way of counting, and with the price lists.
 
 use std::ops::RangeInclusive;
 use std::sync::OnceLock;
@@ -6,13 +6,12 @@ use std::sync::OnceLock;
 use anyhow::Result;
 
 use crate::support::{targets, toolchain};
+use double_pendulum::Method;
 use double_pendulum::plan::{Costs, Stepping};
-use double_pendulum::{Method, Parameters};
 use firmware::job::Request;
 use host_tests::commands::count::{
-    FULL_CYCLE, Minimal, MinimalPrices, affordable_cost, prices, step_cost, table, table_in_readme,
+    Minimal, MinimalPrices, affordable_cost, prices, step_cost, table, table_in_readme,
 };
-use host_tests::commands::report::accuracy::{self, SCENES};
 use rayon::prelude::*;
 
 /// The instructions in a tick of the board's clock, 12.5 MHz after reset, under `-icount`, where an
@@ -75,104 +74,8 @@ fn the_book_by_the_libm_crate_takes_twenty_thousand_instructions() -> Result<()>
     Ok(())
 }
 
-/// The cores, by QEMU's names.
-const M3: &str = "cortex-m3";
+/// A core, by QEMU's name.
 const M4F: &str = "cortex-m4";
-
-/// The largest number of cycles (estimated) of a step from rest at 0.5 rad on a core, with the mass
-/// of bob 2, kg, and the length of rod 2, m. Those of bob 1 and rod 1 are 1.
-const GOALS: [(Method, &str, [f64; 2], f64); 4] = [
-    (Method::Rk4F32Direction, M4F, [1.0, 1.0], 220.0), // 205 counted
-    (Method::Rk4F32DirectionPlain, M4F, [1.0, 1.0], 170.0), // 160 counted; no division
-    (Method::Rk4Fixed32, M3, [1.0, 1.0], 675.0),       // 668 counted
-    (Method::Rk4Fixed32, M3, [2.0, 0.5], 870.0),       // a quarter more for shifts of each quantity
-];
-
-/// The estimated cycles of a step are at most those of [`GOALS`], such as 220 for the compensated
-/// direction form in `f32` on the Cortex-M4F.
-#[test]
-fn a_step_costs_no_more_than_its_goal() -> Result<()> {
-    // Every core has its own goals.
-    for target in &targets() {
-        for (method, _, [m2, l2], most) in
-            GOALS.into_iter().filter(|goal| goal.1 == target.board.cpu)
-        {
-            let parameters = Parameters {
-                m1: 1.0,
-                m2,
-                l1: 1.0,
-                l2,
-                g: 9.81,
-            };
-            let cost = affordable_cost(
-                target,
-                &Request {
-                    parameters,
-                    ..request(method, 0.5, FULL_CYCLE)
-                },
-            )?;
-            println!(
-                "{method}, {}, m2 = {m2}, l2 = {l2}: {cost:?}",
-                target.board.cpu
-            );
-            assert!(
-                cost.cycles <= most,
-                "{method}: {cost:?}, at most {most} allowed"
-            );
-        }
-    }
-
-    Ok(())
-}
-
-/// The largest number of cycles (estimated) of a second of a scene with an error, rad. The method
-/// and its number of steps through the scene are the cheapest that were found.
-const SECONDS: [(usize, f64, &str, Method, u32, f64); 4] = [
-    // Seven a second, the fewest whole ones: 131,000.
-    (0, 1e-9, M4F, Method::Extrapolation12Fixed64, 62, 120_000.0),
-    (0, 1e-12, M4F, Method::Extrapolation16Fixed64, 58, 210_000.0), // cheaper than order 12
-    (0, 1e-12, M3, Method::Extrapolation16Fixed64, 58, 300_000.0),  // cheaper than order 12
-    (
-        1,
-        3.5e-10,
-        M4F,
-        Method::Extrapolation10Fixed64,
-        183,
-        750_000.0,
-    ), // chaotic
-];
-
-/// For each row of [`SECONDS`], the error after the scene is at most the given one, and the cycles
-/// for a simulated second are at most the goal.
-#[test]
-fn a_simulated_second_costs_no_more_than_its_goal() -> Result<()> {
-    let targets = targets();
-    for (index, error, cpu, method, steps, most) in SECONDS {
-        let scene = &SCENES[index];
-        let target = targets
-            .iter()
-            .find(|target| target.board.cpu == cpu)
-            .expect("a board");
-
-        // The error is measured first, so that the cost is of an accurate motion.
-        let found = accuracy::error_after(method, scene, steps).expect("a motion");
-        assert!(
-            found.angle <= error,
-            "{method}, {steps} steps: {found:?}, at most {error:e} allowed"
-        );
-
-        // The cost of a step is the same in every scene.
-        let request = accuracy::request(method, &SCENES[0], accuracy::usual_rate(method));
-        let cycles = f64::from(steps) * affordable_cost(target, &request)?.cycles
-            / f64::from(scene.duration);
-        println!("{error:e} rad on {cpu}: {cycles:.0} cycles a second by {method}");
-        assert!(
-            cycles <= most,
-            "{error:e} rad on {cpu}: {cycles} by {method}, at most {most} allowed"
-        );
-    }
-    Ok(())
-}
 
 /// The allowed ratio of counted costs to the costs of the price lists, which depend on the version
 /// of the compiler.

@@ -3,7 +3,6 @@
 mod budgets;
 mod cores;
 mod count;
-mod count_elf;
 mod identity;
 mod late;
 mod mass_ratio;

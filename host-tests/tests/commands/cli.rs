@@ -115,9 +115,8 @@ fn output_of_every_command_equals_its_snapshot() {
 }
 
 /// Commands that end soon. Other commands use the same functions to print.
-const COMMANDS: [&str; 12] = [
+const COMMANDS: [&str; 11] = [
     "count closed-form-f32 --on lm3s6965evb --steps 4",
-    "count closed-form-f32 --on lm3s6965evb --steps 4 --listing",
     "count --help",
     "demo --headless --seconds 0.1",
     "figures --out FOLDER",

@@ -49,37 +49,6 @@ fn a_program_without_end_is_stopped_with_success_on_request() {
     );
 }
 
-/// The instructions of all lines that `cargo count --listing` prints add up to the number in the
-/// method's row. A row is the difference of two runs, so that the cost of the call cancels.
-#[test]
-fn the_costs_of_a_listing_add_up_to_the_row() {
-    let numbers = |options: &str, place| -> Vec<f64> {
-        let printed = output(
-            program("count")
-                .arg("rk4-fixed32")
-                .args(options.split_whitespace()),
-        )
-        .stdout;
-        printed
-            .lines()
-            .filter_map(|line| line.split_whitespace().nth(place)?.parse().ok())
-            .collect()
-    };
-    // A listing has the costs of a step, so it is multiplied by the number of steps.
-    let listed = |steps: f64| {
-        steps
-            * numbers(&format!("--listing --steps {steps}"), 1)
-                .iter()
-                .sum::<f64>()
-    };
-    let listed = (listed(5.0) - listed(1.0)) / 4.0;
-    let row = *numbers("--steps 4", 3).last().expect("a row");
-    assert!(
-        listed > 0.0 && (listed - row).abs() < 0.06,
-        "{listed} listed, {row} in the row"
-    );
-}
-
 /// Starts a board whose folder is in `temporary`, and ends the command by a signal once the board
 /// runs. Returns the exit code.
 fn ended_by(signal: Signal, temporary: &Path) -> Option<i32> {

@@ -1,10 +1,6 @@
-//! `cargo count`: the cost of a step of each method on the target, or of a call of any function of
-//! any program.
+//! `cargo count`: the cost of a step of each method on the target.
 
-use std::path::{Path, PathBuf};
-use std::time::Duration;
-
-use anyhow::{anyhow, bail, ensure};
+use anyhow::{anyhow, bail};
 use clap::Parser;
 use double_pendulum::{Error, Method, Parameter, Parameters};
 use firmware::job::Request;
@@ -12,12 +8,10 @@ use rayon::prelude::*;
 
 use super::application::{prices, write_prices};
 use super::minimal::write_table;
-use super::trace::{calls_of, counted, one_of_each_core};
-use super::{
-    Minimal, MinimalPrices, StepCost, Target, affordable_cost, affordable_steps, step_cost,
-};
-use console::cli::{self, Refused, complain, say};
-use cycles::{Cost, ERROR_BAR};
+use super::trace::one_of_each_core;
+use super::{Minimal, MinimalPrices, StepCost, Target, affordable_cost, step_cost};
+use console::cli::{self, Refused, say};
+use cycles::ERROR_BAR;
 use emulator::boards::{BOARDS, Board};
 use emulator::toolchain::{self, Toolchain};
 
@@ -30,13 +24,7 @@ const MOST_STEPS: i64 = 65_536;
 const EXAMPLES: &str = "Examples:
   cargo count                                             every method on a Cortex-M3
   cargo count fixed32 --on lm3s6965evb,lm3s6965evb-m4,lm3s6965evb-m0
-  cargo count rk4-f32-direction --on lm3s6965evb-m4 --listing
-  cargo count --minimal                                   Run::advance in a crate outside
-  cargo count --elf firmware.elf --function step --seconds 5
-
-A function is counted from its first instruction to its return. The call itself costs about 2
-cycles more, and 1 for each argument. The program's output and its end are printed to stderr. If it
-fails, there are no figures and the exit code is 1.";
+  cargo count --minimal                                   Run::advance in a crate outside";
 
 /// Counts executed instructions (exact) and Cortex-M cycles (an estimate from the published
 /// instruction timings).
@@ -46,8 +34,8 @@ pub struct CountOptions {
     /// The method of this name, or all methods whose name contains it
     #[arg(default_value = "")]
     method: String,
-    /// The boards, with commas between them [default: lm3s6965evb, a Cortex-M3; with --elf
-    /// lm3s6965evb-m4; with --minimal one of each core]
+    /// The boards, with commas between them [default: lm3s6965evb, a Cortex-M3; with --minimal one
+    /// of each core]
     #[arg(
         long,
         visible_alias = "board",
@@ -56,23 +44,6 @@ pub struct CountOptions {
         value_parser = cli::choice(&BOARDS, |board| board.name),
     )]
     on: Vec<&'static Board>,
-    /// Count a function of this program instead, including interrupts; the program should exit by
-    /// semihosting, else it is stopped after --seconds
-    #[arg(long, value_name = "FILE", requires = "function",
-          conflicts_with_all = ["method", "steps", "m2", "l2", "angle", "halvings", "listing"])]
-    elf: Option<PathBuf>,
-    /// The function of that program: its mangled or demangled name, or a unique part of it
-    #[arg(long, value_name = "NAME", requires = "elf")]
-    function: Option<String>,
-    /// The time limit of that program, s
-    #[arg(
-        long,
-        value_name = "N",
-        default_value_t = 600,
-        requires = "elf",
-        value_parser = clap::value_parser!(u32).range(1..),
-    )]
-    seconds: u32,
     /// Number of steps to average over, 1 to 65536 [default: 256, fewer for an expensive method]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=MOST_STEPS))]
     steps: Option<u32>,
@@ -93,15 +64,12 @@ pub struct CountOptions {
         value_parser = clap::value_parser!(u8).range(0..=30),
     )]
     halvings: u8,
-    /// List every instruction executed, with its cycles
-    #[arg(long)]
-    listing: bool,
     /// Count the public function Run::advance in the programs of kernel/minimal, a crate outside
     /// this workspace, instead: a step, a call on top of its steps, and the program's flash
     #[arg(
         long,
         conflicts_with_all = [
-            "method", "elf", "steps", "m2", "l2", "angle", "halvings", "listing", "write_prices",
+            "method", "steps", "m2", "l2", "angle", "halvings", "write_prices",
         ],
     )]
     minimal: bool,
@@ -113,26 +81,20 @@ pub struct CountOptions {
     #[arg(
         long,
         conflicts_with_all = [
-            "method", "on", "elf", "steps", "m2", "l2", "angle", "halvings", "listing",
+            "method", "on", "steps", "m2", "l2", "angle", "halvings",
         ],
     )]
     write_prices: bool,
 }
 
-/// Counts as the options demand and prints a row for each method and board, a listing, or the cost
-/// of a call. A method that does not accept the pendulum is left out. Missing tools are installed.
+/// Counts as the options demand and prints a row for each method and board. A method that does not accept the pendulum is left out. Missing tools are installed.
 /// With `--write-prices` it changes the price lists in the kernel's source, with `--readme` the
 /// table in its README.
 ///
 /// Options that cannot be served, also a pendulum that no method accepts, and tools that cannot be
 /// provided, are [`Refused`] before anything is built. A build or a count that fails is an error
-/// after the rows before it. With `--elf` a function that cannot be counted is [`Refused`], also
-/// because no call has returned in time, and a program that fails is an error. A program that its
-/// time limit has stopped is not: the calls until then are printed.
+/// after the rows before it.
 pub fn run(options: &CountOptions) -> anyhow::Result<()> {
-    if let (Some(elf), Some(function)) = (&options.elf, &options.function) {
-        return count_calls(&toolchain::set_up()?, options, elf, function);
-    }
     if options.write_prices {
         let toolchain = toolchain::set_up()?;
         let file = write_prices(&prices(&toolchain)?)?;
@@ -153,18 +115,11 @@ pub fn run(options: &CountOptions) -> anyhow::Result<()> {
         let target = Target::build(&toolchain, board)?;
 
         // The heading is printed after the first build, which may fail.
-        if place == 0 && !options.listing {
+        if place == 0 {
             say(options.setting())?;
             say(ERROR_BAR)?;
             say(line(TITLES.map(str::to_owned)))?;
         }
-        if options.listing {
-            requests
-                .iter()
-                .try_for_each(|request| list(&target, request, options.steps))?;
-            continue;
-        }
-
         // The methods are counted in groups, so that the first rows appear soon.
         for requests in requests.chunks(rayon::current_num_threads()) {
             let rows = requests.par_iter().map(|request| {
@@ -326,49 +281,6 @@ fn row(method: Method, board: &Board, cost: &StepCost) -> String {
     ])
 }
 
-/// Prints every instruction with its share of a step: address, executions, cycles, stalls, kind.
-fn list(target: &Target, request: &Request, steps: Option<u32>) -> anyhow::Result<()> {
-    let stride = steps.map_or_else(|| affordable_steps(target, request), Ok)?;
-    let calls = counted(target, &Request { stride, ..*request })?;
-    say(format_args!(
-        "{} on {}: per step, executions, cycles (estimate), stalls",
-        request.method, target.board.name
-    ))?;
-    say(ERROR_BAR)?;
-    // A heading is printed at each instruction that begins another function.
-    let mut function = None;
-
-    for (
-        address,
-        (
-            instruction,
-            Cost {
-                instructions,
-                cycles,
-                stalls,
-            },
-        ),
-    ) in calls.spots
-    {
-        let inside = target.image.function_at(address);
-        if inside != function {
-            function = inside;
-            say(format_args!(
-                "{}:",
-                inside.map_or("?", |function| &function.name)
-            ))?;
-        }
-        let [executions, cycles, stalls] =
-            [instructions, cycles, stalls].map(|all| all as f64 / f64::from(stride));
-        say(format_args!(
-            "{address:8x} {executions:9.2} {cycles:9.2} {stalls:7.2}  {}",
-            instruction.row.name
-        ))?;
-    }
-
-    Ok(())
-}
-
 /// Prints the prices that a user of the kernel pays in a crate outside of this workspace.
 fn count_minimal(toolchain: &Toolchain, options: &CountOptions) -> anyhow::Result<()> {
     let boards = if options.on.is_empty() {
@@ -427,69 +339,6 @@ fn count_minimal(toolchain: &Toolchain, options: &CountOptions) -> anyhow::Resul
 
 fn minimal_line(form: &str, board: &str, [steps, step, call, flash]: [String; 4]) -> String {
     format!("{form:>30} {board:>16} {steps:>5} {step:>17} {call:>8} {flash:>11}")
-}
-
-/// Prints the cost of a call of a function of any program.
-fn count_calls(
-    toolchain: &Toolchain,
-    options: &CountOptions,
-    elf: &Path,
-    function: &str,
-) -> anyhow::Result<()> {
-    // An unreadable program or an unknown function is bad input, with exit code 2.
-    let refused = |error: anyhow::Error| Refused::because(format_args!("{error:#}"));
-    let board = options.on.first().copied().unwrap_or(&BOARDS[1]);
-    let target = Target::of(toolchain, board, elf.to_owned()).map_err(refused)?;
-    let limit = Duration::from_secs(options.seconds.into());
-    let (function, calls, ended) = calls_of(&target, function, limit).map_err(refused)?;
-
-    // A program that failed has no valid figures.
-    let number = calls.len();
-    if let Ok(status) = &ended.status {
-        ensure!(
-            status.success(),
-            "the program failed after {number} calls, {status}: {}",
-            ended.output.trim()
-        );
-    }
-
-    // Everything about the program goes to stderr, only the figures to stdout.
-    ended.output.lines().for_each(complain);
-
-    match ended.status {
-        Ok(status) => complain(format_args!("the program ended, {status}")),
-        Err(_) => complain(format_args!(
-            "the program was stopped after {} s and {number} calls; --seconds sets this limit",
-            limit.as_secs()
-        )),
-    }
-
-    say(format_args!(
-        "{} on {}, from its first instruction to its return: calls {number}",
-        function.name, board.name
-    ))?;
-    say(ERROR_BAR)?;
-    say(format_args!(
-        "{:12} {:>12} {:>12} {:>12}",
-        "per call", "mean", "least", "most"
-    ))?;
-
-    for (title, is_instructions) in [("instructions", true), ("cycles", false)] {
-        let count = |cost: &Cost| {
-            if is_instructions {
-                cost.instructions
-            } else {
-                cost.cycles
-            }
-        };
-        let counts = || calls.iter().map(count);
-        let least = counts().min().unwrap_or(0);
-        let most = counts().max().unwrap_or(0);
-        let mean = counts().sum::<u64>() as f64 / number as f64;
-        say(format_args!("{title:12} {mean:12.1} {least:12} {most:12}"))?;
-    }
-
-    Ok(())
 }
 
 /// The full name of a method selects it alone, although it is a part of another name. A part of a

@@ -9,17 +9,16 @@
 use std::collections::BTreeSet;
 use std::io::{self, Write};
 use std::path::PathBuf;
-use std::process::{Command, ExitStatus, Stdio};
+use std::process::{Command, Stdio};
 use std::sync::{Mutex, PoisonError};
 use std::thread;
 use std::time::Duration;
 
-use anyhow::{Context, Result, bail, ensure};
-use cycles::{Calls, Cost, Function, Image, Registers, for_each_instruction};
+use anyhow::{Context, Result, ensure};
+use cycles::{Calls, Image, Registers, for_each_instruction};
 use firmware::job::Request;
 
 use super::COUNTED;
-use console::progress::Progress;
 use emulator::boards::{BOARDS, Board};
 use emulator::flash::flash_image;
 use emulator::process::{self, Running};
@@ -35,16 +34,6 @@ pub(super) const LIMIT: Duration = Duration::from_secs(1800);
 const LOGGED: &str = "cpu,nochain";
 /// The size of an instruction with a breakpoint, bytes. QEMU does not use it.
 const SIZE: u32 = 2;
-
-/// The end of a program that was traced.
-#[derive(Debug)]
-pub struct Ended {
-    /// The exit status of QEMU, which may be a failure, or an error of kind `TimedOut` if its time
-    /// was up.
-    pub status: io::Result<ExitStatus>,
-    /// Everything that the program printed to standard output; empty if that is not UTF-8.
-    pub output: String,
-}
 
 /// An emulated board with a program. The default program runs one request and prints its result.
 #[derive(Debug)]
@@ -127,22 +116,15 @@ impl Target {
     }
 
     /// Runs the program with `argument` on its semihosting command line and calls `each` before
-    /// every instruction, in order. `argument` may be empty. Not checked: it must not contain a
-    /// comma. If `entries` has addresses, the instructions before the first one at any of these
-    /// addresses are left out, which saves most of the time of a short run; `each` is not called if
-    /// the program never comes there.
+    /// every instruction from the first one at any of these addresses on.
     ///
-    /// After `limit` of the host's time QEMU is killed. That is no error, except while instructions
-    /// are left out, and neither is a program that fails ([`Ended::status`]). An error of `each`
-    /// ends the program and is returned. Other errors mean that QEMU cannot be started or refuses
-    /// the debugger.
+    /// `argument` must not contain a comma. It is an error if the program fails.
     pub(super) fn trace(
         &self,
         argument: &str,
         entries: &BTreeSet<u32>,
-        limit: Duration,
         each: &mut dyn FnMut(Registers) -> Result<()>,
-    ) -> Result<Ended> {
+    ) -> Result<()> {
         // QEMU writes the registers to stderr before every instruction.
         let mut command = self.emulator(argument);
         command
@@ -152,40 +134,34 @@ impl Target {
             .stdout(Stdio::piped())
             .stderr(Stdio::piped());
 
-        // A debugger switches the log on later, or it is on from the start.
+        // A debugger switches the log on at the first of the addresses, which saves most of the time.
         let folder = Scratch::new()?;
-        let debugger = if entries.is_empty() {
-            command.args(["-d", LOGGED]);
-            None
-        } else {
-            let path = folder.path().join("debugger");
-            command
-                .args(["-S", "-gdb", "chardev:debugger", "-chardev"])
-                .arg(format!("pipe,id=debugger,path={}", path.display()));
-            Some(Channel::make(&path)?)
-        };
+        let path = folder.path().join("debugger");
+        command
+            .args(["-S", "-gdb", "chardev:debugger", "-chardev"])
+            .arg(format!("pipe,id=debugger,path={}", path.display()));
+        let mut debugger = Channel::make(&path)?;
 
         // The output is read by a thread, because a full pipe would stop the program.
-        let mut child = process::spawn(&mut command, limit)?;
+        let mut child = process::spawn(&mut command, LIMIT)?;
         let stdout = child
             .child
             .stdout
             .take()
             .map(|stdout| thread::spawn(move || io::read_to_string(stdout)));
-        if let Some(mut debugger) = debugger {
-            log_from(entries, &mut debugger, &mut child)?;
-        }
+        log_from(entries, &mut debugger, &mut child)?;
         if let Some(mut log) = child.child.stderr.take() {
             for_each_instruction(&mut log, each)?;
         }
 
         // A program that ends closes its log.
-        let status = child.wait();
+        let status = child.wait()?;
         let output = stdout
             .and_then(|reader| reader.join().ok())
             .and_then(Result::ok)
             .unwrap_or_default();
-        Ok(Ended { status, output })
+        ensure!(status.success(), "{argument}: {}", output.trim());
+        Ok(())
     }
 
     /// Returns the QEMU command with only the semihosting console attached.
@@ -289,90 +265,9 @@ pub fn counted<'a>(target: &'a Target, request: &Request) -> Result<Calls<'a>> {
 
     // Every call of any copy is counted.
     let mut calls = Calls::of(&target.image, target.board.core(), entries.clone());
-    let argument = request.to_string();
-    let ended = target.trace(&argument, &entries, LIMIT, &mut |registers| {
+    target.trace(&request.to_string(), &entries, &mut |registers| {
         calls.see(registers)
     })?;
-    ensure!(
-        ended.status?.success(),
-        "{request}: {}",
-        ended.output.trim()
-    );
     ensure!(!calls.ended.is_empty(), "{COUNTED} was never called");
     Ok(calls)
 }
-
-/// Counts the calls of `function` until the program on `target` ends, or until `limit` of the
-/// host's time has passed, which is no error ([`Ended::status`]). The name is mangled, demangled,
-/// or a unique part of the demangled name ([`Image::function`]).
-///
-/// Returns the function, the cost of each call that returned, in order and with interrupts, and the
-/// end of the program. A call within another one is a part of it. It is an error if the program has
-/// no such function or several, or no vectors for this board, if QEMU cannot be started, and if a
-/// call executes an instruction without a known timing. It is also an error if no call has
-/// returned, unless the program failed: then the list is empty.
-pub fn calls_of<'a>(
-    target: &'a Target,
-    function: &str,
-    limit: Duration,
-) -> Result<(&'a Function, Vec<Cost>, Ended)> {
-    let image = &target.image;
-    let core = target.board.core();
-    let function = image.function(function)?;
-    let vectors = target.board.flash();
-    let board = target.board.name;
-
-    // Without vectors, the program would never run.
-    ensure!(
-        image.holds(vectors),
-        "never called: the program has nothing at {vectors:#x}, where {board} reads its vectors; \
-         see --on"
-    );
-
-    let mut calls = Calls::of(image, core, BTreeSet::from([function.address]));
-    let progress = Progress::start(&format!("counts the calls of {}", function.name));
-    // The first instruction that the core does not have is the likely cause if nothing is called.
-    let mut instructions = 0_u64;
-    let mut unknown = None;
-    // The log is complete, so that it has that instruction.
-    let ended = target.trace("", &BTreeSet::new(), limit, &mut |registers| {
-        instructions += 1;
-        if instructions.is_multiple_of(TELL) {
-            progress.alive(Some(&format!(
-                "{} calls, {instructions} instructions",
-                calls.ended.len()
-            )));
-        }
-        let missing = image
-            .instruction_at(registers.pc())
-            .ok()
-            .filter(|instruction| instruction.is_missing_on(core));
-        unknown = unknown.or(missing.map(|instruction| (registers.pc(), instruction)));
-        calls.see(registers)
-    })?;
-
-    let name = &function.name;
-    let failed = ended.status.as_ref().is_ok_and(|status| !status.success());
-
-    // A program that ended well must have called the function, and the call must have returned.
-    if calls.ended.is_empty() && !failed {
-        ensure!(
-            calls.running.is_none(),
-            "{name} was called and never returned"
-        );
-        let Some((address, instruction)) = unknown else {
-            bail!("{name} was never called")
-        };
-        let instruction = instruction.row.name;
-        let cpu = target.board.cpu;
-        bail!(
-            "{name} was never called: {instruction} at {address:#x} is no instruction of a {cpu}; \
-             see --on"
-        );
-    }
-
-    Ok((function, calls.ended, ended))
-}
-
-/// The number of instructions between two reports of progress.
-const TELL: u64 = 1 << 18;
