@@ -1,5 +1,4 @@
-//! A real serial port, with or without a board at its other end. It reports problems and reconnects
-//! when the board is back.
+//! A real serial port, with or without a board at its other end.
 
 use std::fs;
 use std::io::{ErrorKind, Read, Write};
@@ -7,12 +6,15 @@ use std::os::unix::fs::MetadataExt;
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
+use anyhow::bail;
 use firmware::config::BAUD;
-use firmware::protocol::{Command, LinkError, MAX_WIRE, ToHost, VERSION, encode_command};
+use firmware::protocol::{
+    Answer, Command, LinkError, MAX_WIRE, Restarted, ToHost, VERSION, encode_command,
+};
 use nix::unistd::{Gid, Group};
 use serialport::{SerialPort, SerialPortInfo};
 
-use super::{AUTO, Device, Inbox, Restarts, choose};
+use super::{AUTO, Inbox, choose, describe_restart};
 
 /// The time to wait for bytes in one read. It is short because reads are frequent.
 const WAIT: Duration = Duration::from_millis(1);
@@ -28,74 +30,53 @@ const ARRIVAL: Duration = Duration::from_secs(3);
 const PATIENCE: Duration = Duration::from_secs(2);
 /// The largest number of bytes read in one call, because a foreign device may send without end.
 const MOST_BYTES: usize = 1 << 16;
-/// The request number of the question about restarts. The answer is recognised by its kind.
+/// The request number of the question about restarts.
 const QUESTION: u16 = u16::MAX - 1;
 /// The speed that restarts a board in its boot loader, bits per second: the convention of Arduino's
 /// boards. The Pico obeys when the port is closed at this speed.
 pub const BAUD_OF_BOOT_LOADER: u32 = 1200;
 
-/// A serial port that [`messages`](Port::messages) opens again when it is back: under its name or,
-/// if it is a USB device, under a new one. Without calls of `messages` nothing is received, and a
-/// port that has gone stays closed. Problems of a port that was once open are no errors but
-/// [`notices`](Port::notices). Dropping it closes the port.
+/// A serial port, opened once. Dropping it closes the port.
 pub struct Port {
-    /// The path of the port, which changes if a USB device returns under another name.
+    /// The path of the port.
     pub name: String,
-    /// The open port; `None` while it is gone.
-    open: Option<Box<dyn SerialPort>>,
-    /// The USB device at the port. By it, the device is found under another name.
-    device: Option<Device>,
-    /// The decoder of the received bytes, with the counts of the link since [`Port::open`], over
-    /// all connections.
+    port: Box<dyn SerialPort>,
+    /// The decoder of the received bytes, with the counts of the link.
     pub inbox: Inbox,
-    /// The restarts of the board.
-    pub restarts: Restarts,
-    /// Reports of problems, recoveries and restarts of the board, oldest first, one line each
-    /// without a newline, reported once, such as 2 s without a message. The caller drains them;
-    /// they are not limited.
+    /// The last restart that the board has reported, which may be one before the connection.
+    pub restarted: Option<Restarted>,
+    /// Reports of problems, recoveries and restarts of the board, oldest first, one line each. The
+    /// caller drains them.
     pub notices: Vec<String>,
-    /// The time of the last intact message, of the opening of the port, or of the last attempt to
-    /// open it.
+    /// The reason why nothing can be sent.
+    lost: Option<String>,
+    /// True if the board has been asked for its last restart.
+    has_asked: bool,
+    /// The time of the last intact message, or of the opening.
     since: Instant,
-    /// The number of bytes since the last intact message or the opening of the port.
+    /// The number of bytes since the last intact message.
     bytes: usize,
     /// True if the present silence has been reported.
     complained: bool,
 }
 
 impl Port {
-    /// Opens the port of this name at [`BAUD`] (460,800) bits per second. Nothing is sent. Not
-    /// checked: that a board is at its other end.
-    ///
-    /// `auto` means the only port over USB. If there is none yet, this waits up to 3 s until one
-    /// has appeared and can be opened. A port that is there at the call and cannot be opened is an
-    /// error at once. So are several ports, even if one of them is a board.
-    ///
-    /// The error is the reason in one line: the port is missing, in use, not accessible, no serial
-    /// port or, with `auto`, ambiguous.
+    /// Opens the port of this name. `auto` means the board with its own USB port, or else the only
+    /// port over USB, for which this waits up to 3 s. The error is the reason in one line.
     pub fn open(name: &str) -> Result<Self, String> {
-        // A port without a name may take a moment to appear.
-        let (name, open) = if name == AUTO {
-            let since = Instant::now();
-            only_one(ports, open, || {
-                let is_time_left = since.elapsed() < ARRIVAL;
-                if is_time_left {
-                    sleep(RETRY);
-                }
-                is_time_left
-            })?
+        let (name, port) = if name == AUTO {
+            open_auto()?
         } else {
-            let open = open(name).map_err(|error| reason(name, &error))?;
-            (name.to_owned(), open)
+            (name.to_owned(), open(name)?)
         };
-
         let mut port = Self {
-            device: Device::at(&node(&name), &ports()),
             name,
-            open: Some(open),
+            port,
             inbox: Inbox::default(),
-            restarts: Restarts::default(),
+            restarted: None,
             notices: Vec::new(),
+            lost: None,
+            has_asked: false,
             since: Instant::now(),
             bytes: 0,
             complained: false,
@@ -104,121 +85,74 @@ impl Port {
         Ok(port)
     }
 
-    /// Returns the messages that have arrived since the last call, oldest first. It reads until no
-    /// byte has arrived for a millisecond, or about 64 KiB have; the next call reads on. A port
-    /// that has gone is opened again when it is back, with at most four attempts a second. The
-    /// result is empty while the port is gone.
+    /// Returns the messages that have arrived since the last call, oldest first.
     ///
-    /// It also asks the board for its last restart when [`Restarts`] requires it. That question has
-    /// the request number 65534, and its answer is among the messages. It is sent as by
-    /// [`Self::send`], which may wait.
-    pub fn messages(&mut self) -> Vec<ToHost> {
-        if self.open.is_none() {
-            self.reopen();
+    /// After the first message it asks the board once for its last restart, because a restart ends
+    /// a USB connection and with it the board's own message. It is an error if the port is gone.
+    pub fn messages(&mut self) -> anyhow::Result<Vec<ToHost>> {
+        let read = self.read();
+        if let Some(why) = self.lost.take().or(read.as_ref().err().cloned()) {
+            bail!(gone(&self.name, &why));
         }
-        let mut messages = Vec::new();
-
-        // Each message can show a restart, and then causes a question to the board.
-        for byte in self.read() {
-            let restarts = self.inbox.counts.restarts;
-            let Some(message) = self.inbox.take(byte) else {
-                continue;
-            };
-            let recounted = self.inbox.counts.restarts > restarts;
-            self.notices.extend(self.restarts.take(&message, recounted));
-            if self.restarts.is_question_due() {
-                self.send(QUESTION, Command::AskRestart);
+        let inbox = &mut self.inbox;
+        let bytes = read.unwrap_or_default();
+        let messages: Vec<_> = bytes
+            .into_iter()
+            .filter_map(|byte| inbox.take(byte))
+            .collect();
+        for message in &messages {
+            if let ToHost::Restarted(end) | ToHost::Answer(_, Answer::Restart(Some(end))) = message
+            {
+                self.restarted = Some(*end);
+                self.notices.push(describe_restart(end));
             }
-            messages.push(message);
+        }
+        if !messages.is_empty() && !self.has_asked {
+            self.has_asked = true;
+            self.send(QUESTION, Command::AskRestart);
         }
         self.note(&messages);
-        messages
+        Ok(messages)
     }
 
-    /// Sends a command as [`Self::send_bytes`] does; while the port is gone, it is dropped.
-    /// `request` is the number that the answer will have; 65534 is used by [`Self::messages`].
+    /// Sends a command as [`Self::send_bytes`] does. `request` is the number that the answer will
+    /// have; 65534 is used by [`Self::messages`].
     pub fn send(&mut self, request: u16, command: Command) {
         self.send_bytes(encode_command(request, command, &mut [0; MAX_WIRE]));
     }
 
-    /// Sends bytes and waits until the system has taken them for the port. While the port is gone,
-    /// they are dropped without a notice. If the system takes none for 0.5 s, the port counts as
-    /// gone, which is a notice, and the rest is dropped. Not checked: that the bytes fit into the
-    /// system's buffer, as a command does. The wait for more bytes has no limit if the port stops.
+    /// Sends bytes and waits until the system has taken them for the port. If it takes none for
+    /// 0.5 s, the port is gone, which the next call of [`Self::messages`] reports.
     pub fn send_bytes(&mut self, bytes: &[u8]) {
-        let Some(port) = &mut self.open else { return };
-        let sent = port
+        let sent = self
+            .port
             .set_timeout(ACCEPTANCE)
             .map_err(std::io::Error::from)
-            .and_then(|()| port.write_all(bytes));
+            .and_then(|()| self.port.write_all(bytes));
         if let Err(error) = sent {
-            self.gone(&error.to_string());
+            self.lost = Some(error.to_string());
         }
     }
 
-    /// Returns the bytes that have arrived, at most about 64 KiB.
-    fn read(&mut self) -> Vec<u8> {
+    /// Returns the bytes that have arrived, at most about 64 KiB, or the reason why the port is
+    /// gone.
+    fn read(&mut self) -> Result<Vec<u8>, String> {
+        self.port
+            .set_timeout(WAIT)
+            .map_err(|error| error.to_string())?;
         let mut bytes = Vec::new();
         let mut buffer = [0; 4096];
-        // The loop ends when no byte arrives in time, or the port is gone.
-        while bytes.len() < MOST_BYTES
-            && let Some(port) = &mut self.open
-        {
-            match port
-                .set_timeout(WAIT)
-                .map_err(std::io::Error::from)
-                .and_then(|()| port.read(&mut buffer))
-            {
-                Ok(count @ 1..) => bytes.extend(&buffer[..count]),
+        while bytes.len() < MOST_BYTES {
+            match self.port.read(&mut buffer) {
+                Ok(0) => return Err("no more bytes".to_owned()),
+                Ok(count) => bytes.extend(&buffer[..count]),
                 Err(error) if error.kind() == ErrorKind::Interrupted => {}
                 Err(error) if error.kind() == ErrorKind::TimedOut => break,
-                Ok(_) => self.gone("no more bytes"),
-                Err(error) => self.gone(&error.to_string()),
+                Err(error) => return Err(error.to_string()),
             }
         }
         self.bytes += bytes.len();
-        bytes
-    }
-
-    /// Notes that the port is gone, for this reason.
-    fn gone(&mut self, why: &str) {
-        self.open = None;
-        self.since = Instant::now();
-        if let Some(device) = &mut self.device {
-            device.gone(&node(&self.name), ports());
-        }
-        self.notices.push(gone(&self.name, why));
-    }
-
-    /// Opens the port again if it is back, not more often than [`RETRY`] allows.
-    fn reopen(&mut self) {
-        if self.since.elapsed() < RETRY {
-            return;
-        }
-
-        self.since = Instant::now();
-        self.bytes = 0;
-        self.complained = false;
-        self.open = open(&self.name).ok();
-        let mut notice = format!("{} is back", self.name);
-        // A USB device may return under another name.
-        if self.open.is_none()
-            && let Some(device) = &self.device
-            && let Some(name) = device.back(&ports())
-        {
-            self.open = open(name).ok();
-            if self.open.is_some() {
-                notice += &format!(" as {name}");
-                self.name = name.to_owned();
-            }
-        }
-
-        // A connection begins in the middle of a message.
-        if self.open.is_some() {
-            self.inbox.join();
-            self.restarts.join();
-            self.notices.push(notice);
-        }
+        Ok(bytes)
     }
 
     /// Reports a problem of the other end, or its recovery, by the messages or their absence.
@@ -232,7 +166,7 @@ impl Port {
             self.since = Instant::now();
             self.bytes = 0;
             self.complained = false;
-        } else if self.open.is_some() && !self.complained && self.since.elapsed() >= PATIENCE {
+        } else if !self.complained && self.since.elapsed() >= PATIENCE {
             self.complained = true;
             self.notices.push(self.silence());
         }
@@ -262,55 +196,33 @@ impl Port {
     }
 }
 
-/// Returns the notice of a port that has gone. Over USB, a board's restart looks like an unplugged
-/// cable; the board reports the cause when it is back.
+/// Returns the error of a port that has gone. Over USB, a board's restart looks like an unplugged
+/// cable.
 fn gone(name: &str, why: &str) -> String {
-    format!("{name} is gone ({why}): the cable is unplugged, or the board restarts; waiting for it")
+    format!("{name} is gone ({why}): the cable is unplugged, or the board has restarted")
 }
 
-/// Opens a port at the speed of the link.
-fn open(name: &str) -> serialport::Result<Box<dyn SerialPort>> {
-    serialport::new(name, BAUD).timeout(WAIT).open()
+/// Opens a port at the speed of the link. The error is the reason in one line.
+fn open(name: &str) -> Result<Box<dyn SerialPort>, String> {
+    let port = serialport::new(name, BAUD).timeout(WAIT).open();
+    port.map_err(|error| reason(name, &error))
+}
+
+/// Opens the board's port, which may not exist yet or may not have its access rights yet.
+fn open_auto() -> Result<(String, Box<dyn SerialPort>), String> {
+    let since = Instant::now();
+    loop {
+        let found = choose(&ports()).and_then(|name| open(&name).map(|port| (name, port)));
+        if found.is_ok() || since.elapsed() >= ARRIVAL {
+            return found;
+        }
+        sleep(RETRY);
+    }
 }
 
 /// Returns all serial ports; none if the system does not list them.
 fn ports() -> Vec<SerialPortInfo> {
     serialport::available_ports().unwrap_or_default()
-}
-
-/// Returns the device node of a name, which may be a symbolic link made by udev.
-fn node(name: &str) -> String {
-    fs::canonicalize(name).map_or(name.to_owned(), |path| path.display().to_string())
-}
-
-/// Opens the only port over USB. While `waits` returns true, this waits for a port that does not
-/// exist yet, and for the access rights of a new port.
-fn only_one<P>(
-    mut ports: impl FnMut() -> Vec<SerialPortInfo>,
-    mut open: impl FnMut(&str) -> serialport::Result<P>,
-    mut waits: impl FnMut() -> bool,
-) -> Result<(String, P), String> {
-    let mut has_waited = false;
-    loop {
-        // The only port, opened; or the reason why it is not open yet.
-        let found = ports();
-        let missing = match choose(&found) {
-            Ok(name) => match open(&name) {
-                Ok(port) => return Ok((name, port)),
-                Err(error) if has_waited => reason(&name, &error),
-                Err(error) => return Err(reason(&name, &error)),
-            },
-            // Several ports are ambiguous, and waiting does not help.
-            Err(several) if found.iter().any(|port| super::usb(port).is_some()) => {
-                return Err(several);
-            }
-            Err(none) => none,
-        };
-        has_waited = true;
-        if !waits() {
-            return Err(missing);
-        }
-    }
 }
 
 /// Makes a board at the port of this name restart in its boot loader, by opening the port at
@@ -421,77 +333,5 @@ mod tests {
         for name in ["/dev/null", "/nowhere/tty"] {
             assert_eq!(group(name), None, "{name}");
         }
-    }
-
-    fn usb_port(name: &str) -> SerialPortInfo {
-        SerialPortInfo {
-            port_name: name.to_owned(),
-            port_type: serialport::SerialPortType::UsbPort(serialport::UsbPortInfo {
-                vid: 0x16c0,
-                pid: 0x27dd,
-                serial_number: None,
-                manufacturer: None,
-                product: None,
-            }),
-        }
-    }
-
-    fn denial() -> serialport::Error {
-        let kind = serialport::ErrorKind::Io(ErrorKind::PermissionDenied);
-        serialport::Error::new(kind, "denied")
-    }
-
-    /// The port appears in the third search, and its access rights in the fifth.
-    #[test]
-    fn auto_waits_for_a_port_that_comes_and_for_its_rights() {
-        let mut looks = 0;
-        let mut tries = 0;
-        let mut waits = 0;
-        // No port is found in the first two searches, and the first two attempts to open it fail.
-        let ports = || {
-            looks += 1;
-            Vec::from_iter((looks > 2).then(|| usb_port("/dev/ttyACM0")))
-        };
-        let open = |_: &str| {
-            tries += 1;
-            if tries > 2 { Ok(7) } else { Err(denial()) }
-        };
-        let found = only_one(ports, open, || {
-            waits += 1;
-            waits < 9
-        });
-        assert_eq!((found, waits), (Ok(("/dev/ttyACM0".to_owned(), 7)), 4));
-    }
-
-    /// Without a port `auto` waits until its time is over and then fails. It fails without waiting
-    /// if the first port found is denied, or if two ports are there.
-    #[test]
-    fn auto_does_not_wait_for_ever_nor_after_a_final_error() {
-        // No port appears until the time is over.
-        let mut waits = 0;
-        let nothing = only_one(
-            Vec::new,
-            |_| Ok(()),
-            || {
-                waits += 1;
-                waits < 9
-            },
-        );
-        assert!(nothing.is_err_and(|reason| reason.contains("no board and no serial adapter")));
-        assert_eq!(waits, 9);
-
-        // A port without rights at the first attempt, and an ambiguous choice, are final.
-        for ports in [vec!["/dev/ttyACM0"], vec!["/dev/ttyACM0", "/dev/ttyACM1"]] {
-            let list = || ports.iter().map(|name| usb_port(name)).collect();
-            let refused = only_one(list, |_| Err::<(), _>(denial()), || panic!("it waits"));
-            assert!(refused.is_err());
-        }
-    }
-
-    /// The notice of a port that is gone names a restart of the board as a possible cause.
-    #[test]
-    fn a_port_that_ends_may_be_a_cable_or_a_restart() {
-        let notice = gone("/dev/ttyACM0", "Broken pipe");
-        assert!(notice.contains("or the board restarts"), "{notice}");
     }
 }

@@ -53,7 +53,7 @@ pub const BLANK: &str = "(fill in)";
 /// during the comparison is a fault. A later one is not, because the person at the board may have
 /// caused it. A board that this project does not know has only the checks that every board needs.
 /// Nothing is sent.
-pub fn section(port: &Port, name: &str, compared: u32) -> Section {
+pub fn section(port: &Port, name: &str, compared: u64) -> Section {
     let note = "The board reports its restarts itself. Please fill in the other rows as the check \
                 list in `firmware/README.md` describes; leave rows that do not apply.";
     let mut section = Section::new("Check list", note, &["what", "found"]);
@@ -61,7 +61,7 @@ pub fn section(port: &Port, name: &str, compared: u32) -> Section {
     let during = "restarts during the comparison";
     let fault = (compared > 0).then(|| format!("{during}: {compared}"));
     section.add(vec![during.to_owned(), compared.to_string()], fault);
-    for (what, found) in restarts(port.restarts.count, port.restarts.last.as_ref()) {
+    for (what, found) in restarts(port.inbox.counts.restarts, port.restarted.as_ref()) {
         section.add(vec![what.to_owned(), found], None);
     }
     let is_for = |check: &&Check| check.boards.is_empty() || check.boards.contains(&name);
@@ -72,7 +72,7 @@ pub fn section(port: &Port, name: &str, compared: u32) -> Section {
 }
 
 /// Returns the rows about the restarts that the board has reported at its port.
-fn restarts(count: u32, last: Option<&Restarted>) -> [(&'static str, String); 2] {
+fn restarts(count: u64, last: Option<&Restarted>) -> [(&'static str, String); 2] {
     [
         ("restarts during this verification", count.to_string()),
         (

@@ -122,7 +122,7 @@ pub fn run(options: &VerifyOptions) -> anyhow::Result<bool> {
         }
     })?;
     let measured = compare::measured(&mut talk)?;
-    let restarts = talk.port.restarts.count;
+    let restarts = talk.port.inbox.counts.restarts;
     drop(progress);
 
     // The person is asked after the long measurements.

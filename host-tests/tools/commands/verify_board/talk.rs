@@ -67,7 +67,7 @@ impl Talk {
             }
 
             // More messages, and the notices of the port, which explain a silence best.
-            self.arrived = self.port.messages().into_iter();
+            self.arrived = self.port.messages()?.into_iter();
             for new in self.port.notices.drain(..) {
                 complain_above(&new);
                 has_notice = true;
@@ -117,8 +117,7 @@ impl Talk {
 
     /// Sends a command with the request number 0 and returns the value of `kind` for the first
     /// answer with this number that `kind` accepts. Not checked: that this is no late answer to an
-    /// earlier command. Errors are as in [`Talk::next`]. While the port is gone, the command is
-    /// dropped, so that no answer arrives within 20 s.
+    /// earlier command. Errors are as in [`Talk::next`].
     pub fn ask<A>(
         &mut self,
         command: Command,

@@ -34,7 +34,7 @@ impl Source {
             Self::Live(machine) => machine.messages(),
             Self::Lockstep(machine) => machine.run_to_frame(),
             Self::Pico(machine) => machine.run_to_frame(),
-            Self::Port(port) => Ok(port.messages()),
+            Self::Port(port) => port.messages(),
         }
     }
 
