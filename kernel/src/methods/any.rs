@@ -114,6 +114,7 @@ macro_rules! motions {
 }
 
 /// Creates the motion of a pendulum from its start, in steps of `dt` seconds, for [`motions!`].
+#[inline(never)] // Inlined, each enum would have a copy.
 pub fn start<F: Form>(
     parameters: &Parameters<f64>,
     start: &State<f64>,
