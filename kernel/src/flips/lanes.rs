@@ -7,9 +7,12 @@
 //! A function that is not inlined is not compiled for the vectors of the caller's processor. Each
 //! `inline(always)` of this folder is therefore needed: with AVX2 a map takes 1.4 times as long if
 //! `step` is not inlined, 1.6 times if the stages are not, and 1.8 times if `ahead`, `changes` and
-//! `rates` are not. For the same reason the code uses loops instead of array methods.
+//! `rates` are not. For the same reason the code uses loops instead of array methods. The crate
+//! `wide` chooses its instructions when it is compiled itself: with AVX2 a map took 1.8 times as
+//! long.
 
 use crate::methods::DirectionF32Plain;
+use crate::methods::direction::{Coefficients, changes, missing, rates};
 use crate::numbers::Lanes;
 
 /// A number for each of `N` motions.
@@ -23,13 +26,7 @@ struct Point<const N: usize> {
 }
 
 /// The constants of the equations, the same in all lanes.
-#[derive(Clone, Copy, Debug)]
-struct Constants<const N: usize> {
-    norm: Numbers<N>,
-    inertia: Numbers<N>,
-    gravity: [Numbers<N>; 2],
-    half_inverse_square: Numbers<N>,
-}
+type Constants<const N: usize> = Coefficients<Numbers<N>>;
 
 /// A step in progress: the point of the next stage, and the weighted sum of the earlier stages.
 #[derive(Clone, Copy, Debug)]
@@ -52,12 +49,12 @@ pub(super) struct DirectionLanes<const N: usize, const ROWS: usize> {
 
 impl<const N: usize, const ROWS: usize> DirectionLanes<N, ROWS> {
     pub fn new(motion: &DirectionF32Plain) -> Self {
-        let (coefficients, half_inverse_square, z, inverse) = motion.parts();
+        let (coefficients, z, inverse) = motion.parts();
         let constants = Constants {
             norm: Lanes::splat(coefficients.norm),
             inertia: Lanes::splat(coefficients.inertia),
             gravity: coefficients.gravity.map(Lanes::splat),
-            half_inverse_square: Lanes::splat(half_inverse_square),
+            half_inverse_square: Lanes::splat(coefficients.half_inverse_square),
         };
         let start = Point {
             z: z.map(Lanes::splat),
@@ -71,7 +68,7 @@ impl<const N: usize, const ROWS: usize> DirectionLanes<N, ROWS> {
     /// Called before the first step or after the lengths are restored, because they are restored in
     /// all lanes at once.
     pub fn put(&mut self, lane: usize, motion: &DirectionF32Plain) {
-        let (_, _, z, inverse) = motion.parts();
+        let (_, z, inverse) = motion.parts();
         let numbers = z.into_iter().chain([inverse]);
         for (place, number) in self.lane(lane).zip(numbers) {
             *place = number;
@@ -178,13 +175,7 @@ impl<const N: usize> Constants<N> {
 
     #[inline(always)]
     fn rates(&self, at: &Point<N>) -> [Numbers<N>; 4] {
-        let [sin1, cos1, s, c, p1, p2] = at.z;
-        let [gravity1, gravity2] = self.gravity;
-        let u = (p1 - c * p2) * at.inverse;
-        let v = p2 - c * u;
-        let force = u * v * s;
-        let nu_sin2 = sin1 * c - cos1 * s;
-        [u, v, -(gravity1 * sin1) - force, force - gravity2 * nu_sin2]
+        rates(self.gravity, Lanes::splat(1.0), &at.z, at.inverse)
     }
 
     /// Restores the length 1 of direction 1 and the length nu of (S, C), to first order.
@@ -193,9 +184,8 @@ impl<const N: usize> Constants<N> {
         let half = Lanes::splat(0.5);
         // Direction 1 has the length 1, and (S, C) has the length `norm`.
         for (i, length, gain) in [(0, one, half), (2, self.norm, self.half_inverse_square)] {
-            let s = point.z[i];
-            let c = point.z[i + 1];
-            let missing = gain * ((length - c) * (length + c) - s * s);
+            let [s, c] = [point.z[i], point.z[i + 1]];
+            let missing = missing([s, c], length, gain, Lanes::splat(0.0));
             point.z[i] = s + s * missing;
             point.z[i + 1] = c + c * missing;
         }
@@ -218,15 +208,4 @@ impl<const N: usize> Point<N> {
             inverse: self.inverse - fall,
         }
     }
-}
-
-/// Returns the rates of change of the six quantities at `z`, where u, v, P1' and P2' are known.
-#[inline(always)]
-fn changes<const N: usize>(
-    z: &[Numbers<N>; 6],
-    [u, v, p1, p2]: [Numbers<N>; 4],
-) -> [Numbers<N>; 6] {
-    let [sin1, cos1, s, c, ..] = *z;
-    let w = u - v;
-    [cos1 * u, -(sin1 * u), c * w, -(s * w), p1, p2]
 }

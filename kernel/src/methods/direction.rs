@@ -18,15 +18,20 @@
 //! (cos a1)' = -u sin a1     C' = -(u - v) S      P2' = -G2 (C sin a1 - S cos a1) + F
 //! ```
 //!
-//! Each method has its own copy of these equations, in its own numbers. The unit test
-//! `every_form_is_that_of_hamiltons_equations` compares each copy with Hamilton's equations.
+//! Fixed point of 32 and of 64 bits has its own copy each; in floating point all methods share
+//! [`rates`] and [`changes`]. The unit test `every_form_is_that_of_hamiltons_equations` compares
+//! them with Hamilton's equations.
 //!
 //! # Contents of this file
 //!
 //! - the conversion between these six quantities and a [`State`]: [`quantities`], [`state_of`];
-//! - the constants of the equations in floating point: [`Coefficients`], [`prepare`];
+//! - the equations in floating point: [`rates`], [`changes`];
+//! - their constants: [`Coefficients`], [`prepare`];
+//! - the six quantities as sums: [`Sums`];
 //! - the bookkeeping of a step that is not exactly dt, because its constants are rounded:
 //!   [`Scale`], [`Lead`].
+
+use core::ops::{Add, Mul, Neg, Sub};
 
 use crate::bounds::check_step;
 use crate::error::{Error, Parameter};
@@ -77,6 +82,50 @@ pub(crate) fn directions<R: Real>(z: &[R; 6], norm: R) -> [Direction<R>; 2] {
     [[sin1, cos1], [sin2 * inverse, cos2 * inverse]]
 }
 
+/// The numbers of the equations: one number, or one in each lane.
+pub(crate) trait Number:
+    Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Neg<Output = Self>
+{
+}
+
+impl<N> Number for N where
+    N: Copy + Add<Output = N> + Sub<Output = N> + Mul<Output = N> + Neg<Output = N>
+{
+}
+
+/// Returns u = a1', v = a2', P1' and P2' at `z`, where `r` is 1/(m + S^2). They are changes over
+/// `share` of the unit of time, and `gravity` is G1 and G2 times that.
+#[inline(always)] // 2 % fewer cycles on an M3; lanes need it (`flips/lanes.rs`).
+pub(crate) fn rates<N: Number>([gravity1, gravity2]: [N; 2], share: N, z: &[N; 6], r: N) -> [N; 4] {
+    let [sin1, cos1, s, c, p1, p2] = *z;
+    let velocity1 = (p1 - c * p2) * r;
+    let velocity2 = p2 - c * velocity1;
+    let u = share * velocity1;
+    let force = u * velocity2 * s;
+    let nu_sin2 = sin1 * c - cos1 * s;
+    [
+        u,
+        share * velocity2,
+        -(gravity1 * sin1) - force,
+        force - gravity2 * nu_sin2,
+    ]
+}
+
+/// Returns the rates of change of the six quantities at `z` for the result of [`rates`].
+#[inline(always)]
+pub(crate) fn changes<N: Number>(z: &[N; 6], [u, v, p1, p2]: [N; 4]) -> [N; 6] {
+    let [sin1, cos1, s, c, ..] = *z;
+    let w = u - v;
+    [cos1 * u, -(sin1 * u), c * w, -(s * w), p1, p2]
+}
+
+/// Returns the share by which (s, c) is too short, to first order. `gain` is 1/(2 `length`^2), and
+/// `lost` the part of (s^2 + c^2)/2 that rounding has lost.
+#[inline(always)]
+pub(crate) fn missing<N: Number>([s, c]: [N; 2], length: N, gain: N, lost: N) -> N {
+    gain * (((length - c) * (length + c) - s * s) - (lost + lost))
+}
+
 /// The constants of the equations of this module, which have no dimension.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Coefficients<R> {
@@ -86,6 +135,54 @@ pub(crate) struct Coefficients<R> {
     pub inertia: R,
     /// G1 and G2.
     pub gravity: [R; 2],
+    /// 1/(2 nu^2).
+    pub half_inverse_square: R,
+}
+
+impl<R: Real> Coefficients<R> {
+    /// Returns r = 1/(m + S^2) where S is `s`.
+    pub fn inverse_at(&self, s: R) -> R {
+        R::ONE / (self.inertia + s * s)
+    }
+}
+
+/// The six quantities of a motion. If `COMPENSATED`, the rounding error of each addition is carried
+/// into the next.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Sums<R, const COMPENSATED: bool> {
+    /// sin a1, cos a1, S, C, P1 and P2.
+    pub z: [R; 6],
+    /// The rounding errors of the last addition to `z`; zero if not `COMPENSATED`.
+    pub lost: [R; 6],
+}
+
+impl<R: Real, const COMPENSATED: bool> Sums<R, COMPENSATED> {
+    /// Adds `increment` to quantity `i`.
+    pub fn add(&mut self, i: usize, increment: R) {
+        if COMPENSATED {
+            let wanted = increment + self.lost[i];
+            let sum = self.z[i] + wanted;
+            self.lost[i] = wanted - (sum - self.z[i]);
+            self.z[i] = sum;
+        } else {
+            self.z[i] = self.z[i] + increment;
+        }
+    }
+
+    /// Restores sin^2 a1 + cos^2 a1 = 1 and S^2 + C^2 = nu^2, to first order in the error.
+    pub fn restore_lengths(&mut self, coefficients: &Coefficients<R>) {
+        let pairs = [
+            (0, R::ONE, R::HALF),
+            (2, coefficients.norm, coefficients.half_inverse_square),
+        ];
+        for (i, length, gain) in pairs {
+            let [s, c] = [self.z[i], self.z[i + 1]];
+            let lost = s * self.lost[i] + c * self.lost[i + 1];
+            let missing = missing([s, c], length, gain, lost);
+            self.add(i, s * missing);
+            self.add(i + 1, c * missing);
+        }
+    }
 }
 
 /// The units of a motion in floating point, in SI units. Used at input and output only.
@@ -133,10 +230,12 @@ pub(crate) fn prepare<R: Real>(
         unit * libm::sqrt(gravity2.to_f64() / wanted)
     };
 
+    let rounded_norm = R::from_f64(norm);
     let coefficients = Coefficients {
-        norm: R::from_f64(norm),
+        norm: rounded_norm,
         inertia: R::from_f64(inertia),
         gravity: [gravity1, gravity2],
+        half_inverse_square: R::HALF / (rounded_norm * rounded_norm),
     };
     let scale = Scale {
         momentum: time / (m2 * l2 * l2),

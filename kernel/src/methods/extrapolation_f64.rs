@@ -3,14 +3,7 @@
 //! # Equations
 //!
 //! With the quantities of the [direction form](crate::methods::direction) and a whole step as the
-//! unit of time, the slope that a row of n substeps adds is the change over 2 h = 2/n:
-//!
-//! ```text
-//! r = 1/(m + S^2)      u = a1' = (P1 - C P2) r      v = a2' = P2 - C u      F = u v S
-//!
-//! (sin a1)' = u cos a1      S' = (u - v) C       P1' = -G1 sin a1 - F
-//! (cos a1)' = -u sin a1     C' = -(u - v) S      P2' = -G2 (C sin a1 - S cos a1) + F
-//! ```
+//! unit of time, the slope that a row of n substeps adds is the change over 2 h = 2/n.
 //!
 //! # Order of computation
 //!
@@ -20,7 +13,9 @@
 //! same on every machine.
 
 use crate::error::{Error, Parameter, check_finite};
-use crate::methods::direction::{Coefficients, Scale, directions, prepare, quantities};
+use crate::methods::direction::{
+    Coefficients, Scale, Sums, changes, directions, prepare, quantities, rates,
+};
 use crate::methods::extrapolation::{Extrapolation, ROWS, is_order, stable};
 use crate::methods::{Advance, FormOperations};
 use crate::numbers::{Lanes, Real, RealOperations};
@@ -44,14 +39,9 @@ type Numbers = Lanes<f64, LANES>;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ExtrapolationF64<const ORDER: u32> {
     coefficients: Coefficients<f64>,
-    /// 1/(2 nu^2).
-    half_inverse_square: f64,
     scale: Scale,
     method: Extrapolation<f64>,
-    /// sin a1, cos a1, S, C, P1 and P2.
-    z: [f64; 6],
-    /// The rounding errors of the last addition to `z`.
-    lost: [f64; 6],
+    sums: Sums<f64, true>,
     /// r = 1/(m + S^2).
     inverse: f64,
     /// The number of steps since the start.
@@ -92,9 +82,9 @@ impl<const ORDER: u32> ExtrapolationF64<ORDER> {
     fn step(&mut self) {
         let change = self.change();
         for (i, change) in change.into_iter().enumerate() {
-            self.add(i, change);
+            self.sums.add(i, change);
         }
-        self.restore_lengths();
+        self.sums.restore_lengths(&self.coefficients);
     }
 
     /// Returns the change of the six quantities over one step.
@@ -205,77 +195,16 @@ impl<const ORDER: u32> ExtrapolationF64<ORDER> {
 
     /// Returns the change over 2 h at the points that are `change` away from the start of the step.
     fn slope(&self, pace: &Pace, change: &[Numbers; 6]) -> [Numbers; 6] {
-        let z: [Numbers; 6] = core::array::from_fn(|i| Numbers::splat(self.z[i]) + change[i]);
-        let [sin1, cos1, s, c, p1, p2] = z;
-        let [gravity1, gravity2] = pace.gravity;
-
-        let denominator = Numbers::splat(self.coefficients.inertia) + s * s;
-        let r = Lanes(denominator.0.map(|denominator| 1.0 / denominator));
-        let u = (p1 - c * p2) * r;
-        let v = p2 - c * u;
-
-        // From here on, u and v are angles over 2 h.
-        let u = pace.share * u;
-        let force = u * v * s;
-        let v = pace.share * v;
-        let w = u - v;
-        let nu_sin2 = sin1 * c - cos1 * s;
-        [
-            cos1 * u,
-            -(sin1 * u),
-            c * w,
-            -(s * w),
-            -(gravity1 * sin1) - force,
-            force - gravity2 * nu_sin2,
-        ]
+        let start = &self.sums.z;
+        let z: [Numbers; 6] = core::array::from_fn(|i| Numbers::splat(start[i]) + change[i]);
+        let r = Lanes(z[2].0.map(|s| self.coefficients.inverse_at(s)));
+        changes(&z, rates(pace.gravity, pace.share, &z, r))
     }
 
     /// Returns the rates of change at `z`, per step.
     fn rates(&self, z: &[f64; 6]) -> [f64; 6] {
-        let [sin1, cos1, s, c, p1, p2] = *z;
-        let [gravity1, gravity2] = self.coefficients.gravity;
-
-        // The angular velocities follow from the momenta.
-        let u = (p1 - c * p2) * self.inverse_at(s);
-        let v = p2 - c * u;
-        let force = u * v * s;
-        let w = u - v;
-
-        // The sine of rod 2 follows from rod 1 and the elbow.
-        let nu_sin2 = sin1 * c - cos1 * s;
-        [
-            cos1 * u,
-            -(sin1 * u),
-            c * w,
-            -(s * w),
-            -(gravity1 * sin1) - force,
-            force - gravity2 * nu_sin2,
-        ]
-    }
-
-    /// Returns r = 1/(m + S^2) where S is `s`.
-    fn inverse_at(&self, s: f64) -> f64 {
-        1.0 / (self.coefficients.inertia + s * s)
-    }
-
-    /// Adds `increment` to component `i` of the state, with compensation.
-    fn add(&mut self, i: usize, increment: f64) {
-        let wanted = increment + self.lost[i];
-        let sum = self.z[i] + wanted;
-        self.lost[i] = wanted - (sum - self.z[i]);
-        self.z[i] = sum;
-    }
-
-    /// Restores sin^2 a1 + cos^2 a1 = 1 and S^2 + C^2 = nu^2, to first order in the error.
-    fn restore_lengths(&mut self) {
-        let nu = self.coefficients.norm;
-        for (i, length, gain) in [(0, 1.0, 0.5), (2, nu, self.half_inverse_square)] {
-            let [s, c] = [self.z[i], self.z[i + 1]];
-            let lost = s * self.lost[i] + c * self.lost[i + 1];
-            let missing = gain * (((length - c) * (length + c) - s * s) - (lost + lost));
-            self.add(i, s * missing);
-            self.add(i + 1, c * missing);
-        }
+        let r = self.coefficients.inverse_at(z[2]);
+        changes(z, rates(self.coefficients.gravity, 1.0, z, r))
     }
 }
 
@@ -285,9 +214,8 @@ impl<const ORDER: u32> Advance for ExtrapolationF64<ORDER> {
         let z = quantities(start, self.coefficients.norm, [self.scale.momentum; 2]);
         self.scale.check::<f64>([z[4], z[5]])?;
         Ok(Self {
-            z,
-            lost: [0.0; 6],
-            inverse: self.inverse_at(z[2]),
+            sums: Sums { z, lost: [0.0; 6] },
+            inverse: self.coefficients.inverse_at(z[2]),
             steps: 0,
             ..*self
         })
@@ -298,12 +226,12 @@ impl<const ORDER: u32> Advance for ExtrapolationF64<ORDER> {
         for _ in 0..steps {
             self.step();
         }
-        self.inverse = self.inverse_at(self.z[2]);
+        self.inverse = self.coefficients.inverse_at(self.sums.z[2]);
         self.steps += u64::from(steps);
     }
 
     fn check(&self) -> Result<(), Error> {
-        let [sin1, cos1, s, c, p1, p2] = self.z;
+        let [sin1, cos1, s, c, p1, p2] = self.sums.z;
         let [_, [sin2, cos2]] = self.directions::<f64>();
         let unit = self.scale.momentum;
 
@@ -322,24 +250,24 @@ impl<const ORDER: u32> Advance for ExtrapolationF64<ORDER> {
     }
 
     fn sides(&self) -> [[i32; 2]; 2] {
-        let [sin1, cos1, s, c, ..] = self.z;
+        let [sin1, cos1, s, c, ..] = self.sums.z;
         let sin2 = sin1 * c - cos1 * s;
         let cos2 = cos1 * c + sin1 * s;
         [[sin1.side(), cos1.side()], [sin2.side(), cos2.side()]]
     }
 
     fn directions<Q: Real>(&self) -> [Direction<Q>; 2] {
-        directions(&self.z, self.coefficients.norm).map(|direction| direction.map(f64::cast))
+        directions(&self.sums.z, self.coefficients.norm).map(|direction| direction.map(f64::cast))
     }
 
     fn momenta<Q: Real>(&self) -> [Q; 2] {
-        let [.., p1, p2] = self.z;
+        let [.., p1, p2] = self.sums.z;
         [p1, p2].map(|p| (p / self.scale.momentum).cast())
     }
 
     fn state(&self) -> State<f64> {
         self.scale
-            .state(&|z| self.rates(z), &self.z, self.lost, self.steps)
+            .state(&|z| self.rates(z), &self.sums.z, self.sums.lost, self.steps)
     }
 }
 
@@ -352,11 +280,12 @@ impl<const ORDER: u32> FormOperations for ExtrapolationF64<ORDER> {
         let (coefficients, scale) = prepare(parameters, dt, 1.0)?;
         let motion = Self {
             coefficients,
-            half_inverse_square: 0.5 / (coefficients.norm * coefficients.norm),
             scale,
             method: Extrapolation::new(ORDER)?,
-            z: [0.0; 6],
-            lost: [0.0; 6],
+            sums: Sums {
+                z: [0.0; 6],
+                lost: [0.0; 6],
+            },
             inverse: 0.0,
             steps: 0,
         };
@@ -368,8 +297,8 @@ impl<const ORDER: u32> FormOperations for ExtrapolationF64<ORDER> {
     }
 
     fn bits(&self, mut feed: impl FnMut(u64)) {
-        self.z.iter().for_each(|z| feed(z.to_bits()));
-        self.lost.iter().for_each(|lost| feed(lost.to_bits()));
+        self.sums.z.iter().for_each(|z| feed(z.to_bits()));
+        self.sums.lost.iter().for_each(|lost| feed(lost.to_bits()));
         feed(self.inverse.to_bits());
         feed(self.steps);
     }
@@ -410,7 +339,7 @@ mod tests {
                 ),
             ] {
                 let mut wrong = motion;
-                wrong.z[i] = momentum;
+                wrong.sums.z[i] = momentum;
                 assert_eq!(wrong.check(), expected, "{parameter:?}: {momentum:e}");
             }
         }
@@ -421,11 +350,11 @@ mod tests {
     #[test]
     fn rates_are_the_change_over_a_short_step() -> Result<(), Error> {
         let mut motion = ExtrapolationF64::<4>::new(&PARAMETERS, &START, 1e-6)?;
-        let before = motion.z;
+        let before = motion.sums.z;
         let rates = motion.rates(&before);
         motion.advance(1);
         for i in 0..6 {
-            let error = motion.z[i] - before[i] - rates[i];
+            let error = motion.sums.z[i] - before[i] - rates[i];
             assert!(error.abs() <= 1e-5 * rates[i].abs(), "{i}: {error:e}");
         }
         Ok(())
