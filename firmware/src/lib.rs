@@ -94,11 +94,13 @@
 //!
 //! Drawing:
 //!
-//! - **canvas**: 128 x 64 pixels of 16 greys ([`graphics::Canvas`]).
+//! - **format**: the size of a panel and of its text ([`graphics::Format`]).
+//! - **canvas**: the picture in two layers of 16 levels ([`graphics::Canvas`]).
 //! - **grey, brightness**: of a pixel, 0 (black) to 15; of a brush, 0 (black) to 255 (grey 15).
-//! - **ink, fade layer**: the traces of earlier frames, which may fade ([`graphics::FadeLayer`]).
-//! - **frame buffers**: the canvas and the ink of the application ([`graphics::FrameBuffers`]).
-//! - **subpixel**: 1/64 of a pixel.
+//! - **ink**: the layer of the traces of earlier frames, which may fade.
+//! - **foreground**: the layer over the ink, drawn anew in each frame.
+//! - **frame buffers**: the memory of the canvas ([`graphics::FrameBuffers`]).
+//! - **subpixel**: 1/32 of a pixel.
 //! - **panel**: the display hardware.
 //! - **controller**: the chip on the panel, such as an SSD1306 ([`display::Controller`]).
 //! - **outbox**: the bytes that an interrupt sends to a panel ([`display::Outbox`]).

@@ -11,7 +11,7 @@ use double_pendulum::State;
 use firmware::app::{App, NoButtons};
 use firmware::config::{CORTEX_M3, PROCESSORS};
 use firmware::display::NoDisplay;
-use firmware::graphics::{FrameBuffers, Place, View};
+use firmware::graphics::{Format, FrameBuffers, View};
 use firmware::protocol::{
     Answer, Command, Decoder, Frame, MAX_WIRE, Status, ToHost, encode_command, read,
 };
@@ -23,6 +23,10 @@ use serde::Serialize;
 fn panic(_: &core::panic::PanicInfo) -> ! {
     core::arch::wasm32::unreachable()
 }
+
+/// The panels of a board here, the first of them in use.
+const FORMATS: [Format; 1] = [Format::OLED];
+const LARGEST: Format = Format::new(320, 240, 2);
 
 /// The board of this instance; `None` before [`start`].
 static mut BOARD: Option<Board> = None;
@@ -52,12 +56,8 @@ struct Readings {
 
 impl Readings {
     /// Returns the joints of the last frame, with the parameters of the last status.
-    fn joints(&self) -> Option<[(f32, f32); 3]> {
-        let place = match self.frame.scene {
-            SceneName::Page => Place::WHOLE,
-            SceneName::Figure7 | SceneName::Butterfly | SceneName::Upright => Place::HALVES[0],
-            _ => return None,
-        };
+    fn joints(&self, format: Format) -> Option<[(f32, f32); 3]> {
+        let place = self.frame.scene.place(format)?;
         let State { a1, a2, .. } = self.frame.report.state;
         let directions = [a1, a2].map(|angle| [libm::sinf(angle), libm::cosf(angle)]);
         let view = View::new(&self.status?.settings.parameters, place, directions);
@@ -104,7 +104,7 @@ fn run(act: impl FnOnce(&mut Application)) -> usize {
                 _ => {}
             }
         }
-        board.readings.joints = board.readings.joints();
+        board.readings.joints = board.readings.joints(board.app.player.canvas.format);
         serde_json_core::to_slice(&board.readings, &mut board.text).unwrap_or_default()
     })
 }
@@ -127,14 +127,15 @@ exports! {
     /// [`run_to`]. Returns the length of the readings ([`text`]). Later calls do nothing and
     /// return 0.
     start(processor: usize) => if with(|_| true) { 0 } else {
-        static mut BUFFERS: FrameBuffers = FrameBuffers::BLANK;
+        static mut BUFFERS: FrameBuffers<{ LARGEST.words() }, { LARGEST.height as usize }> =
+            FrameBuffers::BLANK;
         static mut PANEL: NoDisplay = NoDisplay;
         let processor = PROCESSORS.get(processor).copied().unwrap_or(CORTEX_M3);
         let parts = (&raw mut BUFFERS, &raw mut PANEL, &raw mut BOARD);
         // SAFETY: only the first call reaches this, so these are the only references.
         let (buffers, panel, board) = unsafe { (&mut *parts.0, &mut *parts.1, &mut *parts.2) };
         *board = Some(Board {
-            app: App::new(processor, buffers, panel, Vec::new(), NoButtons),
+            app: App::new(processor, buffers.canvas(FORMATS[0]), panel, Vec::new(), NoButtons),
             decoder: Decoder::default(),
             readings: Readings::default(),
             text: [0; 2048],
@@ -161,9 +162,9 @@ exports! {
     /// write the [`Readings`] there, as JSON, and return their length, bytes. Returns 0 if the
     /// board has not started.
     text() => with(|board| board.text.as_ptr() as usize);
-    /// Returns the address of the canvas, 64 rows of 128 pixels from the top: two greys of 0 to 15
-    /// in a byte, the left one high. It stays the same. Returns 0 if the board has not started.
-    canvas() => with(|board| board.app.canvas.rows.as_ptr() as usize);
+    /// Returns the address of the canvas, row by row from the top: a byte for each pixel, ink high
+    /// and foreground low. It stays the same. Returns 0 if the board has not started.
+    canvas() => with(|board| board.app.player.canvas.row(0).as_ptr() as usize);
     /// Returns the address of the bytes that the board has sent in the last call of [`start`],
     /// [`run_to`] or [`command`] that did not return 0: its messages, the status at the end. A
     /// message that would exceed 1,024 bytes in all is lost. Returns 0 if the board has not

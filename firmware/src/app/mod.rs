@@ -13,7 +13,7 @@ use crate::config::{
     MOST_MEASURED_STEPS, MOST_MESSAGES_PER_TICK, MOST_TICKS_PER_FRAME, Processor, RECEIVE_QUEUE,
 };
 use crate::display::{Controller, Display};
-use crate::graphics::{Canvas, FrameBuffers};
+use crate::graphics::Canvas;
 use crate::job::{BoardMotion, Job, Request};
 use crate::protocol::{
     Answer, Command, Decoder, Field, Frame, LinkError, MAX_WIRE, PlayState, Restarted, Status,
@@ -47,8 +47,6 @@ pub struct App<'a, Panel, Link, Keys> {
     decoder: Decoder,
     /// The last requested motion, and the number of its command, which the answers repeat.
     work: Option<(u16, Job)>,
-    /// The last frame drawn.
-    pub canvas: &'a mut Canvas,
     /// The last tick of the clock that is completed; wraps.
     ticks: u32,
     /// The number of frames drawn since reset, also those that the panel or the link did not take;
@@ -72,7 +70,7 @@ pub struct App<'a, Panel, Link, Keys> {
 
 impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> {
     /// Creates an application that does not play yet: it shows an empty figure until a command, or
-    /// [`Player::play`], starts a scene. The ink of `buffers` is not cleared before that. The clock
+    /// [`Player::play`], starts a scene. The canvas is not cleared before that. The clock
     /// is at tick 0, and nothing is sent yet. `processor` has the prices and budgets of the player.
     ///
     /// The start of a scene needs much stack. So it is better done when the application is at its
@@ -81,7 +79,7 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
     #[inline(never)]
     pub fn new(
         processor: Processor,
-        FrameBuffers { canvas, ink }: &'a mut FrameBuffers,
+        canvas: Canvas<'a>,
         panel: &'a mut Panel,
         link: Link,
         keys: Keys,
@@ -91,10 +89,9 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
             link,
             keys,
             controls: Controls::default(),
-            player: Player::new(processor, ink),
+            player: Player::new(processor, canvas),
             decoder: Decoder::default(),
             work: None,
-            canvas,
             ticks: 0,
             frames: 0,
             dropped: ThrottledCounter::default(),
@@ -190,7 +187,7 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
         }
 
         // Draw, show and send the frame.
-        self.player.draw(self.canvas);
+        self.player.draw();
         let scene_cycles = (self.instruments.stopwatch)().wrapping_sub(start);
         self.show(scene_cycles, &mut log);
         self.busy_cycles = (self.instruments.stopwatch)().wrapping_sub(start);
@@ -201,7 +198,7 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
     /// Returns true if it still waits; false if its transfer has begun, or if none waited. Does not
     /// wait for the transfer. An error is logged by a later [`run_to`](Self::run_to).
     pub fn catch_up(&mut self) -> bool {
-        self.panel.catch_up(self.canvas)
+        self.panel.catch_up(&self.player.canvas)
     }
 
     /// Takes bytes received over the link, executes the commands and answers them. An impossible or
@@ -370,7 +367,12 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
     #[inline(never)] // Test `scenes` profiles it by its name.
     fn show(&mut self, scene_cycles: u32, log: &mut impl Log<Panel, Link>) {
         // The panel.
-        let shown = self.panel.flush(self.canvas);
+        let canvas = &mut self.player.canvas;
+        let shown = self.panel.flush(canvas);
+        match shown {
+            Ok(()) => canvas.settle(),
+            Err(_) => canvas.touch_all(),
+        }
         self.panel_failing
             .note(shown, |error| log(Event::Panel(error)));
         if let Some(found) = self.panel.found() {

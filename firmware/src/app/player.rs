@@ -6,7 +6,7 @@ use double_pendulum::{Error, Method};
 use crate::app::pace::Pace;
 use crate::config::{GREATEST_ANGLE, Processor};
 use crate::display::PanelReport;
-use crate::graphics::{Anchor, Canvas, FadeLayer, LINE, label, text};
+use crate::graphics::{Anchor, Canvas, label, text};
 use crate::motion::{CatchingUp, Horizon, PlanResult, Planned, Planner, Resources, Settings};
 use crate::protocol::{Command, Field, Frame, PlayState, Status};
 use crate::scenes::{AnyScene, Report, SceneName};
@@ -36,7 +36,8 @@ pub struct Player<'a> {
     method: Option<Method>,
     motion: MotionState,
     planner: Planner,
-    ink: &'a mut FadeLayer,
+    /// The last frame drawn.
+    pub canvas: Canvas<'a>,
     pace: Pace,
     /// The report that is drawn and sent: of the start, or of the last [`check`](Self::check).
     pub report: Report,
@@ -68,8 +69,8 @@ impl<'a> Player<'a> {
     /// Creates the player for a processor of this class. It shows an empty figure until a scene is
     /// played. Its name is until then [`SceneName::Frequencies`], with the default settings, which
     /// a command such as [`Command::Restart`] starts. The pace is full speed, not paused, and no
-    /// method is requested. The ink is not cleared before a scene starts.
-    pub fn new(processor: Processor, ink: &'a mut FadeLayer) -> Self {
+    /// method is requested. The canvas is not cleared before a scene starts.
+    pub fn new(processor: Processor, canvas: Canvas<'a>) -> Self {
         let scene = AnyScene::empty();
         let report = scene.report(0);
         Self {
@@ -79,7 +80,7 @@ impl<'a> Player<'a> {
             method: None,
             motion: MotionState::FollowsPlan,
             planner: Planner::new(processor),
-            ink,
+            canvas,
             pace: Pace::default(),
             report,
         }
@@ -115,6 +116,7 @@ impl<'a> Player<'a> {
         let resources = Resources {
             processor: self.planner.processor,
             method,
+            format: self.canvas.format,
         };
         let height = self.scene.start(name, &settings, &resources)?;
 
@@ -135,7 +137,7 @@ impl<'a> Player<'a> {
         self.planner
             .start(&settings, height, initial, keeps_initial);
 
-        *self.ink = FadeLayer::NONE;
+        self.canvas.blank(name.palette());
         self.report = self.now();
         Ok(())
     }
@@ -211,7 +213,7 @@ impl<'a> Player<'a> {
             return;
         }
         for _ in 0..self.pace.tick() {
-            self.scene.tick(self.planner.ticks + 1, self.ink);
+            self.scene.tick(self.planner.ticks + 1, &mut self.canvas);
 
             // Either the planned motion catches up, or the planner works.
             if let MotionState::Switching(next) = &mut self.motion {
@@ -369,35 +371,35 @@ impl<'a> Player<'a> {
     /// that it is too fast, for this method if one is requested and otherwise for this chip, and
     /// the mass ratio and the start angle of rod 1.
     #[inline(never)] // Test `scenes` profiles it by its name.
-    pub fn draw(&self, canvas: &mut Canvas) {
+    pub fn draw(&mut self) {
         match self.state() {
-            PlayState::Playing => self.scene.draw(&self.report, self.ink, canvas),
+            PlayState::Playing => self.scene.draw(&self.report, &mut self.canvas),
             PlayState::Paused => {
-                self.scene.draw(&self.report, self.ink, canvas);
-                text::pause_mark(canvas);
+                self.scene.draw(&self.report, &mut self.canvas);
+                text::pause_mark(&mut self.canvas);
             }
-            PlayState::Stopped => self.draw_stopped(canvas),
+            PlayState::Stopped => self.draw_stopped(),
         }
     }
 
     /// Writes that the motion is too fast, and the numbers that a user can change by the buttons.
-    fn draw_stopped(&self, canvas: &mut Canvas) {
-        // A copy, by `clone_from`, would take 4 KB of flash for the zeros.
-        *canvas = Canvas::BLACK;
+    fn draw_stopped(&mut self) {
         let of = match self.method {
             None => "for this chip",
             Some(_) => "for this method",
         };
-        text::write(canvas, "too fast", Anchor::Middle(2 * LINE));
-        text::write(canvas, of, Anchor::Middle(3 * LINE));
         let [angle, _] = self.settings.degrees;
         let mass_ratio = label::mass_ratio(self.settings.mass_ratio());
-        text::write(canvas, &mass_ratio, Anchor::Middle(5 * LINE));
-        text::write(
-            canvas,
-            &label::degrees("α ", angle),
-            Anchor::Middle(6 * LINE),
-        );
+        let angle = label::degrees("α ", angle);
+
+        // A stopped scene needs its ink no more.
+        self.canvas.clear_ink();
+        let canvas = self.canvas.on_clear_foreground();
+        let line = canvas.format.line();
+        let top = (canvas.format.bottom() - 8 * line) / 2;
+        for (number, words) in [(2, "too fast"), (3, of), (5, &mass_ratio), (6, &angle)] {
+            text::write(canvas, words, Anchor::Middle(top + number * line));
+        }
     }
 
     /// Returns true if the scene does not advance on its own: it is paused, also with ticks left of

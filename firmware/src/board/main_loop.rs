@@ -16,7 +16,7 @@ use super::serial;
 use crate::app::{App, Buttons, Event, Instruments, Journal, MOST_RESTARTS, PlannerEvent, Record};
 use crate::config::{HALF_PIXEL, Processor};
 use crate::display::{Display, Found};
-use crate::graphics::FrameBuffers;
+use crate::graphics::Canvas;
 use crate::motion::Settings;
 use crate::protocol::{Cause, Field, Restarted};
 use crate::scenes::SceneName;
@@ -62,8 +62,10 @@ macro_rules! program {
     ($module:ident::$board:ident on $processor:ident) => {
         #[cortex_m_rt::entry]
         fn main() -> ! {
-            static mut BUFFERS: $crate::graphics::FrameBuffers =
-                $crate::graphics::FrameBuffers::BLANK;
+            static mut BUFFERS: $crate::graphics::FrameBuffers<
+                { $crate::board::$module::FORMAT.words() },
+                { $crate::board::$module::FORMAT.height as usize },
+            > = $crate::graphics::FrameBuffers::BLANK;
             static mut PANEL: core::mem::MaybeUninit<
                 <$crate::board::$module::$board as $crate::board::Plays>::Panel,
             > = core::mem::MaybeUninit::uninit();
@@ -73,7 +75,12 @@ macro_rules! program {
             let Some(board) = $crate::board::$module::take() else {
                 panic!("the board was taken before")
             };
-            board.play(APP, PANEL, BUFFERS, $crate::config::$processor)
+            board.play(
+                APP,
+                PANEL,
+                BUFFERS.canvas($crate::board::$module::FORMAT),
+                $crate::config::$processor,
+            )
         }
     };
 }
@@ -82,7 +89,7 @@ impl<Panel: Display<Error: fmt::Display> + 'static, Link: Write, Keys: Buttons, 
     Board<Panel, Link, Keys, Dog>
 {
     /// Runs the application for ever, and sleeps between the ticks. The application and the driver
-    /// of the panel are put at the given places, and draw in `buffers`. What these three contained
+    /// of the panel are put at the given places, and draw on `canvas`. What these three contained
     /// is overwritten. `processor` is the class whose prices and budgets the planner uses. Not
     /// checked: it is the class of this board.
     ///
@@ -100,7 +107,7 @@ impl<Panel: Display<Error: fmt::Display> + 'static, Link: Write, Keys: Buttons, 
         self,
         place: &'static mut MaybeUninit<App<'static, Panel, Link, Keys>>,
         panel_place: &'static mut MaybeUninit<Panel>,
-        buffers: &'static mut FrameBuffers,
+        canvas: Canvas<'static>,
         processor: Processor,
     ) -> ! {
         let Self {
@@ -118,7 +125,7 @@ impl<Panel: Display<Error: fmt::Display> + 'static, Link: Write, Keys: Buttons, 
         );
 
         let panel = panel_place.write(panel);
-        let app = application(place, buffers, panel, link, keys, processor);
+        let app = application(place, canvas, panel, link, keys, processor);
         app.instruments = instruments;
         run(app, watchdog, reset_by_watchdog)
     }
@@ -129,13 +136,13 @@ impl<Panel: Display<Error: fmt::Display> + 'static, Link: Write, Keys: Buttons, 
 #[inline(never)]
 fn application<'a, Panel: Display, Link: Write, Keys: Buttons>(
     place: &'a mut MaybeUninit<App<'a, Panel, Link, Keys>>,
-    buffers: &'a mut FrameBuffers,
+    canvas: Canvas<'a>,
     panel: &'a mut Panel,
     link: Link,
     keys: Keys,
     processor: Processor,
 ) -> &'a mut App<'a, Panel, Link, Keys> {
-    let app = place.write(App::new(processor, buffers, panel, link, keys));
+    let app = place.write(App::new(processor, canvas, panel, link, keys));
     if let Err(error) = app.player.play(SceneName::Page, Settings::default()) {
         defmt::error!("{}", error);
         panic!("the first settings describe no pendulum")

@@ -6,7 +6,9 @@
 use embedded_hal::i2c::{ErrorKind, NoAcknowledgeSource};
 use heapless::Vec;
 
-use crate::graphics::{PAGES, WIDTH};
+use crate::graphics::{Format, PAGES};
+
+const WIDTH: usize = Format::OLED.width as usize;
 
 /// The capacity for a whole frame, with the window and the bytes of each page, and for all commands
 /// that set a panel up.

@@ -31,7 +31,10 @@ use embedded_hal::i2c::ErrorKind;
 use super::bus::{Outbox, PanelBus, Sent};
 use super::{BusFault, By, Controller, Display, Found, PanelReport, PanelState};
 use crate::config::TICK_RATE;
-use crate::graphics::{Bitmap, Canvas, HEIGHT, PAGES, WIDTH};
+use crate::graphics::{Bitmap, Canvas, Format, PAGES};
+
+const WIDTH: usize = Format::OLED.width as usize;
+const HEIGHT: usize = Format::OLED.height as usize;
 
 /// The two addresses that a panel can be set to.
 const ADDRESSES: [u8; 2] = [0x3C, 0x3D];

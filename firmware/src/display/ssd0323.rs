@@ -1,7 +1,7 @@
 //! The SSD0323 controller of a 128 x 64 OLED panel with 16 greys, on four-wire SPI.
 //!
 //! A whole frame takes 4,096 bytes, 9 ms at 3.6 MHz. So only the changes are sent: the bytes of
-//! each row from the first changed word to the last.
+//! each row from the first changed cell to the last.
 //!
 //! Source: Solomon Systech, SSD0323 data sheet; register values from the panel's application note
 //! (OSRAM AN018).
@@ -12,7 +12,10 @@ use embedded_hal::digital::OutputPin;
 use embedded_hal::spi::SpiDevice;
 
 use super::Display;
-use crate::graphics::{Canvas, HEIGHT, Row, WIDTH};
+use crate::graphics::{Canvas, Format, visible};
+
+const WIDTH: usize = Format::OLED.width as usize;
+const HEIGHT: usize = Format::OLED.height as usize;
 
 const LAST_COLUMN: u8 = (WIDTH / 2 - 1) as u8;
 const LAST_ROW: u8 = (HEIGHT - 1) as u8;
@@ -57,27 +60,20 @@ const WAKE: [&[u8]; 19] = [
 /// The driver of a panel: an SPI device, and the pin that is high for data and low for commands.
 ///
 /// [`Ssd0323::init`] must be called before the first frame, which is not checked. A frame is sent
-/// before [`flush`](Display::flush) returns. After an error in a frame, the next frame is sent
-/// whole. The panel takes SPI mode 2 at up to 4 MHz; another mode gives no error and no
+/// before [`flush`](Display::flush) returns. The panel takes SPI mode 2 at up to 4 MHz; another mode gives no error and no
 /// picture. It cannot be read, so that an absent panel is no error.
 #[derive(Debug)]
-pub struct Ssd0323<'a, Spi, Pin> {
+pub struct Ssd0323<Spi, Pin> {
     spi: Spi,
     data_not_command: Pin,
-    /// The contents of the panel's memory. They are valid if `is_known`.
-    memory: &'a mut Canvas,
-    is_known: bool,
 }
 
-impl<'a, Spi: SpiDevice, Pin: OutputPin<Error = Infallible>> Ssd0323<'a, Spi, Pin> {
-    /// Creates the driver of a panel with these lines, and a canvas for the copy of its memory,
-    /// whose contents do not matter. Nothing is sent yet.
-    pub fn new(spi: Spi, data_not_command: Pin, memory: &'a mut Canvas) -> Self {
+impl<Spi: SpiDevice, Pin: OutputPin<Error = Infallible>> Ssd0323<Spi, Pin> {
+    /// Creates the driver of a panel with these lines. Nothing is sent yet.
+    pub fn new(spi: Spi, data_not_command: Pin) -> Self {
         Self {
             spi,
             data_not_command,
-            memory,
-            is_known: false,
         }
     }
 
@@ -87,40 +83,10 @@ impl<'a, Spi: SpiDevice, Pin: OutputPin<Error = Infallible>> Ssd0323<'a, Spi, Pi
     /// Returns the first error of the SPI device; the rest is then not sent. A panel that was off
     /// stays dark until a later call succeeds, and one that was on may go dark.
     pub fn init(&mut self) -> Result<(), Spi::Error> {
-        self.is_known = false;
         self.command(&ALL_COLUMNS)?;
         self.command(&ALL_ROWS)?;
         (0..HEIGHT).try_for_each(|_| self.data(&[0; WIDTH / 2]))?;
-        *self.memory = Canvas::BLACK;
-        self.is_known = true;
         WAKE.iter().try_for_each(|command| self.command(command))
-    }
-
-    /// Sends the differences between the panel's memory and the frame; the whole frame if the
-    /// memory is not known.
-    fn update(&mut self, canvas: &Canvas) -> Result<(), Spi::Error> {
-        let mut next = None;
-        for (y, new) in (0..).zip(&canvas.rows) {
-            let Some(old) = self.memory.row_mut(y.into()) else {
-                break;
-            };
-
-            let all = (0, WIDTH / 2 - 1);
-            if let Some((first, last)) = if self.is_known {
-                differing(old, new)
-            } else {
-                Some(all)
-            } {
-                *old = *new;
-                if next != Some(y) {
-                    self.command(&rows(y))?;
-                }
-                self.command(&columns(first as u8, last as u8))?;
-                self.data(new.0.get(first..=last).unwrap_or_default())?;
-                next = Some(y + 1);
-            }
-        }
-        Ok(())
     }
 
     /// Sends data for the memory.
@@ -136,29 +102,36 @@ impl<'a, Spi: SpiDevice, Pin: OutputPin<Error = Infallible>> Ssd0323<'a, Spi, Pi
     }
 }
 
-/// Returns the first and the last byte of the words that differ between two rows; `None` if the
-/// rows are equal.
-fn differing(Row(old): &Row, Row(new): &Row) -> Option<(usize, usize)> {
-    const WORD: usize = size_of::<u32>();
-    let words = || {
-        old.as_chunks::<WORD>()
-            .0
-            .iter()
-            .zip(new.as_chunks::<WORD>().0)
-    };
-    let first = words().position(|(old, new)| old != new)?;
-    let last = words().rposition(|(old, new)| old != new)?;
-    Some((WORD * first, WORD * last + WORD - 1))
-}
-
-impl<Spi: SpiDevice, Pin: OutputPin<Error = Infallible>> Display for Ssd0323<'_, Spi, Pin> {
+impl<Spi: SpiDevice, Pin: OutputPin<Error = Infallible>> Display for Ssd0323<Spi, Pin> {
     type Error = Spi::Error;
 
     /// Sends the changes before it returns. Returns the first error of the SPI device; the rest of
     /// the frame is then not sent.
     fn flush(&mut self, canvas: &Canvas) -> Result<(), Self::Error> {
-        let sent = self.update(canvas);
-        self.is_known = sent.is_ok();
-        sent
+        let words_per_cell = canvas.cell() / 4;
+        let mut next = None;
+        for y in 0..HEIGHT {
+            let changed = canvas.changed(y);
+            if changed == 0 {
+                continue;
+            }
+            let first = words_per_cell * changed.trailing_zeros() as usize;
+            let end = words_per_cell * (32 - changed.leading_zeros()) as usize;
+
+            // Four pixels are one word of the canvas, and two bytes of the panel.
+            let mut bytes = [[0; 2]; WIDTH / 4];
+            for (pairs, word) in bytes.iter_mut().zip(canvas.row(y)) {
+                let [a, b, c, d] = visible(*word).to_le_bytes();
+                *pairs = [a << 4 | b, c << 4 | d];
+            }
+
+            if next != Some(y) {
+                self.command(&rows(y as u8))?;
+            }
+            self.command(&columns(2 * first as u8, (2 * end - 1) as u8))?;
+            self.data(bytes.get(first..end).unwrap_or_default().as_flattened())?;
+            next = Some(y + 1);
+        }
+        Ok(())
     }
 }

@@ -1,6 +1,11 @@
 //! The frame in one colour, for panels whose pixels are on or off.
 
-use crate::graphics::canvas::{Canvas, HEIGHT, Row, WIDTH, carried};
+use crate::graphics::canvas::{Canvas, carried, visible};
+use crate::graphics::{Format, Palette};
+
+/// The width and the height of an OLED, pixels.
+const WIDTH: usize = Format::OLED.width as usize;
+const HEIGHT: usize = Format::OLED.height as usize;
 
 /// The number of rows in a page.
 const ROWS: usize = 8;
@@ -10,9 +15,8 @@ pub const PAGES: usize = HEIGHT / ROWS;
 /// The Bayer matrix: the lighting order of the pixels of a square of 4 x 4 as it becomes brighter.
 const ORDER: [[u32; 4]; 4] = [[0, 8, 2, 10], [12, 4, 14, 6], [3, 11, 1, 9], [15, 7, 13, 5]];
 
-/// Returns the summands that [carry](carried) out of the nibble of a pixel that is to be lit, for
-/// each of four rows: first for the pixels with even numbers, which are the high nibbles, then for
-/// the pixels with odd numbers, which are the low nibbles.
+/// Returns the summands that [carry](carried) out of the byte of a pixel that is to be lit, one in
+/// each byte, for each of four rows.
 ///
 /// A pixel is lit if its grey, of 15, exceeds a threshold of 2 to 7 that depends on its place in
 /// the order. Soft edges need one threshold, because many make them ragged. A fading trail needs
@@ -20,29 +24,26 @@ const ORDER: [[u32; 4]; 4] = [[0, 8, 2, 10], [12, 4, 14, 6], [3, 11, 1, 9], [15,
 /// fainter ones thin out to single pixels.
 ///
 /// In a picture all greys matter. There the thresholds are 0 to 14, as Bayer's.
-const fn room(all_greys: bool) -> [[u32; 2]; 4] {
-    let mut room = [[0; 2]; 4];
+const fn room(all_greys: bool) -> [u32; 4] {
+    let mut room = [0; 4];
     let mut place = 0;
     while place < 16 {
         let y = place / 4;
         let x = place % 4;
         let order = ORDER[y][x];
-
         let threshold = if all_greys {
             order * 15 / 16
         } else {
             2 + order * 6 / 16
         };
-
-        // The place of the summand is the nibble of this pixel's byte.
-        room[y][x % 2] |= (15 - threshold) * (0x0001_0001 << (8 * (x / 2)));
+        room[y] |= (15 - threshold) << (8 * x);
         place += 1;
     }
     room
 }
 
 /// The summands for a drawing, and those for a picture.
-const ROOM: [[[u32; 2]; 4]; 2] = [room(false), room(true)];
+const ROOM: [[u32; 4]; 2] = [room(false), room(true)];
 
 /// 128 x 64 pixels, each on or off, in the memory layout of the panel.
 ///
@@ -50,8 +51,8 @@ const ROOM: [[[u32; 2]; 4]; 2] = [room(false), room(true)];
 /// left. The lowest bit of a byte is the top row. A bit of 1 is a pixel that is on.
 ///
 /// `Bitmap::from(&canvas)` converts the greys of a [`Canvas`] to dots. In a drawing, greys up to 2
-/// are off, and greys from 8 on are on; in a picture ([`Canvas::all_greys`]) only 0 is always off
-/// and only 15 always on. The greys in between are patterns of 4 x 4 pixels.
+/// are off, and greys from 8 on are on; in a picture ([`Palette::Map`]) only 0 is always off and
+/// only 15 always on. The greys in between are patterns of 4 x 4 pixels.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Bitmap {
     /// The pages from the top.
@@ -65,37 +66,24 @@ impl Bitmap {
     };
 }
 
-/// Converts the greys to dots, as described at [`Bitmap`].
-impl From<&Canvas> for Bitmap {
-    fn from(canvas: &Canvas) -> Self {
+/// Converts the greys to dots, as described at [`Bitmap`]. A larger canvas is cut off.
+impl From<&Canvas<'_>> for Bitmap {
+    fn from(canvas: &Canvas<'_>) -> Self {
         let mut bitmap = Self::BLACK;
         let [drawing, picture] = &ROOM;
-        let room = if canvas.all_greys { picture } else { drawing };
+        let room = match canvas.palette {
+            Palette::Map => picture,
+            _ => drawing,
+        };
 
-        // Eight pixels are one word of a row, and eight bytes of a page.
-        for (page, rows) in bitmap
-            .pages
-            .iter_mut()
-            .zip(canvas.rows.as_chunks::<ROWS>().0)
-        {
-            for (word, columns) in page.as_chunks_mut::<8>().0.iter_mut().enumerate() {
-                let mut lit = [0; 2];
-                for ((y, Row(row)), room) in rows.iter().enumerate().zip(room.iter().cycle()) {
-                    let greys = row
-                        .as_chunks()
-                        .0
-                        .get(word)
-                        .map_or(0, |bytes| u32::from_le_bytes(*bytes));
-                    for ((lit, greys), room) in lit.iter_mut().zip([greys >> 4, greys]).zip(room) {
-                        *lit |= carried(greys, *room) << y;
-                    }
+        // Four pixels are one word of a row, and four bytes of a page.
+        for (page, columns) in bitmap.pages.iter_mut().enumerate() {
+            for (y, room) in (0..ROWS).zip(room.iter().cycle()) {
+                let row = canvas.row(ROWS * page + y);
+                for (columns, word) in columns.as_chunks_mut::<4>().0.iter_mut().zip(row) {
+                    let lit = carried(visible(*word), *room) << y;
+                    *columns = (u32::from_le_bytes(*columns) | lit).to_le_bytes();
                 }
-
-                // The pixels with even numbers come from the high nibbles.
-                let [even, odd] = lit.map(u32::to_le_bytes);
-                *columns = [
-                    even[0], odd[0], even[1], odd[1], even[2], odd[2], even[3], odd[3],
-                ];
             }
         }
 

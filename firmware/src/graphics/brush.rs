@@ -4,15 +4,16 @@
 
 use core::ops::Range;
 
-use crate::graphics::{Canvas, HEIGHT, WIDTH};
+use crate::graphics::{Canvas, Format};
 
-/// The number of subpixels in a pixel, 64 in each direction.
+/// The number of subpixels in a pixel, 32 in each direction. With more, products of differences
+/// would not fit into 31 bits on a canvas of 320 x 240.
 pub const SUBPIXELS: i32 = 1 << SHIFT;
-const SHIFT: u32 = 6;
+const SHIFT: u32 = 5;
 const HALF: i32 = SUBPIXELS / 2;
 
-/// A point on or near the canvas, in subpixels from its top left corner. Pixel i covers 64 i to
-/// 64 i + 63.
+/// A point on or near the canvas, in subpixels from its top left corner. Pixel i covers 32 i to
+/// 32 i + 31.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Spot {
     /// The distance to the right, subpixels; negative to the left of the canvas.
@@ -24,24 +25,23 @@ pub struct Spot {
 impl Spot {
     /// Returns the spot at (x, y) pixels, where (0, 0) is the top left corner of the canvas.
     ///
-    /// Each coordinate is limited to one canvas size around the canvas, -128 to 256 and -64 to 128
-    /// pixels, so that no sum in this module can overflow. It is rounded towards 0 to a subpixel.
-    /// NaN becomes 0.
-    pub fn at(x: f32, y: f32) -> Self {
-        let subpixels = |pixels: f32, size: usize| {
-            let size = size as i32 * SUBPIXELS;
+    /// Each coordinate is limited to one canvas size around the canvas, so that no sum in this
+    /// module can overflow. It is rounded towards 0 to a subpixel. NaN becomes 0.
+    pub fn at(x: f32, y: f32, format: Format) -> Self {
+        let subpixels = |pixels: f32, size: i32| {
+            let size = size * SUBPIXELS;
             ((pixels * SUBPIXELS as f32) as i32).clamp(-size, 2 * size) as i16
         };
         Self {
-            x: subpixels(x, WIDTH),
-            y: subpixels(y, HEIGHT),
+            x: subpixels(x, format.right()),
+            y: subpixels(y, format.bottom()),
         }
     }
 }
 
 /// The points within `radius` subpixels of the line from `from` to `to`. If both ends are the same,
 /// it is a disc. The edge is soft: over one pixel, half of it outside, the grey falls to 0. So a
-/// stroke with a radius below 32 is fainter, and one with radius 0 has at most half the brightness.
+/// stroke with a radius below 16 is fainter, and one with radius 0 has at most half the brightness.
 #[derive(Clone, Copy, Debug)]
 pub struct Stroke {
     /// One end of the line.
@@ -49,7 +49,7 @@ pub struct Stroke {
     /// The other end.
     pub to: Spot,
     /// Half the width of the stroke, subpixels.
-    pub radius: u8,
+    pub radius: u16,
 }
 
 impl Stroke {
@@ -61,15 +61,18 @@ impl Stroke {
         let line = Line::new(self.from, self.to, limit);
         let grey = shade(brightness);
 
-        let columns = pixels([self.from.x, self.to.x], limit, WIDTH);
-        let rows = pixels([self.from.y, self.to.y], limit, HEIGHT);
+        let format = canvas.format;
+        let columns = pixels([self.from.x, self.to.x], limit, format.right());
+        let rows = pixels([self.from.y, self.to.y], limit, format.bottom());
 
         // Each row is visited only where the line is near.
         let mut band = line.band(rows.start);
         for y in rows {
             let near = band.next();
             let columns = columns.start.max(near.start)..columns.end.min(near.end);
-            let Some(row) = canvas.row_mut(y) else { return };
+            let Some(mut row) = canvas.row_mut(y, columns.clone()) else {
+                return;
+            };
 
             // Both products are updated from pixel to pixel, because a sum costs less than a
             // product.
@@ -91,15 +94,15 @@ impl Stroke {
 /// A disc of `radius` subpixels, surrounded by a dark gap of `gap` subpixels that separates it from
 /// the background. Edges are soft, one pixel wide, half of it outside the radius. In the gap, up to
 /// its soft edge, the background becomes black; with a gap of 0 the background is darkened only in
-/// the soft edge of the disc. A disc with a radius below 32 is fainter.
+/// the soft edge of the disc. A disc with a radius below 16 is fainter.
 #[derive(Clone, Copy, Debug)]
 pub struct Disc {
     /// The middle.
     pub centre: Spot,
     /// The radius without the gap, subpixels.
-    pub radius: u8,
+    pub radius: u16,
     /// The width of the gap, subpixels.
-    pub gap: u8,
+    pub gap: u16,
 }
 
 impl Disc {
@@ -125,9 +128,12 @@ impl Disc {
         let full = grey(SUBPIXELS);
 
         // The distance is a root only at the edges, where it matters.
-        let columns = pixels([centre_x; 2], outer, WIDTH);
-        for y in pixels([centre_y; 2], outer, HEIGHT) {
-            let Some(row) = canvas.row_mut(y) else { return };
+        let format = canvas.format;
+        let columns = pixels([centre_x; 2], outer, format.right());
+        for y in pixels([centre_y; 2], outer, format.bottom()) {
+            let Some(mut row) = canvas.row_mut(y, columns.clone()) else {
+                return;
+            };
             let dy = middle(y) - i32::from(centre_y);
             for x in columns.clone() {
                 let dx = middle(x) - i32::from(centre_x);
@@ -138,10 +144,12 @@ impl Disc {
                     }
                     continue;
                 }
+                if squared < inner * inner {
+                    row.set(x, full);
+                    continue;
+                }
                 row.update(x, |old| {
-                    if squared < inner * inner {
-                        full
-                    } else if squared < edge * edge {
+                    if squared < edge * edge {
                         let distance = root(squared, inner, edge);
                         wipe(old, distance).max(grey(edge - distance))
                     } else if old == 0 {
@@ -157,10 +165,10 @@ impl Disc {
 
 /// Returns the range of pixels, out of `size`, that can be touched by points within `limit` of the
 /// range between two coordinates.
-fn pixels([a, b]: [i16; 2], limit: i32, size: usize) -> Range<i32> {
+fn pixels([a, b]: [i16; 2], limit: i32, size: i32) -> Range<i32> {
     let first = (i32::from(a.min(b)) - limit) >> SHIFT;
     let last = (i32::from(a.max(b)) + limit) >> SHIFT;
-    first.max(0)..(last + 1).min(size as i32)
+    first.max(0)..(last + 1).min(size)
 }
 
 /// Returns the middle of a pixel, subpixels.
@@ -249,7 +257,7 @@ impl Line {
             return Band {
                 middle: 0,
                 slope: 0,
-                half: 2 * WIDTH as i32 * SUBPIXELS,
+                half: i32::from(i16::MAX),
             };
         }
 
@@ -277,9 +285,9 @@ impl Line {
     /// `progress` and `across` are the distances of the middle of the pixel along the line from its
     /// start and across it, each times the length of the line.
     ///
-    /// A spot is at most one canvas size outside the canvas. So differences are below 3 x 128 x 64
-    /// = 24,576 across and half that down, and sums of two products are below 24,576^2 x 1.25 =
-    /// 7.6e8. They fit into 31 bits.
+    /// A spot is at most one canvas size outside the canvas. So differences are at most 3 x 320 x 32
+    /// = 30,720 across and 3 x 240 x 32 = 23,040 down, and the sum of their squares is 1.5e9. It
+    /// fits into 31 bits.
     fn covered(&self, (x, y): (i32, i32), progress: i32, across: i32) -> i32 {
         let &Self {
             along,

@@ -1,160 +1,385 @@
-//! The canvas, 128 x 64 pixels of 16 greys in the memory layout of the panel, and the fade layer,
-//! which holds the traces of earlier frames.
+//! The canvas: two layers of 16 levels in one byte a pixel, and a record of what has changed.
 
-/// The width of the canvas, pixels.
-pub const WIDTH: usize = 128;
-/// The height of the canvas, pixels.
-pub const HEIGHT: usize = 64;
-/// The size of a row, bytes.
-const ROW: usize = WIDTH / 2;
+use core::ops::Range;
 
-/// A row of 128 pixels from the left in 64 bytes, two in each. The high nibble is the left pixel.
-/// Pixels outside the row are ignored. Greys are 0 (black) to 15. This is not checked.
-///
-/// The row is aligned to a word, so that it can be copied and compared by words.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[repr(align(4))]
-pub struct Row(pub [u8; ROW]);
+use crate::graphics::{Format, Palette};
 
-/// The rows of pixels from the top. Drawing cannot fail: pixels outside the canvas are ignored.
-///
-/// Not checked: greys are 0 (black) to 15. A larger one gives wrong greys; in
-/// [`stamp`](Self::stamp) it overflows, which panics in a build with overflow checks.
-#[derive(Debug, PartialEq, Eq)]
-pub struct Canvas {
-    /// The rows from the top.
-    pub rows: [Row; HEIGHT],
-    /// True if every grey matters, as in a picture. False for a drawing, which is bright on dark.
-    /// Only a panel of one colour shows the difference: it shows the greys of a picture as patterns
-    /// of dots, but most greys of a drawing as off or on ([`Bitmap`](crate::graphics::Bitmap)).
-    pub all_greys: bool,
+/// The frame buffers of a canvas of W4 words by H rows. They are created at their final place, on a
+/// board in a static.
+#[derive(Clone, Debug)]
+pub struct FrameBuffers<const WORDS: usize, const ROWS: usize> {
+    words: [u32; WORDS],
+    cells: [Cells; ROWS],
 }
 
-impl Default for Canvas {
-    fn default() -> Self {
-        Self::BLACK
-    }
-}
-
-impl Clone for Canvas {
-    fn clone(&self) -> Self {
-        Self {
-            rows: self.rows,
-            all_greys: self.all_greys,
-        }
-    }
-
-    /// Copies row by row, in half the time of the library's `memcpy`.
-    fn clone_from(&mut self, source: &Self) {
-        self.all_greys = source.all_greys;
-        for (Row(row), Row(from)) in self.rows.iter_mut().zip(&source.rows) {
-            let ((left, right), (from_left, from_right)) =
-                (row.split_at_mut(ROW / 2), from.split_at(ROW / 2));
-            right.copy_from_slice(from_right);
-            left.copy_from_slice(from_left);
-        }
-    }
-}
-
-impl Canvas {
-    /// A canvas whose pixels are all 0, for a drawing.
-    pub const BLACK: Self = Self {
-        rows: [Row([0; ROW]); HEIGHT],
-        all_greys: false,
+impl<const WORDS: usize, const ROWS: usize> FrameBuffers<WORDS, ROWS> {
+    /// Black buffers.
+    pub const BLANK: Self = Self {
+        words: [0; WORDS],
+        cells: [Cells::NONE; ROWS],
     };
 
-    /// Returns the bytes of the rows from the top, 4,096 in all: two pixels in each, the left one
-    /// in the high nibble.
-    pub fn bytes(&self) -> impl Iterator<Item = u8> + Clone {
-        self.rows.iter().flat_map(|Row(row)| *row)
+    /// Returns a canvas of this format in these buffers. Pixels for which they have no room are
+    /// not drawn.
+    pub fn canvas(&mut self, format: Format) -> Canvas<'_> {
+        Canvas::new(format, &mut self.words, &mut self.cells)
+    }
+}
+
+/// The cells of a row, one in each bit, from the left.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Cells {
+    /// The cells that the foreground covers.
+    drawn: u32,
+    /// The cells that have changed since the panel took the row.
+    changed: u32,
+}
+
+impl Cells {
+    /// No cells.
+    pub const NONE: Self = Self {
+        drawn: 0,
+        changed: 0,
+    };
+}
+
+/// The layer that is drawn on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Layer {
+    /// The traces of earlier frames. They stay, and may fade.
+    Ink,
+    /// The rest of the picture, drawn anew in each frame.
+    Foreground,
+}
+
+/// The level of the foreground that covers the ink with black. 0 is transparent.
+const BLACK: u8 = 1;
+/// The bits of the foreground in a word.
+const FOREGROUND: u32 = 0x0F0F_0F0F;
+/// The number 1 in every byte.
+const ONES: u32 = 0x0101_0101;
+
+impl Layer {
+    /// Returns the grey that this layer shows in a pixel: of the foreground the visible one.
+    fn grey(self, pixel: u8) -> u8 {
+        match (self, pixel & 15) {
+            (Self::Ink, _) | (_, 0) => pixel >> 4,
+            (_, BLACK) => 0,
+            (_, grey) => grey,
+        }
     }
 
-    /// Returns row `y`, counted from the top; `None` outside the canvas.
-    pub fn row_mut(&mut self, y: i32) -> Option<&mut Row> {
-        // A negative number becomes an index far beyond the end.
-        self.rows.get_mut(y as usize)
+    /// Returns the pixel with another grey in this layer.
+    fn with(self, pixel: u8, grey: u8) -> u8 {
+        match self {
+            Self::Ink => pixel & 0x0F | grey << 4,
+            Self::Foreground => pixel & 0xF0 | grey.max(BLACK),
+        }
+    }
+}
+
+/// A picture of a [`Format`] in two layers. Drawing cannot fail: pixels outside are ignored.
+///
+/// A pixel is a byte: ink in the high nibble, foreground in the low one. Four pixels are a word,
+/// the left one in its lowest byte. A level is a grey from 0 (black) to 15. The foreground covers
+/// the ink; its level 0 is transparent, and its level 1 is black. A panel of greys shows the
+/// [visible](visible) grey, and a colour panel the colour of the byte in the
+/// [`Palette`](Palette::colours).
+///
+/// Each row keeps a bit for every cell of 8 pixels (16 on panels wider than 256) that has changed,
+/// so that a driver sends only those.
+#[derive(Debug)]
+pub struct Canvas<'a> {
+    /// The size of the picture and of its text.
+    pub format: Format,
+    /// The colours of the scene.
+    pub palette: Palette,
+    words: &'a mut [u32],
+    cells: &'a mut [Cells],
+    layer: Layer,
+    /// The next row to fade.
+    row: u16,
+}
+
+/// Canvases are equal if they show the same picture.
+impl PartialEq for Canvas<'_> {
+    fn eq(&self, other: &Self) -> bool {
+        (self.format, self.palette) == (other.format, other.palette) && self.words == other.words
+    }
+}
+
+impl<'a> Canvas<'a> {
+    /// Creates a canvas in this memory, which is not cleared. Its first drawing is in the
+    /// foreground, and counts as whole.
+    pub fn new(format: Format, words: &'a mut [u32], cells: &'a mut [Cells]) -> Self {
+        let mut canvas = Self {
+            format,
+            palette: Palette::Trail,
+            words,
+            cells,
+            layer: Layer::Foreground,
+            row: 0,
+        };
+        canvas.touch_all();
+        canvas
     }
 
-    /// Moves all pixels to the left by one column. Column `left - 1` and the last column become
-    /// black; the first column is lost.
-    ///
-    /// So the pixels from column `left` on scroll out at their left end, if the columns before
-    /// `left` are black, as they must be: they move, too. With a `left` of 0, or outside the
-    /// canvas, the whole canvas scrolls.
+    /// Clears both layers for a new scene.
+    pub fn blank(&mut self, palette: Palette) {
+        self.words.fill(0);
+        self.cells.fill(Cells::NONE);
+        self.palette = palette;
+        self.row = 0;
+        self.touch_all();
+    }
+
+    /// Draws on the ink from now on.
+    pub fn on_ink(&mut self) -> &mut Self {
+        self.layer = Layer::Ink;
+        self
+    }
+
+    /// Clears the foreground, and draws on it from now on.
+    #[inline(never)] // Test `scenes` profiles it by its name.
+    pub fn on_clear_foreground(&mut self) -> &mut Self {
+        self.layer = Layer::Foreground;
+        let words_per_cell = self.cell() / 4;
+        let rows = self.words.chunks_exact_mut(self.format.row_words().max(1));
+        for (row, cells) in rows.zip(&mut *self.cells) {
+            let mut drawn = core::mem::take(&mut cells.drawn);
+            cells.changed |= drawn;
+            for cell in row.chunks_mut(words_per_cell) {
+                if drawn & 1 != 0 {
+                    cell.iter_mut().for_each(|word| *word &= !FOREGROUND);
+                }
+                drawn >>= 1;
+                if drawn == 0 {
+                    break;
+                }
+            }
+        }
+        self
+    }
+
+    /// Returns the width of a cell, pixels.
+    pub fn cell(&self) -> usize {
+        1 << self.cell_shift()
+    }
+
+    fn cell_shift(&self) -> u32 {
+        if self.format.width <= 256 { 3 } else { 4 }
+    }
+
+    /// Returns the cells of row `y` that the panel may not show as they are, a bit each, the
+    /// leftmost in bit 0. It is 0 outside the canvas.
+    pub fn changed(&self, y: usize) -> u32 {
+        self.cells
+            .get(y)
+            .map_or(0, |cells| cells.changed | cells.drawn)
+    }
+
+    /// Returns the words of row `y`, none outside the canvas.
+    pub fn row(&self, y: usize) -> &[u32] {
+        let range = self.format.row_range(y).unwrap_or_default();
+        self.words.get(range).unwrap_or_default()
+    }
+
+    /// Marks everything as shown by the panel.
+    pub fn settle(&mut self) {
+        self.cells.iter_mut().for_each(|cells| cells.changed = 0);
+    }
+
+    /// Marks everything as changed, because the panel may show anything.
+    pub fn touch_all(&mut self) {
+        let count = (u32::from(self.format.width) - 1) >> self.cell_shift();
+        let all = u32::MAX >> (31 - count.min(31));
+        self.cells.iter_mut().for_each(|cells| cells.changed = all);
+    }
+
+    /// Returns row `y` for drawing in these columns, which count as changed; `None` outside the
+    /// canvas.
+    pub fn row_mut(&mut self, y: i32, columns: Range<i32>) -> Option<Row<'_>> {
+        let shift = self.cell_shift();
+        let from = columns.start.max(0) as u32;
+        let to = columns.end.min(self.format.right()) as u32;
+        let y = usize::try_from(y).ok()?;
+        let cells = self.cells.get_mut(y)?;
+
+        if columns.end > 0 && from < to {
+            let last = ((to - 1) >> shift).min(31);
+            let touched = (u32::MAX >> (31 - last)) & (u32::MAX << (from >> shift));
+            match self.layer {
+                Layer::Ink => cells.changed |= touched,
+                Layer::Foreground => cells.drawn |= touched,
+            }
+        }
+
+        let words = self.words.get_mut(self.format.row_range(y)?)?;
+        Some(Row {
+            words,
+            layer: self.layer,
+        })
+    }
+
+    /// Returns the grey that a pixel shows, 0 to 15; `None` outside the canvas.
+    pub fn get(&self, x: i32, y: i32) -> Option<u8> {
+        self.pixel(x, y).map(|pixel| Layer::Foreground.grey(pixel))
+    }
+
+    /// Returns both layers of a pixel; `None` outside the canvas.
+    pub fn pixel(&self, x: i32, y: i32) -> Option<u8> {
+        let word = self.row(y as usize).get((x >> 2) as usize)?;
+        Some((word >> (8 * (x as u32 & 3))) as u8)
+    }
+
+    /// Replaces the grey of a pixel by a function of it. The function is not called for a pixel
+    /// outside the canvas.
+    pub fn update(&mut self, x: i32, y: i32, new: impl FnOnce(u8) -> u8) {
+        if let Some(mut row) = self.row_mut(y, x..x.saturating_add(1)) {
+            row.update(x, new);
+        }
+    }
+
+    /// Sets a square of a unit, with its corner at (x, y), to a grey, unless a pixel is brighter.
+    pub fn dot(&mut self, x: i32, y: i32, grey: u8) {
+        let size = self.format.units(1);
+        for y in y..y + size {
+            if let Some(mut row) = self.row_mut(y, x..x + size) {
+                (x..x + size).for_each(|x| row.lighten(x, grey));
+            }
+        }
+    }
+
+    /// Sets pixels to one grey, brighter ones, too: the squares of a unit whose bits are set, of
+    /// the 8 x 8 to the right of column `x` and below row `y`. The first row is in the highest
+    /// byte, and the leftmost square of a row is in its highest bit.
+    #[inline(never)] // Inlined, it takes 336 bytes of flash (M3).
+    pub fn stamp(&mut self, x: i32, y: i32, bits: u64, grey: u8) {
+        let unit = self.format.units(1);
+        for (place, squares) in (0..).zip(bits.to_be_bytes()) {
+            if squares == 0 {
+                continue;
+            }
+            let top = y.saturating_add(unit * place);
+            let end = x.saturating_add(unit * (8 - squares.trailing_zeros() as i32));
+            for y in top..top.saturating_add(unit) {
+                let Some(mut row) = self.row_mut(y, x..end) else {
+                    continue;
+                };
+                let mut left = x;
+                let mut squares = squares;
+                while squares != 0 {
+                    if squares & 0x80 != 0 {
+                        (left..left.saturating_add(unit)).for_each(|x| row.set(x, grey));
+                    }
+                    squares <<= 1;
+                    left = left.saturating_add(unit);
+                }
+            }
+        }
+    }
+
+    /// Moves the ink to the left by one column. The last column becomes black, and so does column
+    /// `left - 1`, where the moving part ends. Columns before it must be black.
     #[inline(never)] // Test `scenes` profiles it by its name.
     pub fn scroll(&mut self, left: i32) {
-        for row in &mut self.rows {
+        let width = self.format.right();
+        for y in 0..self.format.bottom() {
+            let Some(mut row) = self.row_mut(y, left..width) else {
+                return;
+            };
             let mut from_right = 0;
-            for word in row.0.as_chunks_mut().0.iter_mut().rev() {
-                let greys = u32::from_be_bytes(*word);
-                *word = (greys << 4 | from_right).to_be_bytes();
-                from_right = greys >> 28;
+            for word in row.words.iter_mut().rev() {
+                let ink = *word & !FOREGROUND;
+                *word = (*word & FOREGROUND) | (ink >> 8) | from_right;
+                from_right = ink << 24;
             }
             row.update(left - 1, |_| 0);
         }
     }
 
-    /// Returns the grey of the pixel in column `x` and row `y`, 0 to 15; `None` outside the canvas.
-    pub fn get(&self, x: i32, y: i32) -> Option<u8> {
-        let Row(row) = self.rows.get(y as usize)?;
-        Some((row.get((x >> 1) as usize)? >> shift(x)) & 0x0F)
-    }
-
-    /// Replaces the grey of the pixel in column `x` and row `y` by a function of it. Only the low
-    /// four bits of the result count. The function is not called for a pixel outside the canvas.
-    pub fn update(&mut self, x: i32, y: i32, new: impl FnOnce(u8) -> u8) {
-        if let Some(row) = self.row_mut(y) {
-            row.update(x, new);
+    /// Clears the ink.
+    pub fn clear_ink(&mut self) {
+        self.on_ink();
+        for y in 0..self.format.bottom() {
+            let has_ink = self
+                .row(y as usize)
+                .iter()
+                .any(|word| word & !FOREGROUND != 0);
+            if has_ink && let Some(row) = self.row_mut(y, 0..self.format.right()) {
+                row.words.iter_mut().for_each(|word| *word &= FOREGROUND);
+            }
         }
     }
 
-    /// Sets a pixel to a grey of 0 to 15. A pixel that is brighter already keeps its grey.
-    pub fn lighten(&mut self, x: i32, y: i32, grey: u8) {
-        if let Some(row) = self.row_mut(y) {
-            row.lighten(x, grey);
+    /// Makes the columns of the present layer black.
+    pub fn clear_columns(&mut self, columns: Range<i32>) {
+        for y in 0..self.format.bottom() {
+            if let Some(mut row) = self.row_mut(y, columns.clone()) {
+                columns.clone().for_each(|x| row.set(x, 0));
+            }
         }
     }
 
-    /// Sets pixels to one grey, 0 to 15, brighter ones, too: the pixels whose bits are set, of the
-    /// 8 x 8 to the right of column `x` and below row `y`, both included. The others are unchanged.
-    /// The first row is in the highest byte, and the leftmost pixel of a row is in its highest bit.
-    #[inline(never)] // Inlined, it takes 336 bytes of flash (M3).
-    pub fn stamp(&mut self, x: i32, mut y: i32, mut bits: u64, grey: u8) {
-        let word = (x >> 3) as usize;
-        let shift = 4 * (x & 7);
-        let greys = u32::from(grey) * 0x1111_1111;
+    /// Fades the next rows by one level each, after the lowest row the top one again; to be called
+    /// once a tick of the scene. Ink at or below the level `last` is unchanged.
+    #[inline(never)] // Test `scenes` profiles it by its name.
+    pub fn fade(&mut self, Fading { rows, last }: Fading) {
+        let room = u32::from(15_u8.saturating_sub(last)) * ONES;
+        let shift = self.cell_shift() - 2;
+        let rows = (u32::from(rows) * u32::from(self.format.height) + 32) / 64;
 
-        while bits != 0 {
-            if let Some(Row(row)) = self.row_mut(y) {
-                // The eight pixels of a row are in one word of the canvas, or in two neighbouring
-                // ones.
-                let pixels = nibbles((bits >> 56) as u32);
-                for (word, part) in [
-                    (word, pixels >> shift),
-                    (word.wrapping_add(1), (pixels << 1) << (31 - shift)),
-                ] {
-                    if part != 0
-                        && let Some(eight) = row.as_chunks_mut().0.get_mut(word)
-                    {
-                        let part = u32::from_ne_bytes(part.to_be_bytes());
-                        let old = u32::from_ne_bytes(*eight);
-                        *eight = (old ^ ((old ^ greys) & part)).to_ne_bytes();
+        // A level above `last` carries out of its nibble, and then loses 1.
+        for _ in 0..rows {
+            let y = usize::from(self.row);
+            self.row = (self.row + 1) % self.format.height.max(1);
+            let row = self
+                .words
+                .get_mut(self.format.row_range(y).unwrap_or_default());
+            let (Some(row), Some(cells)) = (row, self.cells.get_mut(y)) else {
+                continue;
+            };
+            for (place, word) in row.iter_mut().enumerate() {
+                if *word & !FOREGROUND != 0 {
+                    let lost = carried(*word >> 4, room);
+                    if lost != 0 {
+                        *word -= lost << 4;
+                        cells.changed |= 1 << (place >> shift);
                     }
                 }
             }
-            bits <<= 8;
-            y = y.wrapping_add(1);
         }
     }
 }
 
-impl Row {
+/// A row of a canvas, for drawing on one layer.
+#[derive(Debug)]
+pub struct Row<'c> {
+    words: &'c mut [u32],
+    layer: Layer,
+}
+
+impl Row<'_> {
     /// Replaces the grey of the pixel in column `x` by a function of it. Only the low four bits of
     /// the result count. The function is not called for a pixel outside the row.
     pub fn update(&mut self, x: i32, new: impl FnOnce(u8) -> u8) {
-        if let Some(pair) = self.0.get_mut((x >> 1) as usize) {
-            let old = (*pair >> shift(x)) & 0x0F;
-            *pair ^= (old ^ (new(old) & 0x0F)) << shift(x);
+        if let Some(word) = self.words.get_mut((x >> 2) as usize) {
+            let shift = 8 * (x as u32 & 3);
+            let pixel = (*word >> shift) as u8;
+            let old = self.layer.grey(pixel);
+            let new = new(old) & 15;
+            if new != old {
+                *word ^= u32::from(pixel ^ self.layer.with(pixel, new)) << shift;
+            }
+        }
+    }
+
+    /// Sets a pixel to a grey of 0 to 15. It then covers the ink, also if that has the same grey.
+    pub fn set(&mut self, x: i32, grey: u8) {
+        if let Some(word) = self.words.get_mut((x >> 2) as usize) {
+            let shift = 8 * (x as u32 & 3);
+            let pixel = (*word >> shift) as u8;
+            *word ^= u32::from(pixel ^ self.layer.with(pixel, grey)) << shift;
         }
     }
 
@@ -164,13 +389,13 @@ impl Row {
     }
 }
 
-/// The speed of fading. Every row loses one grey in 64/`rows` ticks of the scene; with 0 rows
-/// nothing fades.
+/// The speed of fading. Every row loses one level in 64/`rows` ticks of the scene, whatever the
+/// height of the canvas; with 0 rows nothing fades.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Fading {
-    /// The number of rows that lose a grey in a tick. Above 64, some rows lose more than one.
+    /// The number of rows, of 64, that lose a level in a tick.
     pub rows: u8,
-    /// The final grey of a faded pixel, 0 to 15. Darker pixels do not change. From 15 on, nothing
+    /// The final level of faded ink, 0 to 15. Darker ink does not change. From 15 on, nothing
     /// fades.
     pub last: u8,
 }
@@ -178,65 +403,21 @@ pub struct Fading {
 impl Fading {
     /// The traces stay as they are.
     pub const NEVER: Self = Self { rows: 0, last: 15 };
-    /// The fading of a trace that remains visible. It loses a grey in about a second, down to grey
-    /// 4.
+    /// The fading of a trace that remains visible. It loses a level in about a second, down to 4.
     pub const TRACE: Self = Self { rows: 1, last: 4 };
 }
 
-/// The traces of earlier frames. Each frame is drawn over them.
-#[derive(Clone, Debug)]
-pub struct FadeLayer {
-    /// The traces. Each tick of the scene may add to them.
-    pub frame: Canvas,
-    /// The next row to fade.
-    row: i32,
-}
-
-impl FadeLayer {
-    /// A layer without traces. The first row to fade is the top one.
-    pub const NONE: Self = Self {
-        frame: Canvas::BLACK,
-        row: 0,
-    };
-
-    /// Fades the next `rows` rows by one grey each, after the lowest row the top one again; to be
-    /// called once a tick of the scene. Pixels at or below the grey `last` are unchanged.
-    #[inline(never)] // Test `scenes` profiles it by its name.
-    pub fn fade(&mut self, Fading { rows, last }: Fading) {
-        let room = u32::from(15_u8.saturating_sub(last)) * ONES;
-
-        // A grey above `last` carries out of its nibble, and then loses 1.
-        for _ in 0..rows {
-            if let Some(Row(row)) = self.frame.row_mut(self.row) {
-                for word in row.as_chunks_mut().0 {
-                    let greys = u32::from_ne_bytes(*word);
-                    let paled = greys - carried(greys, room) - (carried(greys >> 4, room) << 4);
-                    *word = paled.to_ne_bytes();
-                }
-            }
-            self.row = (self.row + 1) % HEIGHT as i32;
-        }
-    }
-}
-
-/// The number 1 in every other nibble.
-const ONES: u32 = 0x0101_0101;
-
-/// Returns the carries of the greys in the low nibbles of the four bytes of `greys`: bit 0 of a
-/// byte is 1 if the grey plus the summand in the same byte of `room`, 0 to 15, is at least 16. All
+/// Returns the carries of the levels in the low nibbles of the four bytes of `greys`: bit 0 of a
+/// byte is 1 if the level plus the summand in the same byte of `room`, 0 to 15, is at least 16. All
 /// other bits are 0. The high nibbles are ignored.
 pub(super) fn carried(greys: u32, room: u32) -> u32 {
-    (((greys & (15 * ONES)) + room) >> 4) & ONES
+    (((greys & FOREGROUND) + room) >> 4) & ONES
 }
 
-/// Returns the position of a pixel's nibble in its byte, as a shift.
-fn shift(x: i32) -> u32 {
-    4 * (!x as u32 & 1)
-}
-
-/// Returns each of eight bits as a nibble of 0 or 15.
-fn nibbles(bits: u32) -> u32 {
-    let fours = (bits | bits << 12) & 0x000F_000F;
-    let twos = (fours | fours << 6) & 0x0303_0303;
-    15 * ((twos | twos << 3) & 0x1111_1111)
+/// Returns the greys that a word of four pixels shows, one in each byte.
+pub fn visible(word: u32) -> u32 {
+    let foreground = word & FOREGROUND;
+    let is_drawn = carried(foreground, 15 * ONES);
+    let is_lit = carried(foreground, 14 * ONES);
+    ((word >> 4) & FOREGROUND & !(15 * is_drawn)) | (foreground & (15 * is_lit))
 }

@@ -2,83 +2,82 @@
 //! edges in integer arithmetic. Rows and columns are in pixels from the top left corner of the
 //! canvas; pixels outside the canvas are ignored.
 
-use crate::graphics::{Canvas, HEIGHT, SUBPIXELS};
+use crate::graphics::{Canvas, SUBPIXELS};
 
-/// Half the thickness of a curve, subpixels.
-const HALF_THICKNESS: i32 = 38;
+/// Half the thickness of a curve, subpixels of a unit.
+const HALF_THICKNESS: i32 = 19;
 
-/// A height on the canvas: subpixels of 1/64 pixel down from the top edge, negative above it.
+/// A height on the canvas: subpixels of 1/32 pixel down from the top edge, negative above it.
 pub type Height = i16;
 
 /// Returns the height of `value`, subpixels down from the top edge, where the value 0 is `zero`
 /// pixels below the top edge and a unit is `scale` pixels upwards. It is rounded towards 0, and
-/// limited to twice the height of the canvas above and below the top edge. If a number is NaN, or
-/// infinite ones combine to NaN, the result is 0, the top edge.
+/// limited to the range of [`Height`], 1,024 pixels either way. If a number is NaN, or infinite ones
+/// combine to NaN, the result is 0, the top edge.
 pub const fn height(value: f32, zero: f32, scale: f32) -> Height {
-    let limit = (2 * HEIGHT as i32 * SUBPIXELS) as f32;
-    ((zero - scale * value) * SUBPIXELS as f32).clamp(-limit, limit) as Height
+    ((zero - scale * value) * SUBPIXELS as f32) as Height
 }
 
 /// Draws the part of a curve in column `x`, between two heights, subpixels, in either order. The
-/// curve extends 38 subpixels above and below them. Its brightness is 0 (black) to 255 (grey 15).
+/// curve extends 19 subpixels of a unit above and below them. Its brightness is 0 (black) to 255 (grey 15).
 /// Pixels that are brighter already keep their grey.
 #[inline(never)] // Inlined, it takes 2,216 bytes of flash (M3).
 pub fn column(canvas: &mut Canvas, x: i32, from: Height, to: Height, brightness: u8) {
     /// The product of brightness and coverage that is one grey, as for a
     /// [`Stroke`](crate::graphics::Stroke): 255 = 17 x 15.
     const GREY: u16 = 17 * SUBPIXELS as u16;
-    let top = i32::from(from.min(to)) - HALF_THICKNESS;
-    let bottom = i32::from(from.max(to)) + HALF_THICKNESS;
+    let half_thickness = canvas.format.units(HALF_THICKNESS);
+    let top = i32::from(from.min(to)) - half_thickness;
+    let bottom = i32::from(from.max(to)) + half_thickness;
     let first = top.div_euclid(SUBPIXELS).max(0);
-    let last = bottom.div_euclid(SUBPIXELS).min(HEIGHT as i32 - 1);
+    let last = bottom.div_euclid(SUBPIXELS).min(canvas.format.bottom() - 1);
 
     for y in first..last + 1 {
         let covered = bottom.min((y + 1) * SUBPIXELS) - top.max(y * SUBPIXELS);
         let grey = ((u16::from(brightness) * covered as u16 + GREY / 2) / GREY) as u8;
-        canvas.lighten(x, y, grey);
+        if let Some(mut row) = canvas.row_mut(y, x..x + 1) {
+            row.lighten(x, grey);
+        }
     }
 }
 
 /// The grey of axes and scale lines, of 15. It is bright enough for a panel of one colour.
 pub const AXIS_GREY: u8 = 8;
 
-/// Draws a dotted line in row `y`, every third pixel from column `from` to column `to` (exclusive),
-/// in [`AXIS_GREY`]. Brighter pixels keep their grey. If `from` is not less than `to`, nothing is
-/// drawn.
-#[inline(never)] // Inlined, it takes 892 bytes of flash (M3).
+/// Draws a dotted line in row `y`, a unit of every third from column `from` to column `to`
+/// (exclusive), in [`AXIS_GREY`]. Brighter pixels keep their grey.
 pub fn axis(canvas: &mut Canvas, from: i32, to: i32, y: i32) {
-    if let Some(row) = canvas.row_mut(y) {
-        (from..to)
-            .step_by(3)
-            .for_each(|x| row.lighten(x, AXIS_GREY));
-    }
+    let step = canvas.format.units(3) as usize;
+    (from..to)
+        .step_by(step)
+        .for_each(|x| axis_dot(canvas, x, y));
 }
 
-/// Draws a dotted line in column `x`, every third pixel from row `from` to row `to` (exclusive), in
-/// [`AXIS_GREY`]. Brighter pixels keep their grey. If `from` is not less than `to`, nothing is
-/// drawn.
+/// Draws a dotted line in column `x`, as [`axis`] does, from row `from` to row `to` (exclusive).
 pub fn upright_axis(canvas: &mut Canvas, x: i32, from: i32, to: i32) {
-    (from..to).step_by(3).for_each(|y| axis_dot(canvas, x, y));
+    let step = canvas.format.units(3) as usize;
+    (from..to)
+        .step_by(step)
+        .for_each(|y| axis_dot(canvas, x, y));
 }
 
-/// Draws a scale bar, upright or level, from the pixel (x1, y1) to the pixel (x2, y2), which is to
-/// its right or below it, in [`AXIS_GREY`]. Either end has a foot of one pixel to both sides: left
-/// and right if x1 and x2 are equal, otherwise above and below. Brighter pixels keep their grey.
-/// Not checked: two diagonal corners give a filled rectangle, and a second pixel to the left of or
-/// above the first gives only the feet.
+/// Draws a scale bar of one unit, upright or level, from (x1, y1) to (x2, y2), which is to its
+/// right or below it, in [`AXIS_GREY`]. Either end has a foot of a unit to both sides. Brighter
+/// pixels keep their grey.
 pub fn bar(canvas: &mut Canvas, (x1, y1): (i32, i32), (x2, y2): (i32, i32)) {
     (x1..=x2).for_each(|x| (y1..=y2).for_each(|y| axis_dot(canvas, x, y)));
-    let (across, down) = if x1 == x2 { (1, 0) } else { (0, 1) };
+    let unit = canvas.format.units(1);
+    let (across, down) = if x1 == x2 { (unit, 0) } else { (0, unit) };
     for (x, y) in [(x1, y1), (x2, y2)] {
         axis_dot(canvas, x - across, y - down);
         axis_dot(canvas, x + across, y + down);
     }
 }
 
-/// Lightens a pixel of an axis or a bar.
+/// Lightens a unit of an axis or a bar.
 #[inline(never)] // Inlined, it takes 1,508 bytes of flash (M3).
 fn axis_dot(canvas: &mut Canvas, x: i32, y: i32) {
-    canvas.lighten(x, y, AXIS_GREY);
+    canvas.dot(x, y, AXIS_GREY);
 }
 
 /// Returns the smallest step of a scale that is at least `least`: 1, 2 or 5 times a power of ten,

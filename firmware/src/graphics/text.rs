@@ -4,19 +4,15 @@
 //! [`embedded-graphics`](https://docs.rs/embedded-graphics) (test `canvas`). They are stored as
 //! whole rows, which are drawn in a fifth of the time of single pixels.
 
-use crate::graphics::{Canvas, HEIGHT, WIDTH};
+use crate::graphics::{Canvas, Format};
 
 /// The grey of the text, of 15. It is darker than the motion.
 const GREY: u8 = 11;
-/// The distance of text from the edges of the panel, pixels. A character contains such a gap above
+/// The distance of text from the edges of the panel, units. A character contains such a gap above
 /// it and on its right.
 const MARGIN: i32 = 1;
-const RIGHT: i32 = WIDTH as i32 - 1 - MARGIN;
-
-/// The height of a line of text, pixels.
-pub const LINE: i32 = 8;
-/// The top row of the lowest line of text, 55. A margin of one row is below the line.
-pub const LOWEST: i32 = HEIGHT as i32 - MARGIN - LINE;
+/// The rows of a character.
+const ROWS: usize = 8;
 
 /// The position of a line of text. The last number is y, the row of its top; a number before it is
 /// the column x, both in pixels. The parts of the text beyond the edges are not drawn.
@@ -39,7 +35,7 @@ pub enum Anchor {
 /// Characters have the glyphs of [`glyph`]. The pixels around the ink of the characters keep their
 /// grey.
 pub fn write(canvas: &mut Canvas, text: &str, anchor: Anchor) {
-    put(canvas, text, corner(anchor, text), GREY);
+    put(canvas, text, corner(anchor, text, canvas.format), GREY);
 }
 
 /// The greys of ink and background of a highlighted line: black on grey 11.
@@ -52,36 +48,34 @@ pub const WHITE_ON_BLACK: [u8; 2] = [15, 0];
 /// the text, and ends with the gap after the last character. Without text it is this one column.
 pub fn write_on(canvas: &mut Canvas, text: &str, anchor: Anchor, [ink, ground]: [u8; 2]) {
     let width = width(text);
-    let (left, top) = corner(anchor, text);
+    let unit = canvas.format.units(1);
+    let (left, top) = corner(anchor, text, canvas.format);
 
     // The background begins one column left of the text.
     for x in (-1..width).step_by(8) {
         let row = !(0xFF_u32 >> (width - x).min(8)) as u8;
-        canvas.stamp(
-            left + x,
-            top,
-            u64::from_be_bytes([row; LINE as usize]),
-            ground,
-        );
+        let rows = u64::from_be_bytes([row; ROWS]);
+        canvas.stamp(left + unit * x, top, rows, ground);
     }
 
     put(canvas, text, (left, top), ink);
 }
 
-/// Returns the width of a line of text, pixels.
+/// Returns the width of a line of text, units.
 fn width(text: &str) -> i32 {
     text.chars().map(|character| glyph(character).width).sum()
 }
 
 /// Returns the top left corner of a line of text.
-fn corner(anchor: Anchor, text: &str) -> (i32, i32) {
+fn corner(anchor: Anchor, text: &str, format: Format) -> (i32, i32) {
+    let units = |units| format.units(units);
     match anchor {
-        Anchor::Left(y) => (MARGIN, y),
+        Anchor::Left(y) => (units(MARGIN), y),
         // The gap after the last character may be in the margin.
-        Anchor::Right(y) => (RIGHT + 2 - width(text), y),
-        Anchor::Middle(y) => (WIDTH as i32 / 2 - (width(text) - 1) / 2, y),
+        Anchor::Right(y) => (format.right() - units(width(text)), y),
+        Anchor::Middle(y) => (format.right() / 2 - units((width(text) - 1) / 2), y),
         Anchor::At(x, y) => (x, y),
-        Anchor::EndingAt(x, y) => (x - width(text), y),
+        Anchor::EndingAt(x, y) => (x - units(width(text)), y),
     }
 }
 
@@ -89,16 +83,17 @@ fn corner(anchor: Anchor, text: &str) -> (i32, i32) {
 fn put(canvas: &mut Canvas, text: &str, (mut left, top): (i32, i32), grey: u8) {
     for Glyph { width, rows } in text.chars().map(glyph) {
         canvas.stamp(left, top, rows, grey);
-        left += width;
+        left += canvas.format.units(width);
     }
 }
 
-/// Draws the mark of a paused scene at the right edge below the first line of text: columns 119 to
-/// 126 and rows 10 to 16 become black, with two upright bars of grey 11 in columns 121, 122 and
-/// 125, 126, rows 11 to 16.
+/// Draws the mark of a paused scene at the right edge below the first line of text: two upright
+/// bars of grey 11 on black.
 pub fn pause_mark(canvas: &mut Canvas) {
+    let left = canvas.format.right() - canvas.format.units(9);
+    let top = canvas.format.line() + canvas.format.units(2);
     for (bits, grey) in [(0xFFFF_FFFF_FFFF_FF00, 0), (0x0033_3333_3333_3300, GREY)] {
-        canvas.stamp(RIGHT - 7, LINE + 2, bits, grey);
+        canvas.stamp(left, top, bits, grey);
     }
 }
 

@@ -2,8 +2,8 @@
 
 use double_pendulum::Parameters;
 
-use crate::config::{GREATEST_RADIUS, LEAST_RADIUS, PIVOT, REACH, ROD_HALF_WIDTH};
-use crate::graphics::{Canvas, Disc, FadeLayer, SUBPIXELS, Spot, Stroke};
+use crate::config::{GREATEST_RADIUS, LEAST_RADIUS, REACH, ROD_HALF_WIDTH};
+use crate::graphics::{Canvas, Disc, Format, SUBPIXELS, Spot, Stroke};
 
 /// The directions of both rods, rod 1 first: (sin, cos) of their angles, each from the downward
 /// vertical and positive to the right. Not checked: the length of each direction is 1.
@@ -12,14 +12,19 @@ pub type RodDirections = [[f32; 2]; 2];
 /// The brightness of a rod, of 255. It is between the trail's and the bobs'.
 const ROD_BRIGHTNESS: u8 = 190;
 /// The width of the dark gap between a bob and its background, subpixels.
-const GAP: u8 = SUBPIXELS as u8;
+const GAP: u16 = SUBPIXELS as u16;
 /// Half the width of a trace that fades as [`Fading::TRACE`](crate::graphics::Fading::TRACE) and so
-/// remains visible, subpixels.
-pub const TRACE_HALF_WIDTH: u8 = 30;
+/// remains visible, subpixels, on an OLED.
+pub const TRACE_HALF_WIDTH: u16 = 15;
+
+/// The width of the longest label in a corner, `½px>15.5 s`, units.
+const CORNER: i32 = 51;
 
 /// The place of a pendulum on the frame.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Place {
+    /// The format of the frame.
+    pub format: Format,
     /// The pivot, pixels right and down from the top left corner of the canvas.
     pub pivot: (f32, f32),
     /// The length of both rods together, pixels.
@@ -27,34 +32,70 @@ pub struct Place {
 }
 
 impl Place {
-    /// The whole frame, with the pivot in the middle and a reach of 28.5 pixels.
-    pub const WHOLE: Self = Self {
-        pivot: PIVOT,
-        reach: REACH,
-    };
-    /// The left half and the right half. Each is a circle with a radius of 25 pixels and room for a
-    /// bob around it. There is room for a line of text above them, and for one between them at the
-    /// bottom. The pivots are at (29.5, 36) and (98.5, 36) pixels.
-    pub const HALVES: [Self; 2] = [
+    /// Returns the place in a circle around `pivot`. The heavier bob and its soft edge just touch
+    /// the circle.
+    pub fn within(radius: f32, pivot: (f32, f32), format: Format) -> Self {
+        let reach = (radius - 0.5) * (REACH / (REACH + GREATEST_RADIUS));
         Self {
-            pivot: (29.5, 36.0),
-            reach: 25.0,
-        },
-        Self {
-            pivot: (98.5, 36.0),
-            reach: 25.0,
-        },
-    ];
+            format,
+            pivot,
+            reach,
+        }
+    }
+
+    /// Returns the place in the middle of the whole frame. On an OLED its reach is 28.5 pixels. On
+    /// a larger panel it leaves the corners to labels.
+    pub fn whole(format: Format) -> Self {
+        let width = format.right() as f32;
+        let height = format.bottom() as f32;
+        let pivot = (0.5 * width, 0.5 * height);
+        if !format.is_large() {
+            return Self {
+                format,
+                pivot,
+                reach: REACH,
+            };
+        }
+
+        // The nearest corner of a label.
+        let across = (0.5 * width - format.units(CORNER) as f32).max(0.0);
+        let down = 0.5 * height - format.units(9) as f32;
+        let radius = libm::sqrtf(across * across + down * down);
+        Self::within(radius.min(0.5 * height), pivot, format)
+    }
+
+    /// Returns the left half and the right half. On an OLED each is a circle with a radius of 25
+    /// pixels and room for a bob around it, with room for a line of text above them, and for one
+    /// between them at the bottom. On a larger panel there is a line of text above and one below.
+    pub fn halves(format: Format) -> [Self; 2] {
+        let width = format.right() as f32;
+        let height = format.bottom() as f32;
+        if !format.is_large() {
+            return [29.5, width - 29.5].map(|x| Self {
+                format,
+                pivot: (x, 36.0),
+                reach: 25.0,
+            });
+        }
+        let radius = (0.5 * height - format.units(9) as f32).min(0.25 * width - 1.0);
+        [0.25, 0.75].map(|part| Self::within(radius, (part * width, 0.5 * height), format))
+    }
+
+    /// Returns the factor for the widths of lines and gaps: 1 on an OLED, and more for a larger
+    /// pendulum.
+    fn scale(&self) -> f32 {
+        (self.reach / REACH).max(1.0)
+    }
 }
 
 /// A pendulum on the frame: its sizes, and the present positions of its bobs.
 #[derive(Clone, Copy, Debug)]
 pub struct View {
-    pivot: (f32, f32),
+    place: Place,
     /// The lengths of rod 1 and rod 2, pixels.
     rods: [f32; 2],
     /// The radii of bob 1 and bob 2, subpixels.
-    pub radii: [u8; 2],
+    pub radii: [u16; 2],
     /// The positions of bob 1 and bob 2 on the canvas.
     spots: [Spot; 2],
 }
@@ -65,21 +106,21 @@ impl View {
     /// and gravity has no effect. Positions are limited as in [`Spot::at`].
     ///
     /// The bobs are spheres of one material, so that their radii are proportional to the cube root
-    /// of the mass. The heavier bob has the radius [`GREATEST_RADIUS`], 3 pixels in
-    /// [`Place::WHOLE`], in proportion to the reach. No radius is less than [`LEAST_RADIUS`], 1.5
-    /// pixels, or more than 255 subpixels. A ratio of masses that is NaN gives the least radius,
+    /// of the mass. The heavier bob has the radius [`GREATEST_RADIUS`], 3 pixels at the reach of an
+    /// OLED, in proportion to the reach. No radius is less than [`LEAST_RADIUS`], 1.5 pixels,
+    /// widened as the rods are. A ratio of masses that is NaN gives the least radius,
     /// and a rod length that is NaN the positions of [`turn`](Self::turn) for NaN.
     pub fn new(parameters: &Parameters<f32>, place: Place, directions: RodDirections) -> Self {
         let &Parameters { m1, m2, l1, l2, .. } = parameters;
         let greatest = GREATEST_RADIUS * place.reach / REACH;
         let radius = |mass: f32| {
             let pixels = greatest * libm::cbrtf(mass / m1.max(m2));
-            (pixels.max(LEAST_RADIUS) * SUBPIXELS as f32) as u8
+            (pixels.max(LEAST_RADIUS * place.scale()) * SUBPIXELS as f32) as u16
         };
         let scale = place.reach / (l1 + l2);
         let radii = [radius(m1), radius(m2)];
         let mut view = Self {
-            pivot: place.pivot,
+            place,
             rods: [scale * l1, scale * l2],
             radii,
             spots: Default::default(),
@@ -95,7 +136,8 @@ impl View {
     /// A rod with the direction (sin a, cos a) from the downward vertical extends that far right
     /// and down. Pixel i covers i to i + 1.
     pub fn bobs(&self, [[sin1, cos1], [sin2, cos2]]: RodDirections) -> [(f32, f32); 2] {
-        let ((x, y), [rod1, rod2]) = (self.pivot, self.rods);
+        let (x, y) = self.place.pivot;
+        let [rod1, rod2] = self.rods;
         let x1 = x + rod1 * sin1;
         let y1 = y + rod1 * cos1;
         [(x1, y1), (x1 + rod2 * sin2, y1 + rod2 * cos2)]
@@ -105,12 +147,13 @@ impl View {
     /// positions are limited as in [`Spot::at`]. A coordinate that is NaN becomes 0, the left or
     /// the top edge of the canvas.
     pub fn turn(&mut self, directions: RodDirections) {
-        self.spots = self.bobs(directions).map(|(x, y)| Spot::at(x, y));
+        let format = self.place.format;
+        self.spots = self.bobs(directions).map(|(x, y)| Spot::at(x, y, format));
     }
 
     /// Turns the rods to these directions. Bob 2 leaves a straight stroke in the ink, from its last
-    /// position to the new one, `2 * half_width` subpixels wide, with a brightness of 0 (black) to
-    /// 255 (grey 15). Pixels that are brighter already keep their grey.
+    /// position to the new one, `2 * half_width` subpixels wide on an OLED and wider on a larger
+    /// place, with a brightness of 0 (black) to 255 (grey 15). Pixels that are brighter already keep their grey.
     ///
     /// The last position is the result of the last call of this function or of
     /// [`turn`](Self::turn). Before the first call it is the position that the view was created
@@ -118,8 +161,8 @@ impl View {
     pub fn trace(
         &mut self,
         directions: RodDirections,
-        ink: &mut FadeLayer,
-        half_width: u8,
+        ink: &mut Canvas,
+        half_width: u16,
         brightness: u8,
     ) {
         let [_, from] = self.spots;
@@ -129,9 +172,9 @@ impl View {
         Stroke {
             from,
             to,
-            radius: half_width,
+            radius: (self.place.scale() * f32::from(half_width)) as u16,
         }
-        .lighten(&mut ink.frame, brightness);
+        .lighten(ink, brightness);
     }
 
     /// Draws the pivot, the rods and the bobs over the canvas. The brightness of the bobs is 0
@@ -139,8 +182,11 @@ impl View {
     /// each bob the background is darkened. Pixels under pivot and rods that are brighter already
     /// keep their grey; the bobs replace them. The parts outside the canvas are not drawn.
     pub fn draw(&self, canvas: &mut Canvas, brightness: u8) {
-        let (pivot, [bob1, bob2]) = (Spot::at(self.pivot.0, self.pivot.1), self.spots);
-        let half_width = (ROD_HALF_WIDTH * SUBPIXELS as f32) as u8;
+        let Place { format, pivot, .. } = self.place;
+        let pivot = Spot::at(pivot.0, pivot.1, format);
+        let [bob1, bob2] = self.spots;
+        let half_width = (self.place.scale() * ROD_HALF_WIDTH * SUBPIXELS as f32) as u16;
+        let gap = (self.place.scale() * f32::from(GAP)) as u16;
         let rod_brightness = ROD_BRIGHTNESS.min(brightness);
 
         for (from, to) in [(pivot, bob1), (bob1, bob2)] {
@@ -164,7 +210,7 @@ impl View {
             Disc {
                 centre,
                 radius,
-                gap: GAP,
+                gap,
             }
             .draw(canvas, brightness);
         }

@@ -7,7 +7,7 @@ use crate::config::{
     ANGLE_STEP, FIRST_ANGLE, FIRST_MASS_RATIO, GRAVITY, GREATEST_ANGLE, HALF_PIXEL, MASS_RATIOS,
     PLANNED, ROD, TICK_RATE,
 };
-use crate::graphics::HEIGHT;
+use crate::graphics::Format;
 
 /// A double pendulum, its initial angles and its initial angular velocities.
 ///
@@ -155,7 +155,7 @@ impl Settings {
     /// [`Method::DRAWN`](double_pendulum::Method::DRAWN). Most methods accept a step that is
     /// unstable ([`PlannedRun::new`]), unlike [`Simulation::new`](super::Simulation::new).
     pub fn run(&self, apart: f64, stepping: Stepping) -> Result<PlannedRun, Error> {
-        let mut problem = self.problem(HEIGHT as f32);
+        let mut problem = self.problem(Format::OLED.height.into());
         problem.start.a1 += apart;
         PlannedRun::new(&problem, stepping)
     }

@@ -4,7 +4,7 @@ use double_pendulum::plan::{PlannedRun, Stepping};
 use double_pendulum::{Error, Method, Parameter, Pendulum, State};
 
 use crate::config::{Processor, TICK_RATE};
-use crate::graphics::HEIGHT;
+use crate::graphics::Format;
 use crate::motion::Settings;
 
 /// The processor and the method for computing a motion.
@@ -14,6 +14,8 @@ pub struct Resources {
     pub processor: Processor,
     /// The requested method; `None` leaves the choice to the plan.
     pub method: Option<Method>,
+    /// The format of the panel.
+    pub format: Format,
 }
 
 /// A motion in progress. A tick is 1/60 s of it.
@@ -49,10 +51,11 @@ impl Simulation {
         &Resources {
             ref processor,
             method,
+            format,
         }: &Resources,
     ) -> Result<Self, Error> {
         let (pendulum, _) = settings.start()?;
-        let problem = settings.problem(HEIGHT as f32);
+        let problem = settings.problem(format.height.into());
         let initial = match method {
             Some(method) => Some(affordable(Stepping::of(&problem, method)?, processor)?),
             None => Stepping::initial(&problem, &processor.costs, processor.frame)?,
@@ -98,7 +101,7 @@ impl Simulation {
     /// Refuses what [`PlannedRun::new`] refuses, also the state of a motion that has diverged. Then
     /// nothing is changed.
     pub fn continue_by(&mut self, settings: &Settings, stepping: Stepping) -> Result<(), Error> {
-        let mut problem = settings.problem(HEIGHT as f32);
+        let mut problem = settings.problem(Format::OLED.height.into());
         problem.start = self.energy.pendulum.to_motion(&self.motion.state());
         let motion = PlannedRun::new(&problem, stepping)?;
 

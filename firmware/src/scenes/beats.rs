@@ -5,19 +5,15 @@
 use double_pendulum::{Error, Modes, Parameters, SmallOscillations};
 
 use crate::config::{GRAVITY, ROD};
-use crate::graphics::{
-    Anchor, Canvas, Disc, FadeLayer, LINE, LOWEST, Spot, Stroke, label, plot, text,
-};
+use crate::graphics::{Anchor, Canvas, Disc, Format, Spot, Stroke, label, plot, text};
 use crate::motion::{Resources, Settings, Simulation};
 use crate::scenes::{Report, Scene, Shows, draw_clock};
 
-/// The middles of the two figures, and the largest swing of a mode in them, pixels.
-const MIDDLES: [(f32, f32); 2] = [(23.5, 32.5), (104.5, 32.5)];
-const REACH: f32 = 21.5;
-/// Half the width of the line, the radius of the moving spot, and the gap around it, subpixels.
-const HALF_WIDTH: u8 = 36;
-const SPOT_RADIUS: u8 = 120;
-const GAP: u8 = 12;
+/// Half the width of the line, the radius of the moving spot, and the gap around it, subpixels of
+/// a unit.
+const HALF_WIDTH: i32 = 18;
+const SPOT_RADIUS: i32 = 60;
+const GAP: i32 = 6;
 /// The amplitude of angle 2 in each mode, degrees.
 const AMPLITUDE: f32 = 12.0;
 
@@ -42,6 +38,57 @@ pub fn closing(mass_ratio: f32) -> Settings {
     }
 }
 
+/// The places of the two figures and of the words.
+#[derive(Clone, Copy, Debug)]
+struct Layout {
+    format: Format,
+    /// The middles of the two figures, and the largest swing of a mode in them, pixels.
+    middles: [(f32, f32); 2],
+    reach: f32,
+    /// The places of the names of the axes, of the scale, of the time and of the horizon.
+    words: [Anchor; 5],
+}
+
+impl Layout {
+    fn of(format: Format) -> Self {
+        let line = format.line();
+        let lowest = format.lowest();
+        if !format.is_large() {
+            return Self {
+                format,
+                middles: [(23.5, 32.5), (104.5, 32.5)],
+                reach: 21.5,
+                words: [3 * line, 4 * line, 5 * line, line + 2, lowest].map(Anchor::Middle),
+            };
+        }
+
+        // Above the figures is a line of text, and below them are two.
+        let top = format.units(10) as f32;
+        let bottom = (lowest - format.units(10)) as f32;
+        let width = format.right() as f32;
+        let reach = (0.5 * (bottom - top)).min(0.25 * width - format.units(3) as f32);
+        let legend = lowest - format.units(9);
+        let y = 0.5 * (top + bottom);
+        Self {
+            format,
+            middles: [(0.25 * width, y), (0.75 * width, y)],
+            reach,
+            words: [
+                Anchor::Left(legend),
+                Anchor::Middle(legend),
+                Anchor::Right(legend),
+                Anchor::Left(lowest),
+                Anchor::Right(lowest),
+            ],
+        }
+    }
+
+    /// Returns this number of subpixels of a unit in subpixels.
+    fn subpixels(&self, of_unit: i32) -> u16 {
+        self.format.units(of_unit) as u16
+    }
+}
+
 /// A plot of the part of angle 2 in the fast mode (upwards) against the part in the slow mode
 /// (across): the linear motion on the left, the exact motion on the right.
 ///
@@ -55,6 +102,7 @@ pub fn closing(mass_ratio: f32) -> Settings {
 #[derive(Clone, Debug)]
 pub struct Beats {
     simulation: Simulation,
+    layout: Layout,
     linear: SmallOscillations<f32>,
     /// The amplitude of angle 2 relative to angle 1, in the fast mode and in the slow mode.
     shape: [f32; 2],
@@ -80,9 +128,10 @@ impl Beats {
         let spot = |(x, y): (f32, f32), [a1, a2]: [f32; 2]| {
             // The part in the slow mode is drawn across, the part in the fast mode upwards.
             let across = slow_shape * (a2 - fast_shape * a1) / (slow_shape - fast_shape);
-            Spot::at(x + self.scale * across, y - self.scale * (a2 - across))
+            let down = y - self.scale * (a2 - across);
+            Spot::at(x + self.scale * across, down, self.layout.format)
         };
-        let [left, right] = MIDDLES;
+        let [left, right] = self.layout.middles;
         let linear = self.linear.at(self.simulation.time()).angles();
         [spot(left, linear), spot(right, self.exact)]
     }
@@ -99,8 +148,9 @@ impl Scene for Beats {
         let shape = [modes.fast.shape, modes.slow.shape].map(|shape| shape as f32);
         let [fast, slow] = linear.amplitudes();
         let greatest = (fast * shape[0].abs()).max(slow * shape[1].abs());
+        let layout = Layout::of(resources.format);
         let scale = if greatest > 0.0 {
-            REACH / greatest
+            layout.reach / greatest
         } else {
             0.0
         };
@@ -108,6 +158,7 @@ impl Scene for Beats {
         let spots = [Spot::default(); 2];
         let mut scene = Self {
             simulation,
+            layout,
             linear,
             shape,
             scale,
@@ -124,7 +175,7 @@ impl Scene for Beats {
         Ok((scene, (scale > 0.0).then_some(4.0 * scale * gain)))
     }
 
-    fn tick(&mut self, _: u64, ink: &mut FadeLayer) {
+    fn tick(&mut self, _: u64, ink: &mut Canvas) {
         self.simulation.tick();
         let before = self.exact;
         self.exact = self.exact_angles();
@@ -138,24 +189,31 @@ impl Scene for Beats {
             Stroke {
                 from: if is_cut { to } else { from },
                 to,
-                radius: HALF_WIDTH,
+                radius: self.layout.subpixels(HALF_WIDTH),
             }
-            .lighten(&mut ink.frame, u8::MAX);
+            .lighten(ink, u8::MAX);
         }
         self.spots = spots;
     }
 
     fn draw(&self, report: &Report, canvas: &mut Canvas) {
-        for (x, y) in MIDDLES.map(|(x, y)| (x as i32, y as i32)) {
-            plot::axis(canvas, x - REACH as i32, x + REACH as i32 + 1, y);
-            plot::upright_axis(canvas, x, y - REACH as i32, y + REACH as i32 + 1);
+        let Layout {
+            middles,
+            reach,
+            words: [fast, slow, scale, time, trust],
+            ..
+        } = self.layout;
+        let unit = canvas.format.units(1);
+        for (x, y) in middles.map(|(x, y)| (x as i32, y as i32)) {
+            plot::axis(canvas, x - reach as i32, x + reach as i32 + unit, y);
+            plot::upright_axis(canvas, x, y - reach as i32, y + reach as i32 + unit);
         }
 
         for centre in self.spots {
             Disc {
                 centre,
-                radius: SPOT_RADIUS,
-                gap: GAP,
+                radius: self.layout.subpixels(SPOT_RADIUS),
+                gap: self.layout.subpixels(GAP),
             }
             .draw(canvas, u8::MAX);
         }
@@ -164,24 +222,15 @@ impl Scene for Beats {
         text::write(canvas, "exact", Anchor::Right(0));
         let mass_ratio = label::mass_ratio(self.mass_ratio);
         text::write(canvas, &mass_ratio, Anchor::Middle(0));
-        let reach = if self.scale > 0.0 {
-            (REACH / self.scale).to_degrees()
+        let swing = if self.scale > 0.0 {
+            (reach / self.scale).to_degrees()
         } else {
             0.0
         };
-        text::write(canvas, "↑ fast", Anchor::Middle(3 * LINE));
-        text::write(canvas, "→ slow", Anchor::Middle(4 * LINE));
-        text::write(
-            canvas,
-            &label::label("±", reach, 0, "°"),
-            Anchor::Middle(5 * LINE),
-        );
-        draw_clock(
-            canvas,
-            report,
-            Anchor::Middle(LINE + 2),
-            Anchor::Middle(LOWEST),
-        );
+        text::write(canvas, "↑ fast", fast);
+        text::write(canvas, "→ slow", slow);
+        text::write(canvas, &label::label("±", swing, 0, "°"), scale);
+        draw_clock(canvas, report, time, trust);
     }
 
     fn report(&self, _: u64) -> Report {

@@ -7,37 +7,86 @@ use heapless::Deque;
 
 use crate::config::{Processor, TICK_RATE};
 use crate::graphics::{
-    Anchor, Canvas, FadeLayer, Height, LINE, LOWEST, Place, SUBPIXELS, TRACE_HALF_WIDTH, View,
-    WIDTH, label, plot, text,
+    Anchor, Canvas, Format, Height, Palette, Place, TRACE_HALF_WIDTH, View, label, plot, text,
 };
 use crate::motion::{Resources, Settings, Simulation};
 use crate::scenes::{Report, Scene, Shows, draw_clock};
 
 /// The initial difference of angle 1 between the second pendulum and the first, rad.
 const APART: f64 = 1e-6;
-/// The width of the plot, columns: the right half without a gap.
-const PLOT_COLUMNS: usize = 60;
-const PLOT_LEFT: i32 = (WIDTH - PLOT_COLUMNS) as i32;
-/// The row of e-folding 0, and the number of pixels per e-folding. The largest possible separation
-/// is ln(sqrt 2 pi/1e-6) = 15.3 e-foldings.
-const ZERO_ROW: f32 = 53.0;
-const SCALE: f32 = 2.6;
-/// The rows of the scale, and their labels.
-const AXES: [(i32, &str); 4] = [
-    (row(0.0), "0"),
-    (row(5.0), "5"),
-    (row(10.0), "10"),
-    (row(15.0), "15"),
-];
-/// The number of columns per second. The 60 columns of the plot are 15 s.
-const COLUMNS_PER_SECOND: u64 = 4;
-const TICKS_PER_COLUMN: u64 = TICK_RATE as u64 / COLUMNS_PER_SECOND;
+/// The number of values in the plot.
+const VALUES: usize = 60;
+/// The e-foldings with an axis, and their labels. The largest possible separation is ln(sqrt 2
+/// pi/1e-6) = 15.3 e-foldings.
+const AXES: [(f32, &str); 4] = [(0.0, "0"), (5.0, "5"), (10.0, "10"), (15.0, "15")];
+/// The largest number of e-foldings in the plot.
+const GREATEST: f32 = 15.5;
+/// The number of values per second. The 60 values of the plot are 15 s.
+const VALUES_PER_SECOND: u64 = 4;
+const TICKS_PER_VALUE: u64 = TICK_RATE as u64 / VALUES_PER_SECOND;
 /// The brightness of the second pendulum, of 255.
 const SECOND: u8 = 110;
 
-/// Returns the row of this number of e-foldings.
-const fn row(e_foldings: f32) -> i32 {
-    plot::height(e_foldings, ZERO_ROW, SCALE) as i32 / SUBPIXELS
+/// The places of the pendulums, the plot and the words.
+#[derive(Clone, Copy, Debug)]
+pub struct Layout {
+    /// The place of both pendulums.
+    pub place: Place,
+    /// The first column of the plot; its last is that of the panel.
+    left: i32,
+    /// The row of e-folding 0, and the number of pixels per e-folding.
+    zero: f32,
+    scale: f32,
+    /// The places of the time, of the horizon, and of the name of the plot.
+    time: Anchor,
+    trust: Anchor,
+    name: Anchor,
+}
+
+impl Layout {
+    /// Returns the layout for a panel: the plot at the right of the pendulums or, on a tall one,
+    /// below them.
+    pub fn of(format: Format) -> Self {
+        let width = format.right();
+        let height = format.bottom();
+        let zero = (height - format.units(11)) as f32;
+
+        if format.is_tall() {
+            // The pendulums are above the middle, below a line of text.
+            let top = format.units(9);
+            let radius = (0.5 * height as f32 - top as f32) / 2.0;
+            let pivot = (0.5 * width as f32, top as f32 + radius);
+            let above_plot = height / 2 - format.line();
+            return Self {
+                place: Place::within(radius, pivot, format),
+                left: format.units(11),
+                zero,
+                scale: (zero - 0.5 * height as f32 - format.units(4) as f32) / GREATEST,
+                time: Anchor::Left(0),
+                trust: Anchor::Right(0),
+                name: Anchor::Left(above_plot),
+            };
+        }
+
+        let [place, _] = Place::halves(format);
+        Self {
+            place,
+            left: width / 2 + format.units(4),
+            zero,
+            scale: if format.is_large() {
+                (zero - format.units(12) as f32) / GREATEST
+            } else {
+                2.6
+            },
+            time: Anchor::Left(0),
+            trust: if format.is_large() {
+                Anchor::Left(format.lowest())
+            } else {
+                Anchor::Middle(0)
+            },
+            name: Anchor::Right(0),
+        }
+    }
 }
 
 /// Two pendulums at one pivot, and the e-foldings of their separation over time: ln(separation/1e-6
@@ -57,8 +106,9 @@ pub struct Butterfly {
     first: Simulation,
     second: PlannedRun,
     views: [View; 2],
+    layout: Layout,
     /// The curve in the plot, the oldest value first.
-    strip: Deque<Height, PLOT_COLUMNS>,
+    strip: Deque<Height, VALUES>,
 }
 
 impl Butterfly {
@@ -81,19 +131,24 @@ impl Butterfly {
         if self.strip.is_full() {
             self.strip.pop_front();
         }
-        let _there_is_room = self
-            .strip
-            .push_back(plot::height(e_foldings, ZERO_ROW, SCALE));
+        let Layout { zero, scale, .. } = self.layout;
+        let height = plot::height(e_foldings, zero, scale);
+        let _there_is_room = self.strip.push_back(height);
     }
 }
 
 impl Scene for Butterfly {
     const SHOWS: Shows = Shows::Motion;
+    const PALETTE: Palette = Palette::Two;
     // With all scenes inlined, `play_by` has a stack frame of 7,604 bytes.
     #[inline(never)]
     fn new(settings: &Settings, resources: &Resources) -> Result<(Self, Option<f32>), Error> {
         // A frame pays for both motions.
-        let &Resources { processor, method } = resources;
+        let &Resources {
+            processor,
+            method,
+            format,
+        } = resources;
         let each = Processor {
             frame: 0.5 * processor.frame,
             ..processor
@@ -101,23 +156,26 @@ impl Scene for Butterfly {
         let resources = Resources {
             processor: each,
             method,
+            format,
         };
         let first = Simulation::new(settings, &resources)?;
         let second = settings.run(APART, first.motion.stepping())?;
 
+        let layout = Layout::of(format);
         let views = [first.motion.directions(), second.directions()]
-            .map(|directions| View::new(&settings.parameters, Place::HALVES[0], directions));
+            .map(|directions| View::new(&settings.parameters, layout.place, directions));
         let mut scene = Self {
             first,
             second,
             views,
+            layout,
             strip: Deque::new(),
         };
         scene.put_down();
-        Ok((scene, Some(2.0 * Place::HALVES[0].reach)))
+        Ok((scene, Some(2.0 * layout.place.reach)))
     }
 
-    fn tick(&mut self, ticks: u64, ink: &mut FadeLayer) {
+    fn tick(&mut self, ticks: u64, ink: &mut Canvas) {
         self.first.tick();
         let _is_lost = self.second.advance(1);
         let [first, second] = &mut self.views;
@@ -130,7 +188,7 @@ impl Scene for Butterfly {
         );
         second.turn(self.second.directions());
 
-        if ticks.is_multiple_of(TICKS_PER_COLUMN) {
+        if ticks.is_multiple_of(TICKS_PER_VALUE) {
             self.put_down();
         }
     }
@@ -140,33 +198,54 @@ impl Scene for Butterfly {
         second.draw(canvas, SECOND);
         first.draw(canvas, u8::MAX);
 
-        for (row, e_foldings) in AXES {
-            plot::axis(canvas, PLOT_LEFT, WIDTH as i32, row);
-            text::write(
-                canvas,
-                e_foldings,
-                Anchor::EndingAt(PLOT_LEFT, row - LINE / 2),
-            );
+        let Layout {
+            left,
+            zero,
+            scale,
+            time,
+            trust,
+            name,
+            ..
+        } = self.layout;
+        let format = canvas.format;
+        let lowest = format.lowest();
+        let columns = format.right() - left;
+        for (e_foldings, label) in AXES {
+            let row = (zero - scale * e_foldings) as i32;
+            plot::axis(canvas, left, format.right(), row);
+            let at = Anchor::EndingAt(left, row - format.line() / 2);
+            text::write(canvas, label, at);
         }
 
-        // The curve.
+        // The curve. Between two values it is straight.
+        let column = |value: usize| left + (value as i32 * columns) / VALUES as i32;
         let mut before = self.strip.front();
-        for (x, now) in (PLOT_LEFT..).zip(&self.strip) {
-            plot::column(canvas, x, *before.unwrap_or(now), *now, u8::MAX);
+        for (value, now) in self.strip.iter().enumerate() {
+            let from = i32::from(*before.unwrap_or(now));
+            let rise = i32::from(*now) - from;
+            let first = column(value);
+            let count = column(value + 1) - first;
+            let height = |part: i32| (from + rise * part / count.max(1)) as Height;
+            for part in 0..count {
+                plot::column(
+                    canvas,
+                    first + part,
+                    height(part),
+                    height(part + 1),
+                    u8::MAX,
+                );
+            }
             before = Some(now);
         }
 
         // The times at both ends of the plot.
-        let span = (PLOT_COLUMNS as u64 / COLUMNS_PER_SECOND) as f32;
+        let span = (VALUES as u64 / VALUES_PER_SECOND) as f32;
         let end = (report.time as f32).max(span);
-        text::write(
-            canvas,
-            &label::tick(end - span, ""),
-            Anchor::At(PLOT_LEFT, LOWEST),
-        );
-        text::write(canvas, &label::tick(end, " s"), Anchor::Right(LOWEST));
-        text::write(canvas, "e-folds", Anchor::Right(0));
-        draw_clock(canvas, report, Anchor::Left(0), Anchor::Middle(0));
+        let start = Anchor::At(left, lowest);
+        text::write(canvas, &label::tick(end - span, ""), start);
+        text::write(canvas, &label::tick(end, " s"), Anchor::Right(lowest));
+        text::write(canvas, "e-folds", name);
+        draw_clock(canvas, report, time, trust);
     }
 
     fn report(&self, _: u64) -> Report {

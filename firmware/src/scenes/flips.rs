@@ -14,7 +14,7 @@ use double_pendulum::{Error, Form};
 use double_pendulum::{Fixed32 as WithFpu, Fixed32 as WithoutFpu};
 
 use crate::config::FlipsPace;
-use crate::graphics::{Anchor, Canvas, FadeLayer, Fading, HEIGHT, WIDTH, label, text};
+use crate::graphics::{Anchor, Canvas, Fading, Format, Palette, label, text};
 use crate::motion::{Resources, Settings};
 use crate::scenes::{Report, Scene, Shows, time};
 
@@ -26,11 +26,35 @@ const LIMIT: f32 = 100.0;
 pub const GREYS: u8 = 14;
 const LATER: u8 = 1;
 
-/// The size of the first blocks, pixels across and down. The next blocks are half as large.
-const COARSEST: usize = 8;
-/// The number of rows to compute. The lower half of the map is the upper half turned by half a
-/// turn, because both starts are mirror images.
-const ROWS: usize = HEIGHT / 2;
+/// The size of the first blocks, cells across and down. The next blocks are half as large.
+const COARSEST: i32 = 8;
+
+/// The cells of the map, each of which shows one start: a pixel on an OLED, and a square of 2 x 2
+/// on a larger panel, whose map would take minutes otherwise.
+#[derive(Clone, Copy, Debug)]
+struct Grid {
+    /// The size of a cell, pixels.
+    cell: i32,
+    columns: i32,
+    rows: i32,
+}
+
+impl Grid {
+    fn of(format: Format) -> Self {
+        let cell = format.units(1);
+        Self {
+            cell,
+            columns: format.right() / cell,
+            rows: format.bottom() / cell,
+        }
+    }
+
+    /// Returns the number of rows to compute. The lower half of the map is the upper half turned by
+    /// half a turn, because both starts are mirror images.
+    fn computed_rows(self) -> i32 {
+        (self.rows + 1) / 2
+    }
+}
 
 /// The search in the processor's numbers, and the motion that it follows.
 #[derive(Clone, Debug)]
@@ -39,13 +63,12 @@ enum Searching {
     WithoutFpu(Search<WithoutFpu>, Option<Falling<WithoutFpu>>),
 }
 
-/// The map of flips, which fills the canvas: a1 across in 128 pixels and a2 upwards in 64 pixels,
-/// each from -180 to 180 degrees, and both rods at rest at the start. The start of a pixel is in
-/// its middle. The brightness is the time of the first flip: the sooner, the brighter, grey 15 to 2
+/// The map of flips, which fills the canvas: a1 across and a2 upwards, each from -180 to 180
+/// degrees, and both rods at rest at the start. The start of a cell is in its middle. The brightness is the time of the first flip: the sooner, the brighter, grey 15 to 2
 /// ([`GREYS`]). Grey 1 means no flip before 100 sqrt(l1/g), and black (0) that no flip is possible.
 ///
-/// The map is computed coarse first. Until a pixel is computed, it has the grey of a computed start
-/// in the same block of 8 x 8, 4 x 4 or 2 x 2 pixels, and before that it is black. The corners show
+/// The map is computed coarse first. Until a cell is computed, it has the grey of a computed start
+/// in the same block of 8 x 8, 4 x 4 or 2 x 2 cells, and before that it is black. The corners show
 /// the progress, then the mass ratio, and the simulated time of the computation.
 ///
 /// The ink contains the map. Of the settings only the pendulum matters, not its start. Zero gravity
@@ -54,6 +77,7 @@ enum Searching {
 pub struct Flips {
     searching: Searching,
     pace: FlipsPace,
+    grid: Grid,
     mass_ratio: f32,
     /// sqrt(l1/g), s.
     unit: f32,
@@ -65,18 +89,18 @@ pub struct Flips {
     elapsed: u64,
 }
 
-/// A block of pixels: its size, which is 0 when all is done, and its top left pixel, whose start is
+/// A block of cells: its size, which is 0 when all is done, and its top left cell, whose start is
 /// computed.
 #[derive(Clone, Copy, Debug)]
 struct Block {
-    size: usize,
-    x: usize,
-    y: usize,
+    size: i32,
+    x: i32,
+    y: i32,
 }
 
 impl Block {
     /// Returns the next block, without those whose start was computed for a larger block.
-    fn next(self) -> Self {
+    fn next(self, grid: Grid) -> Self {
         let Self {
             mut size,
             mut x,
@@ -85,42 +109,51 @@ impl Block {
         loop {
             // Go to the right, then down, then to blocks of half the size.
             x += size;
-            if x >= WIDTH {
+            if x >= grid.columns {
                 x = 0;
                 y += size;
             }
-            if y >= ROWS {
+            if y >= grid.computed_rows() {
                 size /= 2;
                 x = 0;
                 y = 0;
             }
-            // A smaller block is new unless a larger block began at its pixel.
+            // A smaller block is new unless a larger block began at its cell.
             if size == 0 || size == COARSEST || (x | y) & size != 0 {
                 return Self { size, x, y };
             }
         }
     }
 
-    /// Returns the start angles of the block, rad: the middle of its top left pixel.
-    fn start(self) -> [f32; 2] {
-        // The pixels are whole numbers, so that opposite starts are exact mirror images.
-        let angle = |pixels: i32, all: usize| pixels as f32 * (core::f32::consts::PI / all as f32);
-        let x = self.x as i32;
-        let y = self.y as i32;
+    /// Returns the start angles of the block, rad: the middle of its top left cell.
+    fn start(self, grid: Grid) -> [f32; 2] {
+        // The cells are whole numbers, so that opposite starts are exact mirror images.
+        let angle = |cells: i32, all: i32| cells as f32 * (core::f32::consts::PI / all as f32);
         [
-            angle(2 * x + 1 - WIDTH as i32, WIDTH),
-            angle(HEIGHT as i32 - 1 - 2 * y, HEIGHT),
+            angle(2 * self.x + 1 - grid.columns, grid.columns),
+            angle(grid.rows - 1 - 2 * self.y, grid.rows),
         ]
     }
 
     /// Fills the block and its mirror image with a grey.
-    fn paint(self, ink: &mut FadeLayer, grey: u8) {
-        let map = &mut ink.frame;
-        map.all_greys = true;
-        for y in self.y as i32..(self.y + self.size) as i32 {
-            for x in self.x as i32..(self.x + self.size) as i32 {
-                map.update(x, y, |_| grey);
-                map.update(WIDTH as i32 - 1 - x, HEIGHT as i32 - 1 - y, |_| grey);
+    fn paint(self, grid: Grid, map: &mut Canvas, grey: u8) {
+        let right = (self.x + self.size).min(grid.columns);
+        let bottom = (self.y + self.size).min(grid.computed_rows());
+        let rectangles = [
+            [self.x, self.y, right, bottom],
+            [
+                grid.columns - right,
+                grid.rows - bottom,
+                grid.columns - self.x,
+                grid.rows - self.y,
+            ],
+        ];
+        for [left, top, right, bottom] in rectangles.map(|edges| edges.map(|edge| edge * grid.cell))
+        {
+            for y in top..bottom {
+                if let Some(mut row) = map.row_mut(y, left..right) {
+                    (left..right).for_each(|x| row.set(x, grey));
+                }
             }
         }
     }
@@ -138,7 +171,12 @@ impl Flips {
     ///
     /// Refuses parameters that describe no pendulum, zero gravity, because nothing moves without
     /// it, and a pendulum out of the range of the method's numbers.
-    pub fn at_pace(settings: &Settings, pace: FlipsPace, in_float: bool) -> Result<Self, Error> {
+    pub fn at_pace(
+        settings: &Settings,
+        pace: FlipsPace,
+        in_float: bool,
+        format: Format,
+    ) -> Result<Self, Error> {
         // The search lasts for a fixed number of units of time.
         let parameters = &settings.parameters;
         let unit = libm::sqrtf(parameters.l1 / parameters.g);
@@ -152,6 +190,7 @@ impl Flips {
         Ok(Self {
             searching,
             pace,
+            grid: Grid::of(format),
             mass_ratio: settings.mass_ratio(),
             unit,
             block: Block {
@@ -216,6 +255,7 @@ fn grey(flip: Flip<f32>, unit: f32) -> u8 {
 impl Scene for Flips {
     const SHOWS: Shows = Shows::Figure;
     const FADING: Fading = Fading::NEVER;
+    const PALETTE: Palette = Palette::Map;
 
     fn new(settings: &Settings, resources: &Resources) -> Result<(Self, Option<f32>), Error> {
         Ok((
@@ -223,12 +263,13 @@ impl Scene for Flips {
                 settings,
                 resources.processor.flips,
                 resources.processor.has_float(),
+                resources.format,
             )?,
             None,
         ))
     }
 
-    fn tick(&mut self, ticks: u64, ink: &mut FadeLayer) {
+    fn tick(&mut self, ticks: u64, ink: &mut Canvas) {
         if self.is_done() {
             return;
         }
@@ -236,7 +277,7 @@ impl Scene for Flips {
         // Spend the budget of the tick, block by block.
         let mut left = self.pace.steps;
         while left > 0 && !self.is_done() {
-            let start = self.block.start();
+            let start = self.block.start(self.grid);
             let pace = self.pace;
             let (cost, flip) = match &mut self.searching {
                 Searching::WithFpu(search, falling) => work(search, falling, start, left, pace),
@@ -244,8 +285,8 @@ impl Scene for Flips {
             };
             left = left.saturating_sub(cost);
             if let Some(flip) = flip {
-                self.block.paint(ink, grey(flip, self.unit));
-                self.block = self.block.next();
+                self.block.paint(self.grid, ink, grey(flip, self.unit));
+                self.block = self.block.next(self.grid);
                 self.done += 1;
             }
         }
@@ -264,12 +305,8 @@ impl Scene for Flips {
         let corner = if self.is_done() {
             label::mass_ratio(self.mass_ratio)
         } else {
-            label::label(
-                "",
-                ((100 * self.done) / (WIDTH * ROWS) as u32) as f32,
-                0,
-                " %",
-            )
+            let all = (self.grid.columns * self.grid.computed_rows()) as u32;
+            label::label("", (100 * self.done / all) as f32, 0, " %")
         };
         text::write_on(canvas, &corner, Anchor::Left(0), text::WHITE_ON_BLACK);
     }

@@ -3,9 +3,7 @@
 
 use double_pendulum::{Error, Modes, Parameters};
 
-use crate::graphics::{
-    Anchor, Canvas, Disc, FadeLayer, Fading, Height, LINE, LOWEST, Spot, WIDTH, label, plot, text,
-};
+use crate::graphics::{Anchor, Canvas, Disc, Fading, Format, Height, Spot, label, plot, text};
 use crate::motion::{Resources, Settings};
 use crate::scenes::{Report, Scene, Shows};
 
@@ -13,17 +11,37 @@ use crate::scenes::{Report, Scene, Shows};
 const LEAST_RANGE: f32 = 5.0;
 /// The largest position of the mark, as a fraction of the width of the plot.
 const FARTHEST_MARK: f32 = 0.8;
-/// The first column of the plot, right of the numbers of its scale.
-const LEFT: i32 = 12;
-const COLUMNS: usize = WIDTH - LEFT as usize;
-/// The row of frequency 0, and the height of the largest frequency above it, pixels.
-const ZERO_ROW: f32 = 53.0;
-const RISE: f32 = 43.0;
 /// The approximate largest number of labels above 0.
 const NUMBERS: f32 = 4.0;
-const COLUMNS_PER_TICK: u32 = 2;
-const MARK_RADIUS: u8 = 112;
+/// The width of the curves that is drawn in a tick, units.
+const COLUMNS_PER_TICK: i32 = 2;
+/// The radius of the mark and its gap, subpixels of a unit.
+const MARK_RADIUS: i32 = 56;
 const CURVE: u8 = 200;
+
+/// The plot on a panel.
+#[derive(Clone, Copy, Debug)]
+struct Layout {
+    /// The first column, right of the numbers of the scale, and the number of columns.
+    left: i32,
+    columns: i32,
+    /// The row of frequency 0, and the height of the largest frequency above it, pixels.
+    zero: i32,
+    rise: i32,
+}
+
+impl Layout {
+    fn of(format: Format) -> Self {
+        let left = format.units(12);
+        let zero = format.bottom() - format.units(11);
+        Self {
+            left,
+            columns: format.right() - left,
+            zero,
+            rise: zero - format.units(10),
+        }
+    }
+}
 
 /// The two angular frequencies of equal rods in units of sqrt(g/l), so that they depend only on the
 /// mass ratio: ω₁ is the fast one, ω₂ the slow one. The curves grow from the left, by two columns
@@ -43,7 +61,7 @@ pub struct Frequencies {
     /// The frequencies at the current mass ratio.
     marked: [f32; 2],
     /// The number of columns of the curves that are drawn, and the heights of their ends.
-    drawn: u32,
+    drawn: i32,
     ends: Option<[Height; 2]>,
 }
 
@@ -58,7 +76,7 @@ impl Scene for Frequencies {
     const SHOWS: Shows = Shows::Figure;
     const FADING: Fading = Fading::NEVER;
 
-    fn new(settings: &Settings, _: &Resources) -> Result<(Self, Option<f32>), Error> {
+    fn new(settings: &Settings, resources: &Resources) -> Result<(Self, Option<f32>), Error> {
         let mass_ratio = settings.mass_ratio();
         let marked = frequencies(mass_ratio)?;
         let range = (mass_ratio / FARTHEST_MARK).max(LEAST_RANGE);
@@ -66,7 +84,7 @@ impl Scene for Frequencies {
         Ok((
             Self {
                 range,
-                scale: RISE / greatest,
+                scale: Layout::of(resources.format).rise as f32 / greatest,
                 mass_ratio,
                 marked,
                 drawn: 0,
@@ -76,17 +94,24 @@ impl Scene for Frequencies {
         ))
     }
 
-    fn tick(&mut self, _: u64, ink: &mut FadeLayer) {
-        for _ in 0..COLUMNS_PER_TICK.min(COLUMNS as u32 - self.drawn) {
+    fn tick(&mut self, _: u64, ink: &mut Canvas) {
+        let Layout {
+            left,
+            columns,
+            zero,
+            ..
+        } = Layout::of(ink.format);
+        let count = ink.format.units(COLUMNS_PER_TICK);
+        for _ in 0..count.min(columns - self.drawn) {
             // The mass ratio in the middle of the column. Mass ratio 0 has no modes.
-            let mass_ratio = (self.drawn as f32 + 0.5) * self.range / COLUMNS as f32;
+            let mass_ratio = (self.drawn as f32 + 0.5) * self.range / columns as f32;
             let Ok(frequencies) = frequencies(mass_ratio) else {
                 return;
             };
             let heights =
-                frequencies.map(|frequency| plot::height(frequency, ZERO_ROW, self.scale));
+                frequencies.map(|frequency| plot::height(frequency, zero as f32, self.scale));
             for (before, now) in self.ends.unwrap_or(heights).into_iter().zip(heights) {
-                plot::column(&mut ink.frame, LEFT + self.drawn as i32, before, now, CURVE);
+                plot::column(ink, left + self.drawn, before, now, CURVE);
             }
             self.drawn += 1;
             self.ends = Some(heights);
@@ -94,34 +119,38 @@ impl Scene for Frequencies {
     }
 
     fn draw(&self, _: &Report, canvas: &mut Canvas) {
-        let width = WIDTH as i32;
-        let zero = ZERO_ROW as i32;
+        let format = canvas.format;
+        let lowest = format.lowest();
+        let Layout {
+            left,
+            columns,
+            zero,
+            rise,
+        } = Layout::of(format);
 
         // The scale.
-        let step = plot::scale_step(RISE / self.scale / NUMBERS);
+        let step = plot::scale_step(rise as f32 / self.scale / NUMBERS);
         // An empty figure has no scale, and all numbers would be in the same row.
-        for frequency in (0..=RISE as u16).map(|number| f32::from(number) * step) {
-            let row = (ZERO_ROW - self.scale * frequency) as i32;
-            if row < zero - RISE as i32 {
+        for frequency in (0..=rise as u16).map(|number| f32::from(number) * step) {
+            let row = (zero as f32 - self.scale * frequency) as i32;
+            if row < zero - rise {
                 break;
             }
-            plot::axis(canvas, LEFT, width, row);
-            text::write(
-                canvas,
-                &label::tick(frequency, ""),
-                Anchor::EndingAt(LEFT, row - LINE / 2),
-            );
+            plot::axis(canvas, left, format.right(), row);
+            let at = Anchor::EndingAt(left, row - format.line() / 2);
+            text::write(canvas, &label::tick(frequency, ""), at);
         }
 
         // The marks.
-        let x = LEFT as f32 + self.mass_ratio / self.range * COLUMNS as f32;
-        plot::upright_axis(canvas, x as i32, zero - RISE as i32, zero);
+        let x = left as f32 + self.mass_ratio / self.range * columns as f32;
+        plot::upright_axis(canvas, x as i32, zero - rise, zero);
         for frequency in self.marked {
-            let centre = Spot::at(x, ZERO_ROW - self.scale * frequency);
+            let centre = Spot::at(x, zero as f32 - self.scale * frequency, format);
+            let radius = format.units(MARK_RADIUS) as u16;
             Disc {
                 centre,
-                radius: MARK_RADIUS,
-                gap: MARK_RADIUS,
+                radius,
+                gap: radius,
             }
             .draw(canvas, u8::MAX);
         }
@@ -135,11 +164,11 @@ impl Scene for Frequencies {
             &label::mass_ratio(self.mass_ratio),
             Anchor::Right(0),
         );
-        text::write(canvas, "ω in √(g/l)", Anchor::At(LEFT + 1, LOWEST));
+        text::write(canvas, "ω in √(g/l)", Anchor::At(left + 1, lowest));
         text::write(
             canvas,
             &label::mass_ratio(self.range),
-            Anchor::Right(LOWEST),
+            Anchor::Right(lowest),
         );
     }
 }

@@ -16,7 +16,7 @@ use double_pendulum::plan::Stepping;
 use double_pendulum::{Error, State};
 
 use crate::config::{GREATEST_ANGLE, TICK_RATE};
-use crate::graphics::{Anchor, Canvas, FadeLayer, Fading, label, text};
+use crate::graphics::{Anchor, Canvas, Fading, Format, Palette, Place, label, text};
 use crate::motion::{Horizon, Resources, Settings, Simulation};
 
 /// The subject of a scene.
@@ -38,6 +38,8 @@ pub trait Scene: Sized {
     /// The fading of the ink in a tick, which the caller applies after each [`tick`](Self::tick).
     /// By default it is the fading of a trace, which stays visible.
     const FADING: Fading = Fading::TRACE;
+    /// The colours of the scene.
+    const PALETTE: Palette = Palette::Trail;
 
     /// Creates the scene at its start. Returns also the height of the display for the plan, pixels.
     ///
@@ -57,10 +59,10 @@ pub trait Scene: Sized {
     /// Advances by one tick, to `ticks` ticks after the start, and adds the lasting part of the
     /// picture to the ink. The first call has `ticks` 1, and each further one 1 more, which is not
     /// checked. The result is the same if earlier ticks were not drawn.
-    fn tick(&mut self, ticks: u64, ink: &mut FadeLayer);
+    fn tick(&mut self, ticks: u64, ink: &mut Canvas);
 
-    /// Draws the rest of the picture over the ink, which `canvas` already contains. `report` is the
-    /// current report of the scene, so that its numbers need not be computed again; not checked.
+    /// Draws the rest of the picture in the clear foreground over the ink. `report` is the current
+    /// report of the scene, so that its numbers need not be computed again; not checked.
     fn draw(&self, report: &Report, canvas: &mut Canvas);
 
     /// Returns the numbers of the scene now, `ticks` ticks after the start; not checked: it is the
@@ -190,6 +192,11 @@ macro_rules! catalogue {
             pub const fn shows(self) -> Shows {
                 match self { $(Self::$row => <$scene>::SHOWS,)* }
             }
+
+            /// Returns the colours of the scene.
+            pub const fn palette(self) -> Palette {
+                match self { $(Self::$row => <$scene>::PALETTE,)* }
+            }
         }
 
         #[expect(
@@ -226,9 +233,10 @@ macro_rules! catalogue {
 
             /// Advances the scene by one tick of 1/60 s, to `ticks` ticks after the start, as
             /// [`Scene::tick`], and fades the ink. The first call has `ticks` 1, and each further
-            /// one 1 more. The ink must be clear at the start. A scene that is [too
+            /// one 1 more. The canvas must be blank at the start. A scene that is [too
             /// fast](Self::is_too_fast) must not advance. None of this is checked.
-            pub fn tick(&mut self, ticks: u64, ink: &mut FadeLayer) {
+            pub fn tick(&mut self, ticks: u64, canvas: &mut Canvas) {
+                let ink = canvas.on_ink();
                 let fading = match self {
                     $(Self::$row(scene) => {
                         scene.tick(ticks, ink);
@@ -238,11 +246,10 @@ macro_rules! catalogue {
                 ink.fade(fading);
             }
 
-            /// Draws the whole frame, over the previous one: a copy of the ink, and the rest of
-            /// the picture over it. `report` is the current report of the scene, which is not
-            /// checked.
-            pub fn draw(&self, report: &Report, ink: &FadeLayer, canvas: &mut Canvas) {
-                canvas.clone_from(&ink.frame);
+            /// Draws the foreground of the frame, in place of that of the previous one. `report` is
+            /// the current report of the scene, which is not checked.
+            pub fn draw(&self, report: &Report, canvas: &mut Canvas) {
+                let canvas = canvas.on_clear_foreground();
                 match self { $(Self::$row(scene) => scene.draw(report, canvas),)* }
             }
 
@@ -316,6 +323,16 @@ impl SceneName {
     /// Returns true if the scene shows the linear motion, on purpose, and not the exact one.
     pub fn is_linear(self) -> bool {
         self.shows() == Shows::LinearMotion
+    }
+
+    /// Returns the place of the first pendulum on a panel; `None` if the scene shows none.
+    pub fn place(self, format: Format) -> Option<Place> {
+        match self {
+            Self::Page => Some(Place::whole(format)),
+            Self::Butterfly => Some(butterfly::Layout::of(format).place),
+            Self::Figure7 | Self::Upright => Some(Place::halves(format)[0]),
+            _ => None,
+        }
     }
 
     /// Returns the next scene of the catalogue; after the last the first.

@@ -13,8 +13,8 @@ use crate::config::{
     TRAIL_HALF_WIDTH,
 };
 use crate::graphics::{
-    Anchor, Canvas, FadeLayer, Fading, HEIGHT, LINE, LOWEST, Place, RodDirections, SUBPIXELS,
-    TRACE_HALF_WIDTH, View, label, text,
+    Anchor, Canvas, Fading, Format, Place, RodDirections, SUBPIXELS, TRACE_HALF_WIDTH, View, label,
+    text,
 };
 use crate::motion::{Horizon, Misprinted, Resources, Settings, Simulation};
 use crate::scenes::{Report, Scene, Shows, draw_clock, time};
@@ -38,25 +38,23 @@ impl Scene for Page {
 
     fn new(settings: &Settings, resources: &Resources) -> Result<(Self, Option<f32>), Error> {
         let simulation = Simulation::new(settings, resources)?;
-        let view = View::new(
-            &settings.parameters,
-            Place::WHOLE,
-            simulation.motion.directions(),
-        );
+        let place = Place::whole(resources.format);
+        let directions = simulation.motion.directions();
+        let view = View::new(&settings.parameters, place, directions);
         Ok((
             Self {
                 settings: *settings,
                 simulation,
                 view,
             },
-            Some(2.0 * Place::WHOLE.reach),
+            Some(2.0 * place.reach),
         ))
     }
 
-    fn tick(&mut self, _: u64, ink: &mut FadeLayer) {
+    fn tick(&mut self, _: u64, ink: &mut Canvas) {
         // Bob 2 leaves its trail.
         self.simulation.tick();
-        let half_width = (TRAIL_HALF_WIDTH * SUBPIXELS as f32) as u8;
+        let half_width = (TRAIL_HALF_WIDTH * SUBPIXELS as f32) as u16;
         self.view.trace(
             self.simulation.motion.directions(),
             ink,
@@ -66,6 +64,8 @@ impl Scene for Page {
     }
 
     fn draw(&self, report: &Report, canvas: &mut Canvas) {
+        let lowest = canvas.format.lowest();
+        let above_lowest = lowest - canvas.format.line();
         self.view.draw(canvas, u8::MAX);
 
         // The settings.
@@ -81,21 +81,21 @@ impl Scene for Page {
             text::write(
                 canvas,
                 &label::degrees("α ", degrees1),
-                Anchor::Left(LOWEST),
+                Anchor::Left(lowest),
             );
         } else {
             text::write(
                 canvas,
                 &label::degrees("α₁ ", degrees1),
-                Anchor::Left(LOWEST - LINE),
+                Anchor::Left(above_lowest),
             );
             text::write(
                 canvas,
                 &label::degrees("α₂ ", degrees2),
-                Anchor::Left(LOWEST),
+                Anchor::Left(lowest),
             );
         }
-        draw_clock(canvas, report, Anchor::Right(0), Anchor::Right(LOWEST));
+        draw_clock(canvas, report, Anchor::Right(0), Anchor::Right(lowest));
     }
 
     fn report(&self, _: u64) -> Report {
@@ -113,26 +113,32 @@ impl Scene for Page {
 
 /// Two motions in the two halves of the frame, each with the whole trace of bob 2.
 #[derive(Clone, Debug)]
-struct Halves([View; 2]);
+struct Halves {
+    views: [View; 2],
+    format: Format,
+}
 
 impl Halves {
     /// Creates both pendulums in their initial directions.
-    fn new(settings: &Settings, [left, right]: [RodDirections; 2]) -> Self {
+    fn new(settings: &Settings, [left, right]: [RodDirections; 2], format: Format) -> Self {
         let view = |place, directions| View::new(&settings.parameters, place, directions);
-        let [left_half, right_half] = Place::HALVES;
-        Self([view(left_half, left), view(right_half, right)])
+        let [left_half, right_half] = Place::halves(format);
+        Self {
+            views: [view(left_half, left), view(right_half, right)],
+            format,
+        }
     }
 
     /// Turns both pendulums to these directions, and draws the traces of bob 2 on the way.
-    fn trace(&mut self, directions: [RodDirections; 2], ink: &mut FadeLayer) {
-        for (view, directions) in self.0.iter_mut().zip(directions) {
+    fn trace(&mut self, directions: [RodDirections; 2], ink: &mut Canvas) {
+        for (view, directions) in self.views.iter_mut().zip(directions) {
             view.trace(directions, ink, TRACE_HALF_WIDTH, u8::MAX);
         }
     }
 
     /// Draws both pendulums, with a label for each. If `is_lost`, draws only the left one.
     fn draw(&self, [left, right]: [&str; 2], is_lost: bool, report: &Report, canvas: &mut Canvas) {
-        let Self([left_view, right_view]) = self;
+        let [left_view, right_view] = &self.views;
         // A lost motion has no position.
         left_view.draw(canvas, u8::MAX);
         if !is_lost {
@@ -140,12 +146,20 @@ impl Halves {
         }
         text::write(canvas, left, Anchor::Left(0));
         text::write(canvas, right, Anchor::Right(0));
-        draw_clock(
-            canvas,
-            report,
-            Anchor::Middle(LINE + 1),
-            Anchor::Middle(LOWEST),
-        );
+
+        let format = self.format;
+        let lowest = format.lowest();
+        if format.is_large() {
+            draw_clock(canvas, report, Anchor::Left(lowest), Anchor::Right(lowest));
+        } else {
+            let below_labels = format.line() + 1;
+            draw_clock(
+                canvas,
+                report,
+                Anchor::Middle(below_labels),
+                Anchor::Middle(lowest),
+            );
+        }
     }
 }
 
@@ -193,6 +207,7 @@ impl Scene for Figure7 {
         let halves = Halves::new(
             settings,
             [right.motion.directions(), misprinted.directions()],
+            resources.format,
         );
         Ok((
             Self {
@@ -200,11 +215,11 @@ impl Scene for Figure7 {
                 misprinted,
                 halves,
             },
-            Some(2.0 * Place::HALVES[0].reach),
+            Some(2.0 * Place::halves(resources.format)[0].reach),
         ))
     }
 
-    fn tick(&mut self, _: u64, ink: &mut FadeLayer) {
+    fn tick(&mut self, _: u64, ink: &mut Canvas) {
         self.right.tick();
         self.misprinted.tick();
         // A motion that has diverged leaves no more trace.
@@ -283,7 +298,7 @@ impl Upright {
     /// Returns true if a bob of the plain motion may no longer be within half a pixel of the exact
     /// one.
     fn have_parted(&self) -> bool {
-        let Halves([left, _]) = &self.halves;
+        let [left, _] = &self.halves.views;
         // Both positions in the left half of the frame.
         let [plain, exact] =
             [self.plain_directions, self.exact.motion.directions()].map(|to| left.bobs(to));
@@ -308,12 +323,17 @@ impl Scene for Upright {
         let (pendulum, plain) = settings.start()?;
 
         // RK4 with the step count that a search would try first, and at least the one at power-on.
-        let steps = Stepping::of(&settings.problem(HEIGHT as f32), Method::Rk4F32Direction)?.steps;
+        let steps = Stepping::of(
+            &settings.problem(resources.format.height.into()),
+            Method::Rk4F32Direction,
+        )?
+        .steps;
         let steps = steps.max(STEPS_PER_TICK);
         let dt = 1.0 / f64::from(TICK_RATE * steps);
         pendulum.check_step(dt)?;
 
         // The motion in 64 bits may spend the rest of the budget of a frame.
+        let format = resources.format;
         let Processor { costs, frame, .. } = &resources.processor;
         let both = steps as f32 * (PLAIN_STEP * costs.closed_form + costs.direction);
         let resources = Resources {
@@ -322,6 +342,7 @@ impl Scene for Upright {
                 ..resources.processor
             },
             method: None,
+            format,
         };
         let mut exact = Simulation::new(settings, &resources)?;
         exact.is_too_fast |= exact.motion.stepping().method != Method::Extrapolation10Fixed64;
@@ -329,7 +350,8 @@ impl Scene for Upright {
         // The two motions that are drawn.
         let compensated = pendulum.run(&plain, dt)?;
         let plain_directions = directions(&plain);
-        let halves = Halves::new(settings, [plain_directions, compensated.directions()]);
+        let directions = [plain_directions, compensated.directions()];
+        let halves = Halves::new(settings, directions, format);
         let scene = Self {
             pendulum,
             plain,
@@ -343,7 +365,7 @@ impl Scene for Upright {
         Ok((scene, None))
     }
 
-    fn tick(&mut self, ticks: u64, ink: &mut FadeLayer) {
+    fn tick(&mut self, ticks: u64, ink: &mut Canvas) {
         // The plain motion.
         let dt = 1.0 / (TICK_RATE * self.steps) as f32;
         for _ in 0..self.steps {

@@ -5,24 +5,44 @@ use double_pendulum::plan::Stepping;
 use double_pendulum::{Error, Method, Modes, Parameters, Pendulum, SmallOscillations, sin_cos};
 
 use crate::config::{PAGE_GRAVITY, TICK_RATE};
-use crate::graphics::{
-    Anchor, Canvas, FadeLayer, Fading, Height, LINE, LOWEST, SUBPIXELS, WIDTH, label, plot, text,
-};
+use crate::graphics::{Anchor, Canvas, Fading, Format, Height, SUBPIXELS, label, plot, text};
 use crate::motion::{Resources, Settings};
 use crate::scenes::{Report, Scene, Shows, draw_clock, time};
 
-/// The rows of angle 0 for angle 1 and angle 2, pixels from the top, and the largest swing about
-/// them.
-const ROWS: [f32; 2] = [20.5, 43.5];
-const SWING: f32 = 10.5;
-/// The first column of the plots, right of their names and scales.
-const LEFT: i32 = 18;
-const RIGHT: i32 = WIDTH as i32 - 1;
-/// The approximate period of the exchange of energy between the rods, columns.
-const COLUMNS_PER_EXCHANGE: f32 = 60.0;
-/// The smallest length of the scale bar for time, columns.
-const LEAST_BAR: f32 = 16.0;
+/// The approximate period of the exchange of energy between the rods, parts of the plot's width.
+const EXCHANGES: f32 = 110.0 / 60.0;
+/// The smallest length of the scale bar for time, units.
+const LEAST_BAR: i32 = 16;
+/// The width of the dark gap in front of the newest column of a sweep, units.
+const SWEEP_GAP: i32 = 4;
 const ENVELOPE_GREY: u8 = 5;
+
+/// The plots on a panel.
+#[derive(Clone, Copy, Debug)]
+struct Layout {
+    /// The rows of angle 0 for angle 1 and angle 2, pixels from the top, and the largest swing about
+    /// them.
+    rows: [f32; 2],
+    swing: f32,
+    /// The first column of the plots, right of their names and scales; and the number of columns.
+    left: i32,
+    columns: i32,
+}
+
+impl Layout {
+    fn of(format: Format) -> Self {
+        let top = format.units(9) as f32;
+        let bottom = format.lowest() as f32;
+        let quarter = 0.25 * (bottom - top);
+        let left = format.units(18);
+        Self {
+            rows: [top + quarter, bottom - quarter],
+            swing: quarter - format.units(1) as f32,
+            left,
+            columns: format.right() - left,
+        }
+    }
+}
 
 /// The method of the scene. It shows the linear model, and does not follow the plan.
 const CLOSED_FORM: Stepping = Stepping {
@@ -41,7 +61,9 @@ pub fn example(mass_ratio: f32) -> Settings {
     }
 }
 
-/// The two angles over time, by the linear model. The horizon that is shown with the time is the
+/// The two angles over time, by the linear model. On an OLED the curves scroll. On a larger panel,
+/// where that would take half of a tick, the newest column replaces the oldest one, as on an
+/// oscilloscope. The horizon that is shown with the time is the
 /// time until which the exact motion has the same angles, to half a pixel of the curves. The scale
 /// is in degrees. A requested method is ignored.
 ///
@@ -60,6 +82,9 @@ pub struct Small {
     /// Pixels per radian.
     scale: f32,
     ticks_per_column: u32,
+    layout: Layout,
+    /// The number of columns that are drawn.
+    drawn: u64,
     /// The heights of the ends of the curves.
     ends: Option<[Height; 2]>,
 }
@@ -79,11 +104,31 @@ impl Small {
             .map(|[c1, c2]| libm::sqrtf((c1 * c1 + c2 * c2 + 2.0 * c1 * c2 * cos).max(0.0)))
     }
 
-    /// Scrolls the curves and their envelopes, and adds a column.
+    /// Adds a column to the curves and their envelopes.
     fn extend(&mut self, time: f64, ink: &mut Canvas) {
-        ink.scroll(LEFT);
+        let Layout {
+            rows: [row1, row2],
+            left,
+            columns,
+            ..
+        } = self.layout;
+        let unit = ink.format.units(1);
+        let mut x = left + columns - 1;
+        if ink.format.is_large() {
+            x = left + (self.drawn % columns as u64) as i32;
+            let end = left + columns;
+            let gap = ink.format.units(SWEEP_GAP);
+            ink.clear_columns(x..(x + gap).min(end));
+            // At the right edge the gap continues at the left one.
+            ink.clear_columns(left..left + (x + gap - end).max(0));
+            if x == left {
+                self.ends = None;
+            }
+            self.drawn += 1;
+        } else {
+            ink.scroll(left);
+        }
         // Heights are measured from the row of angle 0.
-        let [row1, row2] = ROWS;
         let height = |(angle, row): (f32, f32)| plot::height(angle, row, self.scale);
 
         // Each envelope has a point above and one below.
@@ -92,11 +137,10 @@ impl Small {
             let mirrored =
                 plot::height(0.0, 2.0 * envelope.1, 0.0).saturating_sub(height(envelope));
             for height in [height(envelope), mirrored] {
-                ink.lighten(
-                    RIGHT,
-                    i32::from(height).div_euclid(SUBPIXELS),
-                    ENVELOPE_GREY,
-                );
+                let top = i32::from(height).div_euclid(SUBPIXELS);
+                for y in top..top + unit {
+                    ink.update(x, y, |old| old.max(ENVELOPE_GREY));
+                }
             }
         }
 
@@ -104,7 +148,7 @@ impl Small {
         let [a1, a2] = self.motion.at(time).angles();
         let heights = [(a1, row1), (a2, row2)].map(height);
         for (before, now) in self.ends.unwrap_or(heights).into_iter().zip(heights) {
-            plot::column(ink, RIGHT, before, now, u8::MAX);
+            plot::column(ink, x, before, now, u8::MAX);
         }
         self.ends = Some(heights);
     }
@@ -125,7 +169,7 @@ impl Scene for Small {
     const SHOWS: Shows = Shows::LinearMotion;
     const FADING: Fading = Fading::NEVER;
 
-    fn new(settings: &Settings, _: &Resources) -> Result<(Self, Option<f32>), Error> {
+    fn new(settings: &Settings, resources: &Resources) -> Result<(Self, Option<f32>), Error> {
         let (pendulum, _) = settings.start()?;
         let modes = Modes::new(&settings.parameters.cast())?;
         let motion = SmallOscillations::new(modes, &settings.motion());
@@ -142,11 +186,13 @@ impl Scene for Small {
             .fold(0.0, f32::max);
 
         // The scales.
+        let layout = Layout::of(resources.format);
+        let columns_per_exchange = layout.columns as f32 / EXCHANGES;
         let [fast_phase, slow_phase] = motion.phases();
         let exchange = core::f32::consts::TAU / modes.exchange() as f32;
-        let ticks_per_column = (exchange * TICK_RATE as f32 / COLUMNS_PER_EXCHANGE) as u32;
+        let ticks_per_column = (exchange * TICK_RATE as f32 / columns_per_exchange) as u32;
         let scale = if greatest > 0.0 {
-            SWING / greatest
+            layout.swing / greatest
         } else {
             0.0
         };
@@ -158,59 +204,67 @@ impl Scene for Small {
             motion,
             scale,
             ticks_per_column: ticks_per_column.max(1),
+            layout,
+            drawn: 0,
             ends: None,
         };
         Ok((scene, (scale > 0.0).then(|| planned_height(scale))))
     }
 
-    fn tick(&mut self, ticks: u64, ink: &mut FadeLayer) {
+    fn tick(&mut self, ticks: u64, ink: &mut Canvas) {
         if self.ends.is_none() {
-            self.extend(0.0, &mut ink.frame);
+            self.extend(0.0, ink);
         }
         if ticks.is_multiple_of(self.ticks_per_column.into()) {
-            self.extend(time(ticks), &mut ink.frame);
+            self.extend(time(ticks), ink);
         }
     }
 
     fn draw(&self, report: &Report, canvas: &mut Canvas) {
+        let format = canvas.format;
+        let units = |units| format.units(units);
+        let lowest = format.lowest();
+        let Layout {
+            rows, swing, left, ..
+        } = self.layout;
+
         // The axes, with their names and the largest angle.
         let greatest = if self.scale > 0.0 {
-            (SWING / self.scale).to_degrees()
+            (swing / self.scale).to_degrees()
         } else {
             0.0
         };
-        for (row, name) in ROWS.map(|row| row as i32).into_iter().zip(["α₁", "α₂"]) {
-            let swing = SWING as i32;
-            plot::axis(canvas, LEFT, WIDTH as i32, row);
-            plot::bar(canvas, (LEFT - 1, row - swing), (LEFT - 1, row + swing));
-            text::write(canvas, name, Anchor::EndingAt(LEFT - 2, row - LINE / 2));
-            text::write(
-                canvas,
-                &label::label("", greatest, 0, "°"),
-                Anchor::EndingAt(LEFT - 2, row - swing),
-            );
+        let bar = left - units(1);
+        let name_end = left - units(2);
+        let swing = swing as i32;
+        for (row, name) in rows.map(|row| row as i32).into_iter().zip(["α₁", "α₂"]) {
+            plot::axis(canvas, left, format.right(), row);
+            plot::bar(canvas, (bar, row - swing), (bar, row + swing));
+            let middle = Anchor::EndingAt(name_end, row - format.line() / 2);
+            text::write(canvas, name, middle);
+            let top = Anchor::EndingAt(name_end, row - swing);
+            text::write(canvas, &label::label("", greatest, 0, "°"), top);
         }
 
         // A scale bar as long as a round time.
         let columns_per_second = TICK_RATE as f32 / self.ticks_per_column as f32;
-        let seconds = plot::scale_step(LEAST_BAR / columns_per_second);
-        let end = LEFT + (seconds * columns_per_second) as i32;
-        let row = LOWEST + LINE / 2;
-        plot::bar(canvas, (LEFT, row), (end, row));
-        text::write(
-            canvas,
-            &label::tick(seconds, " s"),
-            Anchor::At(end + 4, LOWEST),
-        );
+        let seconds = plot::scale_step(units(LEAST_BAR) as f32 / columns_per_second);
+        let end = left + (seconds * columns_per_second) as i32;
+        let row = lowest + format.line() / 2;
+        plot::bar(canvas, (left, row), (end, row));
+        let at = Anchor::At(end + units(4), lowest);
+        text::write(canvas, &label::tick(seconds, " s"), at);
 
         // The mass ratio, and the model.
-        text::write(
-            canvas,
-            &label::mass_ratio(self.pendulum.parameters().mass_ratio()),
-            Anchor::Left(0),
-        );
-        text::write(canvas, "linear", Anchor::Middle(0));
-        draw_clock(canvas, report, Anchor::Right(LOWEST), Anchor::Right(0));
+        let mass_ratio = label::mass_ratio(self.pendulum.parameters().mass_ratio());
+        text::write(canvas, &mass_ratio, Anchor::Left(0));
+        let model = if format.is_large() {
+            Anchor::At(units(37), 0)
+        } else {
+            Anchor::Middle(0)
+        };
+        text::write(canvas, "linear", model);
+        draw_clock(canvas, report, Anchor::Right(lowest), Anchor::Right(0));
     }
 
     fn report(&self, ticks: u64) -> Report {

@@ -3,10 +3,12 @@
 use double_pendulum::Error;
 use firmware::app::{PlannerEvent, Player};
 use firmware::config::{PROCESSOR, Processor};
-use firmware::graphics::{Canvas, FadeLayer, FrameBuffers};
+use firmware::graphics::{Canvas, Cells, Format};
 use firmware::motion::Settings;
 use firmware::protocol::Frame;
 use firmware::scenes::{Report, SceneName};
+
+use crate::qemu::Screenshot;
 
 /// A scene that is played and drawn on the host by the code of the board.
 #[derive(Debug)]
@@ -26,14 +28,24 @@ impl Show {
         Self::on(PROCESSOR, name, settings)
     }
 
-    /// Starts a scene as on a board with this `processor`; the plan chooses the method. `settings`
-    /// have the angles in degrees, also beyond 180, and the other numbers in SI units. An error
-    /// means that the scene cannot show them, such as a pendulum that the kernel refuses or a
-    /// number that is not finite ([`Player::play`]). A motion that is too fast for every method is
-    /// no error: the scene is stopped from its start. The memory of its ink is never freed.
+    /// Starts a scene as [`Show::in_format`] does, on a board with this `processor` and an OLED.
     pub fn on(processor: Processor, name: SceneName, settings: &Settings) -> Result<Self, Error> {
-        let ink = Box::leak(Box::new(FadeLayer::NONE));
-        let mut player = Player::new(processor, ink);
+        Self::in_format(Format::OLED, processor, name, settings)
+    }
+
+    /// Starts a scene as on a board with this panel and `processor`; the plan chooses the method.
+    /// `settings` have the angles in degrees, also beyond 180, and the other numbers in SI units.
+    /// An error means that the scene cannot show them, such as a pendulum that the kernel refuses
+    /// or a number that is not finite ([`Player::play`]). A motion that is too fast for every
+    /// method is no error: the scene is stopped from its start. The memory of its canvas is never
+    /// freed.
+    pub fn in_format(
+        format: Format,
+        processor: Processor,
+        name: SceneName,
+        settings: &Settings,
+    ) -> Result<Self, Error> {
+        let mut player = Player::new(processor, canvas(format));
         player.play(name, *settings)?;
         Ok(Self {
             player,
@@ -57,10 +69,9 @@ impl Show {
 
     /// Returns the picture of the current state, with the mark of a pause. A stopped scene shows
     /// the reason instead.
-    pub fn frame(&self) -> Canvas {
-        let mut canvas = Canvas::default();
-        self.player.draw(&mut canvas);
-        canvas
+    pub fn frame(&mut self) -> Screenshot {
+        self.player.draw();
+        Screenshot::from(&self.player.canvas)
     }
 
     /// Advances to the tick of a board's `frame` and returns the frame that the board should have
@@ -98,8 +109,10 @@ impl Show {
     }
 }
 
-/// Returns blank frame buffers that live for the rest of the program, as on a board. Their memory
-/// is never freed.
-pub fn frame_buffers() -> &'static mut FrameBuffers {
-    Box::leak(Box::new(FrameBuffers::BLANK))
+/// Returns a blank canvas that lives for the rest of the program, as on a board. Its memory is never
+/// freed.
+pub fn canvas(format: Format) -> Canvas<'static> {
+    let words = vec![0; format.words()];
+    let cells = vec![Cells::NONE; format.height.into()];
+    Canvas::new(format, words.leak(), cells.leak())
 }

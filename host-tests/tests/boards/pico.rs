@@ -353,10 +353,11 @@ fn every_kind_of_panel_shows_the_hosts_picture_after_it_is_plugged_in() -> anyho
         // The panel shows the host's picture, with the mark of a pause.
         let mut show = show(&PICO, name);
         (0..frame.report.step).for_each(|_| show.tick());
-        let mut canvas = show.frame();
-        firmware::graphics::text::pause_mark(&mut canvas);
+        show.player.draw();
+        let canvas = &mut show.player.canvas;
+        firmware::graphics::text::pause_mark(canvas);
         let shown = board.tell("panel")?;
-        let picture = Bitmap::from(&canvas);
+        let picture = Bitmap::from(&*canvas);
         let expected = if panel == "none" {
             &[]
         } else {
@@ -430,9 +431,10 @@ fn a_panel_that_holds_the_clock_low_shows_the_picture_when_it_lets_go() -> anyho
     let frame = stand_still(&mut board)?;
     let mut show = show(&PICO, SceneName::Page);
     (0..frame.report.step).for_each(|_| show.tick());
-    let mut canvas = show.frame();
-    firmware::graphics::text::pause_mark(&mut canvas);
-    assert!(board.tell("panel")? == Bitmap::from(&canvas).pages.as_flattened());
+    show.player.draw();
+    let canvas = &mut show.player.canvas;
+    firmware::graphics::text::pause_mark(canvas);
+    assert!(board.tell("panel")? == Bitmap::from(&*canvas).pages.as_flattened());
     assert_eq!(board.tell("i2c")?[..2], CLOCK_COUNTS);
     Ok(())
 }

@@ -18,7 +18,7 @@ use emulator::budgets;
 use emulator::host::Show;
 use emulator::link::Counts;
 use emulator::pico::PicoMachine;
-use emulator::qemu::{Machine, Screenshot, Settings};
+use emulator::qemu::{Machine, Settings};
 use emulator::toolchain;
 use firmware::config::TICK_RATE;
 use firmware::protocol::{Command, Frame, ToHost};
@@ -219,7 +219,7 @@ fn plays(
                 let shown = board.has_panel.then(|| machine.screenshot()).transpose()?;
                 let is_it = shown
                     .as_ref()
-                    .is_none_or(|shown| *shown == Screenshot::from(&run.show.frame()));
+                    .is_none_or(|shown| *shown == run.show.frame());
                 assert!(is_it, "{}: {}\n{shown:?}", board.name, name.name());
             }
 

@@ -10,7 +10,6 @@ use crate::support::toolchain;
 use demo::played;
 use double_pendulum::Parameters;
 use emulator::host::Show;
-use emulator::qemu::Screenshot;
 use firmware::config::STM32F405;
 use firmware::motion::Settings;
 use firmware::scenes::SceneName;
@@ -166,10 +165,7 @@ fn the_panel_of_a_board_without_one_is_redrawn_and_recorded() {
 
     for (number, (greys, _)) in played.iter().enumerate() {
         scene.tick();
-        assert!(
-            Screenshot::from(&scene.frame()).greys == *greys,
-            "screenshot {number}"
-        );
+        assert!(scene.frame().greys == *greys, "screenshot {number}");
         scene.tick();
     }
 }
@@ -220,15 +216,12 @@ fn a_motion_of_the_user_is_played_recorded_and_compared() {
     assert_eq!(played.len(), 30);
 
     // The first picture shows the first frame after the board has reported this motion.
-    while Screenshot::from(&scene.frame()).greys != played[0].0 {
+    while scene.frame().greys != played[0].0 {
         scene.tick();
         assert!(scene.report().step < 10, "it is another motion");
     }
     for (number, (greys, _)) in played.iter().enumerate() {
-        assert!(
-            Screenshot::from(&scene.frame()).greys == *greys,
-            "screenshot {number}"
-        );
+        assert!(scene.frame().greys == *greys, "screenshot {number}");
         scene.tick();
         scene.tick();
     }

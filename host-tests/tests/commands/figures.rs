@@ -7,7 +7,6 @@ use std::fs;
 use demo::played;
 use double_pendulum::{Motion, State};
 use emulator::host::Show;
-use emulator::qemu::Screenshot;
 use firmware::scenes::SceneName;
 use host_tests::commands::figures::small::{CurvePoint, MASS_RATIOS, modes, points};
 use host_tests::commands::figures::{animation, chaos, figures, folder};
@@ -84,10 +83,10 @@ fn is_shown(name: SceneName) -> bool {
             (0..to_its_time).for_each(|_| scene.tick());
 
             // Any tick from here to `LATE` ticks later may be the recorded one.
-            let mut is_shown = Screenshot::from(&scene.frame()).greys == *greys;
+            let mut is_shown = scene.frame().greys == *greys;
             for _ in 0..LATE {
                 scene.tick();
-                is_shown |= Screenshot::from(&scene.frame()).greys == *greys;
+                is_shown |= scene.frame().greys == *greys;
             }
             is_shown
         });

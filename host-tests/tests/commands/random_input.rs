@@ -6,11 +6,12 @@ use clap::Parser;
 use console::number::Number;
 use double_pendulum::plan::{Budget, Limit, Problem, Search, Stepping};
 use double_pendulum::{Error, Method, Modes, Motion, Parameters, Pendulum, Real, State};
+use emulator::host::canvas;
 use emulator::link::Inbox;
 use firmware::app::{App, NoButtons};
 use firmware::config::CORTEX_M4F;
 use firmware::display::NoDisplay;
-use firmware::graphics::FrameBuffers;
+use firmware::graphics::Format;
 use firmware::job::{BoardMotion, Job, ON_BOARDS, Request};
 use firmware::motion::Settings;
 use firmware::protocol::{
@@ -198,9 +199,8 @@ proptest! {
     /// nothing in the status, and the state of the scene stays finite.
     #[test]
     fn every_command_is_answered(commands in vec(command(), 1..3)) {
-        let mut buffers = FrameBuffers::BLANK;
         let mut panel = NoDisplay;
-        let mut app = App::new(CORTEX_M4F, &mut buffers, &mut panel, Vec::new(), NoButtons);
+        let mut app = App::new(CORTEX_M4F, canvas(Format::OLED), &mut panel, Vec::new(), NoButtons);
         app.player.play(SceneName::Page, Settings::default()).expect("good settings");
         for (tick, bytes) in (1..).zip(commands) {
             let status = app.player.status();

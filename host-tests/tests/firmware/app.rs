@@ -9,10 +9,11 @@ use double_pendulum::{Method, Parameters, Pendulum, State};
 use embedded_io::{ErrorKind, ErrorType, Write};
 use emulator::host::Show;
 use emulator::link::Inbox;
+use emulator::qemu::Screenshot;
 use firmware::app::{Buttons, Event, MOST_RESTARTS, NoButtons, Pressed, Record};
 use firmware::config::{GRAVITY, MOST_TICKS_PER_FRAME, ROD, TICK_RATE};
 use firmware::display::{Controller, Display, NoDisplay, PanelReport};
-use firmware::graphics::{Canvas, Place, RodDirections, View};
+use firmware::graphics::{Canvas, Format, Place, RodDirections, View};
 use firmware::motion::Settings;
 use firmware::protocol::{Answer, Cause, Command, LinkError, Restarted, Status, ToHost};
 use firmware::scenes::{Report, SceneName};
@@ -45,7 +46,7 @@ fn the_state_and_the_picture_after_n_ticks_are_the_same_at_any_frame_rate() {
         ("all at once", run([600])),
     ] {
         assert_eq!(other.player.report, steady.player.report, "{name}");
-        assert_eq!(other.canvas, steady.canvas, "{name}");
+        assert_eq!(other.player.canvas, steady.player.canvas, "{name}");
     }
 }
 
@@ -204,7 +205,11 @@ fn counts_wrap_unnoticed() {
         for tick in (1..=2 * AHEAD).filter(|tick| tick % 3 != 0) {
             while !app.run_to(begin.wrapping_add(tick), |event| events.push(event)) {}
         }
-        (frames(&app.link), app.canvas.clone(), events)
+        (
+            frames(&app.link),
+            Screenshot::from(&app.player.canvas),
+            events,
+        )
     };
 
     // The same frames, with counts that wrap in the middle of the run.
@@ -485,7 +490,7 @@ fn directions(app: &Plain) -> RodDirections {
 fn view(app: &Plain) -> View {
     View::new(
         &app.player.settings.parameters,
-        Place::WHOLE,
+        Place::whole(Format::OLED),
         directions(app),
     )
 }
@@ -498,7 +503,7 @@ fn bobs_are_drawn_where_the_state_puts_them() {
     for now in 1..=1200 {
         app.run_to(now, |_| ());
         for (x, y) in view(&app).bobs(directions(&app)) {
-            let grey = app.canvas.get(x as i32, y as i32);
+            let grey = app.player.canvas.get(x as i32, y as i32);
             assert_eq!(grey, Some(15), "tick {now}: ({x}, {y})");
         }
     }

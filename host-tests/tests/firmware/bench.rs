@@ -2,12 +2,12 @@
 //! of a frame.
 
 use embedded_io::Write;
-use emulator::host::frame_buffers;
+use emulator::host::canvas;
 use emulator::link::Inbox;
 use firmware::app::{App, Buttons, NoButtons};
 use firmware::config::PROCESSOR;
 use firmware::display::{Display, NoDisplay};
-use firmware::graphics::{HEIGHT, WIDTH};
+use firmware::graphics::{Canvas, Format};
 use firmware::motion::Settings;
 use firmware::protocol::{Answer, Command, Frame, MAX_WIRE, ToHost, encode_command};
 use firmware::scenes::SceneName;
@@ -22,7 +22,7 @@ pub fn of<P: Display + 'static, L: Write, K: Buttons>(
     keys: K,
 ) -> App<'static, P, L, K> {
     let panel = Box::leak(Box::new(panel));
-    let mut app = App::new(PROCESSOR, frame_buffers(), panel, link, keys);
+    let mut app = App::new(PROCESSOR, blank(), panel, link, keys);
     app.player
         .play(SceneName::Page, Settings::default())
         .expect("good settings");
@@ -75,7 +75,13 @@ pub fn answers(bytes: &[u8]) -> Vec<(u16, Answer)> {
         .collect()
 }
 
-/// Returns all places (x, y) of the frame, pixels, row by row from the top left corner.
+/// Returns a blank canvas of an OLED.
+pub fn blank() -> Canvas<'static> {
+    canvas(Format::OLED)
+}
+
+/// Returns all places (x, y) of an OLED's frame, pixels, row by row from the top left corner.
 pub fn places() -> impl Iterator<Item = (i32, i32)> {
-    (0..HEIGHT as i32).flat_map(|y| (0..WIDTH as i32).map(move |x| (x, y)))
+    let Format { width, height, .. } = Format::OLED;
+    (0..height.into()).flat_map(move |y| (0..width.into()).map(move |x| (x, y)))
 }

@@ -12,7 +12,7 @@ use firmware::config::{
     MOST_MEASURED_STEPS, MOST_MESSAGES_PER_TICK, PLANNED, PROCESSOR, RECEIVE_QUEUE, TICK_RATE,
 };
 use firmware::display::Controller;
-use firmware::graphics::{Anchor, Canvas, LINE, text};
+use firmware::graphics::{Anchor, Format, text};
 use firmware::job::{BoardMotion, Request};
 use firmware::motion::{Horizon, Planned, Settings};
 use firmware::protocol::{
@@ -21,7 +21,7 @@ use firmware::protocol::{
 };
 use firmware::scenes::SceneName;
 
-use crate::bench::{Plain, answers, app, frames, starting_with, wire};
+use crate::bench::{Plain, answers, app, blank, frames, starting_with, wire};
 
 /// Returns the answer to a command.
 fn answer(app: &mut Plain, command: Command) -> Answer {
@@ -290,7 +290,7 @@ fn a_motion_that_is_too_fast_is_stopped_and_reported() {
         assert_eq!(frame.report.horizon, Horizon::Until(0.0));
     }
 
-    let mut expected = Canvas::default();
+    let mut expected = blank();
 
     for (row, text) in [
         (2, "too fast"),
@@ -298,9 +298,13 @@ fn a_motion_that_is_too_fast_is_stopped_and_reported() {
         (5, "μ 1.00"),
         (6, "α 120°"),
     ] {
-        text::write(&mut expected, text, Anchor::Middle(row * LINE));
+        text::write(
+            &mut expected,
+            text,
+            Anchor::Middle(row * Format::OLED.line()),
+        );
     }
-    assert!(*app.canvas == expected);
+    assert!(app.player.canvas == expected);
 
     app.receive(wire(2, set(Field::W2, 0.0)), |_| ());
     app.run_to(11, |_| ());

@@ -1,15 +1,15 @@
 //! The parts that all panels share: the defaults of the drivers, names, errors, and the outbox.
 
+use crate::bench::blank;
 use embedded_hal::i2c::{ErrorKind, NoAcknowledgeSource};
 use firmware::display::{BusFault, Controller, Display, NoDisplay, Outbox};
-use firmware::graphics::Canvas;
 
 /// A panel whose driver neither keeps frames nor identifies a controller: no frame waits for it,
 /// and it refuses a choice.
 #[test]
 fn a_board_without_a_panel_owes_no_frame_and_refuses_a_choice() {
     let mut panel = NoDisplay;
-    assert!(!panel.catch_up(&Canvas::BLACK));
+    assert!(!panel.catch_up(&blank()));
     for controller in [None, Some(Controller::Sh1106)] {
         assert!(!panel.choose(controller), "{controller:?}");
     }

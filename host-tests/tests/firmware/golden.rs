@@ -29,7 +29,7 @@ fn line((class, processor): (&str, Processor), scene: SceneName) -> String {
     let [mut pictures, mut messages] = [FNV_OFFSET; 2];
     for _ in 0..FRAMES {
         show.tick();
-        let picture: Vec<u8> = show.frame().bytes().collect();
+        let picture: Vec<u8> = show.frame().greys;
         pictures = fnv_1a(pictures, &picture);
         let message = ToHost::Frame(show.player.frame());
         messages = fnv_1a(messages, encode(&message, &mut [0; MAX_WIRE]));

@@ -6,7 +6,7 @@ use emulator::host::Show;
 use firmware::config::{
     CORTEX_M3, CORTEX_M4F, HALF_PIXEL, MASS_RATIOS, Processor, REACH, TICK_RATE,
 };
-use firmware::graphics::Place;
+use firmware::graphics::{Format, Place};
 use firmware::motion::Settings;
 use firmware::scenes::SceneName;
 use host_tests::oracle::tolerances::PLAN_SHARE;
@@ -44,8 +44,13 @@ fn cases() -> Vec<Case> {
         })
     });
     // The scenes on half of the panel.
-    let halves = [SceneName::Figure7, SceneName::Butterfly]
-        .map(|name: SceneName| (name, name.first_settings(), Place::HALVES[0].reach));
+    let halves = [SceneName::Figure7, SceneName::Butterfly].map(|name: SceneName| {
+        (
+            name,
+            name.first_settings(),
+            Place::halves(Format::OLED)[0].reach,
+        )
+    });
     let scenes = grid
         .chain([page(SceneName::Page.first_settings())])
         .chain(unequal)

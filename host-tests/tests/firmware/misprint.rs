@@ -1,10 +1,11 @@
 //! The page's equal-rod form as printed, compared with the right one, at the settings of its figure
 //! 7.
 
+use crate::bench::blank;
 use double_pendulum::{Parameters, Pendulum, State, rk4};
 use emulator::host::Show;
 use firmware::config::{HALF_PIXEL, MASS_RATIOS, TICK_RATE};
-use firmware::graphics::{Anchor, Canvas, LINE, Place, View, text};
+use firmware::graphics::{Anchor, Format, Place, View, text};
 use firmware::motion::{Energy, Misprinted, Settings};
 use firmware::scenes::SceneName;
 use host_tests::oracle::{textbook, tolerances};
@@ -260,17 +261,17 @@ fn a_diverged_motion_is_not_drawn() {
     let mut show = Show::new(SceneName::Figure7, &settings).expect("good settings");
     (0..TICK_RATE).for_each(|_| show.tick());
     // The words at their place, over the rest of the frame.
-    let mut expected = Canvas::default();
+    let mut expected = blank();
     let label = "book too fast";
     text::write(&mut expected, label, Anchor::Right(0));
     let frame = show.frame();
-    let words = (64..128).flat_map(|x| (0..LINE).map(move |y| (x, y)));
+    let words = (64..128).flat_map(|x| (0..Format::OLED.line()).map(move |y| (x, y)));
     for (x, y) in words.filter(|&(x, y)| expected.get(x, y) != Some(0)) {
         assert_eq!(frame.get(x, y), expected.get(x, y), "{x}, {y}");
     }
 
     // The pivot of the right pendulum is drawn with its rods.
-    let (x, y) = Place::HALVES[1].pivot;
+    let (x, y) = Place::halves(Format::OLED)[1].pivot;
     assert_eq!(frame.get(x as i32, y as i32), Some(0));
 }
 
@@ -283,7 +284,7 @@ fn the_printed_form_is_shown_right_to_half_a_pixel_for_10_s() {
     let mut shown = Misprinted::new(&pendulum.parameters().cast(), &start.cast());
     let view = View::new(
         &pendulum.parameters().cast(),
-        Place::HALVES[1],
+        Place::halves(Format::OLED)[1],
         shown.directions(),
     );
     let mut z = start.into();

@@ -7,6 +7,7 @@ use firmware::config::{
     CORTEX_M0PLUS, CORTEX_M3, CORTEX_M4F, PLANNED, PROCESSORS, Processor, SETTLED_TICKS, STM32F405,
     TICK_RATE,
 };
+use firmware::graphics::Format;
 use firmware::motion::{CatchingUp, Horizon, Planner, Resources, Settings, Simulation};
 use firmware::protocol::{Command, Field};
 use firmware::scenes::SceneName;
@@ -447,6 +448,7 @@ fn a_requested_method_may_cost_the_budget_of_a_frame() {
     let cost = CORTEX_M3.costs.of_frame(stepping);
     for (frame, is_affordable) in [(cost, true), (cost - 1.0, false)] {
         let resources = Resources {
+            format: Format::OLED,
             processor: Processor { frame, ..CORTEX_M3 },
             method: Some(method),
         };

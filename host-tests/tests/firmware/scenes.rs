@@ -11,19 +11,25 @@ use firmware::config::{
     CORTEX_M0PLUS, CORTEX_M3, CORTEX_M4F, PIVOT, PROCESSOR, Processor, REACH, STM32F405, TICK_RATE,
     TRAIL_FADING, TRAIL_HALF_WIDTH,
 };
-use firmware::graphics::{Anchor, Canvas, FadeLayer, HEIGHT, LINE, LOWEST, WIDTH, plot, text};
+use firmware::graphics::{Anchor, Format, plot, text};
 use firmware::motion::{Resources, Settings};
 use firmware::protocol::{Command, PlayState};
 use firmware::scenes::{AnyScene, Flips, Scene, SceneName};
 use host_tests::oracle::snapshot;
 use host_tests::oracle::tolerances::SHOWN_HEIGHT;
 
-use crate::bench::{app, places, wire};
+use crate::bench::{app, blank, places, wire};
+
+const LINE: i32 = Format::OLED.line();
+const LOWEST: i32 = Format::OLED.lowest();
+const WIDTH: i32 = Format::OLED.right();
+const HEIGHT: i32 = Format::OLED.bottom();
 
 /// The resources of a board without a floating-point unit.
 const RESOURCES: Resources = Resources {
     processor: PROCESSOR,
     method: None,
+    format: Format::OLED,
 };
 
 /// The ticks after which a picture of each scene is taken: one second, when everything is visible,
@@ -44,13 +50,13 @@ fn after(name: SceneName, ticks: u32) -> Show {
 }
 
 /// Returns the picture as text.
-fn picture(canvas: &Canvas) -> String {
-    snapshot::text(&Screenshot::from(canvas).greys, WIDTH)
+fn picture(screenshot: &Screenshot) -> String {
+    snapshot::text(&screenshot.greys, WIDTH as usize)
 }
 
 /// Returns true if the frame has each pixel of this text.
-fn has_text(frame: &Canvas, words: &str, anchor: Anchor) -> bool {
-    let mut canvas = Canvas::BLACK;
+fn has_text(frame: &Screenshot, words: &str, anchor: Anchor) -> bool {
+    let mut canvas = blank();
     text::write(&mut canvas, words, anchor);
     places().all(|(x, y)| canvas.get(x, y) == Some(0) || canvas.get(x, y) == frame.get(x, y))
 }
@@ -59,11 +65,14 @@ fn has_text(frame: &Canvas, words: &str, anchor: Anchor) -> bool {
 /// drawn over the frame of another scene, and nothing of that frame may remain.
 #[test]
 fn every_scene_equals_its_snapshot() {
-    let before = after(SceneName::Page, 100).frame();
     let check = |name: SceneName, ticks| {
-        let mut canvas = before.clone();
-        after(name, ticks).player.draw(&mut canvas);
-        snapshot::check(&format!("{}-{ticks}", name.name()), &picture(&canvas))
+        let mut show = after(SceneName::Page, 100);
+        show.player.draw();
+        show.player
+            .play(name, name.first_settings())
+            .expect("a scene of the catalogue");
+        (0..ticks).for_each(|_| show.tick());
+        snapshot::check(&format!("{}-{ticks}", name.name()), &picture(&show.frame()))
     };
     let differences: Vec<_> = SceneName::ALL
         .iter()
@@ -79,7 +88,7 @@ fn every_scene_equals_its_snapshot() {
 fn the_trail_is_the_path_and_fades_with_age() {
     const FRESH: f64 = 11.0; // of 15 greys: 184/17 rounded
     const FADED: f64 = 64.0 / TRAIL_FADING as f64; // ticks to a grey
-    let mut ink = FadeLayer::NONE;
+    let mut ink = blank();
     let mut path = Vec::new();
     let mut scene = AnyScene::empty();
     scene
@@ -110,7 +119,7 @@ fn the_trail_is_the_path_and_fades_with_age() {
 
     for (x, y) in places() {
         let middle = (x as f32 + 0.5, y as f32 + 0.5);
-        let grey = f64::from(ink.frame.get(x, y).expect("inside"));
+        let grey = f64::from(ink.get(x, y).expect("inside"));
         let far: Vec<_> = path
             .windows(2)
             .map(|piece| distance(middle, [piece[0], piece[1]]))
@@ -146,7 +155,7 @@ fn a_pause_is_marked_and_only_a_pause() -> Result<(), String> {
     let mut pause = |paused: bool, clock: u32| {
         app.receive(wire(1, Command::Pause(paused)), |_| ());
         app.run_to(clock, |_| ());
-        app.canvas.clone()
+        Screenshot::from(&app.player.canvas)
     };
     // The expected picture without a mark is of a scene that was never paused.
     let plain = |ticks| after(SceneName::Page, ticks).frame();
@@ -207,12 +216,12 @@ fn the_planned_height_is_that_of_the_shown_figure() {
 fn the_map_of_flips_is_computed_as_on_the_boards_processor_and_in_time() {
     let settings = Settings::default();
     let map = |processor: Processor, in_float, ticks: u32| {
-        let mut ink = FadeLayer::NONE;
-        let mut map = Flips::at_pace(&settings, processor.flips, in_float).expect("a map");
-        (1..=ticks.into()).for_each(|ticks| map.tick(ticks, &mut ink));
-        let mut canvas = ink.frame.clone();
-        map.draw(&map.report(ticks.into()), &mut canvas);
-        (canvas, map.is_done())
+        let mut canvas = blank();
+        let mut map =
+            Flips::at_pace(&settings, processor.flips, in_float, Format::OLED).expect("a map");
+        (1..=ticks.into()).for_each(|ticks| map.tick(ticks, canvas.on_ink()));
+        map.draw(&map.report(ticks.into()), canvas.on_clear_foreground());
+        (Screenshot::from(&canvas), map.is_done())
     };
 
     // The two arithmetics give different maps.
@@ -356,9 +365,9 @@ fn the_scale_of_frequencies_has_a_line_at_each_step() {
 
 /// Returns the first and the last row with ink in the newest column, for the plots of angle 1 and
 /// angle 2 of small oscillations. A plot without ink gives the row of its axis.
-fn newest_rows(frame: &Canvas) -> [(i32, i32); 2] {
+fn newest_rows(frame: &Screenshot) -> [(i32, i32); 2] {
     [(9..32, 20), (32..55, 43)].map(|(rows, axis)| {
-        let is_ink = |y: &i32| frame.get(WIDTH as i32 - 1, *y) != Some(0);
+        let is_ink = |y: &i32| frame.get(WIDTH - 1, *y) != Some(0);
         let top = rows.clone().find(is_ink).unwrap_or(axis);
         let bottom = rows.rev().find(is_ink).unwrap_or(axis);
         (top, bottom)
@@ -394,7 +403,7 @@ fn envelopes_of_small_oscillations_are_accurate_for_months() {
         Modes::new(&name.first_settings().parameters.cast()).expect("a pendulum");
     let exchange = TAU / modes.exchange() * f64::from(TICK_RATE); // ticks
     let envelopes = |exchanges: f64| {
-        let mut ink = FadeLayer::NONE;
+        let mut ink = blank();
         let mut scene = AnyScene::empty();
         scene
             .start(name, &name.first_settings(), &RESOURCES)
@@ -403,7 +412,7 @@ fn envelopes_of_small_oscillations_are_accurate_for_months() {
         let last = (exchanges * exchange).round() as u64;
         scene.tick(last - 1, &mut ink);
         scene.tick(last, &mut ink);
-        newest_rows(&ink.frame).map(|(top, _)| top)
+        newest_rows(&Screenshot::from(&ink)).map(|(top, _)| top)
     };
 
     for part in [0.1, 0.3] {
@@ -424,18 +433,18 @@ fn beats_have_no_line_across_the_figure() {
         velocities: [0.0, 2.0],
         ..SceneName::Beats2To1.first_settings()
     };
-    let mut ink = FadeLayer::NONE;
+    let mut ink = blank();
     let mut scene = AnyScene::empty();
     scene
         .start(SceneName::Beats2To1, &settings, &RESOURCES)
         .expect("a scene");
 
     for ticks in 1..=60 {
-        let before = ink.frame.clone();
+        let before = Screenshot::from(&ink);
         scene.tick(ticks, &mut ink);
         // The figure of the exact motion is in the right half.
         let new: Vec<_> = places()
-            .filter(|&(x, y)| x >= WIDTH as i32 / 2 && ink.frame.get(x, y) > before.get(x, y))
+            .filter(|&(x, y)| x >= WIDTH / 2 && ink.get(x, y) > before.get(x, y))
             .collect();
         for along in [|&(x, _): &(i32, i32)| x, |&(_, y): &(i32, i32)| y] {
             let least = new.iter().map(along).min().unwrap_or(0);
@@ -476,10 +485,10 @@ fn text_keeps_off_the_edges() {
             "ω₂ 0.765",
         ] {
             let near = |&(x, y): &(i32, i32)| {
-                x < 1 || y < 1 || x > WIDTH as i32 - 2 || y > HEIGHT as i32 - 2
+                x < 1 || y < 1 || x > WIDTH - 2 || y > HEIGHT - 2
                 // One pixel at each edge stays free.
             };
-            let mut canvas = Canvas::default();
+            let mut canvas = blank();
             text::write(&mut canvas, text, anchor);
             let ink: Vec<_> = places()
                 .filter(|&(x, y)| canvas.get(x, y) != Some(0))
@@ -496,9 +505,9 @@ fn text_keeps_off_the_edges() {
 #[test]
 fn the_empty_figure_can_be_drawn() {
     let scene = AnyScene::empty();
-    let mut canvas = Canvas::BLACK;
-    scene.draw(&scene.report(0), &FadeLayer::NONE, &mut canvas);
-    assert_ne!(canvas, Canvas::BLACK);
+    let mut canvas = blank();
+    scene.draw(&scene.report(0), &mut canvas);
+    assert_ne!(canvas, blank());
 }
 
 /// The step of a scale is the next larger one of 1, 2 and 5 times a power of ten, within 0.01 and

@@ -5,7 +5,7 @@
 use double_pendulum::{Modes, Parameters, Pendulum, SmallOscillations};
 use emulator::host::Show;
 use firmware::config::{HALF_PIXEL, MASS_RATIOS, PROCESSORS, Processor, REACH, TICK_RATE};
-use firmware::graphics::Place;
+use firmware::graphics::{Format, Place};
 use firmware::motion::{Horizon, Settings};
 use firmware::protocol::PlayState;
 use firmware::scenes::SceneName;
@@ -140,7 +140,7 @@ fn distance(case: &Case, exact: [f64; 2], shown: [f64; 2]) -> f64 {
         name => {
             let reach = match name {
                 SceneName::Page => REACH,
-                _ => Place::HALVES[0].reach,
+                _ => Place::halves(Format::OLED)[0].reach,
             };
             let scale = f64::from(reach) / (parameters.l1 + parameters.l2);
             let pendulum = Pendulum::new(&parameters).expect("good settings");

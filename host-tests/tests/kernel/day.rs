@@ -4,6 +4,7 @@ use double_pendulum::parts::DirectionF64;
 use double_pendulum::plan::Stepping;
 use double_pendulum::{Equations, Error, Method, Numbers, Pendulum, State};
 use firmware::config::{STM32F405, TICK_RATE};
+use firmware::graphics::Format;
 use firmware::motion::{Resources, Simulation};
 use firmware::scenes::{Report, SceneName};
 use host_tests::oracle::tolerances::{DAY_ENERGY, DAY_READING};
@@ -165,6 +166,7 @@ fn reported_energy_is_that_of_one_instant_all_day() -> Result<(), Error> {
         let mut simulation = Simulation::new(
             &settings,
             &Resources {
+                format: Format::OLED,
                 processor: STM32F405,
                 method,
             },

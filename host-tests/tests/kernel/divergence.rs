@@ -2,10 +2,12 @@
 //! result is NaN.
 
 use double_pendulum::{Error, Integrator, Method, Parameter, Parameters, State};
-use emulator::host::frame_buffers;
+use emulator::host::canvas;
+use emulator::qemu::Screenshot;
 use firmware::app::{App, NoButtons};
 use firmware::config::PROCESSOR;
 use firmware::display::NoDisplay;
+use firmware::graphics::Format;
 use firmware::job::{BoardMotion, Job, Reading, Request};
 use firmware::motion::Settings;
 use firmware::protocol::{Command, Field, PlayState};
@@ -134,7 +136,7 @@ fn too_fast_motion_is_stopped_before_it_diverges() {
     let mut panel = NoDisplay;
     let mut app = App::new(
         PROCESSOR,
-        frame_buffers(),
+        canvas(Format::OLED),
         &mut panel,
         Vec::new(),
         NoButtons,
@@ -152,12 +154,12 @@ fn too_fast_motion_is_stopped_before_it_diverges() {
     assert_eq!(app.player.state(), PlayState::Stopped);
 
     app.run_to(1, |_| ());
-    let frame = app.canvas.clone();
+    let frame = Screenshot::from(&app.player.canvas);
     for tick in 2..=600 {
         app.run_to(tick, |event| panic!("{event:?}"));
         assert_eq!(app.player.report.state.check(), Ok(()), "at tick {tick}");
     }
-    assert_eq!(*app.canvas, frame);
+    assert_eq!(Screenshot::from(&app.player.canvas), frame);
 
     // Another scene plays again.
     app.player

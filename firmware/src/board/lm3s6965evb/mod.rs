@@ -25,13 +25,16 @@ use crate::board::register::{Device, Register};
 use crate::board::serial::{Inbox, Outward, receive_by, send};
 use crate::config::BAUD;
 use crate::display::Ssd0323;
-use crate::graphics::Canvas;
+use crate::graphics::Format;
 use crate::protocol::BoardName;
 
 use pins::{Output, Ssi};
 
+/// The format of the panel.
+pub const FORMAT: Format = Format::OLED;
+
 /// The parts of this board.
-pub type Lm3s6965evb = Board<Ssd0323<'static, Ssi, Output>, Outward, Keys, TwoStage>;
+pub type Lm3s6965evb = Board<Ssd0323<Ssi, Output>, Outward, Keys, TwoStage>;
 
 /// Sets the board up. The tick and the watchdog run from then on, and the watchdog must be fed. A
 /// panel that does not take its settings is only logged, and stays dark. The log goes to the
@@ -53,8 +56,7 @@ pub fn take() -> Option<Lm3s6965evb> {
 
     // The serial link and the panel.
     let link = start_link(hertz);
-    let memory = cortex_m::singleton!(: Canvas = Canvas::BLACK)?;
-    let mut panel = Ssd0323::new(Ssi::start(hertz), pins::C.use_for_output(1 << 7), memory);
+    let mut panel = Ssd0323::new(Ssi::start(hertz), pins::C.use_for_output(1 << 7));
     if panel.init().is_err() {
         defmt::error!("the panel does not answer");
     }

@@ -31,7 +31,7 @@ use crate::board::serial::Outward;
 use crate::board::{Board, log};
 use crate::config::WATCHDOG_SECONDS;
 use crate::display::{BUILT_FOR, OledI2c};
-use crate::graphics::Bitmap;
+use crate::graphics::{Bitmap, Format};
 use crate::protocol::BoardName;
 
 use i2c::I2c0;
@@ -45,6 +45,9 @@ static BOOT: [u8; 256] = rp2040_boot2::BOOT_LOADER_W25Q080;
 
 /// The Pico's crystal, Hz.
 const CRYSTAL: u32 = 12_000_000;
+
+/// The format of the panel.
+pub const FORMAT: Format = Format::OLED;
 
 /// The parts of this board. The watchdog, a type of `rp2040_hal`, has no interrupt: it resets the
 /// board 2 s after the last feeding.

@@ -33,7 +33,7 @@ use crate::board::serial::{Inbox, Outward, receive_by, send};
 use crate::board::{Board, log};
 use crate::config::{BAUD, WATCHDOG_SECONDS};
 use crate::display::{BUILT_FOR, OledI2c};
-use crate::graphics::Bitmap;
+use crate::graphics::{Bitmap, Format};
 use crate::protocol::BoardName;
 
 use i2c::I2c1;
@@ -43,6 +43,9 @@ const HERTZ: u32 = 168_000_000;
 
 /// The address of the chip's unique number (RM0090, 39.1), in its system memory.
 const UNIQUE_NUMBER: *const [u32; 3] = core::ptr::without_provenance(0x1fff_7a10);
+
+/// The format of the panel.
+pub const FORMAT: Format = Format::OLED;
 
 /// The parts of this board.
 pub type Stm32f405 = Board<OledI2c<'static, Bus<I2c1>>, Outward, OneKey, IndependentWatchdog>;

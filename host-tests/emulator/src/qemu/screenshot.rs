@@ -1,8 +1,11 @@
 //! The panel's screenshot, read from QEMU's screen dump.
 
 use anyhow::{Context, ensure};
-use firmware::graphics::Canvas;
-pub use firmware::graphics::{HEIGHT, WIDTH};
+use firmware::graphics::{Canvas, Format, rgb};
+
+/// The size of an OLED, pixels.
+pub const WIDTH: usize = Format::OLED.width as usize;
+pub const HEIGHT: usize = Format::OLED.height as usize;
 
 /// The width and height, in pixels of the dump, of the square that shows one pixel of the panel.
 const MAGNIFIED: usize = 4;
@@ -11,17 +14,21 @@ const HEADER: &[u8] = b"P6\n512 256\n255\n";
 /// The factor of greys: QEMU shows grey g of 0 to 15 as 17 g of 255.
 const GREY_UNIT: u8 = 17;
 
-/// The picture on the panel: 4-bit greys, row by row from the top left.
+/// The picture on a panel, row by row from the top left.
 #[derive(Clone, PartialEq, Eq)]
 pub struct Screenshot {
-    /// The grey of each pixel: 0 is black, 15 is white. There are [`WIDTH`] x [`HEIGHT`] of them,
-    /// 128 x 64.
+    /// The size of the panel.
+    pub format: Format,
+    /// The grey of each pixel: 0 is black, 15 is white.
     pub greys: Vec<u8>,
+    /// The colour of each pixel on a colour panel, five bits of red, six of green, five of blue;
+    /// `None` on an OLED.
+    pub colours: Option<Vec<u16>>,
 }
 
 impl std::fmt::Debug for Screenshot {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        for row in self.greys.chunks(WIDTH) {
+        for row in self.greys.chunks(self.format.width.into()) {
             let line: String = row
                 .iter()
                 .map(|&grey| b" .:-=+*#%@"[usize::from(grey) * 9 / 15] as char)
@@ -33,12 +40,35 @@ impl std::fmt::Debug for Screenshot {
 }
 
 impl Screenshot {
-    /// Makes a screenshot from the grey of each pixel, `x` from the left and `y` from the top.
+    /// Returns the screenshot of a black OLED.
+    pub fn black() -> Self {
+        Self::drawn(|_, _| 0)
+    }
+
+    /// Makes a screenshot of an OLED from the grey of each pixel, `x` from the left and `y` from
+    /// the top.
     fn drawn(grey: impl Fn(usize, usize) -> u8) -> Self {
         Self {
+            format: Format::OLED,
             greys: (0..WIDTH * HEIGHT)
                 .map(|index| grey(index % WIDTH, index / WIDTH))
                 .collect(),
+            colours: None,
+        }
+    }
+
+    /// Returns the grey of a pixel, 0 to 15; `None` outside the panel.
+    pub fn get(&self, x: i32, y: i32) -> Option<u8> {
+        let is_inside = (0..self.format.right()).contains(&x) && y >= 0;
+        let place = y as usize * usize::from(self.format.width) + x as usize;
+        self.greys.get(place).filter(|_| is_inside).copied()
+    }
+
+    /// Returns the red, green and blue of each pixel, 0 to 255. `of_grey` are those of an OLED.
+    pub fn rgb(&self, of_grey: impl Fn(u8) -> [u8; 3]) -> Vec<[u8; 3]> {
+        match &self.colours {
+            Some(colours) => colours.iter().map(|colour| rgb(*colour)).collect(),
+            None => self.greys.iter().map(|grey| of_grey(*grey)).collect(),
         }
     }
 
@@ -72,9 +102,19 @@ impl Screenshot {
 }
 
 /// The picture that the panel would show of a canvas.
-impl From<&Canvas> for Screenshot {
-    fn from(canvas: &Canvas) -> Self {
-        Self::drawn(|x, y| canvas.get(x as i32, y as i32).unwrap_or_default())
+impl From<&Canvas<'_>> for Screenshot {
+    fn from(canvas: &Canvas<'_>) -> Self {
+        let format = canvas.format;
+        let places = || (0..format.bottom()).flat_map(|y| (0..format.right()).map(move |x| (x, y)));
+        let table = canvas.palette.colours();
+        let colour = |(x, y)| table[usize::from(canvas.pixel(x, y).unwrap_or_default())];
+        Self {
+            format,
+            greys: places()
+                .map(|(x, y)| canvas.get(x, y).unwrap_or_default())
+                .collect(),
+            colours: format.is_large().then(|| places().map(colour).collect()),
+        }
     }
 }
 

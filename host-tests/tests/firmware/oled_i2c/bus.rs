@@ -3,7 +3,9 @@
 use embedded_hal::i2c::ErrorKind;
 use firmware::config::TICK_RATE;
 use firmware::display::{Outbox, PanelBus, SILENCE, Sent};
-use firmware::graphics::{Bitmap, HEIGHT, WIDTH};
+use firmware::graphics::Bitmap;
+
+use super::{HEIGHT, WIDTH};
 
 /// The number of bits that a byte takes with its acknowledgement; a start or stop takes 1.
 pub const BYTE: u32 = 9;

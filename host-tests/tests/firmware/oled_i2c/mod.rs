@@ -14,10 +14,10 @@ use firmware::display::{
     BusFault, By, Controller as Name, Display, Found, OledError, OledI2c, PanelReport, PanelState,
     SILENCE,
 };
-use firmware::graphics::{Bitmap, Canvas, HEIGHT, WIDTH};
+use firmware::graphics::{Bitmap, Canvas, Format, Palette};
 use firmware::scenes::SceneName;
 
-use crate::bench::places;
+use crate::bench::{blank, places};
 use bus::{
     BLIND, BYTE, Controller, IDEAL, Kind, Line, SH1106, SH1107, SILENT, SSD1306, Says, USUAL, WORST,
 };
@@ -29,6 +29,9 @@ const LONG: u32 = 4 * 400_000 / TICK_RATE;
 const FIRST: u32 = 6;
 /// The largest number of frames until a panel is back: 2 s.
 const BACK: u32 = 2 * TICK_RATE;
+
+const WIDTH: usize = Format::OLED.width as usize;
+const HEIGHT: usize = Format::OLED.height as usize;
 
 type Panel = OledI2c<'static, Line>;
 
@@ -68,10 +71,11 @@ fn shown(name: SceneName) -> Show {
 }
 
 /// Returns the frame of the application's first scene after some ticks.
-fn scene(ticks: u32) -> Canvas {
+fn scene(ticks: u32) -> Canvas<'static> {
     let mut show = shown(SceneName::Page);
     (0..ticks).for_each(|_| show.tick());
-    show.frame()
+    show.player.draw();
+    show.player.canvas
 }
 
 /// A canvas of one grey has a fixed share of lit pixels for each grey, in sixteenths. In a scene
@@ -79,21 +83,20 @@ fn scene(ticks: u32) -> Canvas {
 #[test]
 fn greys_become_patterns_of_pixels() {
     // The number of lit pixels out of 16 for each grey. A scene with all greys spreads them evenly.
-    for (all_greys, lit) in [
+    for (palette, lit) in [
         (
-            false,
+            Palette::Trail,
             [0, 0, 0, 3, 6, 8, 11, 14, 16, 16, 16, 16, 16, 16, 16, 16],
         ),
         (
-            true,
+            Palette::Map,
             [0, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16],
         ),
     ] {
         for (grey, lit) in (0..).zip(lit) {
-            let mut canvas = Canvas {
-                all_greys,
-                ..Canvas::default()
-            };
+            let mut canvas = blank();
+            canvas.blank(palette);
+            canvas.on_ink();
             places().for_each(|(x, y)| canvas.update(x, y, |_| grey));
             let ones: u32 = Bitmap::from(&canvas)
                 .pages
@@ -104,7 +107,7 @@ fn greys_become_patterns_of_pixels() {
             assert_eq!(
                 ones * 16 / (WIDTH * HEIGHT) as u32,
                 lit,
-                "pixels of 16 at {grey}, in a picture: {all_greys}"
+                "pixels of 16 at {grey}, {palette:?}"
             );
         }
     }
@@ -114,7 +117,7 @@ fn greys_become_patterns_of_pixels() {
 #[test]
 fn every_pixel_is_in_its_place() {
     for (x, y) in [(0, 0), (127, 0), (0, 63), (127, 63), (5, 9), (64, 32)] {
-        let mut canvas = Canvas::default();
+        let mut canvas = blank();
         canvas.update(x, y, |_| 15);
         assert!(
             Screenshot::from_pages(Bitmap::from(&canvas).pages.as_flattened())
@@ -124,8 +127,8 @@ fn every_pixel_is_in_its_place() {
 }
 
 /// Returns a frame with these pixels.
-fn pixels(mut is_lit: impl FnMut() -> bool) -> Canvas {
-    let mut canvas = Canvas::default();
+fn pixels(mut is_lit: impl FnMut() -> bool) -> Canvas<'static> {
+    let mut canvas = blank();
     places()
         .filter(|_| is_lit())
         .for_each(|(x, y)| canvas.update(x, y, |_| 15));
@@ -444,10 +447,11 @@ fn panel_plugged_in_again_shows_every_scene_within_two_seconds() {
             let was_idle = panel.bus.is_idle();
             let is_shown = panel.bus.panel.shows_any_of(&Vec::from_iter(&recent));
             let sent = panel.bus.sent;
-            let frame = scene.frame();
-            recent.push_back(Bitmap::from(&frame));
+            scene.player.draw();
+            let frame = &scene.player.canvas;
+            recent.push_back(Bitmap::from(frame));
             recent.drain(..recent.len().saturating_sub(RECENT));
-            let _ = tick(panel, &frame);
+            let _ = tick(panel, frame);
             if !was_idle {
                 assert_eq!(panel.bus.sent, sent, "it disturbs the one before");
             }
@@ -502,11 +506,12 @@ fn no_frame_of_any_scene_is_skipped_at_any_bus_speed() {
         let mut ages = [[0; HEIGHT / 8]; 3];
         for number in 0..FRAMES {
             scene.tick();
-            let frame = scene.frame();
-            let bitmap = Bitmap::from(&frame);
+            scene.player.draw();
+            let frame = &scene.player.canvas;
+            let bitmap = Bitmap::from(frame);
             for ((panel, count), ages) in panels.iter_mut().zip(&mut counts).zip(&mut ages) {
                 let was_idle = panel.bus.is_idle();
-                let _ = tick(panel, &frame);
+                let _ = tick(panel, frame);
                 // The panel is identified first.
                 if number < 2 * FIRST {
                     continue;
@@ -567,8 +572,9 @@ fn no_frame_is_skipped_when_frames_are_not_equally_far_apart() {
             // The delay is at most a third of the tick, as with planning.
             let late = rng.u32(..SLICES / 3);
             panel.bus.run(late * slice);
-            let frame = scene.frame();
-            let _ = panel.flush(&frame);
+            scene.player.draw();
+            let frame = &scene.player.canvas;
+            let _ = panel.flush(frame);
             let mut done = late;
             // The bus makes progress in pieces, and the frame may be completed between them.
             while done < SLICES {
@@ -578,7 +584,7 @@ fn no_frame_is_skipped_when_frames_are_not_equally_far_apart() {
 
                 // The last piece extends into the next tick.
                 if done < SLICES {
-                    panel.catch_up(&frame);
+                    panel.catch_up(frame);
                 }
             }
             if number % TICK_RATE == 0 && number > TICK_RATE {

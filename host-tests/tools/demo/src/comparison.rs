@@ -9,7 +9,7 @@ use std::fmt;
 
 use firmware::config::{PROCESSOR, PROCESSORS, TICK_RATE};
 use firmware::display::PanelReport;
-use firmware::graphics::{Canvas, text};
+use firmware::graphics::text;
 use firmware::motion::Settings;
 use firmware::protocol::{Field, Frame, PlayState, Status};
 use firmware::scenes::SceneName;
@@ -160,17 +160,17 @@ impl Comparison {
     /// Returns the panel's picture, drawn from the current state of the host's scene, not from the
     /// board's numbers. `frame` only decides if there is a pause mark, so it must be the frame that
     /// [`Comparison::follow`] has just returned; a later call of that function may advance the
-    /// scene. The picture is blank, except for the mark, if no scene plays on the host: before the
-    /// board has reported its scene, at first and after each new start.
-    pub fn panel(&self, frame: &Frame) -> Screenshot {
-        let mut canvas = self
-            .playing
-            .as_ref()
-            .map_or(Canvas::default(), |(_, show)| show.frame());
+    /// scene. The picture is black if no scene plays on the host: before the board has reported its
+    /// scene, at first and after each new start.
+    pub fn panel(&mut self, frame: &Frame) -> Screenshot {
+        let Some((_, show)) = &mut self.playing else {
+            return Screenshot::black();
+        };
+        show.player.draw();
         if frame.state == PlayState::Paused {
-            text::pause_mark(&mut canvas);
+            text::pause_mark(&mut show.player.canvas);
         }
-        Screenshot::from(&canvas)
+        Screenshot::from(&show.player.canvas)
     }
 
     /// Returns true if no frame waits to be compared, also before the first frame. A frame with a

@@ -9,6 +9,7 @@ use std::fmt::Display;
 use clap::Args;
 use double_pendulum::{Error, Parameter};
 use firmware::config::{GREATEST_ANGLE, Processor};
+use firmware::graphics::Format;
 use firmware::motion::{Resources, Settings};
 use firmware::scenes::{AnyScene, SceneName};
 
@@ -120,6 +121,7 @@ impl OwnMotion {
         let resources = Resources {
             processor,
             method: None,
+            format: Format::OLED,
         };
         let mut started = AnyScene::empty();
         started

@@ -16,6 +16,7 @@ use double_pendulum::plan::Stepping;
 use double_pendulum::{Method, Parameter};
 use firmware::config::{GREATEST_SPEED, Processor, STM32F405};
 use firmware::display::Controller;
+use firmware::graphics::Format;
 use firmware::motion::{Resources, Settings};
 use firmware::scenes::{AnyScene, SceneName};
 
@@ -247,6 +248,7 @@ pub fn usable(
     let resources = Resources {
         processor,
         method: Some(method),
+        format: Format::OLED,
     };
     // The scene is started with the method as a trial.
     let mut started = AnyScene::empty();

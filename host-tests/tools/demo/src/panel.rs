@@ -9,6 +9,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, anyhow};
 use firmware::config::TICK_RATE;
+use firmware::graphics::rgb;
 use gif::{ColorOutput, DecodeOptions, Encoder, EncodingError, Frame as Picture, Repeat};
 use ratatui::Frame;
 use ratatui::layout::Rect;
@@ -22,30 +23,39 @@ use emulator::qemu::{HEIGHT, Screenshot, WIDTH};
 const SET: u8 = 3;
 
 /// Draws the screenshot over the area: with a pixel in half a character if the area has at least
-/// 128 columns, or else in Braille, without the three darkest greys, 0 to 2. The picture fills the
-/// area; its shape is right if the area has a quarter as many rows as columns.
+/// as many columns, or else in Braille, without the three darkest greys, 0 to 2. The picture fills
+/// the area; its shape is right if a character shows as many rows as twice its columns.
 pub fn draw(frame: &mut Frame, area: Rect, screenshot: &Screenshot) {
-    // A terminal that is wide enough shows every pixel in its grey.
-    let in_greys = usize::from(area.width) >= WIDTH;
-    let canvas = Canvas::default().marker(if in_greys {
+    let width = usize::from(screenshot.format.width);
+    // A terminal that is wide enough shows every pixel in its colour.
+    let in_colours = usize::from(area.width) >= width;
+    let canvas = Canvas::default().marker(if in_colours {
         Marker::HalfBlock
     } else {
         Marker::Braille
     });
     let canvas = canvas
-        .x_bounds([0.0, WIDTH as f64 - 1.0])
-        .y_bounds([1.0 - HEIGHT as f64, 0.0]);
+        .x_bounds([0.0, width as f64 - 1.0])
+        .y_bounds([1.0 - f64::from(screenshot.format.height), 0.0]);
+    let place = |index: usize| ((index % width) as f64, -((index / width) as f64));
     let canvas = canvas.paint(|context| {
+        if let Some(colours) = screenshot.colours.as_ref().filter(|_| in_colours) {
+            for (index, [red, green, blue]) in colours.iter().map(|one| rgb(*one)).enumerate() {
+                context.draw(&Points {
+                    coords: &[place(index)],
+                    color: Color::Rgb(red, green, blue),
+                });
+            }
+            return;
+        }
         // The brightest pixels are drawn last, because they determine the colour of a character.
-        for grey in if in_greys { 0 } else { SET }..=BRIGHTEST_GREY {
+        for grey in if in_colours { 0 } else { SET }..=BRIGHTEST_GREY {
             let lit = screenshot
                 .greys
                 .iter()
                 .enumerate()
                 .filter(|(_, pixel)| **pixel == grey);
-            let coords: Vec<_> = lit
-                .map(|(i, _)| ((i % WIDTH) as f64, -((i / WIDTH) as f64)))
-                .collect();
+            let coords: Vec<_> = lit.map(|(index, _)| place(index)).collect();
             context.draw(&Points {
                 coords: &coords,
                 color: in_terminal(grey),
@@ -287,7 +297,8 @@ pub fn png(screenshot: &Screenshot) -> anyhow::Result<Vec<u8>> {
 
 #[cfg(test)]
 mod tests {
-    use firmware::graphics::Canvas;
+    use emulator::host::canvas;
+    use firmware::graphics::Format;
     use ratatui::Terminal;
     use ratatui::backend::TestBackend;
     use ratatui::style::Color;
@@ -297,7 +308,7 @@ mod tests {
     /// Returns the characters, with their colours, that contain lit pixels of a panel with three
     /// lit pixels.
     fn drawn(width: u16) -> Vec<(String, Color, Color)> {
-        let mut canvas = Canvas::default();
+        let mut canvas = canvas(Format::OLED);
         [(0, 0, 15), (3, 2, 15), (127, 63, 6)]
             .into_iter()
             .for_each(|(x, y, grey)| canvas.update(x, y, |_| grey));
@@ -343,7 +354,7 @@ mod tests {
         let full = Recording::create(Path::new("/dev/full")).expect("a device");
         recording.encoder = full.encoder;
         let failed = (0..2000).find_map(|number| {
-            let mut canvas = Canvas::default();
+            let mut canvas = canvas(Format::OLED);
             canvas.update(number % 128, number / 128, |_| 15);
             let tick = i64::from(number) * TICKS_PER_FRAME;
             recording.add(&Screenshot::from(&canvas), tick).err()

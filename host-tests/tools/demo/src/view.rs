@@ -227,7 +227,8 @@ fn logged(line: &LogLine, width: u16) -> Vec<Line<'static>> {
 mod tests {
     use double_pendulum::plan::Stepping;
     use double_pendulum::{Method, State};
-    use firmware::graphics::Canvas;
+    use emulator::host::canvas;
+    use firmware::graphics::Format;
     use firmware::graphics::text::{self, Anchor};
     use firmware::motion::Horizon;
     use firmware::protocol::Frame as Reading;
@@ -286,7 +287,7 @@ mod tests {
     /// Returns the rows of the terminal, for a panel with a frame, a line and words.
     fn rows(readings: &Readings, colours: bool, (width, height): (u16, u16)) -> String {
         // The frame, a line and words on the panel.
-        let mut canvas = Canvas::default();
+        let mut canvas = canvas(Format::OLED);
         (0..128).for_each(|x| {
             [0, x / 2, 63]
                 .into_iter()
