@@ -4,18 +4,14 @@
 use super::{Fixed32, OFFSET};
 use crate::numbers::fixed::product;
 
-/// The number of steps from one call of [`Fixed32::renormalise`] to the next.
 pub(super) const RENORMALISE_EVERY: u32 = 32;
 
 /// The largest tolerated error of a squared length, with 60 fractional bits.
 const LENGTH_ERROR: u64 = 1 << 51;
 
 impl Fixed32 {
-    /// Corrects what 32 steps have accumulated, and checks the energy. Marks the motion as lost if
-    /// a length is far off, or if the energy exceeds [`Units::most_energy`](super::Units). A lost
-    /// motion stays lost.
-    ///
-    /// It must be called once after every 32 steps; this is not checked.
+    /// Corrects what 32 steps have accumulated, and marks the motion as lost if a length is far off
+    /// or if the energy exceeds [`Units::most_energy`](super::Units).
     #[inline(never)] // Maps of flips take 57 instead of 53 % of a frame on an M0+ without.
     pub(super) fn renormalise(&mut self) {
         self.restore_lengths();
@@ -24,8 +20,6 @@ impl Fixed32 {
     }
 
     /// Restores sin^2 a1 + cos^2 a1 = 1 and S^2 + C^2 = nu^2, to first order in the error.
-    ///
-    /// Marks the motion as lost if a length is far off.
     fn restore_lengths(&mut self) {
         let units = &self.units;
         let directions = [
@@ -45,7 +39,6 @@ impl Fixed32 {
                 return;
             }
 
-            // Both components grow by half of the relative error of the square.
             let relative = ((missing >> 20) * gain) >> 29;
             for z in &mut self.z[first..first + 2] {
                 *z += ((*z >> 32) * relative) >> 9;

@@ -35,7 +35,6 @@ const LONGEST_STEP: f64 = 0.5;
 /// the peak of r.
 const LONGEST_STEP_AT_ELBOW: f64 = 0.5;
 
-/// The largest value of [`Units::halvings`].
 const MOST_HALVINGS: u32 = 12;
 
 /// The constants that all steps of one motion share, without dimension, in the units of
@@ -69,20 +68,10 @@ pub struct Units {
 }
 
 impl Units {
-    /// Chooses the units for a motion with `energy` joules above rest and steps of `dt` seconds. A
-    /// negative `dt` runs backwards.
+    /// Chooses the units for a motion with `energy` joules above rest and steps of `dt` seconds.
     ///
     /// T is at most 4096/6 steps long. Steps so short that the energy would allow a longer T are
     /// accepted, too, but the numbers then lose digits.
-    ///
-    /// The parameters must be valid, the energy finite and not negative, and `dt` finite and not
-    /// zero. This is not checked.
-    ///
-    /// # Errors
-    ///
-    /// Refuses ratios of masses or rods that [`Scaling::in_seconds`] refuses, and a step that is
-    /// too long: [`Error::TooLarge`] contains the largest possible magnitude, s. Without energy and
-    /// gravity no step is too long.
     pub fn new(parameters: &Parameters<f64>, energy: f64, dt: f64) -> Result<Self, Error> {
         let &Parameters { m1, m2, .. } = parameters;
         let seconds = Scaling::in_seconds(parameters)?;
@@ -132,7 +121,6 @@ impl Units {
             nearest(rounded_off * block) as i32
         });
 
-        // The greatest energy, in the format of `Fixed32::energy`.
         let kinetic = kinetic * scaling.time * scaling.time;
         let room = LARGEST_RATE * LARGEST_RATE / (2.0 * sum);
         let most_energy = (1.0 + ENERGY_GROWTH) * kinetic + ENERGY_ROOM * room;

@@ -4,35 +4,26 @@ use core::ops::{Add, Sub};
 
 use crate::numbers::fixed::{Q30, Slope, Torque};
 
-/// One number for each of the six quantities sin a1, cos a1, S, C, P1 and P2: `D` for those of
-/// directions, `M` for momenta. None has a dimension. All are in the units of the motion
-/// ([`Scaling`](crate::methods::scaling::Scaling)), which also divide nu by a power of two. Each
-/// number is added alone. A sum that does not fit its format panics in unit tests and wraps in
-/// other builds.
+/// One number for each of the six quantities: `D` for those of directions, `M` for momenta, in the
+/// units of the motion ([`Scaling`](crate::methods::scaling::Scaling)), which also divide nu by a
+/// power of two.
 #[derive(Clone, Copy)]
 pub struct Quantities<D, M> {
-    /// sin a1.
     pub sin1: D,
-    /// cos a1.
     pub cos1: D,
-    /// S = nu sin (a1 - a2), with the divided nu.
     pub s: D,
-    /// C = nu cos (a1 - a2), with the divided nu.
     pub c: D,
-    /// P1.
     pub p1: M,
-    /// P2.
     pub p2: M,
 }
 
-/// The quantities themselves, in words of 32 bits. The state is rounded to the nearest words.
+/// The state is rounded to the nearest words.
 pub type Words = Quantities<Q30, Q30>;
 
 /// The rates of change of the quantities, per unit of time T.
 pub type Rates = Quantities<Slope, Torque>;
 
 impl Words {
-    /// Returns the same point with reversed momenta.
     pub fn reversed(self) -> Self {
         Self {
             p1: -self.p1,
