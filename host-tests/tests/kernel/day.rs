@@ -11,14 +11,10 @@ use host_tests::oracle::tolerances::{DAY_ENERGY, DAY_READING};
 use host_tests::oracle::trials::{self, Trial};
 use reference::advance;
 
-/// The duration of a day, s.
 const DAY: f64 = 86_400.0;
-/// The number of samples in a day, one every three minutes.
 const SAMPLES: u32 = 480;
-/// The number of samples of a scene in a day.
 const SAMPLES_OF_A_SCENE: u32 = 240;
 
-/// Returns the methods in the direction form with numbers of 32 bits.
 fn narrow() -> impl Iterator<Item = Method> {
     let is_narrow = |method: &Method| method.is_single() || method.numbers() == Numbers::Fixed32;
     Method::ALL
@@ -28,8 +24,6 @@ fn narrow() -> impl Iterator<Item = Method> {
         .filter(is_narrow)
 }
 
-/// Returns the states at all samples by `method`.
-///
 /// The second result is the largest difference between two energies, divided by the energy above
 /// rest: the energy of the directions and momenta, and the energy of the state.
 fn followed(trial: &Trial, method: Method, dt: f64) -> Result<(Vec<State<f64>>, f64), Error> {
@@ -38,7 +32,6 @@ fn followed(trial: &Trial, method: Method, dt: f64) -> Result<(Vec<State<f64>>, 
     } = trial.held_by(method);
     let pendulum = Pendulum::new(&parameters)?;
     let mut run = trials::run(method, &parameters, &start, dt)?;
-    // The energy of the run and of its state, at each sample.
     let steps = (trial.seconds / dt / f64::from(SAMPLES)).round() as u32;
     let mut apart: f64 = 0.0;
     let states = (0..SAMPLES).map(|_| {
@@ -53,9 +46,8 @@ fn followed(trial: &Trial, method: Method, dt: f64) -> Result<(Vec<State<f64>>, 
     ))
 }
 
-/// Asserts that at every sample the energy by each method in 32 bits is that of `f64` with the same
-/// steps, within [`DAY_ENERGY`] of the energy above rest, and that directions and momenta have the
-/// energy of the state, within [`DAY_READING`].
+/// Compares the energy by each method in 32 bits with that of `f64` in the same steps, and with the
+/// energy of the state.
 fn a_day(mass_ratio: f64, dt: f64) -> Result<(), Error> {
     let trial = Trial::at_rest(mass_ratio, 0.5, 0.5, DAY);
     let pendulum = Pendulum::new(&trial.parameters)?;
@@ -90,20 +82,13 @@ fn a_day(mass_ratio: f64, dt: f64) -> Result<(), Error> {
     Ok(())
 }
 
-/// At 480 samples of a day the energy by each method in the direction form in 32 bits is that of
-/// `f64` in the same steps, within 1e-3 of the energy above rest, and directions and momenta have
-/// the energy of the state, within 1e-4 ([`a_day`]). The motions start at rest at 0.5 rad, with the
-/// mass ratios 0.2 and 5, in steps of 1/100 s.
 #[test]
 fn energy_is_kept_for_a_day() -> Result<(), Error> {
     a_day(0.2, 1.0 / 100.0)?;
     a_day(5.0, 1.0 / 100.0)
 }
 
-/// The test [`energy_is_kept_for_a_day`] at five mass ratios from 0.05 to 20, in steps of 1/100,
-/// 1/240 and 1/256 s. Fixed point may refuse the mass ratio 20 in steps of 1/100 s as too long.
-///
-/// Run it with `cargo test -p host-tests --test kernel day:: -- --ignored --nocapture`.
+/// Fixed point may refuse the mass ratio 20 in steps of 1/100 s as too long.
 #[test]
 #[ignore = "a minute: a day of four forms at fifteen mass ratios and steps"]
 fn energy_is_kept_for_a_day_at_any_mass_ratio_and_step() -> Result<(), Error> {
@@ -116,20 +101,15 @@ fn energy_is_kept_for_a_day_at_any_mass_ratio_and_step() -> Result<(), Error> {
     Ok(())
 }
 
-/// The phase of an oscillation in the slow mode is that of `f64` for a day, to within one step of
-/// 1/100 s, by each method in the direction form in 32 bits, with the mass ratios 0.2 and 5.
-///
 /// The amplitude is so small that the period does not depend on the energy.
 #[test]
 fn time_is_accurate_to_one_step_after_a_day() -> Result<(), Error> {
     for mass_ratio in [0.2, 5.0] {
         let dt = 1.0 / 100.0;
-        // The slow mode alone.
         let pendulum = Pendulum::new(&Trial::at_rest(mass_ratio, 0.0, 0.0, DAY).parameters)?;
         let slow = pendulum.modes()?.slow;
         let trial = Trial::at_rest(mass_ratio, 0.01, 0.01 * slow.shape, DAY);
         let exact = trial.states_in_f64(dt, SAMPLES)?;
-        // The angle and the scaled momentum turn at the mode's frequency.
         let scale = trial.parameters.m2 * slow.frequency;
         let phase =
             |state: &State<f64>| (state.p2 / scale / (1.0 + 1.0 / slow.shape)).atan2(state.a2);
@@ -145,12 +125,8 @@ fn time_is_accurate_to_one_step_after_a_day() -> Result<(), Error> {
     Ok(())
 }
 
-/// The energy error of a report belongs to a single instant.
-///
 /// A scene runs at the costs of the STM32F405: for a day by each method with steps in 32 bits, and
-/// for a quarter of a day by its initial method, extrapolation. At each sample, 240 a day, the
-/// reported energy error must be that of `f64` in the same steps (0 by extrapolation), within 1e-3
-/// of the energy above rest ([`DAY_ENERGY`]).
+/// for a quarter of a day by its initial method, extrapolation.
 #[test]
 fn reported_energy_is_that_of_one_instant_all_day() -> Result<(), Error> {
     let settings = SceneName::Beats2To1.first_settings();

@@ -25,10 +25,8 @@ const FAST: State<f64> = State {
 };
 /// A step of the closed form. It has no such limit, but the time must be finite.
 const AGES: f64 = 1e307;
-/// A number of steps that is more than sufficient.
 const MANY: u32 = 100_000;
 
-/// Rods of 1 m and bobs of 1 kg.
 const EVEN: Parameters<f64> = Parameters {
     m1: 1.0,
     m2: 1.0,
@@ -37,9 +35,7 @@ const EVEN: Parameters<f64> = Parameters {
     g: 9.8,
 };
 
-/// In steps that are far too long a run by every method must return [`Error::Diverged`] within
-/// 100,000 steps, and keep its last state, which is finite. Fixed point may refuse such steps at
-/// the start instead.
+/// Fixed point may refuse such steps at the start instead.
 #[test]
 fn diverged_run_keeps_its_last_good_state_in_every_method() -> Result<(), Error> {
     for &method in Method::ALL {
@@ -57,7 +53,6 @@ fn diverged_run_keeps_its_last_good_state_in_every_method() -> Result<(), Error>
             run => run?,
         };
 
-        // The run advances until it diverges.
         let stopped = (0..MANY).find_map(|_| {
             let before = run.state();
             run.advance(1).err().map(|error| (error, before))
@@ -72,9 +67,7 @@ fn diverged_run_keeps_its_last_good_state_in_every_method() -> Result<(), Error>
     Ok(())
 }
 
-/// A job with a step that is too long for its motion, but within the limit of small motions,
-/// starts, because only that limit can be checked before. Its first readings must be finite, and
-/// its last answer must be an error that names the step size.
+/// The step is within the limit of small motions, the only one that can be checked before.
 #[test]
 fn failure_of_a_diverged_job_names_the_step_size() {
     let parameters = Parameters { m2: 100.0, ..EVEN };
@@ -101,7 +94,6 @@ fn failure_of_a_diverged_job_names_the_step_size() {
         readings.len()
     );
 
-    // All readings before the last are finite.
     let is_finite = |answer: &Result<Option<Reading>, Error>| {
         let reading = answer.unwrap_or_default().unwrap_or_default();
         answer.is_ok()
@@ -114,9 +106,6 @@ fn failure_of_a_diverged_job_names_the_step_size() {
     assert!(!readings.is_empty() && readings.iter().all(is_finite));
 }
 
-/// A motion that is too fast for any method is stopped from its start, also if the user has
-/// selected a method: for 600 ticks there is no event, the frame does not change, and the report
-/// stays finite. After that another scene plays.
 #[test]
 fn too_fast_motion_is_stopped_before_it_diverges() {
     let parameters = Parameters {
@@ -141,7 +130,6 @@ fn too_fast_motion_is_stopped_before_it_diverges() {
         Vec::new(),
         NoButtons,
     );
-    // A good scene is replaced by the fast one.
     app.player
         .play(SceneName::Page, Settings::default())
         .unwrap_or_else(|error| panic!("{error}"));
@@ -161,7 +149,6 @@ fn too_fast_motion_is_stopped_before_it_diverges() {
     }
     assert_eq!(Screenshot::from(&app.player.canvas), frame);
 
-    // Another scene plays again.
     app.player
         .play(SceneName::Page, Settings::default())
         .unwrap_or_else(|error| panic!("{error}"));

@@ -9,13 +9,10 @@ use host_tests::oracle::random::{self, log_uniform, symmetric};
 use host_tests::oracle::tolerances;
 use host_tests::oracle::trials::{MOMENTS, Trial, largest_difference};
 
-/// The number of random starts per order.
 const TRIALS: u32 = 3000;
 
-/// The documented accuracy of fixed point of 32 and 64 bits, and cases that no other test covers:
-/// the largest error of an angle, rad, in ten cases must be at most the last number of each row.
-/// In 32 bits steps of 1/512 s for a light elbow are refused as too long, and the momenta of a
-/// start are reported as given, to 5e-9 kg m^2/s ([`tolerances::FIXED_32_FLOOR`]).
+/// The documented accuracy, and cases that no other test covers: the largest error of an angle,
+/// rad, must be at most the last number of each row.
 #[test]
 fn fixed_point_is_as_accurate_as_documented() -> Result<(), Error> {
     // A short, light rod 2 that rotates fast. Each of a quarter of a million stages per second adds
@@ -54,7 +51,6 @@ fn fixed_point_is_as_accurate_as_documented() -> Result<(), Error> {
         seconds: 13.9,
     };
 
-    // A light elbow that snaps through.
     let light = Trial::at_rest(128.0, 0.5, 0.5, 2.0);
     let page = Trial::at_rest(
         1.0,
@@ -100,7 +96,6 @@ fn fixed_point_is_as_accurate_as_documented() -> Result<(), Error> {
         // Three times the measured error of 1.9e-8. With biased rounding the error would be 3e-7.
         (whirling, Method::Extrapolation10Fixed64, 7680.0, 6e-8),
     ] {
-        // Each error is within the documented accuracy.
         let error = trial.error(method, 1.0 / steps)?;
         println!("{method}, {steps} steps a second: {error:e} rad");
         assert!(
@@ -109,7 +104,6 @@ fn fixed_point_is_as_accurate_as_documented() -> Result<(), Error> {
         );
     }
 
-    // Steps that are too long for the light elbow are refused.
     let refused = light.states(Method::Rk4Fixed32, 1.0 / 512.0);
     assert!(
         matches!(
@@ -122,7 +116,6 @@ fn fixed_point_is_as_accurate_as_documented() -> Result<(), Error> {
         "{refused:?}"
     );
 
-    // Momenta are converted from and to units of their own.
     let trial = Trial::unlike(10.0);
     let start = Pendulum::new(&trial.parameters)?
         .run::<Fixed32>(&trial.start, 1.0 / 1024.0)?
@@ -137,9 +130,7 @@ fn fixed_point_is_as_accurate_as_documented() -> Result<(), Error> {
     Ok(())
 }
 
-/// In 5 s of a chaotic motion, with 32 to 512 steps a second, extrapolation of order 12 in fixed
-/// point of 64 bits may have twice the error of the same in `f64`, or, where both are small, the
-/// error of its roundings, 1e-12 rad.
+/// Where both errors are small, that of the roundings counts, 1e-12 rad.
 #[test]
 fn chaotic_motion_is_as_accurate_as_in_f64() -> Result<(), Error> {
     let trial = Trial::chaotic(5.0);
@@ -152,7 +143,6 @@ fn chaotic_motion_is_as_accurate_as_in_f64() -> Result<(), Error> {
             ))
         };
 
-        // Where the truncation errors are small, roundings dominate and the floor applies.
         let [double, fixed] = [
             error(Method::Extrapolation12F64)?,
             error(Method::Extrapolation12Fixed64)?,
@@ -168,11 +158,8 @@ fn chaotic_motion_is_as_accurate_as_in_f64() -> Result<(), Error> {
     Ok(())
 }
 
-/// The rounding errors of fixed point are no larger than those of compensated `f32`, with mass
-/// ratios from 1/128 to 32 and with different rods.
-///
-/// The steps are so fine that only rounding errors remain. The errors are geometric means over
-/// four neighbouring starts. There is no allowance.
+/// The steps are so fine that only rounding errors remain. The errors are geometric means over four
+/// neighbouring starts.
 #[test]
 fn fixed32_rounds_no_worse_than_compensated_f32() -> Result<(), Error> {
     let parameters = |l1, l2| Parameters {
@@ -189,7 +176,6 @@ fn fixed32_rounds_no_worse_than_compensated_f32() -> Result<(), Error> {
     };
     let moving = Trial {
         start: State {
-            // A start in motion.
             a1: 0.5,
             a2: -0.5,
             p1: 2.0,
@@ -204,7 +190,6 @@ fn fixed32_rounds_no_worse_than_compensated_f32() -> Result<(), Error> {
 
     for trial in ratios.into_iter().chain([moving]).chain(unlike) {
         let typical = |method| {
-            // The logarithms of the errors are averaged.
             let near = (0..4).map(|i| trial.start.a1 + 1e-3 * f64::from(i));
             let near = near.map(|a1| Trial {
                 start: State { a1, ..trial.start },
@@ -227,10 +212,8 @@ fn fixed32_rounds_no_worse_than_compensated_f32() -> Result<(), Error> {
     Ok(())
 }
 
-/// Random motions of up to 60 rad/s, with mass ratios from 0.01 to 300 and length ratios from 0.1
-/// to 10, in steps from the longest accepted one downwards. If halved steps show an order above 3.7
-/// in `f64`, they must show at least 3.5 in 32 bits, above the rounding errors. At least 60 orders
-/// must be measured.
+/// If halved steps show an order above 3.7 in `f64`, they must show at least 3.5 in 32 bits, above
+/// the rounding errors.
 #[test]
 fn fixed32_is_of_order_four_at_any_speed() -> Result<(), Error> {
     const MOTIONS: u32 = 200;
@@ -261,7 +244,6 @@ fn fixed32_is_of_order_four_at_any_speed() -> Result<(), Error> {
         // This is far more accurate than the measured errors, at a tenth of the cost of the
         // reference.
         let exact = trial.states(Method::Extrapolation16F64, 0.5 * dt)?;
-        // Each error belongs to half the step of the previous one.
         let errors = |states: &dyn Fn(f64) -> Result<Vec<State<f64>>, Error>| {
             let error = |halvings| {
                 Ok(largest_difference(
@@ -277,7 +259,6 @@ fn fixed32_is_of_order_four_at_any_speed() -> Result<(), Error> {
         let floor = tolerances::FIXED_32_ORDER_MEASURABLE.max(16.0 * fixed[4].max(fixed[5]));
         let order = |[coarse, fine]: [f64; 2]| (coarse / fine).log2();
         for i in 0..3 {
-            // An order is measured where both errors are above the floor and `f64` shows the order.
             let [fixed, double] = [&fixed, &double].map(|errors| [errors[i], errors[i + 1]]);
             if fixed[0] < 0.1 && fixed[1] > floor && order(double) > 3.7 {
                 measured += 1;
@@ -295,7 +276,6 @@ fn fixed32_is_of_order_four_at_any_speed() -> Result<(), Error> {
     Ok(())
 }
 
-/// Returns the longest accepted step, s, from the error of a longer one.
 fn longest_step<F: Form>(pendulum: &Pendulum<f64>, start: &State<f64>) -> f64 {
     match pendulum.run::<F>(start, 1e3).map(drop) {
         Err(Error::TooLarge { limit, .. }) => limit,
@@ -303,15 +283,10 @@ fn longest_step<F: Form>(pendulum: &Pendulum<f64>, start: &State<f64>) -> f64 {
     }
 }
 
-/// Fixed point of 32 and of 64 bits refuses steps that are too long and ratios of masses or rods of
-/// 1e5, with the error that names the parameter, and any energy beyond all bounds. A step of 0.999
-/// times the limit that it reports is accepted. The limit depends on the ratio of the masses only.
-/// In 64 bits a mass ratio of 2^-12 is the lightest that is accepted.
 #[test]
 fn inputs_out_of_range_are_refused_by_name() -> Result<(), Error> {
     let good = Parameters::equal_rods(1.0, 1.0, 9.81);
     let start = State::at_rest(2.0, 2.0);
-    /// Returns the error of a run that is refused; `None` if it is accepted.
     fn refusal<F: Form>(
         parameters: &Parameters<f64>,
         start: &State<f64>,
@@ -321,7 +296,6 @@ fn inputs_out_of_range_are_refused_by_name() -> Result<(), Error> {
     }
 
     for refuse in [refusal::<Fixed32>, refusal::<Fixed64<12>>] {
-        // Steps that are too long.
         assert_eq!(refuse(&good, &start, 1.0 / 64.0), None);
         for dt in [0.5, -0.5, 1e300] {
             let refused = refuse(&good, &start, dt);
@@ -337,7 +311,6 @@ fn inputs_out_of_range_are_refused_by_name() -> Result<(), Error> {
             );
         }
 
-        // Ratios out of range.
         for (parameters, parameter, value) in [
             (Parameters { m2: 1e5, ..good }, Parameter::M2, 1e5),
             (Parameters { m2: 1e-5, ..good }, Parameter::M2, 1e-5),
@@ -360,7 +333,6 @@ fn inputs_out_of_range_are_refused_by_name() -> Result<(), Error> {
             "the limit it names is accepted"
         );
 
-        // All masses larger by a factor make no difference.
         let heavy = Parameters {
             m1: 1024.0,
             m2: 1024.0,
@@ -375,7 +347,6 @@ fn inputs_out_of_range_are_refused_by_name() -> Result<(), Error> {
         );
     }
 
-    // The lightest bob 2.
     let light = |places| Parameters {
         m2: 0.5_f64.powi(places),
         ..good
@@ -394,17 +365,11 @@ fn inputs_out_of_range_are_refused_by_name() -> Result<(), Error> {
     Ok(())
 }
 
-/// Random masses, rods and starts, in steps of the longest accepted length or of at least half of
-/// it. The stages overshoot in many ways.
-///
-/// A part of the motions diverges, which is reported: at least a hundred and fewer than half of
-/// all, so that the test is near the limit. All others agree after three steps with the same method
-/// in `f64`, whose range is not limited, to 1e-9 rad ([`tolerances::FIXED_64_AND_DOUBLE`]). The
-/// orders are 4, 10 and 16.
+/// The stages overshoot in many ways. A part of the motions diverges, so that the test is near the
+/// limit. All others agree after three steps with the same method in `f64`, whose range is not
+/// limited.
 #[test]
 fn fixed64_motion_is_accurate_or_reported_as_diverged() -> Result<(), Error> {
-    /// Returns the difference from `f64` of a random motion after three steps, rad, or `None` if
-    /// the motion in fixed point has diverged.
     fn compared<const ORDER: u32>(rng: &mut fastrand::Rng) -> Result<Option<f64>, Error> {
         let parameters = random::parameters(rng);
         let start = random::state(rng, &parameters);
@@ -414,7 +379,6 @@ fn fixed64_motion_is_accurate_or_reported_as_diverged() -> Result<(), Error> {
         let mut double = pendulum
             .run::<ExtrapolationF64<ORDER>>(&start, dt)?
             .counting_turns();
-        // A motion that diverges in fixed point is ignored; any other must not fail in `f64`.
         let is_right = fixed.advance(3).is_ok();
         let is_right_in_f64 = double.advance(3);
         if is_right {
@@ -449,12 +413,8 @@ fn fixed64_motion_is_accurate_or_reported_as_diverged() -> Result<(), Error> {
     Ok(())
 }
 
-/// A motion of a second by extrapolation of order 10 in fixed point of 64 bits is the same in the
-/// units of a motion with more energy (`Form::started`) as in its own, to 1e-12 rad
-/// ([`tolerances::FIXED_64_FLOOR`]).
 #[test]
 fn motion_of_less_energy_runs_in_the_same_units() -> Result<(), Error> {
-    /// Returns the state after 256 steps from `low`, in the units of `highest` and in its own.
     fn states<F: Form>(
         parameters: &Parameters<f64>,
         highest: &State<f64>,

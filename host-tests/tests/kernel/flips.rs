@@ -10,11 +10,10 @@ use host_tests::commands::flips::map::{FlipPair, Map};
 use host_tests::oracle::tolerances;
 use reference::taylor::Reference;
 
-/// The steps of the comparison are this many times finer. Its arithmetic is compensated `f64`.
 const FINER: u32 = 16;
 /// The time between two samples of the exact motion, sqrt(l1/g).
 const SAMPLE: f64 = 0.1;
-/// The number of points that are compared with the reference. Each takes 0.1 s.
+/// Each takes 0.1 s by the reference.
 const JUDGED: usize = 60;
 
 /// Returns a map of equal rods and bobs. Times are in sqrt(l/g).
@@ -22,8 +21,6 @@ fn map(limit: f32, size: usize) -> Map {
     Map::new(Parameters::equal_rods(1.0, 1.0, 1.0), limit, [size, size]).expect("a pendulum")
 }
 
-/// Returns the points of the upper half of a map that may turn over, with their starts.
-///
 /// By its energy no rod turns over if 2 cos a1 + cos a2 > 1.
 fn turning(map: &Map) -> Result<Vec<([f32; 2], FlipPair)>, Error> {
     let points = map.starts().into_iter().zip(map.points(|_| ())?);
@@ -36,8 +33,6 @@ fn turning(map: &Map) -> Result<Vec<([f32; 2], FlipPair)>, Error> {
     Ok(points.filter(may_turn).collect())
 }
 
-/// Compares the points of a map with fine steps in `f64`.
-///
 /// Returns the numbers of points that are wrong by more than a grey level, of wrong points that are
 /// not in doubt, of points in doubt, and of all points.
 fn judge(map: &Map) -> Result<[usize; 4], Error> {
@@ -51,14 +46,12 @@ fn judge(map: &Map) -> Result<[usize; 4], Error> {
         .into_iter()
         .try_fold([0; 4], |counts, (start, point)| {
             let [a1, a2] = start.map(f64::from);
-            // The flip of the finer steps, rounded to `f32`.
             let exact = match reference::flip(&fine, a1, a2)? {
                 Flip::Never => Flip::Never,
                 Flip::After(time) => Flip::After(time as f32),
                 Flip::Later => Flip::Later,
             };
 
-            // The map is wrong, wrong without being in doubt, or in doubt.
             let wrong = map.differ([point[0], exact]);
             let doubtful = map.differ(point);
             let these = [wrong, wrong && !doubtful, doubtful, true];
@@ -66,7 +59,6 @@ fn judge(map: &Map) -> Result<[usize; 4], Error> {
         })
 }
 
-/// Returns the flip of the exact motion, which is computed to 30 digits.
 fn exact(map: &Map, [a1, a2]: [f32; 2]) -> Flip<f32> {
     let mut motion = Reference::new(
         &map.parameters.cast(),
@@ -90,11 +82,6 @@ fn exact(map: &Map, [a1, a2]: [f32; 2]) -> Flip<f32> {
     Flip::Later
 }
 
-/// The points of a map with a limit of 10 sqrt(l/g) that may turn over are compared with fine steps
-/// in `f64`: at most 0.1 % may be wrong by more than a grey level. Of a fixed random sample of 60
-/// points ([`JUDGED`]), which is compared with the reference, none may be.
-///
-/// A point must be [`Flip::Never`] exactly if its energy forbids a flip.
 #[test]
 fn points_are_accurate_to_a_grey_level() -> Result<(), Error> {
     let short = map(10.0, 64);
@@ -106,7 +93,6 @@ fn points_are_accurate_to_a_grey_level() -> Result<(), Error> {
         "{wrong} of {points}"
     );
 
-    // The reference is slow, so only a sample is compared with it.
     let mut sample = turning(&short)?;
     Rng::with_seed(1).shuffle(&mut sample);
     for (start, point) in &sample[..JUDGED] {
@@ -119,10 +105,7 @@ fn points_are_accurate_to_a_grey_level() -> Result<(), Error> {
     Ok(())
 }
 
-/// A map with a limit of 100 sqrt(l/g) is partly noise, because of chaos. Of the points that may
-/// turn over, some must be wrong by more than a grey level, compared with fine steps in `f64`, but
-/// fewer than 4 % ([`tolerances::FLIPS_WRONG`]), and some must be in doubt. At most 1 %
-/// ([`tolerances::FLIPS_UNSUSPECTED`]) may be wrong without being in doubt.
+/// Because of chaos the map is partly noise, so that some points are wrong and some in doubt.
 #[test]
 fn most_wrong_points_are_in_doubt() -> Result<(), Error> {
     let [wrong, unsuspected, doubtful, points] = judge(&map(100.0, 32))?;

@@ -10,9 +10,6 @@ use fastrand::Rng;
 use host_tests::oracle::trials::{self, Trial, exact_methods, largest_difference};
 use host_tests::oracle::{random, tolerances};
 
-/// Returns the root mean square error of compensated `f32` over neighbouring starts, in steps of
-/// `dt`.
-///
 /// The exact motion is computed by order 16 in `f64`. Its error is 1e-12 rad here, and it takes a
 /// thousandth of the reference's time.
 fn typical_error(seconds: f64, dt: f64) -> Result<f64, Error> {
@@ -30,13 +27,9 @@ fn typical_error(seconds: f64, dt: f64) -> Result<f64, Error> {
     Ok((squares / f64::from(STARTS)).sqrt())
 }
 
-/// Compensated `f32` in a regular motion: the error of one motion, and the typical error over 32
-/// neighbouring starts, must be at most 5e-8 rad in 10 s with 256 steps per second, 6.5e-8 rad with
-/// 240, and in 100 s with 256 steps 2.5e-7 rad and typically 4.5e-7 rad. A single error may be
-/// three times smaller or larger than the typical one.
-///
-/// The errors are the truncation error and the rounding errors of the evaluations, 6e-8 each. None
-/// of the latter dominates.
+/// The errors are the truncation error and the rounding errors of the evaluations, 6e-8 each. A
+/// single error may be three times smaller or larger than the typical one over 32 neighbouring
+/// starts.
 #[test]
 fn compensated_single_precision_keeps_its_budgets() -> Result<(), Error> {
     for (seconds, steps, goal, typical) in [
@@ -62,8 +55,6 @@ fn compensated_single_precision_keeps_its_budgets() -> Result<(), Error> {
     Ok(())
 }
 
-/// Plain sums must have at least 10 times ([`tolerances::COMPENSATION_GAIN`]) the error of
-/// compensated ones in 10 s of a regular motion, in steps of 1/256 and 1/1024 s.
 #[test]
 fn compensation_reduces_the_error_by_its_gain() -> Result<(), Error> {
     for dt in [1.0 / 256.0, 1.0 / 1024.0] {
@@ -75,11 +66,6 @@ fn compensation_reduces_the_error_by_its_gain() -> Result<(), Error> {
     Ok(())
 }
 
-/// A motion with different rods and masses is run for 1024 steps by every method. Single steps must
-/// give the same bits as one call. 1024 steps backwards must return to the angles of the start,
-/// within the rounding errors of both ways: 4e-6 rad in plain `f32`, 1e-7 rad in compensated `f32`
-/// and fixed point of 32 bits ([`tolerances::RETURN_OF_32_BITS`]), and 1e-10 rad in 64 bits
-/// ([`tolerances::RETURN`]).
 #[test]
 fn backward_steps_return_to_the_start_and_single_steps_are_bit_identical() -> Result<(), Error> {
     let parameters = Parameters {
@@ -95,7 +81,6 @@ fn backward_steps_return_to_the_start_and_single_steps_are_bit_identical() -> Re
 
     let [carried, plain] = tolerances::RETURN_OF_32_BITS;
     for &method in Method::ALL {
-        // Forward in one call, and step by step.
         let mut forth = trials::run(method, &parameters, &start, 1.0 / 1024.0)?;
         forth.advance(1024)?;
         let mut each = trials::run(method, &parameters, &start, 1.0 / 1024.0)?;
@@ -106,7 +91,6 @@ fn backward_steps_return_to_the_start_and_single_steps_are_bit_identical() -> Re
             "{method}"
         );
 
-        // Back to the start, with the rounding errors of both ways.
         let mut back = trials::run(method, &parameters, &forth.state(), -1.0 / 1024.0)?;
         back.advance(1024)?;
         let budget = match method.numbers() {
@@ -122,11 +106,8 @@ fn backward_steps_return_to_the_start_and_single_steps_are_bit_identical() -> Re
     Ok(())
 }
 
-/// The directions of a run must be the sines and cosines of the angles of its state: across the
-/// direction within 8 epsilons of `f32` or `f64`, plus the turn of a rod in the time by which the
-/// directions may be ahead, and along it of length 1 to 1e-5 ([`tolerances::LENGTHS`]).
-///
-/// The closed form is excluded, because its directions are the first terms of a series.
+/// The directions may be ahead of the state by the error of a rounded step. The closed form is
+/// excluded, because its directions are the first terms of a series.
 #[test]
 fn directions_are_those_of_the_angles() -> Result<(), Error> {
     /// The largest rate of a rod in these motions, rad/s.
@@ -134,7 +115,6 @@ fn directions_are_those_of_the_angles() -> Result<(), Error> {
     let both = |method| [Trial::chaotic(1.0), Trial::unlike(1.0)].map(|trial| (method, trial));
     for (method, trial) in exact_methods().flat_map(both) {
         let mut motion = trials::run(method, &trial.parameters, &trial.start, 1.0 / 64.0)?;
-        // The directions of fixed point are `f32`.
         let is_double = matches!(method.numbers(), Numbers::F64 | Numbers::CompensatedF64);
         let epsilon = if is_double {
             f64::EPSILON
@@ -151,7 +131,6 @@ fn directions_are_those_of_the_angles() -> Result<(), Error> {
                 motion.directions().into_iter().zip(motion.state().angles())
             {
                 let (s, c) = angle.sin_cos();
-                // The components along the exact direction and across it.
                 let [along, across] = [sine * s + cosine * c, sine * c - cosine * s];
                 assert!(across.abs() <= budget, "{method}: {across:e} at {angle}");
                 assert!(
@@ -165,9 +144,6 @@ fn directions_are_those_of_the_angles() -> Result<(), Error> {
     Ok(())
 }
 
-/// The angles of a chaotic motion, with counted turns, agree with the integral of the angular
-/// velocities to 0.1 rad for 10 s, by each of the [`exact_methods`]. An angle must exceed two
-/// turns.
 #[test]
 fn turns_follow_the_angular_velocity() -> Result<(), Error> {
     let Trial {
@@ -185,7 +161,6 @@ fn turns_follow_the_angular_velocity() -> Result<(), Error> {
         let mut before = velocities(&start);
         let mut most = 0.0_f64;
         for _ in 0..10 * 2048 {
-            // The trapezoidal rule for the angle.
             motion.advance(1)?;
             let now = velocities(&motion.state());
             for (i, reported) in motion.angles().into_iter().enumerate() {
@@ -208,14 +183,10 @@ fn turns_follow_the_angular_velocity() -> Result<(), Error> {
     Ok(())
 }
 
-/// The count of turns follows an angle that changes by less than a quarter turn at a time, 100,000
-/// times at random. The angle is restored to 1e-9 rad from its direction, or from itself without
-/// whole turns. A start of more turns than the count can hold is refused.
 #[test]
 fn turns_follow_an_angle_in_either_direction() {
     let mut rng = Rng::with_seed(7);
     let mut angle = 1.0_f64;
-    // Bit 31 of a word is the sign of a sine or cosine.
     let signs = |angle: f64| [[angle.sin(), angle.cos()].map(|part| -i32::from(part < 0.0)); 2];
     assert!(matches!(
         Turns::of([0.0, 1.4e10], signs(angle)),
@@ -233,7 +204,6 @@ fn turns_follow_an_angle_in_either_direction() {
         );
     }
 
-    // The angle changes at random by less than a quarter turn.
     let mut turns = Turns::of([angle; 2], signs(angle)).expect("few turns");
     let mut farthest = 0.0_f64;
     for _ in 0..100_000 {
@@ -261,8 +231,6 @@ fn turns_follow_an_angle_in_either_direction() {
 
 const _: () = assert!(size_of::<Run<DirectionF32>>() <= 256, "a run is small");
 
-/// Every method refuses a bad step, a start that is NaN and a negative mass, with the error that
-/// names the parameter. In `f32` masses and momenta out of range are refused, too.
 #[test]
 fn bad_input_is_refused_by_name() -> Result<(), Error> {
     let good = Parameters {
@@ -275,7 +243,6 @@ fn bad_input_is_refused_by_name() -> Result<(), Error> {
 
     let still = State::at_rest(1.0, 1.0);
     for &method in Method::ALL {
-        // The error of this method for a bad input.
         let refused = |parameters: &Parameters<f64>, start: &State<f64>, dt: f64| {
             trials::run(method, parameters, start, dt)
                 .err()

@@ -11,8 +11,7 @@ use rayon::prelude::*;
 use reference::taylor::Reference;
 use reference::twofloat::TwoFloat;
 
-/// Returns the largest distance of a sine or cosine from the interval of the row's value; infinite
-/// if one is NaN. It is 0 inside all intervals.
+/// Returns the largest distance of a sine or cosine from the interval of the row's value.
 fn distance(row: &KnownAnswer, directions: [TwoFloat; 4]) -> f64 {
     let off = |i: usize| f64::from(directions[i] - row.directions[i]).abs() - row.radius[i];
     (0..4)
@@ -35,8 +34,6 @@ static ROWS: LazyLock<Vec<(KnownAnswer, Reference)>> = LazyLock::new(|| {
         .collect()
 });
 
-/// The directions of the reference at the time of each row must be in the row's interval, or no
-/// farther from it than 1e-31 ([`tolerances::REFERENCE`]) times the row's growth of a small error.
 #[test]
 fn reference_reaches_the_tables_digits() {
     for (row, reference) in &*ROWS {
@@ -51,17 +48,12 @@ fn reference_reaches_the_tables_digits() {
     }
 }
 
-/// Asserts that `method` is within its budget ([`tolerances::known_answer`]) at each row, in steps
-/// of 1/4096 s or, for orders above 4, of 1/1024 s.
-///
-/// A budget above 1 asserts nothing. At least [`tolerances::KNOWN_ANSWERS_CLAIMED`] rows must have
-/// a budget below 1. Scenes whose steps are too long for fixed point are left out.
+/// A budget above 1 asserts nothing. Scenes whose steps are too long for fixed point are left out.
 fn keeps_its_budgets(rows: &[(KnownAnswer, Reference)], method: Method) {
     let steps_per_second = if method.order() == 4 { 4096 } else { 1024 };
     let mut tested = 0_u32;
     for scene in rows.chunk_by(|(one, _), (next, _)| one.scene == next.scene) {
         let (first, _) = &scene[0];
-        // Fixed point refuses steps that are too long for a fast scene.
         let dt = 1.0 / f64::from(steps_per_second);
         let mut run = match trials::run(method, &first.parameters, &first.start.state(), dt) {
             Err(Error::TooLarge {
@@ -71,7 +63,6 @@ fn keeps_its_budgets(rows: &[(KnownAnswer, Reference)], method: Method) {
             run => run.unwrap_or_else(|error| panic!("{method}, {}: {error}", first.scene)),
         };
 
-        // The run advances from row to row.
         let mut made = 0;
         for (row, exact) in scene {
             let left = (row.time * f64::from(steps_per_second)) as u32 - made;
@@ -103,11 +94,6 @@ fn keeps_its_budgets(rows: &[(KnownAnswer, Reference)], method: Method) {
     );
 }
 
-/// Each method whose errors depend on the step must be within its budget
-/// ([`tolerances::known_answer`]) of the directions of each row, in steps of 1/4096 s or, for
-/// orders above 4, of 1/1024 s. A budget above 1 asserts nothing; at least 36 rows in 32 bits, and
-/// 45 in 64 bits, must have a smaller one. Fixed point may refuse scenes that are too fast for its
-/// steps.
 #[test]
 fn every_method_keeps_its_tolerance_in_the_table() {
     // The rows are computed here first. A job that waited for them would block a thread of the jobs

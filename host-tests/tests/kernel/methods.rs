@@ -4,8 +4,6 @@ use double_pendulum::{Error, Extrapolation, Method, Parameter, Parameters, State
 use host_tests::oracle::tolerances;
 use host_tests::oracle::trials::{Trial, exact_methods, largest_difference};
 
-/// Returns the order that follows from the errors with two numbers of steps per second, compared
-/// with the `exact` states.
 fn order(
     method: Method,
     trial: &Trial,
@@ -33,9 +31,6 @@ fn steps(method: Method) -> [u32; 2] {
     }
 }
 
-/// The order that follows from the errors with two step sizes must equal the order in the table: to
-/// a share of 0.1 for each method, and to 0.025 for RK4 in `f64` in finer steps of three motions.
-///
 /// The motions are regular, so that errors grow no faster than the time. Single precision
 /// represents their numbers exactly.
 #[test]
@@ -43,7 +38,6 @@ fn every_method_has_its_order() -> Result<(), Error> {
     let trial = Trial::regular(16.0).held_by(Method::Rk4F32);
     let exact = trial.exact()?;
     let [coarse, fine] = tolerances::ORDER_OF_METHODS;
-    // Regular motion, every method.
     for method in exact_methods() {
         let order = order(method, &trial, &exact, steps(method))?;
         println!("{method}: {order:.2}");
@@ -93,14 +87,11 @@ fn every_method_has_its_order() -> Result<(), Error> {
     Ok(())
 }
 
-/// The oscillation z'' = -z for 20 s, in the finest steps whose error is well above the rounding
-/// errors, by the orders 6, 8, 12 and 16. The measured order must be the requested one to 0.8
-/// ([`tolerances::ORDER_EXTRAPOLATED`]). Odd orders, 0, and orders above 16 are refused.
+/// The oscillation z'' = -z in the finest steps whose error is well above the rounding errors.
 #[test]
 fn extrapolation_of_any_equation_has_the_requested_order() -> Result<(), Error> {
     for (order, steps) in [(6, 196), (8, 49), (12, 12), (16, 5)] {
         let method = Extrapolation::new(order)?;
-        // The error at the end, for position and velocity.
         let error = |steps: u32| {
             let dt = 20.0 / f64::from(steps);
             let [x, v] = (0..steps).fold([0.0, 1.0], |z, _| {
@@ -118,7 +109,6 @@ fn extrapolation_of_any_equation_has_the_requested_order() -> Result<(), Error> 
         );
     }
 
-    // Other orders are refused.
     for order in [0, 1, 7, 18, u32::MAX] {
         assert!(matches!(
             Extrapolation::<f64>::new(order),

@@ -8,8 +8,7 @@ use reference::taylor::{Reference, divide};
 use reference::twofloat::TwoFloat;
 
 /// Returns the modes by the formulas of the book, including their differences, in double-double
-/// precision: the fast and the slow frequency, rad/s; the fast and the slow shape a2/a1; and the
-/// difference of the frequencies, rad/s.
+/// precision.
 fn exact_modes(&Parameters { m1, m2, l1, l2, g }: &Parameters<f64>) -> [TwoFloat; 5] {
     let [m1, m2, l1, l2, g] = [m1, m2, l1, l2, g].map(TwoFloat::from);
     let total = m1 + m2;
@@ -30,14 +29,11 @@ fn exact_modes(&Parameters { m1, m2, l1, l2, g }: &Parameters<f64>) -> [TwoFloat
     ]
 }
 
-/// Returns the error of `value` in units of the last place of `R` at `exact`.
 fn ulps<R: Real>(value: R, exact: TwoFloat) -> f64 {
     let binade = 2_f64.powi(f64::from(exact).abs().log2().floor() as i32);
     f64::from(exact - value.to_f64()).abs() / (binade * R::EPSILON.to_f64())
 }
 
-/// Asserts that frequencies, shapes and the exchange frequency of 50,000 random pendulums are those
-/// of the formulas within [`tolerances::MODES`], in units of the last place of `R`.
 fn modes_to_the_last_places<R: Real>() {
     let mut rng = Rng::with_seed(1);
     for n in 0..50_000 {
@@ -62,7 +58,6 @@ fn modes_to_the_last_places<R: Real>() {
         .cast::<R>()
         .cast::<f64>();
 
-        // The modes of the rounded parameters, compared with the formulas of the book.
         let modes = Modes::new(&parameters.cast::<R>()).expect("valid parameters");
         let values = [
             modes.fast.frequency,
@@ -86,19 +81,13 @@ fn modes_to_the_last_places<R: Real>() {
     }
 }
 
-/// Frequencies, shapes and the exchange frequency of 50,000 random pendulums are those of the
-/// book's formulas, to 4 units of the last place for the frequencies and 10 for the others, in
-/// `f32` and `f64` ([`modes_to_the_last_places`]). Half of the pendulums have equal rods, where
-/// plain formulas lose digits.
+/// Half of the pendulums have equal rods, where plain formulas lose digits.
 #[test]
 fn modes_are_accurate_to_the_last_places() {
     modes_to_the_last_places::<f32>();
     modes_to_the_last_places::<f64>();
 }
 
-/// The exact motion at 1e-6 rad is the linear one after 0, 1 and 10 s, for 20 random pendulums with
-/// random angles and velocities. Each may differ by 1e-9 ([`tolerances::LINEAR`]) of its size: 1e-6
-/// rad, and that times the fast frequency.
 #[test]
 fn linear_motion_is_the_limit_of_the_exact_motion() {
     let mut rng = Rng::with_seed(3);
@@ -114,7 +103,6 @@ fn linear_motion_is_the_limit_of_the_exact_motion() {
             exact.advance_to(t);
             let [linear, exact]: [[f64; 4]; 2] = [linear.at(t).into(), exact.motion().into()];
             let fast = modes.fast.frequency;
-            // Velocities are larger than angles by the fast frequency.
             for (i, scale) in [1e-6, 1e-6, 1e-6 * fast, 1e-6 * fast]
                 .into_iter()
                 .enumerate()
@@ -129,9 +117,7 @@ fn linear_motion_is_the_limit_of_the_exact_motion() {
     }
 }
 
-/// The two frequencies are growth rates at the inverted rest: a push of 1e-10 rad along a mode's
-/// shape grows as e^(wt). After a second each exact angle must have grown by that factor, to a
-/// relative 1e-9 ([`tolerances::INVERTED_GROWTH`]).
+/// A push of 1e-10 rad along a mode's shape grows as e^(wt).
 #[test]
 fn upright_pendulum_falls_at_the_rates_of_the_modes() {
     let parameters @ Parameters { m1, m2, l1, l2, g } = Parameters {
@@ -161,7 +147,6 @@ fn upright_pendulum_falls_at_the_rates_of_the_modes() {
         exact.advance_to(1.0);
         let [a1, a2, ..] = exact.exact_state();
 
-        // Each angle has grown by the same factor.
         let growth = [
             f64::from(a1 - upright) / push,
             f64::from(a2 - upright) / (push * shape),
