@@ -3,7 +3,6 @@
 
 use embedded_hal::i2c::ErrorKind;
 
-use super::cortex_m::clock::cycles;
 use super::cortex_m::interrupt::Shared;
 use crate::display::{Outbox, PanelBus, Sent};
 
@@ -31,8 +30,6 @@ pub trait PanelPort {
 pub struct Bus<P> {
     port: P,
     outbox: Option<&'static mut Outbox>,
-    /// The number of processor cycles in a microsecond.
-    megahertz: u32,
 }
 
 /// The largest number of polls that wait for a start or a stop on the I2C bus of the panel. A start
@@ -45,15 +42,8 @@ pub struct Bus<P> {
 /// [`ErrorKind::Other`], and the port is reset.
 pub const TRIES: u32 = 500;
 
-/// An outbox that is being sent, and the processor cycles of its begin and end.
-struct Outgoing {
-    outbox: &'static mut Outbox,
-    began: u32,
-    ended: u32,
-}
-
 /// The outbox that the interrupt owns.
-static OUTGOING: Shared<Option<Outgoing>> = Shared::new(None);
+static OUTGOING: Shared<Option<&'static mut Outbox>> = Shared::new(None);
 
 /// Handles the bus's interrupt.
 ///
@@ -62,26 +52,22 @@ static OUTGOING: Shared<Option<Outgoing>> = Shared::new(None);
 /// that the bus must not interrupt until [`PanelPort::begin`].
 pub(in crate::board) fn serve(advance: impl FnOnce(&mut Outbox) -> Option<Sent>) {
     OUTGOING.with(|outgoing| {
-        if let Some(Outgoing { outbox, ended, .. }) = outgoing
+        if let Some(outbox) = outgoing
             && outbox.sent.is_none()
         {
             outbox.sent = advance(outbox);
-            if outbox.sent.is_some() {
-                *ended = cycles();
-            }
         }
     });
 }
 
 impl<P: PanelPort> Bus<P> {
-    /// Creates the bus of a port; `hertz` is the frequency of the processor, Hz. There is at most
-    /// one bus, because the interrupt knows no other. Returns `None` the second time.
-    pub(in crate::board) fn new(mut port: P, hertz: u32) -> Option<Self> {
+    /// Creates the bus of a port. There is at most one bus, because the interrupt knows no other.
+    /// Returns `None` the second time.
+    pub(in crate::board) fn new(mut port: P) -> Option<Self> {
         port.reset();
         Some(Self {
             port,
             outbox: Some(cortex_m::singleton!(: Outbox = Outbox::default())?),
-            megahertz: (hertz / 1_000_000).max(1),
         })
     }
 }
@@ -89,23 +75,12 @@ impl<P: PanelPort> Bus<P> {
 impl<P: PanelPort> PanelBus for Bus<P> {
     fn outbox(&mut self) -> Option<(&mut Outbox, Sent)> {
         // The interrupt has set the outcome if it is done with the outbox.
-        let arrived = OUTGOING
-            .with(|outgoing| outgoing.take_if(|Outgoing { outbox, .. }| outbox.sent.is_some()));
-        if let Some(Outgoing {
-            outbox,
-            began,
-            ended,
-        }) = arrived.flatten()
-        {
+        let arrived = OUTGOING.with(|outgoing| outgoing.take_if(|outbox| outbox.sent.is_some()));
+        if let Some(outbox) = arrived.flatten() {
             // After an error other than silence, the bus may hang.
             if !matches!(outbox.sent, Some(Ok(()) | Err(ErrorKind::NoAcknowledge(_)))) {
                 self.port.reset();
             }
-
-            outbox.took = ended
-                .wrapping_sub(began)
-                .checked_div(self.megahertz)
-                .unwrap_or(0);
             self.outbox = Some(outbox);
         }
 
@@ -118,15 +93,8 @@ impl<P: PanelPort> PanelBus for Bus<P> {
         if let Some(outbox) = self.outbox.take() {
             let address = outbox.address;
             outbox.sent = None;
-            let began = cycles();
-            let outgoing = Outgoing {
-                outbox,
-                began,
-                ended: began,
-            };
-
             // The interrupt owns the outbox before the transfer begins.
-            OUTGOING.with(|place| *place = Some(outgoing));
+            OUTGOING.with(|place| *place = Some(outbox));
             self.port.begin(address);
         }
     }
@@ -134,7 +102,7 @@ impl<P: PanelPort> PanelBus for Bus<P> {
     fn abort(&mut self) {
         // The outcome is an error, and the outbox returns at once.
         self.port.reset();
-        if let Some(Outgoing { outbox, .. }) = OUTGOING.with(Option::take).flatten() {
+        if let Some(outbox) = OUTGOING.with(Option::take).flatten() {
             outbox.sent = Some(Err(ErrorKind::Other));
             self.outbox = Some(outbox);
         }

@@ -39,9 +39,6 @@ pub struct Outbox {
     answer: Vec<u8, ANSWER>,
     /// The outcome; `None` while the messages are being sent, `Ok` while nothing has been sent.
     pub sent: Option<Sent>,
-    /// The time that the messages and the answer took, us; 0 if it is not known, as before the end
-    /// of the transfer and after it was aborted.
-    pub took: u32,
 }
 
 /// The outcome of the messages in an outbox: `Ok` if all are sent and the answer is complete. If
@@ -74,15 +71,13 @@ impl Default for Outbox {
             requested: 0,
             answer: Vec::new(),
             sent: Some(Ok(())),
-            took: 0,
         }
     }
 }
 
 impl Outbox {
     /// Empties the outbox, of messages and answer; messages put in from now on are for this address
-    /// of seven bits, which is not checked. The outcome becomes `Ok`, the time 0, and no byte is
-    /// requested.
+    /// of seven bits, which is not checked. The outcome becomes `Ok`, and no byte is requested.
     pub fn address_to(&mut self, address: u8) {
         self.address = address;
         self.messages.clear();
@@ -92,7 +87,6 @@ impl Outbox {
         self.requested = 0;
         self.answer.clear();
         self.sent = Some(Ok(()));
-        self.took = 0;
     }
 
     /// Appends a message: the control byte `head`, and 0 to 254 bytes. A longer message, or one
@@ -132,14 +126,6 @@ impl Outbox {
     /// requested. After an error they may be fewer, and before the transfer there are none.
     pub fn answered(&self) -> &[u8] {
         &self.answer
-    }
-
-    /// Returns the number of bytes on the bus for the whole contents, sent or not: the bytes of the
-    /// messages and of the requested answer, with an address for each message and one for the
-    /// answer.
-    pub fn len(&self) -> usize {
-        let read = if self.asked == 0 { 0 } else { 1 + self.asked() };
-        self.messages.len() + read
     }
 
     /// Returns true if [`next`](Iterator::next) has no byte left: all messages are sent, or none

@@ -83,8 +83,6 @@ choice! {
         /// The panel returned the bytes that were written into its memory (SH1106, SH1107), or
         /// other bytes (SSD1306).
         Memory = "by reading its memory back";
-        /// Reading the memory failed, and only the status byte was available.
-        Status = "by its status byte";
         /// The panel acknowledges no read and is taken for the most common controller.
         Silence = "assumed, because it answers no read";
         /// The host, or the build variable `PANEL`, named the controller.
@@ -135,9 +133,7 @@ pub enum PanelState {
     Unknown,
     /// The board looks for a panel, identifies it or sends the first picture.
     Starting,
-    /// The last search has ended with this error, which stays during the next search. Also a panel
-    /// that has just been lost, until it is searched for: with [`BusFault::NoAnswer`], whatever the
-    /// error.
+    /// The bus failed with this error; the panel is tried again once a second.
     Absent(BusFault),
     /// The panel shows the frames, or as many as the bus carries ([`PanelReport::shown`]).
     Shown(Found),
@@ -150,14 +146,10 @@ pub struct PanelReport {
     pub state: PanelState,
     /// The controller that the user chose, by a command or by [`BUILT_FOR`]; `None` identifies it.
     pub chosen: Option<Controller>,
-    /// The number of frames of the last whole second, 60 frames
-    /// ([`TICK_RATE`](crate::config::TICK_RATE)), that were sent to the panel, whole or in part. A
-    /// frame without a change counts as sent. It is 0 until the panel has taken frames for a whole
-    /// second, also after a loss, and if the driver does not count them.
+    /// The number of frames of the last whole second that were sent to the panel. A frame without a
+    /// change counts as sent. It is 0 until the panel has taken frames for a second, and if the
+    /// driver does not count them.
     pub shown: u8,
-    /// The number of these that were sent whole, or had no change. The others left a part to the
-    /// next frame.
-    pub whole: u8,
 }
 
 impl Controller {

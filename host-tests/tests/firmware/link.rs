@@ -241,7 +241,6 @@ fn every_message_fits() {
         }),
         chosen: Some(Controller::Sh1107),
         shown: u8::MAX,
-        whole: u8::MAX,
     };
     let played = Status {
         scene,

@@ -4,7 +4,6 @@
 
 use cortex_m::asm::delay;
 use embedded_hal::i2c::ErrorKind;
-use rp2040_hal::fugit::HertzU32;
 use rp2040_hal::gpio::bank0::{Gpio4, Gpio5};
 use rp2040_hal::gpio::{FunctionI2C, Pin, PullUp};
 use rp2040_hal::pac::i2c0::RegisterBlock;
@@ -77,10 +76,10 @@ pub(super) type Pins = (
     Pin<Gpio5, FunctionI2C, PullUp>,
 );
 
-/// Starts the bus and its interrupt. `clock` is the processor's clock and times the transfers; the
-/// frequency of the bus assumes 125 MHz. Returns `None` the second time.
-pub(super) fn start(_port: I2C0, _pins: Pins, clock: HertzU32) -> Option<Bus<I2c0>> {
-    let bus = Bus::new(I2c0(()), clock.to_Hz())?; // it resets the block, and sets it up
+/// Starts the bus and its interrupt. The frequency of the bus assumes a processor of 125 MHz.
+/// Returns `None` the second time.
+pub(super) fn start(_port: I2C0, _pins: Pins) -> Option<Bus<I2c0>> {
+    let bus = Bus::new(I2c0(()))?; // it resets the block, and sets it up
     unmask(Interrupt::I2C0_IRQ);
     Some(bus)
 }

@@ -111,7 +111,7 @@ pub fn take() -> Option<Pico> {
 
     // The panel.
     let wires = (pins.gpio4.reconfigure(), pins.gpio5.reconfigure());
-    let bus = i2c::start(chip.I2C0, wires, clocks.system_clock.freq())?;
+    let bus = i2c::start(chip.I2C0, wires)?;
     let memory = cortex_m::singleton!(: Bitmap = Bitmap::BLACK)?;
 
     // The panel and the buttons may be absent: the driver looks for a panel, and an open pin reads

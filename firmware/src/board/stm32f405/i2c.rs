@@ -14,7 +14,6 @@ use stm32f4xx_hal::pac::{I2C1, Interrupt};
 use stm32f4xx_hal::prelude::*;
 use stm32f4xx_hal::rcc::Rcc;
 
-use super::HERTZ;
 use crate::board::cortex_m::interrupt::unmask;
 use crate::board::panel_bus::{self, Bus, PanelPort, TRIES};
 use crate::display::{Outbox, SILENCE, Sent, free_bus};
@@ -43,7 +42,7 @@ pub(super) fn start(port: I2C1, clock: PB6, data: PB7, rcc: &mut Rcc) -> Option<
     let (_, pins) = I2c::new(port, (clock, data), 400.kHz(), rcc).release();
 
     // The panel's messages need both interrupts: one for progress, one for errors.
-    let bus = Bus::new(I2c1(pins), HERTZ)?;
+    let bus = Bus::new(I2c1(pins))?;
     [Interrupt::I2C1_EV, Interrupt::I2C1_ER]
         .into_iter()
         .for_each(unmask);

@@ -10,12 +10,8 @@ use super::{HEIGHT, WIDTH};
 /// The number of bits that a byte takes with its acknowledgement; a start or stop takes 1.
 pub const BYTE: u32 = 9;
 
-/// The time of a byte on the bus at 400 kHz, ns.
-pub const IDEAL: u32 = 22_500;
 /// The time of a byte on the bus as measured on boards with pull-ups of 4.7 kOhm (346 kHz), ns.
 pub const USUAL: u32 = 26_000;
-/// The time of a byte on the bus with the pull-ups of 10 kOhm of many modules (266 kHz), ns.
-pub const WORST: u32 = 34_000;
 
 /// The bus as an interrupt drives it, with the panel at its end.
 pub struct Line {
@@ -29,6 +25,8 @@ pub struct Line {
     pub taken: u32,
     /// True if another device holds the clock low.
     pub hangs: bool,
+    /// The error with which every transfer ends, if any.
+    pub fails: Option<ErrorKind>,
     /// The number of transfers that were aborted.
     pub freed: u32,
     /// The number of transfers.
@@ -51,6 +49,7 @@ impl Line {
             time: 0,
             taken: 0,
             hangs: false,
+            fails: None,
             freed: 0,
             sent: 0,
         }
@@ -95,7 +94,10 @@ impl Line {
 
             self.time -= needed;
             self.taken += needed;
-            if !panel.plugged_in || outbox.address != panel.address {
+            if let Some(error) = self.fails {
+                outbox.sent = Some(Err(error));
+                message.clear();
+            } else if !panel.plugged_in || outbox.address != panel.address {
                 outbox.sent = Some(Err(SILENCE));
                 message.clear();
             } else if let Some(byte) = outbox.next() {
@@ -110,7 +112,6 @@ impl Line {
             } else {
                 outbox.sent = Some(Err(SILENCE));
             }
-            outbox.took = (u64::from(self.taken * self.byte_nanos / BYTE) / 1000) as u32;
         }
 
         self.time = 0;
@@ -169,12 +170,9 @@ pub struct Kind {
     pub own: &'static [(u8, usize)],
     /// The commands that must be given before the display is switched on.
     pub needed: &'static [&'static [u8]],
-    /// The settings that may be given while the display is on.
-    pub for_lit: &'static [u8],
 }
 
-/// A controller that reports whether its display is on, so a driver has no reason to repeat a
-/// setting.
+/// The controller of most modules.
 pub const SSD1306: Kind = Kind {
     says: Says::Off(0x06),
     returns_memory: false,
@@ -188,7 +186,6 @@ pub const SSD1306: Kind = Kind {
         &[0xA8, 0x3F],
         &[0xDA, 0x12],
     ],
-    for_lit: &[],
 };
 /// A controller with more columns than are visible, whose memory can be read.
 pub const SH1106: Kind = Kind {
@@ -198,7 +195,6 @@ pub const SH1106: Kind = Kind {
     left: 2,
     own: &[(0xAD, 1), (0xDA, 1)],
     needed: &[&[0xAD, 0x8B], &[0xA8, 0x3F], &[0xDA, 0x12]],
-    for_lit: &[],
 };
 /// The upper half of a panel of 128 x 128.
 pub const SH1107: Kind = Kind {
@@ -208,21 +204,7 @@ pub const SH1107: Kind = Kind {
     left: 0,
     own: &[(0x20, 0), (0xAD, 1), (0xDC, 1)],
     needed: &[&[0x20], &[0xDC, 0], &[0xA8, 0x7F]],
-    for_lit: &[],
 };
-/// An SSD1306 whose status does not depend on its display.
-pub const BLIND: Kind = Kind {
-    for_lit: &[
-        0x40, 0x81, 0xA1, 0xA4, 0xA6, 0xA8, 0xC8, 0xD3, 0xD9, 0xDA, 0xDB,
-    ],
-    ..SSD1306
-};
-/// An SSD1306 that acknowledges no read.
-pub const SILENT: Kind = Kind {
-    says: Says::Nothing,
-    ..BLIND
-};
-
 impl Kind {
     /// Returns the same kind with another status byte.
     pub fn says(self, says: Says) -> Self {
@@ -234,7 +216,9 @@ impl Kind {
 /// follow it in the same message.
 fn arguments(command: u8) -> Option<usize> {
     match command {
-        0x00..=0x1F | 0x40 | 0xA1 | 0xA4 | 0xA6 | 0xAE | 0xAF | 0xB0..=0xB7 | 0xC8 => Some(0),
+        0x00..=0x1F | 0x40 | 0xA1 | 0xA4 | 0xA6 | 0xAE | 0xAF | 0xB0..=0xB7 | 0xC8 | 0xE3 => {
+            Some(0)
+        }
         0x81 | 0xA8 | 0xD3 | 0xD5 | 0xD9 | 0xDB => Some(1),
         _ => None,
     }
@@ -255,8 +239,6 @@ pub struct Controller {
     /// The number of times that the display was switched on.
     pub lit: u32,
     was_read: bool,
-    /// The status that was read last.
-    pub last_read: Option<u8>,
     /// True if the next read is of the memory instead of the status.
     reads_memory: bool,
 }
@@ -276,7 +258,6 @@ impl Controller {
             on: false,
             lit: 0,
             was_read: false,
-            last_read: None,
             reads_memory: false,
         }
     }
@@ -286,24 +267,17 @@ impl Controller {
         Self { plugged_in, ..self }
     }
 
-    /// Interrupts the power for a moment. Only kind and address remain; the display is off, and the
-    /// controller is plugged in.
-    pub fn lose_power(&mut self) {
-        *self = Self::new(self.kind, self.address);
-    }
-
     /// Returns the status byte, and notes that it was read; `None` if reads are not acknowledged.
     fn status(&mut self) -> Option<u8> {
         let off = u8::from(!self.on) << 6;
         let was_read = std::mem::replace(&mut self.was_read, true);
-        self.last_read = match self.kind.says {
+        match self.kind.says {
             Says::Off(bits) => Some(bits | off),
             Says::FirstThen(first, _) if !was_read => Some(first | off),
             Says::FirstThen(_, bits) => Some(bits | off),
             Says::Always(byte) => Some(byte),
             Says::Nothing => None,
-        };
-        self.last_read
+        }
     }
 
     /// Returns the `count` bytes that are read, or `None` if the read is not acknowledged. After
@@ -368,12 +342,10 @@ impl Controller {
                         assert!(self.is_given(needed), "lit before {needed:#04x?}");
                     }
                 }
+                0xE3 => {} // It does nothing.
                 // Any other command is a setting, which is allowed while the display is off.
                 setting => {
-                    assert!(
-                        !self.on || self.kind.for_lit.contains(&setting),
-                        "{setting:#04x} while the display is on"
-                    );
+                    assert!(!self.on, "{setting:#04x} while the display is on");
                     self.given.push(bytes[..=count].to_vec());
                 }
             }
@@ -420,36 +392,15 @@ impl Controller {
         }
     }
 
-    /// Returns true if each byte of the picture is from one of these frames, and the display is on.
-    /// A byte that is unknown since power-on is from none.
-    pub fn shows_any_of(&self, frames: &[&Bitmap]) -> bool {
-        self.on && self.late_pages(frames).is_empty()
-    }
-
-    /// Returns true if the picture is exactly this frame, and the display is on.
+    /// Returns true if the picture is exactly this frame, and the display is on. A byte that is
+    /// unknown since power-on is from no frame.
     pub fn shows(&self, frame: &Bitmap) -> bool {
-        self.shows_any_of(&[frame])
-    }
-
-    /// Returns the pages, counted from 0 at the top, with a byte that is in none of these frames,
-    /// or is unknown since power-on.
-    pub fn late_pages(&self, frames: &[&Bitmap]) -> Vec<usize> {
         let Kind { columns, left, .. } = self.kind;
-        // The part of a page that the panel shows.
-        let visible = |page: usize| page * columns + left..page * columns + left + WIDTH;
-        let is_current = |page: usize| {
-            let seen = &self.memory[visible(page)];
-            let is_one = || frames.iter().any(|frame| seen == frame.pages[page]);
-            // A page may be between two frames while it is sent.
-            let is_mixed = || {
-                let mut bytes = seen.iter().enumerate();
-                bytes.all(|(at, byte)| frames.iter().any(|frame| frame.pages[page][at] == *byte))
-            };
-            is_one() || frames.len() > 1 && is_mixed()
+        let is_shown = |page: usize| {
+            let visible = page * columns + left..page * columns + left + WIDTH;
+            self.memory[visible.clone()] == frame.pages[page]
+                && !self.unknown[visible].contains(&true)
         };
-        let is_known = |page: usize| !self.unknown[visible(page)].contains(&true);
-        (0..HEIGHT / 8)
-            .filter(|&page| !is_known(page) || !is_current(page))
-            .collect()
+        self.on && (0..HEIGHT / 8).all(is_shown)
     }
 }

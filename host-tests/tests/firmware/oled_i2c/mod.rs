@@ -3,8 +3,6 @@
 
 mod bus;
 
-use std::collections::VecDeque;
-
 use embedded_hal::i2c::ErrorKind;
 use emulator::host::Show;
 use emulator::qemu::Screenshot;
@@ -12,15 +10,12 @@ use fastrand::Rng;
 use firmware::config::{STM32F405, TICK_RATE};
 use firmware::display::{
     BusFault, By, Controller as Name, Display, Found, OledError, OledI2c, PanelReport, PanelState,
-    SILENCE,
 };
 use firmware::graphics::{Bitmap, Canvas, Format, Palette};
 use firmware::scenes::SceneName;
 
 use crate::bench::{blank, places};
-use bus::{
-    BLIND, BYTE, Controller, IDEAL, Kind, Line, SH1106, SH1107, SILENT, SSD1306, Says, USUAL, WORST,
-};
+use bus::{BYTE, Controller, Kind, Line, SH1106, SH1107, SSD1306, Says, USUAL};
 
 /// A number of bits that is larger than any frame needs, including the settings that wake the
 /// panel.
@@ -53,10 +48,11 @@ fn flush(panel: &mut Panel, frame: &Canvas, bits: u32) -> Result<(), OledError> 
     result
 }
 
-/// Sends a frame, and advances the time by a tick.
+/// Sends a frame, and advances the time by a tick, at the end of which the driver catches up.
 fn tick(panel: &mut Panel, frame: &Canvas) -> Result<(), OledError> {
     let result = panel.flush(frame);
     panel.bus.run_tick();
+    panel.catch_up(frame);
     result
 }
 
@@ -135,38 +131,6 @@ fn pixels(mut is_lit: impl FnMut() -> bool) -> Canvas<'static> {
     canvas
 }
 
-/// Each kind of controller, at both addresses, shows every frame completely: scenes, and noise of
-/// any density.
-#[test]
-fn the_panel_shows_each_picture_at_either_address() {
-    let mut rng = Rng::with_seed(1);
-
-    // Whole frames of noise, and frames with a few pixels.
-    let noise = [2, 2, 1000, 300, 100, 30, 10, 3].map(|rarity| pixels(|| rng.u32(..rarity) == 0));
-    let frames: Vec<_> = [0, 1, 2, 30, 31, 400]
-        .map(scene)
-        .into_iter()
-        .chain(noise)
-        .collect();
-    for (kind, address) in [SSD1306, SH1106, SH1107, SILENT]
-        .into_iter()
-        .flat_map(|kind| [0x3C, 0x3D].map(|address| (kind, address)))
-    {
-        let mut panel = panel(Controller::new(kind, address));
-        for (number, frame) in frames.iter().enumerate() {
-            // A panel is found, identified and woken with the first frame. A whole frame of noise
-            // is sent in parts.
-            for _ in 0..if number == 0 { FIRST + 1 } else { 4 } {
-                assert_eq!(flush(&mut panel, frame, LONG), Ok(()));
-            }
-            assert!(
-                shows(&panel, frame),
-                "frame {number}, {kind:?} at {address:#04x}"
-            );
-        }
-    }
-}
-
 /// The modules that were found in the field, and the way to identify each.
 ///
 /// Source of the status bytes: Meshtastic's `probeOLED` and its threads 1363, 8850 and 11265;
@@ -181,14 +145,14 @@ const MODULES: [(Kind, Says, Name, By); 21] = {
         (SSD1306, Says::Off(0x07), Name::Ssd1306, Memory),
         (SSD1306, Says::Off(0x08), Name::Ssd1306, Memory),
         (SSD1306, Says::FirstThen(0x06, 0x08), Name::Ssd1306, Memory),
-        (BLIND, Says::Always(0x00), Name::Ssd1306, Memory),
-        (BLIND, Says::Always(0x03), Name::Ssd1306, Memory),
-        (BLIND, Says::Always(0x07), Name::Ssd1306, Memory),
-        (BLIND, Says::Always(0x43), Name::Ssd1306, Memory),
-        (BLIND, Says::Always(0x46), Name::Ssd1306, Memory),
-        (BLIND, Says::Always(0x47), Name::Ssd1306, Memory),
-        (BLIND, Says::Always(0xFF), Name::Ssd1306, Memory),
-        (BLIND, Says::Nothing, Name::Ssd1306, Silence),
+        (SSD1306, Says::Always(0x00), Name::Ssd1306, Memory),
+        (SSD1306, Says::Always(0x03), Name::Ssd1306, Memory),
+        (SSD1306, Says::Always(0x07), Name::Ssd1306, Memory),
+        (SSD1306, Says::Always(0x43), Name::Ssd1306, Memory),
+        (SSD1306, Says::Always(0x46), Name::Ssd1306, Memory),
+        (SSD1306, Says::Always(0x47), Name::Ssd1306, Memory),
+        (SSD1306, Says::Always(0xFF), Name::Ssd1306, Memory),
+        (SSD1306, Says::Nothing, Name::Ssd1306, Silence),
         (SH1106, Says::Off(0x08), Name::Sh1106, Memory),
         (SH1106, Says::Off(0x00), Name::Sh1106, Memory),
         (SH1106, Says::FirstThen(0x06, 0x08), Name::Sh1106, Memory),
@@ -198,66 +162,121 @@ const MODULES: [(Kind, Says, Name, By); 21] = {
     ]
 };
 
-/// The modules of [`MODULES`] are at the same address 0x3C. They differ in the controller, in the
-/// status bytes, and in whether their memory can be read. The panel is plugged in after the driver
-/// has begun to look for it. Within two seconds it must be identified, once, as the expected
-/// controller by the expected property, and be switched on once. From then on it shows every frame
-/// completely.
+/// Each module of [`MODULES`], at either address, is plugged in after the driver has begun to look
+/// for it. Within two seconds it is identified, once, as the expected controller by the expected
+/// property, and switched on once. Then it shows every frame completely: of a scene, and noise of
+/// any density.
 #[test]
 fn every_module_in_the_field_shows_the_picture() {
-    for (kind, says, controller, by) in MODULES {
-        // The panel is identified only once, by the expected property.
-        let kind = kind.says(says);
-        let mut panel = panel(Controller::new(kind, 0x3C).plugged(false));
-        let mut found = Vec::new();
+    let mut rng = Rng::with_seed(1);
+    let noise = [2, 2, 1000, 300, 100, 30, 10, 3].map(|rarity| pixels(|| rng.u32(..rarity) == 0));
+    let frames: Vec<_> = [0, 1, 2, 30, 31, 400]
+        .map(scene)
+        .into_iter()
+        .chain(noise)
+        .collect();
 
-        // The panel is plugged in after the first attempt.
-        for number in 0..4 * TICK_RATE {
-            panel.bus.panel.plugged_in = number > FIRST;
-            let frame = scene(number / 10);
-            let result = tick(&mut panel, &frame);
-            found.extend(panel.found());
-            if number > FIRST + BACK {
-                assert_eq!(result, Ok(()), "{kind:?}");
-                assert!(shows(&panel, &frame), "{kind:?}, frame {number}");
+    for (kind, says, controller, by) in MODULES {
+        for address in [0x3C, 0x3D] {
+            let module = format!("{kind:?} {says:?} at {address:#04x}");
+            let mut panel = panel(Controller::new(kind.says(says), address).plugged(false));
+            let mut found = Vec::new();
+            for number in 0..BACK + FIRST {
+                panel.bus.panel.plugged_in = number > FIRST;
+                let _ = tick(&mut panel, &frames[0]);
+                found.extend(panel.found());
             }
+            for (number, frame) in frames.iter().enumerate() {
+                assert_eq!(flush(&mut panel, frame, LONG), Ok(()), "{module}");
+                assert!(shows(&panel, frame), "{module}: frame {number}");
+            }
+
+            let found: Vec<_> = found
+                .iter()
+                .map(|found| (found.controller, found.by))
+                .collect();
+            assert_eq!(found, [(controller, by)], "{module}");
+            assert_eq!(panel.bus.panel.lit, 1, "{module}");
         }
-        let found: Vec<_> = found
-            .iter()
-            .map(|found| (found.controller, found.by))
-            .collect();
-        assert_eq!(found, [(controller, by)], "{kind:?}");
-        assert_eq!(panel.bus.panel.lit, 1, "{kind:?} is switched on once");
     }
 }
 
-/// The panel answers the read of its status, and then nothing more, so its memory cannot be read.
-/// It is identified by its status byte.
+/// The faults of a bus, and their reports.
+const FAULTS: [(Fault, BusFault); 3] = [
+    (Fault::Pulled, BusFault::NoAnswer),
+    (Fault::Disturbed, BusFault::Disturbed),
+    (Fault::Held, BusFault::Stuck),
+];
+
+/// A fault of a bus.
+#[derive(Clone, Copy, Debug)]
+enum Fault {
+    /// The panel is not there, and has no power.
+    Pulled,
+    /// Another device drives the data line.
+    Disturbed,
+    /// Another device holds the clock low, so that no transfer ends.
+    Held,
+}
+
+impl Fault {
+    /// Begins the fault, or ends it.
+    fn set(self, bus: &mut Line, is_on: bool) {
+        match self {
+            Self::Pulled => {
+                bus.panel = Controller::new(SSD1306, 0x3C).plugged(!is_on);
+            }
+            Self::Disturbed => bus.fails = is_on.then_some(ErrorKind::ArbitrationLoss),
+            Self::Held => bus.hangs = is_on,
+        }
+    }
+}
+
+/// Each fault of [`FAULTS`] begins while the panel is woken, or shows a scene that plays or is
+/// paused, and lasts for a tick, or for seconds. The panel is reported as absent within 10 ticks,
+/// and then tried once a second. Within 2 s after the fault, the panel shows the picture again.
 #[test]
-fn status_byte_decides_only_if_reading_memory_fails() {
-    for (kind, status, controller) in [
-        (SH1106, 0x08, Name::Sh1106),
-        (BLIND, 0x06, Name::Ssd1306),
-        (BLIND, 0x07, Name::Ssd1306),
-    ] {
-        let says = Says::Off(status);
-        let mut panel = panel(Controller::new(kind.says(says), 0x3C));
+fn every_fault_makes_the_panel_absent_until_it_is_over() {
+    // The frames before the fault: during each step of waking, and later.
+    let moments = (0..=FIRST).chain([TICK_RATE, TICK_RATE + 7]);
+    for ((fault, reported), moment) in FAULTS
+        .into_iter()
+        .flat_map(|row| moments.clone().map(move |moment| (row, moment)))
+    {
+        for (is_paused, lasts) in [(false, 1), (true, 1), (true, 3 * TICK_RATE)] {
+            let case = format!("{fault:?} after {moment} frames for {lasts}, paused {is_paused}");
+            let mut panel = panel(Controller::new(SSD1306, 0x3C));
+            let mut scene = shown(SceneName::Page);
+            let mut tick = |panel: &mut Panel, is_paused: bool| {
+                if !is_paused {
+                    scene.tick();
+                }
+                scene.player.draw();
+                tick(panel, &scene.player.canvas)
+            };
+            (0..moment).for_each(|_| _ = tick(&mut panel, false));
 
-        // The panel is switched off and its status read; then it no longer answers.
-        (0..2).for_each(|_| assert_eq!(flush(&mut panel, &scene(1), LONG), Ok(())));
-        panel.bus.panel.kind.says = Says::Nothing;
-        let found = (0..2).find_map(|_| {
-            let _ = panel.flush(&scene(1));
-            panel.bus.run(LONG);
-            panel.found()
-        });
+            fault.set(&mut panel.bus, true);
+            let mut sent = panel.bus.sent;
+            for number in 0..lasts {
+                let result = tick(&mut panel, is_paused);
+                if number >= 10 {
+                    assert_eq!(result, Err(OledError(reported)), "{case}");
+                    assert_eq!(panel.report().state, PanelState::Absent(reported), "{case}");
+                } else {
+                    sent = panel.bus.sent;
+                }
+            }
+            // A search without an answer tries both addresses.
+            let most = 2 * lasts / TICK_RATE + 1;
+            assert!(panel.bus.sent - sent <= most, "{case}");
 
-        let expected = Found {
-            controller,
-            by: By::Status,
-            status: Some(status | 0x40),
-        };
-        assert_eq!(found, Some(expected));
+            fault.set(&mut panel.bus, false);
+            (0..BACK).for_each(|_| _ = tick(&mut panel, is_paused));
+            let last = &scene.player.canvas;
+            assert_eq!(flush(&mut panel, last, LONG), Ok(()), "{case}");
+            assert!(shows(&panel, last), "{case}");
+        }
     }
 }
 
@@ -270,7 +289,6 @@ fn chosen_controller_has_precedence_and_is_applied_at_once() {
     let kind = Kind {
         own: &[(0x20, 1), (0x2E, 0), (0x8D, 1), (0xAD, 1), (0xDA, 1)],
         needed: &[],
-        for_lit: BLIND.for_lit,
         ..SH1106.says(Says::Nothing)
     };
     let frame = scene(40);
@@ -287,6 +305,12 @@ fn chosen_controller_has_precedence_and_is_applied_at_once() {
         Some(Name::Sh1106),
     ] {
         assert!(panel.choose(chosen));
+        let starting = PanelReport {
+            state: PanelState::Starting,
+            chosen,
+            ..PanelReport::default()
+        };
+        assert_eq!(panel.report(), starting);
         run(&mut panel);
         let is_right = chosen == Some(Name::Sh1106);
         assert_eq!(shows(&panel, &frame), is_right, "{chosen:?}");
@@ -319,11 +343,11 @@ const fn bits(columns: u32) -> u32 {
     (1 + 5 * BYTE) + (1 + (2 + columns) * BYTE)
 }
 
-/// The number of bits on the bus for a frame: without a change only the part of 16 columns that is
-/// always sent again, and in addition one column, or two columns of the same page with a single
-/// address. Up to five unchanged columns between two changed ones are sent, too.
+/// The number of bits on the bus for a frame: without a change a command that does nothing; one
+/// column, or two columns of the same page with a single address. Up to five unchanged columns
+/// between two changed ones are sent, too.
 #[test]
-fn only_changes_are_sent_and_one_part_again() {
+fn only_changes_are_sent() {
     let mut panel = panel(Controller::new(SSD1306, 0x3C));
     let mut canvas = scene(30);
     // No change, one changed column, and two in the same page, far from each other or near.
@@ -340,459 +364,54 @@ fn only_changes_are_sent_and_one_part_again() {
         .collect::<Vec<_>>();
 
     // The second run of a page does not contain the page's address.
+    let nothing = 1 + 3 * BYTE;
     let two = 2 * bits(1) - BYTE;
-    let changes = [0, bits(1), two, two, bits(7)];
-    assert_eq!(
-        taken[9..],
-        changes.map(|change| change + bits(16) + 1),
-        "and the stop"
-    );
+    let changes = [nothing, bits(1), two, two, bits(7)];
+    assert_eq!(taken[9..], changes.map(|change| change + 1), "and the stop");
 }
 
-/// The status byte reports that the display is off. Settings are not repeated, and a panel that
-/// lost its power is set up again.
+/// The scenes that need more time on the bus than a tick has, because their plots move all columns.
+const SKIPPING: [SceneName; 1] = [SceneName::SmallHeavy];
+
+/// On a bus of the usual speed, every scene but those of [`SKIPPING`] shows 60 frames in each
+/// second, and these at least 30. A panel whose bus is held in every other tick shows 30.
 #[test]
-fn panel_that_lost_its_power_is_set_up_again() {
-    for kind in [SSD1306, SH1106, SH1107] {
-        let mut panel = panel(Controller::new(kind, 0x3C));
-        let frame = scene(30);
-        // The power fails at different moments of the frame's transfer.
-        for moment in [97, 60, 83] {
-            for _ in 0..moment {
-                let _ = tick(&mut panel, &frame);
-            }
-            assert!(shows(&panel, &frame));
-            panel.bus.panel.lose_power();
-            let back = (0..BACK).find(|_| {
-                let _ = tick(&mut panel, &frame);
-                shows(&panel, &frame)
-            });
-            assert!(back.is_some(), "{kind:?}");
-        }
-
-        // A single wrong answer has no effect.
-        for _ in 0..FIRST {
-            assert_eq!(tick(&mut panel, &frame), Ok(()));
-        }
-
-        // The panel reports once that it is off, although it is on.
-        panel.bus.panel.kind.says = Says::Always(0x46);
-        panel.bus.panel.last_read = None;
-        while panel.bus.panel.last_read != Some(0x46) {
-            assert_eq!(tick(&mut panel, &frame), Ok(()));
-        }
-        panel.bus.panel.kind = kind;
-        for _ in 0..BACK {
-            assert_eq!(tick(&mut panel, &frame), Ok(()));
-        }
-        assert_eq!(panel.bus.panel.lit, 1, "since power came last");
-    }
-}
-
-/// A panel with a useless status byte loses its power, and acknowledges all the same. Within 70
-/// ticks it has the number of rows and the layout of its pins, which may be sent to a lit display,
-/// and the whole picture again.
-#[test]
-fn panel_without_a_status_is_set_up_again_by_repetition() {
-    for says in [Says::Always(0x43), Says::Always(0x03), Says::Nothing] {
-        let kind = Kind {
-            needed: &[&[0xA8, 0x3F], &[0xDA, 0x12]],
-            ..BLIND.says(says)
-        };
-        let frame = scene(30);
-        let mut panel = panel(Controller::new(kind, 0x3C));
-        (0..BACK).for_each(|_| _ = tick(&mut panel, &frame));
-        assert!(shows(&panel, &frame), "{says:?}");
-
-        panel.bus.panel.lose_power();
-        for _ in 0..70 {
-            assert_eq!(tick(&mut panel, &frame), Ok(()));
-        }
-        assert!(shows(&panel, &frame), "{says:?}");
-    }
-}
-
-/// The numbers of ticks without a panel. At 0 the panel is away between two ticks, so shortly that
-/// no answer is missed.
-const AWAY: [u32; 5] = [0, 0, 1, 50, 100];
-/// The number of moments in each run, which lasts 40 s.
-const MOMENTS: usize = 15;
-
-/// The number of last frames that may be visible: the first picture takes two ticks.
-const RECENT: usize = 3;
-
-/// A panel that shows a scene, playing or paused, is pulled for 0 to 100 ticks and plugged in
-/// again, 15 times. Within 2 s it shows one of the last three frames, and then does so in every
-/// tick. No frame disturbs the transfer of the one before.
-#[test]
-fn panel_plugged_in_again_shows_every_scene_within_two_seconds() {
-    let runs = [SSD1306, SH1106]
-        .into_iter()
-        .flat_map(|kind| [false, true].map(|is_paused| (kind, is_paused)));
-
-    for ((kind, is_paused), &name) in
-        runs.flat_map(|run| SceneName::ALL.iter().map(move |name| (run, name)))
-    {
-        let mut panel = panel(Controller::new(kind, 0x3C));
-        let mut scene = shown(name);
-        let mut recent = VecDeque::new();
-        let mut longest = 0;
-        let run = format!("{:12} paused {is_paused}, {kind:?}", name.name());
-
-        // Returns true if the panel shows the last frames when the next one comes.
-        let mut step = |panel: &mut Panel| {
-            if !is_paused {
-                scene.tick();
-            }
-            let was_idle = panel.bus.is_idle();
-            let is_shown = panel.bus.panel.shows_any_of(&Vec::from_iter(&recent));
-            let sent = panel.bus.sent;
-            scene.player.draw();
-            let frame = &scene.player.canvas;
-            recent.push_back(Bitmap::from(frame));
-            recent.drain(..recent.len().saturating_sub(RECENT));
-            let _ = tick(panel, frame);
-            if !was_idle {
-                assert_eq!(panel.bus.sent, sent, "it disturbs the one before");
-            }
-            was_idle && is_shown
-        };
-        // The panel shows each frame, is pulled, and plugged in again.
-        for (away, moment) in AWAY
-            .into_iter()
-            .zip([97, 101, 83, 89, 103])
-            .cycle()
-            .take(MOMENTS)
-        {
-            // The first picture must come in time, and every later one.
-            let back = (0..BACK).find(|_| step(&mut panel));
-            longest = longest.max(back.unwrap_or_else(|| panic!("{run}: it is not back")));
-            for _ in 0..moment {
-                assert!(step(&mut panel), "{run}");
-            }
-
-            panel.bus.panel.lose_power();
-            panel.bus.panel.plugged_in = false;
-            for _ in 0..away {
-                step(&mut panel);
-            }
-            panel.bus.panel.plugged_in = true;
-        }
-        println!("{run}: back after {longest} ticks at most");
-    }
-}
-
-/// The number of frames in each run: 40 s.
-const FRAMES: u32 = 2400;
-
-/// The largest delay of a page relative to its frame, ticks, at any speed.
-const LATE: u32 = 1;
-
-/// At least a part of every frame of every scene is sent, at any speed of the bus. The rest follows
-/// with the next frame. At the ideal speed, nine of ten frames are complete within their tick.
-#[test]
-fn no_frame_of_any_scene_is_skipped_at_any_bus_speed() {
-    // The smallest number of frames out of ten that are sent completely.
-    const SPEEDS: [(u32, u32); 3] = [(IDEAL, 9), (USUAL, 0), (WORST, 0)];
-
+fn every_scene_is_shown_as_fast_as_the_bus_allows() {
     for &name in SceneName::ALL {
         let mut scene = shown(name);
-        let mut panels = SPEEDS.map(|speed| {
-            let line = Line::at(speed.0, Controller::new(SSD1306, 0x3C));
-            on(line, None)
-        });
-        // For each speed: skipped frames, complete frames, and the largest age of a page.
-        let mut counts = [(0, 0, 0); 3];
-        let mut ages = [[0; HEIGHT / 8]; 3];
-        for number in 0..FRAMES {
-            scene.tick();
-            scene.player.draw();
-            let frame = &scene.player.canvas;
-            let bitmap = Bitmap::from(frame);
-            for ((panel, count), ages) in panels.iter_mut().zip(&mut counts).zip(&mut ages) {
-                let was_idle = panel.bus.is_idle();
-                let _ = tick(panel, frame);
-                // The panel is identified first.
-                if number < 2 * FIRST {
-                    continue;
-                }
-
-                let late = panel.bus.panel.late_pages(&[&bitmap]);
-                for (page, age) in ages.iter_mut().enumerate() {
-                    *age = if late.contains(&page) { *age + 1 } else { 0 };
-                    count.2 = count.2.max(*age);
-                }
-                count.0 += u32::from(!was_idle);
-                count.1 += u32::from(late.is_empty());
+        let mut panel = on(Line::at(USUAL, Controller::new(SSD1306, 0x3C)), None);
+        let mut least = u8::MAX;
+        for second in 0..20 {
+            for _ in 0..TICK_RATE {
+                scene.tick();
+                scene.player.draw();
+                let _ = tick(&mut panel, &scene.player.canvas);
+            }
+            // The panel is identified in the first second.
+            if second > 1 {
+                least = least.min(panel.report().shown);
             }
         }
-
-        // No frame is skipped, and every page is at most one tick late.
-        for (((byte_nanos, least), panel), (skipped, whole, late)) in
-            SPEEDS.iter().zip(&panels).zip(counts)
-        {
-            let report = panel.report();
-            println!(
-                "{:12} {:4.1} us a byte: {skipped} frames skipped, {whole} whole, \
-                 a page at most {late} ticks late; in the last second {} and {}",
-                name.name(),
-                f64::from(*byte_nanos) / 1e3,
-                report.shown,
-                report.whole
-            );
-            assert_eq!(skipped, 0, "{}", name.name());
-            assert_eq!(u32::from(report.shown), TICK_RATE, "{}", name.name());
-            assert!(late <= LATE, "{}", name.name());
-            assert!(
-                10 * whole >= least * (FRAMES - 2 * FIRST),
-                "{}",
-                name.name()
-            );
-        }
+        println!("{:12} {least} frames/s", name.name());
+        let needed = if SKIPPING.contains(&name) { 30 } else { 60 };
+        assert!(least >= needed, "{}: {least} frames/s", name.name());
     }
-}
 
-/// A frame that takes longer to compute comes later in its tick, so the next one follows soon. The
-/// driver still reports 60 frames in every second, at each speed of the bus.
-#[test]
-fn no_frame_is_skipped_when_frames_are_not_equally_far_apart() {
-    const SLICES: u32 = 64;
-
-    // The longest piece of planning between two attempts: 4 ms.
-    const PIECE: u32 = 16;
-    let mut rng = Rng::with_seed(3);
-
-    for byte_nanos in [IDEAL, USUAL, WORST] {
-        let mut scene = shown(SceneName::SmallHeavy);
-        let mut panel = on(Line::at(byte_nanos, Controller::new(SSD1306, 0x3C)), None);
-        let slice = 1_000_000_000 / TICK_RATE / (byte_nanos / BYTE) / SLICES;
-        for number in 0..10 * TICK_RATE {
-            scene.tick();
-
-            // The delay is at most a third of the tick, as with planning.
-            let late = rng.u32(..SLICES / 3);
-            panel.bus.run(late * slice);
-            scene.player.draw();
-            let frame = &scene.player.canvas;
-            let _ = panel.flush(frame);
-            let mut done = late;
-            // The bus makes progress in pieces, and the frame may be completed between them.
-            while done < SLICES {
-                let piece = rng.u32(1..=PIECE);
-                panel.bus.run(piece.min(SLICES - done) * slice);
-                done += piece;
-
-                // The last piece extends into the next tick.
-                if done < SLICES {
-                    panel.catch_up(frame);
-                }
-            }
-            if number % TICK_RATE == 0 && number > TICK_RATE {
-                let report = panel.report();
-                assert_eq!(u32::from(report.shown), TICK_RATE, "{byte_nanos} ns");
-            }
-        }
-    }
-}
-
-/// A frame without a change counts as sent whole: a still picture gives 60 such frames in a second.
-#[test]
-fn a_still_picture_is_sent_whole() {
     let mut panel = panel(Controller::new(SSD1306, 0x3C));
-    let frame = scene(30);
-    (0..3 * TICK_RATE).for_each(|_| _ = tick(&mut panel, &frame));
-    let report = panel.report();
-    assert_eq!((report.shown, report.whole), (60, 60));
-}
-
-/// If the bus transfers only every other frame, the driver returns the error `Slow` with 30 frames,
-/// and none before and after.
-#[test]
-fn a_bus_that_is_held_up_is_reported_once_a_second() {
-    let mut panel = panel(Controller::new(SSD1306, 0x3C));
-    let mut second = |is_slow: bool| {
-        let mut result = Ok(());
-        for number in 0..2 * TICK_RATE {
-            result = panel.flush(&scene(number));
-
-            // In every other tick another device holds the clock.
-            if !is_slow || number % 2 == 1 {
-                panel.bus.run_tick();
-            }
-        }
-        (result, panel.report().shown)
-    };
-    assert_eq!(second(false), (Ok(()), 60));
-    let shown = TICK_RATE / 2;
-    assert_eq!(second(true), (Err(OledError::Slow { shown }), 30));
-    assert_eq!(second(false), (Ok(()), 60));
-}
-
-/// A choice of the controller on a slow bus begins a new search: until the panel has shown frames
-/// for a second again, the report neither calls it absent nor repeats the old counts, and no frame
-/// returns `Slow`.
-#[test]
-fn a_choice_on_a_slow_bus_forgets_the_counts() {
-    let mut panel = panel(Controller::new(SSD1306, 0x3C));
-    for number in 0..2 * TICK_RATE {
-        let _ = panel.flush(&scene(number));
+    for number in 0..3 * TICK_RATE {
+        assert_eq!(panel.flush(&scene(number)), Ok(()));
         if number % 2 == 1 {
             panel.bus.run_tick();
         }
     }
-    let frame = scene(1);
-    assert!(matches!(
-        panel.flush(&frame),
-        Err(OledError::Slow { shown: 30 })
-    ));
-    assert!(panel.report().shown > 0);
-
-    assert!(panel.choose(Some(Name::Ssd1306)));
-    let starting = PanelReport {
-        state: PanelState::Starting,
-        chosen: Some(Name::Ssd1306),
-        ..PanelReport::default()
-    };
-    assert_eq!(panel.report(), starting);
-    let mut frames = 0;
-    while !matches!(panel.report().state, PanelState::Shown(_)) {
-        assert_eq!(panel.report(), starting);
-        assert_eq!(tick(&mut panel, &frame), Ok(()));
-        frames += 1;
-        assert!(frames < BACK, "the panel is back within 2 s");
-    }
-    assert_eq!((panel.report().shown, panel.report().whole), (0, 0));
+    assert_eq!(panel.report().shown, 30);
 }
 
-/// The texts of the errors, as the log prints them.
+/// The log prints an absent panel with the reason.
 #[test]
-fn errors_of_the_panel_are_printed_in_words() {
-    let text = |error: OledError| error.to_string();
+fn an_absent_panel_is_printed_in_words() {
     assert_eq!(
-        text(OledError::Absent(SILENCE)),
+        OledError(BusFault::NoAnswer).to_string(),
         "absent: no answer at 0x3C and 0x3D"
     );
-    assert_eq!(
-        text(OledError::Absent(ErrorKind::Other)),
-        "absent: the bus hangs"
-    );
-    let slow = text(OledError::Slow { shown: 30 });
-    assert!(
-        slow.starts_with("the bus is slow: 30 of 60 frames"),
-        "{slow}"
-    );
-}
-
-/// Without a panel both addresses are tried, and then one try follows in each second. A panel that
-/// is plugged in shows the frame within about a second, also for the second time; a pulled one is
-/// reported as lost.
-#[test]
-fn an_absent_panel_is_searched_once_a_second_and_may_come_and_go() {
-    let plug = |panel: &mut Panel, plugged_in| {
-        panel.bus.panel = Controller::new(SSD1306, 0x3C).plugged(plugged_in)
-    };
-    let flush = |panel: &mut Panel, ticks| tick(panel, &scene(ticks));
-    let mut panel = panel(Controller::new(SSD1306, 0x3C).plugged(false));
-    let absent = Err(OledError::Absent(SILENCE));
-    assert_eq!(
-        panel.report(),
-        PanelReport {
-            state: PanelState::Starting,
-            ..PanelReport::default()
-        }
-    );
-
-    // There is no answer at the first address, nor at the second.
-    assert_eq!(
-        [1; 3].map(|ticks| flush(&mut panel, ticks)),
-        [Ok(()), Ok(()), absent]
-    );
-    let is_absent = PanelState::Absent(BusFault::NoAnswer);
-    for _ in 0..TICK_RATE {
-        assert_eq!(flush(&mut panel, 1), absent);
-        assert_eq!(panel.report().state, is_absent);
-    }
-    assert_eq!(panel.bus.sent, 2, "no other try within the second");
-    assert_eq!((flush(&mut panel, 1), panel.bus.sent), (absent, 3));
-
-    // The panel is plugged in twice, and pulled in between.
-    for (ticks, before) in [(1, absent), (4, Err(OledError::Lost))] {
-        plug(&mut panel, true);
-        let results: Vec<_> = (0..TICK_RATE + 12)
-            .map(|_| flush(&mut panel, ticks))
-            .collect();
-        assert!(
-            results.contains(&before) && results.last() == Some(&Ok(())),
-            "within a second"
-        );
-        assert!(shows(&panel, &scene(ticks)));
-        assert!(matches!(panel.report().state, PanelState::Shown(_)));
-        plug(&mut panel, false);
-        assert_eq!(
-            [2, 3].map(|ticks| flush(&mut panel, ticks)),
-            [Ok(()), Err(OledError::Lost)]
-        );
-        assert_eq!(panel.report().state, is_absent);
-        assert_eq!(panel.report().shown, 0);
-    }
-}
-
-/// A bus on which no transfer ends is reported as lost within 10 ticks, and freed once, then once a
-/// second. After it lets go, the panel shows the frame within about a second.
-#[test]
-fn a_bus_that_hangs_delays_nothing_and_is_freed() {
-    let flush = |panel: &mut Panel, ticks| tick(panel, &scene(ticks));
-    let mut panel = panel(Controller::new(SSD1306, 0x3C));
-    (0..10).for_each(|ticks| assert_eq!(flush(&mut panel, ticks), Ok(())));
-    panel.bus.hangs = true;
-    let results: Vec<_> = (5..20).map(|ticks| flush(&mut panel, ticks)).collect();
-    assert!(
-        results.starts_with(&[Ok(()); 5]) && results.ends_with(&[Err(OledError::Lost); 5]),
-        "{results:?}"
-    );
-    assert_eq!(panel.bus.freed, 1);
-
-    // While it hangs, it is freed once a second.
-    for _ in 0..2 * TICK_RATE {
-        let _ = flush(&mut panel, 20);
-    }
-    assert_eq!(
-        (flush(&mut panel, 20), panel.bus.freed),
-        (Err(OledError::Absent(ErrorKind::Other)), 2)
-    );
-    assert_eq!(panel.report().state, PanelState::Absent(BusFault::Stuck));
-
-    panel.bus.hangs = false;
-    let last = (0..TICK_RATE + 12).map(|_| flush(&mut panel, 21)).last();
-    assert!(last == Some(Ok(())) && shows(&panel, &scene(21)));
-}
-
-/// A panel counts as absent if the bus hangs during its identification, even though it has answered
-/// before.
-#[test]
-fn a_bus_that_hangs_during_identification_is_reported() {
-    // The first frame switches the display off, the second one requests the status, and the third
-    // one the memory.
-    for before in [1, 2] {
-        let mut panel = panel(Controller::new(SSD1306, 0x3C));
-        (0..before).for_each(|_| assert_eq!(tick(&mut panel, &scene(1)), Ok(())));
-        panel.bus.hangs = true;
-        let last = (0..10).map(|_| tick(&mut panel, &scene(1))).last();
-        assert_eq!(
-            last,
-            Some(Err(OledError::Absent(ErrorKind::Other))),
-            "after {before} frames"
-        );
-        assert_eq!(panel.report().state, PanelState::Absent(BusFault::Stuck));
-    }
-}
-
-/// The third frame of an identification only reads: it has the length of a place in memory, of a
-/// command that begins a read, and of an answer of two bytes, with their addresses.
-#[test]
-fn third_frame_of_an_identification_has_the_length_of_a_read() {
-    let mut panel = panel(Controller::new(SH1106, 0x3C));
-    (0..3).for_each(|_| assert_eq!(tick(&mut panel, &scene(1)), Ok(())));
-    let [place, read, answer] = [5, 4, 3].map(|bytes| 1 + bytes * BYTE);
-    assert_eq!(panel.bus.taken, place + read + answer);
 }

@@ -148,16 +148,12 @@ impl Readings {
         self.comparison.status(status);
     }
 
-    /// Takes the state of the panel, and adds a line if it has changed: at the first report, if the
-    /// panel is found, lost or identified as another one, or if it begins or ceases to show all 60
-    /// frames of a second ([`link::is_well`]). A board without a panel that reports its state
-    /// causes no line.
+    /// Takes the state of the panel, and adds a line if it has changed: at the first report, or if
+    /// the panel is found, lost or identified as another one. A board without a panel that reports
+    /// its state causes no line.
     pub fn panel(&mut self, report: &PanelReport) {
         let before = self.panel.replace(*report);
-        // The panel has changed if it is found or lost, or begins or ceases to work well.
-        let is_news = before.is_none_or(|before| {
-            before.state != report.state || link::is_well(&before) != link::is_well(report)
-        });
+        let is_news = before.is_none_or(|before| before.state != report.state);
         if let Some(text) = link::panel(report).filter(|_| is_news) {
             let level = if link::is_well(report) {
                 "info"
