@@ -29,6 +29,10 @@ pub const MOST_TICKS_PER_FRAME: u32 = 15;
 /// the board after twice this time; by the STM32F405's own oscillator that is 1.4 to 3.8 s.
 pub const WATCHDOG_SECONDS: u32 = 1;
 
+/// The number of ticks without a key after which the panel is dimmed: ten minutes. OLED pixels that
+/// are always lit age sooner than the others.
+pub const DIM_TICKS: u32 = 10 * 60 * TICK_RATE;
+
 /// The largest speed of a scene, simulated time per real time. At 4 ticks of the scene per tick
 /// even the Cortex-M3 still shows most frames. The smallest speed is 1/100.
 pub const GREATEST_SPEED: u32 = 4;

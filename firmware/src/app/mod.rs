@@ -10,9 +10,10 @@ mod warm_restart;
 use embedded_io::Write;
 
 use crate::config::{
-    MOST_MEASURED_STEPS, MOST_MESSAGES_PER_TICK, MOST_TICKS_PER_FRAME, Processor, RECEIVE_QUEUE,
+    DIM_TICKS, MOST_MEASURED_STEPS, MOST_MESSAGES_PER_TICK, MOST_TICKS_PER_FRAME, Processor,
+    RECEIVE_QUEUE,
 };
-use crate::display::{Controller, Display};
+use crate::display::{Display, PanelOptions};
 use crate::graphics::Canvas;
 use crate::job::{BoardMotion, Job, Request};
 use crate::protocol::{
@@ -52,6 +53,8 @@ pub struct App<'a, Panel, Link, Keys> {
     /// The number of frames drawn since reset, also those that the panel or the link did not take;
     /// wraps.
     pub frames: u32,
+    /// The number of ticks since the last key, on the board or on the host.
+    without_key: u32,
     /// The number of ticks without a frame since reset.
     dropped: ThrottledCounter,
     /// The number of damaged messages, and of received bytes that were lost, since reset.
@@ -94,6 +97,7 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
             work: None,
             ticks: 0,
             frames: 0,
+            without_key: 0,
             dropped: ThrottledCounter::default(),
             damaged: ThrottledCounter::default(),
             lost: ThrottledCounter::default(),
@@ -130,12 +134,10 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
         self.send(&ToHost::Restarted(restart.end), &mut log);
     }
 
-    /// Drives the panel as this controller; `None` identifies it. From the next frame on, the panel
-    /// is searched for and set up again. Returns false, and does nothing, if the board has no panel
-    /// with a choice of controllers. Not checked: the panel has this controller. Otherwise the
-    /// pictures may be wrong.
-    pub fn choose_panel(&mut self, controller: Option<Controller>) -> bool {
-        self.panel.choose(controller)
+    /// Drives the panel as chosen, from the next frame on. Returns false, and does nothing, if the
+    /// panel has no such options.
+    pub fn choose_panel(&mut self, chosen: PanelOptions) -> bool {
+        self.panel.choose(chosen)
     }
 
     /// Returns the answer to [`Command::Ask`]: scene, settings (angles in degrees), requested
@@ -284,7 +286,13 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
     /// Completes one tick: executes the commands of the buttons and advances the scene.
     fn tick(&mut self, log: &mut impl Log<Panel, Link>) {
         self.ticks = self.ticks.wrapping_add(1);
-        for command in self.controls.tick(self.keys.read()) {
+        let pressed = self.keys.read();
+        self.without_key = if pressed == Pressed::default() {
+            self.without_key.saturating_add(1)
+        } else {
+            0
+        };
+        for command in self.controls.tick(pressed) {
             if let Err(field) = self.execute(command, log) {
                 log(Event::Refused(command, field));
             }
@@ -334,14 +342,27 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
                 }
             }
             Command::Panel(controller) => {
-                let has_choice = self.choose_panel(controller);
-                has_choice.then_some(Answer::Done).ok_or(Field::Panel)?
+                self.change_panel(|chosen| chosen.controller = controller)?
             }
+            Command::Turn(is_turned) => self.change_panel(|chosen| chosen.is_turned = is_turned)?,
+            Command::Dim(dims) => self.change_panel(|chosen| chosen.stays_bright = !dims)?,
             Command::Simulate(motion) => return self.begin_work(request, &motion, log),
-            _ => Answer::Done,
+            _ => {
+                self.without_key = 0;
+                Answer::Done
+            }
         };
         self.answer(request, answer, log);
         Ok(())
+    }
+
+    /// Changes one of the user's choices for the panel.
+    fn change_panel(&mut self, change: impl FnOnce(&mut PanelOptions)) -> Result<Answer, Field> {
+        let mut chosen = self.panel.report().chosen;
+        change(&mut chosen);
+        self.without_key = 0;
+        let has_choice = self.choose_panel(chosen);
+        has_choice.then_some(Answer::Done).ok_or(Field::Panel)
     }
 
     /// Begins the job of a requested motion; [`work`](Self::work) sends its samples. If the step is
@@ -367,6 +388,7 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
     #[inline(never)] // Test `scenes` profiles it by its name.
     fn show(&mut self, scene_cycles: u32, log: &mut impl Log<Panel, Link>) {
         // The panel.
+        self.panel.dim(self.without_key >= DIM_TICKS);
         let canvas = &mut self.player.canvas;
         let shown = self.panel.flush(canvas);
         match shown {

@@ -196,6 +196,8 @@ impl<'a> Player<'a> {
             | Command::AskRestart
             | Command::Measure(_)
             | Command::Panel(_)
+            | Command::Turn(_)
+            | Command::Dim(_)
             | Command::Simulate(_) => {}
         }
         Ok(false)

@@ -196,7 +196,7 @@ fn resume<Panel: Display<Error: fmt::Display>, Link: Write, Keys: Buttons>(
     app: &mut App<Panel, Link, Keys>,
     reset_by_watchdog: bool,
 ) -> Journal {
-    // The choice of the panel's controller outlasts resets.
+    // The choices for the panel outlast resets.
     if let Some(chosen) = retained::chosen_panel() {
         app.choose_panel(chosen);
     }

@@ -45,12 +45,15 @@ pub trait Display {
         PanelReport::default()
     }
 
-    /// Drives the panel as this controller, from the next frame on; `None` identifies it. Returns
-    /// false, and does nothing, if the board has no panel with a choice of controllers, as by
-    /// default. Not checked: the panel has this controller. Otherwise the picture may be wrong.
-    fn choose(&mut self, _: Option<Controller>) -> bool {
+    /// Drives the panel as chosen, from the next frame on. Returns false, and does nothing, if the
+    /// panel has no such options, as by default. With a wrong controller the picture may be wrong.
+    fn choose(&mut self, _: PanelOptions) -> bool {
         false
     }
+
+    /// Dims the panel, or makes it bright, from the next frame on. A panel that cannot be dimmed
+    /// stays as it is.
+    fn dim(&mut self, _: bool) {}
 }
 
 /// The panel of a board without one: it accepts every frame and shows nothing.
@@ -139,13 +142,24 @@ pub enum PanelState {
     Shown(Found),
 }
 
+/// The choices of the user for a panel. They outlast every reset that leaves memory powered.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct PanelOptions {
+    /// The controller, chosen by a command or by [`BUILT_FOR`]; `None` identifies it.
+    pub controller: Option<Controller>,
+    /// The picture is turned by 180 degrees.
+    pub is_turned: bool,
+    /// The panel is not dimmed without keys.
+    pub stays_bright: bool,
+}
+
 /// The state of the panel for the host.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct PanelReport {
     /// The state of the search.
     pub state: PanelState,
-    /// The controller that the user chose, by a command or by [`BUILT_FOR`]; `None` identifies it.
-    pub chosen: Option<Controller>,
+    /// The choices of the user.
+    pub chosen: PanelOptions,
     /// The number of frames of the last whole second that were sent to the panel. A frame without a
     /// change counts as sent. It is 0 until the panel has taken frames for a second, and if the
     /// driver does not count them.

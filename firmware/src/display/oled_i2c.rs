@@ -22,7 +22,7 @@ use core::fmt;
 use embedded_hal::i2c::ErrorKind;
 
 use super::bus::{Outbox, PanelBus, Sent};
-use super::{BusFault, By, Controller, Display, Found, PanelReport, PanelState};
+use super::{BusFault, By, Controller, Display, Found, PanelOptions, PanelReport, PanelState};
 use crate::config::TICK_RATE;
 use crate::graphics::{Bitmap, Canvas, Format};
 
@@ -43,6 +43,13 @@ const ONE_DATA: u8 = 0xC0;
 const OFF: &[u8] = &[0xAE];
 const ON: &[u8] = &[0xAF];
 const NOTHING: &[u8] = &[0xE3];
+/// Columns from the left and rows from the top, and the same for a panel that is turned.
+const UPRIGHT: &[u8] = &[0xA1, 0xC8];
+const TURNED: &[u8] = &[0xA0, 0xC0];
+/// Sets the contrast, which is allowed while the display is on.
+const CONTRAST: u8 = 0x81;
+/// The contrast of a dimmed panel.
+const DIMMED: u8 = 0x01;
 /// Selects page 0 and column 0. On an SH1106 this is outside the picture; on the others the next
 /// frame overwrites it.
 const CORNER: &[u8] = &[0xB0, 0x10, 0x00];
@@ -50,6 +57,8 @@ const CORNER: &[u8] = &[0xB0, 0x10, 0x00];
 struct Profile {
     /// The number of columns of the memory to the left of the panel's first column.
     left: u8,
+    /// The contrast of a bright panel, of 0xFF.
+    contrast: u8,
     /// The commands that are sent once, while the display is off.
     settings: &'static [u8],
 }
@@ -66,16 +75,14 @@ fn profile(controller: Controller) -> &'static Profile {
 #[rustfmt::skip]
 const SSD1306: Profile = Profile {
     left: 0,
+    contrast: 0x5F,
     settings: &[
         0xD5, 0x80,                // clock as after reset, not divided
         0xA8, (HEIGHT - 1) as u8,  // rows driven, less one
         0xD3, 0,                   // rows not shifted
         0x40,                      // first row shown
         0xDA, 0x12,                // wiring of this panel's rows: odd and even apart
-        0xA1,                      // columns from the left
-        0xC8,                      // rows from the top
         0xD9, 0x21,                // precharge, 1 and 2 clocks
-        0x81, 0x5F,                // contrast, of 0xFF
         0xDB, 0x40,                // voltage of rows not driven
         0xA4,                      // show the memory
         0xA6,                      // not inverted
@@ -88,16 +95,14 @@ const SSD1306: Profile = Profile {
 #[rustfmt::skip]
 const SH1106: Profile = Profile {
     left: 2, // of 132 columns
+    contrast: 0x5F,
     settings: &[
         0xD5, 0x80,                // clock
         0xA8, (HEIGHT - 1) as u8,  // rows driven, less one
         0xD3, 0,                   // rows not shifted
         0x40,                      // first row shown
         0xDA, 0x12,                // wiring of the rows
-        0xA1,                      // columns from the left
-        0xC8,                      // rows from the top
         0xD9, 0x21,                // precharge, 1 and 2 clocks
-        0x81, 0x5F,                // contrast, of 0xFF
         0xDB, 0x40,                // voltage of rows not driven
         0xA4,                      // show the memory
         0xA6,                      // not inverted
@@ -109,16 +114,14 @@ const SH1106: Profile = Profile {
 #[rustfmt::skip]
 const SH1107: Profile = Profile {
     left: 0,
+    contrast: 0x2F,
     settings: &[
         0xD5, 0x50,                // clock as after reset
         0xA8, 0x7F,                // rows driven, less one
         0xD3, 0,                   // rows not shifted
         0xDC, 0,                   // first row shown
         0x20,                      // data stays within the page
-        0xA1,                      // columns from the left
-        0xC8,                      // rows from the top
         0xD9, 0x22,                // precharge, 2 and 2 clocks
-        0x81, 0x2F,                // contrast, of 0xFF
         0xDB, 0x35,                // voltage of rows not driven
         0xA4,                      // show the memory
         0xA6,                      // not inverted
@@ -158,8 +161,11 @@ pub struct OledI2c<'a, Bus> {
     state: State,
     /// The address of the panel, or the address that is being tried.
     address: u8,
-    chosen: Option<Controller>,
+    chosen: PanelOptions,
     found: Option<Found>,
+    /// True if the panel is to be dimmed, and if it has been told so.
+    is_dim: bool,
+    was_dim: bool,
     /// The picture in the panel's memory after everything sent has arrived.
     memory: &'a mut Bitmap,
     result: Result<(), OledError>,
@@ -210,14 +216,19 @@ enum Step {
 
 impl<'a, Bus: PanelBus> OledI2c<'a, Bus> {
     /// Creates a driver with a place to remember the picture, whose contents do not matter. The
-    /// panel is driven as the controller `chosen`, which is identified if it is `None`.
-    pub fn new(bus: Bus, memory: &'a mut Bitmap, chosen: Option<Controller>) -> Self {
+    /// panel is driven as this controller, which is identified if it is `None`.
+    pub fn new(bus: Bus, memory: &'a mut Bitmap, controller: Option<Controller>) -> Self {
         Self {
             bus,
             state: State::Absent { retry_in: 0 },
             address: ADDRESSES[0],
-            chosen,
+            chosen: PanelOptions {
+                controller,
+                ..PanelOptions::default()
+            },
             found: None,
+            is_dim: false,
+            was_dim: false,
             memory,
             result: Ok(()),
             waiting: 0,
@@ -236,7 +247,12 @@ impl<'a, Bus: PanelBus> OledI2c<'a, Bus> {
 
         // Choose the next state by the outcome of the last messages.
         let before = self.state;
-        let next = before.after(&mut self.address, self.chosen, sent, outbox.answered());
+        let next = before.after(
+            &mut self.address,
+            self.chosen.controller,
+            sent,
+            outbox.answered(),
+        );
         self.state = next.unwrap_or(State::Absent { retry_in: SECOND });
         match (before, self.state) {
             (State::Waking(Step::Picture(found)), State::Awake(_)) => {
@@ -252,7 +268,25 @@ impl<'a, Bus: PanelBus> OledI2c<'a, Bus> {
         }
 
         outbox.address_to(self.address);
-        self.state.put(outbox, canvas, self.memory);
+        let is_dim = self.is_dim && !self.chosen.stays_bright;
+        match self.state {
+            State::Absent { .. } => {}
+            State::Waking(step) => step.put(outbox, self.chosen.is_turned, canvas, self.memory),
+            State::Awake(Found { controller, .. }) => {
+                let profile = profile(controller);
+                draw(outbox, profile.left, self.memory, &Bitmap::from(canvas));
+                if is_dim != self.was_dim {
+                    let contrast = if is_dim { DIMMED } else { profile.contrast };
+                    outbox.put(COMMAND, &[CONTRAST, contrast]);
+                }
+                // So the loss of a panel is noticed while the picture does not change.
+                if outbox.is_empty() {
+                    outbox.put(COMMAND, NOTHING);
+                }
+            }
+        }
+        // A panel that wakes is bright.
+        self.was_dim = is_dim && matches!(self.state, State::Awake(_));
         // The interrupts of the bus do the rest.
         if !outbox.is_empty() {
             self.bus.send();
@@ -310,45 +344,34 @@ impl State {
             Self::Waking(_) | Self::Awake(_) => None,
         }
     }
+}
 
-    /// Puts the messages of this state into the outbox.
-    fn put(self, outbox: &mut Outbox, canvas: &Canvas, memory: &mut Bitmap) {
+impl Step {
+    /// Puts the messages of this step into the outbox.
+    fn put(self, outbox: &mut Outbox, is_turned: bool, canvas: &Canvas, memory: &mut Bitmap) {
         match self {
-            Self::Absent { .. } => {}
-            Self::Waking(Step::Off) => outbox.put(COMMAND, OFF),
-            Self::Waking(Step::Status) => {
+            Self::Off => outbox.put(COMMAND, OFF),
+            Self::Status => {
                 outbox.put(COMMAND, &[]);
                 outbox.ask(1);
             }
-            Self::Waking(Step::Memory {
+            Self::Memory {
                 round, expected, ..
-            }) => probe(outbox, round, expected),
-            Self::Waking(Step::Picture(Found { controller, .. })) => {
+            } => probe(outbox, round, expected),
+            Self::Picture(Found { controller, .. }) => {
                 let profile = profile(controller);
                 outbox.put(COMMAND, profile.settings);
+                outbox.put(COMMAND, if is_turned { TURNED } else { UPRIGHT });
+                outbox.put(COMMAND, &[CONTRAST, profile.contrast]);
                 *memory = Bitmap::from(canvas);
                 for (page, columns) in memory.pages.iter().enumerate() {
                     put_columns(outbox, Some(page), profile.left, columns);
                 }
                 outbox.put(COMMAND, ON);
             }
-            Self::Awake(Found { controller, .. }) => {
-                draw(
-                    outbox,
-                    profile(controller).left,
-                    memory,
-                    &Bitmap::from(canvas),
-                );
-                // So the loss of a panel is noticed while the picture does not change.
-                if outbox.is_empty() {
-                    outbox.put(COMMAND, NOTHING);
-                }
-            }
         }
     }
-}
 
-impl Step {
     /// Returns the state after these messages have arrived; `None` if the answer is incomplete.
     fn after(self, chosen: Option<Controller>, answer: &[u8]) -> Option<State> {
         match (self, answer) {
@@ -458,12 +481,16 @@ impl<Bus: PanelBus> Display for OledI2c<'_, Bus> {
         }
     }
 
-    fn choose(&mut self, chosen: Option<Controller>) -> bool {
+    fn choose(&mut self, chosen: PanelOptions) -> bool {
         self.chosen = chosen;
-        // The next frame wakes the panel as this controller.
+        // The next frame wakes the panel with these options.
         self.state = State::Absent { retry_in: 0 };
         self.counts = Counts::default();
         true
+    }
+
+    fn dim(&mut self, is_dim: bool) {
+        self.is_dim = is_dim;
     }
 }
 

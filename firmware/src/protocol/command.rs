@@ -80,7 +80,7 @@ pub enum Command {
     Measure(u32),
     /// Drives the panel as this controller from the next frame on; `None` identifies it. The choice
     /// is kept across every reset that leaves memory powered. Refused with [`Field::Panel`] if the
-    /// panel has no choice of controllers.
+    /// panel has no such options.
     Panel(Option<Controller>),
     /// Plays a scene with these settings, whose angles are in degrees. They are set all at once,
     /// because a part of them alone may be impossible.
@@ -88,6 +88,11 @@ pub enum Command {
     /// Requests the last restart that the board made on its own
     /// ([`Answer::Restart`](super::Answer::Restart)).
     AskRestart,
+    /// Turns the picture by 180 degrees, or back. Kept and refused as [`Panel`](Self::Panel).
+    Turn(bool),
+    /// Dims the panel after [`DIM_TICKS`](crate::config::DIM_TICKS) without a key, or keeps it
+    /// bright. Kept and refused as [`Panel`](Self::Panel).
+    Dim(bool),
 }
 
 /// The mark byte before every command. A message to the host begins with a smaller number, which is
@@ -141,7 +146,7 @@ choice! {
         Field = "field";
         /// The message itself is no known command.
         Message = "message";
-        /// The board has no panel with a choice of controllers.
+        /// The board has no panel with options.
         Panel = "panel";
     }
 }

@@ -433,7 +433,7 @@ fn chosen_controller_outlasts_a_restart() -> anyhow::Result<()> {
         matches!(
             report.state,
             PanelState::Shown(Found { by: By::Choice, .. })
-        ) && report.chosen == chosen
+        ) && report.chosen.controller == chosen
     };
     assert!(is_driven(panel_report(&mut board)?));
 
@@ -448,7 +448,7 @@ fn chosen_controller_outlasts_a_restart() -> anyhow::Result<()> {
     board.send(2, Command::Panel(None))?;
     board.run(8 * PICTURE)?;
     let report = panel_report(&mut board)?;
-    assert_eq!(report.chosen, None);
+    assert_eq!(report.chosen.controller, None);
     assert!(matches!(
         report.state,
         PanelState::Shown(Found { by: By::Memory, .. })

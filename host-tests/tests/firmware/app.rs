@@ -11,8 +11,8 @@ use emulator::host::Show;
 use emulator::link::Inbox;
 use emulator::qemu::Screenshot;
 use firmware::app::{Buttons, Event, MOST_RESTARTS, NoButtons, Pressed, Record};
-use firmware::config::{GRAVITY, MOST_TICKS_PER_FRAME, ROD, TICK_RATE};
-use firmware::display::{Controller, Display, NoDisplay, PanelReport};
+use firmware::config::{DIM_TICKS, GRAVITY, MOST_TICKS_PER_FRAME, ROD, TICK_RATE};
+use firmware::display::{Controller, Display, NoDisplay, PanelOptions, PanelReport};
 use firmware::graphics::{Canvas, Format, Place, RodDirections, View};
 use firmware::motion::Settings;
 use firmware::protocol::{Answer, Cause, Command, LinkError, Restarted, Status, ToHost};
@@ -324,7 +324,6 @@ impl Display for ReportingPanel {
 
     fn report(&self) -> PanelReport {
         PanelReport {
-            chosen: Some(Controller::Sh1106),
             shown: self.0,
             ..PanelReport::default()
         }
@@ -340,17 +339,19 @@ fn status_contains_the_scene_and_the_panel_report() {
         app.run_to(now, |_| ());
     }
     let status = app.status();
-    assert_eq!(
-        (status.scene, status.panel.chosen, status.panel.shown),
-        (SceneName::Page, Some(Controller::Sh1106), 7)
-    );
+    assert_eq!((status.scene, status.panel.shown), (SceneName::Page, 7));
 }
 
-/// A panel whose controller can be chosen. Its frame waits for the bus for a number of calls.
+/// What [`BusyPanel`] reports as its number of frames while it is dimmed, and while it is bright.
+const DIM: u8 = 1;
+const BRIGHT: u8 = 2;
+
+/// A panel with options. Its frame waits for the bus for a number of calls.
 #[derive(Default)]
 struct BusyPanel {
-    chosen: Option<Controller>,
+    chosen: PanelOptions,
     waits: u8,
+    shown: u8,
 }
 
 impl Display for BusyPanel {
@@ -369,25 +370,60 @@ impl Display for BusyPanel {
     fn report(&self) -> PanelReport {
         PanelReport {
             chosen: self.chosen,
+            shown: self.shown,
             ..PanelReport::default()
         }
     }
 
-    fn choose(&mut self, controller: Option<Controller>) -> bool {
-        self.chosen = controller;
+    fn choose(&mut self, chosen: PanelOptions) -> bool {
+        self.chosen = chosen;
         true
+    }
+
+    fn dim(&mut self, is_dim: bool) {
+        self.shown = if is_dim { DIM } else { BRIGHT };
     }
 }
 
-/// The command reaches the panel, and is answered as done. The status names the controller.
+/// Each choice for the panel reaches it, is answered as done, and leaves the other choices. The
+/// status contains them.
 #[test]
-fn the_controller_of_the_panel_is_chosen_by_a_command() {
+fn the_options_of_the_panel_are_chosen_by_commands() {
     let mut app = of(BusyPanel::default(), Vec::new(), NoButtons);
-    for controller in [Some(Controller::Sh1106), None] {
-        app.receive(wire(5, Command::Panel(controller)), |_| ());
+    let controller = Some(Controller::Sh1106);
+    for command in [
+        Command::Panel(controller),
+        Command::Turn(true),
+        Command::Dim(false),
+    ] {
+        app.receive(wire(5, command), |_| ());
         let answer = ToHost::Answer(5, Answer::Done);
         assert_eq!(messages(&app.link).last(), Some(&answer));
-        assert_eq!(app.status().panel.chosen, controller);
+    }
+    let chosen = PanelOptions {
+        controller,
+        is_turned: true,
+        stays_bright: true,
+    };
+    assert_eq!(app.status().panel.chosen, chosen);
+}
+
+/// The panel is dimmed after ten minutes without a key, and is bright again after a command that a
+/// key sends, but not after a question.
+#[test]
+fn the_panel_is_dimmed_after_ten_minutes_without_a_key() {
+    let mut app = of(BusyPanel::default(), Vec::new(), NoButtons);
+    app.receive(wire(1, Command::Pause(true)), |_| ());
+    (1..DIM_TICKS).for_each(|now| _ = app.run_to(now, |_| ()));
+    assert_eq!(app.status().panel.shown, BRIGHT);
+    for (now, command, shown) in [
+        (1, Command::Ask, DIM),
+        (2, Command::Identify, DIM),
+        (3, Command::Heavier, BRIGHT),
+    ] {
+        app.receive(wire(2, command), |_| ());
+        app.run_to(DIM_TICKS + now, |_| ());
+        assert_eq!(app.status().panel.shown, shown, "{command:?}");
     }
 }
 

@@ -343,13 +343,19 @@ fn pause_is_toggled() {
     }
 }
 
-/// A board without a choice of controllers refuses a controller for its panel.
+/// A board whose panel has no options refuses each of them.
 #[test]
-fn a_controller_is_refused_without_a_choice() {
-    for controller in [None, Some(Controller::Sh1106)] {
+fn options_of_the_panel_are_refused_without_such_a_panel() {
+    for command in [
+        Command::Panel(None),
+        Command::Panel(Some(Controller::Sh1106)),
+        Command::Turn(true),
+        Command::Dim(false),
+    ] {
         assert_eq!(
-            answer(&mut app(), Command::Panel(controller)),
-            Answer::Refused(Field::Panel)
+            answer(&mut app(), command),
+            Answer::Refused(Field::Panel),
+            "{command:?}"
         );
     }
 }

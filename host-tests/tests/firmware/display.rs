@@ -2,7 +2,7 @@
 
 use crate::bench::blank;
 use embedded_hal::i2c::{ErrorKind, NoAcknowledgeSource};
-use firmware::display::{BusFault, Controller, Display, NoDisplay, Outbox};
+use firmware::display::{BusFault, Controller, Display, NoDisplay, Outbox, PanelOptions};
 
 /// A panel whose driver neither keeps frames nor identifies a controller: no frame waits for it,
 /// and it refuses a choice.
@@ -10,9 +10,7 @@ use firmware::display::{BusFault, Controller, Display, NoDisplay, Outbox};
 fn a_board_without_a_panel_owes_no_frame_and_refuses_a_choice() {
     let mut panel = NoDisplay;
     assert!(!panel.catch_up(&blank()));
-    for controller in [None, Some(Controller::Sh1106)] {
-        assert!(!panel.choose(controller), "{controller:?}");
-    }
+    assert!(!panel.choose(PanelOptions::default()));
 }
 
 /// The build variable `PANEL` names a controller as a command does, and nothing else.

@@ -6,7 +6,7 @@ use std::fmt::Debug;
 use double_pendulum::plan::{Limit, Plan, PlanError, Stepping};
 use double_pendulum::{Error, Method};
 use firmware::app::Record;
-use firmware::display::{BusFault, By, Controller, Found, PanelReport, PanelState};
+use firmware::display::{BusFault, By, Controller, Found, PanelOptions, PanelReport, PanelState};
 use firmware::job::{CRC, Reading, Request};
 use firmware::motion::{Horizon, PlanResult, Planned, Settings};
 use firmware::protocol::{
@@ -239,7 +239,11 @@ fn every_message_fits() {
             by: By::Choice,
             status: Some(u8::MAX),
         }),
-        chosen: Some(Controller::Sh1107),
+        chosen: PanelOptions {
+            controller: Some(Controller::Sh1107),
+            is_turned: true,
+            stays_bright: true,
+        },
         shown: u8::MAX,
     };
     let played = Status {

@@ -8,7 +8,7 @@ use core::hint::black_box;
 use core::sync::atomic::{AtomicU8, Ordering};
 
 use crate::app::Record;
-use crate::display::Controller;
+use crate::display::PanelOptions;
 use crate::protocol::{Cause, MAX_WIRE, Restarted};
 
 /// The two copies of the record. If a reset interrupts a write, the other copy is still intact; the
@@ -52,10 +52,9 @@ pub fn recall(by_watchdog: bool) -> Option<Record> {
     kept()?.restart(by_watchdog)
 }
 
-/// Returns the choice of the panel's controller, as the stored record has it, after any reset that
-/// left memory powered: a controller, or the inner `None` to identify it. The outer `None` means
-/// that no record is intact.
-pub fn chosen_panel() -> Option<Option<Controller>> {
+/// Returns the choices for the panel, as the stored record has them, after any reset that left
+/// memory powered; `None` if no record is intact.
+pub fn chosen_panel() -> Option<PanelOptions> {
     Some(kept()?.played.panel.chosen)
 }
 

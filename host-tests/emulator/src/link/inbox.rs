@@ -26,7 +26,7 @@ pub fn refusal(field: Field) -> &'static str {
         // A board of this version can read every message of this host, unless the two have
         // different tables of methods.
         Field::Message => "message; its firmware has another version: flash the board again",
-        Field::Panel => "panel; it has no panel with a choice of controllers",
+        Field::Panel => "panel; it has no OLED on I2C",
         field => field.name(),
     }
 }

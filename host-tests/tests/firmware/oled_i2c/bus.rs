@@ -216,9 +216,8 @@ impl Kind {
 /// follow it in the same message.
 fn arguments(command: u8) -> Option<usize> {
     match command {
-        0x00..=0x1F | 0x40 | 0xA1 | 0xA4 | 0xA6 | 0xAE | 0xAF | 0xB0..=0xB7 | 0xC8 | 0xE3 => {
-            Some(0)
-        }
+        0x00..=0x1F | 0x40 | 0xA0 | 0xA1 | 0xA4 | 0xA6 | 0xAE | 0xAF => Some(0),
+        0xB0..=0xB7 | 0xC0 | 0xC8 | 0xE3 => Some(0),
         0x81 | 0xA8 | 0xD3 | 0xD5 | 0xD9 | 0xDB => Some(1),
         _ => None,
     }
@@ -312,6 +311,12 @@ impl Controller {
         self.given.iter().any(|given| given == needed)
     }
 
+    /// Returns the last of these commands that was given since power came.
+    pub fn last_of(&self, commands: [u8; 2]) -> Option<&[u8]> {
+        let is_one = |given: &&Vec<u8>| commands.contains(&given[0]);
+        self.given.iter().rev().find(is_one).map(Vec::as_slice)
+    }
+
     /// Executes commands. The arguments of a command must be in the same message.
     fn commands(&mut self, mut bytes: &[u8]) {
         while let [command, rest @ ..] = bytes {
@@ -343,9 +348,13 @@ impl Controller {
                     }
                 }
                 0xE3 => {} // It does nothing.
-                // Any other command is a setting, which is allowed while the display is off.
+                // Any other command is a setting. All but the contrast are only for a display that
+                // is off.
                 setting => {
-                    assert!(!self.on, "{setting:#04x} while the display is on");
+                    assert!(
+                        !self.on || setting == 0x81,
+                        "{setting:#04x} while the display is on"
+                    );
                     self.given.push(bytes[..=count].to_vec());
                 }
             }

@@ -9,7 +9,8 @@ use emulator::qemu::Screenshot;
 use fastrand::Rng;
 use firmware::config::{STM32F405, TICK_RATE};
 use firmware::display::{
-    BusFault, By, Controller as Name, Display, Found, OledError, OledI2c, PanelReport, PanelState,
+    BusFault, By, Controller as Name, Display, Found, OledError, OledI2c, PanelOptions,
+    PanelReport, PanelState,
 };
 use firmware::graphics::{Bitmap, Canvas, Format, Palette};
 use firmware::scenes::SceneName;
@@ -304,10 +305,14 @@ fn chosen_controller_has_precedence_and_is_applied_at_once() {
         Some(Name::Ssd1306),
         Some(Name::Sh1106),
     ] {
-        assert!(panel.choose(chosen));
+        let options = PanelOptions {
+            controller: chosen,
+            ..PanelOptions::default()
+        };
+        assert!(panel.choose(options));
         let starting = PanelReport {
             state: PanelState::Starting,
-            chosen,
+            chosen: options,
             ..PanelReport::default()
         };
         assert_eq!(panel.report(), starting);
@@ -327,7 +332,7 @@ fn chosen_controller_has_precedence_and_is_applied_at_once() {
         let report = panel.report();
         assert_eq!(
             (report.state, report.chosen),
-            (PanelState::Shown(found), chosen)
+            (PanelState::Shown(found), options)
         );
     }
 
@@ -335,6 +340,54 @@ fn chosen_controller_has_precedence_and_is_applied_at_once() {
     let mut panel = on(Line::to(Controller::new(kind, 0x3C)), Some(Name::Sh1106));
     run(&mut panel);
     assert!(shows(&panel, &frame));
+}
+
+/// A choice turns the picture of every controller by 180 degrees, and back.
+#[test]
+fn the_picture_is_turned_by_a_choice() {
+    let frame = scene(40);
+    for kind in [SSD1306, SH1106, SH1107] {
+        let mut panel = panel(Controller::new(kind, 0x3C));
+        for (is_turned, columns, rows) in [(false, 0xA1, 0xC8), (true, 0xA0, 0xC0)] {
+            panel.choose(PanelOptions {
+                is_turned,
+                ..PanelOptions::default()
+            });
+            (0..BACK).for_each(|_| _ = tick(&mut panel, &frame));
+            assert!(shows(&panel, &frame), "{kind:?}");
+            let given = &panel.bus.panel;
+            assert_eq!(given.last_of([0xA0, 0xA1]), Some(&[columns][..]));
+            assert_eq!(given.last_of([0xC0, 0xC8]), Some(&[rows][..]));
+        }
+    }
+}
+
+/// A panel that is dimmed has a lower contrast until it is made bright, also if it is plugged in
+/// again meanwhile. By choice it stays bright.
+#[test]
+fn the_panel_is_dimmed_unless_it_is_to_stay_bright() {
+    let frame = scene(40);
+    let contrast = |panel: &mut Panel| {
+        (0..BACK).for_each(|_| _ = tick(panel, &frame));
+        panel.bus.panel.last_of([0x81; 2]).map(|given| given[1])
+    };
+    let mut panel = panel(Controller::new(SSD1306, 0x3C));
+    let bright = contrast(&mut panel);
+    panel.dim(true);
+    assert_eq!(contrast(&mut panel), Some(1));
+    Fault::Pulled.set(&mut panel.bus, true);
+    tick(&mut panel, &frame).expect("its loss is not known yet");
+    Fault::Pulled.set(&mut panel.bus, false);
+    assert_eq!(contrast(&mut panel), Some(1));
+    panel.dim(false);
+    assert_eq!(contrast(&mut panel), bright);
+
+    panel.dim(true);
+    panel.choose(PanelOptions {
+        stays_bright: true,
+        ..PanelOptions::default()
+    });
+    assert_eq!(contrast(&mut panel), bright);
 }
 
 /// Returns the bits of columns of a page: an address, a control byte and the place; an address, a

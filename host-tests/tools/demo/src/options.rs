@@ -57,6 +57,15 @@ pub struct DemoOptions {
           value_parser = choice([None].into_iter().chain(Controller::ALL.iter().copied().map(Some)),
                                 |panel| panel.map_or("auto", Controller::name)))]
     pub panel: Option<PanelChoice>,
+    /// Turn the panel's picture by 180 degrees, or back by 0; kept as --panel
+    #[arg(long, value_name = "DEGREES",
+          value_parser = choice([false, true], |is_turned| if is_turned { "180" } else { "0" }))]
+    pub turn: Option<bool>,
+    /// Dim the panel after ten minutes without a key, or not; kept as --panel [default: as it is,
+    /// on after power-on]
+    #[arg(long, value_name = "WHEN",
+          value_parser = choice([true, false], |dims| if dims { "on" } else { "off" }))]
+    pub dim: Option<bool>,
     /// What moves, in place of the scene's own motion.
     #[command(flatten)]
     pub motion: OwnMotion,

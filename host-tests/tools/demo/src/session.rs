@@ -240,7 +240,7 @@ impl<'a> Session<'a> {
             Field::G => "--gravity",
             Field::A1 | Field::A2 => "--angles",
             Field::W1 | Field::W2 => "--velocities",
-            Field::Panel => "--panel",
+            Field::Panel => "--panel, --turn or --dim",
             _ => "--scene",
         };
         let name = self.name();
@@ -286,12 +286,17 @@ impl<'a> Session<'a> {
 
         // The panel is selected first, so that the scene is visible from its first frame.
         let panel = self.options.panel.map(Command::Panel);
+        let turn = self.options.turn.map(Command::Turn);
+        let dim = self.options.dim.map(Command::Dim);
         let method = self.options.method.map(Command::Method);
         let speed = self.options.speed()?.map(|value| Command::Set {
             field: Field::Speed,
             value,
         });
-        for command in [panel, play, method, speed].into_iter().flatten() {
+        for command in [panel, turn, dim, play, method, speed]
+            .into_iter()
+            .flatten()
+        {
             self.source.send(SETUP, command)?;
         }
         Ok(())
