@@ -28,25 +28,18 @@ use super::stream::{Stream, wait};
 /// any Unix and reaches the children's children.
 const WARDEN: &str = "(sleep $0; kill -KILL 0) & read -r _; kill -KILL 0";
 
-/// A running child. Dropping it kills its whole process group.
 #[derive(Debug)]
 pub struct Running {
-    /// The child itself, whose pipes the caller may take.
     pub child: Child,
     /// Waiting for the warden closes its input, and the warden then kills the rest of the group.
     warden: Child,
-    /// The name of the program, for errors.
     program: String,
     started: Instant,
     limit: Duration,
 }
 
 /// Starts `command` in its own process group, with a warden run by `sh`. The group is killed after
-/// `limit` at the latest, even if nothing waits for it.
-///
-/// A child in the background must not read the terminal, so give it `Stdio::null()` or a pipe as
-/// its standard input. An error means that the program or the shell cannot be started. It names the
-/// program, and its kind is always `Other`.
+/// `limit` at the latest. A child in the background must not read the terminal.
 pub fn spawn(command: &mut Command, limit: Duration) -> io::Result<Running> {
     let program = command.get_program().to_string_lossy().into_owned();
     let failed = |error: io::Error| io::Error::other(format!("cannot run {program}: {error}"));
@@ -73,14 +66,9 @@ pub fn spawn(command: &mut Command, limit: Duration) -> io::Result<Running> {
 }
 
 impl Running {
-    /// Waits until the child ends, and kills the rest of its group. Closes its standard input
-    /// first, if that is a pipe that was not taken. A child whose full output pipe nobody reads
-    /// ends at its time limit only. Returns an error of kind `TimedOut` if the child was killed at
-    /// its time limit. Another failure of the child is a status. A further call has the same result
-    /// at once, except that a child killed by somebody else's SIGKILL is a status only in calls
-    /// before its time limit, and `TimedOut` in later ones.
+    /// Waits until the child ends, and kills the rest of its group. An error of kind `TimedOut`
+    /// means that it was killed at its time limit.
     pub fn wait(&mut self) -> io::Result<ExitStatus> {
-        // The child, then the warden, which kills the rest of the group.
         let status = self.child.wait()?;
         let _ = self.warden.wait();
 
@@ -97,14 +85,13 @@ impl Running {
     }
 
     /// Returns the child's exit status if it has ended, without waiting, and kills the rest of its
-    /// group then. Returns `None` while it runs. Errors are as in [`Self::wait`].
+    /// group then.
     pub fn try_wait(&mut self) -> io::Result<Option<ExitStatus>> {
         self.child.try_wait()?.map(|_| self.wait()).transpose()
     }
 
-    /// Returns the child's exit status if it has ended, and `None` while it runs. If none of these
-    /// [`streams`](Self::streams) is open, the child is about to end, and this waits for it as
-    /// [`Self::wait`] does, at most until its time limit. Errors are as there.
+    /// Returns the child's exit status if it has ended. If none of these [`streams`](Self::streams)
+    /// is open, the child is about to end, and this waits for it.
     pub fn ended(&mut self, streams: &[Stream]) -> io::Result<Option<ExitStatus>> {
         if streams.iter().any(|stream| stream.is_open) {
             self.try_wait()
@@ -113,9 +100,7 @@ impl Running {
         }
     }
 
-    /// Takes the standard output and the standard error of the child and returns them, in this
-    /// order. Both must be pipes and can be taken only once; else this is an error, and a pipe that
-    /// is there is closed.
+    /// Takes the standard output and the standard error of the child, which must be pipes.
     pub fn streams(&mut self) -> io::Result<[Stream; 2]> {
         let pipes = self.child.stdout.take().zip(self.child.stderr.take());
         let (stdout, stderr) = pipes.ok_or_else(|| io::Error::other("a child without pipes"))?;
@@ -133,8 +118,7 @@ impl Drop for Running {
     }
 }
 
-/// Returns a child's exit status as an exit code; failure, 1, if the child was ended by a signal or
-/// the number is above 255.
+/// Returns a child's exit status as an exit code; 1 if a signal ended it.
 pub fn exit_code(status: ExitStatus) -> ExitCode {
     status
         .code()
@@ -142,30 +126,20 @@ pub fn exit_code(status: ExitStatus) -> ExitCode {
         .map_or(ExitCode::FAILURE, ExitCode::from)
 }
 
-/// The outcome of a program that has ended.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Output {
-    /// Its exit status, which may be a failure.
     pub status: ExitStatus,
-    /// Its standard output; bytes that are not UTF-8 are replaced.
     pub stdout: String,
-    /// Its standard error; bytes that are not UTF-8 are replaced.
     pub stderr: String,
 }
 
-/// Runs `command` to its end without input and captures its output. The command is killed after
-/// `limit` at the latest. A failure of the program is not an error, but its time limit is
-/// (`TimedOut`, and its output is lost), and so is a program that cannot be started.
+/// Runs `command` to its end without input and captures its output.
 pub fn run(command: &mut Command, limit: Duration) -> io::Result<Output> {
     run_watched(command, limit, |_| {})
 }
 
-/// Runs a command like [`run`] and reports its progress to `watch`.
-///
-/// `watch` is called with the last line of new output, which may be incomplete. If both outputs
-/// have new bytes, it is a line of the standard error. While no output arrives, `watch` is called
-/// with `None` about ten times a second to show that the child is alive, but not while a child runs
-/// on that has closed both outputs.
+/// Runs a command like [`run`], and passes the last line of new output to `watch`. While no output
+/// arrives, `watch` is called with `None` about ten times a second.
 pub fn run_watched(
     command: &mut Command,
     limit: Duration,
@@ -181,7 +155,6 @@ pub fn run_watched(
     loop {
         // A process that has left the group can hold the pipes open for longer.
         let ended = child.ended(&streams)?;
-        // The newest line of either output is shown.
         let new = streams
             .iter_mut()
             .map(Stream::take_in)

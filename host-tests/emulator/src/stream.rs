@@ -18,15 +18,12 @@ const TICK: u8 = 100;
 #[derive(Debug)]
 pub struct Stream {
     pipe: File,
-    /// The bytes that have arrived and have not been consumed.
     pub bytes: Vec<u8>,
-    /// True if more bytes may arrive, as of the last [`Stream::take_in`]; true before the first.
     pub is_open: bool,
 }
 
 impl Stream {
-    /// Takes the end of a pipe, with no bytes read yet, and sets it to reads that do not wait. An
-    /// error means that the system refuses this.
+    /// Takes the end of a pipe, and sets it to reads that do not wait.
     pub fn of(pipe: impl Into<OwnedFd>) -> io::Result<Self> {
         let pipe = File::from(pipe.into());
         fcntl(&pipe, FcntlArg::F_SETFL(OFlag::O_NONBLOCK))?;
@@ -37,9 +34,7 @@ impl Stream {
         })
     }
 
-    /// Reads everything that is available, without waiting, and returns the new bytes, which may be
-    /// none. They are also appended to `bytes`. An error of the pipe counts as its end, after which
-    /// `is_open` is false. It reads on while the child writes faster than this reads.
+    /// Reads everything that is available, without waiting, and returns the new bytes.
     pub fn take_in(&mut self) -> &[u8] {
         let before = self.bytes.len();
         let read = self.pipe.read_to_end(&mut self.bytes);
@@ -47,10 +42,8 @@ impl Stream {
         &self.bytes[before..]
     }
 
-    /// Removes the next complete line from `bytes` and returns it without the white space at its
-    /// end; bytes that are not UTF-8 are replaced. A blank line is an empty text. Once `is_open` is
-    /// false, the last line need not be complete. Returns `None` if there is no line. It reads
-    /// nothing from the pipe ([`Self::take_in`]).
+    /// Removes the next complete line from `bytes`. Once `is_open` is false, the last line need not
+    /// be complete.
     pub fn line(&mut self) -> Option<String> {
         // The end of a stream also ends its last line.
         let last = (!self.is_open && !self.bytes.is_empty()).then_some(self.bytes.len());
@@ -65,10 +58,7 @@ impl Stream {
     }
 }
 
-/// Waits until an open stream has new bytes or ends, for at most 100 ms. It returns at once if the
-/// pipe of such a stream has unread bytes or its end, and after that time if no stream is open or
-/// there are none. Bytes that have been read into `bytes` do not count. A signal may end the wait
-/// early.
+/// Waits until an open stream has new bytes or ends, for at most 100 ms.
 pub fn wait<'a>(streams: impl Iterator<Item = &'a Stream>) {
     let open = streams.filter(|stream| stream.is_open);
     let mut polled: Vec<_> = open
@@ -85,18 +75,15 @@ pub fn wait<'a>(streams: impl Iterator<Item = &'a Stream>) {
 /// frames. Not every emulated board waits while its bytes are not read.
 #[derive(Debug)]
 pub struct Channel {
-    /// The pipe to QEMU, which holds 64 KiB on Linux. A write that does not fit is an error of kind
-    /// `WouldBlock`; one of more than 4 KiB may write a part. It is no error if QEMU has ended.
+    /// A write that does not fit is an error of kind `WouldBlock`.
     pub sender: File,
-    /// The pipe from QEMU. It stays open after QEMU's end, so its `is_open` does not show the end.
+    /// It stays open after QEMU's end, so its `is_open` does not show the end.
     pub stream: Stream,
 }
 
 impl Channel {
     /// Makes the pipes for QEMU's `-chardev pipe` with this path: QEMU reads `path.in` and writes
-    /// `path.out`. An extension of `path` itself is replaced by these. An error means that one of
-    /// them exists already or cannot be made; the first one may then be left. Nothing removes them
-    /// but the removal of their folder.
+    /// `path.out`.
     pub fn make(path: &Path) -> io::Result<Self> {
         let pipe = |end| {
             let path = path.with_extension(end);

@@ -25,25 +25,20 @@ use tools::{CHROMIUM, NODE, QEMU, QEMU_AARCH64, QEMU_RISCV};
 use crate::boards::Board;
 use console::cli::{REFUSED, Refused, complain};
 
-/// The compiler's targets, one for each kind of core: Cortex-M0+, Cortex-M3 and Cortex-M4F.
 pub const TARGETS: [&str; 3] = [
     "thumbv6m-none-eabi",
     "thumbv7m-none-eabi",
     "thumbv7em-none-eabihf",
 ];
 
-/// The compiler's target for the application in a web page.
 pub const WASM: &str = "wasm32-unknown-unknown";
 
-/// The tools that build and run programs for a target: rustup's compiler and an emulator.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Toolchain {
-    /// The emulator of the core: QEMU, or Node.js for WebAssembly. It is empty after
-    /// [`set_up_web`].
+    /// The emulator of the core; empty after [`set_up_web`].
     pub qemu: PathBuf,
 }
 
-/// Returns the tools for the boards in QEMU. It searches once per process.
 pub fn ready() -> Result<Toolchain, Refused> {
     static READY: OnceLock<Result<Toolchain, Refused>> = OnceLock::new();
     READY
@@ -51,14 +46,11 @@ pub fn ready() -> Result<Toolchain, Refused> {
         .clone()
 }
 
-/// Returns the tools for the boards in QEMU.
 pub fn set_up() -> Result<Toolchain, Refused> {
     check_temporary_folder()?;
     both(tools::core(true, &TARGETS), QEMU.set_up())
 }
 
-/// Returns the tools and the application of a board.
-///
 /// QEMU is fetched while the application is built, because the former waits for the network and the
 /// latter for the processor.
 pub fn set_up_and_build(board: &Board) -> anyhow::Result<(Toolchain, PathBuf)> {
@@ -73,14 +65,12 @@ pub fn set_up_and_build(board: &Board) -> anyhow::Result<(Toolchain, PathBuf)> {
     Ok((Toolchain { qemu: qemu? }, elf?))
 }
 
-/// Returns a toolchain that only builds.
 fn compiler() -> Toolchain {
     Toolchain {
         qemu: PathBuf::new(),
     }
 }
 
-/// Refuses a folder for temporary files that does not exist or is not writable.
 fn check_temporary_folder() -> Result<(), Refused> {
     let refused = |_| {
         Refused::because(format_args!(
@@ -91,8 +81,8 @@ fn check_temporary_folder() -> Result<(), Refused> {
     tempfile::tempdir().map_err(refused).map(drop)
 }
 
-/// Returns the tools for another target: QEMU's emulation of Linux for `riscv32imac-*` and
-/// `aarch64-*`, Node.js for `wasm32-*`, and QEMU's boards for all others.
+/// Returns the tools for another target: QEMU's emulation of Linux, Node.js for WebAssembly, or
+/// QEMU's boards.
 pub fn set_up_for(target: &str) -> Result<Toolchain, Refused> {
     let emulator = match target.split('-').next() {
         Some("wasm32") => NODE,
@@ -103,18 +93,15 @@ pub fn set_up_for(target: &str) -> Result<Toolchain, Refused> {
     both(tools::core(true, &[target]), emulator.set_up())
 }
 
-/// Returns the compiler of the application in a web page, without an emulator.
 pub fn set_up_web() -> Result<Toolchain, Refused> {
     tools::core(true, &[WASM])?;
     Ok(compiler())
 }
 
-/// Returns the program of a Chromium.
 pub fn set_up_chromium() -> Result<PathBuf, Refused> {
     CHROMIUM.set_up()
 }
 
-/// Returns a toolchain with this emulator, or a line for each tool that is missing.
 fn both(core: Result<(), Refused>, qemu: Result<PathBuf, Refused>) -> Result<Toolchain, Refused> {
     match (core, qemu) {
         (Ok(()), Ok(qemu)) => Ok(Toolchain { qemu }),
@@ -123,14 +110,12 @@ fn both(core: Result<(), Refused>, qemu: Result<PathBuf, Refused>) -> Result<Too
     }
 }
 
-/// Returns the program Node.js if the emulator of the Raspberry Pi Pico is there, too.
 pub fn ready_for_pico() -> Result<PathBuf, Refused> {
     let node = NODE.ready()?;
     tools::rp2040js(false, &node)?;
     Ok(node)
 }
 
-/// Returns the program Node.js, with the emulator of the Raspberry Pi Pico.
 pub fn set_up_pico() -> Result<PathBuf, Refused> {
     let node = NODE.set_up()?;
     tools::rp2040js(true, &node)?;
@@ -155,9 +140,8 @@ const MARKS: [&str; 3] = [
 /// Returns the project's folder, which contains `kernel`, `firmware` and `host-tests`.
 ///
 /// The folder is searched at run time, because a checkout may be moved or copied with its programs
-/// already built. The search starts at the package that cargo runs (`CARGO_MANIFEST_DIR`), then at
-/// the current folder, then at this program, and proceeds upwards. A later call returns the same.
-/// If it finds no folder, the process prints one line and ends with exit code 2.
+/// already built: from the package that cargo runs, then from the current folder, then from this
+/// program, upwards.
 pub fn workspace() -> &'static Path {
     static FOUND: OnceLock<PathBuf> = OnceLock::new();
     FOUND.get_or_init(|| {
@@ -181,15 +165,12 @@ pub fn workspace() -> &'static Path {
     })
 }
 
-/// Returns the workspace that contains `start`.
 fn above(start: &Path) -> Option<PathBuf> {
     let is_it = |folder: &&Path| MARKS.iter().all(|mark| folder.join(mark).is_file());
     start.ancestors().find(is_it).map(Path::to_owned)
 }
 
-/// Returns the absolute path of the folder of everything built: `CARGO_TARGET_DIR` as for cargo,
-/// relative to the current folder, or, if that is unset or empty, `target` in the workspace. It
-/// need not exist yet. Without the variable it may end the process as [`workspace`] does.
+/// Returns the folder of everything built, as cargo chooses it.
 pub fn target() -> PathBuf {
     let chosen = env::var_os("CARGO_TARGET_DIR").filter(|folder| !folder.is_empty());
     chosen

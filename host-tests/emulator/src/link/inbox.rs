@@ -5,22 +5,16 @@ use firmware::protocol::{Decoder, Field, Frame, LinkError, ToHost, read};
 /// The counts of a link since its [`Inbox`] was made.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counts {
-    /// The intact messages of any kind.
     pub messages: u64,
-    /// The messages damaged in transmission: wrong CRC, framing, length, version or fields. A first
-    /// message after [`Inbox::join`] that is damaged does not count.
+    /// A first message after [`Inbox::join`] that is damaged does not count.
     pub damaged: u64,
-    /// The frames that are missing in the sequence numbers: sent by the board, and not received
-    /// intact. Frames before a connection do not count, nor frames before a smaller number, which
-    /// shows a restart.
+    /// The frames that are missing in the sequence numbers.
     pub lost: u64,
-    /// The number of restarts: frames whose number is smaller than expected, and messages
-    /// [`ToHost::Restarted`]. Such a message and the frames from 0 after it count once.
+    /// A message [`ToHost::Restarted`] and the frames from 0 after it count once.
     pub restarts: u64,
 }
 
-/// Returns the name of a [`Field`] of the protocol that a board refuses, in words without a full
-/// stop. For a message or a panel it includes the cause.
+/// Returns the name of a [`Field`] of the protocol that a board refuses, in words.
 pub fn refusal(field: Field) -> &'static str {
     match field {
         // A board of this version can read every message of this host, unless the two have
@@ -31,35 +25,26 @@ pub fn refusal(field: Field) -> &'static str {
     }
 }
 
-/// A decoder of received bytes into messages. A new one expects the start of a message;
-/// [`join`](Self::join) tolerates the middle of one. Frames before the first one that is received
-/// are not lost.
+/// A decoder of received bytes into messages.
 #[derive(Debug, Default)]
 pub struct Inbox {
-    /// The decoder, with the message that is incomplete. A new decoder in its place drops that.
+    /// A new decoder in its place drops the incomplete message.
     pub decoder: Decoder,
-    /// The counts since this was made.
     pub counts: Counts,
-    /// The expected sequence number of the next frame.
     expected: Option<u32>,
-    /// True if the next frame is the first of a connection. Frames before it were not sent to this
-    /// host, so they are not lost.
+    /// True if the next frame is the first of a connection: frames before it are not lost.
     is_joining: bool,
-    /// The last damage since the connection began, if there was any. An intact message does not
-    /// remove it. It is `Malformed` also if the fields are wrong.
+    /// The last damage since the connection began.
     pub damage: Option<LinkError>,
     /// True if the next bytes may begin in the middle of a message.
     joins: bool,
 }
 
 impl Inbox {
-    /// Takes a byte and returns the message that it completes, which also updates the counts.
-    /// `None` means that a message is not complete, or that it was damaged, which is stored in
-    /// `damage` and counted. If the first message after [`Self::join`] is damaged, it is stored but
-    /// not counted, because the connection may have begun within it. After damage the next intact
-    /// message is received.
+    /// Takes a byte and returns the message that it completes. Damage is stored and counted. A
+    /// damaged first message after [`Self::join`] is not counted, because the connection may have
+    /// begun within it.
     pub fn take(&mut self, byte: u8) -> Option<ToHost> {
-        // A message is complete, damaged, or not complete yet.
         let message = match self
             .decoder
             .push(byte)?
@@ -67,7 +52,6 @@ impl Inbox {
         {
             Ok(message) => message,
             Err(error) => {
-                // The first damaged message of a connection may have begun before it.
                 self.counts.damaged += u64::from(!std::mem::take(&mut self.joins));
                 self.damage = Some(error);
                 return None;
@@ -102,11 +86,8 @@ impl Inbox {
     }
 
     /// Begins a connection to a board that may be in the middle of a message and of its count of
-    /// frames. An incomplete message is dropped, `damage` becomes `None`, and the counts are kept.
-    ///
-    /// The expected sequence number of the previous connection is kept. A smaller number shows that
-    /// the board has restarted in between; a restart after which the board has counted beyond it is
-    /// not recognised.
+    /// frames. The expected sequence number of the previous connection is kept: a smaller number
+    /// shows that the board has restarted in between.
     pub fn join(&mut self) {
         self.decoder = Decoder::default();
         self.damage = None;
@@ -135,8 +116,6 @@ mod tests {
         inbox.counts
     }
 
-    /// Missing sequence numbers count as lost frames, also where the numbers pass from 2^32 - 1 to
-    /// 0. Numbers that begin again at 0 count as one restart and no loss.
     #[test]
     fn missing_frames_are_counted_over_the_wrap_but_not_over_a_restart_from_0() {
         let sequences = [u32::MAX - 2, u32::MAX - 1, 1, 2, 5];
@@ -158,8 +137,6 @@ mod tests {
         );
     }
 
-    /// Every frame begins a connection. Missing numbers are not lost frames, and a smaller number
-    /// counts as a restart.
     #[test]
     fn frames_between_two_connections_are_not_lost_and_a_restart_between_them_is_counted() {
         let mut inbox = Inbox::default();
@@ -176,8 +153,6 @@ mod tests {
         }
     }
 
-    /// A connection begins in the middle of a message. That rest is not counted as damaged, the
-    /// whole message after it is received, and a later one with a wrong bit is counted as damaged.
     #[test]
     fn a_message_that_is_joined_in_its_middle_is_not_damaged() {
         let mut inbox = Inbox::default();
@@ -185,7 +160,6 @@ mod tests {
 
         let mut wire = [0; MAX_WIRE];
         let wire = encode(&ToHost::Frame(Frame::default()), &mut wire);
-        // The end of a message, a whole message, and a message with a wrong bit.
         let stream = [
             &wire[20..],
             wire,

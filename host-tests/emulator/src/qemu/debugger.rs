@@ -22,51 +22,36 @@ use nix::unistd::mkfifo;
 use super::machine::{Clock, Machine, Settings};
 use crate::up_to_frame;
 
-/// The instruction `wfi`, which sleeps until an interrupt, and its size in bytes. The size is also
-/// sent with every breakpoint.
+/// The instruction `wfi`, which sleeps until an interrupt, and its size in bytes.
 const WFI: u16 = 0xBF30;
 const SIZE: u32 = 2;
-/// The number of sleeps without a frame after which the board counts as silent.
+/// A board that sleeps this many times without a frame is silent.
 const PATIENCE: u32 = 1000;
-/// The number of bytes that are written to memory by one packet.
 const PIECE: u32 = 512;
 /// The request for the description of the registers. QEMU gives no access to registers before it.
 pub(super) const DESCRIBE: &str = "qXfer:features:read:target.xml:0,10";
 
-/// A register of the processor, with its number in GDB's protocol.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Register {
-    /// The stack pointer in use.
     Sp = 13,
-    /// The link register, which has the return address.
     Lr = 14,
-    /// The program counter.
     Pc = 15,
 }
 
-/// The possible stops of a machine in its program.
 #[derive(Debug, Default)]
 pub(super) struct Places {
-    /// The address of every `wfi`.
     sleeps: Vec<u32>,
-    /// The addresses of the breakpoints that are set in QEMU.
     breakpoints: Vec<u32>,
-    /// The breakpoint of the current stop.
     here: Option<u32>,
 }
 
 impl Machine {
-    /// Starts a board that is stopped at its first instruction. Its clock counts instructions, even
-    /// if `settings` have another clock; the other settings apply. An error means that the ELF file
-    /// is unusable, that QEMU cannot be started, that it ends at once, as for the Pico, or that
-    /// there is no place for temporary files ([`Scratch::new`](crate::scratch::Scratch::new)). A
-    /// program without symbols is no error, but [`Self::run_to_frame`] then runs to the time limit.
+    /// Starts a board that is stopped at its first instruction. Its clock counts instructions.
     pub fn halted(settings: &Settings) -> anyhow::Result<Self> {
         let mut machine = Self::boot(&Settings {
             clock: Clock::Counted,
             ..*settings
         })?;
-        // The program sleeps only at a `wfi`.
         let words = Image::read(settings.elf)?.words().into_iter();
         machine.places.sleeps = words
             .filter(|(_, first, _)| *first == WFI)
@@ -76,14 +61,7 @@ impl Machine {
     }
 
     /// Runs to the first sleep of the board after which a frame has arrived, and returns all
-    /// messages that have not been fetched, oldest first. The machine must be stopped, which is not
-    /// checked, and is stopped again when the frame is on the panel. A waiting frame that has not
-    /// been fetched counts; the board then runs to its next sleep.
-    ///
-    /// It is an error if the board sleeps 1000 times without a frame, as it does if the machine
-    /// does not listen, or if QEMU ends; the messages are then lost. After 1000 sleeps the machine
-    /// is stopped at a sleep. Not checked: that the machine is from [`Self::halted`]; another one
-    /// runs to its time limit.
+    /// messages. The machine is then stopped with that frame on the panel.
     pub fn run_to_frame(&mut self) -> anyhow::Result<Vec<ToHost>> {
         let sleeps = self.places.sleeps.clone();
         up_to_frame(PATIENCE, || {
@@ -92,17 +70,9 @@ impl Machine {
         })
     }
 
-    /// Runs to the next frame while `read` reads QEMU's log. The log contains the processor's
-    /// registers before every instruction, hundreds of bytes each time. It ends before the
-    /// instruction at `end`, an address without the Thumb bit, or with the frame if the program
-    /// does not come there. A stop at `end` uses up the rest of the tick: the board executes
-    /// nothing more until the next one.
-    ///
-    /// Returns the result of `read`, which runs in a thread of its own and must read to the end of
-    /// the log, because QEMU waits while nobody does. Errors are as in [`Self::run_to_frame`], and,
-    /// if there is none, that of `read`; its panic is passed on. The messages up to the frame are
-    /// dropped. The machine must be from [`Self::halted`] and stopped, and is stopped after the
-    /// frame.
+    /// Runs to the next frame while `read` reads QEMU's log, which contains the processor's
+    /// registers before every instruction. The log ends before the instruction at `end`, or with
+    /// the frame. `read` must read to the end, because QEMU waits while nobody does.
     pub fn next_frame_logged<T: Send>(
         &mut self,
         end: u32,
@@ -125,18 +95,14 @@ impl Machine {
         self.logged(frame, read)
     }
 
-    /// Runs to the next call of the function at this address, without the Thumb bit, and returns
-    /// the address where its caller continues. The run is as in [`Self::run_to`].
+    /// Runs to the next call of this function, and returns the address where its caller continues.
     pub fn next_return_address(&mut self, function: u32) -> anyhow::Result<u32> {
         self.run_to(function)?;
         Ok(self.get(Register::Lr)? & !1)
     }
 
-    /// Runs to the next call of the function at this address, without the Thumb bit, and to its
-    /// return, while `read` reads QEMU's log of the call. The log ends with the instruction after
-    /// the return, which the machine has then executed. The function must not call itself; if it
-    /// does, the log may end at an inner return. `read` and its errors are as in
-    /// [`Self::next_frame_logged`]; the run is as in [`Self::run_to`].
+    /// Runs to the next call of this function and to its return, while `read` reads QEMU's log of
+    /// the call.
     pub fn next_call_logged<T: Send>(
         &mut self,
         function: u32,
@@ -154,7 +120,7 @@ impl Machine {
     }
 
     /// Runs the machine as `run` does while `read` reads QEMU's log. `run` is called with the path
-    /// of the log and starts it. It may end it.
+    /// of the log and starts it.
     fn logged<T: Send>(
         &mut self,
         run: impl FnOnce(&mut Self, &Path) -> anyhow::Result<()>,
@@ -171,7 +137,6 @@ impl Machine {
         let writer = File::options().write(true).open(&path)?;
         drop(both);
 
-        // The log is read by a thread, because QEMU waits while its pipe is full.
         thread::scope(|scope| {
             let reader = scope.spawn(|| read(pipe));
             let ran = run(self, &path);
@@ -185,42 +150,34 @@ impl Machine {
         })
     }
 
-    /// Lets QEMU write the registers before every instruction to this file.
     fn start_log(&mut self, file: &Path) -> anyhow::Result<()> {
         self.log(file, "cpu,nochain", "on")
     }
 
-    /// Lets QEMU close its log.
     fn end_log(&mut self) -> anyhow::Result<()> {
         self.log(Path::new("/dev/null"), "none", "off")
     }
 
-    /// Sets the file and the items of QEMU's log, and switches single steps on or off.
     fn log(&mut self, file: &Path, what: &str, single_step: &str) -> anyhow::Result<()> {
         self.console(&format!("logfile {}", file.display()))?;
         self.console(&format!("log {what}"))?;
         self.single_step(single_step)
     }
 
-    /// Runs until the instruction at this address, without the Thumb bit, is about to be executed.
-    /// The machine must be stopped, which is not checked. If a run to an address or to a frame has
-    /// stopped it there, runs until the next time. If it is there in another way, by
-    /// [`Self::divert`], [`Self::stop`] or its start, this returns at once. If the program never
-    /// comes there, as to an odd address, this ends with an error at the time limit of the machine.
+    /// Runs until the instruction at this address is about to be executed. If a run has stopped the
+    /// machine there, runs until the next time.
     pub fn run_to(&mut self, address: u32) -> anyhow::Result<()> {
         self.run_until(&[address])
     }
 
-    /// Lets the machine run freely and returns at once. This is twenty times as fast as from frame
-    /// to frame, because QEMU discards its translated code whenever it is stopped at a breakpoint.
-    /// The machine must be stopped, which is not checked; [`Self::stop`] stops it again.
+    /// Lets the machine run freely. This is twenty times as fast as from frame to frame, because
+    /// QEMU discards its translated code whenever it is stopped at a breakpoint.
     pub fn run(&mut self) -> anyhow::Result<&mut Self> {
         self.leave(&[])?;
         self.say("c").map(|()| self)
     }
 
-    /// Stops the running machine at any place. The machine must be running, by [`Self::run`] or
-    /// [`Self::start`]; else this waits until QEMU's time limit, which is an error.
+    /// Stops the running machine at any place.
     pub fn stop(&mut self) -> anyhow::Result<()> {
         self.debugger.sender.write_all(b"\x03")?;
         let reply = self.hear()?;
@@ -231,9 +188,7 @@ impl Machine {
         }
     }
 
-    /// Sets some registers, which may include the program counter, before the machine continues.
-    /// The machine must be stopped, which is not checked. The Thumb bit of an address in the
-    /// program counter is ignored. An error leaves the registers before it in the list set.
+    /// Sets some registers, which may include the program counter, of a stopped machine.
     pub fn divert(&mut self, registers: &[(Register, u32)]) -> anyhow::Result<()> {
         self.places.here = None;
         registers
@@ -241,13 +196,9 @@ impl Machine {
             .try_for_each(|(register, value)| self.set(*register, *value))
     }
 
-    /// Writes bytes to memory from this address on, also to flash. The machine must be stopped,
-    /// which is not checked. Bytes for addresses without memory, or for registers of the chip, are
-    /// lost without an error. An error means that QEMU refuses a piece of 512 bytes, or has ended;
-    /// the pieces before it are then written.
+    /// Writes bytes to memory, also to flash, of a stopped machine.
     pub fn write(&mut self, address: u32, bytes: &[u8]) -> anyhow::Result<()> {
         for (start, piece) in (address..)
-            // A packet has a limited size.
             .step_by(PIECE as usize)
             .zip(bytes.chunks(PIECE as usize))
         {
@@ -257,23 +208,18 @@ impl Machine {
         Ok(())
     }
 
-    /// Lets the machine run until one of these instructions is about to be executed.
     fn run_until(&mut self, places: &[u32]) -> anyhow::Result<()> {
         self.leave(places)?;
         self.expect("c", "T05")?;
 
-        // The program counter identifies the place that was reached.
         self.places.here = Some(self.get(Register::Pc)?);
         Ok(())
     }
 
-    /// Prepares the machine to continue, with breakpoints at `places`.
-    ///
     /// If the machine is stopped at a `wfi`, the `wfi` is skipped. The architecture allows it to
     /// wake at any time. While the machine was stopped, QEMU has advanced its clock to the next
     /// event, which is exactly the effect of sleeping.
     fn leave(&mut self, places: &[u32]) -> anyhow::Result<()> {
-        // Only breakpoints that change are removed and set.
         let set = std::mem::replace(&mut self.places.breakpoints, places.to_vec());
         for (change, these, others) in [('z', &set[..], places), ('Z', places, &set[..])] {
             for place in these.iter().filter(|place| !others.contains(place)) {
@@ -291,7 +237,6 @@ impl Machine {
         }
     }
 
-    /// Returns the contents of a register.
     fn get(&mut self, register: Register) -> anyhow::Result<u32> {
         // GDB sends them in the target's byte order.
         let answer = self.ask(&format!("p{:x}", register as u32))?;
@@ -299,7 +244,6 @@ impl Machine {
         Ok(number.swap_bytes())
     }
 
-    /// Sets a register.
     fn set(&mut self, register: Register, value: u32) -> anyhow::Result<()> {
         self.expect(
             &format!("P{:x}={:08x}", register as u32, value.swap_bytes()),
@@ -307,7 +251,6 @@ impl Machine {
         )
     }
 
-    /// Sends a packet and checks that the reply begins with `answer`.
     fn expect(&mut self, packet: &str, answer: &str) -> anyhow::Result<()> {
         let reply = self.ask(packet)?;
         if reply.starts_with(answer) {
@@ -317,19 +260,16 @@ impl Machine {
         }
     }
 
-    /// Sends a packet, waits for the reply and returns its text, which may be a refusal. An error
-    /// means that QEMU has ended, or that the packet does not fit into the pipe.
+    /// Sends a packet, waits for the reply and returns its text, which may be a refusal.
     pub(super) fn ask(&mut self, packet: &str) -> anyhow::Result<String> {
         self.say(packet)?;
         self.hear()
     }
 
-    /// Sends a packet.
     fn say(&mut self, packet: &str) -> anyhow::Result<()> {
         Ok(send_packet(&mut self.debugger.sender, packet)?)
     }
 
-    /// Waits for a reply, acknowledges it and returns its text.
     fn hear(&mut self) -> anyhow::Result<String> {
         let reply = self.wait_until(|machine| take_reply(&mut machine.debugger.stream.bytes))?;
         self.debugger.sender.write_all(b"+")?;
@@ -338,16 +278,13 @@ impl Machine {
 }
 
 /// Sends a packet of GDB's protocol with its checksum, and does not wait for the acknowledgement.
-/// An error means that it does not fit into the pipe, or that nobody has the other end; a part may
-/// then be sent. The text must not contain the characters `$`, `#` and `}`; this is not checked.
 pub fn send_packet(sender: &mut File, packet: &str) -> io::Result<()> {
     let checksum = packet.bytes().fold(0, u8::wrapping_add);
     write!(sender, "${packet}#{checksum:02x}")
 }
 
 /// Removes the first packet of GDB's protocol, and everything before it, from the bytes that have
-/// arrived. Returns the text of the packet, in which bytes that are not UTF-8 are replaced. If the
-/// packet is not complete, returns `None` and removes nothing. Its checksum is not checked.
+/// arrived, and returns its text.
 pub fn take_reply(bytes: &mut Vec<u8>) -> Option<String> {
     // A packet is complete if its checksum of two digits has arrived.
     let start = 1 + bytes.iter().position(|byte| *byte == b'$')?;
@@ -361,13 +298,10 @@ pub fn take_reply(bytes: &mut Vec<u8>) -> Option<String> {
     Some(reply)
 }
 
-/// Returns the error of a reply that was not expected.
 fn unexpected(packet: &str, reply: &str) -> anyhow::Error {
     anyhow!("QEMU refuses the debugger: {packet} was answered with {reply:?}")
 }
 
-/// A reply is taken when it is complete, with the bytes before it, even if one of them ends a
-/// packet. The bytes after it remain.
 #[test]
 fn the_first_complete_reply_is_taken() {
     for incomplete in ["", "+", "#00", "+$OK", "+$OK#", "+$OK#9"] {

@@ -7,23 +7,17 @@ use std::path::Path;
 use anyhow::Context;
 use defmt_decoder::{DecodeError, Frame, Locations, StreamDecoder, Table};
 
-/// A line of the output of the firmware or of QEMU. It is displayed as the level, if it has one,
-/// padded to 5 characters and followed by a space, the text and the place, without a newline.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct LogLine {
-    /// The defmt level in lower case, or `print` for a line without a level. It is `None` for plain
-    /// text, which comes from QEMU or from a crash report of the firmware, or reports that the log
-    /// is damaged.
+    /// The defmt level in lower case; `None` for plain text, which comes from QEMU or from a crash
+    /// report.
     pub level: Option<String>,
-    /// The message.
     pub text: String,
-    /// The file name and line number of the statement, ` [file:line]` with a space in front; empty
-    /// if they are not known.
+    /// ` [file:line]` of the statement.
     pub place: String,
 }
 
 impl LogLine {
-    /// Returns a line of plain text.
     pub(super) fn plain(text: &str) -> Self {
         Self {
             level: None,
@@ -32,8 +26,7 @@ impl LogLine {
         }
     }
 
-    /// Returns true if the line reports a problem: a defmt error, or any plain text, which is a
-    /// crash report, a complaint of QEMU, or the report that the log is damaged.
+    /// Returns true if the line reports a problem: a defmt error, or any plain text.
     pub fn is_bad(&self) -> bool {
         self.level.as_deref().is_none_or(|level| level == "error")
     }
@@ -49,22 +42,15 @@ impl fmt::Display for LogLine {
     }
 }
 
-/// A decoder of defmt's stream into lines.
 pub struct LogDecoder {
-    /// The stream decoder. It is `None` if the program has no log, or once the stream is damaged
-    /// beyond recovery.
+    /// `None` if the program has no log, or once the stream is damaged beyond recovery.
     stream: Option<Box<dyn StreamDecoder>>,
-    /// True if the decoding continues after damaged bytes.
     can_recover: bool,
-    /// The location of each log statement in the source.
     locations: Locations,
 }
 
 impl LogDecoder {
-    /// Makes a decoder for the firmware in the file `elf`. Its format strings stay in memory for
-    /// the rest of the program. A program without a log is no error; its decoder returns no lines.
-    /// Without debug information the lines have no place. An error means that the file is
-    /// unreadable or no ELF file, or that its log is of another version of defmt.
+    /// Makes a decoder for the firmware in the file `elf`. A program without a log has no lines.
     pub fn new(elf: &Path) -> anyhow::Result<Self> {
         let program = std::fs::read(elf).with_context(|| elf.display().to_string())?;
         let Some(table) = Table::parse(&program)?.map(Box::new) else {
@@ -75,7 +61,6 @@ impl LogDecoder {
             });
         };
         let locations = table.get_locations(&program)?;
-        // The decoder borrows the table, so the table must never be freed.
         let table: &'static Table = Box::leak(table);
         let can_recover = table.encoding().can_recover();
         Ok(Self {
@@ -85,9 +70,8 @@ impl LogDecoder {
         })
     }
 
-    /// Takes the next bytes and returns the lines that they complete, oldest first; an incomplete
-    /// one waits for more. For each damaged line of the log, a line of plain text reports it; if
-    /// the stream has no marks to start again, no line follows.
+    /// Takes the next bytes and returns the lines that they complete. A line of plain text reports
+    /// damage.
     pub fn take(&mut self, bytes: &[u8]) -> Vec<LogLine> {
         let mut lines = Vec::new();
         let Some(stream) = &mut self.stream else {

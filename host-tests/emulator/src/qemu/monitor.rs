@@ -17,18 +17,13 @@ use super::{Machine, Screenshot};
 const SINGLE_STEP: [&str; 2] = ["one-insn-per-tb", "singlestep"];
 
 impl Machine {
-    /// Returns the panel's picture, also while the machine is stopped. While the board runs, it may
-    /// be a mixture of two frames. An error means that QEMU has ended, or that the machine has no
-    /// panel of 128 x 64 pixels.
+    /// Returns the panel's picture. While the board runs, it may be a mixture of two frames.
     pub fn screenshot(&mut self) -> anyhow::Result<Screenshot> {
         self.execute("screendump", json!({ "filename": "panel.ppm" }))?;
         Screenshot::from_ppm(&std::fs::read(self.folder.path().join("panel.ppm"))?)
     }
 
-    /// Returns the bytes of memory or registers at these addresses, as the processor sees them. The
-    /// board may be running. To read a register has the same effects as a read by the program, such
-    /// as the removal of a received byte. An error means that QEMU has ended or that there is
-    /// nothing at one of the addresses. An empty or reversed range gives no bytes.
+    /// Returns the bytes of memory or registers at these addresses, as the processor sees them.
     pub fn read(&mut self, addresses: Range<u32>) -> anyhow::Result<Vec<u8>> {
         let range =
             json!({ "val": addresses.start, "size": addresses.len(), "filename": "memory" });
@@ -36,12 +31,7 @@ impl Machine {
         Ok(std::fs::read(self.folder.path().join("memory"))?)
     }
 
-    /// Presses (`down`) or releases a button, without waiting until the firmware has seen it. To
-    /// repeat the same has no effect. Call [`Self::wake_keys`] once before the first call, because
-    /// the emulated buttons work only after that; this is not checked. While the machine is
-    /// stopped, and on a board without buttons
-    /// ([`Board::has_panel`](crate::boards::Board::has_panel)), QEMU refuses the event, which is an
-    /// error.
+    /// Presses (`down`) or releases a button. [`Self::wake_keys`] must have been called once.
     pub fn set_key(&mut self, key: Key, down: bool) -> anyhow::Result<()> {
         // QEMU knows the board's select as the left control key.
         let code = if key == Key::Select {
@@ -56,10 +46,8 @@ impl Machine {
     }
 
     /// Presses and releases every button once, so quickly that the firmware, which debounces them,
-    /// sees no command, unless the host is delayed. It is called after the start, before the first
-    /// [`Self::set_key`], because the emulated hardware of the LM3S6965 distinguishes a released
-    /// button from a pressed one only after that. A machine that is stopped or has no buttons is an
-    /// error, as for [`Self::set_key`].
+    /// sees no command. The emulated hardware of the LM3S6965 distinguishes a released button from
+    /// a pressed one only after that.
     pub fn wake_keys(&mut self) -> anyhow::Result<()> {
         Key::ALL.iter().try_for_each(|&key| {
             [true, false]
@@ -68,16 +56,14 @@ impl Machine {
         })
     }
 
-    /// Switches QEMU's mode of one instruction per translation block; `switch` is `on` or `off`. An
-    /// error means that QEMU refuses it, or has ended.
+    /// Switches QEMU's mode of one instruction per translation block.
     pub(super) fn single_step(&mut self, switch: &str) -> anyhow::Result<()> {
         let [name, name_before] = SINGLE_STEP.map(|name| format!("{name} {switch}"));
         // An old QEMU refuses the new name.
         self.console(&name).or_else(|_| self.console(&name_before))
     }
 
-    /// Sends a line to QEMU's own console and waits until it is executed. Any text that it replies
-    /// is an error, so a command that prints something cannot be used. The error contains the text.
+    /// Sends a line to QEMU's own console. Any text that it replies is an error.
     pub(super) fn console(&mut self, line: &str) -> anyhow::Result<()> {
         let said = self.execute("human-monitor-command", json!({ "command-line": line }))?;
         let reason = said.as_str().unwrap_or_default().trim();
@@ -88,9 +74,7 @@ impl Machine {
         }
     }
 
-    /// Executes a command of QMP, waits for its result and returns it, such as `{}`. An error means
-    /// that QEMU refuses the command, and has its reason, or that QEMU has ended. Events before the
-    /// result are dropped.
+    /// Executes a command of QMP and returns its result.
     pub(super) fn execute(&mut self, command: &str, arguments: Value) -> anyhow::Result<Value> {
         writeln!(
             self.monitor.sender,

@@ -1,10 +1,7 @@
 //! Builds of the firmware.
 //!
-//! A build runs cargo with the tools of its [`Toolchain`] and installs none, except
-//! [`Toolchain::build_cores_ahead`]. It writes below `firmware` in the target folder, which is
-//! `CARGO_TARGET_DIR` or else `target` in the workspace, shows its progress on stderr, and ignores
-//! variables such as `RUSTFLAGS`. Cargo may load crates from the network. A build that takes more
-//! than 30 minutes is stopped, which is an error, and so is a cargo that cannot be started.
+//! A build writes below `firmware` in the target folder, shows its progress on stderr, and ignores
+//! variables such as `RUSTFLAGS`.
 
 use std::ffi::OsString;
 use std::path::PathBuf;
@@ -19,20 +16,18 @@ use super::run::{quick_output, run_shown};
 use super::{TARGETS, Toolchain, WASM, remap, set_up_for, target, workspace};
 use crate::boards::{Board, every_board};
 
-/// The binaries that this process has built, each with its target. The list saves time: another
-/// call of cargo takes half a second.
+/// The list saves time: another call of cargo takes half a second.
 static BUILT: Mutex<Vec<(String, String)>> = Mutex::new(Vec::new());
 
 /// The binaries that run on every target.
 const AHEAD: [&str; 3] = ["lm3s6965evb", "measure", "inject-panic"];
 
-/// The time limit of a build from scratch on a slow, busy machine, including downloads.
+/// For a slow, busy machine, including downloads.
 const LIMIT: Duration = Duration::from_secs(1800);
 
 /// The prefixes of environment variables that are removed for the firmware's build. `cargo run` and
 /// `cargo test` set such variables, and a user may have set them for host programs.
 const FOREIGN: [&str; 5] = ["CARGO", "RUST", "LD_LIBRARY_PATH", "DYLD_", "OUT_DIR"];
-/// The prefixes of exceptions that are kept: the location of cargo's home and its network settings.
 const OURS: [&str; 5] = [
     "CARGO_HOME",
     "CARGO_HTTP_",
@@ -41,14 +36,12 @@ const OURS: [&str; 5] = [
     "RUSTUP_",
 ];
 
-/// An image of the golden bits: its target, and the compiler's name of the processor if the image
-/// is built with the kernel's feature `double-fpu`, for a microcontroller that computes `f64` in
-/// hardware. `None` is the image for any processor of the target.
+/// An image of the golden bits: its target, and the processor's name if the image is built with the
+/// kernel's feature `double-fpu`.
 pub type CoreImage = (&'static str, Option<&'static str>);
 
-/// The images of the golden bits. Those of the boards' [`TARGETS`], which need no further tools,
-/// come first. The next two need the core library of their target, and the last three another
-/// emulator, too.
+/// The images of the golden bits. Those of the boards' [`TARGETS`] come first. The next two need
+/// the core library of their target, and the last three another emulator, too.
 pub const CORE_IMAGES: [CoreImage; 9] = [
     ("thumbv6m-none-eabi", None),
     ("thumbv7m-none-eabi", None),
@@ -62,7 +55,6 @@ pub const CORE_IMAGES: [CoreImage; 9] = [
 ];
 
 impl Toolchain {
-    /// Returns a command that runs cargo for a microcontroller target in the workspace's folder.
     fn cargo(&self) -> Command {
         let mut command = Command::new("cargo");
         // The variables of the surrounding cargo would change the flags of this build.
@@ -75,37 +67,28 @@ impl Toolchain {
         command
     }
 
-    /// Returns the folder in which the firmware is built. It is separate from the folder of the
-    /// host's programs, so that neither build waits for the other.
+    /// The folder is separate from that of the host's programs, so that neither build waits for the
+    /// other.
     fn folder() -> PathBuf {
         target().join("firmware")
     }
 
-    /// Returns the folder for the builds of the images of the golden bits. It is separate, so that
-    /// cargo can build them and the boards' programs at the same time. Only macros and build
-    /// scripts are compiled twice because of it.
+    /// The folder is separate, so that cargo can build these images and the boards' programs at the
+    /// same time. Only macros and build scripts are compiled twice because of it.
     fn folder_of_cores() -> PathBuf {
         Self::folder().join("cores")
     }
 
-    /// Builds the application of a board and returns the ELF file, as [`Self::build`] does.
     pub fn build_for(&self, board: &Board) -> anyhow::Result<PathBuf> {
         self.build(board.binary, board.target)
     }
 
     /// Builds a binary of the firmware with all optimisations and, if it is the application of a
-    /// board, that board's feature. Returns the ELF file, `firmware/TARGET/release/BINARY` in the
-    /// target folder. An older file is replaced. It is built once per process: after a success,
-    /// later calls return the same path at once, also if the sources have changed or the file is
-    /// gone.
-    ///
-    /// Concurrent builds take turns. An error contains the output of the compiler, also if there is
-    /// no such binary or target.
+    /// board, that board's feature. It is built once per process.
     pub fn build(&self, binary: &str, target: &str) -> anyhow::Result<PathBuf> {
         let elf = Self::folder().join(target).join("release").join(binary);
         let this = (binary.to_owned(), target.to_owned());
         if !BUILT.lock().is_ok_and(|built| built.contains(&this)) {
-            // The application of a board needs the board's feature.
             let feature = every_board()
                 .find(|board| board.binary == binary)
                 .map_or("", |board| board.feature);
@@ -120,13 +103,7 @@ impl Toolchain {
         Ok(elf)
     }
 
-    /// Builds the image of the golden bits for a target, in each call. If `double` names a
-    /// processor, the image is built for that processor, which computes `f64` in hardware; that it
-    /// does is not checked. Returns the image: an ELF file or, for WebAssembly, a module. Each
-    /// target and processor has its own file, and an older one is replaced.
-    ///
-    /// Concurrent calls in this process take turns. This toolchain must be that of [`set_up_for`]
-    /// this target. An error of the build contains the output of the compiler.
+    /// Builds the image of the golden bits for a target: an ELF file or, for WebAssembly, a module.
     pub fn build_cores(&self, target: &str, double: Option<&str>) -> anyhow::Result<PathBuf> {
         // Cargo gives both kinds of image the same name. Each is copied before the next build
         // replaces it.
@@ -144,7 +121,6 @@ impl Toolchain {
         Ok(image)
     }
 
-    /// Builds the image of the golden bits for several targets concurrently.
     fn build_core_images(&self, targets: &[&str], double: Option<&str>) -> anyhow::Result<()> {
         let mut command = self.for_targets("build", targets)?;
         command
@@ -162,9 +138,8 @@ impl Toolchain {
         self.finish(command, &format!("building cores for {names}"))
     }
 
-    /// Builds the [`CORE_IMAGES`] ahead, so that [`Self::build_cores`] takes less time. It stops,
-    /// without an error, before the first target whose tools cannot be provided: without a network,
-    /// each further one would wait for it. An error is a build that fails.
+    /// Builds the [`CORE_IMAGES`] ahead. It stops before the first target whose tools cannot be
+    /// provided: without a network, each further one would wait for it.
     pub fn build_cores_ahead(&self) -> anyhow::Result<()> {
         let is_ready = |target: &str| set_up_for(target).is_ok();
         let (double, any): (Vec<CoreImage>, Vec<CoreImage>) = CORE_IMAGES
@@ -187,13 +162,10 @@ impl Toolchain {
             .try_for_each(|(target, double)| self.build_core_images(&[target], double))
     }
 
-    /// Builds the programs of `kernel/minimal` for a target, as a user of the kernel would, and
-    /// returns the folder of their ELF files, `firmware/minimal/TARGET/release` in the target
-    /// folder. Older files are replaced, in each call.
+    /// Builds the programs of `kernel/minimal` for a target, as a user of the kernel would.
     ///
     /// Cargo runs in an empty folder, so that the settings of this repository do not apply. The
-    /// package's own `.cargo/config.toml` is passed to it. This toolchain must have the core
-    /// library of the target. An error contains the output of the compiler.
+    /// package's own `.cargo/config.toml` is passed to it.
     pub fn build_minimal(&self, target: &str) -> anyhow::Result<PathBuf> {
         let nowhere = tempfile::tempdir()?;
         let package = workspace().join("kernel/minimal");
@@ -202,7 +174,6 @@ impl Toolchain {
         let folder = Self::folder().join("minimal");
         let flags = remap::flags().map_err(|error| anyhow!(error))?;
 
-        // The compiler of the workspace, which rustup would not choose in another folder.
         let mut sysroot = Command::new("rustc");
         sysroot
             .args(["--print", "sysroot"])
@@ -228,9 +199,7 @@ impl Toolchain {
         Ok(folder.join(target).join("release"))
     }
 
-    /// Builds the application as a WebAssembly module, without names and debug information, in each
-    /// call. Returns its file, and replaces an older one. This toolchain must be that of
-    /// [`set_up_web`](super::set_up_web). An error contains the output of the compiler.
+    /// Builds the application as a WebAssembly module, without names and debug information.
     pub fn build_web(&self) -> anyhow::Result<PathBuf> {
         let mut command = self.for_targets("build", &[WASM])?;
         command
@@ -241,31 +210,25 @@ impl Toolchain {
         Ok(Self::folder().join(WASM).join("release/web.wasm"))
     }
 
-    /// Builds the binaries that run on every target, for all [`TARGETS`] at once, so that later
-    /// builds take less time. An error contains the output of the compiler.
+    /// Builds the binaries that run on every target, for all [`TARGETS`] at once.
     pub fn build_ahead(&self) -> anyhow::Result<()> {
         let mut command = self.for_targets("build", &TARGETS)?;
         command.args(AHEAD.iter().flat_map(|binary| ["--bin", binary]));
         self.finish(command, "building the firmware for all targets")
     }
 
-    /// Builds every board's application, one after the other, so that later builds take less time.
-    /// The first failure ends it; the error contains the output of the compiler.
     pub fn build_applications_ahead(&self) -> anyhow::Result<()> {
         every_board().try_for_each(|board| self.build_for(board).map(drop))
     }
 
-    /// Builds the programs of [`Self::build_minimal`] for all [`TARGETS`], one target after the
-    /// other, so that later builds take less time. They have a folder of their own, so this may run
-    /// at the same time as other builds. Errors are as in [`Self::build_applications_ahead`].
+    /// Builds the programs of [`Self::build_minimal`] for all [`TARGETS`].
     pub fn build_minimal_ahead(&self) -> anyhow::Result<()> {
         TARGETS
             .iter()
             .try_for_each(|target| self.build_minimal(target).map(drop))
     }
 
-    /// Checks the firmware's binaries for microcontrollers, for all [`TARGETS`], with Clippy. A
-    /// warning is an error, which contains the warnings of the first target that has any.
+    /// Checks the firmware's binaries for microcontrollers with Clippy. A warning is an error.
     pub fn check(&self) -> anyhow::Result<()> {
         for target in TARGETS {
             // All boards of a target are checked at once, with the features of all.
@@ -282,7 +245,6 @@ impl Toolchain {
         Ok(())
     }
 
-    /// Returns a cargo command (`what`) for the optimised firmware on some targets.
     fn for_targets(&self, what: &str, targets: &[&str]) -> anyhow::Result<Command> {
         let flags = remap::flags().map_err(|error| anyhow!(error))?;
         let mut command = self.cargo();
@@ -299,7 +261,6 @@ impl Toolchain {
         Ok(command)
     }
 
-    /// Runs a build and shows progress. An error contains the output of the compiler.
     fn finish(&self, mut command: Command, doing: &str) -> anyhow::Result<()> {
         let output = run_shown(&mut command, LIMIT, doing)?;
         ensure!(
@@ -311,7 +272,6 @@ impl Toolchain {
     }
 }
 
-/// Returns true if the variable must not reach the firmware's build.
 fn is_foreign(name: &OsString) -> bool {
     let begins = |with: &&str| name.as_encoded_bytes().starts_with(with.as_bytes());
     FOREIGN.iter().any(begins) && !OURS.iter().any(begins)

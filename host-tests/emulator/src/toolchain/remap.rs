@@ -12,11 +12,8 @@ use std::{env, fs};
 use super::run::quick_output;
 use super::{target, workspace};
 
-/// Returns the flags, each `--remap-path-prefix=FOLDER=NAME`. If
-/// several prefixes match, the compiler uses the last one, so the order matters. An error is the
-/// reason why the compiler does not print its folder or version.
+/// If several prefixes match, the compiler uses the last one, so the order matters.
 pub(super) fn flags() -> Result<Vec<String>, String> {
-    // The workspace and the folder of everything built.
     let mut renamed = vec![
         (workspace().to_owned(), ".".to_owned()),
         (target(), "target".to_owned()),
@@ -55,7 +52,6 @@ pub(super) fn flags() -> Result<Vec<String>, String> {
         .collect())
 }
 
-/// Returns cargo's home folder, which contains the sources of other crates.
 fn cargo_home() -> Option<PathBuf> {
     let set = env::var_os("CARGO_HOME").filter(|folder| !folder.is_empty());
     set.and_then(|folder| absolute(folder).ok())
