@@ -125,14 +125,14 @@ pub const CORTEX_M3: Processor = Processor {
 };
 /// A Cortex-M0+, as on the Raspberry Pi Pico. It has no floating-point unit, and no instruction for
 /// a product of 64 bits either. The budgets are for a clock of 125 MHz or more. At 125 MHz a tick
-/// has 2,083,000 cycles: 300,000 for the motion, and 640,000 for planning.
+/// has 2,083,000 cycles: 330,000 for the motion, and 640,000 for planning.
 ///
 /// In the map of flips, a start whose motion is computed counts four steps more than on a
 /// Cortex-M3, so that a tick leaves time for the Pico's serial link.
 pub const CORTEX_M0PLUS: Processor = Processor {
     code: 3,
     costs: Costs::CORTEX_M0PLUS,
-    frame: 300_000.0,
+    frame: 330_000.0,
     look_ahead: 640_000.0,
     flips: FlipsPace { start: 46, ..FIXED },
 };

@@ -256,7 +256,7 @@ impl<'a> Player<'a> {
         let current = simulation.motion.stepping();
         let planned = plan.stepping();
         let processor = &self.planner.processor;
-        let arrival = CatchingUp::arrival(planned, processor, self.planner.ticks);
+        let arrival = CatchingUp::arrival(&self.settings, planned, processor, self.planner.ticks);
         let is_longer = plan.horizon >= self.planner.horizon(current).max(arrival);
         if planned == current || !is_longer {
             return;
@@ -311,7 +311,10 @@ impl<'a> Player<'a> {
     /// [`Method::DRAWN`], and 0 for a step count of 0, except for the closed form, whose cost does
     /// not depend on it.
     pub fn cost(&self, stepping: Stepping) -> f32 {
-        self.planner.processor.costs.of_frame(stepping)
+        let costs = self.planner.processor.costs;
+        costs
+            .for_pendulum(&self.settings.parameters.cast())
+            .of_frame(stepping)
     }
 
     /// Returns the report of the scene, with the horizon that the planner has verified.

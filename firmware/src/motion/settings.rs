@@ -149,9 +149,9 @@ impl Settings {
     ///
     /// # Errors
     ///
-    /// Refuses settings that describe no pendulum or no finite start, a start of 2^31 - 1 turns or
-    /// more, numbers out of the range of the method, a step that the method cannot make, for the
-    /// closed form a gravity of 0, and a method that is not in
+    /// Refuses settings that describe no pendulum or no finite start, numbers out of the range of
+    /// the method, a step that the method cannot make, for the closed form a gravity of 0, and a
+    /// method that is not in
     /// [`Method::DRAWN`](double_pendulum::Method::DRAWN). Most methods accept a step that is
     /// unstable ([`PlannedRun::new`]), unlike [`Simulation::new`](super::Simulation::new).
     pub fn run(&self, apart: f64, stepping: Stepping) -> Result<PlannedRun, Error> {

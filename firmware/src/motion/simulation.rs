@@ -1,6 +1,6 @@
 //! The simulation of the motion of a scene, and the error of its energy.
 
-use double_pendulum::plan::{PlannedRun, Stepping};
+use double_pendulum::plan::{PlannedRun, Problem, Stepping};
 use double_pendulum::{Error, Method, Parameter, Pendulum, State};
 
 use crate::config::{Processor, TICK_RATE};
@@ -57,7 +57,10 @@ impl Simulation {
         let (pendulum, _) = settings.start()?;
         let problem = settings.problem(format.height.into());
         let initial = match method {
-            Some(method) => Some(affordable(Stepping::of(&problem, method)?, processor)?),
+            Some(method) => {
+                let stepping = Stepping::of(&problem, method)?;
+                Some(affordable(stepping, &problem, processor)?)
+            }
             None => Stepping::initial(&problem, &processor.costs, processor.frame)?,
         };
 
@@ -113,8 +116,13 @@ impl Simulation {
 
 /// Refuses a method and step count that cost more than a frame may. Frames would come late, and
 /// with enough steps the watchdog would reset the board.
-fn affordable(stepping: Stepping, processor: &Processor) -> Result<Stepping, Error> {
-    let cost = processor.costs.of_frame(stepping);
+fn affordable(
+    stepping: Stepping,
+    problem: &Problem,
+    processor: &Processor,
+) -> Result<Stepping, Error> {
+    let costs = processor.costs.for_pendulum(&problem.pendulum);
+    let cost = costs.of_frame(stepping);
     if cost > processor.frame {
         return Err(Error::TooLarge {
             parameter: Parameter::Cost,
@@ -151,21 +159,27 @@ impl CatchingUp {
     ) -> Result<Self, Error> {
         Ok(Self {
             motion: settings.run(0.0, stepping)?,
-            most: Self::frames(stepping, processor),
+            most: Self::frames(settings, stepping, processor),
         })
     }
 
     /// Returns the number of frames that a motion by `stepping` advances in a tick.
-    fn frames(stepping: Stepping, processor: &Processor) -> u32 {
-        let frame = processor.costs.of_frame(stepping).max(processor.piece());
+    fn frames(settings: &Settings, stepping: Stepping, processor: &Processor) -> u32 {
+        let costs = processor.costs.for_pendulum(&settings.parameters.cast());
+        let frame = costs.of_frame(stepping).max(processor.piece());
         let affordable = (processor.look_ahead / frame) as u32;
         affordable.max(2) // With fewer it would never catch up.
     }
 
     /// Returns the time, s since the start of the scene, when a motion by `stepping` has caught up
     /// that starts again in tick `ticks`. It may be up to two ticks later.
-    pub fn arrival(stepping: Stepping, processor: &Processor, ticks: u64) -> f64 {
-        let frames = f64::from(Self::frames(stepping, processor));
+    pub fn arrival(
+        settings: &Settings,
+        stepping: Stepping,
+        processor: &Processor,
+        ticks: u64,
+    ) -> f64 {
+        let frames = f64::from(Self::frames(settings, stepping, processor));
         ticks as f64 / f64::from(TICK_RATE) * (frames / (frames - 1.0))
     }
 

@@ -96,8 +96,8 @@ pub struct Report {
     pub step: u64,
     /// The simulated time since the start, s.
     pub time: f64,
-    /// The canonical state of the first pendulum shown, in SI units (rad, kg m^2/s), with all
-    /// turns; zeros if no pendulum moves. By RK4 in `f32` it may be up to half a step ahead of
+    /// The canonical state of the first pendulum shown, in SI units (rad, kg m^2/s), with angles in
+    /// [-pi, pi]; zeros if no pendulum moves. By RK4 in `f32` it may be up to half a step ahead of
     /// `time`, or behind it ([`PlannedRun::rounded_state`]). The state of a diverged motion is not
     /// finite; the player then stops the scene, and keeps and sends the report of the frame before.
     ///

@@ -261,9 +261,8 @@ impl Scene for Figure7 {
 /// The horizon that is shown with the time is that of the left motion. This is compared with the
 /// same motion in 64 bits, which is not drawn, until a bob is half a pixel off. There is no plan,
 /// because the scene shows two given arithmetics. A requested method is ignored. The scene is too
-/// fast if a frame cannot pay for all three motions. It accepts every finite start of fewer than
-/// 2^31 - 1 turns, not only the upright one. It refuses settings that describe no pendulum or no
-/// such start, and steps that a method cannot make. A compensated motion that has diverged stands
+/// fast if a frame cannot pay for all three motions. It accepts every finite start, not only the
+/// upright one. It refuses settings that describe no pendulum or no such start, and steps that a method cannot make. A compensated motion that has diverged stands
 /// still; a plain one stops the scene, once its state is not finite.
 ///
 /// The `f32` nearest to pi is too large by 8.7e-8, so that the exact motion from there falls after

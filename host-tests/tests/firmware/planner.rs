@@ -283,13 +283,14 @@ fn two_results(processor: Processor, settings: &Settings) -> ([(u64, Plan); 2], 
 /// the tick of the final result would come too late.
 #[test]
 fn final_result_is_about_the_plan_that_is_followed() {
-    let (results, planner) = two_results(CORTEX_M3, &Settings::equal_rods(3.0, 38.0));
+    let settings = Settings::equal_rods(3.0, 38.0);
+    let (results, planner) = two_results(CORTEX_M3, &settings);
     let [(early, preliminary), (late, last)] = results;
     assert_eq!(preliminary.stepping(), last.stepping(), "{results:?}");
     assert!(last.horizon > PLANNED && planner.horizon(last.stepping()) == last.horizon);
 
     // Only the tick of the first report is in time.
-    let arrival = |tick| CatchingUp::arrival(last.stepping(), &CORTEX_M3, tick);
+    let arrival = |tick| CatchingUp::arrival(&settings, last.stepping(), &CORTEX_M3, tick);
     assert!(
         arrival(early) <= preliminary.horizon && last.horizon < arrival(late),
         "{results:?}"
@@ -306,7 +307,7 @@ fn final_result_is_about_the_initial_method_if_the_plan_is_too_late() {
     };
     let (results, planner) = two_results(CORTEX_M0PLUS, &settings);
     let [(early, preliminary), (_, last)] = results;
-    let arrival = CatchingUp::arrival(preliminary.stepping(), &CORTEX_M0PLUS, early);
+    let arrival = CatchingUp::arrival(&settings, preliminary.stepping(), &CORTEX_M0PLUS, early);
     assert!(arrival > preliminary.horizon, "{results:?}");
     assert_eq!(last.stepping(), REPLACED, "{results:?}");
     assert!(last.horizon > 0.0 && planner.horizon(REPLACED) == last.horizon);
@@ -333,7 +334,7 @@ fn a_plan_that_ends_early_and_does_not_resolve_the_motion_is_not_followed() {
 
     let (plan, tick) = first(None);
     assert!(plan.limit != Limit::End && plan.stepping().resolves(&problem) == Ok(false));
-    assert!(CatchingUp::arrival(plan.stepping(), &processor, tick) <= plan.horizon);
+    assert!(CatchingUp::arrival(&settings, plan.stepping(), &processor, tick) <= plan.horizon);
 
     let (kept, _) = first(Some(initial));
     assert_eq!((kept.stepping(), kept.limit), (initial, Limit::Method));
@@ -351,7 +352,7 @@ fn a_late_plan_for_the_initial_method_is_the_result() {
     planner.start(&Settings::default(), Some(HEIGHT), Some(initial), false);
     let found = (0..2 * PATIENCE).find_map(|_| planner.tick());
     let plan = found.expect("a result").expect("a plan");
-    let arrival = CatchingUp::arrival(initial, &CORTEX_M0PLUS, planner.ticks);
+    let arrival = CatchingUp::arrival(&Settings::default(), initial, &CORTEX_M0PLUS, planner.ticks);
     assert!(arrival > plan.horizon, "{plan:?}");
     assert_eq!((plan.stepping(), plan.limit), (initial, Limit::Growth));
 }

@@ -439,9 +439,12 @@ fn beats_have_no_line_across_the_figure() {
         .start(SceneName::Beats2To1, &settings, &RESOURCES)
         .expect("a scene");
 
+    let mut has_passed_upright = false;
     for ticks in 1..=60 {
         let before = Screenshot::from(&ink);
+        let a2_before = scene.report(ticks).state.a2;
         scene.tick(ticks, &mut ink);
+        has_passed_upright |= a2_before > 2.0 && scene.report(ticks).state.a2 < -2.0;
         // The figure of the exact motion is in the right half.
         let new: Vec<_> = places()
             .filter(|&(x, y)| x >= WIDTH / 2 && ink.get(x, y) > before.get(x, y))
@@ -453,8 +456,7 @@ fn beats_have_no_line_across_the_figure() {
         }
     }
 
-    let a2 = scene.report(60).state.a2;
-    assert!(a2 > std::f32::consts::PI, "it has passed straight up: {a2}");
+    assert!(has_passed_upright);
 }
 
 /// The separation of the two pendulums is at most 15.3 e-foldings, because whole turns are not

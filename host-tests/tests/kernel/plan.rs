@@ -78,6 +78,7 @@ fn planner_chooses_the_cheapest_method_with_the_longest_horizon() {
     let figure7 = scene(2.75, 171.0, 30.0);
     let costly = Costs {
         fixed32: 20e3,
+        fixed32_unlike: 20e3,
         ..M3
     };
     let rows: [Row; 11] = [

@@ -2,20 +2,18 @@
 
 use super::{PlannedRun, Problem};
 use crate::error::{Error, Parameter};
-use crate::pendulum::Pendulum;
+use crate::methods::Fixed32;
+use crate::pendulum::{Parameters, Pendulum};
 use crate::table::Method;
 
 /// The price list of a processor: the cost of a step by each method of [`Method::DRAWN`], and of a
-/// frame by the closed form.
+/// frame by the closed form. A step by [`Method::Rk4Fixed32`] has two prices;
+/// [`for_pendulum`](Self::for_pendulum) selects the right one.
 ///
 /// The unit is arbitrary, usually cycles; the [`Budget`] has the same unit. Every price must be
 /// finite and more than 0, otherwise a search is refused. The lists of some processors are
 /// [`CORTEX_M3`](Self::CORTEX_M3), [`CORTEX_M4F`](Self::CORTEX_M4F) and
 /// [`CORTEX_M0PLUS`](Self::CORTEX_M0PLUS).
-///
-/// The prices of these lists are those of the step alone. A [`PlannedRun`] also counts whole turns
-/// after each step, which they do not include: in `f32` on a Cortex-M4F the count takes about 180
-/// cycles, nearly as much as the step itself ([`Run`](crate::Run)).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Costs {
     /// A frame by [`Method::ClosedFormF32`].
@@ -24,8 +22,11 @@ pub struct Costs {
     pub direction_plain: f32,
     /// A step by [`Method::Rk4F32Direction`].
     pub direction: f32,
-    /// A step by [`Method::Rk4Fixed32`].
+    /// A step by [`Method::Rk4Fixed32`] for rods and masses that are about equal
+    /// ([`Fixed32`](crate::Fixed32#cost)).
     pub fixed32: f32,
+    /// A step by [`Method::Rk4Fixed32`] for other rods and masses.
+    pub fixed32_unlike: f32,
     /// A step by [`Method::Extrapolation10Fixed64`].
     pub fixed64: f32,
     /// The preparation of a motion by any of these methods, or the restart of all shadows of a
@@ -35,6 +36,19 @@ pub struct Costs {
 }
 
 impl Costs {
+    /// Returns the price list for this pendulum: [`fixed32`](Self::fixed32) becomes
+    /// [`fixed32_unlike`](Self::fixed32_unlike) if rods or masses are not about equal. A search
+    /// does this itself.
+    #[must_use]
+    pub fn for_pendulum(self, parameters: &Parameters<f64>) -> Self {
+        let fixed32 = if Fixed32::needs_shifts(parameters) {
+            self.fixed32_unlike
+        } else {
+            self.fixed32
+        };
+        Self { fixed32, ..self }
+    }
+
     /// Returns the cost of a step by `method`, or of a frame by the closed form. Returns `None` for
     /// a method that is not in [`Method::DRAWN`].
     pub(crate) const fn step(&self, method: Method) -> Option<f32> {
@@ -52,7 +66,8 @@ impl Costs {
     ///
     /// At any step count it is infinite for a method that is not in [`Method::DRAWN`], and
     /// [`closed_form`](Self::closed_form) for the closed form. By the other methods a step count of
-    /// 0 costs 0, although a motion counts it as 1. The prices are not checked.
+    /// 0 costs 0, although a motion counts it as 1. The prices are not checked. For unlike rods or
+    /// masses the list must be that [for the pendulum](Self::for_pendulum).
     #[must_use]
     pub fn of_frame(&self, Stepping { method, steps }: Stepping) -> f32 {
         let steps = if method == Method::ClosedFormF32 {
@@ -328,6 +343,7 @@ impl Stepping {
     /// negative, or with numbers out of range.
     pub fn initial(problem: &Problem, costs: &Costs, frame: f32) -> Result<Option<Self>, Error> {
         let admissible = admissible_step(problem)?;
+        let costs = &costs.for_pendulum(&problem.pendulum);
 
         // In 32 bits the method whose step costs less comes first.
         let in_32_bits = if costs.fixed32 < costs.direction {

@@ -168,15 +168,12 @@ impl Plan {
     /// [`steps`](Self::steps) per frame of the problem; 0 counts as 1. Other fields of the plan are
     /// not used.
     ///
-    /// A motion of another problem starts, too, but nothing is known of its accuracy. Whole turns
-    /// are miscounted if a rod turns by more than a quarter turn in a step, as a very short rod 2
-    /// may; its directions do not depend on them.
+    /// A motion of another problem starts, too, but nothing is known of its accuracy.
     ///
     /// # Errors
     ///
     /// Refuses what [`PlannedRun::new`] refuses: a problem with an invalid pendulum, with a start
-    /// that is not finite or of 2^31 - 1 turns or more, with numbers out of the range of the
-    /// method, with a rate of 0 or, in fixed point, with a step that is too long; for the closed
+    /// that is not finite, with numbers out of the range of the method, with a rate of 0 or, in fixed point, with a step that is too long; for the closed
     /// form a pendulum without gravity; and a method that is not in [`Method::DRAWN`].
     pub fn run(&self, problem: &Problem) -> Result<PlannedRun, Error> {
         PlannedRun::new(problem, self.stepping())

@@ -42,7 +42,8 @@ impl Problem {
             .iter()
             .filter_map(|method| costs.step(*method));
         let of = |parameter| move |value: f32| (parameter, f64::from(value));
-        let costs = prices.chain([costs.preparation]).map(of(Parameter::Cost));
+        let others = [costs.fixed32_unlike, costs.preparation];
+        let costs = prices.chain(others).map(of(Parameter::Cost));
         let budgets = [budget.frame, budget.planning].map(of(Parameter::Budget));
 
         // Check in this order; the error names the first value that is refused.

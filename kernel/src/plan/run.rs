@@ -2,7 +2,7 @@
 
 use super::{Problem, Stepping};
 use crate::error::Error;
-use crate::methods::{Advance, DrawnMotion, Turns};
+use crate::methods::{Advance, DrawnMotion};
 use crate::pendulum::{Direction, Pendulum, State};
 use crate::table::Method;
 
@@ -14,9 +14,8 @@ pub(super) type Directions = [Direction<f32>; 2];
 /// It is bit-identical to the motion that the search has measured. After [`advance`](Self::advance)
 /// has returned an error, directions, states and energies are meaningless, and may look valid.
 ///
-/// Whole turns are counted after each step. If a rod turns by more than a quarter turn in a step,
-/// they may be miscounted. The price lists of the kernel do not include the time that the count
-/// takes ([`Costs`](super::Costs)).
+/// Whole turns are not counted: a picture does not show them, and in `f32` on a Cortex-M4F the count
+/// takes nearly as long as a step. [`Run`](crate::Run) counts them on request.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlannedRun {
     stepping: Stepping,
@@ -24,7 +23,6 @@ pub struct PlannedRun {
     /// The number of frames since the start.
     frame: u64,
     motion: DrawnMotion,
-    turns: [Turns; 2],
 }
 
 impl PlannedRun {
@@ -65,15 +63,11 @@ impl PlannedRun {
         let state = Pendulum::new(&pendulum)?.to_state(&start);
         let dt = 1.0 / (f64::from(rate) * f64::from(steps));
         let motion = DrawnMotion::new(stepping.method, &pendulum, &state, dt)?;
-
-        // The directions carry no whole turns, so these are counted from the start.
-        let turns = Turns::of(state.angles(), motion.sides())?;
         Ok(Self {
             stepping: Stepping { steps, ..stepping },
             rate,
             frame: 0,
             motion,
-            turns,
         })
     }
 
@@ -97,10 +91,7 @@ impl PlannedRun {
     /// numbers are finite but meaningless is accepted.
     pub fn advance(&mut self, frames: u32) -> Result<(), Error> {
         for _ in 0..frames {
-            for _ in 0..self.stepping.steps {
-                self.motion.advance(1);
-                Turns::observe(&mut self.turns, self.motion.sides());
-            }
+            self.motion.advance(self.stepping.steps);
         }
 
         self.frame += u64::from(frames);
@@ -131,22 +122,17 @@ impl PlannedRun {
     }
 
     /// Returns the canonical state in SI units, rounded to `f32`, at the time of the
-    /// [`directions`](Self::directions). The angles include whole turns. A momentum beyond the
-    /// range of `f32` is infinite.
+    /// [`directions`](Self::directions), with angles in [-pi, pi]. A momentum beyond the range of
+    /// `f32` is infinite.
     ///
     /// This is enough for a picture, and costs far less than [`state`](Self::state) on a processor
     /// whose `f64` is software.
     #[inline(never)] // 0.4 KB more flash on an M3 without.
     #[must_use]
     pub fn rounded_state(&self) -> State<f32> {
-        let ([turns1, turns2], [direction1, direction2]) = (&self.turns, self.directions());
+        let [a1, a2] = self.directions().map(|[s, c]| libm::atan2f(s, c));
         let [p1, p2] = self.motion.momenta();
-        State {
-            a1: turns1.angle(direction1),
-            a2: turns2.angle(direction2),
-            p1,
-            p2,
-        }
+        State { a1, a2, p1, p2 }
     }
 
     /// Returns the energy above rest, J, of the motion as it is carried: nothing is rounded to
@@ -159,11 +145,10 @@ impl PlannedRun {
     }
 
     /// Returns the canonical state in SI units at the [`time`](Self::time), with all digits that
-    /// the method carries. The angles include whole turns, which belong to this time even if a rod
-    /// passes upright between it and that of the directions.
+    /// the method carries. The angles are within [-pi, pi], except by the closed form.
     #[must_use]
     pub fn state(&self) -> State<f64> {
-        Turns::unwrap(&self.turns, self.motion.state())
+        self.motion.state()
     }
 }
 

@@ -9,9 +9,9 @@ use std::path::PathBuf;
 use anyhow::{Context, Result, ensure};
 use cycles::{Calls, Core, Cost, Image, for_each_instruction};
 use double_pendulum::Method;
-use double_pendulum::plan::Costs;
+use double_pendulum::plan::{Costs, Stepping};
 use firmware::job::Request;
-use firmware::protocol::Command;
+use firmware::protocol::{Command, ToHost};
 use rayon::prelude::*;
 
 use super::trace::LIMIT;
@@ -154,7 +154,8 @@ const MARKS: [&str; 2] = [
 /// expensive preparation of a motion when each method in turn is selected in the application, and
 /// the first restart of the shadows of its plan. `fixed64` is per step: the most expensive one in a
 /// frame of the application. All others are per step of 1/256 s, averages over a motion of equal
-/// rods and bobs from rest at 0.5 rad.
+/// rods and bobs from rest at 0.5 rad; `fixed32_unlike` is per step of 2^-13 s, with a bob 2 of
+/// 30 kg on a rod of 3 m, from rest at 2 rad.
 pub fn prices(toolchain: &Toolchain) -> Result<Vec<(&'static Board, Costs)>> {
     let targets = Target::build_all(toolchain)?;
     targets
@@ -172,6 +173,10 @@ fn on(target: &Target, toolchain: &Toolchain) -> Result<Costs> {
         };
         anyhow::Ok(affordable_cost(target, &request)?.cycles as f32)
     };
+    let mut unlike = Request::on_any_core(Method::Rk4Fixed32);
+    unlike.parameters.m2 = 30.0;
+    unlike.parameters.l2 = 3.0;
+    unlike.dt = 1.0 / 8192.0;
     // Only the application has code for these two prices.
     let (fixed64, preparation) = in_application(target.board, toolchain)?;
     Ok(Costs {
@@ -179,6 +184,7 @@ fn on(target: &Target, toolchain: &Toolchain) -> Result<Costs> {
         direction_plain: step(Method::Rk4F32DirectionPlain)?,
         direction: step(Method::Rk4F32Direction)?,
         fixed32: step(Method::Rk4Fixed32)?,
+        fixed32_unlike: affordable_cost(target, &unlike)?.cycles as f32,
         fixed64,
         preparation,
     })
@@ -211,9 +217,14 @@ fn in_application(board: &'static Board, toolchain: &Toolchain) -> Result<(f32, 
     let mut machine = Machine::halted(&settings)?;
     let end = end_of_frame(&mut machine, &image)?;
     let step = BTreeSet::from([image.function(STEP)?.address]);
-    let [steps] =
+    let [calls] =
         machine.next_frame_logged(end, |log| calls_in(log, &image, board.core(), [step]))?;
-    let fixed64 = most(STEP, &steps.ended)?;
+    // A call makes the steps of a frame, as many as the next frame reports.
+    let messages = machine.run_to_frame()?;
+    let frame = messages.into_iter().rev().find_map(ToHost::frame);
+    let shown = frame.and_then(|frame| frame.report.stepping);
+    let Stepping { steps, .. } = shown.context("the application shows no motion")?;
+    let fixed64 = most(STEP, &calls.ended)? / steps as f32;
 
     // The application plans its first scene.
     let restart = image.function(RESTART)?.address;

@@ -35,7 +35,7 @@ const LONGEST_STEP: f64 = 0.5;
 /// the peak of r.
 const LONGEST_STEP_AT_ELBOW: f64 = 0.5;
 
-const MOST_HALVINGS: u32 = 12;
+pub const MOST_HALVINGS: u32 = 12;
 
 /// The constants that all steps of one motion share, without dimension, in the units of
 /// [`Scaling`]: nu and m are divided by its powers of two, here in every constant.
