@@ -6,7 +6,6 @@ use crate::config::{
 use crate::protocol::Command;
 
 choice! {
-    /// The name of a button. [`Pressed`] is a reading of all five.
     Key {
         Up = "up";
         Down = "down";
@@ -16,7 +15,7 @@ choice! {
     }
 }
 
-/// A reading of the five buttons, not debounced; `true` means pressed.
+/// Not debounced; `true` means pressed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Pressed {
     pub up: bool,
@@ -26,14 +25,11 @@ pub struct Pressed {
     pub select: bool,
 }
 
-/// The buttons of a board.
 pub trait Buttons {
-    /// Returns the levels of the buttons now, without waiting. The application reads them once a
-    /// tick and debounces them itself.
+    /// Returns the levels of the buttons now, without waiting.
     fn read(&mut self) -> Pressed;
 }
 
-/// The buttons of a board without any: none is ever pressed.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct NoButtons;
 
@@ -53,8 +49,7 @@ const ARROWS: [[Command; 2]; 4] = [
 
 /// The state of the five buttons, from readings of one tick to commands.
 ///
-/// A level counts when [`DEBOUNCE_TICKS`] readings in a row show it. A button has no effect until
-/// it has been released once.
+/// A button has no effect until it has been released once.
 ///
 /// | button | alone, repeating | with select held |
 /// |---|---|---|
@@ -63,17 +58,9 @@ const ARROWS: [[Command; 2]; 4] = [
 /// | left | start angle clockwise | previous scene |
 /// | right | start angle counter-clockwise | next scene |
 ///
-/// An arrow that is held alone repeats after [`REPEAT_DELAY_TICKS`], and then every
-/// [`REPEAT_PERIOD_TICKS`]. With select held it acts once for each press. After that select itself
-/// has no effect until it is released, and earlier taps do not count. An arrow that was pressed
-/// before select has no effect while select is held.
-///
-/// The select button alone can do the most important things. A tap restarts the scene when it ends:
-/// a press shorter than [`HOLD_TICKS`], in which no arrow has caused a command. Holding it for
-/// [`HOLD_TICKS`] selects the next scene, once. Holding it that long after one, two, three or four
-/// taps is instead a heavier bob 2, a lighter one, a turn to the right or to the left, and repeats
-/// every [`REPEAT_PERIOD_TICKS`]. After more taps it does nothing. Each of these taps has restarted
-/// the scene. Taps belong together if at most [`MOST_TICKS_BETWEEN_TAPS`] are between them.
+/// A board with the select button alone can do the most important things. A tap restarts the scene.
+/// Holding it selects the next scene; after one, two, three or four taps it is instead a heavier
+/// bob 2, a lighter one, a turn to the right or to the left.
 #[derive(Clone, Debug, Default)]
 pub struct Controls {
     arrows: [Button; 4],
@@ -82,9 +69,8 @@ pub struct Controls {
 }
 
 impl Controls {
-    /// Takes the reading of one tick of the clock; call it once in every tick. Returns the commands
-    /// of the buttons, usually none: at most one for each of up, down, left and right, in this
-    /// order, and then the select button's own command.
+    /// Takes the reading of one tick of the clock. Returns the commands of up, down, left, right
+    /// and select.
     pub fn tick(
         &mut self,
         Pressed {
@@ -131,27 +117,21 @@ const HELD: [Command; 5] = [
     Command::TurnLeft,
 ];
 
-/// The state of the select button when it is used alone.
 #[derive(Clone, Debug, Default)]
 struct OneButton {
-    /// The time that it has been held alone, ticks; `None` if it is released, or is held together
-    /// with another button.
+    /// `None` if it is released, or is held together with another button.
     held: Option<u8>,
     /// True if holding it has already caused a command: its release is then not a tap.
     served: bool,
-    /// The number of taps in a row.
     taps: usize,
-    /// The number of ticks since the last tap.
     since: u8,
 }
 
 impl OneButton {
-    /// Takes the change of the button in this tick, and true if an arrow has caused a command in
-    /// it. Returns the command of the select button. A tap restarts the scene when it ends.
+    /// `with_another` is true if an arrow has caused a command in this tick.
     fn tick(&mut self, change: Option<Change>, with_another: bool) -> Option<Command> {
         self.since = self.since.saturating_add(1);
 
-        // A press begins a hold. A short press is a tap.
         match change {
             Some(Change::Pressed) => {
                 if self.since > MOST_TICKS_BETWEEN_TAPS {
@@ -180,7 +160,6 @@ impl OneButton {
 
         let held = self.held.as_mut()?;
 
-        // Count the time of the hold.
         *held = held.saturating_add(1);
         if *held < HOLD_TICKS {
             return None;
@@ -196,7 +175,6 @@ impl OneButton {
     }
 }
 
-/// A change of a debounced button.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Change {
     Pressed,
@@ -205,11 +183,9 @@ enum Change {
     Released,
 }
 
-/// A button that repeats while it is held.
 #[derive(Clone, Debug, Default)]
 struct Button {
     phase: Phase,
-    /// The number of readings in a row that contradict the phase.
     contradictions: u8,
 }
 
@@ -220,7 +196,6 @@ enum Phase {
     #[default]
     Unproven,
     Released,
-    /// The button is held. It counts as pressed again after this number of ticks.
     Held {
         repeats_in: u8,
     },
@@ -231,8 +206,6 @@ impl Button {
         matches!(self.phase, Phase::Held { .. })
     }
 
-    /// Takes the reading of one tick. Returns the change of the debounced button; `None` if its
-    /// level stays and no repetition is due, or if it is released for the first time.
     fn tick(&mut self, pressed: bool) -> Option<Change> {
         let contradicts = if self.phase == Phase::Unproven {
             !pressed
@@ -240,14 +213,12 @@ impl Button {
             pressed != self.is_held()
         };
 
-        // Count the readings in a row that contradict the phase.
         self.contradictions = if contradicts {
             self.contradictions.saturating_add(1)
         } else {
             0
         };
 
-        // The level has changed for long enough.
         if self.contradictions >= DEBOUNCE_TICKS {
             self.contradictions = 0;
             let proven = self.phase != Phase::Unproven;

@@ -31,53 +31,39 @@ pub use warm_restart::{Journal, Kept, MOST_RESTARTS, Record, SOUND_FRAMES};
 /// The application. It needs only a panel, a byte sink and buttons, so that it is the same on a
 /// board and in a test.
 ///
-/// The main loop calls its functions; no interrupt does. Errors of the panel and of the link do not
-/// stop it: the first of several in a row is logged. A message blocks only while the link's `write`
-/// blocks.
+/// The main loop calls its functions; no interrupt does. A message blocks only while the link's
+/// `write` blocks.
 #[derive(Debug)]
 pub struct App<'a, Panel, Link, Keys> {
     /// The panel is borrowed, so that neither it nor the application is too large for the stack
     /// while it is created.
     panel: &'a mut Panel,
-    /// The sink of the messages to the host.
     pub link: Link,
     keys: Keys,
     controls: Controls,
-    /// The scene that is shown.
     pub player: Player<'a>,
     decoder: Decoder,
-    /// The last requested motion, and the number of its command, which the answers repeat.
+    /// The last requested motion, and the number of its command.
     work: Option<(u16, Job)>,
-    /// The last tick of the clock that is completed; wraps.
     ticks: u32,
-    /// The number of frames drawn since reset, also those that the panel or the link did not take;
-    /// wraps.
     pub frames: u32,
-    /// The number of ticks since the last key, on the board or on the host.
     without_key: u32,
-    /// The number of ticks without a frame since reset.
     dropped: ThrottledCounter,
-    /// The number of damaged messages, and of received bytes that were lost, since reset.
     damaged: ThrottledCounter,
     lost: ThrottledCounter,
     last_damage: Option<LinkError>,
     panel_failing: FaultEdge,
     link_failing: FaultEdge,
-    /// The measuring functions and the identity of the board; the default measures nothing.
     pub instruments: Instruments,
-    /// The last restart that the board made on its own, for hosts that ask.
     restarted: Option<Restarted>,
-    /// The processor cycles of the previous frame, from its first tick to the end of its transfer.
+    /// Of the previous frame, from its first tick to the end of its transfer.
     busy_cycles: u32,
 }
 
 impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> {
-    /// Creates an application that does not play yet: it shows an empty figure until a command, or
-    /// [`Player::play`], starts a scene. The canvas is not cleared before that. The clock
-    /// is at tick 0, and nothing is sent yet. `processor` has the prices and budgets of the player.
-    ///
-    /// The start of a scene needs much stack. So it is better done when the application is at its
-    /// final place.
+    /// Creates an application that shows an empty figure until a command, or [`Player::play`],
+    /// starts a scene. The start of a scene needs much stack, so it is done when the application is
+    /// at its final place.
     // Inlined, `application` has a stack frame of 8,740 bytes.
     #[inline(never)]
     pub fn new(
@@ -110,23 +96,15 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
         }
     }
 
-    /// Sets the clock to tick `clock`, so that [`run_to`](Self::run_to) counts from there. Sets the
-    /// count of frames, and also the count of ticks without a frame, to `frames`: 0 on a board, and
-    /// a number near the wrap in a test. The scene and the other counts are not changed, and no
-    /// event is logged.
+    /// Sets the clock to tick `clock`, and the counts to `frames`: a test begins near a wrap.
     pub fn count_from(&mut self, clock: u32, frames: u32) {
         self.ticks = clock;
         self.frames = frames;
         self.dropped = ThrottledCounter::starting(frames, clock);
     }
 
-    /// Plays the scene from before a restart again from its start ([`Player::resume`]), and reports
-    /// the restart to the host: to a host that is connected now at once, and to any other when it
-    /// asks. Of the record, the processor and the controller chosen for the panel are ignored.
-    ///
-    /// The present scene continues instead if the restarts in a row are more than
-    /// [`MOST_RESTARTS`], or if the scene of the record cannot be played. The event
-    /// [`Event::Restarted`] reports this; the message to the host does not.
+    /// Plays the scene from before a restart again, and reports the restart to the host. After more
+    /// than [`MOST_RESTARTS`] restarts in a row the present scene continues instead.
     pub fn resume(&mut self, restart: &Record, mut log: impl Log<Panel, Link>) {
         let resumed = !restart.is_given_up() && self.player.resume(&restart.played).is_ok();
         log(Event::Restarted(restart.end, resumed));
@@ -134,15 +112,12 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
         self.send(&ToHost::Restarted(restart.end), &mut log);
     }
 
-    /// Drives the panel as chosen, from the next frame on. Returns false, and does nothing, if the
-    /// panel has no such options.
+    /// Drives the panel as chosen, from the next frame on, if it has such options.
     pub fn choose_panel(&mut self, chosen: PanelOptions) -> bool {
         self.panel.choose(chosen)
     }
 
-    /// Returns the answer to [`Command::Ask`]: scene, settings (angles in degrees), requested
-    /// method, processor class, speed, ticks left of a [`Command::Step`], and the state of player
-    /// and panel.
+    /// Returns the answer to [`Command::Ask`].
     pub fn status(&self) -> Status {
         Status {
             panel: self.panel.report(),
@@ -151,18 +126,14 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
     }
 
     /// Catches up with the clock, then draws one frame and sends it to the panel and over the link.
-    /// `clock` is the number of the current tick of 1/60 s, which may wrap. If all ticks up to it
-    /// are completed, nothing is done, and the result is true. It must not be an earlier one: that
-    /// would count as a wrap.
+    /// `clock` is the number of the current tick.
     ///
-    /// In each tick the buttons are read, their commands are executed, and the scene advances.
-    /// Every tick is integrated, however late it is. The state after n ticks does not depend on the
-    /// number of calls, with one exception: a motion that has left the finite numbers stops the
-    /// scene at the next frame, which is logged ([`Event::Stopped`]).
+    /// In each tick the buttons are read, their commands are executed, and the scene advances. No
+    /// tick is left out, however late it is, so that the state after n ticks does not depend on the
+    /// number of calls.
     ///
-    /// A call completes at most [`MOST_TICKS_PER_FRAME`] ticks, and the next calls complete the
-    /// rest. All ticks of a call but the last count as ticks without a frame ([`Event::Dropped`]).
-    /// Returns true if no tick is left. If false, call again without waiting for the next tick.
+    /// A call completes at most [`MOST_TICKS_PER_FRAME`] ticks; all but the last count as ticks
+    /// without a frame. Returns false if ticks are left.
     pub fn run_to(&mut self, clock: u32, mut log: impl Log<Panel, Link>) -> bool {
         let late = clock.wrapping_sub(self.ticks);
         let ticks = late.min(MOST_TICKS_PER_FRAME);
@@ -170,13 +141,11 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
             return true;
         }
 
-        // Advance the scene.
         let start = (self.instruments.stopwatch)();
         for _ in 0..ticks {
             self.tick(&mut log);
         }
 
-        // Log the ticks without a frame, and a motion that has become too fast.
         self.dropped.add(ticks - 1);
         if let Some(ticks) = self.dropped.news(self.ticks) {
             log(Event::Dropped {
@@ -188,7 +157,6 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
             log(Event::Stopped);
         }
 
-        // Draw, show and send the frame.
         self.player.draw();
         let scene_cycles = (self.instruments.stopwatch)().wrapping_sub(start);
         self.show(scene_cycles, &mut log);
@@ -197,20 +165,15 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
     }
 
     /// Sends the last frame to the panel if it is still waiting for the bus and the bus is free.
-    /// Returns true if it still waits; false if its transfer has begun, or if none waited. Does not
-    /// wait for the transfer. An error is logged by a later [`run_to`](Self::run_to).
+    /// Returns true if it still waits.
     pub fn catch_up(&mut self) -> bool {
         self.panel.catch_up(&self.player.canvas)
     }
 
-    /// Takes bytes received over the link, executes the commands and answers them. An impossible or
-    /// unreadable command is answered with [`Answer::Refused`]. Damaged messages get no answer;
-    /// they are counted, and logged at most once a second. Intact messages that are no commands are
-    /// ignored and not counted. The beginning of a message is kept for the next call.
+    /// Takes bytes received over the link, executes the commands and answers them.
     ///
-    /// Stops after [`MOST_MESSAGES_PER_TICK`] messages, damaged ones included, or [`RECEIVE_QUEUE`]
-    /// bytes, so that a flood of either does not delay the frame. The iterator is not advanced
-    /// further; its source keeps the other bytes for the next call.
+    /// Stops after [`MOST_MESSAGES_PER_TICK`] messages or [`RECEIVE_QUEUE`] bytes, so that a flood
+    /// of either does not delay the frame.
     pub fn receive(&mut self, bytes: impl IntoIterator<Item = u8>, mut log: impl Log<Panel, Link>) {
         let mut left = MOST_MESSAGES_PER_TICK;
         for byte in bytes.into_iter().take(RECEIVE_QUEUE) {
@@ -253,8 +216,7 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
         }
     }
 
-    /// Takes the number of received bytes that have been lost since reset, in all, not since the
-    /// last call; may wrap. Later frames report it, and its growth is logged at most once a second.
+    /// Takes the number of received bytes that have been lost since reset.
     pub fn note_lost(&mut self, total: u32, mut log: impl Log<Panel, Link>) {
         self.lost.total = total;
         if let Some(bytes) = self.lost.news(self.ticks) {
@@ -262,11 +224,8 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
         }
     }
 
-    /// Performs a bounded piece of the job of the host, at most one step, and sends the sample that
-    /// is then due. Returns true if more is left, and false without a job.
-    ///
-    /// An error ends the job: the motion has left the finite numbers, because the step is too long
-    /// for it. Then [`Answer::Refused`] is sent, with [`Field::Dt`], and the result is false.
+    /// Performs at most one step of the job of the host, and sends the sample that is then due.
+    /// Returns true if more is left.
     pub fn work(&mut self, mut log: impl Log<Panel, Link>) -> bool {
         let Some((request, job)) = &mut self.work else {
             return false;
@@ -283,7 +242,6 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
         !is_finished
     }
 
-    /// Completes one tick: executes the commands of the buttons and advances the scene.
     fn tick(&mut self, log: &mut impl Log<Panel, Link>) {
         self.ticks = self.ticks.wrapping_add(1);
         let pressed = self.keys.read();
@@ -300,8 +258,6 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
         self.player.tick(|news| log(Event::Motion(news)));
     }
 
-    /// Executes a command for the player, and logs the start of a scene. Returns the field that is
-    /// wrong if the command is impossible. A command that does not concern the player does nothing.
     fn execute(&mut self, command: Command, log: &mut impl Log<Panel, Link>) -> Result<(), Field> {
         if self.player.execute(command)? {
             log(Event::Started(self.player.name, self.player.settings));
@@ -318,8 +274,6 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
         Ok(())
     }
 
-    /// Executes a command from the link and answers it. Returns the field that is wrong if the
-    /// command is impossible.
     fn reply(
         &mut self,
         request: u16,
@@ -356,7 +310,6 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
         Ok(())
     }
 
-    /// Changes one of the user's choices for the panel.
     fn change_panel(&mut self, change: impl FnOnce(&mut PanelOptions)) -> Result<Answer, Field> {
         let mut chosen = self.panel.report().chosen;
         change(&mut chosen);
@@ -365,8 +318,7 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
         has_choice.then_some(Answer::Done).ok_or(Field::Panel)
     }
 
-    /// Begins the job of a requested motion; [`work`](Self::work) sends its samples. If the step is
-    /// too long for the energy of the motion, the longest admissible step is sent first.
+    /// Begins the job of a requested motion.
     #[inline(never)] // Inlined, it takes 464 bytes of flash (M0+).
     fn begin_work(
         &mut self,
@@ -384,10 +336,8 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
         Ok(())
     }
 
-    /// Sends the canvas to the panel and a frame message to the host.
     #[inline(never)] // Test `scenes` profiles it by its name.
     fn show(&mut self, scene_cycles: u32, log: &mut impl Log<Panel, Link>) {
-        // The panel.
         self.panel.dim(self.without_key >= DIM_TICKS);
         let canvas = &mut self.player.canvas;
         let shown = self.panel.flush(canvas);
@@ -401,7 +351,6 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
             log(Event::PanelFound(found));
         }
 
-        // The message for the host.
         let frame = Frame {
             sequence: self.frames,
             dropped: self.dropped.total,
@@ -414,12 +363,10 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
         self.frames = self.frames.wrapping_add(1);
     }
 
-    /// Sends an answer to the command with this number.
     fn answer(&mut self, request: u16, answer: Answer, log: &mut impl Log<Panel, Link>) {
         self.send(&ToHost::Answer(request, answer), log);
     }
 
-    /// Sends a message, or the part of it that the link takes in time.
     fn send(&mut self, message: &ToHost, log: &mut impl Log<Panel, Link>) {
         let mut wire = [0; MAX_WIRE];
         let mut sent = Ok(());

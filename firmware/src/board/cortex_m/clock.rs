@@ -13,9 +13,7 @@ use crate::config::TICK_RATE;
 /// The number of the first tick. The counter wraps 5 s later, so that an error at the wrap appears
 /// in every test, and not only after 828 days.
 const FIRST: u32 = 0_u32.wrapping_sub(5 * TICK_RATE);
-/// The number of ticks since the [`start`], plus [`FIRST`].
 static TICKS: AtomicU32 = AtomicU32::new(FIRST);
-/// The processor cycles in a tick.
 static PERIOD: AtomicU32 = AtomicU32::new(0);
 
 #[exception]
@@ -25,17 +23,10 @@ fn SysTick() {
     TICKS.store(ticks().wrapping_add(1), Ordering::Relaxed);
 }
 
-/// Starts a clock of [`TICK_RATE`] ticks per second. It counts while interrupts are on.
-///
-/// `hertz` is the frequency of the processor, Hz. Not checked: it is at least twice [`TICK_RATE`],
-/// below which no tick comes, and at most 1 GHz, because SysTick has 24 bits.
-///
-/// The period is rounded down to whole processor cycles: at 50 MHz it is 833,333 instead of
-/// 833,333.3, so that the clock is 0.4 parts per million fast.
+/// Starts the clock of the scene. Each board calls it once, after its PLL runs.
 pub fn start(mut systick: SYST, hertz: u32) {
     systick.set_clock_source(SystClkSource::Core);
     PERIOD.store(hertz / TICK_RATE, Ordering::Relaxed);
-    // The counter counts from this value down to 0, and then begins again.
     systick.set_reload((hertz / TICK_RATE).saturating_sub(1));
     systick.clear_current();
     systick.enable_interrupt();
@@ -43,8 +34,7 @@ pub fn start(mut systick: SYST, hertz: u32) {
 }
 
 /// Sleeps until the current tick is no longer `last`, and returns the current tick. It may be
-/// several ticks later if the caller was late; then the function returns at once. While the ticks
-/// are not counted, before [`start`] or with interrupts off, it waits for ever.
+/// several ticks later if the caller was late.
 pub fn wait_after(last: u32) -> u32 {
     // Interrupts are masked between the test and the sleep, so that an interrupt in between stays
     // pending. A pending interrupt wakes `wfi` even while masked, so no tick is slept through.
@@ -61,24 +51,17 @@ pub fn wait_after(last: u32) -> u32 {
     }
 }
 
-/// Returns the number of the current tick of 1/60 s. It starts at an arbitrary number, and wraps.
-/// It stays the same before [`start`], and while interrupts are off. Of the ticks that end
-/// meanwhile, at most one is counted when interrupts are on again.
+/// Returns the number of the current tick. Of the ticks that end while interrupts are off, at most
+/// one is counted.
 pub fn ticks() -> u32 {
     TICKS.load(Ordering::Relaxed)
 }
 
-/// Returns a count of processor cycles, for differences. It starts at an arbitrary number and wraps
-/// at 2^32. Before [`start`] it is meaningless. After interrupts were off for a tick or longer, it
-/// may lack whole ticks. A difference is wrong if [`Instruments::timed`] ran in between on a
-/// Cortex-M0+.
-///
-/// [`Instruments::timed`]: crate::app::Instruments::timed
+/// Returns a count of processor cycles, for differences; wraps.
 pub fn cycles() -> u32 {
     elapsed(&SysTickTimer, PERIOD.load(Ordering::Relaxed))
 }
 
-/// SysTick and its ticks.
 struct SysTickTimer;
 
 impl TickTimer for SysTickTimer {

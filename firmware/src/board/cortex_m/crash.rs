@@ -42,7 +42,6 @@ use crate::protocol::Cause;
 
 /// A call to the debugger, `bkpt 0xAB`, and its length, bytes.
 const DEBUGGER_CALL: (u16, u32) = (0xBEAB, 2);
-/// The size of the stack for fault reports, bytes.
 const STACK_SIZE: usize = 2048;
 
 /// True if no debugger is assumed to be present: a call was not answered, or the board is a chip.
@@ -76,10 +75,7 @@ fn panic(info: &PanicInfo) -> ! {
     )
 }
 
-/// The handler of every fault, since none has a handler of its own. It runs on a stack of its own.
-///
-/// It passes on the address of the stacked registers, and the value that shows their number. The
-/// trampoline of cortex-m-rt is not used because it cannot return.
+/// The handler of every fault. The trampoline of cortex-m-rt is not used because it cannot return.
 ///
 /// # Safety
 ///
@@ -106,7 +102,6 @@ unsafe extern "C" fn HardFault() {
     )
 }
 
-/// Handles a fault; `exception` is the value of the link register on entry to the handler.
 extern "C" fn hard_fault(frame: *mut ExceptionFrame, exception: u32) {
     let [cfsr, hfsr, bfar] = fault_status(false);
     let sp = (frame as u32).wrapping_add(Stacked::size(exception));
@@ -131,7 +126,6 @@ extern "C" fn hard_fault(frame: *mut ExceptionFrame, exception: u32) {
         xpsr: frame.xpsr(),
     });
 
-    // Without stacked registers, report the last call on the stack.
     let last_call = calls(sp).next();
     let (pc, lr) = stacked.map_or((0, last_call.unwrap_or_default()), |stacked| {
         (stacked.pc, stacked.lr)
@@ -167,13 +161,10 @@ fn step_over_debugger_call(frame: &mut ExceptionFrame) -> bool {
     is_call
 }
 
-/// Handles a hang: no frame was finished for [`WATCHDOG_SECONDS`]. `interrupted` holds the program
-/// counter and the link register of the program. Records them with [`Cause::Hang`], and returns, so
-/// that the program continues.
+/// Records a hang, and reports it to a debugger. The program then continues.
 ///
-/// In between it writes a report to the debugger, unless none is assumed to be present or the clock
-/// has not counted this time ([`watchdog::has_ticked`]). After the start of a crash report it does
-/// nothing: the report may take this long, and the interrupt that cannot be masked interrupts it.
+/// After the start of a crash report it does nothing: the report may take this long, and the
+/// interrupt that cannot be masked interrupts it.
 pub(super) fn hang(interrupted: &ExceptionFrame) {
     if CRASHED.load(Ordering::Relaxed) {
         return;
@@ -191,18 +182,16 @@ pub(super) fn hang(interrupted: &ExceptionFrame) {
     }
 }
 
-/// Assumes from now on that no debugger is present: crashes and hangs are recorded, but not
-/// reported. The exception is a crash while the processor's debug mode is on, which is reported. An
-/// M0+ cannot see this mode, so that its crashes are never reported.
+/// Assumes from now on that no debugger is present, unless the processor's debug mode is on.
 ///
 /// On a chip a debugger can be recognised. A call to an absent one is better avoided, because
+/// within a fault handler it would be fatal.
 /// within a fault handler it would be fatal.
 #[cfg(any(feature = "pico", feature = "stm32f405"))]
 pub(in crate::board) fn expect_no_debugger() {
     ALONE.store(true, Ordering::Relaxed);
 }
 
-/// Records the cause of a crash, reports it if a debugger is present, and ends the program.
 fn crash((cause, pc, lr, cfsr): (Cause, u32, u32, u32), report: &dyn Display) -> ! {
     cortex_m::interrupt::disable();
     let is_first = !CRASHED.load(Ordering::Relaxed);
@@ -223,7 +212,6 @@ fn crash((cause, pc, lr, cfsr): (Cause, u32, u32, u32), report: &dyn Display) ->
     SCB::sys_reset()
 }
 
-/// Writes a report, and the scene and tick of the last frame, to the debugger's standard error.
 fn say(report: &dyn Display) {
     if let Ok(mut stderr) = hio::hstderr() {
         let _ = match retained::last() {
@@ -233,8 +221,7 @@ fn say(report: &dyn Display) {
     }
 }
 
-/// Returns the status of a fault: CFSR, HFSR and BFAR. A Cortex-M0+ has no such registers,
-/// and the values are zero. If `clears`, HFSR is cleared.
+/// Returns CFSR, HFSR and BFAR. A Cortex-M0+ has no such registers.
 #[cfg(not(armv6m))]
 fn fault_status(clears: bool) -> [u32; 3] {
     // SAFETY: the registers always exist, and no other code uses them.

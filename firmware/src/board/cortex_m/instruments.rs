@@ -13,17 +13,13 @@ unsafe extern "C" {
     static __erodata: u8;
 }
 
-/// Starts the tick and the cycle counter, which a Cortex-M0+ lacks. `hertz` is the frequency of the
-/// processor, Hz, limited as in [`clock::start`], and `chip` the identification of the chip, zeros
-/// without one.
-///
-/// Returns the measuring functions and the identity. The checksum and the size of the image in it
+/// Starts the tick and the cycle counter, which a Cortex-M0+ lacks. Returns the measuring functions
+/// and the identity.
 /// are 0, and stay so; only the result of [`Instruments::identity()`] contains them.
 pub fn start(core: Peripherals, board: BoardName, hertz: u32, chip: [u32; 4]) -> Instruments {
     clock::start(core.SYST, hertz);
     start_counter(core.DCB, core.DWT);
 
-    // The identity that the host can request.
     let processor = core.CPUID.base.read();
     let identity = Identity {
         board,
@@ -40,7 +36,6 @@ pub fn start(core: Peripherals, board: BoardName, hertz: u32, chip: [u32; 4]) ->
     }
 }
 
-/// Returns the program in flash.
 fn image() -> &'static [u8] {
     let start = &raw const __vector_table;
     let length = (&raw const __erodata as usize).wrapping_sub(start as usize);
@@ -55,9 +50,8 @@ fn start_counter(mut dcb: DCB, mut dwt: DWT) {
     dwt.enable_cycle_counter();
 }
 
-/// Calls `work` once with interrupts off, and returns the processor cycles that it took, modulo
-/// 2^32. QEMU has no cycle counter; there the result is 0, and so it is before [`start`]. Of the
-/// ticks that end meanwhile, the clock counts at most one.
+/// Calls `work` once with interrupts off, and returns the processor cycles that it took. QEMU has
+/// no cycle counter; there the result is 0.
 #[cfg(not(armv6m))]
 fn cycles_of(work: impl FnOnce()) -> u32 {
     cortex_m::interrupt::free(|_| {
@@ -70,12 +64,10 @@ fn cycles_of(work: impl FnOnce()) -> u32 {
 #[cfg(armv6m)]
 fn start_counter(_: DCB, _: DWT) {}
 
-/// Calls `work` once with interrupts off, and returns the processor cycles that it took, up to 2^24
-/// cycles, 134 ms at 125 MHz. A longer time is returned modulo 2^24. Before [`start`] the result is
-/// meaningless.
+/// Calls `work` once with interrupts off, and returns the processor cycles that it took, modulo
+/// 2^24.
 ///
-/// The only counter of a Cortex-M0+ is the tick's. The function uses it; the current tick begins
-/// again afterwards. Of the ticks that end meanwhile, the clock counts at most one.
+/// The only counter of a Cortex-M0+ is the tick's; the current tick begins again afterwards.
 #[cfg(armv6m)]
 fn cycles_of(work: impl FnOnce()) -> u32 {
     use cortex_m::peripheral::SYST;
@@ -90,7 +82,6 @@ fn cycles_of(work: impl FnOnce()) -> u32 {
         work();
         let taken = FULL.wrapping_sub(SYST::get_current());
 
-        // Restore the period.
         counter.set_reload(reload);
         counter.clear_current();
         taken

@@ -12,18 +12,15 @@ use cortex_m_rt::ExceptionFrame;
 use super::{crash, watchdog};
 use crate::board::serial;
 
-/// Data that an interrupt shares with the main loop.
 pub(in crate::board) struct Shared<T>(Mutex<RefCell<T>>);
 
 impl<T> Shared<T> {
-    /// Creates shared data that is `value` at first.
     pub const fn new(value: T) -> Self {
         Self(Mutex::new(RefCell::new(value)))
     }
 
-    /// Calls `act` with the data, with interrupts off, and returns its result. Returns `None`,
-    /// without a call, if `act` of the same data is in progress: when called from within it, from a
-    /// fault, or from the interrupt that cannot be masked.
+    /// Calls `act` with the data, with interrupts off. Returns `None` if `act` of the same data is
+    /// in progress.
     pub fn with<R>(&self, act: impl FnOnce(&mut T) -> R) -> Option<R> {
         free(|token| {
             self.0
@@ -55,7 +52,6 @@ unsafe extern "C" fn DefaultHandler() {
     )
 }
 
-/// Handles the interrupt with this number: a call of the watchdog, or received bytes.
 extern "C" fn interrupt(interrupted: &ExceptionFrame, number: u32) {
     if watchdog::is_call(number) {
         watchdog::silence();
@@ -65,8 +61,7 @@ extern "C" fn interrupt(interrupted: &ExceptionFrame, number: u32) {
     }
 }
 
-/// An interrupt of the chip, by its number in the data sheet, from 0: 16 less than the processor's
-/// number. Not checked: the chip has it.
+/// An interrupt of the chip, by its number in the data sheet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::board) struct Interrupt(pub u16);
 
@@ -77,9 +72,7 @@ unsafe impl InterruptNumber for Interrupt {
     }
 }
 
-/// Enables an interrupt of the chip in the processor. If it is pending already, it comes at once.
-/// An interrupt without a handler of its own receives bytes ([`serial::receive`]), or reports a
-/// hang if it is the watchdog's.
+/// Enables an interrupt of the chip in the processor.
 pub(in crate::board) fn unmask(interrupt: impl InterruptNumber) {
     // SAFETY: no critical section relies on a masked interrupt.
     unsafe { NVIC::unmask(interrupt) };

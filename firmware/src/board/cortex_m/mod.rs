@@ -19,14 +19,8 @@ use cortex_m_semihosting::{nr, syscall1};
 
 pub(super) use instruments::start;
 
-/// Returns the command line that a debugger, or QEMU, has for the program. It is put into `buffer`,
-/// which must also have room for a final zero byte; the zero is not returned. An empty command line
-/// is an empty string.
-///
-/// Returns `None` if the line does not fit, if it is not UTF-8, or at once if there is no debugger:
-/// the fault of the call shows that, and later crashes are then recorded but not printed. On a chip
-/// whose debug mode (C_DEBUGEN) is on, the processor halts here until a debugger answers: for good
-/// if the probe was unplugged without switching debug mode off.
+/// Returns the command line that a debugger, or QEMU, has for the program; `None` if there is no
+/// debugger.
 pub fn command_line(buffer: &mut [u8]) -> Option<&str> {
     let mut block = [buffer.as_mut_ptr() as usize, buffer.len()];
     // SAFETY: SYS_GET_CMDLINE takes the address and length of a buffer. It writes a string of at

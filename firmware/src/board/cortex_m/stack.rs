@@ -18,14 +18,13 @@ unsafe extern "C" {
     static __etext: u8;
 }
 
-/// Returns the lowest address of the stack.
 pub fn end() -> u32 {
     &raw const _stack_end as u32
 }
 
-/// Returns the addresses of the call instructions whose return addresses are found on the stack
-/// from `sp` upwards, the last call first. Below the stack counts as its lowest address. Some of
-/// the calls may have returned already, because the stack is not cleared.
+/// Returns the addresses of the calls whose return addresses are found on the stack from `sp`
+/// upwards, the last call first. Some of them may have returned already, because the stack is not
+/// cleared.
 pub fn calls(sp: u32) -> impl Iterator<Item = u32> {
     let bottom = sp.max(end()).next_multiple_of(4);
     let words = (bottom..&raw const _stack_start as u32).step_by(4);
@@ -33,7 +32,6 @@ pub fn calls(sp: u32) -> impl Iterator<Item = u32> {
     words.filter_map(|address| call_before(unsafe { (address as *const u32).read_volatile() }))
 }
 
-/// Returns the halfword at an address of the code in flash; `None` outside it and at odd addresses.
 pub fn instruction(address: u32) -> Option<u16> {
     let code = &raw const __stext as u32..&raw const __etext as u32;
     // SAFETY: any two bytes of the code are a `u16`.
@@ -41,8 +39,7 @@ pub fn instruction(address: u32) -> Option<u16> {
         .then(|| unsafe { (address as *const u16).read_volatile() })
 }
 
-/// Returns the address of the call that returns to this address. Returns `None` if it is no return
-/// address: it must be in the code, be marked as Thumb code, and follow a call.
+/// A return address is in the code, is marked as Thumb code, and follows a call.
 fn call_before(address: u32) -> Option<u32> {
     let before = |back: u32| instruction(address.wrapping_sub(back + 1));
     Some(address.wrapping_sub(call_size([before(4)?, before(2)?])? + 1))

@@ -5,20 +5,16 @@
 /// A timer that counts down from `period - 1` to 0 and then begins again, with an interrupt that
 /// counts the periods.
 pub trait TickTimer {
-    /// Returns the number of periods that the interrupt has counted; wraps.
     fn ticks(&self) -> u32;
-    /// Returns the counter, `period - 1` to 0.
     fn counter(&self) -> u32;
-    /// Returns true while a period has ended and the interrupt has not yet run.
+    /// True while a period has ended and the interrupt has not yet run.
     fn is_pending(&self) -> bool;
 }
 
-/// Returns the time in counts of the timer since tick 0; wraps. `period` is the number of counts in
-/// a tick, which is a period of the timer; with 0 the result is meaningless.
+/// Returns the time in counts of the timer since tick 0; wraps.
 ///
 /// The reading is right at any moment: also between the reload of the counter and the interrupt,
-/// and with interrupts masked for less than a period. If they are masked for longer, whole periods
-/// are missing for good.
+/// and with interrupts masked for less than a period.
 pub fn elapsed(timer: &impl TickTimer, period: u32) -> u32 {
     let last = period.wrapping_sub(1);
     loop {
