@@ -6,8 +6,7 @@ use std::process::ExitCode;
 
 use console::cli::{main as run, verdict};
 use host_tests::commands::{
-    count, emulated, figures, flash, flips, plan, prove, release, report, simulate, verify_board,
-    web,
+    count, emulated, figures, flips, plan, prove, release, report, simulate, verify_board, web,
 };
 
 fn main() -> ExitCode {

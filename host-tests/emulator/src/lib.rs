@@ -10,16 +10,19 @@ pub mod flash;
 pub mod host;
 pub mod link;
 pub mod out_file;
+#[cfg(feature = "boards")]
 pub mod pico;
 pub mod process;
+#[cfg(feature = "boards")]
 pub mod qemu;
 pub mod scratch;
 pub mod stream;
 pub mod toolchain;
 
-use anyhow::bail;
-use firmware::protocol::ToHost;
+#[cfg(feature = "boards")]
+use {anyhow::bail, firmware::protocol::ToHost};
 
+#[cfg(feature = "boards")]
 /// Returns all messages from `next` up to the first call whose messages contain a frame. Returns an
 /// error if `often` calls bring no frame.
 fn up_to_frame(

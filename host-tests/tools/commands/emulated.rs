@@ -13,7 +13,7 @@ use clap::Parser;
 use cycles::Image;
 
 use console::cli::{Refused, choice, complain, say};
-use emulator::boards::{BOARDS, Board};
+use emulator::boards::{BOARDS, Board, PICO};
 use emulator::process;
 use emulator::qemu::{Clock, Machine, Settings};
 use emulator::toolchain;
@@ -100,6 +100,12 @@ pub fn fw(options: &FwOptions) -> anyhow::Result<ExitCode> {
             "{name}: no binary of the firmware; choose one of {}, or write a path",
             binaries().join(", ")
         )));
+    }
+
+    if name == PICO.binary {
+        bail!(Refused::because(
+            "pico: QEMU has no Raspberry Pi Pico; run cargo demo --board pico"
+        ));
     }
 
     // The file must be a program for ARM.

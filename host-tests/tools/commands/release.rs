@@ -9,7 +9,7 @@ use std::time::Duration;
 use anyhow::{Context, bail, ensure};
 use clap::Parser;
 
-use crate::commands::{flash, web};
+use crate::commands::web;
 use console::cli::{Refused, say};
 use emulator::boards::every_board;
 use emulator::process;

@@ -1,6 +1,13 @@
 //! `cargo pico` and `cargo flash-f4`: transfer the firmware to a board, as a file or by a flashing
 //! program.
 
+#![forbid(unsafe_code)]
+#![deny(clippy::print_stdout, clippy::print_stderr)]
+#![allow(
+    missing_docs,
+    reason = "no other package uses this one, and most names and types explain themselves"
+)]
+
 use std::fs;
 use std::io::{BufRead, BufReader, Write};
 use std::os::unix::process::CommandExt;
@@ -24,6 +31,10 @@ pub const FILE: &str = "pico.uf2";
 const LABEL: &str = "INFO_UF2.TXT";
 /// The line in the label of an RP2040.
 const OURS: &str = "Board-ID: RPI-RP2";
+/// The line in the label of an RP2350, whose boot loader ignores a file for the RP2040.
+const PICO_2: &str = "Board-ID: RP2350";
+/// The drive of a board on Linux, also if it is not mounted.
+const DEVICE: &str = "/dev/disk/by-label/RPI-RP2";
 
 /// The type of the drive's file system, which the boot ROM emulates.
 const DRIVE_TYPE: &str = "vfat";
@@ -58,23 +69,25 @@ pub fn uf2_file(toolchain: &Toolchain) -> anyhow::Result<(usize, PathBuf)> {
     Ok((image.len(), file))
 }
 
-/// Builds the UF2 file and copies it to a board: to the drive of the options, else to the first
-/// mounted drive of an RP2040, else to the only board that runs this firmware at a USB port, which
-/// is restarted in its boot loader. Mounted drives are found on Linux only. Without a drive, and
-/// with no such board or several, it prints how to copy the file by hand, which is a success.
-/// Missing tools are installed. The copy replaces a file of this name on the drive and is complete
-/// when this returns.
+/// Builds the UF2 file and copies it to a board: to the drive of the options, else to the mounted
+/// drive of an RP2040, else to the only board that runs this firmware at a USB port, which is
+/// restarted in its boot loader. Without a board, it prints how to copy the file by hand.
 ///
-/// It is an error if the build or the copy fails. If a tool cannot be provided, if the port of the
-/// running board cannot be opened, or if its drive is not mounted within 10 s of the restart, this
-/// is [`Refused`].
+/// A drive that cannot take the file is [`Refused`] before the build, which takes minutes.
 pub fn pico(options: &PicoOptions) -> anyhow::Result<()> {
+    if options.drive.is_none() {
+        find_drive()?;
+    }
     let (bytes, file) = uf2_file(&toolchain::set_up()?)?;
     say(format_args!("{}: {bytes} bytes of flash", file.display()))?;
 
     let blocks = fs::read(&file)?;
     // The drive is the user's, or a mounted one, or appears after a running board was restarted.
-    let drive = match options.drive.clone().or_else(find_drive) {
+    let drive = match options
+        .drive
+        .clone()
+        .map_or_else(find_drive, |drive| Ok(Some(drive)))?
+    {
         Some(drive) => drive,
         None => {
             let ports = serialport::available_ports().unwrap_or_default();
@@ -99,8 +112,7 @@ pub fn pico(options: &PicoOptions) -> anyhow::Result<()> {
     ))?)
 }
 
-/// Restarts the board at this port in its boot loader and waits for its drive. It is refused if the
-/// port cannot be opened, or if no drive appears in time.
+/// Restarts the board at this port in its boot loader and waits for its drive.
 fn restart_in_boot_loader(port: &str) -> anyhow::Result<PathBuf> {
     say(format_args!(
         "{port}: the board restarts in its boot loader"
@@ -108,47 +120,80 @@ fn restart_in_boot_loader(port: &str) -> anyhow::Result<PathBuf> {
     touch(port).map_err(Refused::because)?;
     // The system mounts the drive some time after the restart.
     let since = Instant::now();
-    while since.elapsed() < MOUNTING {
-        if let Some(drive) = find_drive() {
+    loop {
+        let found = find_drive();
+        if let Ok(Some(drive)) = found {
             return Ok(drive);
+        }
+        if since.elapsed() >= MOUNTING {
+            found?;
+            bail!(Refused::because(
+                "the board waits in its boot loader, but its drive RPI-RP2 does not appear: mount \
+                 it, then name the folder with --drive"
+            ))
         }
         sleep(LOOK);
     }
-    bail!(Refused::because(
-        "the board waits in its boot loader, but its drive RPI-RP2 is not mounted: mount it, \
-         then name the folder with --drive"
-    ))
 }
 
-/// Returns the mounted drive of an RP2040, or `None`.
-fn find_drive() -> Option<PathBuf> {
-    mounted(&fs::read_to_string("/proc/mounts").ok()?)
+/// Returns the mounted drive of an RP2040, or `None` without a board in its boot loader. The drive
+/// of a Pico 2 is refused, and so is one that is not mounted.
+fn find_drive() -> Result<Option<PathBuf>, Refused> {
+    let folders = match fs::read_to_string("/proc/mounts") {
+        Ok(mounts) => mounted(&mounts),
+        Err(_) => volumes(),
+    };
+    let drives: Vec<_> = folders.iter().map(|folder| drive(folder)).collect();
+    if let Some(drive) = drives.iter().flatten().next() {
+        return Ok(Some(drive.clone()));
+    }
+    if let Some(pico_2) = drives
+        .into_iter()
+        .filter_map(Result::err)
+        .find(|why| *why == IS_PICO_2)
+    {
+        return Err(Refused::because(pico_2));
+    }
+    if Path::new(DEVICE).exists() {
+        return Err(Refused::because(format_args!(
+            "the board's drive is not mounted: run udisksctl mount -b {DEVICE}, then this again"
+        )));
+    }
+    Ok(None)
 }
+
+const IS_PICO_2: &str = "this board is a Pico 2 (RP2350); the firmware is for the Pico (RP2040)";
 
 /// Accepts a folder that is the drive of an RP2040 by its label.
 fn drive(folder: &str) -> Result<PathBuf, String> {
     match fs::read_to_string(Path::new(folder).join(LABEL)) {
         Ok(label) if label.contains(OURS) => Ok(folder.into()),
+        Ok(label) if label.contains(PICO_2) => Err(IS_PICO_2.to_owned()),
         Ok(_) => Err("this is the drive of another board".to_owned()),
+        Err(_) if !Path::new(folder).is_dir() => Err("there is no such folder".to_owned()),
         Err(_) => Err(format!("this is no board's drive: it has no {LABEL}")),
     }
 }
 
-/// Returns the drive of an RP2040 among the mounted ones. Only drives of its type are searched,
-/// because a network file system whose server is gone would never answer.
-fn mounted(mounts: &str) -> Option<PathBuf> {
+/// Returns the mounted drives of the boot loader's type on Linux. No other drive is read, because a
+/// network file system whose server is gone would never answer.
+fn mounted(mounts: &str) -> Vec<String> {
     let folder = |line: &str| {
         // A line has the device, the folder, the type and more.
         let mut fields = line.split(' ').skip(1);
         let folder = fields.next()?;
-        (fields.next()? == DRIVE_TYPE).then(|| folder.to_owned())
-    };
-    mounts
-        .lines()
-        .filter_map(folder)
         // The system writes a space in a path as `\040`.
-        .map(|folder| folder.replace("\\040", " "))
-        .find_map(|folder| drive(&folder).ok())
+        (fields.next()? == DRIVE_TYPE).then(|| folder.replace("\\040", " "))
+    };
+    mounts.lines().filter_map(folder).collect()
+}
+
+/// Returns the mounted drives on macOS.
+fn volumes() -> Vec<String> {
+    let entries = fs::read_dir("/Volumes").into_iter().flatten().flatten();
+    entries
+        .map(|entry| entry.path().display().to_string())
+        .collect()
 }
 
 /// The chips that have everything the firmware uses.
@@ -300,19 +345,26 @@ fn copy_until_written(mut output: impl BufRead, to: &mut impl Write) -> std::io:
 mod tests {
     use super::*;
 
-    /// A folder with the label of an RP2040 is found if it is mounted as vfat, and ignored if it is
-    /// mounted as any other type.
     #[test]
-    fn only_a_drive_of_the_boot_roms_type_is_looked_into() {
+    fn only_drives_of_the_boot_loaders_type_are_read() {
+        let mounts = "/dev/sda1 / ext4 rw 0 0\n/dev/sdb1 /media/my\\040name/RPI-RP2 vfat rw 0 0\n\
+                      server:/home /home nfs4 rw 0 0\n";
+        assert_eq!(mounted(mounts), ["/media/my name/RPI-RP2"]);
+    }
+
+    #[test]
+    fn a_drive_is_known_by_its_label() {
         let folder = tempfile::tempdir().expect("a folder");
         let name = folder.path().display().to_string();
-        fs::write(folder.path().join(LABEL), format!("UF2\n{OURS}\n")).expect("a file");
-        let mounts =
-            |kind: &str| format!("/dev/sda1 / ext4 rw 0 0\n/dev/sdb1 {name} {kind} rw 0 0\n");
-        assert_eq!(mounted(&mounts("vfat")), Some(folder.path().to_owned()));
-        for kind in ["nfs4", "fuse.sshfs", "ext4"] {
-            assert_eq!(mounted(&mounts(kind)), None, "{kind}");
-        }
+        let label = |board: &str| {
+            let text = format!("UF2 Bootloader v1.0\n{board}\n");
+            fs::write(folder.path().join(LABEL), text).expect("a file");
+            drive(&name)
+        };
+        assert_eq!(label(OURS), Ok(folder.path().to_owned()));
+        assert_eq!(label(PICO_2), Err(IS_PICO_2.to_owned()));
+        assert!(label("Board-ID: SAMD21").is_err_and(|why| why.contains("another board")));
+        assert_eq!(drive("/nowhere"), Err("there is no such folder".to_owned()));
     }
 
     /// A download by `dfu-util` is a success only if its output has the line that the file is
