@@ -7,6 +7,7 @@
 pub mod boards;
 pub mod budgets;
 pub mod flash;
+#[cfg(feature = "boards")]
 pub mod host;
 pub mod link;
 pub mod out_file;
