@@ -4,7 +4,9 @@
 
 use std::fs;
 use std::io::{Write, stderr};
+use std::path::PathBuf;
 use std::process::Command;
+use std::sync::Mutex;
 
 use console::cli::Refused;
 use emulator::host::Show;
@@ -35,11 +37,18 @@ fn unless_missing(test: fn() -> anyhow::Result<()>) -> anyhow::Result<()> {
     })
 }
 
+/// Writes the page. A second writer at the same time would be refused.
+fn page() -> anyhow::Result<PathBuf> {
+    static WRITER: Mutex<()> = Mutex::new(());
+    let _only = WRITER.lock();
+    write_page()
+}
+
 /// The messages of 18 s of every scene have the host's bytes. So do plans, which they contain.
 #[test]
 fn boards_on_the_page_send_the_hosts_bytes() -> anyhow::Result<()> {
     unless_missing(|| {
-        let page = write_page()?;
+        let page = page()?;
         let codes = PROCESSORS.map(|(_, _, processor)| processor.code.to_string());
         let output = run("board.js", |node| _ = node.arg(page).args(codes))?;
         let mut sent = output.lines();
@@ -75,7 +84,7 @@ fn boards_on_the_page_send_the_hosts_bytes() -> anyhow::Result<()> {
 #[test]
 fn page_works_in_chromium_and_makes_no_request() -> anyhow::Result<()> {
     unless_missing(|| {
-        let page = write_page()?;
+        let page = page()?;
         assert!(fs::metadata(&page)?.len() < 1_000_000, "too large");
         let profile = tempfile::tempdir()?;
         let folder = profile.path().display();

@@ -12,6 +12,7 @@ use clap::Parser;
 use crate::commands::web;
 use console::cli::{Refused, say};
 use emulator::boards::every_board;
+use emulator::out_file;
 use emulator::process;
 use emulator::toolchain::{self, QUICK, target, workspace};
 
@@ -89,7 +90,7 @@ pub fn run(_: &ReleaseOptions) -> anyhow::Result<()> {
     command.args(*arguments).args(names).current_dir(&folder);
     let sums = process::run(&mut command, QUICK)?;
     ensure!(sums.status.success(), "{hasher}: {}", sums.stderr);
-    fs::write(folder.join(SUMS), &sums.stdout)?;
+    out_file::write("the sums", &folder.join(SUMS), &sums.stdout)?;
     say(sums.stdout.trim_end())?;
     Ok(say(folder.display())?)
 }

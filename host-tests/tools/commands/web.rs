@@ -14,7 +14,7 @@ use serde_json::{Value, json};
 
 use console::cli::{Refused, say};
 use demo::{KEYS, SPEEDS, palette, scene_key, shows};
-use emulator::out_file::{OutFile, check_writable};
+use emulator::out_file::{self, OutFile};
 use emulator::process;
 use emulator::toolchain::{self, find, target};
 
@@ -69,15 +69,18 @@ pub struct WebOptions {
 pub fn run(options: &WebOptions) -> anyhow::Result<()> {
     // Refuse before the build.
     let picture = options.picture.as_deref();
-    picture.map_or(Ok(()), |picture| check_writable("--picture", picture))?;
-    let chromium = picture.map(|_| toolchain::set_up_chromium()).transpose()?;
+    let picture = picture.map(|path| OutFile::create("--picture", path));
+    let picture = picture.transpose()?;
+    let chromium = picture.as_ref().map(|_| toolchain::set_up_chromium());
+    let chromium = chromium.transpose()?;
     let opener = options.open.then(opener).transpose()?;
 
     let page = write_page()?;
     say(format_args!("wrote {}", page.display()))?;
     if let Some((chromium, picture)) = chromium.zip(picture) {
-        take_picture(&chromium, &page, picture)?;
-        say(format_args!("wrote {}", picture.display()))?;
+        let path = picture.path().to_owned();
+        picture.write_whole(&take_picture(&chromium, &page)?)?;
+        say(format_args!("wrote {}", path.display()))?;
     }
     if let Some(opener) = opener {
         // It starts a browser, which stays open.
@@ -109,7 +112,7 @@ pub fn write_page() -> anyhow::Result<PathBuf> {
         .replace("{facts}", &facts().to_string())
         .replace("{module}", &digits(&module));
     let file = target().join(FILE);
-    OutFile::create("the page", &file)?.write_whole(page.as_bytes())?;
+    out_file::write("the page", &file, page)?;
     Ok(file)
 }
 
@@ -154,9 +157,8 @@ fn facts() -> Value {
     })
 }
 
-/// Saves a picture of the page some seconds after its start. If Chromium fails or writes none, an
-/// existing file remains unchanged.
-fn take_picture(chromium: &Path, page: &Path, picture: &Path) -> anyhow::Result<()> {
+/// Returns a picture of the page some seconds after its start, a PNG file.
+fn take_picture(chromium: &Path, page: &Path) -> anyhow::Result<Vec<u8>> {
     let folder = tempfile::tempdir()?;
     let timed = folder.path().join(FILE);
     let taken = folder.path().join("picture.png");
@@ -171,10 +173,7 @@ fn take_picture(chromium: &Path, page: &Path, picture: &Path) -> anyhow::Result<
     ensure!(output.status.success(), "Chromium: {}", output.stderr);
 
     // Chromium can also end with success without a picture.
-    let Ok(bytes) = fs::read(&taken) else {
-        bail!("Chromium wrote no picture: {}", output.stderr);
-    };
-    OutFile::create("--picture", picture)?.write_whole(&bytes)
+    fs::read(&taken).or_else(|_| bail!("Chromium wrote no picture: {}", output.stderr))
 }
 
 #[cfg(test)]
@@ -191,24 +190,20 @@ for option; do
 done
 ";
 
-    /// A program that ends with success but writes no picture is an error, and an existing file
-    /// remains unchanged. A picture that was written replaces it.
+    /// A program that ends with success but writes no picture is an error.
     #[test]
     fn a_picture_that_was_not_written_is_an_error() -> anyhow::Result<()> {
         let folder = tempfile::tempdir()?;
-        let [page, picture] = ["page.html", "picture.png"].map(|name| folder.path().join(name));
+        let page = folder.path().join("page.html");
         fs::write(&page, "")?;
-        fs::write(&picture, "old")?;
-        let taken = take_picture(Path::new("true"), &page, &picture);
+        let taken = take_picture(Path::new("true"), &page);
         let error = taken.expect_err("no picture").to_string();
         assert!(error.contains("wrote no picture"), "{error}");
-        assert_eq!(fs::read(&picture)?, b"old");
 
         let chromium = folder.path().join("chromium");
         fs::write(&chromium, WRITES)?;
         fs::set_permissions(&chromium, Permissions::from_mode(0o755))?;
-        take_picture(&chromium, &page, &picture)?;
-        assert_eq!(fs::read(&picture)?, b"new");
+        assert_eq!(take_picture(&chromium, &page)?, b"new");
         Ok(())
     }
 }

@@ -264,7 +264,7 @@ pub fn write_prices(prices: &[(&Board, Costs)]) -> Result<PathBuf> {
     let old = std::fs::read_to_string(&path)?;
     let new = with_lists(&old, prices)
         .with_context(|| format!("{} has no place for them", path.display()))?;
-    std::fs::write(&path, new)?;
+    emulator::out_file::write("--write-prices", &path, new)?;
     Ok(path)
 }
 

@@ -193,7 +193,7 @@ pub fn write_table(boards: &[MinimalPrices]) -> Result<()> {
     let path = workspace().join(README);
     let page = std::fs::read_to_string(&path)?;
     let page = between(&page, MARKS, &table(boards)).context(NO_PLACE)?;
-    Ok(std::fs::write(path, page)?)
+    emulator::out_file::write("--readme", &path, page)
 }
 
 /// Returns the table of prices for the kernel's README, in Markdown, with a newline after each

@@ -15,7 +15,7 @@ use firmware::scenes::SceneName;
 
 use console::cli::{complain, say, unwritable};
 use demo::DemoOptions;
-use emulator::out_file::{check_in_folder, write};
+use emulator::out_file::write;
 use emulator::toolchain::workspace;
 
 /// Draws figures 2 to 5 and 7 of math24.net's page on the double pendulum, as SVG.
@@ -53,13 +53,8 @@ pub fn figures() -> Result<Vec<(String, String)>> {
     ];
     Ok(figures
         .into_iter()
-        .map(|(number, svg)| (figure(number), svg))
+        .map(|(number, svg)| (format!("figures/figure-{number}.svg"), svg))
         .collect())
-}
-
-/// Returns the path of a figure relative to [`folder`].
-fn figure(number: u32) -> String {
-    format!("figures/figure-{number}.svg")
 }
 
 /// Writes the figures and, on request, the animations into the folders `figures` and `panel` of the
@@ -69,9 +64,8 @@ fn figure(number: u32) -> String {
 /// as bits that differ from the host's; the files before it remain.
 pub fn run(options: &FiguresOptions) -> Result<()> {
     let folder = options.out.clone().unwrap_or_else(folder);
-    check_in_folder(&folder.join(figure(2)))?;
     for (name, svg) in figures()? {
-        write(&folder.join(name), svg)?;
+        write("--out", &folder.join(name), svg)?;
     }
 
     // The animations take minutes, so they are recorded only on request.

@@ -71,6 +71,7 @@ pub fn run(options: &ReportOptions) -> Result<()> {
     let targets = Target::build_all(&toolchain)?;
     let (points, absent) = join::join(&toolchain, &targets)?;
     write(
+        "--out",
         &folder.join("speed-against-error.csv"),
         join::table(&points).csv(),
     )?;
@@ -84,9 +85,9 @@ pub fn run(options: &ReportOptions) -> Result<()> {
     {
         let svg = chart::speed_against_error(&points, scene, target.board)?;
         let name = format!("{}-{}.svg", scene.name, target.board.cpu);
-        write(&folder.join(&name), &svg)?;
+        write("--out", &folder.join(&name), &svg)?;
         if is_shown && scene == &SCENES[0] {
-            write(&workspace().join(CHARTS).join(&name), &svg)?;
+            write("--readme", &workspace().join(CHARTS).join(&name), &svg)?;
         }
     }
 
@@ -102,7 +103,7 @@ pub fn run(options: &ReportOptions) -> Result<()> {
         );
         pages
             .iter()
-            .try_for_each(|(path, [_, made])| fs::write(path, made))?;
+            .try_for_each(|(path, [_, made])| write("--readme", path, made))?;
     } else if pages.iter().any(|(_, [page, made])| page != made) {
         say("the READMEs show other figures; cargo write-report --readme updates them")?;
     }

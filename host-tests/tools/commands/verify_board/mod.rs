@@ -21,7 +21,7 @@ use console::progress::Progress;
 use emulator::boards::{Board, every_board};
 use emulator::flash::{ERASED, flash_image_over};
 use emulator::link;
-use emulator::out_file::{OutFile, check_writable};
+use emulator::out_file::OutFile;
 use emulator::process;
 use emulator::toolchain::{self, QUICK, workspace};
 use talk::Talk;
@@ -95,7 +95,7 @@ fn verdict(difference: Option<String>) -> String {
 pub fn run(options: &VerifyOptions) -> anyhow::Result<bool> {
     // Refuse before the measurements.
     let path = options.report.with_extension("md");
-    check_writable("--report", &path)?;
+    let report = OutFile::create("--report", &path)?;
     let mut talk = Talk::new(demo::port(&options.port)?)?;
     let identity = talk.ask(protocol::Command::Identify, |answer| {
         if let Answer::Identity(identity) = answer {
@@ -177,7 +177,7 @@ pub fn run(options: &VerifyOptions) -> anyhow::Result<bool> {
     );
 
     // The faults go to stderr, the verdict to stdout.
-    OutFile::create("--report", &path)?.write_whole(text.as_bytes())?;
+    report.write_whole(text.as_bytes())?;
     faults
         .iter()
         .for_each(|fault| complain(format_args!("problem: {fault}")));

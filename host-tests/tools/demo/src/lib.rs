@@ -56,8 +56,7 @@ const LIMIT: [f64; 2] = [60.0, 20.0];
 ///
 /// Missing tools of an emulated board are installed, from the network, and its application is
 /// built. System packages, which only the Pico needs, are installed only if the user agrees on the
-/// terminal. The files of the options are replaced, the animation already at the start; after an
-/// error it may be incomplete.
+/// terminal. The files of the options are replaced at the end.
 ///
 /// Returns true if no compared bit differs from the host's and if, on an emulated board that is run
 /// frame by frame, nothing else went wrong. Without a terminal, a frame must have been compared.
@@ -70,6 +69,13 @@ pub fn run(options: &DemoOptions) -> anyhow::Result<bool> {
     let is_live = !options.headless && stdout().is_terminal() && stdin().is_terminal();
     // All options are checked before anything is built.
     options.check()?;
+    let [record, screenshot] = [
+        ("--record", &options.record),
+        ("--screenshot", &options.screenshot),
+    ]
+    .map(|(option, path)| path.as_deref().map(|path| OutFile::create(option, path)));
+    let record = record.transpose()?;
+    let screenshot = screenshot.transpose()?;
     let seconds = options.seconds.unwrap_or(if is_live {
         f64::INFINITY
     } else {
@@ -80,11 +86,9 @@ pub fn run(options: &DemoOptions) -> anyhow::Result<bool> {
         None => emulated(options.board, seconds, is_live)?,
     };
 
-    let recording = options
-        .record
-        .as_deref()
-        .map(Recording::create)
-        .transpose()?;
+    let scale = options.scale.into();
+    let recording = record.map(|file| Recording::begin(file, scale));
+    let recording = recording.transpose()?;
     if !is_live && !options.headless {
         complain(NO_TERMINAL);
     }
@@ -95,7 +99,7 @@ pub fn run(options: &DemoOptions) -> anyhow::Result<bool> {
     } else {
         headless(&mut session, seconds)?
     }
-    finish(options, session, is_live)
+    finish(options, session, screenshot, is_live)
 }
 
 /// Opens a serial port by its path, or the only one over USB for `auto`, which waits up to 3 s for
@@ -193,7 +197,12 @@ const NOT_COMPARED: &str = "no frame was compared: the host computes the scene f
 
 /// Completes the files and prints the summary. Returns true if all was well. A board with a real
 /// clock may drop frames, and a cable may corrupt bits. Both are printed, and neither is a fault.
-fn finish(options: &DemoOptions, mut session: Session, is_live: bool) -> anyhow::Result<bool> {
+fn finish(
+    options: &DemoOptions,
+    mut session: Session,
+    screenshot: Option<OutFile>,
+    is_live: bool,
+) -> anyhow::Result<bool> {
     let is_silent = session.readings.frame.is_none();
     ensure!(
         !is_silent,
@@ -202,7 +211,7 @@ fn finish(options: &DemoOptions, mut session: Session, is_live: bool) -> anyhow:
     );
 
     // All messages are collected before they are judged.
-    let saved = save_files(options, &mut session)?;
+    let saved = save_files(options, &mut session, screenshot)?;
     session
         .readings
         .lines
@@ -242,14 +251,17 @@ fn finish(options: &DemoOptions, mut session: Session, is_live: bool) -> anyhow:
 }
 
 /// Completes the animation and the screenshot. Returns the lines of the summary that name them.
-fn save_files(options: &DemoOptions, session: &mut Session) -> anyhow::Result<String> {
+fn save_files(
+    options: &DemoOptions,
+    session: &mut Session,
+    screenshot: Option<OutFile>,
+) -> anyhow::Result<String> {
     let source = if session.has_panel() {
         ""
     } else {
         ", the panel redrawn here from the board's numbers"
     };
 
-    // The recording is completed first; its file is incomplete until then.
     let mut saved = String::new();
     if let Some(recording) = session.take_recording() {
         let (path, pictures) = recording.finish()?;
@@ -258,9 +270,9 @@ fn save_files(options: &DemoOptions, session: &mut Session) -> anyhow::Result<St
             path.display()
         );
     }
-    if let Some(path) = &options.screenshot {
-        OutFile::create("--screenshot", path)?.write_whole(&png(&session.screenshot)?)?;
-        saved += &format!("\nsaved                 {}{source}", path.display());
+    if let Some(file) = screenshot {
+        saved += &format!("\nsaved                 {}{source}", file.path().display());
+        file.write_whole(&png(&session.screenshot, options.scale.into())?)?;
     }
     Ok(saved)
 }

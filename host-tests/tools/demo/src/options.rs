@@ -11,7 +11,7 @@
 
 use std::path::PathBuf;
 
-use clap::Parser;
+use clap::{Parser, value_parser};
 use double_pendulum::plan::Stepping;
 use double_pendulum::{Method, Parameter};
 use firmware::config::{GREATEST_SPEED, Processor, STM32F405};
@@ -24,7 +24,6 @@ use super::motion::OwnMotion;
 use console::cli::{Refused, choice};
 use console::number::Number;
 use emulator::boards::{BOARDS, Board, every_board};
-use emulator::out_file::check_writable;
 
 /// Shows the double pendulum on a board's panel, live in the terminal, and compares each frame with
 /// the host's own. For a real board the picture is rebuilt from the data it sends.
@@ -85,6 +84,9 @@ pub struct DemoOptions {
     /// Save the last picture of the panel
     #[arg(long, value_name = "FILE.png", value_parser = |file: &str| ends_in("png", file))]
     pub screenshot: Option<PathBuf>,
+    /// The width and height of a pixel of the panel in these files, 1 to 16; 3 gives 384 x 192
+    #[arg(long, value_name = "N", default_value_t = 3, value_parser = value_parser!(u8).range(1..=16))]
+    pub scale: u8,
 }
 
 /// Returns the keys, the content of each scene, and examples.
@@ -166,23 +168,11 @@ pub type MethodChoice = Option<Method>;
 pub type PanelChoice = Option<Controller>;
 
 impl DemoOptions {
-    /// Refuses requests that are known to fail before anything is built: files that cannot be
-    /// written, a speed out of range, a method or a motion that the scene cannot show
-    /// ([`DemoOptions::start`]). An emulated board without `--scene` shows the page. For a board at
-    /// a port without `--scene` the last two are not checked, because its scene is not known yet.
-    /// The port is not opened.
-    ///
-    /// Existing files remain unchanged, and no new ones are left behind.
+    /// Refuses requests that are known to fail before anything is built: a speed out of range, a
+    /// method or a motion that the scene cannot show ([`DemoOptions::start`]). An emulated board
+    /// without `--scene` shows the page. For a board at a port without `--scene` the last two are
+    /// not checked, because its scene is not known yet.
     pub fn check(&self) -> Result<(), Refused> {
-        // The files must be writable.
-        for (option, file) in [
-            ("--record", &self.record),
-            ("--screenshot", &self.screenshot),
-        ] {
-            file.as_deref()
-                .map_or(Ok(()), |file| check_writable(option, file))?;
-        }
-
         // An emulated board starts with the first scene. The scene of a board at a port is not
         // known yet.
         self.speed()?;

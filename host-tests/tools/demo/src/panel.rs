@@ -3,11 +3,11 @@
 //! If the terminal is large enough, a pixel is half a character in its grey. Otherwise a character
 //! shows eight pixels or more as dots, in the colour of the brightest.
 
-use std::fs::{self, File};
+use std::fs::File;
 use std::io::{self, BufWriter, ErrorKind};
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context, anyhow};
+use anyhow::anyhow;
 use firmware::config::TICK_RATE;
 use firmware::graphics::rgb;
 use gif::{ColorOutput, DecodeOptions, Encoder, EncodingError, Frame as Picture, Repeat};
@@ -17,6 +17,8 @@ use ratatui::style::Color;
 use ratatui::symbols::Marker;
 use ratatui::widgets::canvas::{Canvas, Points};
 
+use console::cli::unwritable;
+use emulator::out_file::OutFile;
 use emulator::qemu::{HEIGHT, Screenshot, WIDTH};
 
 /// The smallest grey that is shown as a dot. Only the end of a fading trail is darker.
@@ -99,10 +101,6 @@ pub fn palette() -> Vec<u8> {
         .collect()
 }
 
-/// The width and height of the square that shows a pixel of the panel. They are in pixels of the
-/// file.
-const SCALE: usize = 3;
-const SIZE: [u16; 2] = [(WIDTH * SCALE) as u16, (HEIGHT * SCALE) as u16];
 /// The number of board ticks between two screenshots: 60/2 = 30 frames per second.
 const TICKS_PER_FRAME: i64 = TICK_RATE as i64 / 30;
 /// The colour of an unchanged pixel in a picture after the first. Few pixels change, so this makes
@@ -112,11 +110,12 @@ const UNCHANGED: u8 = 16;
 const GIF_RATE: i64 = 100;
 
 /// An animation (GIF) that is being written, at most 30 pictures per second of the board, repeated
-/// for ever. The file is complete only after [`Recording::finish`]; if this is dropped before, an
-/// incomplete file remains.
+/// for ever. The file has its name only after [`Recording::finish`].
 pub struct Recording {
     path: PathBuf,
-    encoder: Encoder<BufWriter<File>>,
+    encoder: Encoder<BufWriter<OutFile>>,
+    /// The width and height of a pixel of the panel, in pixels of the file.
+    scale: usize,
     /// The number of its pictures.
     pictures: usize,
     /// The greys of the latest picture, in pixels of the file; empty before the first.
@@ -127,19 +126,18 @@ pub struct Recording {
 }
 
 impl Recording {
-    /// Creates the GIF file, or empties an existing one. It has no picture yet. The folder must
-    /// exist. An error means that the file cannot be written.
-    pub fn create(path: &Path) -> anyhow::Result<Self> {
-        let file =
-            File::create(path).with_context(|| format!("cannot write {}", path.display()))?;
+    /// Begins an animation without a picture.
+    pub fn begin(file: OutFile, scale: usize) -> anyhow::Result<Self> {
+        let path = file.path().to_owned();
         // The palette has one entry more, for unchanged pixels.
-        let [width, height] = SIZE;
+        let [width, height] = size(scale);
         let palette = [palette(), vec![0; 3]].concat();
         let mut encoder = Encoder::new(BufWriter::new(file), width, height, &palette)?;
         encoder.set_repeat(Repeat::Infinite)?;
         Ok(Self {
-            path: path.to_owned(),
+            path,
             encoder,
+            scale,
             pictures: 0,
             shown: Vec::new(),
             due: None,
@@ -158,8 +156,7 @@ impl Recording {
     /// The picture is shown until two ticks after `tick`. If it is late, it is shown from the tick
     /// at which one was due, so that the animation keeps the board's time, for at most 655 s.
     ///
-    /// An error means that the file cannot be written. It is then removed, unless it is a device,
-    /// and the recording is of no further use.
+    /// An error means that the file cannot be written. The recording is then of no further use.
     pub fn add(&mut self, screenshot: &Screenshot, tick: i64) -> anyhow::Result<()> {
         if !self.is_due(tick) {
             return Ok(());
@@ -171,10 +168,10 @@ impl Recording {
         let next = tick + TICKS_PER_FRAME;
         let length = hundredths(next) - hundredths(self.due.replace(next).unwrap_or(tick));
         let delay = u16::try_from(length).unwrap_or(u16::MAX);
-        let [width, height] = SIZE;
+        let [width, height] = size(self.scale);
 
         // Only the pixels that have changed are written.
-        let now = magnified(screenshot);
+        let now = magnified(screenshot, self.scale);
         let change = |(index, grey): (usize, &u8)| {
             if self.shown.get(index) == Some(grey) {
                 UNCHANGED
@@ -205,25 +202,18 @@ impl Recording {
             .map_err(|error| unwritten(&self.path, &cause(error)))
     }
 
-    /// Writes the rest of the file. Returns the path of the file and the number of its pictures,
-    /// which may be 0. The last picture is shown until two ticks after its own. If the file cannot
-    /// be written, removes it, unless it is a device, and returns an error.
+    /// Writes the rest of the file. Returns its path and the number of its pictures, which may be
+    /// 0. The last picture is shown until two ticks after its own.
     pub fn finish(self) -> anyhow::Result<(PathBuf, usize)> {
-        let Self {
-            path,
-            encoder,
-            pictures,
-            ..
-        } = self;
-        // Finish the animation first, then write the buffered rest of the file.
-        let finished = encoder
+        // The encoder writes the end of the animation, then the buffer its rest.
+        let finished = self
+            .encoder
             .into_inner()
             .map_err(cause)
             .and_then(|file| file.into_inner().map_err(io::IntoInnerError::into_error));
-        match finished {
-            Ok(_) => Ok((path, pictures)),
-            Err(error) => Err(unwritten(&path, &error)),
-        }
+        let file = finished.map_err(|error| unwritten(&self.path, &error))?;
+        file.finish()?;
+        Ok((self.path, self.pictures))
     }
 }
 
@@ -235,21 +225,21 @@ fn cause(error: EncodingError) -> io::Error {
     }
 }
 
-/// Removes the incomplete animation, and returns the error with the reason.
+/// Returns the error of an animation that cannot be written to the end.
 fn unwritten(path: &Path, error: &io::Error) -> anyhow::Error {
-    // A device is not removed.
-    if path.is_file() {
-        let _ = fs::remove_file(path);
-    }
-    anyhow!("--record: cannot write {}: {error}", path.display())
+    anyhow!(unwritable("--record", path, error).to_string())
+}
+
+/// Returns the width and height of a picture in pixels of the file.
+fn size(scale: usize) -> [u16; 2] {
+    [WIDTH, HEIGHT].map(|pixels| (pixels * scale) as u16)
 }
 
 /// Returns the greys of the picture in pixels of the file, row by row.
-fn magnified(screenshot: &Screenshot) -> Vec<u8> {
-    let at = |index: usize| {
-        screenshot.greys[index / (WIDTH * SCALE) / SCALE * WIDTH + index % (WIDTH * SCALE) / SCALE]
-    };
-    (0..WIDTH * SCALE * HEIGHT * SCALE).map(at).collect()
+fn magnified(screenshot: &Screenshot, scale: usize) -> Vec<u8> {
+    let width = WIDTH * scale;
+    let at = |index: usize| screenshot.greys[index / width / scale * WIDTH + index % width / scale];
+    (0..width * HEIGHT * scale).map(at).collect()
 }
 
 /// Reads an animation for tests. Returns the greys of each picture, one for each pixel of the
@@ -262,13 +252,14 @@ pub fn played(path: &Path) -> anyhow::Result<Vec<(Vec<u8>, u16)>> {
     let mut decoder = options.read_info(File::open(path)?)?;
     let mut played = Vec::new();
     let mut greys = vec![0; WIDTH * HEIGHT];
+    let scale = usize::from(decoder.width()) / WIDTH;
     while let Some(frame) = decoder.read_next_frame()? {
-        // Each pixel is a square of `SCALE` dots; one of them is read.
+        // Each pixel is a square of dots; one of them is read.
         let dots = frame
             .buffer
-            .chunks(WIDTH * SCALE)
-            .step_by(SCALE)
-            .flat_map(|row| row.iter().step_by(SCALE));
+            .chunks(WIDTH * scale)
+            .step_by(scale)
+            .flat_map(|row| row.iter().step_by(scale));
 
         // A transparent dot keeps the colour of the picture before.
         for (grey, &dot) in greys.iter_mut().zip(dots) {
@@ -281,16 +272,15 @@ pub fn played(path: &Path) -> anyhow::Result<Vec<(Vec<u8>, u16)>> {
     Ok(played)
 }
 
-/// Returns the screenshot as the bytes of a PNG file in the colours of [`palette`], each pixel as a
-/// square of 3 by 3. It writes no file. An error is one of the encoder.
-pub fn png(screenshot: &Screenshot) -> anyhow::Result<Vec<u8>> {
-    let [width, height] = SIZE.map(u32::from);
+/// Returns the screenshot as the bytes of a PNG file in the colours of [`palette`].
+pub fn png(screenshot: &Screenshot, scale: usize) -> anyhow::Result<Vec<u8>> {
+    let [width, height] = size(scale).map(u32::from);
     let mut file = Vec::new();
     let mut encoder = png::Encoder::new(&mut file, width, height);
     encoder.set_color(png::ColorType::Indexed);
     encoder.set_palette(palette());
     let mut writer = encoder.write_header()?;
-    writer.write_image_data(&magnified(screenshot))?;
+    writer.write_image_data(&magnified(screenshot, scale))?;
     writer.finish()?;
     Ok(file)
 }
@@ -342,17 +332,12 @@ mod tests {
             pixels.map(|[above, below]| ("▀".to_owned(), above, below))
         );
     }
-    /// A recording on a disk that becomes full fails with one reason that names the file, and the
-    /// file is removed.
-    #[test]
-    fn half_an_animation_is_removed_and_the_reason_is_given_once() {
-        let folder = tempfile::tempdir().expect("a folder");
-        let path = folder.path().join("half.gif");
-        let mut recording = Recording::create(&path).expect("a file");
 
-        // The next data is written to a full disk.
-        let full = Recording::create(Path::new("/dev/full")).expect("a device");
-        recording.encoder = full.encoder;
+    /// A recording on a full disk fails with one reason that names the file.
+    #[test]
+    fn a_full_disk_is_named_once() {
+        let file = OutFile::create("--record", Path::new("/dev/full")).expect("a device");
+        let mut recording = Recording::begin(file, 1).expect("a header in the buffer");
         let failed = (0..2000).find_map(|number| {
             let mut canvas = canvas(Format::OLED);
             canvas.update(number % 128, number / 128, |_| 15);
@@ -361,6 +346,9 @@ mod tests {
         });
         let reason = format!("{:#}", failed.expect("the disk is full"));
         assert_eq!(reason.matches("No space left").count(), 1, "{reason}");
-        assert!(reason.contains("half.gif") && !path.exists(), "{reason}");
+        assert!(
+            reason.contains("--record: cannot write /dev/full"),
+            "{reason}"
+        );
     }
 }

@@ -23,6 +23,7 @@ use console::cli::{Refused, complain, say};
 use emulator::boards::{PICO, STM32F405};
 use emulator::flash::{flash_image, uf2};
 use emulator::link::{running_board, touch};
+use emulator::out_file;
 use emulator::toolchain::{self, Toolchain, target};
 
 /// The name of the firmware's file, in the target folder and on a board's drive.
@@ -65,7 +66,7 @@ pub struct PicoOptions {
 pub fn uf2_file(toolchain: &Toolchain) -> anyhow::Result<(usize, PathBuf)> {
     let (start, image) = flash_image(&fs::read(toolchain.build_for(&PICO)?)?)?;
     let file = target().join(FILE);
-    fs::write(&file, uf2(start, &image)).with_context(|| file.display().to_string())?;
+    out_file::write("the firmware", &file, uf2(start, &image))?;
     Ok((image.len(), file))
 }
 
