@@ -14,19 +14,15 @@ use rtt_target::{ChannelMode, UpChannel, rtt_init};
 use super::cortex_m::crash;
 use super::cortex_m::interrupt::Shared;
 
-/// The logger of defmt: each line is encoded and written with interrupts off.
 #[defmt::global_logger]
 struct Logger;
 
-/// The encoder and the destination of the log.
 struct Path {
     encoder: Encoder,
     sink: Sink,
-    /// True if interrupts were on before the current line.
     interrupts: bool,
 }
 
-/// The destination of the log.
 enum Sink {
     Nowhere,
     Memory(UpChannel),
@@ -40,28 +36,23 @@ static PATH: Shared<Path> = Shared::new(Path {
     interrupts: false,
 });
 
-/// Opens the log of a chip, in memory (RTT). Earlier lines are lost. Parts of lines are also
-/// lost if no probe reads them and the 1024 bytes are full. Panics the second time.
+/// Opens the log of a chip, in memory (RTT).
 ///
 /// From now on no debugger is assumed to be present: a crash or a hang is recorded for the next
-/// run, but not printed. A Cortex-M4 still prints a crash if the processor's debug mode is on.
+/// run, but not printed.
 pub fn into_memory() {
     crash::expect_no_debugger();
     let channel = rtt_init! { up: { 0: { size: 1024, name: "defmt" } } }.up.0;
     PATH.with(|path| path.sink = Sink::Memory(channel));
 }
 
-/// Opens the log of an emulated chip, on the emulator's standard output. Earlier lines are lost. If
-/// the output cannot be opened, as on a chip without a debugger, all lines are lost; a line that it
-/// does not take is lost, too. Each line waits for the emulator. If the log is open already, it
-/// continues only here.
+/// Opens the log of an emulated chip, on the emulator's standard output.
 #[cfg(feature = "stm32f405")]
 pub fn into_emulator() {
     PATH.with(|path| path.sink = hio::hstdout().map_or(Sink::Nowhere, Sink::Emulator));
 }
 
 impl Sink {
-    /// Writes bytes without waiting. Bytes that the destination does not take are lost.
     fn write(&mut self, bytes: &[u8]) {
         match self {
             Self::Nowhere => {}

@@ -21,29 +21,19 @@ use crate::motion::Settings;
 use crate::protocol::{Cause, Field, Restarted};
 use crate::scenes::SceneName;
 
-/// The parts of a board, set up and ready for the application.
 pub struct Board<Panel, Link, Keys, Dog> {
-    /// The driver of the panel.
     pub panel: Panel,
-    /// The sending direction of the serial link.
     pub link: Link,
-    /// The buttons.
     pub keys: Keys,
-    /// The measuring functions and the identity.
     pub instruments: Instruments,
-    /// The watchdog, which is running. It must be fed from the start of the board on, as
-    /// [`play`](Board::play) does.
+    /// It runs, and must be fed from the start of the board on.
     pub watchdog: Dog,
-    /// True if the board's own register indicates that the watchdog caused the last reset; always
-    /// false on a board without such a register.
+    /// True if the board's own register indicates that the watchdog caused the last reset.
     pub reset_by_watchdog: bool,
 }
 
-/// The types of a board's panel and application, for the statics of its program.
 pub trait Plays {
-    /// The driver of the panel.
     type Panel;
-    /// The application with the panel, the link and the buttons of the board.
     type Application;
 }
 
@@ -52,11 +42,9 @@ impl<Panel: 'static, Link: 'static, Keys: 'static, Dog> Plays for Board<Panel, L
     type Application = App<'static, Panel, Link, Keys>;
 }
 
-/// Defines the program of a board, `main`, with the statics of its application. The arguments are
-/// the module of the board, its type there, and the class of its processor, a constant of
-/// [`config`](crate::config): `program!(pico::Pico on PROCESSOR);`. The crate must be `no_std` and
-/// `no_main`, and depend on `cortex-m-rt`. The program panics if the module's `take` returns
-/// `None`.
+/// Defines the program of a board, `main`, with the statics of its application:
+/// `program!(pico::Pico on PROCESSOR);` names the module of the board, its type there, and the
+/// class of its processor.
 #[macro_export]
 macro_rules! program {
     ($module:ident::$board:ident on $processor:ident) => {
@@ -88,21 +76,12 @@ macro_rules! program {
 impl<Panel: Display<Error: fmt::Display> + 'static, Link: Write, Keys: Buttons, Dog: Watchdog>
     Board<Panel, Link, Keys, Dog>
 {
-    /// Runs the application for ever, and sleeps between the ticks. The application and the driver
-    /// of the panel are put at the given places, and draw on `canvas`. What these three contained
-    /// is overwritten. `processor` is the class whose prices and budgets the planner uses. Not
-    /// checked: it is the class of this board.
+    /// Runs the application for ever. The application and the driver of the panel are put at the
+    /// given places.
     ///
-    /// The scene is the first of the catalogue with the default settings, or after a warm restart
-    /// the scene from before it. That is not played again after more than [`MOST_RESTARTS`]
-    /// restarts in a row, or if its settings are refused; then the first scene is. The choice of
-    /// the panel's controller, also the choice to identify it, is kept across every reset that
-    /// leaves memory powered. A program with another [`BUILT_FOR`](crate::display::BUILT_FOR)
-    /// does not take it over.
-    ///
-    /// Every finished frame feeds the watchdog and replaces the retained record. Received bytes
-    /// come from the interrupt of the serial port, not from `link`. Errors of the panel and of the
-    /// link are only logged. The log needs no further set-up after the board's `take`.
+    /// The scene is the first of the catalogue or, after a warm restart, the scene from before it,
+    /// at most [`MOST_RESTARTS`] times in a row. The choices for the panel outlast every reset that
+    /// leaves memory powered.
     pub fn play(
         self,
         place: &'static mut MaybeUninit<App<'static, Panel, Link, Keys>>,
@@ -150,7 +129,7 @@ fn application<'a, Panel: Display, Link: Write, Keys: Buttons>(
     app
 }
 
-/// Runs the application for ever. Between ticks it works for the host, plans, or sleeps.
+/// Between ticks it works for the host, plans, or sleeps.
 #[inline(never)] // Unlike the start-up code, this must not panic (test `no_panic`).
 fn run<Panel: Display<Error: fmt::Display>, Link: Write, Keys: Buttons>(
     app: &'static mut App<Panel, Link, Keys>,
@@ -161,7 +140,6 @@ fn run<Panel: Display<Error: fmt::Display>, Link: Write, Keys: Buttons>(
     let mut now = ticks();
     app.count_from(now, 0);
     loop {
-        // Catch up with the clock, one frame after the other.
         let mut is_late = true;
         while is_late {
             let before = app.frames;
@@ -190,8 +168,7 @@ fn run<Panel: Display<Error: fmt::Display>, Link: Write, Keys: Buttons>(
     }
 }
 
-/// Plays again the scene from before an unplanned reset. The restart is counted first, because its
-/// scene may end the board again.
+/// The restart is counted before its scene is played, because the scene may end the board again.
 fn resume<Panel: Display<Error: fmt::Display>, Link: Write, Keys: Buttons>(
     app: &mut App<Panel, Link, Keys>,
     reset_by_watchdog: bool,
@@ -201,7 +178,6 @@ fn resume<Panel: Display<Error: fmt::Display>, Link: Write, Keys: Buttons>(
         app.choose_panel(chosen);
     }
 
-    // Count the restart before its scene is played.
     let restart = retained::recall(reset_by_watchdog);
     if let Some(restart) = &restart {
         retained::keep(&Record {
@@ -219,7 +195,6 @@ fn resume<Panel: Display<Error: fmt::Display>, Link: Write, Keys: Buttons>(
     journal
 }
 
-/// Writes the log line of an event.
 #[inline(never)] // Inlined, it and `retained::kept` take 3.6 KB of flash (M0+).
 fn log<Panel: fmt::Display, Link: Error>(event: Event<Panel, Link>) {
     match event {
@@ -349,8 +324,6 @@ fn log<Panel: fmt::Display, Link: Error>(event: Event<Panel, Link>) {
     }
 }
 
-/// Logs a plan. For the closed form it logs no steps and no error. The closed form is another
-/// motion, and its errors do not grow.
 fn log_plan(
     &Plan {
         method,
@@ -389,7 +362,6 @@ fn log_plan(
     );
 }
 
-/// Returns the reason why the serial link has not taken a message.
 fn reason(kind: ErrorKind) -> &'static str {
     match kind {
         ErrorKind::TimedOut => "the host does not read; frames are dropped",

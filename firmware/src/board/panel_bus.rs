@@ -6,50 +6,32 @@ use embedded_hal::i2c::ErrorKind;
 use super::cortex_m::interrupt::Shared;
 use crate::display::{Outbox, PanelBus, Sent};
 
-/// The device of a bus. Its [`Bus`] calls [`reset`](Self::reset) before the first transfer, which
-/// sets the device up.
 pub trait PanelPort {
-    /// Begins a transfer to this address of seven bits; the interrupt does the rest. It only waits
-    /// for the stop of the last transfer, at most [`TRIES`] polls. A panel that does not answer is
-    /// reported by the outbox later ([`Outbox::sent`]).
-    ///
-    /// Not checked: no transfer is in progress, the interrupt owns the outbox, and the address is
-    /// that of the outbox, at most 127.
+    /// Begins a transfer to this address; the interrupt does the rest. It only waits for the stop
+    /// of the last transfer, at most [`TRIES`] polls. A panel that does not answer is reported by
+    /// the outbox later ([`Outbox::sent`]).
     fn begin(&mut self, address: u8);
 
-    /// Frees a bus that hangs, and resets the device, which ends a transfer in progress. The device
-    /// does not interrupt until the next [`begin`](Self::begin). The outbox stays where it is.
-    ///
-    /// It waits for the clocks that free the bus, at most some 0.1 ms. If the bus still hangs, this
-    /// is not reported.
+    /// Frees a bus that hangs, and resets the device, which ends a transfer in progress.
     fn reset(&mut self);
 }
 
-/// The bus, and the outbox while the interrupt does not own it. There is at most one. The board
-/// creates it; [`PanelBus`] is its interface.
+/// The bus, and the outbox while the interrupt does not own it.
 pub struct Bus<P> {
     port: P,
     outbox: Option<&'static mut Outbox>,
 }
 
 /// The largest number of polls that wait for a start or a stop on the I2C bus of the panel. A start
-/// or a stop takes 5 us, and these polls take at least 12 us. The Pico also waits this long for the
-/// bus's block to leave its reset.
-///
-/// After the last poll the set-up continues, or the transfer begins, all the same; if it hangs, the
-/// driver of the panel aborts it. But if the STM32 waits in vain for the start within a transfer,
-/// before a further message of the outbox or before the panel's answer, the transfer ends with
-/// [`ErrorKind::Other`], and the port is reset.
+/// or a stop takes 5 us, and these polls take at least 12 us. After the last poll the transfer goes
+/// on all the same; if it hangs, the driver of the panel aborts it.
 pub const TRIES: u32 = 500;
 
 /// The outbox that the interrupt owns.
 static OUTGOING: Shared<Option<&'static mut Outbox>> = Shared::new(None);
 
-/// Handles the bus's interrupt.
-///
-/// `advance` does the next part of the transfer, and returns the outcome of the messages when all
-/// is done; `None` while the transfer continues. It is not called without an outbox to send. After
-/// that the bus must not interrupt until [`PanelPort::begin`].
+/// Handles the bus's interrupt. `advance` does the next part of the transfer, and returns the
+/// outcome of the messages when all is done.
 pub(in crate::board) fn serve(advance: impl FnOnce(&mut Outbox) -> Option<Sent>) {
     OUTGOING.with(|outgoing| {
         if let Some(outbox) = outgoing
@@ -61,8 +43,7 @@ pub(in crate::board) fn serve(advance: impl FnOnce(&mut Outbox) -> Option<Sent>)
 }
 
 impl<P: PanelPort> Bus<P> {
-    /// Creates the bus of a port. There is at most one bus, because the interrupt knows no other.
-    /// Returns `None` the second time.
+    /// Creates the only bus, because the interrupt knows no other.
     pub(in crate::board) fn new(mut port: P) -> Option<Self> {
         port.reset();
         Some(Self {

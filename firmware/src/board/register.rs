@@ -1,6 +1,6 @@
 //! Devices and their registers.
 
-/// A device: a range of 4 KiB of addresses with its registers.
+/// A device: 4 KiB of addresses with its registers.
 #[derive(Clone, Copy, Debug)]
 pub struct Device(usize);
 
@@ -15,44 +15,36 @@ impl Device {
         Self(base)
     }
 
-    /// Returns the register at this offset from the base, bytes. The lowest two bits of the offset
-    /// and those beyond 4 KiB are ignored.
+    /// The offset is in bytes.
     pub const fn register(self, offset: usize) -> Register {
         Register(self.0 + (offset & 0xffc))
     }
 }
 
-/// A 32-bit device register at a fixed address.
-///
-/// Not checked: the device has a register there, and is powered and clocked. On most chips an
-/// access to a device without power is a fault.
+/// On most chips an access to a device without power is a fault.
 #[derive(Clone, Copy, Debug)]
 pub struct Register(usize);
 
 impl Register {
-    /// Returns the value of the register. Reading some registers has side effects.
     pub fn read(self) -> u32 {
         // SAFETY: by the contract of [`Device::at`] this is a register; any 32-bit pattern is a
         // `u32`.
         unsafe { (self.0 as *const u32).read_volatile() }
     }
 
-    /// Writes all 32 bits of the register. Writing some registers has side effects.
     pub fn write(self, value: u32) {
         // SAFETY: by the contract of [`Device::at`] this is a register whose writes do not break
         // memory safety.
         unsafe { (self.0 as *mut u32).write_volatile(value) }
     }
 
-    /// Clears the bits of `clear`, then sets those of `set`, by one read and one write. A bit in
-    /// both is set. It is not atomic: a write by an interrupt in between is lost.
+    /// Clears the bits of `clear`, then sets those of `set`. It is not atomic.
     pub fn modify(self, clear: u32, set: u32) {
         self.write((self.read() & !clear) | set);
     }
 
-    /// Reads until the bits of `mask` are `wanted`, at most `tries` times. Returns true as soon as
-    /// they are, and false after the last try; with 0 tries at once. A bit of `wanted` outside
-    /// `mask` is never found.
+    /// Reads until the bits of `mask` are `wanted`, at most `tries` times. Returns true if they
+    /// are.
     pub fn wait(self, mask: u32, wanted: u32, tries: u32) -> bool {
         (0..tries).any(|_| self.read() & mask == wanted)
     }

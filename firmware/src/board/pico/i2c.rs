@@ -32,7 +32,6 @@ const HOLD: u16 = (MEGAHERTZ * 3 / 10 + 1) as u16;
 const LOW: u32 = LOW_COUNT as u32 + 1;
 const HIGH: u32 = HIGH_COUNT as u32 + SPIKE as u32 + 7;
 
-/// Returns the frequency of the bus, Hz, for a line that rises in `rise` ns.
 const fn hertz(rise: u32) -> u32 {
     let cycles_of_1000 = 1000 * (LOW + HIGH) + MEGAHERTZ * rise;
     (1_000_000_000 / cycles_of_1000) * MEGAHERTZ
@@ -51,7 +50,6 @@ const FEW: u8 = 4;
 /// Half a clock period of a slow 100 kHz, cycles of 125 MHz.
 const HALF_CLOCK: u32 = 625;
 
-/// The interrupts of the bus.
 const NOTHING: u32 = 0;
 const FEW_LEFT: u32 = 1 << 4;
 const ABORTED: u32 = 1 << 6;
@@ -62,29 +60,23 @@ const REFUSED: u32 = 1 << 3 | 1 << 0;
 /// The reason of an abort: another master had the bus.
 const LOST: u32 = 1 << 12;
 
-/// The GPIO of the bus's lines.
 const DATA: usize = 4;
 const CLOCK: usize = 5;
 
-/// The I2C block 0 as the port of the panel's bus: 400 kHz, at the GPIO 4 (data) and 5 (clock).
-/// Its times assume a processor of 125 MHz.
+/// The I2C block 0 as the port of the panel's bus: 400 kHz at a processor of 125 MHz.
 pub struct I2c0(());
 
-/// The lines of the bus: GPIO 4, data, and GPIO 5, clock.
 pub(super) type Pins = (
     Pin<Gpio4, FunctionI2C, PullUp>,
     Pin<Gpio5, FunctionI2C, PullUp>,
 );
 
-/// Starts the bus and its interrupt. The frequency of the bus assumes a processor of 125 MHz.
-/// Returns `None` the second time.
 pub(super) fn start(_port: I2C0, _pins: Pins) -> Option<Bus<I2c0>> {
     let bus = Bus::new(I2c0(()))?; // it resets the block, and sets it up
     unmask(Interrupt::I2C0_IRQ);
     Some(bus)
 }
 
-/// Holds the block in reset, or releases it.
 fn hold_in_reset(is_held: bool) {
     // SAFETY: the board's start borrows these registers, and has ended or waits for this function.
     // No interrupt writes them.
@@ -96,8 +88,7 @@ fn hold_in_reset(is_held: bool) {
     }
 }
 
-/// Sets the block up after its reset: master, 400 kHz, seven bits of address. It stays disabled
-/// until the next transfer.
+/// Sets the block up after its reset. It stays disabled until the next transfer.
 fn set_up(port: &RegisterBlock) {
     listen(port, NOTHING);
     port.ic_con().modify(|_, w| {
@@ -170,19 +161,17 @@ fn I2C0_IRQ() {
     panel_bus::serve(|outbox| advance(registers(), outbox));
 }
 
-/// Returns the registers of the block.
 fn registers() -> &'static RegisterBlock {
     // SAFETY: no other code uses them. While the outbox is not empty, only the interrupt uses the
     // bus.
     unsafe { &*I2C0::ptr() }
 }
 
-/// Makes the next part of the transfer: supplies more bytes, or ends it. The last byte of each
-/// message is followed by a stop. Returns the outcome at the end, and `None` before it.
+/// Makes the next part of the transfer. The last byte of each message is followed by a stop.
+/// Returns the outcome at the end.
 fn advance(port: &RegisterBlock, outbox: &mut Outbox) -> Option<Sent> {
     let status = port.ic_raw_intr_stat().read();
 
-    // The transfer was aborted.
     if status.tx_abrt().is_active() {
         let reason = port.ic_tx_abrt_source().read().bits();
         let _ = port.ic_clr_tx_abrt().read();
@@ -207,7 +196,6 @@ fn advance(port: &RegisterBlock, outbox: &mut Outbox) -> Option<Sent> {
             return None;
         }
 
-        // The transfer is complete.
         for _ in 0..outbox.asked() {
             outbox.answer(port.ic_data_cmd().read().dat().bits());
         }
@@ -215,7 +203,6 @@ fn advance(port: &RegisterBlock, outbox: &mut Outbox) -> Option<Sent> {
         return Some(Ok(()));
     }
 
-    // Fill the queue of the bus.
     while port.ic_status().read().tfnf().is_not_full() {
         if let Some(byte) = outbox.next() {
             // SAFETY: any byte may be sent.
@@ -232,26 +219,22 @@ fn advance(port: &RegisterBlock, outbox: &mut Outbox) -> Option<Sent> {
     }
 
     if outbox.is_empty() && outbox.requested == outbox.asked() {
-        // Only the last stop is outstanding.
         let _ = port.ic_clr_stop_det().read();
         listen(port, STOPPED | ABORTED);
     }
     None
 }
 
-/// Enables these interrupts and no others.
 fn listen(port: &RegisterBlock, to: u32) {
     // SAFETY: the register has a bit for each interrupt.
     port.ic_intr_mask().write(|w| unsafe { w.bits(to) });
 }
 
-/// Returns the registers of a pin.
 fn pin(number: usize) -> &'static GPIO {
     // SAFETY: no other code uses the registers of these pins.
     unsafe { &*IO_BANK0::ptr() }.gpio(number)
 }
 
-/// Releases a line, or pulls it low, independent of the state of the bus.
 fn drive(number: usize, high: bool) {
     pin(number).gpio_ctrl().modify(|_, w| {
         if high {

@@ -17,7 +17,6 @@ use crate::board::cortex_m::interrupt::{Shared, unmask};
 use crate::board::serial::{self, Inbox, Outward};
 use crate::config::{BAUD, BUS_TRIES, UART_QUEUE};
 
-/// The pins 0 (out) and 1 (in) of the UART.
 pub(super) type SerialPins = (
     Pin<Gpio0, FunctionUart, PullNone>,
     Pin<Gpio1, FunctionUart, PullUp>,
@@ -30,11 +29,8 @@ const TRIES: u32 = 4 * BUS_TRIES;
 /// The bytes that the UART has not taken yet.
 static QUEUE: Shared<Deque<u8, UART_QUEUE>> = Shared::new(Deque::new());
 
-/// Starts the UART, and returns the sending direction of UART and USB. `clock` is the clock of the
-/// peripherals. Returns `None` if no divisor of it gives the UART's speed ([`BAUD`]).
-///
-/// No byte is received or sent before [`enable_interrupts`], and none over USB before
-/// [`usb::start`].
+/// Starts the UART, and returns the sending direction of UART and USB; `None` if no divisor of
+/// `clock` gives the UART's speed.
 pub(super) fn start(
     device: UART0,
     pins: SerialPins,
@@ -50,9 +46,7 @@ pub(super) fn start(
     Some(Outward(send))
 }
 
-/// Sends a message over USB and the UART. Waits for room in the UART's queue, [`TRIES`] polls at
-/// most. Returns true if there was room; if not, the UART sends no part of it. The result does not
-/// depend on USB.
+/// Sends a message over USB and the UART. The result is that of the UART.
 fn send(bytes: &[u8]) -> bool {
     usb::send(bytes);
     let has_room = (0..TRIES).any(|_| QUEUE.with(|queue| usb::put(queue, bytes)) == Some(true));
@@ -71,7 +65,6 @@ fn uart() -> &'static rp2040_hal::pac::uart0::RegisterBlock {
 /// sent half of them.
 #[interrupt]
 fn UART0_IRQ() {
-    // The bytes in the queue, while the UART takes them.
     QUEUE.with(|queue| {
         while uart().uartfr().read().txff().bit_is_clear()
             && let Some(byte) = queue.pop_front()
@@ -112,8 +105,6 @@ fn receive(inbox: &mut Inbox) {
     }
 }
 
-/// Unmasks the interrupts of the UART and of the USB port, which receive bytes and send the queues;
-/// to be called after [`start`] and [`usb::start`].
 pub(super) fn enable_interrupts() {
     [Interrupt::UART0_IRQ, Interrupt::USBCTRL_IRQ]
         .into_iter()

@@ -53,24 +53,19 @@ const MOST_FUTILE: u16 = 64;
 /// the device. A hub without a host may never end it.
 const MOST_IN_RESET: u16 = 16_384;
 
-/// The USB device, and the bytes to send.
 struct Usb {
     device: UsbDevice<'static, UsbBus>,
     port: CdcAcmClass<'static, UsbBus>,
     leaving: Deque<u8, USB_QUEUE>,
-    /// True while a program has the port open.
     is_open: bool,
-    /// The number of interrupts in a row that left something pending, but no reset of the bus.
     futile: u16,
-    /// The number of interrupts in a row that left a reset of the bus pending.
     in_reset: u16,
 }
 
 static USB: Shared<Option<&'static mut Usb>> = Shared::new(None);
 
-/// Connects the board to a host, after 12 ms without the pull-up (at 125 MHz), for which it waits.
-/// The device answers the host only while its interrupt is unmasked and calls [`poll`]; this
-/// function does not unmask it. Returns `None` the second time.
+/// Connects the board to a host. The device answers only while its interrupt is unmasked and calls
+/// [`poll`].
 pub(super) fn start(
     registers: USBCTRL_REGS,
     memory: USBCTRL_DPRAM,
@@ -84,7 +79,6 @@ pub(super) fn start(
     let bus = singleton!(: UsbBusAllocator<UsbBus> = UsbBusAllocator::new(bus))?;
     let port = CdcAcmClass::new(bus, PACKET as u16);
 
-    // The descriptors of the device.
     let names = StringDescriptors::default()
         .manufacturer("double-pendulum")
         .product("Double pendulum");
@@ -108,14 +102,12 @@ pub(super) fn start(
     USB.with(|place| *place = Some(usb))
 }
 
-/// Calls `act` with the device, with interrupts off. Returns `None` before the start.
 fn with<T>(act: impl FnOnce(&mut Usb) -> T) -> Option<T> {
     USB.with(|usb| usb.as_deref_mut().map(act)).flatten()
 }
 
-/// Sends a message if a program has the port open and the queue has room for the whole message.
-/// Otherwise the message is dropped; while the port is closed, so are the bytes in the queue.
-/// Before [`start`] it does nothing. Never waits.
+/// Sends a message if a program has the port open and the queue has room for all of it. Otherwise
+/// the message is dropped.
 #[inline(never)] // The libraries may panic; the main loop must not (test `no_panic`).
 pub(super) fn send(message: &[u8]) {
     with(|usb| {
@@ -128,12 +120,8 @@ pub(super) fn send(message: &[u8]) {
     });
 }
 
-/// Handles the device's interrupt. Takes a packet only if the queue has room for it.
-///
-/// Returns true if the interrupt may stay enabled: the queue had room, and the interrupt does not
-/// repeat without effect. If it returns false, the caller masks the interrupt and calls this
-/// function again later. It does not return if the host has closed the port at 1200 baud: that
-/// restarts the chip in its boot loader.
+/// Handles the device's interrupt. Takes a packet only if the queue has room for it. If it returns
+/// false, the caller masks the interrupt and calls this function again later.
 pub(super) fn poll(inbox: &mut Inbox) -> bool {
     let has_room = room(&inbox.received) >= PACKET;
     let is_served = with(|usb| {
@@ -141,7 +129,6 @@ pub(super) fn poll(inbox: &mut Inbox) -> bool {
         usb.obey_speed();
         let mut packet = [0; PACKET];
 
-        // Take a packet only if its bytes fit.
         if has_room && let Ok(length) = usb.port.read_packet(&mut packet) {
             packet
                 .into_iter()
@@ -149,7 +136,6 @@ pub(super) fn poll(inbox: &mut Inbox) -> bool {
                 .for_each(|byte| inbox.push(byte));
         }
 
-        // Send, and count the interrupts in a row that left something pending.
         usb.pass_on();
 
         let (is_pending, is_in_reset) = pending();
@@ -160,8 +146,7 @@ pub(super) fn poll(inbox: &mut Inbox) -> bool {
     has_room && is_served != Some(false)
 }
 
-/// Returns two flags: true if the device has any interrupt pending, and true if a reset of the bus
-/// is pending.
+/// Returns true if any interrupt is pending, and true if a reset of the bus is.
 ///
 /// The libraries leave an unexpected packet to the control endpoint in place until the next request
 /// of the host. Such a packet belongs to a request that the host has abandoned, or to a request
@@ -172,7 +157,6 @@ fn pending() -> (bool, bool) {
     (interrupts.bits() != 0, interrupts.bus_reset().bit_is_set())
 }
 
-/// Adds one to the number of events in a row if the event has happened, and else sets it to 0.
 fn count(in_a_row: &mut u16, has_happened: bool) {
     *in_a_row = if has_happened {
         in_a_row.saturating_add(1)
@@ -203,7 +187,6 @@ impl Usb {
             .map(|(place, byte)| *place = *byte)
             .count();
 
-        // The bytes that the device has taken leave the queue.
         if length > 0
             && self
                 .port
@@ -217,13 +200,11 @@ impl Usb {
     }
 }
 
-/// Returns the number of further bytes that a queue has room for.
 fn room<const N: usize>(queue: &Deque<u8, N>) -> usize {
     queue.capacity().saturating_sub(queue.len())
 }
 
-/// Puts a message into a queue if it has room for the whole message. Returns true if it had; if
-/// not, the queue is unchanged.
+/// Puts a message into a queue if it has room for all of it.
 pub(super) fn put<const N: usize>(queue: &mut Deque<u8, N>, message: &[u8]) -> bool {
     room(queue) >= message.len() && message.iter().all(|byte| queue.push_back(*byte).is_ok())
 }

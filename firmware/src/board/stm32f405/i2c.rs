@@ -29,10 +29,9 @@ const BYTE_READ: u16 = 1 << 6;
 const READY_FOR_BYTE: u16 = 1 << 7;
 
 /// The I2C block 1, with its pins PB6 (clock) and PB7 (data), as the port of the panel's bus at 400
-/// kHz. Its times assume a processor of 168 MHz.
+/// kHz and a processor of 168 MHz.
 pub struct I2c1((Scl, Sda));
 
-/// Starts the bus at 400 kHz, and its interrupts. Returns `None` the second time.
 pub(super) fn start(port: I2C1, clock: PB6, data: PB7, rcc: &mut Rcc) -> Option<Bus<I2c1>> {
     // The library does not set the pull-ups (RM0090, 8.4.4). At 40 kOhm they are too weak for the
     // bus. But without them and without a panel, the lines would float, which looks like the action
@@ -78,7 +77,6 @@ impl PanelPort for I2c1 {
             });
         }
 
-        // Reset the device, and restore its settings.
         let frequency = port.cr2().read().bits();
         let clock = port.ccr().read().bits();
         let rise = port.trise().read().bits();
@@ -105,21 +103,18 @@ fn I2C1_ER() {
     panel_bus::serve(|_| fail(registers()));
 }
 
-/// Returns the registers of the block.
 fn registers() -> &'static RegisterBlock {
     // SAFETY: while the outbox is not empty, only the interrupts use the bus.
     unsafe { &*I2C1::ptr() }
 }
 
 /// Makes the next part of the transfer. Two messages are separated by a start, without a stop.
-/// Returns the outcome at the end, and `None` before it. If the start between two messages does not
-/// come within [`TRIES`], the outcome is [`ErrorKind::Other`].
+/// Returns the outcome at the end.
 fn advance(port: &RegisterBlock, outbox: &mut Outbox) -> Option<Sent> {
     let status = port.sr1().read().bits();
 
     // True if all messages are sent, and only the answer is outstanding.
     let reads = outbox.is_empty() && outbox.asked() > 0;
-    // Each flag ends one phase of the transfer.
     let is_ready = if status & START_SENT != 0 {
         port.dr()
             .write(|w| w.dr().set(outbox.address << 1 | u8::from(reads)));
@@ -144,7 +139,6 @@ fn advance(port: &RegisterBlock, outbox: &mut Outbox) -> Option<Sent> {
         outbox.is_within_message() && status & READY_FOR_BYTE != 0
     };
 
-    // Send the next byte.
     if is_ready && let Some(byte) = outbox.next() {
         port.dr().write(|w| w.dr().set(byte.value));
         // After the last byte of a message, only its end interrupts.
@@ -203,9 +197,9 @@ fn is_read(status: u16, bytes: usize) -> bool {
 
 /// Handles an error of the bus. Returns the outcome, or `None` if the transfer continues.
 ///
-/// A bus error is ignored: a master may detect one by mistake, so it is cleared and the transfer
-/// continues (ES0182, "Spurious bus error detection in master mode"). A bus that has really been
-/// disturbed hangs, and is freed for that reason.
+/// A bus error is ignored: a master may detect one by mistake (ES0182, "Spurious bus error
+/// detection in master mode"). A bus that has really been disturbed hangs, and is freed for that
+/// reason.
 fn fail(port: &RegisterBlock) -> Option<Sent> {
     let status = port.sr1().read();
     // Clear the flags read here. Writing a 1 leaves a flag unchanged, so a flag set since then is
@@ -230,13 +224,11 @@ fn fail(port: &RegisterBlock) -> Option<Sent> {
     Some(Err(error))
 }
 
-/// Ends the transfer with a stop.
 fn stop(port: &RegisterBlock) {
     silence(port);
     port.cr1().modify(|_, w| w.stop().set_bit());
 }
 
-/// Disables the interrupts of the bus.
 fn silence(port: &RegisterBlock) {
     port.cr2().modify(|_, w| {
         w.itevten()

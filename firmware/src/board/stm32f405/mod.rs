@@ -38,25 +38,17 @@ use crate::protocol::BoardName;
 
 use i2c::I2c1;
 
-/// The processor's clock, Hz: the fastest of this chip. The emulated machine always has it.
 const HERTZ: u32 = 168_000_000;
 
 /// The address of the chip's unique number (RM0090, 39.1), in its system memory.
 const UNIQUE_NUMBER: *const [u32; 3] = core::ptr::without_provenance(0x1fff_7a10);
 
-/// The format of the panel.
 pub const FORMAT: Format = Format::OLED;
 
-/// The parts of this board.
 pub type Stm32f405 = Board<OledI2c<'static, Bus<I2c1>>, Outward, OneKey, IndependentWatchdog>;
 
-/// Sets the board up. The tick runs from then on, and so does the watchdog, except in the emulator,
-/// which has none. The watchdog resets the board 2 s after the last feeding, by its inaccurate
-/// oscillator 1.4 to 3.8 s. The panel and the button may be absent. The log is opened, in memory.
-///
-/// A chip whose own oscillator reads as not ready counts as emulated: its log goes to the emulator,
-/// and its number is zeros. On a chip this waits for the PLL, for ever if it does not start.
-/// Returns `None` the second time, or if other code has taken the peripherals.
+/// Sets the board up. The emulator has no watchdog. A chip whose own oscillator reads as not ready
+/// counts as emulated: its log goes to the emulator, and its number is zeros.
 pub fn take() -> Option<Stm32f405> {
     let core = cortex_m::Peripherals::take()?;
     let chip = pac::Peripherals::take()?;
@@ -73,7 +65,6 @@ pub fn take() -> Option<Stm32f405> {
     let chip_number = if is_emulated { [0; 4] } else { chip_number() };
     let instruments = start(core, BoardName::Stm32f405, HERTZ, chip_number);
 
-    // The panel's bus.
     let b = chip.GPIOB.split(&mut rcc);
     let c = chip.GPIOC.split(&mut rcc);
     let bus = i2c::start(chip.I2C1, b.pb6, b.pb7, &mut rcc)?;
@@ -88,12 +79,7 @@ pub fn take() -> Option<Stm32f405> {
     })
 }
 
-/// The only button, which is the select button, low while pressed. A tap starts the scene again;
-/// held, it selects the next scene, and after taps it has the other effects of
-/// [`Controls`](crate::app::Controls).
-///
-/// If it is absent, it is never pressed. In the emulator it reads as pressed from the start, which
-/// has no effect.
+/// The only button, which is the select button, low while pressed.
 pub struct OneKey(PC7);
 
 impl Buttons for OneKey {
@@ -118,7 +104,6 @@ fn keep_log_readable() {
         .modify(|_, w| w.dbg_sleep().set_bit().dbg_stop().set_bit());
 }
 
-/// Returns the identification of the chip, and the three words of its unique number.
 fn chip_number() -> [u32; 4] {
     // SAFETY: both are only read, and no other code uses them.
     let (debug, unique) = unsafe { (&*DBGMCU::ptr(), &*UNIQUE_NUMBER) };
@@ -126,8 +111,6 @@ fn chip_number() -> [u32; 4] {
     [debug.idcode().read().bits(), a, b, c]
 }
 
-/// Starts the clock, at 168 MHz on a chip. Returns the clock control, and true if the chip is
-/// emulated.
 ///
 /// The source is the chip's own oscillator. It is accurate to 1 % at room temperature, which is
 /// sufficient for the eye and for the serial port. So the image fits boards with any crystal (8, 12
@@ -142,7 +125,6 @@ fn start_clock(rcc: RCC) -> (Rcc, bool) {
     }
 }
 
-/// Starts the serial port. The support library sets it up, and does not use it afterwards.
 fn start_link(port: USART3, pins: (PB10, PB11), rcc: &mut Rcc) -> Option<Outward> {
     // The adapter is optional. Without it the input would float next to the output, and receive an
     // echo of it. The library does not set the pull-up (RM0090, 8.4.4).
@@ -160,20 +142,18 @@ fn start_link(port: USART3, pins: (PB10, PB11), rcc: &mut Rcc) -> Option<Outward
     }))
 }
 
-/// Writes a byte to the transmitter, which must be ready for it.
 fn put(byte: u8) {
     uart().dr().write(|w| w.dr().set(byte.into()));
 }
 
-/// Returns the registers of the serial port.
 fn uart() -> &'static RegisterBlock {
     // SAFETY: the two directions use different bits of these registers, and reading does not change
     // the bits of the other one.
     unsafe { &*USART3::ptr() }
 }
 
-/// Takes the received bytes. Reading a byte ends its interrupt. If a byte comes before the last
-/// byte was read, it is lost, and the overrun interrupts until the data are read.
+/// Reading a byte ends its interrupt. A byte that comes before the last one was read is lost, and
+/// the overrun interrupts until the data are read.
 fn receive(inbox: &mut Inbox) {
     loop {
         let status = uart().sr().read();
@@ -204,8 +184,7 @@ fn start_watchdog(unit: IWDG) -> IndependentWatchdog {
     unit
 }
 
-/// Returns true if the watchdog caused the last reset. Call it only once, because it clears the
-/// cause.
+/// Returns true if the watchdog caused the last reset. It clears the cause.
 fn reset_by_watchdog(rcc: &mut Rcc) -> bool {
     let has_reset = rcc.csr().read().wdgrstf().bit_is_set();
     rcc.csr().modify(|_, w| w.rmvf().set_bit());
