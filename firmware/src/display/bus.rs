@@ -18,45 +18,34 @@ const CAPACITY: usize = PAGES * (5 + 2 + WIDTH) + 48;
 const ANSWER: usize = 2;
 
 /// Messages to one address, and the answer to them. Each message is stored as its length and its
-/// bytes; in all there is room for 1,128 bytes. The default is empty, with the address 0 and the
-/// outcome `Ok`. The public fields are written by the bus and by [`address_to`](Self::address_to),
-/// and only read by others.
+/// bytes.
 #[derive(Debug)]
 pub struct Outbox {
-    /// The address of the panel, seven bits, set by [`address_to`](Self::address_to).
     pub address: u8,
     messages: Vec<u8, CAPACITY>,
-    /// The index of the next byte to send.
     at: usize,
-    /// The number of bytes left of the message that is being sent.
     left: u8,
-    /// The number of bytes to read from the panel after the messages.
     asked: u8,
     /// The number of these bytes that have been requested, on a bus that needs a request for each
     /// byte.
     pub requested: usize,
-    /// The bytes read.
     answer: Vec<u8, ANSWER>,
-    /// The outcome; `None` while the messages are being sent, `Ok` while nothing has been sent.
+    /// `None` while the messages are being sent, `Ok` while nothing has been sent.
     pub sent: Option<Sent>,
 }
 
-/// The outcome of the messages in an outbox: `Ok` if all are sent and the answer is complete. If
-/// not, [`ErrorKind::NoAcknowledge`] means that the panel is silent, [`ErrorKind::ArbitrationLoss`]
-/// that another device drove the bus, and any other error that the transfer was aborted or hangs.
+/// The outcome of the messages in an outbox. [`ErrorKind::NoAcknowledge`] means that the panel is
+/// silent, [`ErrorKind::ArbitrationLoss`] that another device drove the bus, and any other error
+/// that the transfer was aborted or hangs.
 pub type Sent = Result<(), ErrorKind>;
 
-/// The error of a panel that does not acknowledge. An [`ErrorKind::NoAcknowledge`] of another
-/// source means the same.
+/// The error of a panel that does not acknowledge.
 pub const SILENCE: ErrorKind = ErrorKind::NoAcknowledge(NoAcknowledgeSource::Unknown);
 
-/// A byte to send, after the address.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct OutByte {
-    /// The byte itself.
     pub value: u8,
-    /// True if the byte is the last of its message. A stop follows or, if the bus prefers it, the
-    /// start of the next message or of the answer.
+    /// A stop follows or, if the bus prefers it, the start of the next message or of the answer.
     pub ends_message: bool,
 }
 
@@ -76,8 +65,7 @@ impl Default for Outbox {
 }
 
 impl Outbox {
-    /// Empties the outbox, of messages and answer; messages put in from now on are for this address
-    /// of seven bits, which is not checked. The outcome becomes `Ok`, and no byte is requested.
+    /// Empties the outbox. Messages put in from now on are for this address.
     pub fn address_to(&mut self, address: u8) {
         self.address = address;
         self.messages.clear();
@@ -89,9 +77,8 @@ impl Outbox {
         self.sent = Some(Ok(()));
     }
 
-    /// Appends a message: the control byte `head`, and 0 to 254 bytes. A longer message, or one
-    /// that does not fit into the outbox with its length and `head`, is dropped without notice. The
-    /// longest update of a panel fits (test `oled_i2c`).
+    /// Appends a message: the control byte `head`, and up to 254 bytes. The longest update of a
+    /// panel fits (test `oled_i2c`).
     pub fn put(&mut self, head: u8, body: &[u8]) {
         let needed = 2 + body.len();
         if let Ok(length) = u8::try_from(needed - 1)
@@ -104,38 +91,32 @@ impl Outbox {
         }
     }
 
-    /// Requests that this many bytes are read from the panel after the messages; 0 requests none.
-    /// More than 2 count as 2. A later call replaces the number.
+    /// Requests that this many bytes, at most 2, are read from the panel after the messages.
     pub fn ask(&mut self, bytes: u8) {
         self.asked = bytes.min(ANSWER as u8);
     }
 
-    /// Returns the number of bytes to read, 0 to 2.
     pub fn asked(&self) -> usize {
         self.asked.into()
     }
 
-    /// Takes a byte that was read; called by the bus, once for each requested byte. A third byte is
-    /// dropped; otherwise the number requested is not checked.
+    /// Takes a byte that was read.
     pub fn answer(&mut self, byte: u8) {
         // A byte beyond the capacity is dropped.
         let _ = self.answer.push(byte);
     }
 
-    /// Returns the bytes that were read. After a transfer with the outcome `Ok` they are as many as
-    /// requested. After an error they may be fewer, and before the transfer there are none.
+    /// Returns the bytes that were read.
     pub fn answered(&self) -> &[u8] {
         &self.answer
     }
 
-    /// Returns true if [`next`](Iterator::next) has no byte left: all messages are sent, or none
-    /// was put in. An answer may be outstanding.
+    /// Returns true if all messages are sent. An answer may be outstanding.
     pub fn is_empty(&self) -> bool {
         self.at == self.messages.len()
     }
 
-    /// Returns true if the first byte of a message has been taken and its last byte is still to
-    /// come.
+    /// Returns true in the middle of a message.
     pub fn is_within_message(&self) -> bool {
         self.left != 0
     }
@@ -144,8 +125,6 @@ impl Outbox {
 impl Iterator for Outbox {
     type Item = OutByte;
 
-    /// Takes the next byte to send; messages follow each other in their order. Returns `None` after
-    /// the last one.
     fn next(&mut self) -> Option<OutByte> {
         if self.left == 0 {
             self.left = *self.messages.get(self.at)?;
@@ -165,18 +144,14 @@ impl Iterator for Outbox {
 /// A bus that sends an outbox while the processor does other work.
 pub trait PanelBus {
     /// Returns the outbox, and the outcome of its last messages; `None` while they are being sent.
-    /// If nothing has been sent yet, the outcome is `Ok`.
     fn outbox(&mut self) -> Option<(&mut Outbox, Sent)>;
 
-    /// Begins to send the messages in the outbox, and returns at once. Does nothing while a
-    /// transfer is in progress. Not checked: the outbox must contain a message that has not been
-    /// sent, because an empty transfer may never end.
+    /// Begins to send the messages in the outbox, of which there must be one, because an empty
+    /// transfer may never end.
     fn send(&mut self);
 
-    /// Aborts the transfer, and frees a bus that hangs, as far as that is possible, which is not
-    /// reported. It waits for the clocks of [`free_bus`]. The outbox is then available, with the
-    /// outcome [`ErrorKind::Other`], also if the transfer has ended since the last call of
-    /// [`outbox`](Self::outbox). If the outbox was available before, its outcome stays.
+    /// Aborts the transfer, and frees a bus that hangs, as far as that is possible. The outbox is
+    /// then available, with the outcome [`ErrorKind::Other`].
     fn abort(&mut self);
 }
 
@@ -184,12 +159,8 @@ pub trait PanelBus {
 /// acknowledgement.
 const MOST_CLOCKS: u32 = 9;
 
-/// Frees a bus whose data line a panel holds low. Returns true if the line is high in the end. If
-/// not, the panel is defective, or the line has no pull-up resistor.
-///
-/// The function clocks the bus until the data line is high, at most nine times, and then makes a
-/// stop, also if the data line is still low. A bus whose data line is high already is left
-/// unchanged. A clock line that is held low is not noticed.
+/// Frees a bus whose data line a panel holds low: clocks the bus until the data line is high, at
+/// most nine times, and then makes a stop. Returns true if the line is high in the end.
 ///
 /// A panel can be left in the middle of an answer, if the board is reset in the middle of a byte,
 /// or if the panel is plugged in while the bus is running. It holds the data line low for a bit
@@ -200,12 +171,10 @@ const MOST_CLOCKS: u32 = 9;
 ///
 /// Source: NXP UM10204, I2C-bus specification, 3.1.16 (bus clear).
 pub fn free_bus(mut drive: impl FnMut(bool, bool) -> bool) -> bool {
-    // A bus that is not held needs no help.
     if drive(true, true) {
         return true;
     }
 
-    // Clock the bus until the panel releases the data line.
     for _ in 0..MOST_CLOCKS {
         drive(false, true);
         if drive(true, true) {

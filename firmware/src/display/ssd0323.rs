@@ -57,11 +57,8 @@ const WAKE: [&[u8]; 19] = [
     &[0xAF],                    // display on
 ];
 
-/// The driver of a panel: an SPI device, and the pin that is high for data and low for commands.
-///
-/// [`Ssd0323::init`] must be called before the first frame, which is not checked. A frame is sent
-/// before [`flush`](Display::flush) returns. The panel takes SPI mode 2 at up to 4 MHz; another mode gives no error and no
-/// picture. It cannot be read, so that an absent panel is no error.
+/// The driver of a panel: an SPI device in mode 2 at up to 4 MHz, and the pin that is high for data
+/// and low for commands. The panel cannot be read, so that an absent one is no error.
 #[derive(Debug)]
 pub struct Ssd0323<Spi, Pin> {
     spi: Spi,
@@ -69,7 +66,6 @@ pub struct Ssd0323<Spi, Pin> {
 }
 
 impl<Spi: SpiDevice, Pin: OutputPin<Error = Infallible>> Ssd0323<Spi, Pin> {
-    /// Creates the driver of a panel with these lines. Nothing is sent yet.
     pub fn new(spi: Spi, data_not_command: Pin) -> Self {
         Self {
             spi,
@@ -77,11 +73,7 @@ impl<Spi: SpiDevice, Pin: OutputPin<Error = Infallible>> Ssd0323<Spi, Pin> {
         }
     }
 
-    /// Blanks the panel's memory, configures the controller and switches the panel on. It does not
-    /// reset the controller.
-    ///
-    /// Returns the first error of the SPI device; the rest is then not sent. A panel that was off
-    /// stays dark until a later call succeeds, and one that was on may go dark.
+    /// Blanks the panel's memory, configures the controller and switches the panel on.
     pub fn init(&mut self) -> Result<(), Spi::Error> {
         self.command(&ALL_COLUMNS)?;
         self.command(&ALL_ROWS)?;
@@ -89,7 +81,6 @@ impl<Spi: SpiDevice, Pin: OutputPin<Error = Infallible>> Ssd0323<Spi, Pin> {
         WAKE.iter().try_for_each(|command| self.command(command))
     }
 
-    /// Sends data for the memory.
     fn data(&mut self, bytes: &[u8]) -> Result<(), Spi::Error> {
         let Ok(()) = self.data_not_command.set_high();
         self.spi.write(bytes)
@@ -105,8 +96,7 @@ impl<Spi: SpiDevice, Pin: OutputPin<Error = Infallible>> Ssd0323<Spi, Pin> {
 impl<Spi: SpiDevice, Pin: OutputPin<Error = Infallible>> Display for Ssd0323<Spi, Pin> {
     type Error = Spi::Error;
 
-    /// Sends the changes before it returns. Returns the first error of the SPI device; the rest of
-    /// the frame is then not sent.
+    /// Sends the changes before it returns.
     fn flush(&mut self, canvas: &Canvas) -> Result<(), Self::Error> {
         let words_per_cell = canvas.cell() / 4;
         let mut next = None;

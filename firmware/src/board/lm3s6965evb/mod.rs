@@ -30,18 +30,12 @@ use crate::protocol::BoardName;
 
 use pins::{Output, Ssi};
 
-/// The format of the panel.
 pub const FORMAT: Format = Format::OLED;
 
-/// The parts of this board.
 pub type Lm3s6965evb = Board<Ssd0323<Ssi, Output>, Outward, Keys, TwoStage>;
 
-/// Sets the board up. The tick and the watchdog run from then on, and the watchdog must be fed. A
-/// panel that does not take its settings is only logged, and stays dark. The log goes to the
-/// debugger, and needs no set-up.
-///
-/// Waits 0.13 s for the crystal. Returns `None` the second time, or if other code has taken the
-/// processor's peripherals.
+/// Sets the board up. The tick and the watchdog run from then on. A panel that does not take its
+/// settings is only logged, and stays dark.
 pub fn take() -> Option<Lm3s6965evb> {
     let core = Peripherals::take()?;
     let hertz = system::start();
@@ -50,11 +44,9 @@ pub fn take() -> Option<Lm3s6965evb> {
     // Deselect the memory card, which shares the panel's bus.
     let Ok(()) = pins::D.use_for_output(1 << 0).set_high();
 
-    // The buttons.
     pins::E.use_for_input(1 << 0 | 1 << 1 | 1 << 2 | 1 << 3);
     pins::F.use_for_input(1 << 1);
 
-    // The serial link and the panel.
     let link = start_link(hertz);
     let mut panel = Ssd0323::new(Ssi::start(hertz), pins::C.use_for_output(1 << 7));
     if panel.init().is_err() {
@@ -71,9 +63,7 @@ pub fn take() -> Option<Lm3s6965evb> {
     })
 }
 
-/// The buttons at PE0 to PE3 and PF1, each low while pressed; an open pin is not pressed.
-///
-/// Not checked: [`take`] has powered and set up the pins. Without power a reading is a fault.
+/// The buttons at PE0 to PE3 and PF1, each low while pressed.
 #[derive(Debug)]
 pub struct Keys;
 
@@ -112,7 +102,6 @@ const RECEIVED: u32 = 1 << 6 | 1 << 4;
 
 const INTERRUPT: Interrupt = Interrupt(5);
 
-/// Starts the serial port (PL011) at [`BAUD`]; `hertz` is the processor's clock.
 fn start_link(hertz: u32) -> Outward {
     pins::A.use_for_device(1 << 0 | 1 << 1);
     CONTROL.write(0);
@@ -136,7 +125,6 @@ fn start_link(hertz: u32) -> Outward {
     })
 }
 
-/// Takes the received bytes.
 fn receive(inbox: &mut Inbox) {
     // Clear the interrupt first, so that a byte that comes now interrupts again.
     INTERRUPT_CLEAR.write(RECEIVED);

@@ -9,26 +9,18 @@ use embedded_hal::spi::{self, ErrorKind, Operation, SpiDevice};
 use crate::board::register::{Device, Register};
 use crate::config::BUS_TRIES;
 
-/// A port of eight pins. In its functions, `pins` is a mask: bit n means pin n. The other pins, and
-/// earlier settings that a function does not mention, stay unchanged.
-///
-/// Not checked: [`system::start`](super::system::start) has powered the port. Before that every
-/// access is a fault.
+/// A port of eight pins. In its functions, `pins` is a mask: bit n means pin n.
+/// [`system::start`](super::system::start) must have powered the port: before that every access is
+/// a fault.
 #[derive(Clone, Copy, Debug)]
 pub struct Pins(Device);
 
-/// Port A, pins PA0 to PA7.
 pub const A: Pins = port(0x4000_4000);
-/// Port C, pins PC0 to PC7.
 pub const C: Pins = port(0x4000_6000);
-/// Port D, pins PD0 to PD7.
 pub const D: Pins = port(0x4000_7000);
-/// Port E, pins PE0 to PE7.
 pub const E: Pins = port(0x4002_4000);
-/// Port F, pins PF0 to PF7.
 pub const F: Pins = port(0x4002_5000);
 
-/// Returns the port whose registers begin at this address.
 const fn port(base: usize) -> Pins {
     // SAFETY: the ports above are in the data sheet, chapter 8; pins cannot break memory safety.
     Pins(unsafe { Device::at(base) })
@@ -41,36 +33,30 @@ impl Pins {
     }
 
     /// Connects `pins` to the device that the data sheet assigns to each of them, such as UART0 or
-    /// SSI0 at port A. The levels and directions are then the device's. Not checked: each pin has
-    /// such a device.
+    /// SSI0 at port A.
     pub fn use_for_device(self, pins: u8) {
         self.0.register(0x420).modify(0, pins.into()); // alternate function
         self.0.register(0x51C).modify(0, pins.into()); // digital
     }
 
-    /// Makes `pins` inputs with pull-ups. A pin that was connected to a device stays connected.
     pub fn use_for_input(self, pins: u8) {
         self.0.register(0x400).modify(pins.into(), 0); // direction
         self.0.register(0x510).modify(0, pins.into()); // pull-up
         self.0.register(0x51C).modify(0, pins.into());
     }
 
-    /// Makes `pins` outputs. Returns them; they are set high or low together. Until then each has
-    /// the level last written to it, low after a reset. A pin that was connected to a device stays
-    /// connected.
+    /// Makes `pins` outputs.
     pub fn use_for_output(self, pins: u8) -> Output {
         self.0.register(0x400).modify(0, pins.into());
         self.0.register(0x51C).modify(0, pins.into());
         Output(self.data(pins))
     }
 
-    /// Returns true if all of `pins` are low now; also true if `pins` is 0.
     pub fn are_low(self, pins: u8) -> bool {
         self.data(pins).read() == 0
     }
 }
 
-/// Output pins of a port, all set to the same level. Setting them never fails.
 #[derive(Debug)]
 pub struct Output(Register);
 
@@ -90,9 +76,8 @@ impl OutputPin for Output {
     }
 }
 
-/// The highest clock of the panel, Hz: a bit takes at least 250 ns.
+/// A bit takes at least 250 ns.
 const FASTEST: u32 = 4_000_000;
-/// The capacity of the transmit queue and of the receive queue, bytes.
 const QUEUE: usize = 8;
 
 // SAFETY: SSI0 of the data sheet, chapter 13; without DMA it cannot break memory safety.
@@ -108,18 +93,13 @@ const BUSY: u32 = 1 << 4;
 /// Eight bits. The clock is high when idle, and data are taken on its first, falling edge.
 const MODE_2_BYTES: u32 = 1 << 6 | 7;
 
-/// The panel's SPI bus, which can only write, in SPI mode 2 at up to 4 MHz: 3.6 MHz with a
-/// processor of 50 MHz. A transaction waits until its bytes are sent. It ends with
-/// [`ErrorKind::Other`] at the first operation that is not a write, a delay included, or if the bus
-/// is still busy after [`BUS_TRIES`] polls for up to 8 bytes. Earlier operations have been sent,
-/// and of a late one perhaps a part. The bus is not reset.
+/// The panel's SPI bus, which can only write. A transaction waits until its bytes are sent, or ends
+/// with [`ErrorKind::Other`] if the bus is stuck.
 #[derive(Debug)]
 pub struct Ssi(());
 
 impl Ssi {
-    /// Starts the bus at the largest possible clock up to 4 MHz ([`FASTEST`]). `hertz` is the
-    /// processor's clock, Hz. Not checked: [`system::start`](super::system::start) has powered the
-    /// bus and returned this `hertz`.
+    /// Starts the bus at the largest possible clock.
     pub(super) fn start(hertz: u32) -> Self {
         A.use_for_device(1 << 2 | 1 << 3 | 1 << 5);
         CONTROL1.write(0);
@@ -131,14 +111,12 @@ impl Ssi {
     }
 }
 
-/// Sends up to [`QUEUE`] bytes and waits until they are sent. The received bytes are noise, but
-/// must be read, because a full receive queue stops the bus.
+/// The received bytes are noise, but must be read, because a full receive queue stops the bus.
 fn send(bytes: &[u8]) -> Result<(), ErrorKind> {
     for &byte in bytes {
         DATA.write(byte.into());
     }
 
-    // Wait until the bytes are sent.
     if !STATUS.wait(BUSY, 0, BUS_TRIES) {
         return Err(ErrorKind::Other);
     }

@@ -48,12 +48,10 @@ const DIVIDER_FIELD: u32 = 0xF << 23;
 const DIVIDE_BY_4: u32 = 3 << 23;
 const PLL_LOCKED: u32 = 1 << 6;
 
-/// Starts the clock and powers the peripherals: the watchdog, SSI0, UART0 and the ports A, C, D, E
-/// and F. Before that an access to them is a fault. Returns the frequency of the processor, Hz:
-/// 50,000,000. If the PLL does not lock in some 5 ms, it is the crystal's 8,000,000: slow, but
-/// running.
+/// Starts the clock and powers the peripherals. Before that an access to them is a fault. Returns
+/// the frequency of the processor, Hz: if the PLL does not lock, the crystal's, slow but running.
 ///
-/// First the crystal starts, which takes 0.13 s. Without a crystal the processor stops.
+/// First the crystal starts, which takes 0.13 s.
 pub fn start() -> u32 {
     // An erratum of this revision: at the regulator's 2.5 V the chip may fail once the PLL runs.
     // The vendor's programs for this board begin with this setting (`REVISION_IS_A2`,
@@ -77,7 +75,6 @@ pub fn start() -> u32 {
         CRYSTAL
     };
 
-    // Power the peripherals.
     RCGC0.modify(0, WATCHDOG);
     RCGC1.modify(0, 1 << 4 | 1 << 0); // SSI0, UART0
     RCGC2.modify(0, 0b111101); // ports A, C, D, E, F
@@ -96,15 +93,13 @@ fn start_crystal() {
     }
 }
 
-/// Returns the two identification registers of the chip, DID0 and DID1, and two zeros. It has no
-/// unique number.
+/// Returns DID0 and DID1. The chip has no unique number.
 pub fn chip() -> [u32; 4] {
     [DID0.read(), DID1.read(), 0, 0]
 }
 
-/// Returns true if the watchdog has caused a reset since the last call, in this run or in an
-/// earlier one: the register accumulates the causes, and the function clears them. Called once in
-/// every run, it reports the last reset. In QEMU it always returns false.
+/// Returns true if the watchdog has caused a reset since the last call. The register accumulates
+/// the causes, and the function clears them. In QEMU it always returns false.
 pub fn reset_by_watchdog() -> bool {
     let causes = RESC.read();
     RESC.write(0);
@@ -114,13 +109,10 @@ pub fn reset_by_watchdog() -> bool {
 // SAFETY: the watchdog of the data sheet, chapter 11; without DMA it cannot break memory safety.
 const WATCHDOG_TIMER: Device = unsafe { Device::at(0x4000_0000) };
 const TEST: Register = WATCHDOG_TIMER.register(0x418);
-/// The watchdog stops while a debugger halts the processor.
 const STALL: u32 = 1 << 8;
 const CALL: u16 = FIRST + 18;
 
-/// Starts the watchdog, which counts at `hertz`, the processor's clock, Hz. It must be fed from now
-/// on ([`TwoStage`]). It stops while a debugger halts the processor. Not checked: [`start`] has
-/// powered it and returned this `hertz`. A smaller number shortens its time, and 0 ends it at once.
+/// Starts the watchdog. It stops while a debugger halts the processor.
 pub fn start_watchdog(hertz: u32) -> TwoStage {
     // The registers stay unlocked until the next feeding.
     watchdog::stall_by(|stalls| {
