@@ -12,10 +12,8 @@ use firmware::motion::Settings;
 use firmware::protocol::{Answer, Command, Frame, MAX_WIRE, ToHost, encode_command};
 use firmware::scenes::SceneName;
 
-/// The application without panel and buttons. Its link is a vector of the bytes that it has sent.
 pub type Plain = App<'static, NoDisplay, Vec<u8>, NoButtons>;
 
-/// Returns the application with these devices, at the start of the page with its own settings.
 pub fn of<P: Display + 'static, L: Write, K: Buttons>(
     panel: P,
     link: L,
@@ -29,13 +27,10 @@ pub fn of<P: Display + 'static, L: Write, K: Buttons>(
     app
 }
 
-/// Returns the application without devices, at the start of the page.
 pub fn app() -> Plain {
     of(NoDisplay, Vec::new(), NoButtons)
 }
 
-/// Returns the application without devices, at the start of the page with these settings. Panics if
-/// the page cannot start with them.
 pub fn starting_with(settings: Settings) -> Plain {
     let mut app = app();
     app.player
@@ -44,13 +39,10 @@ pub fn starting_with(settings: Settings) -> Plain {
     app
 }
 
-/// Returns the bytes of a command on the link, with both delimiters. `request` is the number that
-/// its answers repeat.
 pub fn wire(request: u16, command: Command) -> Vec<u8> {
     encode_command(request, command, &mut [0; MAX_WIRE]).to_vec()
 }
 
-/// Returns the messages to the host in a stream of bytes. Panics if the stream is damaged.
 pub fn messages(bytes: &[u8]) -> Vec<ToHost> {
     let mut inbox = Inbox::default();
     let messages = bytes.iter().filter_map(|&byte| inbox.take(byte)).collect();
@@ -58,7 +50,6 @@ pub fn messages(bytes: &[u8]) -> Vec<ToHost> {
     messages
 }
 
-/// Returns the frame messages in a stream. Panics if the stream is damaged.
 pub fn frames(bytes: &[u8]) -> Vec<Frame> {
     messages(bytes)
         .into_iter()
@@ -66,8 +57,6 @@ pub fn frames(bytes: &[u8]) -> Vec<Frame> {
         .collect()
 }
 
-/// Returns the answers in a stream, each with the number of its command. Panics if the stream is
-/// damaged.
 pub fn answers(bytes: &[u8]) -> Vec<(u16, Answer)> {
     messages(bytes)
         .into_iter()
@@ -75,12 +64,10 @@ pub fn answers(bytes: &[u8]) -> Vec<(u16, Answer)> {
         .collect()
 }
 
-/// Returns a blank canvas of an OLED.
 pub fn blank() -> Canvas<'static> {
     canvas(Format::OLED)
 }
 
-/// Returns all places (x, y) of an OLED's frame, pixels, row by row from the top left corner.
 pub fn places() -> impl Iterator<Item = (i32, i32)> {
     let Format { width, height, .. } = Format::OLED;
     (0..height.into()).flat_map(move |y| (0..width.into()).map(move |x| (x, y)))

@@ -16,15 +16,12 @@ const NONE: Pressed = Pressed {
     right: false,
     select: false,
 };
-/// The button up alone.
 const UP: Pressed = Pressed { up: true, ..NONE };
-/// The button select alone.
 const SELECT: Pressed = Pressed {
     select: true,
     ..NONE
 };
 
-/// Returns the commands, each with its tick, counted from 0.
 fn commands(
     controls: &mut Controls,
     readings: impl IntoIterator<Item = Pressed>,
@@ -38,15 +35,12 @@ fn commands(
     readings.into_iter().enumerate().flat_map(each).collect()
 }
 
-/// Returns controls that have seen every button released.
 fn proven() -> Controls {
     let mut controls = Controls::default();
     assert_eq!(commands(&mut controls, [NONE; 10]), []);
     controls
 }
 
-/// Buttons that read as pressed from the first tick have no effect, for however long. After all are
-/// released, the arrows have their commands.
 #[test]
 fn a_button_held_since_reset_counts_only_once_released() {
     let mut controls = Controls::default();
@@ -61,7 +55,6 @@ fn a_button_held_since_reset_counts_only_once_released() {
         select: true,
         ..arrows
     };
-    // The buttons are held, released, and pressed again.
     assert_eq!(commands(&mut controls, [all; 200]), []);
     assert_eq!(commands(&mut controls, [NONE; 10]), []);
     let fired: Vec<_> = commands(&mut controls, [arrows; 10])
@@ -79,12 +72,8 @@ fn a_button_held_since_reset_counts_only_once_released() {
     );
 }
 
-/// The readings of a button in successive ticks become commands in exact ticks: bounces do not
-/// count, a held arrow repeats after the delay and then at each period, select restarts when it is
-/// released, changes the scene when it is held, and with an arrow has another command, once.
 #[test]
 fn readings_become_commands() {
-    // The readings of buttons that are held for some ticks each.
     let held = |readings: &[(Pressed, usize)]| {
         readings
             .iter()
@@ -102,7 +91,6 @@ fn readings_become_commands() {
     ];
     let next_scene = first + usize::from(HOLD_TICKS) - 1;
 
-    // A case has a description, the readings, and the ticks with their commands.
     let mut cases = vec![
         ("bounces do not count", [UP, NONE].repeat(3), vec![]),
         (
@@ -127,7 +115,6 @@ fn readings_become_commands() {
         ),
     ];
 
-    // An arrow that is pressed while select is held has its own command.
     for (arrow, command) in [
         (Pressed { up: true, ..SELECT }, Command::TogglePause),
         (
@@ -165,13 +152,9 @@ fn readings_become_commands() {
     }
 }
 
-/// The select button is tapped one to four times and then held: the hold repeats the command of
-/// that number of taps. A hold that comes too late is a plain one, and five taps or a short hold
-/// have no command.
 #[test]
 fn taps_before_a_hold_select_its_command() {
     let tap = || [SELECT; 5].into_iter().chain([NONE; 5]);
-    // A number of taps, a pause, and a hold.
     let after = |taps: usize, pause: usize, held: usize| {
         let taps = (0..taps)
             .flat_map(|_| tap())
@@ -188,7 +171,6 @@ fn taps_before_a_hold_select_its_command() {
     };
     let held = usize::from(HOLD_TICKS) + 2 * usize::from(REPEAT_PERIOD_TICKS) + 2;
 
-    // The hold lasts for three repetitions.
     for (taps, command) in [
         Command::Heavier,
         Command::Lighter,
@@ -221,12 +203,9 @@ fn taps_before_a_hold_select_its_command() {
     assert_eq!(after(3, 0, 20), [], "not held long enough");
 }
 
-/// `heavier` and `lighter` visit all of [`MASS_RATIOS`] upwards and downwards, and stay at the last
-/// one. A ratio that is not in the table moves to its neighbours.
 #[test]
 fn buttons_visit_every_mass_ratio_and_stop_at_the_ends() {
     let mut settings = Settings::equal_rods(MASS_RATIOS[0], 120.0);
-    // Every ratio upwards, then every ratio downwards.
     for ratio in MASS_RATIOS {
         assert_eq!(settings.mass_ratio(), ratio);
         assert!(settings.start().is_ok());
@@ -238,7 +217,6 @@ fn buttons_visit_every_mass_ratio_and_stop_at_the_ends() {
     }
     assert_eq!(settings.mass_ratio(), MASS_RATIOS[0]);
 
-    // A ratio between two of the table moves to its neighbours.
     let between = Settings::equal_rods(2.75, 120.0);
     assert_eq!(
         (
@@ -249,8 +227,6 @@ fn buttons_visit_every_mass_ratio_and_stop_at_the_ends() {
     );
 }
 
-/// With a mass of bob 1 other than 1 kg, m2/m1 is rounded. All ratios of [`MASS_RATIOS`] are
-/// visited nevertheless, upwards and downwards.
 #[test]
 fn buttons_visit_every_mass_ratio_whatever_the_mass_of_bob_1() {
     for m1 in [0.1, 0.7, 1.3, 3.0] {
@@ -272,7 +248,6 @@ fn buttons_visit_every_mass_ratio_whatever_the_mass_of_bob_1() {
     }
 }
 
-/// A start angle that is turned beyond straight up is exactly 180 or -180 degrees, and pi rad.
 #[test]
 fn angles_stop_at_straight_up() {
     let mut settings = Settings::equal_rods(1.0, 170.5);
@@ -289,8 +264,6 @@ fn angles_stop_at_straight_up() {
     assert_eq!(settings.degrees, [-180.0; 2]);
 }
 
-/// The texts of mass ratios, angles, times, horizons and scales, with their number of digits and
-/// their rounding.
 #[test]
 fn labels_show_the_settings() {
     let ratios = [
@@ -314,7 +287,6 @@ fn labels_show_the_settings() {
         expected.map(|text| format!("μ {text}"))
     );
 
-    // Angles keep half degrees and the sign of -0.5.
     let angles = [0.0, 120.0, -7.0, 171.5, -0.5].map(|degrees| label::degrees("α ", degrees));
     let expected = ["α 0°", "α 120°", "α -7°", "α 171.5°", "α -0.5°"];
     assert_eq!(angles.map(|label| label.to_string()), expected);
@@ -328,7 +300,6 @@ fn labels_show_the_settings() {
         ]
     );
 
-    // The text depends on the kind of horizon, and the number of digits on its size.
     let horizons = [
         (Horizon::Until(8.46), "½px 8.4 s"),
         (Horizon::Until(9370.2), "½px 9370 s"),
@@ -343,7 +314,6 @@ fn labels_show_the_settings() {
         assert_eq!(horizon.label().to_string(), text, "{horizon:?}");
     }
 
-    // Ticks of a scale have no trailing zeros.
     let ticks = [0.0, 0.05, 0.2, 1.0, 50.0].map(|time| label::tick(time, " s"));
     assert_eq!(
         ticks.map(|label| label.to_string()),
@@ -351,7 +321,6 @@ fn labels_show_the_settings() {
     );
 }
 
-/// Labels of infinite, undefined, huge and tiny numbers do not panic. Their text is not checked.
 #[test]
 fn labels_of_any_numbers_are_safe() {
     for number in [f32::NAN, f32::INFINITY, f32::MAX, -f32::MAX, 1e-30] {

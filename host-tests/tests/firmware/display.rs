@@ -4,8 +4,6 @@ use crate::bench::blank;
 use embedded_hal::i2c::{ErrorKind, NoAcknowledgeSource};
 use firmware::display::{BusFault, Controller, Display, NoDisplay, Outbox, PanelOptions};
 
-/// A panel whose driver neither keeps frames nor identifies a controller: no frame waits for it,
-/// and it refuses a choice.
 #[test]
 fn a_board_without_a_panel_owes_no_frame_and_refuses_a_choice() {
     let mut panel = NoDisplay;
@@ -13,7 +11,6 @@ fn a_board_without_a_panel_owes_no_frame_and_refuses_a_choice() {
     assert!(!panel.choose(PanelOptions::default()));
 }
 
-/// The build variable `PANEL` names a controller as a command does, and nothing else.
 #[test]
 fn the_build_names_a_controller_as_a_command_does() {
     for &controller in Controller::ALL {
@@ -24,8 +21,6 @@ fn the_build_names_a_controller_as_a_command_does() {
     }
 }
 
-/// A missing answer and a lost arbitration have causes of their own. Every other error of the bus
-/// counts as a transfer that does not end.
 #[test]
 fn errors_of_the_bus_have_three_causes() {
     for (error, fault) in [
@@ -42,8 +37,6 @@ fn errors_of_the_bus_have_three_causes() {
     }
 }
 
-/// The outbox has room for 1,128 bytes, with a length for each message. A message that does not fit,
-/// even one without a body, is dropped.
 #[test]
 fn a_full_outbox_drops_a_message() {
     let body = [0; 254];

@@ -2,7 +2,6 @@
 
 use firmware::fault::{Fault, Stacked, call_size};
 
-/// Returns a fault with these status registers. Its saved registers and addresses are arbitrary.
 fn fault(cfsr: u32, hfsr: u32) -> Fault {
     let stacked = Some(Stacked {
         pc: 0x456,
@@ -20,8 +19,6 @@ fn fault(cfsr: u32, hfsr: u32) -> Fault {
     }
 }
 
-/// Each bit of the fault status registers has its cause in words. Whatever they are, it is a stack
-/// overflow if the registers are lost, or if there is no room for a push of 128 bytes.
 #[test]
 fn names_the_cause() {
     for (fault, cause) in [
@@ -53,8 +50,6 @@ fn names_the_cause() {
     }
 }
 
-/// The whole text of a crash report, if all registers are known, if those on the stack are lost,
-/// with and without a last call, and on a processor without status registers.
 #[test]
 fn the_text_of_a_fault_has_its_cause_place_and_registers() {
     let lost = Fault {
@@ -64,8 +59,6 @@ fn the_text_of_a_fault_has_its_cause_place_and_registers() {
     let stacked = "pc 0x00000456  lr 0x00001234  xpsr 0x01000000";
     let registers = |cfsr| format!("  cfsr {cfsr}  hfsr 0x40000000  bfar 0x00000000");
 
-    // All registers are known, or those on the stack are lost, or the processor has no status
-    // registers.
     for (fault, cause, place, registers) in [
         (
             fault(0x0001_0000, 0x4000_0000),
@@ -101,7 +94,6 @@ fn the_text_of_a_fault_has_its_cause_place_and_registers() {
         );
     }
 
-    // The processor was not in the Thumb state.
     let stacked = Some(Stacked {
         pc: 0x456,
         lr: 0x1234,
@@ -117,8 +109,6 @@ fn the_text_of_a_fault_has_its_cause_place_and_registers() {
     );
 }
 
-/// The last call on the stack is found by its instruction: `bl` and `blx` have a size in bytes, all
-/// others `None`.
 #[test]
 fn calls_are_distinguished_from_other_instructions() {
     for (halfwords, size) in [
@@ -134,8 +124,6 @@ fn calls_are_distinguished_from_other_instructions() {
     }
 }
 
-/// An exception saves 32 bytes, or 104 if the return value shows that the registers of the
-/// floating-point unit are saved, too.
 #[test]
 fn the_stacked_registers_include_the_floating_point_unit() {
     assert_eq!(

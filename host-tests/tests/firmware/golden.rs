@@ -11,9 +11,7 @@ use firmware::scenes::SceneName;
 use host_tests::oracle::snapshot;
 use rayon::prelude::*;
 
-/// The number of frames of each scene.
 const FRAMES: u32 = 10 * TICK_RATE;
-/// The processor classes, with their names in the file.
 const CLASSES: [(&str, Processor); 4] = [
     ("cortex-m0plus", CORTEX_M0PLUS),
     ("cortex-m3", CORTEX_M3),
@@ -37,8 +35,6 @@ fn line((class, processor): (&str, Processor), scene: SceneName) -> String {
     format!("{class},{},{pictures:016x},{messages:016x}\n", scene.name())
 }
 
-/// A changed grey of any picture, or a changed bit of any report, fails. A wanted change is
-/// accepted with `BLESS=1`.
 #[test]
 fn every_scene_shows_the_golden_frames() -> Result<(), String> {
     assert_eq!(CLASSES.len(), PROCESSORS.len());

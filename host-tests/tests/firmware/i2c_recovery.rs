@@ -6,9 +6,7 @@ use firmware::display::free_bus;
 #[derive(Debug)]
 struct Wires {
     clock: bool,
-    /// The board's level of the data line.
     data: bool,
-    /// The number of clocks until the panel releases the line.
     held_for: u32,
     clocks: u32,
     stops: u32,
@@ -20,7 +18,6 @@ impl Wires {
     }
 
     fn drive(&mut self, clock: bool, data: bool) -> bool {
-        // The panel releases the line after a number of clocks.
         if self.clock && !clock {
             self.clocks += 1;
             self.held_for = self.held_for.saturating_sub(1);
@@ -38,10 +35,6 @@ impl Wires {
     }
 }
 
-/// A panel that holds the data line for one to nine more bits receives as many clocks and one stop.
-/// A free bus receives none. The stop takes a clock of its own. A panel that never lets go receives
-/// ten clocks and no stop, and the bus counts as not free. Both lines are high at the end, and no
-/// start is sent.
 #[test]
 fn a_panel_is_clocked_until_it_releases_the_line_or_nine_bits_have_passed() {
     // The stop takes a clock of its own. A free bus is left alone.

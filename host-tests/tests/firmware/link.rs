@@ -19,7 +19,6 @@ use host_tests::oracle::snapshot;
 
 use crate::bench::messages;
 
-/// Returns the decoder's result for the bytes of a message.
 fn decoded(wire: &[u8]) -> Option<Result<Vec<u8>, LinkError>> {
     let mut decoder = Decoder::default();
     wire.iter().fold(None, |last, &byte| {
@@ -34,8 +33,7 @@ fn wire(message: &[u8]) -> Vec<u8> {
     frame(message, &mut [0; MAX_WIRE]).to_vec()
 }
 
-/// Returns the four bytes of the check, read from an encoded message. The body is version, message,
-/// CRC.
+/// The body is version, message, CRC.
 fn crc(message: &[u8]) -> u32 {
     let mut body = wire(message).split_off(1);
     let length = cobs::decode_in_place(&mut body).expect("a COBS encoding");
@@ -43,8 +41,6 @@ fn crc(message: &[u8]) -> u32 {
     u32::from_le_bytes(*crc)
 }
 
-/// The longest message is decoded; on the wire it has exactly [`MAX_WIRE`] bytes. A longer one is
-/// malformed, even if its CRC is correct.
 #[test]
 fn a_message_longer_than_the_longest_is_malformed() {
     let longest = wire(&[9; MAX_MESSAGE]);
@@ -63,7 +59,6 @@ fn a_message_longer_than_the_longest_is_malformed() {
     );
 }
 
-/// The log of a board names the error of a message in words.
 #[test]
 fn every_error_of_a_message_has_its_words() {
     let errors = [
@@ -81,9 +76,6 @@ fn every_error_of_a_message_has_its_words() {
     );
 }
 
-/// Every change of up to four bits of a body is detected, in the longest message and so in every
-/// shorter one.
-///
 /// A CRC is linear: the change that a flipped bit makes in it does not depend on the message. Four
 /// flips are not detected if their changes cancel, that is if two pairs of flips make the same
 /// change, or a single flip makes the change of three.
@@ -102,7 +94,6 @@ fn every_change_of_four_bits_is_detected() {
         .collect();
     changes.extend((0..32).map(|bit| 1_u32 << bit));
 
-    // The changes by any two flips.
     let mut pairs = HashSet::new();
 
     for (index, one) in changes.iter().enumerate() {
@@ -122,8 +113,6 @@ fn every_change_of_four_bits_is_detected() {
     assert!(!pairs.contains(&0), "two flips cancel");
 }
 
-/// Each single flipped bit on the wire, delimiters included, damages one message only. Most flips
-/// leave the framing intact, and the check detects them.
 #[test]
 fn every_flipped_bit_on_the_wire_is_detected() {
     let message = [0x82, 7, 0, 0, 255, 0, 1, 2, 0, 0, 3];
@@ -133,7 +122,6 @@ fn every_flipped_bit_on_the_wire_is_detected() {
     assert_eq!(decoded(&good), Some(Ok(message.to_vec())));
     let mut by_check = 0;
     for bit in 0..8 * good.len() {
-        // The bit is flipped in a message that another message follows.
         let mut bad = good.clone();
         bad[bit / 8] ^= 1 << (bit % 8);
         let found = decoded(&bad);
@@ -148,12 +136,8 @@ fn every_flipped_bit_on_the_wire_is_detected() {
     assert!(by_check > 4 * good.len(), "{by_check} by the check");
 }
 
-/// The longest messages, with the largest possible whole numbers, have the expected sizes and are
-/// read back unchanged: a frame of 94 bytes and answers of 71 and 74 on the wire, a command of 96
-/// bytes of at most 97, and the record of a restart.
 #[test]
 fn every_message_fits() {
-    // The largest values of all fields.
     let method = Method::TextbookF32;
     let steps = u32::MAX;
     let number = u32::MAX;
@@ -212,7 +196,6 @@ fn every_message_fits() {
         [94, 71, 74]
     );
 
-    // The record of a restart has a status in it.
     let cause = Some(Cause::Fault);
     let scene = SceneName::Flips;
     let end = Restarted {
@@ -261,7 +244,6 @@ fn every_message_fits() {
         Some(Record { played, end })
     );
 
-    // The longest command.
     let command = Command::Simulate(Request {
         stride: number,
         samples: number,
@@ -276,7 +258,6 @@ fn every_message_fits() {
     );
 }
 
-/// Returns the values that a message of each number is read as, with all fields zero.
 fn variants<T: Debug>(read: fn(&[u8]) -> Option<T>) -> String {
     let zeros =
         |number: u8| (0..MAX_MESSAGE).map(move |count| [vec![number], vec![0; count]].concat());
@@ -289,9 +270,8 @@ fn variants<T: Debug>(read: fn(&[u8]) -> Option<T>) -> String {
         .collect()
 }
 
-/// The value that each number of every kind is read as equals the stored table of this version,
-/// `wire-13.txt`. A change of a number's meaning requires a new version, by which the two sides
-/// recognise each other. Every method has a number.
+/// A change of a number's meaning requires a new version, by which the two sides recognise each
+/// other.
 #[test]
 fn numbers_keep_their_meaning_within_a_version() -> Result<(), String> {
     let messages = variants(read::<ToHost>)
@@ -300,7 +280,6 @@ fn numbers_keep_their_meaning_within_a_version() -> Result<(), String> {
         + &variants(read::<Field>);
     let plans =
         variants(read::<PlanResult>) + &variants(read::<PlanError>) + &variants(read::<Error>);
-    // Every method has a number.
     assert_eq!(
         variants(read::<Method>)
             .lines()
@@ -327,7 +306,6 @@ fn numbers_keep_their_meaning_within_a_version() -> Result<(), String> {
     )
 }
 
-/// Returns the number of bytes of a message on the wire.
 fn length(message: ToHost) -> usize {
     let mut wire = [0; MAX_WIRE];
     let wire = encode(&message, &mut wire);
@@ -335,8 +313,6 @@ fn length(message: ToHost) -> usize {
     wire.len()
 }
 
-/// A frame is encoded to the bytes of the table in the documentation of [`Frame`], which are
-/// written here field by field.
 #[test]
 fn a_frame_has_the_documented_bytes() {
     let frame = Frame {

@@ -10,7 +10,6 @@ use host_tests::oracle::tolerances;
 
 use crate::bench::{answers, app, wire};
 
-/// A valid request, with samples 0 to 5.
 const REQUEST: Request = Request {
     method: Method::Rk4F32,
     parameters: Parameters {
@@ -27,8 +26,6 @@ const REQUEST: Request = Request {
     samples: 5,
 };
 
-/// Returns the answers to these requests, numbered from 1, after all requested motions are
-/// computed.
 fn answers_to(requests: &[Request]) -> Vec<(u16, Answer)> {
     let mut app = app();
     for (number, request) in (1..).zip(requests) {
@@ -43,14 +40,12 @@ fn answers_to(requests: &[Request]) -> Vec<(u16, Answer)> {
     answers(&app.link)
 }
 
-/// Returns the number of answers that are samples of the request with this number.
 fn samples(answers: &[(u16, Answer)], request: u16) -> usize {
     let is_sample =
         |&&(to, answer): &&(u16, Answer)| to == request && matches!(answer, Answer::Sample { .. });
     answers.iter().filter(is_sample).count()
 }
 
-/// Returns all readings of a request.
 fn readings(request: &Request) -> Result<Vec<Reading>, Error> {
     let mut readings = Vec::new();
     request.readings(|reading| {
@@ -60,9 +55,8 @@ fn readings(request: &Request) -> Result<Vec<Reading>, Error> {
     Ok(readings)
 }
 
-/// One step at a time and all steps at once give the same readings with the same method, for any
-/// client. Both rods turn over, and the closed form, which counts no turns, makes steps of more
-/// than a quarter turn.
+/// Both rods turn over, and the closed form, which counts no turns, makes steps of more than a
+/// quarter turn.
 #[test]
 fn every_method_of_the_boards_answers_with_the_hosts_readings() {
     for &method in ON_BOARDS {
@@ -87,7 +81,6 @@ fn every_method_of_the_boards_answers_with_the_hosts_readings() {
             ..request
         };
 
-        // The service must send the host's readings, numbered from 0.
         for request in [request, turning] {
             let readings = readings(&request).expect("a pendulum");
             assert_eq!(readings.len(), 6);
@@ -103,8 +96,6 @@ fn every_method_of_the_boards_answers_with_the_hosts_readings() {
     }
 }
 
-/// Every method follows the canonical one, including whole turns of both rods. The linear methods
-/// follow it in a small motion.
 #[test]
 fn every_method_computes_the_same_motion() {
     let turning = Request {
@@ -163,8 +154,6 @@ fn every_method_computes_the_same_motion() {
     }
 }
 
-/// Motions with equal ends, but different samples before, have different CRCs. So have motions with
-/// equal numbers of samples, but different steps between these.
 #[test]
 fn the_crc_covers_every_sample() -> Result<(), Error> {
     for &method in Method::ALL {
@@ -182,8 +171,6 @@ fn the_crc_covers_every_sample() -> Result<(), Error> {
     Ok(())
 }
 
-/// The text form of a request by each method is parsed to the same request. Incomplete and changed
-/// texts are refused.
 #[test]
 fn a_request_equals_its_parsed_text() {
     for &method in Method::ALL {
@@ -196,7 +183,6 @@ fn a_request_equals_its_parsed_text() {
         );
     }
 
-    // A text that is incomplete or has an impossible value is no request.
     let text = REQUEST.to_string();
     for broken in [
         "",
@@ -209,8 +195,6 @@ fn a_request_equals_its_parsed_text() {
     }
 }
 
-/// A step that is longer than the admissible one is computed, but a warning with the admissible
-/// step precedes the samples. The admissible step itself and the closed form have no warning.
 #[test]
 fn a_step_too_long_for_the_energy_is_computed_with_a_warning() {
     let coarse = Request {
@@ -242,8 +226,6 @@ fn a_step_too_long_for_the_energy_is_computed_with_a_warning() {
     }
 }
 
-/// The admissible step of extrapolation of order 2 K is K times that of RK4. The closed form has no
-/// admissible step.
 #[test]
 fn the_admissible_step_is_in_proportion_to_the_order_of_extrapolation() {
     let step = |method| Request { method, ..REQUEST }.admissible_step();
@@ -259,9 +241,6 @@ fn the_admissible_step_is_in_proportion_to_the_order_of_extrapolation() {
     assert_eq!(step(Method::ClosedFormF64), None);
 }
 
-/// A request of a method that boards lack, of impossible parameters, of a start that is not finite
-/// or whose momentum is beyond the range of the numbers, or of a step of 0 or of 9 s is refused
-/// with its field, and all samples of the request before it follow.
 #[test]
 fn a_refusal_names_the_field_and_does_not_end_the_previous_request() {
     let pendulum = |m1, m2, l1, l2, g| Request {
@@ -303,14 +282,12 @@ fn a_refusal_names_the_field_and_does_not_end_the_previous_request() {
     }
 }
 
-/// The second of two requests in a row has samples, and the first has none.
 #[test]
 fn a_new_request_replaces_the_one_under_way() {
     let answers = answers_to(&[REQUEST; 2]);
     assert_eq!((answers.len(), samples(&answers, 2)), (6, 6));
 }
 
-/// The longest request, whose numbers take all their bytes, has a text form, too.
 #[test]
 fn the_longest_request_equals_its_parsed_text() {
     let request = Request {

@@ -10,7 +10,6 @@ use embedded_hal::spi::{ErrorKind, ErrorType, Operation, SpiDevice};
 use firmware::display::{Display, Ssd0323};
 use firmware::graphics::Canvas;
 
-/// Returns the number of arguments of a command, from the data sheet's command table.
 fn arguments(command: u8) -> usize {
     match command {
         0x84..=0x86 | 0xA4 | 0xAE | 0xAF => 0,
@@ -23,22 +22,17 @@ fn arguments(command: u8) -> usize {
 
 /// An SSD0323 that panics on anything that the data sheet does not allow.
 struct Controller {
-    /// The data/command pin, unknown until driven.
     data: Option<bool>,
-    /// The window of columns and rows, first and last.
     columns: Option<(u8, u8)>,
     rows: Option<(u8, u8)>,
     at: (u8, u8),
     memory: Vec<Option<u8>>,
     on: bool,
-    /// The number of bytes and commands received since the last check.
     received: usize,
-    /// The number of writes until the bus fails.
     fails_after: usize,
 }
 
 impl Controller {
-    /// Returns a controller with this memory, on a bus that fails after `fails_after` writes.
     fn holding(byte: Option<u8>, fails_after: usize) -> Self {
         let memory = vec![byte; 64 * 64];
         Self {
@@ -89,8 +83,7 @@ impl Controller {
         }
     }
 
-    /// Stores a byte and advances along the row, then to the next row. Going beyond the last row is
-    /// an error here.
+    /// Beyond the last row is an error here.
     fn store(&mut self, byte: u8) {
         let (first, last) = self.columns.expect("columns first");
         let (_, last_row) = self.rows.expect("rows first");
@@ -104,7 +97,6 @@ impl Controller {
         };
     }
 
-    /// Returns true if the panel shows this frame.
     fn shows(&self, canvas: &Canvas) -> bool {
         let greys: Vec<u8> = places()
             .map(|(x, y)| canvas.get(x, y).expect("inside"))
@@ -116,7 +108,6 @@ impl Controller {
 
 const BUS_ERROR: ErrorKind = ErrorKind::Other;
 
-/// The bus, and the pin for data (high) or command.
 struct Wires<'a>(&'a RefCell<Controller>);
 
 impl ErrorType for Wires<'_> {
@@ -125,7 +116,6 @@ impl ErrorType for Wires<'_> {
 
 impl SpiDevice for Wires<'_> {
     fn transaction(&mut self, operations: &mut [Operation<'_, u8>]) -> Result<(), ErrorKind> {
-        // Each write fails once the bus has failed.
         let mut controller = self.0.borrow_mut();
         for operation in operations {
             let Operation::Write(bytes) = operation else {
@@ -161,8 +151,8 @@ impl OutputPin for Wires<'_> {
     }
 }
 
-/// Unchanged data is not sent. In a row, the words between two changed ones are sent. A row
-/// directly below a sent row needs no address.
+/// In a row, the words between two changed ones are sent. A row directly below a sent row needs no
+/// address.
 #[test]
 fn switches_on_with_a_black_frame_and_sends_what_has_changed() {
     let controller = RefCell::new(Controller::holding(None, usize::MAX));
@@ -173,7 +163,6 @@ fn switches_on_with_a_black_frame_and_sends_what_has_changed() {
     canvas.settle();
     assert!(controller.borrow().shows(&canvas));
 
-    // The changed pixels, and the number of bytes that they need.
     for (changed, bytes) in [
         (&[][..], 0),
         (&[(127, 63)], 6 + 4),
@@ -191,8 +180,7 @@ fn switches_on_with_a_black_frame_and_sends_what_has_changed() {
     }
 }
 
-/// The contents of the panel are unknown after a failure in the middle of a frame, so the
-/// application marks everything as changed, and the next frame is sent completely.
+/// The contents of the panel are unknown after a failure in the middle of a frame.
 #[test]
 fn the_error_of_the_bus_is_returned_and_the_next_frame_is_sent_completely() {
     let controller = RefCell::new(Controller::holding(None, 0));
@@ -204,7 +192,6 @@ fn the_error_of_the_bus_is_returned_and_the_next_frame_is_sent_completely() {
         (Err(BUS_ERROR), Err(BUS_ERROR))
     );
 
-    // The bus fails in the middle of a frame, which leaves noise in the panel's memory.
     controller.borrow_mut().fails_after = usize::MAX;
     panel.init().expect("the bus works");
     (0..64).for_each(|y| canvas.update(y, y, |_| 15));

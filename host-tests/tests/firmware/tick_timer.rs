@@ -14,7 +14,6 @@ const ENTRY: u32 = 12;
 
 /// A SysTick that continues to count during each reading, which takes some cycles.
 struct FakeTimer {
-    /// The cycles since the start of tick 0.
     now: Cell<u32>,
     ticks: Cell<u32>,
     is_pending: Cell<bool>,
@@ -34,7 +33,6 @@ impl FakeTimer {
         }
     }
 
-    /// Runs the handler if it is pending and not masked.
     fn interrupt(&self) {
         if self.is_pending.get() && !self.is_masked {
             self.pass(ENTRY);
@@ -47,7 +45,6 @@ impl FakeTimer {
         PERIOD - 1 - self.now.get() % PERIOD
     }
 
-    /// Reads a value in the middle of the time that the reading takes.
     fn read<T>(&self, value: impl Fn() -> T) -> T {
         self.interrupt();
         self.pass(self.reading.div_ceil(2));
@@ -71,8 +68,6 @@ impl TickTimer for FakeTimer {
     }
 }
 
-/// Every moment of two periods is tested, with interrupts enabled and masked, and with slow and
-/// fast buses.
 #[test]
 fn a_time_read_at_any_moment_is_between_the_moments_before_and_after() {
     // The interrupt handler and all readings together must fit into a period.
@@ -91,13 +86,11 @@ fn a_time_read_at_any_moment_is_between_the_moments_before_and_after() {
                     (0..start).for_each(|_| {
                         timer.pass(1);
 
-                        // A pending interrupt is handled in the middle of a period.
                         if timer.now.get() % PERIOD == PERIOD / 2 {
                             timer.interrupt();
                         }
                     });
 
-                    // The reading itself is made with the interrupts masked or enabled.
                     let timer = FakeTimer { is_masked, ..timer };
 
                     let origin = first.wrapping_mul(PERIOD);

@@ -9,14 +9,12 @@ use firmware::motion::Settings;
 use firmware::protocol::{Cause, Command, Field, MAX_WIRE, Restarted, Status, encode};
 use firmware::scenes::SceneName;
 
-/// Returns a player of the page.
 fn player() -> Player<'static> {
     Show::new(SceneName::Page, &Settings::default())
         .expect("good")
         .player
 }
 
-/// Returns the status of a player whose scene and mass ratio are not the initial ones.
 fn status() -> Status {
     let mut player = player();
     for command in [
@@ -31,7 +29,6 @@ fn status() -> Status {
     player.status()
 }
 
-/// Returns the record of a first fault in the scene of [`status`].
 fn record() -> Record {
     let played = status();
     let cause = Some(Cause::Fault);
@@ -47,12 +44,10 @@ fn record() -> Record {
     Record { played, end }
 }
 
-/// Returns the same record with another end.
 fn ended(end: Restarted) -> Record {
     Record { end, ..record() }
 }
 
-/// Writing and reading a record changes nothing, and its restart is the second one in a row.
 #[test]
 fn a_record_is_read_as_it_was_written() {
     let kept = Record::read(&record().write()).expect("intact");
@@ -67,7 +62,6 @@ fn a_record_is_read_as_it_was_written() {
     assert_eq!(kept.end.to_string(), "scene butterfly, step 480");
 }
 
-/// A record that a program for another panel wrote is not read, nor one without its panel.
 #[test]
 fn a_record_for_another_panel_is_not_trusted() {
     let is_read = |bytes: &[u8]| {
@@ -87,7 +81,6 @@ fn a_record_for_another_panel_is_not_trusted() {
     }
 }
 
-/// Constant bytes and 100,000 random contents are no record.
 #[test]
 fn memory_after_power_on_is_not_trusted() {
     let mut rng = Rng::with_seed(11);
@@ -99,7 +92,6 @@ fn memory_after_power_on_is_not_trusted() {
     }
 }
 
-/// A record with any one bit flipped, of all its bytes and the delimiter, is not read.
 #[test]
 fn any_flipped_bit_is_noticed() {
     let kept = record().write();
@@ -111,8 +103,6 @@ fn any_flipped_bit_is_noticed() {
     }
 }
 
-/// A record without a cause was written by a running program. It leads to a restart, as a hang,
-/// only if the watchdog has reset the board; any other reset starts afresh.
 #[test]
 fn only_a_reset_by_the_watchdog_resumes_the_scene() {
     let running = ended(Restarted {
@@ -126,7 +116,6 @@ fn only_a_reset_by_the_watchdog_resumes_the_scene() {
     );
 }
 
-/// The count of restarts grows by one, up to 255. The scene is given up after [`MOST_RESTARTS`].
 #[test]
 fn a_scene_that_ends_the_board_each_time_is_given_up() {
     for restarts in [0, 1, MOST_RESTARTS - 1, MOST_RESTARTS, u8::MAX] {
@@ -145,8 +134,6 @@ fn a_scene_that_ends_the_board_each_time_is_given_up() {
     }
 }
 
-/// The records after each frame have the state and the step that are noted, and the count of
-/// restarts until frame [`SOUND_FRAMES`]. From then on, after a minute, the count is 0.
 #[test]
 fn a_minute_without_a_restart_clears_the_count() {
     assert_eq!(SOUND_FRAMES, 3600);
@@ -170,8 +157,6 @@ fn a_minute_without_a_restart_clears_the_count() {
     }
 }
 
-/// A player that resumes the status of another has the same status: scene, settings, speed, and the
-/// number of steps left.
 #[test]
 fn every_scene_is_resumed_with_its_settings() {
     for &name in SceneName::ALL {
@@ -181,7 +166,6 @@ fn every_scene_is_resumed_with_its_settings() {
             field: Field::Speed,
             value,
         };
-        // Settings, speed and number of steps are as in the status.
         for value in [0.01, 0.7, 4.0] {
             for command in [
                 Command::Choose(name),

@@ -21,16 +21,11 @@ use nix::sys::termios::{SetArg, cfmakeraw, tcgetattr, tcsetattr};
 
 use crate::support::{LIMIT, on};
 
-/// The board of most tests.
 pub const BOARD: &Board = &LM3S6965EVB;
-/// The interval between two checks of the cable.
 pub const WAIT: Duration = Duration::from_millis(1);
-/// An emulated board that receives bytes and sends messages.
 pub trait Linked {
-    /// Takes bytes from the host. An error means that the emulator has ended.
     fn take(&mut self, bytes: &[u8]) -> anyhow::Result<()>;
 
-    /// Returns the messages that have arrived since the last call.
     fn sent(&mut self) -> anyhow::Result<Vec<ToHost>>;
 }
 
@@ -58,35 +53,26 @@ impl Linked for PicoMachine {
 /// The time that a Pico runs between two checks of the cable, by its own clock.
 const SLICE: Duration = Duration::from_millis(4);
 
-/// A board at a port whose name stays the same when the cable is pulled.
 pub struct Bench<M = Machine> {
-    /// The board.
     pub machine: M,
-    /// The board's end of the cable; `None` while it is pulled.
     pub cable: Option<PtyMaster>,
-    /// True if the host has sent something.
     pub heard: bool,
-    /// The sequence number of the last frame that was transferred.
     pub frame: u32,
     _folder: tempfile::TempDir,
-    /// The path of the port.
     pub name: PathBuf,
 }
 
 impl Bench {
-    /// Returns a bench with a new [`BOARD`], plugged in.
     pub fn new() -> Self {
         Self::of(BOARD)
     }
 
-    /// Returns a bench with a new emulated board in QEMU, plugged in.
     pub fn of(board: &Board) -> Self {
         Self::with(machine(board))
     }
 }
 
 impl<M: Linked> Bench<M> {
-    /// Returns a bench with this board, plugged in.
     pub fn with(machine: M) -> Self {
         let folder = tempfile::tempdir().expect("a folder");
         let name = folder.path().join("ttyACM0");
@@ -103,7 +89,6 @@ impl<M: Linked> Bench<M> {
         bench
     }
 
-    /// Plugs the cable in; it must be pulled.
     pub fn plug(&mut self) {
         let flags = OFlag::O_RDWR | OFlag::O_NOCTTY | OFlag::O_NONBLOCK | OFlag::O_CLOEXEC;
         let cable = posix_openpt(flags).expect("a pseudo-terminal");
@@ -129,15 +114,12 @@ impl<M: Linked> Bench<M> {
         self.cable = Some(cable);
     }
 
-    /// Pulls the cable; the port no longer exists.
     pub fn unplug(&mut self) {
         self.cable = None;
         fs::remove_file(&self.name).expect("the link");
     }
 
-    /// Receives the host's bytes. Returns true if a program has the other end open.
     pub fn is_heard(&mut self) -> bool {
-        // An unplugged board hears nothing.
         let Some(cable) = &mut self.cable else {
             return false;
         };
@@ -154,7 +136,6 @@ impl<M: Linked> Bench<M> {
         }
     }
 
-    /// Sends bytes to the host as fast as it reads them.
     pub fn say(&mut self, mut bytes: &[u8]) {
         while let Some(cable) = self.cable.as_mut().filter(|_| !bytes.is_empty()) {
             match cable.write(bytes) {
@@ -170,8 +151,6 @@ impl<M: Linked> Bench<M> {
         }
     }
 
-    /// Transfers the available data in both directions. `wire` converts the board's messages to
-    /// bytes.
     pub fn carry(&mut self, mut wire: impl FnMut(ToHost) -> Vec<u8>) {
         // Messages that no program can hear are lost.
         let is_heard = self.is_heard();
@@ -187,12 +166,10 @@ impl<M: Linked> Bench<M> {
     }
 }
 
-/// Starts a [`BOARD`] with its application.
 pub fn board() -> Machine {
     machine(BOARD)
 }
 
-/// Starts a board with its application, by the host's clock.
 fn machine(board: &Board) -> Machine {
     // The board runs as fast as a real one, so that the host's messages reach it in time.
     let start = |settings: &Settings| {
@@ -204,13 +181,10 @@ fn machine(board: &Board) -> Machine {
     on(board, start).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// Returns the bytes of a message as the board has sent it.
 pub fn wire(message: ToHost) -> Vec<u8> {
     encode(&message, &mut [0; MAX_WIRE]).to_vec()
 }
 
-/// Runs a command at the bench's port while `play` is called repeatedly until the command has
-/// ended. Panics if the command exceeds [`LIMIT`].
 pub fn at_port<M: Linked>(
     bench: &mut Bench<M>,
     command: &mut Command,
@@ -219,8 +193,6 @@ pub fn at_port<M: Linked>(
     at_port_for(LIMIT, bench, command, play)
 }
 
-/// Runs a command that takes up to `limit` at the bench's port, like [`at_port`]. Panics if it
-/// takes longer.
 pub fn at_port_for<M: Linked>(
     limit: Duration,
     bench: &mut Bench<M>,
@@ -229,7 +201,6 @@ pub fn at_port_for<M: Linked>(
 ) -> Output {
     command.arg("--port").arg(&bench.name);
     scope(|scope| {
-        // The command runs in a thread, while the board is played here.
         let run =
             scope.spawn(move || run(command, limit).unwrap_or_else(|error| panic!("{error}")));
         while !run.is_finished() {

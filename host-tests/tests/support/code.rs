@@ -8,16 +8,14 @@ use cycles::{Function, Image};
 use object::elf::SHF_ALLOC;
 use object::{Object, ObjectSection, ObjectSymbol, RelocationTarget, SectionFlags};
 
-/// A linked program for a Cortex-M.
 pub struct Code {
     image: Image,
-    /// The places where a branch, an instruction or a word refers to a function, and the address of
-    /// that function. Branches within a function are not included.
+    /// The places that refer to a function, and the address of that function. Branches within a
+    /// function are not included.
     names: Vec<(u32, u32)>,
 }
 
 impl Code {
-    /// Reads an ELF file. It is an error if the file is no program for ARM or has no relocations.
     pub fn read(path: &Path) -> anyhow::Result<Self> {
         let image = Image::read(path)?;
         let bytes = std::fs::read(path)?;
@@ -52,10 +50,7 @@ impl Code {
         Ok(Self { image, names })
     }
 
-    /// Returns the functions whose name satisfies `is_wanted`, by address. The results are their
-    /// addresses; labels without a size are left out.
     pub fn functions_named(&self, is_wanted: impl Fn(&str) -> bool) -> impl Iterator<Item = u32> {
-        // Labels have no size.
         let functions = self
             .image
             .functions_named("")
@@ -65,16 +60,12 @@ impl Code {
             .map(|function| function.address)
     }
 
-    /// Returns the address and the name of the function that contains `address`. `None` means that
-    /// no function with a size does.
     pub fn function_at(&self, address: u32) -> Option<(u32, &str)> {
         self.image
             .function_at(address)
             .map(|Function { address, name, .. }| (*address, &**name))
     }
 
-    /// Returns the places outside of `function` that refer to it. Functions are given by their
-    /// addresses.
     pub fn names_of(&self, function: u32) -> impl Iterator<Item = u32> {
         let is_other = move |at| {
             self.function_at(at)
@@ -86,8 +77,7 @@ impl Code {
             .map(|(at, _)| *at)
     }
 
-    /// Returns the functions that `function` refers to. The results are addresses, one for each
-    /// place, so a function may be there several times.
+    /// A function is there once for each place.
     pub fn named_by(&self, function: u32) -> impl Iterator<Item = u32> {
         let is_own = move |at| {
             self.function_at(at)

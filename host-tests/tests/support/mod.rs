@@ -20,26 +20,22 @@ use object::{Object, ObjectSymbol};
 /// too.
 pub const LIMIT: Duration = Duration::from_secs(900);
 
-/// Returns the tools. A test without them fails with the command that installs them.
+/// A test without the tools fails with the command that installs them.
 pub fn toolchain() -> Toolchain {
     toolchain::ready().unwrap_or_else(|missing| panic!("{missing}"))
 }
 
-/// Returns the program that measures, on a board for each kind of core. Panics if it does not
-/// build.
 pub fn targets() -> Vec<Target> {
     Target::build_all(&toolchain()).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// Builds a board's application and returns the ELF file. Panics if it does not build.
 pub fn application(board: &Board) -> PathBuf {
     toolchain()
         .build_for(board)
         .unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// Returns settings for runs with bit-identical results. The clock counts instructions, the log is
-/// received, and the time limit is [`LIMIT`].
+/// The clock counts instructions, so that runs are bit-identical.
 pub fn settings<'a>(toolchain: &'a Toolchain, board: &'a Board, elf: &'a Path) -> Settings<'a> {
     Settings {
         qemu: &toolchain.qemu,
@@ -51,8 +47,6 @@ pub fn settings<'a>(toolchain: &'a Toolchain, board: &'a Board, elf: &'a Path) -
     }
 }
 
-/// Returns the machine that `start` makes of a board with its application. It runs freely or in
-/// lockstep.
 pub fn on<M>(
     board: &Board,
     start: impl FnOnce(&Settings) -> anyhow::Result<M>,
@@ -65,32 +59,25 @@ pub fn on<M>(
 /// A byte that is rare in memory. Where it is gone, the stack has been used.
 pub const PAINT: u8 = 0xA5;
 
-/// Returns the addresses of a program's stack.
 pub fn stack(elf: &Path) -> Range<u32> {
     address(elf, "_stack_end")..address(elf, "_stack_start")
 }
 
-/// Returns the largest number of bytes that a stack has contained since it was painted, from its
-/// memory. `memory` is the content of [`stack`], painted with [`PAINT`]; an unused stack has the
-/// depth 0.
+/// `memory` is the content of [`stack`], painted with [`PAINT`].
 pub fn depth(memory: &[u8]) -> u32 {
     memory.iter().skip_while(|byte| **byte == PAINT).count() as u32
 }
 
-/// Returns a scene on the host, as this board plays it from its start.
 pub fn show(board: &Board, name: SceneName) -> Show {
     Show::on(board.processor(), name, &name.first_settings()).expect("a scene of the catalogue")
 }
 
-/// Returns the address of a symbol by its name without the path before it. For example,
-/// `Player::execute` is `firmware::app::player::Player::execute` in one version of the compiler and
-/// `<firmware::app::player::Player>::execute` in another. The Thumb bit is removed. Panics if the
-/// file has no such symbol.
+/// Returns the address of a symbol. Versions of the compiler name it in different ways:
+/// `firmware::app::player::Player::execute` or `<firmware::app::player::Player>::execute`.
 pub fn address(elf: &Path, name: &str) -> u32 {
     let bytes = std::fs::read(elf).unwrap_or_else(|error| panic!("{}: {error}", elf.display()));
     let file =
         object::File::parse(&*bytes).unwrap_or_else(|error| panic!("{}: {error}", elf.display()));
-    // The names of both versions without the brackets.
     let is_it = |mangled: &str| {
         let whole = format!("{:#}", rustc_demangle::demangle(mangled)).replace(['<', '>'], "");
         whole == name || whole.ends_with(&format!("::{name}"))

@@ -19,27 +19,19 @@ pub struct Line {
     outbox: Outbox,
     message: Vec<u8>,
     byte_nanos: u32,
-    /// The bits that fit into the remaining time.
     time: u32,
-    /// The bits that the current or last messages have taken.
     pub taken: u32,
-    /// True if another device holds the clock low.
     pub hangs: bool,
-    /// The error with which every transfer ends, if any.
     pub fails: Option<ErrorKind>,
-    /// The number of transfers that were aborted.
     pub freed: u32,
-    /// The number of transfers.
     pub sent: u32,
 }
 
 impl Line {
-    /// Returns an idle bus of the speed [`USUAL`] with this panel.
     pub fn to(panel: Controller) -> Self {
         Self::at(USUAL, panel)
     }
 
-    /// Returns an idle bus on which a byte takes `byte_nanos` ns, with this panel.
     pub fn at(byte_nanos: u32, panel: Controller) -> Self {
         Self {
             panel,
@@ -55,14 +47,11 @@ impl Line {
         }
     }
 
-    /// Advances the time by a tick of 1/60 s.
     pub fn run_tick(&mut self) {
         self.run(1_000_000_000 / TICK_RATE / (self.byte_nanos / BYTE));
     }
 
-    /// Advances the time by `bits` bits on the bus, and makes as much of the transfer as fits. An
-    /// absent panel, another address and a refused read end it with the error [`SILENCE`]. A bus
-    /// that hangs makes no progress.
+    /// Makes as much of the transfer as fits into the time of `bits` more bits.
     pub fn run(&mut self, bits: u32) {
         self.time = if self.hangs {
             0
@@ -117,7 +106,6 @@ impl Line {
         self.time = 0;
     }
 
-    /// Returns true if the last transfer has ended, with success or with an error.
     pub fn is_idle(&self) -> bool {
         self.outbox.sent.is_some()
     }
@@ -143,36 +131,26 @@ impl PanelBus for Line {
     }
 }
 
-/// The status byte of a module.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Says {
-    /// The byte has these bits, and bit 6 while the display is off.
     Off(u8),
-    /// The byte is the first one until it is read for the first time after power-on, then the
-    /// second one. Bit 6 is set while the display is off.
+    /// The first byte until it is read for the first time after power-on, then the second one. Bit
+    /// 6 is set while the display is off.
     FirstThen(u8, u8),
-    /// The byte is always the same, and does not depend on the display.
     Always(u8),
-    /// A read is not acknowledged.
     Nothing,
 }
 
-/// A kind of controller.
 #[derive(Clone, Copy, Debug)]
 pub struct Kind {
     pub says: Says,
-    /// True if the memory can be read.
     pub returns_memory: bool,
-    /// The number of columns of the memory, and the first visible one.
     pub columns: usize,
     pub left: usize,
-    /// The commands that the others do not have, and the number of their arguments.
     pub own: &'static [(u8, usize)],
-    /// The commands that must be given before the display is switched on.
     pub needed: &'static [&'static [u8]],
 }
 
-/// The controller of most modules.
 pub const SSD1306: Kind = Kind {
     says: Says::Off(0x06),
     returns_memory: false,
@@ -187,7 +165,6 @@ pub const SSD1306: Kind = Kind {
         &[0xDA, 0x12],
     ],
 };
-/// A controller with more columns than are visible, whose memory can be read.
 pub const SH1106: Kind = Kind {
     says: Says::Off(0x08),
     returns_memory: true,
@@ -196,7 +173,6 @@ pub const SH1106: Kind = Kind {
     own: &[(0xAD, 1), (0xDA, 1)],
     needed: &[&[0xAD, 0x8B], &[0xA8, 0x3F], &[0xDA, 0x12]],
 };
-/// The upper half of a panel of 128 x 128.
 pub const SH1107: Kind = Kind {
     says: Says::Off(0x07),
     returns_memory: true,
@@ -206,14 +182,12 @@ pub const SH1107: Kind = Kind {
     needed: &[&[0x20], &[0xDC, 0], &[0xA8, 0x7F]],
 };
 impl Kind {
-    /// Returns the same kind with another status byte.
     pub fn says(self, says: Says) -> Self {
         Self { says, ..self }
     }
 }
 
-/// Returns the number of arguments of a common command, from the data sheets' command tables. They
-/// follow it in the same message.
+/// From the data sheets' command tables.
 fn arguments(command: u8) -> Option<usize> {
     match command {
         0x00..=0x1F | 0x40 | 0xA0 | 0xA1 | 0xA4 | 0xA6 | 0xAE | 0xAF => Some(0),
@@ -231,14 +205,11 @@ pub struct Controller {
     column: usize,
     page: usize,
     memory: Vec<u8>,
-    /// The bytes of the memory whose contents are unknown; all are after power-on.
     unknown: Vec<bool>,
     given: Vec<Vec<u8>>,
     on: bool,
-    /// The number of times that the display was switched on.
     pub lit: u32,
     was_read: bool,
-    /// True if the next read is of the memory instead of the status.
     reads_memory: bool,
 }
 
@@ -261,12 +232,10 @@ impl Controller {
         }
     }
 
-    /// Returns the controller, plugged in or not.
     pub fn plugged(self, plugged_in: bool) -> Self {
         Self { plugged_in, ..self }
     }
 
-    /// Returns the status byte, and notes that it was read; `None` if reads are not acknowledged.
     fn status(&mut self) -> Option<u8> {
         let off = u8::from(!self.on) << 6;
         let was_read = std::mem::replace(&mut self.was_read, true);
@@ -279,11 +248,9 @@ impl Controller {
         }
     }
 
-    /// Returns the `count` bytes that are read, or `None` if the read is not acknowledged. After
-    /// data, if the memory can be read, they are a dummy byte and the bytes of the memory from the
-    /// present column on; otherwise all are the status. A read of no bytes is always acknowledged.
+    /// After data, if the memory can be read, these are a dummy byte and the bytes of the memory
+    /// from the present column on; otherwise all are the status.
     pub fn read(&mut self, count: usize) -> Option<Vec<u8>> {
-        // A read of no bytes does not read the status.
         let status = (count > 0 && self.kind.says != Says::Nothing)
             .then(|| self.status())
             .flatten();
@@ -306,18 +273,15 @@ impl Controller {
         )
     }
 
-    /// Returns true if exactly this command was given since power came.
     fn is_given(&self, needed: &[u8]) -> bool {
         self.given.iter().any(|given| given == needed)
     }
 
-    /// Returns the last of these commands that was given since power came.
     pub fn last_of(&self, commands: [u8; 2]) -> Option<&[u8]> {
         let is_one = |given: &&Vec<u8>| commands.contains(&given[0]);
         self.given.iter().rev().find(is_one).map(Vec::as_slice)
     }
 
-    /// Executes commands. The arguments of a command must be in the same message.
     fn commands(&mut self, mut bytes: &[u8]) {
         while let [command, rest @ ..] = bytes {
             // A command of this controller, or a command that all controllers have.
@@ -362,8 +326,6 @@ impl Controller {
         }
     }
 
-    /// Stores data to the right within the page. An SSD1306 must have received its addressing mode
-    /// before.
     fn data(&mut self, byte: u8) {
         assert!(self.column < self.kind.columns, "beyond the last column");
         let at = self.page * self.kind.columns + self.column;
@@ -377,8 +339,6 @@ impl Controller {
         self.column += 1;
     }
 
-    /// Takes a message of control bytes and data. A control byte with bit 7 applies to one byte
-    /// only.
     pub fn take(&mut self, message: &[u8]) {
         let mut rest = message;
         while let [control, after @ ..] = rest {
@@ -401,8 +361,7 @@ impl Controller {
         }
     }
 
-    /// Returns true if the picture is exactly this frame, and the display is on. A byte that is
-    /// unknown since power-on is from no frame.
+    /// A byte that is unknown since power-on is from no frame.
     pub fn shows(&self, frame: &Bitmap) -> bool {
         let Kind { columns, left, .. } = self.kind;
         let is_shown = |page: usize| {

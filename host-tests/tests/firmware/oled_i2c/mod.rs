@@ -18,10 +18,8 @@ use firmware::scenes::SceneName;
 use crate::bench::{blank, places};
 use bus::{BYTE, Controller, Kind, Line, SH1106, SH1107, SSD1306, Says, USUAL};
 
-/// A number of bits that is larger than any frame needs, including the settings that wake the
-/// panel.
+/// More bits than any frame needs, including the settings that wake the panel.
 const LONG: u32 = 4 * 400_000 / TICK_RATE;
-/// The largest number of frames until a panel at the first address shows one.
 const FIRST: u32 = 6;
 /// The largest number of frames until a panel is back: 2 s.
 const BACK: u32 = 2 * TICK_RATE;
@@ -31,25 +29,20 @@ const HEIGHT: usize = Format::OLED.height as usize;
 
 type Panel = OledI2c<'static, Line>;
 
-/// Returns a driver of this panel.
 fn panel(controller: Controller) -> Panel {
     on(Line::to(controller), None)
 }
 
-/// Returns a driver of the panel on this bus, with the controller that the build has chosen, if
-/// any.
 fn on(line: Line, chosen: Option<Name>) -> Panel {
     OledI2c::new(line, Box::leak(Box::new(Bitmap::BLACK)), chosen)
 }
 
-/// Sends a frame, and advances the time of the bus by `bits` bits.
 fn flush(panel: &mut Panel, frame: &Canvas, bits: u32) -> Result<(), OledError> {
     let result = panel.flush(frame);
     panel.bus.run(bits);
     result
 }
 
-/// Sends a frame, and advances the time by a tick, at the end of which the driver catches up.
 fn tick(panel: &mut Panel, frame: &Canvas) -> Result<(), OledError> {
     let result = panel.flush(frame);
     panel.bus.run_tick();
@@ -57,17 +50,14 @@ fn tick(panel: &mut Panel, frame: &Canvas) -> Result<(), OledError> {
     result
 }
 
-/// Returns true if the memory of the panel has exactly the picture of the frame.
 fn shows(panel: &Panel, frame: &Canvas) -> bool {
     panel.bus.panel.shows(&Bitmap::from(frame))
 }
 
-/// Returns the scene with its own initial settings, on the fastest class of processors.
 fn shown(name: SceneName) -> Show {
     Show::on(STM32F405, name, &name.first_settings()).expect("a scene of the catalogue")
 }
 
-/// Returns the frame of the application's first scene after some ticks.
 fn scene(ticks: u32) -> Canvas<'static> {
     let mut show = shown(SceneName::Page);
     (0..ticks).for_each(|_| show.tick());
@@ -75,8 +65,6 @@ fn scene(ticks: u32) -> Canvas<'static> {
     show.player.canvas
 }
 
-/// A canvas of one grey has a fixed share of lit pixels for each grey, in sixteenths. In a scene
-/// with all greys the share grows evenly.
 #[test]
 fn greys_become_patterns_of_pixels() {
     // The number of lit pixels out of 16 for each grey. A scene with all greys spreads them evenly.
@@ -110,7 +98,6 @@ fn greys_become_patterns_of_pixels() {
     }
 }
 
-/// Pixels in the corners and elsewhere have the same place in the bitmap's pages as on the canvas.
 #[test]
 fn every_pixel_is_in_its_place() {
     for (x, y) in [(0, 0), (127, 0), (0, 63), (127, 63), (5, 9), (64, 32)] {
@@ -123,7 +110,6 @@ fn every_pixel_is_in_its_place() {
     }
 }
 
-/// Returns a frame with these pixels.
 fn pixels(mut is_lit: impl FnMut() -> bool) -> Canvas<'static> {
     let mut canvas = blank();
     places()
@@ -163,10 +149,8 @@ const MODULES: [(Kind, Says, Name, By); 21] = {
     ]
 };
 
-/// Each module of [`MODULES`], at either address, is plugged in after the driver has begun to look
-/// for it. Within two seconds it is identified, once, as the expected controller by the expected
-/// property, and switched on once. Then it shows every frame completely: of a scene, and noise of
-/// any density.
+/// Each module is plugged in after the driver has begun to look for it. Then it shows every frame:
+/// of a scene, and noise of any density.
 #[test]
 fn every_module_in_the_field_shows_the_picture() {
     let mut rng = Rng::with_seed(1);
@@ -202,26 +186,20 @@ fn every_module_in_the_field_shows_the_picture() {
     }
 }
 
-/// The faults of a bus, and their reports.
 const FAULTS: [(Fault, BusFault); 3] = [
     (Fault::Pulled, BusFault::NoAnswer),
     (Fault::Disturbed, BusFault::Disturbed),
     (Fault::Held, BusFault::Stuck),
 ];
 
-/// A fault of a bus.
 #[derive(Clone, Copy, Debug)]
 enum Fault {
-    /// The panel is not there, and has no power.
     Pulled,
-    /// Another device drives the data line.
     Disturbed,
-    /// Another device holds the clock low, so that no transfer ends.
     Held,
 }
 
 impl Fault {
-    /// Begins the fault, or ends it.
     fn set(self, bus: &mut Line, is_on: bool) {
         match self {
             Self::Pulled => {
@@ -233,9 +211,8 @@ impl Fault {
     }
 }
 
-/// Each fault of [`FAULTS`] begins while the panel is woken, or shows a scene that plays or is
-/// paused, and lasts for a tick, or for seconds. The panel is reported as absent within 10 ticks,
-/// and then tried once a second. Within 2 s after the fault, the panel shows the picture again.
+/// Each fault begins while the panel is woken, or shows a scene that plays or is paused, and lasts
+/// for a tick, or for seconds.
 #[test]
 fn every_fault_makes_the_panel_absent_until_it_is_over() {
     // The frames before the fault: during each step of waking, and later.
@@ -268,7 +245,6 @@ fn every_fault_makes_the_panel_absent_until_it_is_over() {
                     sent = panel.bus.sent;
                 }
             }
-            // A search without an answer tries both addresses.
             let most = 2 * lasts / TICK_RATE + 1;
             assert!(panel.bus.sent - sent <= most, "{case}");
 
@@ -281,9 +257,6 @@ fn every_fault_makes_the_panel_absent_until_it_is_over() {
     }
 }
 
-/// A module that cannot be identified, and is taken for another one, shows the frame within 2 s of
-/// the command that chooses its controller, and only with the right one. A choice of the build
-/// applies from the start.
 #[test]
 fn chosen_controller_has_precedence_and_is_applied_at_once() {
     // An SH1106 that answers no read.
@@ -336,13 +309,11 @@ fn chosen_controller_has_precedence_and_is_applied_at_once() {
         );
     }
 
-    // The choice of the build applies first.
     let mut panel = on(Line::to(Controller::new(kind, 0x3C)), Some(Name::Sh1106));
     run(&mut panel);
     assert!(shows(&panel, &frame));
 }
 
-/// A choice turns the picture of every controller by 180 degrees, and back.
 #[test]
 fn the_picture_is_turned_by_a_choice() {
     let frame = scene(40);
@@ -362,8 +333,6 @@ fn the_picture_is_turned_by_a_choice() {
     }
 }
 
-/// A panel that is dimmed has a lower contrast until it is made bright, also if it is plugged in
-/// again meanwhile. By choice it stays bright.
 #[test]
 fn the_panel_is_dimmed_unless_it_is_to_stay_bright() {
     let frame = scene(40);
@@ -390,20 +359,16 @@ fn the_panel_is_dimmed_unless_it_is_to_stay_bright() {
     assert_eq!(contrast(&mut panel), bright);
 }
 
-/// Returns the bits of columns of a page: an address, a control byte and the place; an address, a
-/// control byte and the columns.
+/// An address, a control byte and the place; an address, a control byte and the columns.
 const fn bits(columns: u32) -> u32 {
     (1 + 5 * BYTE) + (1 + (2 + columns) * BYTE)
 }
 
-/// The number of bits on the bus for a frame: without a change a command that does nothing; one
-/// column, or two columns of the same page with a single address. Up to five unchanged columns
-/// between two changed ones are sent, too.
+/// Up to five unchanged columns between two changed ones are sent, too.
 #[test]
 fn only_changes_are_sent() {
     let mut panel = panel(Controller::new(SSD1306, 0x3C));
     let mut canvas = scene(30);
-    // No change, one changed column, and two in the same page, far from each other or near.
     let taken = [&[][..]; 10]
         .into_iter()
         .chain([&[20][..], &[20, 90], &[20, 27], &[20, 26]])
@@ -426,8 +391,6 @@ fn only_changes_are_sent() {
 /// The scenes that need more time on the bus than a tick has, because their plots move all columns.
 const SKIPPING: [SceneName; 1] = [SceneName::SmallHeavy];
 
-/// On a bus of the usual speed, every scene but those of [`SKIPPING`] shows 60 frames in each
-/// second, and these at least 30. A panel whose bus is held in every other tick shows 30.
 #[test]
 fn every_scene_is_shown_as_fast_as_the_bus_allows() {
     for &name in SceneName::ALL {
@@ -460,7 +423,6 @@ fn every_scene_is_shown_as_fast_as_the_bus_allows() {
     assert_eq!(panel.report().shown, 30);
 }
 
-/// The log prints an absent panel with the reason.
 #[test]
 fn an_absent_panel_is_printed_in_words() {
     assert_eq!(
