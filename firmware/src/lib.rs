@@ -30,7 +30,7 @@
 //!   `PlannedRun::advance` (`kernel/src/plan/run.rs`), `DrawnMotion::advance`
 //!   (`kernel/src/methods/any.rs`), and the step itself in the file of the method in
 //!   `kernel/src/methods/`. Scene and processor decide which method that is, and `cargo plan
-//!   --scene page --target m3` prints it:
+//!   --scene page --board lm3s6965evb` prints it:
 //!   - `extrapolation_fixed64.rs` (`Fixed64State::step`), with the equations in its `rows.rs`:
 //!     64-bit fixed point, multiples of 2^-64 (`Q64`). It draws the page, on every board.
 //!   - `rk4_fixed32.rs` (`Fixed32::step`): RK4 in 32-bit fixed point, multiples of 2^-30 (`Q30`).

@@ -29,6 +29,17 @@ pub struct Board {
 }
 
 impl Board {
+    /// Returns the name on the command line, and older names of the board or its chip.
+    pub fn names(&self) -> Vec<&'static str> {
+        let aliases: &[_] = match self.processor() {
+            config::CORTEX_M3 => &["m3"],
+            config::CORTEX_M4F => &["slow-m4f"],
+            config::STM32F405 => &["m4f"],
+            _ => &["pico", "m0"],
+        };
+        [&[self.name], aliases].concat()
+    }
+
     /// Returns the clock frequency of the processor that the board represents, Hz. It is `hertz`,
     /// except for QEMU's machine with a Cortex-M0+: that represents a Raspberry Pi Pico at 125 MHz,
     /// and `hertz` is its clock in QEMU.

@@ -10,7 +10,9 @@
 
 use double_pendulum::{Motion, Parameters, State};
 use twofloat::TwoFloat;
-use twofloat::consts::FRAC_PI_2;
+use twofloat::consts::{FRAC_PI_2, PI};
+
+use super::enclosure::Start;
 
 /// The highest power of time in the series, unless [`Reference::of_order`] sets another.
 const ORDER: usize = 36;
@@ -63,6 +65,23 @@ impl Reference {
             about: zero,
             end: zero,
         }
+    }
+
+    /// Starts like [`Reference::new`] from exactly the given numbers.
+    pub fn of(start: &Start) -> Self {
+        let Some(fractions) = start.fractions else {
+            let (parameters, motion) = &start.about;
+            return Self::new(parameters, motion);
+        };
+        let [a1, a2, w1, w2, m1, m2, l1, l2, g] =
+            fractions.map(|(above, below)| divide(TwoFloat::from(above), TwoFloat::from(below)));
+        let radians = |x: TwoFloat, degrees: bool| {
+            if degrees { x * PI / 180.0 } else { x }
+        };
+        let [in_degrees, per_second] = start.degrees;
+        let [a1, a2] = [a1, a2].map(|a| radians(a, in_degrees));
+        let [w1, w2] = [w1, w2].map(|w| radians(w, per_second));
+        Self::exact(Parameters { m1, m2, l1, l2, g }, [a1, a2, w1, w2])
     }
 
     /// Returns the reference with power series of another order, at least 24, and with it other

@@ -116,7 +116,7 @@ fn output_of_every_command_equals_its_snapshot() {
 
 /// Commands that end soon. Other commands use the same functions to print.
 const COMMANDS: [&str; 11] = [
-    "count closed-form-f32 --on lm3s6965evb --steps 4",
+    "count closed-form-f32 --board lm3s6965evb --steps 4",
     "count --help",
     "demo --headless --seconds 0.1",
     "figures --out FOLDER",
@@ -162,7 +162,7 @@ fn a_closed_output_ends_every_command_quietly() -> io::Result<()> {
 
     // The exit code of an error does not depend on a reader.
     let status = program("simulate")
-        .args(["--until", "-1"])
+        .args(["--seconds", "-1"])
         .stdout(closed()?)
         .stderr(closed()?)
         .status()?;
@@ -194,7 +194,7 @@ fn an_argument_that_is_no_text_is_refused() {
 #[test]
 fn a_scene_is_planned_as_the_boards_start_it() {
     let name = SceneName::Page;
-    for (target, processor) in [("m3", CORTEX_M3), ("m4f", STM32F405)] {
+    for (board, processor) in [("lm3s6965evb", CORTEX_M3), ("stm32f405", STM32F405)] {
         let mut show =
             Show::on(processor, name, &name.first_settings()).expect("a scene of the catalogue");
         // A simulated board plans the scene and gives the expected horizon.
@@ -205,7 +205,7 @@ fn a_scene_is_planned_as_the_boards_start_it() {
             }
         };
         // The command must print the same horizon.
-        let text = output(program("plan").args(["--scene", "page", "--target", target])).stdout;
+        let text = output(program("plan").args(["--scene", "page", "--board", board])).stdout;
         assert!(
             text.contains(&format!("until {horizon:.2} s of 30 s")),
             "{horizon} {text}"
@@ -242,7 +242,7 @@ fn an_interrupted_proof_prints_what_it_has_proved() {
     use nix::unistd::Pid;
     use std::io::Read;
 
-    let words = "--angles 0.1,0.1 --duration 1e4 --method rk4-fixed32 --steps 16";
+    let words = "--angles 0.1,0.1 --seconds 1e4 --method rk4-fixed32 --steps 16";
     // Interrupt the proof after its start.
     for signal in [Signal::SIGINT, Signal::SIGTERM] {
         let mut command = program("prove");

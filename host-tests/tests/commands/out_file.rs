@@ -16,7 +16,7 @@ use crate::support::LIMIT;
 
 /// A table that takes minutes.
 const LONG: [&str; 7] = [
-    "--until",
+    "--seconds",
     "1e5",
     "--every",
     "1e-3",
@@ -35,7 +35,7 @@ fn a_file_is_replaced_by_a_complete_one_only() {
 
     // A limit of a kilobyte for files, as if the disk were full.
     let script = format!(
-        "trap '' XFSZ; ulimit -f 1; exec {} simulate --until 1 --out swing.csv",
+        "trap '' XFSZ; ulimit -f 1; exec {} simulate --seconds 1 --out swing.csv",
         env!("CARGO_BIN_EXE_host-tests")
     );
     let full = output(
@@ -77,7 +77,7 @@ fn a_file_is_replaced_by_a_complete_one_only() {
 
     let link = folder.path().join("link.csv");
     symlink("swing.csv", &link).expect("a link");
-    let short = ["--until", "1", "--every", "1", "--out", "link.csv"];
+    let short = ["--seconds", "1", "--every", "1", "--out", "link.csv"];
     let done = output(program("simulate").args(short).current_dir(&folder));
     assert_eq!(done.stdout, "wrote link.csv\n");
     assert_eq!(

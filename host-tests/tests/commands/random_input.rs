@@ -372,8 +372,8 @@ proptest! {
     ) {
         let line = std::iter::once(String::from("simulate")).chain(words);
         let options = SimulateOptions::try_parse_from(line);
-        if let Ok(plan) = options.map_err(drop).and_then(|options| plan(&options).map_err(drop)) {
-            prop_assert!(plan.every.is_positive() && plan.request.dt > 0.0);
+        if let Ok((request, rows)) = options.map_err(drop).and_then(|options| plan(&options).map_err(drop)) {
+            prop_assert!(rows.time(1) > 0.0 && request.dt > 0.0);
         }
     }
 }

@@ -40,8 +40,11 @@ pub const HEADLESS: &str = "--headless --no-sandbox --disable-gpu --disable-quic
 const PICTURE: &str = "--window-size=1000,850 --virtual-time-budget=60000";
 /// The time limit to make a picture.
 const PICTURE_LIMIT: Duration = Duration::from_secs(120);
-/// A clock for the picture: 8.5 s in frames of 1/60 s, independent of the speed of the machine.
-const CLOCK: &str = "<script>let frames = 0; window.requestAnimationFrame = (frame) =>
+/// A clock for the picture: 8.5 s in frames of 1/60 s, independent of the speed of the machine. The
+/// module is compiled at once, because the virtual time does not wait for a compilation, and a page
+/// that had not started was photographed.
+const CLOCK: &str = "<script>WebAssembly.compile = async (bytes) => new WebAssembly.Module(bytes);
+  WebAssembly.instantiate = async (module) => new WebAssembly.Instance(module); let frames = 0; window.requestAnimationFrame = (frame) =>
   frames++ < 510 && setTimeout(() => frame(frames * 1000 / 60));</script>";
 
 /// Writes target/double-pendulum.html: the panel of a board in a browser. The page is one file,

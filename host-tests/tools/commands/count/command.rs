@@ -23,7 +23,7 @@ const MOST_STEPS: i64 = 65_536;
 
 const EXAMPLES: &str = "Examples:
   cargo count                                             every method on a Cortex-M3
-  cargo count fixed32 --on lm3s6965evb,lm3s6965evb-m4,lm3s6965evb-m0
+  cargo count fixed32 --board lm3s6965evb,lm3s6965evb-m4,lm3s6965evb-m0
   cargo count --minimal                                   Run::advance in a crate outside";
 
 /// Counts executed instructions (exact) and Cortex-M cycles (an estimate from the published
@@ -37,11 +37,12 @@ pub struct CountOptions {
     /// The boards, with commas between them [default: lm3s6965evb, a Cortex-M3; with --minimal one
     /// of each core]
     #[arg(
-        long,
-        visible_alias = "board",
+        long = "board",
+        alias = "on",
+        alias = "target",
         value_name = "NAME",
         value_delimiter = ',',
-        value_parser = cli::choice(&BOARDS, |board| board.name),
+        value_parser = cli::choice_with_aliases(&BOARDS, Board::names),
     )]
     on: Vec<&'static Board>,
     /// Number of steps to average over, 1 to 65536 [default: 256, fewer for an expensive method]

@@ -21,8 +21,7 @@ pub struct Map {
     pub size: [usize; 2],
     /// The start in the middle of the map, a1, a2 in rad.
     pub centre: [f64; 2],
-    /// The distance from the middle to each side, rad: the same across and upwards, so that pixels
-    /// are square only in a square map.
+    /// The distance from the middle to the ends of the longer side, rad.
     pub half: f64,
     /// The searches with the step and with half of it. Both end at the limit, rounded up to whole
     /// steps.
@@ -97,8 +96,9 @@ impl Map {
 
         // The distance from the middle is in half pixels, a whole number, so that opposite pixels
         // are bit-identical mirror images.
+        let longer = width.max(height) as f64;
         let angle = |pixel: usize, pixels: usize| {
-            (2 * pixel as i64 + 1 - pixels as i64) as f64 * half / pixels as f64
+            (2 * pixel as i64 + 1 - pixels as i64) as f64 * half / longer
         };
         [
             (a1 + angle(column, width)) as f32,

@@ -29,12 +29,12 @@ use map::Map;
     bin_name = "cargo flips",
     after_help = "Examples:
   cargo flips --size 1024 --out flips.png
-  cargo flips --size 512 --limit 100 --centre 1.9,2.2 --zoom 8 --doubt --out corner.png
+  cargo flips --size 512 --limit 100 --centre 110,125 --degrees --zoom 8 --doubt --out corner.png
 
 Exit code 2: bad input, with one line on stderr."
 )]
 pub struct FlipsOptions {
-    /// Size in pixels: one number for a square, or two
+    /// Size of the map in pixels: one number for a square, or two; a legend is added below it
     #[arg(long, value_name = "N|WxH", default_value = "512", value_parser = size)]
     size: [usize; 2],
     /// The longest time to wait for a turn-over, sqrt(l1/g)
@@ -61,7 +61,7 @@ pub struct FlipsOptions {
         allow_hyphen_values = true
     )]
     lengths: Pair,
-    /// The start in the middle of the map, rad
+    /// The start in the middle of the map, rad (see --degrees)
     #[arg(
         long,
         value_name = "A1,A2",
@@ -69,7 +69,10 @@ pub struct FlipsOptions {
         allow_hyphen_values = true
     )]
     centre: Pair,
-    /// Zoom factor (1 shows a whole turn)
+    /// Read the centre in degrees
+    #[arg(long)]
+    degrees: bool,
+    /// Zoom factor (with 1 the longer side shows a whole turn)
     #[arg(
         long,
         value_name = "Z",
@@ -187,10 +190,14 @@ impl FlipsOptions {
 
         let [centre, [m1, m2], [l1, l2]] =
             [&self.centre, &self.masses, &self.lengths].map(Pair::values);
-        let is_inside = centre.iter().all(|angle| angle.abs() <= PI);
+        let centre = if self.degrees {
+            centre.map(f64::to_radians)
+        } else {
+            centre
+        };
         ensure!(
-            is_inside,
-            "--centre {}: must be within -pi and pi",
+            centre.iter().all(|angle| angle.abs() <= PI),
+            "--centre {}: must be within half a turn; for degrees add --degrees",
             self.centre
         );
 

@@ -13,8 +13,7 @@ use super::map::{FlipPair, Map};
 /// case, or else a PNG. Nothing is written. `points` must come from `map`; this panics if there are
 /// fewer, and may if a size of the map is 0. An error means that the picture cannot be encoded.
 ///
-/// The picture is as wide as the map and has a legend below it, whose parts that do not fit are
-/// left out. With `doubt`, points of a picture whose time is uncertain ([`Map::differ`]) have their
+/// The picture has a legend below the map, and is wide enough for both. With `doubt`, points of a picture whose time is uncertain ([`Map::differ`]) have their
 /// own colour. The table has a heading, then the angles, rad, and both times, sqrt(l1/g), of each
 /// pixel from the top left on; `doubt` does not change it. A time is empty if no rod can turn over,
 /// and `inf` if no rod does within the limit.
@@ -25,11 +24,17 @@ pub fn file(name: &Path, map: &Map, points: &[FlipPair], doubt: bool) -> Result<
     }
 
     // The map above its legend.
-    let colours: Vec<_> = pixels
-        .map(|(_, point)| colour(map, point, doubt))
-        .chain(legend(map, doubt))
-        .collect();
-    let [width, _] = map.size;
+    let [across, _] = map.size;
+    let legend = legend(map, doubt);
+    let width = legend.width;
+    let mut colours = Vec::new();
+    for ([column, _], point) in pixels {
+        colours.push(colour(map, point, doubt));
+        if column + 1 == across {
+            colours.resize(colours.len() + width - across, WHITE);
+        }
+    }
+    colours.extend(legend.pixels);
     let mut file = Vec::new();
     let mut encoder = png::Encoder::new(&mut file, width as u32, (colours.len() / width) as u32);
     encoder.set_color(png::ColorType::Rgb);
@@ -94,17 +99,20 @@ const BESIDE: usize = LEFT + LENGTH + 20;
 const WHITE: Colour = [255; 3];
 const TEXT: Colour = [34; 3];
 
-/// A picture as wide as the map.
+/// The picture below the map.
 struct Legend {
     width: usize,
     unit: usize,
     pixels: Vec<Colour>,
 }
 
-/// Returns the legend of `map`: red, green and blue of each pixel.
-fn legend(map: &Map, doubt: bool) -> Vec<Colour> {
+/// Returns the legend of `map`, as wide as the map or as its longest line.
+fn legend(map: &Map, doubt: bool) -> Legend {
     let [width, _] = map.size;
     let unit = (width / WIDTH).max(1);
+    let motion = motion(map);
+    let end = LEFT + motion.chars().map(across).sum::<usize>() + LEFT;
+    let width = width.max(end * unit).max(WIDTH);
     let mut legend = Legend {
         width,
         unit,
@@ -129,11 +137,7 @@ fn legend(map: &Map, doubt: bool) -> Vec<Colour> {
     for time in tens {
         let x = LEFT + (LENGTH as f32 * time.ln() / map.limit.ln()) as usize;
         let words = time.to_string();
-        let half = words
-            .chars()
-            .map(|character| glyph(character).width as usize)
-            .sum::<usize>()
-            / 2;
+        let half = words.chars().map(across).sum::<usize>() / 2;
         legend.text([x.saturating_sub(half), 17], &words);
     }
 
@@ -152,22 +156,30 @@ fn legend(map: &Map, doubt: bool) -> Vec<Colour> {
     }
     legend.text([BESIDE, 17], "first turn-over of a rod, √(l₁/g)");
 
-    // The ranges of the axes and the pendulum.
-    let half = map.half.to_degrees();
-    let [a1, a2] = map
-        .centre
-        .map(f64::to_degrees)
-        .map(|at| format!("{}° to {}°", short(at - half), short(at + half)));
+    legend.text([LEFT, 30], &motion);
+    legend
+}
+
+/// Returns the number of units that a character is wide.
+fn across(character: char) -> usize {
+    glyph(character).width as usize
+}
+
+/// Returns the ranges of the axes, and the pendulum.
+fn motion(map: &Map) -> String {
+    let [width, height] = map.size;
+    let longer = width.max(height) as f64;
+    let [a1, a2] = [0, 1].map(|axis| {
+        let at = map.centre[axis].to_degrees();
+        let half = map.half.to_degrees() * map.size[axis] as f64 / longer;
+        format!("{}° to {}°", short(at - half), short(at + half))
+    });
     let [masses, lengths] = [
         map.parameters.m2 / map.parameters.m1,
         map.parameters.l2 / map.parameters.l1,
     ]
     .map(|ratio| short(ratio.into()));
-    legend.text(
-        [LEFT, 30],
-        &format!("let go at α₁ → {a1}, α₂ ↑ {a2}; m₂/m₁ = {masses}, l₂/l₁ = {lengths}"),
-    );
-    legend.pixels
+    format!("let go at α₁ → {a1}, α₂ ↑ {a2}; m₂/m₁ = {masses}, l₂/l₁ = {lengths}")
 }
 
 /// Rounds a number to four digits after the point.

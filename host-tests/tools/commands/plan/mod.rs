@@ -12,9 +12,9 @@ use firmware::config::HALF_PIXEL;
 use console::cli::{Refused, complain, say};
 
 const EXAMPLES: &str = "Examples:
-  cargo plan --angles 90,90 --degrees --height 64 --duration 10
-  cargo plan --masses 1,2.75 --angles 171,171 --degrees --target m4f
-  cargo plan --scene figure-7 --target pico";
+  cargo plan --angles 90,90 --degrees --height 64 --seconds 10
+  cargo plan --masses 1,2.75 --angles 171,171 --degrees --board stm32f405
+  cargo plan --scene figure-7 --board pico";
 
 /// Finds the cheapest method that keeps the picture within half a pixel, and for how long. If the
 /// chip is too slow for any, that is the result (exit code 0).

@@ -1,13 +1,6 @@
 //! The scene to plan, as the command line describes it.
-//!
-//! Without options, the display is 64 pixels high, the scene is 30 s long and has 60 frames a
-//! second, and the chip is the first of [`CHIPS`]. Both rods together are half as long as the
-//! display is high, so that half a pixel is (l1 + l2)/height, m; a built-in scene has its own size.
-//! The numbers are checked by [`SceneOptions::plan`]: the height must be more than 0 and at most
-//! 1e6 pixels, the duration more than 0 and at most (2^32 - 1)/rate s.
 
 use anyhow::{Context, bail, ensure};
-use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Parser, value_parser};
 use double_pendulum::Method;
 use double_pendulum::plan::{Limit, Plan, PlanError, Problem, Search, Stepping};
@@ -15,10 +8,9 @@ use firmware::config::{CORTEX_M0PLUS, CORTEX_M3, CORTEX_M4F, Processor, STM32F40
 use firmware::motion::half_pixel;
 use firmware::scenes::SceneName;
 
-use crate::commands::simulate::{StartOptions, check_turns};
-use console::cli::choice;
+use crate::commands::simulate::StartOptions;
+use console::cli::{choice, choice_with_aliases};
 use console::number::Number;
-use emulator::boards::every_board;
 use emulator::host::Show;
 
 /// The method of the scenes that show the linear motion.
@@ -43,14 +35,14 @@ pub struct SceneOptions {
     #[command(flatten)]
     pub start: StartOptions,
     /// A built-in scene, with the f32 values that the boards start it with (excludes --angles,
-    /// --velocities, --degrees, --masses, --lengths, --gravity, --height, --duration and --rate)
+    /// --velocities, --degrees, --masses, --lengths, --gravity, --height, --seconds and --rate)
     #[arg(
         long,
         value_name = "NAME",
         value_parser = choice(SceneName::ALL.iter().copied(), SceneName::name),
         conflicts_with_all = [
             "masses", "lengths", "gravity", "angles", "velocities", "degrees", "height",
-            "duration", "rate",
+            "seconds", "rate",
         ],
     )]
     pub scene: Option<SceneName>,
@@ -65,11 +57,13 @@ pub struct SceneOptions {
     /// Duration of the scene, s
     #[arg(
         long,
-        value_name = "T",
+        alias = "duration",
+        alias = "until",
+        value_name = "N",
         default_value = "30",
         allow_hyphen_values = true
     )]
-    pub duration: Number,
+    pub seconds: Number,
     /// Frames per second, 1 to 65535
     #[arg(
         long,
@@ -78,13 +72,14 @@ pub struct SceneOptions {
         value_parser = value_parser!(u16).range(1..),
     )]
     pub rate: u16,
-    /// The chip that computes it, or the board with this chip
+    /// The board that computes it
     #[arg(
-        long,
-        visible_alias = "on",
-        value_name = "CHIP",
-        default_value = CHIPS[0].name,
-        value_parser = chip(),
+        long = "board",
+        alias = "target",
+        alias = "on",
+        value_name = "NAME",
+        default_value = CHIPS[0].board,
+        value_parser = choice_with_aliases(CHIPS, |chip| vec![chip.board, chip.name]),
     )]
     pub target: Chip,
 }
@@ -148,21 +143,18 @@ impl SceneOptions {
     fn given(&self) -> anyhow::Result<Problem> {
         let height = &self.height;
         ensure!(
-            height.is_positive(),
+            height.value() > 0.0,
             "--height {height}: must be greater than zero"
         );
         ensure!(
             height.value() <= HIGHEST,
             "--height {height}: more than {HIGHEST}, finer than the rods' directions in f32"
         );
-        let start = self.start.motion();
-        // A scene starts from `f64` numbers, also for a method in 32 bits.
-        check_turns(start.angles(), Method::Rk4F64)?;
         Ok(Problem {
             pendulum: self.start.parameters(),
-            start,
+            start: self.start.motion(),
             tolerance: half_pixel(&self.start.parameters(), height.value()),
-            duration: self.duration.value(),
+            duration: self.seconds.value(),
             rate: self.rate,
         })
     }
@@ -171,7 +163,9 @@ impl SceneOptions {
 /// A chip, with the data that a plan needs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Chip {
-    /// The name on the command line.
+    /// The name of its board on the command line.
+    pub board: &'static str,
+    /// The short name.
     pub name: &'static str,
     /// The core and its clock, for people.
     pub title: &'static str,
@@ -181,46 +175,31 @@ pub struct Chip {
     pub processor: Processor,
 }
 
-/// Reads the name of a chip, or of a board with such a chip.
-fn chip() -> impl TypedValueParser<Value = Chip> {
-    let boards = |chip: &Chip| {
-        let boards = every_board().filter(|board| board.processor() == chip.processor);
-        boards.map(|board| board.name).collect::<Vec<_>>()
-    };
-    let names = CHIPS.map(|chip| PossibleValue::new(chip.name).aliases(boards(&chip)));
-    PossibleValuesParser::new(names).try_map(move |name| {
-        CHIPS
-            .into_iter()
-            .find(|chip| chip.name == name || boards(chip).contains(&&*name))
-            .ok_or("unknown")
-    })
-}
-
-/// Every chip; the first is the default. They are `m3`, the LM3S6965 without a floating-point unit
-/// at 50 MHz; `m4f`, the STM32F405 with a floating-point unit for `f32` at 168 MHz; `slow-m4f`, a
-/// Cortex-M4F with the same unit at 25 MHz; and `pico`, the chip of the
-/// Raspberry Pi Pico at 125 MHz, whose products of two integers have only 32 bits. On the command
-/// line the name of a board with the chip is accepted, too.
+/// Every chip; the first is the default.
 pub const CHIPS: [Chip; 4] = [
     Chip {
+        board: "lm3s6965evb",
         name: "m3",
         title: "Cortex-M3 at 50 MHz",
         clock: 50e6,
         processor: CORTEX_M3,
     },
     Chip {
+        board: "stm32f405",
         name: "m4f",
         title: "Cortex-M4F at 168 MHz",
         clock: 168e6,
         processor: STM32F405,
     },
     Chip {
+        board: "lm3s6965evb-m4",
         name: "slow-m4f",
         title: "Cortex-M4F at 25 MHz",
         clock: 25e6,
         processor: CORTEX_M4F,
     },
     Chip {
+        board: "pico",
         name: "pico",
         title: "Cortex-M0+ at 125 MHz",
         clock: 125e6,

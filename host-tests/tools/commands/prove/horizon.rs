@@ -215,9 +215,7 @@ fn not_enclosed(scene: &Problem, frames: &[Verdict]) -> String {
     let ratio = |a: f64, b: f64| (a / b).max(b / a);
     // The likeliest cause first.
     if frames.last().is_some_and(|frame| frame.width > WIDE) {
-        String::from(
-            "its enclosure has become too wide; a shorter --duration ends before this time",
-        )
+        String::from("its enclosure has become too wide; a shorter --seconds ends before this time")
     } else if ratio(l1, l2) > LENGTHS {
         format!("rods that differ more than {LENGTHS}-fold may be out of range; change --lengths")
     } else if ratio(m1, m2) > MASSES {
@@ -304,10 +302,11 @@ pub fn words(
         "method     {method}, steps per frame: {steps}
 proved     within half a pixel until {:.3} s, all {right} frames
            {first}
-undecided  {open} frames
+undecided  {open} {}
 predicted  {predicted}
 known      {known}{unknown}",
         time(scene, right),
+        if open == 1 { "frame" } else { "frames" },
     )
 }
 

@@ -35,8 +35,8 @@ pub fn horizons(name: SceneName) -> Result<String> {
     // Each chip adds the predicted and the proved horizon.
     let mut cells = vec![name.name().to_owned()];
     let mut unproved = 0;
-    for chip in ["m3", "m4f", "pico"] {
-        let words = ["plan", "--scene", name.name(), "--target", chip];
+    for chip in ["lm3s6965evb", "stm32f405", "pico"] {
+        let words = ["plan", "--scene", name.name(), "--board", chip];
         let (scene, plan) = SceneOptions::try_parse_from(words)?.plan()?;
         cells.extend(match plan {
             Err(_) => ["none", "none"].map(String::from),

@@ -3,11 +3,12 @@
 
 mod options;
 mod request;
+mod second_run;
 mod tolerance;
 
 pub use options::{Place, SimulateOptions, StartOptions};
-pub use request::{Plan, check_turns, plan};
-pub use tolerance::choose;
+pub use request::{Rows, plan};
+pub use tolerance::{Choice, choose};
 
 use std::fmt::{Display, LowerExp};
 use std::io::{self, BufWriter, Write, stdout};
@@ -25,90 +26,151 @@ use emulator::link::refusal;
 use emulator::out_file::OutFile;
 use emulator::qemu::{Clock, Machine, Settings};
 use emulator::toolchain;
+use second_run::SecondRun;
+
+/// A motion to write as rows.
+struct Job<'a> {
+    options: &'a SimulateOptions,
+    request: Request,
+    rows: Rows,
+    /// How accurate the rows are, if the reference has told already.
+    note: Option<String>,
+    /// The reason why the rows end before the time of the options.
+    end: Option<String>,
+}
 
 /// Prints the table of methods or the motion, or writes the motion to the file of the options. The
-/// motion is CSV: a heading, a row of the start, and a row for each `--every` until `--until`.
-/// Options that cannot be used, also a file that cannot be written, are [`Refused`] before the
-/// first row. With a board as the place, missing tools are installed and the board is emulated; a
-/// tool that cannot be provided is [`Refused`], too. Notes and advice go to stderr.
+/// motion is CSV: a heading, a row of the start, and a row for each `--every`. A line on stderr,
+/// which is the last line of the file, too, says until when the rows hold.
 ///
-/// A motion that diverges later, or a board that fails, is an error after the rows before it; these
-/// are kept, also in the file. The file replaces an existing one after the last of these rows; if
-/// there is no row, it remains unchanged.
+/// Bad options are [`Refused`] before the first row. A motion that diverges later, a board that
+/// fails, and a tolerance that is kept for a part of the time only, are errors after the rows.
 pub fn run(options: &SimulateOptions) -> anyhow::Result<()> {
     if options.list {
         return Ok(say(list())?);
     }
 
-    // Everything that can be wrong is reported before the first row, the file before the search
-    // for a method.
+    // The file is refused before the search for a method.
     let file = options.out.as_ref();
-    let file = file.map(|path| OutFile::create("--out", path).map(|file| (path, file)));
-    let file = file.transpose()?;
-    let planned = match &options.tolerance {
-        Some(tolerance) => choose(options, tolerance).map(|(plan, _)| plan),
-        None => plan(options),
-    };
-    let plan = planned.map_err(|error| Refused::because(format_args!("{error:#}")))?;
-    let notes = options.start.advice().into_iter().chain(plan.note.clone());
-    notes.for_each(complain);
+    let file = file
+        .map(|path| OutFile::create("--out", path))
+        .transpose()?;
+    let job = Job::new(options).map_err(|error| Refused::because(format_args!("{error:#}")))?;
+    options.start.advice().iter().for_each(complain);
 
     // Without a file the rows are printed.
-    let Some((path, mut file)) = file else {
-        let (rows, done) = write_rows(&plan, options, &mut stdout().lock())?;
-        return done.with_context(|| after(rows));
+    let Some(mut file) = file else {
+        let Written { rows, note, done } = job.write(&mut stdout().lock())?;
+        if rows > 0 {
+            complain(format_args!("note: {note}"));
+        }
+        return done;
     };
-
-    let (rows, done) =
-        write_rows(&plan, options, &mut file).map_err(|error| file.failed(&error))?;
+    let written = job.write(&mut file);
+    let Written { rows, note, done } = written.map_err(|error| file.failed(&error))?;
 
     // The rows before an error are correct, so they are kept.
     if rows > 0 {
+        writeln!(file, "# {note}").map_err(|error| file.failed(&error))?;
+        let path = file.path().to_owned();
         file.finish()?;
+        complain(format_args!("note: {note}"));
         say(format_args!("wrote {}", path.display()))?;
     }
-    done.with_context(|| after(rows))
+    done
 }
 
-/// Returns the context of an error: the number of rows before it.
-fn after(rows: u64) -> String {
-    format!("after {rows} rows")
+/// The result of writing rows.
+struct Written {
+    /// The number of rows.
+    rows: u32,
+    /// How long they hold.
+    note: String,
+    /// How the motion ended.
+    done: anyhow::Result<()>,
 }
 
-/// Writes the rows. Returns their number and how the motion ended, or an error if the rows cannot
-/// be written.
-fn write_rows(
-    plan: &Plan,
-    options: &SimulateOptions,
-    output: &mut impl Write,
-) -> io::Result<(u64, anyhow::Result<()>)> {
-    let mut output = BufWriter::new(output);
-    let bar = Progress::of("rows", u64::from(plan.request.samples) + 1);
-    let mut rows = 0;
-    let mut unwritten = None;
-    // The heading is written with the first row, so that a motion that fails at once prints
-    // nothing.
-    let mut write = |reading: &Reading| -> anyhow::Result<()> {
-        bar.advance(1);
-        let head = (rows == 0).then(|| header(options) + "\n");
-        let line = head.unwrap_or_default() + &row(plan, options, rows, reading);
-        writeln!(output, "{line}").map_err(|error| {
-            unwritten = Some(error);
-            anyhow!("a row cannot be written")
-        })?;
-        rows += 1;
-        Ok(())
-    };
-    // The motion is computed here, or on a board by the same code.
-    let done = match options.place {
-        None => plan.request.readings(&mut write),
-        Some(board) => on_board(&plan.request, board, &mut write),
-    };
-    drop(bar);
-    // An error of the output is not an error of the motion.
-    match unwritten {
-        Some(error) => Err(error),
-        None => output.flush().map(|()| (rows, done)),
+impl<'a> Job<'a> {
+    fn new(options: &'a SimulateOptions) -> anyhow::Result<Self> {
+        if let Some(tolerance) = &options.tolerance {
+            let Choice {
+                request,
+                rows,
+                note,
+                end,
+                ..
+            } = choose(options, tolerance)?;
+            return Ok(Self {
+                options,
+                request,
+                rows,
+                note: Some(note),
+                end,
+            });
+        }
+        let (request, rows) = plan(options)?;
+        Ok(Self {
+            options,
+            request,
+            rows,
+            note: None,
+            end: None,
+        })
+    }
+
+    /// Writes the rows. An error is one of the output.
+    fn write(&self, output: &mut impl Write) -> io::Result<Written> {
+        let Self {
+            options,
+            request,
+            rows,
+            ..
+        } = self;
+        let mut output = BufWriter::new(output);
+        let mut second = SecondRun::new(request, rows.time(1));
+        let bar = Progress::of("rows", u64::from(request.samples) + 1);
+        let mut number = 0;
+        let mut unwritten = None;
+        let mut write = |reading: &Reading| -> anyhow::Result<()> {
+            bar.advance(1);
+            let time = rows.time(number);
+            if self.note.is_none() {
+                let [a1, a2, ..] = reading.state;
+                second.compare(time, [a1, a2]);
+            }
+            // The heading is written with the first row, so that a motion that fails at once prints
+            // nothing.
+            let head = (number == 0).then(|| header(options) + "\n");
+            let line = head.unwrap_or_default() + &row(request, options, time, reading);
+            writeln!(output, "{line}").map_err(|error| {
+                unwritten = Some(error);
+                anyhow!("a row cannot be written")
+            })?;
+            number += 1;
+            Ok(())
+        };
+        // The motion is computed here, or on a board by the same code.
+        let done = match options.place {
+            None => request.readings(&mut write),
+            Some(board) => on_board(request, board, &mut write),
+        };
+        drop(bar);
+
+        // An error of the output is not an error of the motion.
+        if let Some(error) = unwritten {
+            return Err(error);
+        }
+        output.flush()?;
+        let done = match (done, &self.end) {
+            (Ok(()), Some(end)) => Err(anyhow!("{end}")),
+            (done, _) if number == 0 => done,
+            (done, _) => done.with_context(|| format!("after {number} rows")),
+        };
+        Ok(Written {
+            rows: number,
+            note: self.note.clone().unwrap_or_else(|| second.words()),
+            done,
+        })
     }
 }
 
@@ -195,35 +257,22 @@ fn header(options: &SimulateOptions) -> String {
         .join(",")
 }
 
-/// Returns the line of a reading: the columns of the options. `number` counts the rows from 0.
-fn row(plan: &Plan, options: &SimulateOptions, number: u64, reading: &Reading) -> String {
+/// Returns the line of the reading at `time`, s: the columns of the options.
+fn row(request: &Request, options: &SimulateOptions, time: f64, reading: &Reading) -> String {
     let Reading {
         state: [a1, a2, p1, p2],
         velocities: [w1, w2],
         energy,
     } = *reading;
     // The positions follow from the angles.
-    let pendulum = Pendulum::<f64>::new(&plan.request.parameters);
+    let pendulum = Pendulum::<f64>::new(&request.parameters);
     let bobs = pendulum.map(|pendulum| pendulum.positions([a1, a2]).map(|bob| [bob.x, bob.y]));
     let [[x1, y1], [x2, y2]] = bobs.unwrap_or([[f64::NAN; 2]; 2]);
 
-    let numbers = [
-        plan.every.times(number),
-        a1,
-        a2,
-        p1,
-        p2,
-        w1,
-        w2,
-        energy,
-        x1,
-        y1,
-        x2,
-        y2,
-    ];
+    let numbers = [time, a1, a2, p1, p2, w1, w2, energy, x1, y1, x2, y2];
 
     // Numbers of a method in `f32` are printed with the digits of an `f32`.
-    let is_single = plan.request.method.numbers() == Numbers::F32;
+    let is_single = request.method.numbers() == Numbers::F32;
     let numbers = options.columns.iter().map(|&column| match numbers[column] {
         number if is_single && column != 0 => shortest(number as f32),
         number => shortest(number),

@@ -1,24 +1,17 @@
-//! The command line of `cargo simulate`.
-//!
-//! Without options, `until` is 10 s, `place` is this program, `columns` are t, a1, a2, p1, p2, w1,
-//! w2 and energy, and the first line has names only. The numbers of times and steps are finite, but
-//! otherwise not checked here ([`plan`](super::plan), [`choose`](super::choose)).
-//!
-//! `columns` has places in the list t, a1, a2, p1, p2, w1, w2, energy, x1, y1, x2, y2, from 0 to
-//! 11, in the order in which they are printed; any other place makes [`run`](super::run) panic.
-//! `units` is true for names with units. `bits` adds four columns of 16 digits, the bits of an
-//! `f64`, or of 8 digits for a method in plain `f32`.
+//! The command line of `cargo simulate`, and the start that other commands take, too.
 
 use std::f64::consts::TAU;
 use std::path::PathBuf;
 
 use clap::{ArgAction, Args, Parser};
-use double_pendulum::{Error, Method, Motion, Parameter, Parameters};
+use double_pendulum::{Error, Method, Motion, Parameters};
 use firmware::config::{FIRST_ANGLE, GRAVITY};
+use firmware::scenes::SceneName;
 use reference::enclosure::Start as Exact;
+use reference::taylor::Reference;
 
 use super::NAMES;
-use console::cli::{choice, option_of};
+use console::cli::{choice, choice_with_aliases, option_of};
 use console::number::{Number, Pair};
 use emulator::boards::{BOARDS, Board};
 
@@ -31,21 +24,27 @@ const HOST: &str = "host";
 
 /// Returns the name of a place on the command line: that of the board, or `host`.
 pub(super) fn name(place: Place) -> &'static str {
-    place.map_or(HOST, |board| board.name)
+    names(place)[0]
+}
+
+/// Returns the name of a place, and its aliases.
+fn names(place: Place) -> Vec<&'static str> {
+    place.map_or_else(|| vec![HOST], Board::names)
 }
 
 const AFTER_HELP: &str = "\
 Examples:
-  cargo simulate --angles 120,120 --degrees --until 5 --every 0.1 --out swing.csv
-  cargo simulate --angles 120,120 --degrees --until 5 --tolerance 1e-9
-  cargo simulate --angles 0.5,0.5 --until 10 --every 1/10 --tolerance 1e-5 --on lm3s6965evb
-  cargo simulate --angles 171,171 --degrees --masses 1,2.75 --step 1/4096 --until 5 --every 1
-  cargo simulate --angles 0.5,0.5 --step 1/256 --method rk4-fixed32 --on lm3s6965evb --bits
+  cargo simulate --angles 120,120 --degrees --seconds 5 --every 0.1 --out swing.csv
+  cargo simulate --angles 120,120 --degrees --seconds 5 --tolerance 1e-9
+  cargo simulate --scene butterfly --every 1
+  cargo simulate --angles 0.5,0.5 --step 1/256 --method rk4-fixed32 --board pico --bits
   cargo simulate --angles 0.5,0.5 --step 1/16 --columns t,x2,y2 --header units
   cargo simulate --list
 
-Exit code 2: bad input, or values that fail on the first step; one line on stderr. Exit code 1: the
-motion diverges later; the rows until then are valid, one line on stderr.";
+A second run shows until when the rows hold: a note on stderr, and the last line of the file.
+
+Exit code 2: bad input. Exit code 1: the motion diverges, or the tolerance is kept for a part of the
+time only; the rows until then are printed. Both with one line on stderr.";
 
 /// Computes a motion of the double pendulum and prints it as CSV in SI units. Numbers are decimals
 /// (0.25, 1e-3) or fractions (1/256).
@@ -55,12 +54,21 @@ pub struct SimulateOptions {
     /// What moves.
     #[command(flatten)]
     pub start: StartOptions,
-    /// Step size, s [default: the longest that fits the rows, at most 1/1024 s and safe for the
-    /// fastest motion possible at this energy]
+    /// A built-in scene, with the f32 values that the boards start it with
+    #[arg(
+        long,
+        value_name = "NAME",
+        value_parser = choice(SceneName::ALL.iter().copied(), SceneName::name),
+        hide_possible_values = true,
+        conflicts_with_all = ["masses", "lengths", "gravity", "angles", "velocities", "degrees"],
+    )]
+    pub scene: Option<SceneName>,
+    /// Longest step, s; shortened to divide the time between rows [default: at most 1/1024 s, and
+    /// safe for the fastest motion possible at this energy]
     #[arg(long, value_name = "DT", allow_hyphen_values = true)]
     pub step: Option<Number>,
     /// Largest error allowed in any angle, rad; finds and uses the cheapest method and step that
-    /// meet it. The exact motion starts from the f64 nearest to each number given
+    /// meet it
     #[arg(
         long,
         value_name = "E",
@@ -68,15 +76,17 @@ pub struct SimulateOptions {
         allow_hyphen_values = true
     )]
     pub tolerance: Option<Number>,
-    /// Time of the last row, s
+    /// Time of the motion, s
     #[arg(
         long,
-        value_name = "T",
+        alias = "until",
+        alias = "duration",
+        value_name = "N",
         default_value = "10",
         allow_hyphen_values = true
     )]
-    pub until: Number,
-    /// Time from row to row, s [default: one --step; without --step a hundredth of --until]
+    pub seconds: Number,
+    /// Time from row to row, s [default: one --step; without --step a hundredth of --seconds]
     #[arg(long, value_name = "T", allow_hyphen_values = true)]
     pub every: Option<Number>,
     /// The method, one of --list [default: rk4-f64]
@@ -91,8 +101,8 @@ pub struct SimulateOptions {
     #[arg(long, exclusive = true)]
     pub list: bool,
     /// Where to compute it: on this computer, or in the firmware on an emulated board
-    #[arg(long = "on", visible_alias = "board", value_name = "PLACE", default_value = HOST,
-          value_parser = choice([None].into_iter().chain(BOARDS.iter().map(Some)), name))]
+    #[arg(long = "board", alias = "on", alias = "target", value_name = "NAME", default_value = HOST,
+          value_parser = choice_with_aliases([None].into_iter().chain(BOARDS.iter().map(Some)), names))]
     pub place: Place,
     /// The columns: any of t, a1, a2, p1, p2, w1, w2, energy, and the bobs' positions x1, y1, x2,
     /// y2 from the pivot, y upwards
@@ -115,6 +125,27 @@ pub struct SimulateOptions {
     /// Write the table to this file instead of the terminal
     #[arg(long, value_name = "FILE")]
     pub out: Option<PathBuf>,
+}
+
+impl SimulateOptions {
+    /// Returns the pendulum and its start: those of the scene, or the given ones.
+    pub fn motion(&self) -> (Parameters<f64>, Motion<f64>) {
+        match self.scene.map(SceneName::first_settings) {
+            Some(settings) => (settings.parameters.cast(), settings.motion().cast()),
+            None => (self.start.parameters(), self.start.motion()),
+        }
+    }
+
+    /// Returns the exact motion, from exactly the given decimals if they are not too long.
+    pub fn reference(&self) -> Reference {
+        match self.start.exact() {
+            Some(start) if self.scene.is_none() => Reference::of(&start),
+            _ => {
+                let (parameters, motion) = self.motion();
+                Reference::new(&parameters, &motion)
+            }
+        }
+    }
 }
 
 /// A pendulum and its start. Without these options the bobs have 1 kg, the rods are 1 m long, the
@@ -212,90 +243,10 @@ impl StartOptions {
         })
     }
 
-    /// Returns the option with the most extreme number, with its value, as in "--masses 1,1e9".
-    /// Such a number makes the motion fast or its numbers too large. Masses and lengths are extreme
-    /// by their ratio to 1, large or small; velocities and a given gravity only if they exceed 1.
-    /// Of equally extreme options it is the last, in this order. Angles are not considered.
-    pub(super) fn extreme(&self) -> String {
-        // The options and their numbers.
-        let pairs = [
-            ("--masses", &self.masses),
-            ("--lengths", &self.lengths),
-            ("--velocities", &self.velocities),
-        ];
-        let gravity = self
-            .gravity
-            .iter()
-            .map(|gravity| ("--gravity", [gravity; 2], gravity.to_string()));
-        let all = pairs
-            .map(|(option, pair)| (option, [&pair.0, &pair.1], pair.to_string()))
-            .into_iter()
-            .chain(gravity);
-
-        // Velocities and gravity are extreme only if they are large.
-        let distance = |option: &str, number: &Number| match number.value().abs() {
-            0.0 => 0.0,
-            value if option == "--masses" || option == "--lengths" => value.ln().abs(),
-            value => value.ln(),
-        };
-
-        let worst = all.max_by(|one, other| {
-            let [one, other] = [one, other].map(|(option, numbers, _)| {
-                numbers
-                    .map(|number| distance(option, number))
-                    .into_iter()
-                    .fold(0.0, f64::max)
-            });
-            one.total_cmp(&other)
-        });
-        worst.map_or(String::new(), |(option, _, text)| {
-            format!("{option} {text}")
-        })
-    }
-
     /// Returns the reason why the kernel refuses the pendulum or its start, as one line with the
-    /// option. The option is that of [`option_of`], which is `otherwise` for a parameter that no
-    /// option sets.
-    ///
-    /// A number that becomes infinite or 0 only by a conversion or a product was not typed. The
-    /// line then has the typed numbers.
+    /// option, which is `otherwise` for a parameter that no option sets.
     pub fn refusal(&self, error: &Error, otherwise: &'static str) -> String {
-        let option = option_of(error, otherwise);
-        let typed = match option {
-            "--masses" => self.masses.to_string(),
-            "--lengths" => self.lengths.to_string(),
-            "--velocities" => self.velocities.to_string(),
-            "--gravity" => self
-                .gravity
-                .as_ref()
-                .map_or_else(String::new, Number::to_string),
-            _ => return format!("{option}: {error}"),
-        };
-        let parameter = error.parameter();
-        let change = match error {
-            Error::NotFinite { .. } => "large",
-            Error::NotPositive { value: 0.0, .. } if self.is_positive(parameter) => "small",
-            _ => return format!("{option}: {error}"),
-        };
-        format!(
-            "{option} {typed}: {parameter} is too {change} for the numbers of the method; use less \
-             extreme values"
-        )
-    }
-
-    /// Returns true if a mass, a length or the gravity is greater than zero in `f64`, false for
-    /// another parameter.
-    fn is_positive(&self, parameter: Parameter) -> bool {
-        let Parameters { m1, m2, l1, l2, g } = self.parameters();
-        let value = match parameter {
-            Parameter::M1 => m1,
-            Parameter::M2 => m2,
-            Parameter::L1 => l1,
-            Parameter::L2 => l2,
-            Parameter::G => g,
-            _ => 0.0,
-        };
-        value > 0.0
+        format!("{}: {error}", option_of(error, otherwise))
     }
 
     /// Returns the first option whose number has too many digits for [`Self::exact`], with its

@@ -3,15 +3,14 @@
 //! The allowed methods and steps are tried in the order of their prices. The first one whose every
 //! row is within the tolerance of the double-double reference is the cheapest.
 
-use anyhow::{Context, bail, ensure};
+use anyhow::{Context, anyhow, ensure};
 use double_pendulum::plan::Stepping;
 use double_pendulum::{Equations, Integrator, Method, Numbers, State};
 use firmware::config::Processor;
 use firmware::job::{ON_BOARDS, Request};
-use reference::taylor;
 
-use super::request::{accepted, check_parts, count, method, request};
-use super::{Place, Plan, SimulateOptions};
+use super::request::{Rows, check, method, refusal};
+use super::{Place, SimulateOptions};
 use crate::commands::table::at_most;
 use console::number::Number;
 use console::progress::Progress;
@@ -20,113 +19,126 @@ use console::progress::Progress;
 const MOST_STEPS: u32 = 1 << 19;
 /// The largest number of rows. Each row costs the reference a step.
 const MOST_ROWS: u32 = 10_000;
-/// The number of rows if no time between rows is given.
-const ROWS: u32 = 100;
+
+/// The cheapest trial within the tolerance or, if there is none, the one that is for the longest
+/// time.
+#[derive(Debug)]
+pub struct Choice {
+    /// The motion, until the last row within the tolerance.
+    pub request: Request,
+    /// The times of its rows.
+    pub rows: Rows,
+    /// The method, its price and its error, in one line.
+    pub note: String,
+    /// The largest error of an angle in any row, rad; a missing turn is an error.
+    pub error: f64,
+    /// The reason why rows are missing, if some are.
+    pub end: Option<String>,
+}
 
 /// Returns the cheapest method and step that the options allow and that keep `tolerance`, rad, in
-/// every row. The second value is the largest error of an angle in any row, rad; a missing turn is
-/// an error. Prices are cycles on the board of the options, or evaluations of the equations on this
-/// computer. Without a method in the options, only methods with a price are tried; a method in the
-/// options that has none is priced by its evaluations. Every trial is computed on this computer,
-/// which may take minutes. The time between rows is in the options, or else it is a hundredth of
-/// the time of the last row. The note of the plan names the choice.
-///
-/// An error is one line that names the option and the value. It is an error if the tolerance or a
-/// time is not greater than zero, if the time of the last row is no whole multiple of the time
-/// between rows, if there are more than 10,000 rows, if the place does not have the method, if the
-/// kernel refuses the motion or an angle is too large ([`plan`](super::plan)), or if no method
-/// meets the tolerance in at most 2^19 steps. A step in the options is ignored.
-pub fn choose(options: &SimulateOptions, tolerance: &Number) -> anyhow::Result<(Plan, f64)> {
-    // The times of the rows.
-    let SimulateOptions { until, every, .. } = options;
+/// every row. Every trial is computed on this computer. Prices are cycles on the board of the
+/// options, or evaluations of the equations on this computer. An error is one line that names the
+/// option and the value.
+pub fn choose(options: &SimulateOptions, tolerance: &Number) -> anyhow::Result<Choice> {
     ensure!(
-        tolerance.is_positive(),
+        tolerance.value() > 0.0,
         "--tolerance {tolerance}: must be greater than zero"
     );
+    let rows = Rows::of(options)?;
     ensure!(
-        until.is_positive(),
-        "--until {until}: must be greater than zero with --tolerance"
+        rows.samples < MOST_ROWS,
+        "--tolerance {tolerance}: at most {MOST_ROWS} rows; take a longer --every"
     );
-    let every = every.clone().unwrap_or_else(|| until.divided_by(ROWS));
-    ensure!(
-        every.is_positive(),
-        "--every {every}: must be greater than zero"
-    );
-    check_parts(options, &every)?;
-    let samples = count(("--until", until), ("--every", &every))?;
-    ensure!(
-        samples < MOST_ROWS,
-        "--every {every}: at most {MOST_ROWS} rows with --tolerance; take a longer --every"
-    );
-
-    // The request for the motion with this number of steps between rows, and the step.
-    let in_parts = |method, parts| {
-        let step = every.divided_by(parts);
-        (request(options, method, &step, parts, samples), step)
-    };
 
     // If the kernel refuses the motion in the finest steps, it refuses it in all steps.
-    let first_method = method(options)?;
-    accepted(
-        options,
-        &in_parts(
-            first_method,
-            divisions(first_method, samples).last().unwrap_or(1),
-        )
-        .0,
-    )?;
+    let first = method(options)?;
+    let finest = divisions(first, rows.samples).last().unwrap_or(1);
+    check(&rows.in_parts(options, first, finest))
+        .map_err(|error| anyhow!(refusal(options, &error)))?;
 
     // The exact motion at each row.
-    let bar = Progress::of("reference, rows", samples.into());
-    let times = (0..=samples.into())
-        .map(|row| every.times(row))
-        .inspect(|_| bar.advance(1));
-    let exact = taylor::states(&options.start.parameters(), &options.start.motion(), times);
-    drop(bar);
+    let exact = exact(options, &rows);
 
     // All methods and steps, sorted by price.
     let (unit, methods) = candidates(options);
     let trials = methods.into_iter().flat_map(|(method, price)| {
-        divisions(method, samples).map(move |parts| (f64::from(parts) * price, method, parts))
+        divisions(method, rows.samples).map(move |parts| (f64::from(parts) * price, method, parts))
     });
     let mut trials: Vec<_> = trials.collect();
     trials.sort_by(|(one, ..), (other, ..)| one.total_cmp(other));
 
     // The first trial that is accurate in every row is the cheapest one.
     let bar = Progress::of("trials", trials.len() as u64);
-    let mut reached = 0;
-
+    let mut best: Option<(usize, f64, f64, Request)> = None;
     for (price, method, parts) in trials {
         bar.advance(1);
-        let (request, step) = in_parts(method, parts);
-        let (rows, error) = agreement(&request, &exact, tolerance.value());
-        if rows == exact.len() {
-            let price = price / every.value();
-            let worst = at_most(error);
-            let note = format!(
-                "using {method}, step {step} s ({price:.0} {unit} per second of motion); \
-                 largest error {worst} rad (measured, for the nearest f64 numbers)"
-            );
-            return Ok((
-                Plan {
-                    request,
-                    every,
-                    note: Some(note),
-                },
-                error,
-            ));
+        let request = rows.in_parts(options, method, parts);
+        let (within, error) = agreement(&request, &exact, tolerance.value());
+        if best.as_ref().is_none_or(|(most, ..)| within > *most) {
+            best = Some((within, error, price, request));
         }
-        reached = reached.max(rows);
+        if within == exact.len() {
+            break;
+        }
     }
+    drop(bar);
 
-    // The best trial was accurate for this time.
-    let until = every.times((reached as u64).saturating_sub(1));
-    bail!(
-        "--tolerance {tolerance}: no allowed method stays within it beyond {until} s; take a \
-         shorter --until or a larger tolerance"
-    )
+    let (within, error, price, request) =
+        best.filter(|(within, ..)| *within > 0).with_context(|| {
+            format!(
+                "--tolerance {tolerance}: smaller than the rounding of the start; take a larger one"
+            )
+        })?;
+    let price = price / rows.time(1);
+    let Request { method, stride, .. } = request;
+    let note = format!(
+        "{method}, steps per row: {stride} ({price:.0} {unit} per second of motion); the angles of \
+         every row are within {} rad of the exact motion",
+        at_most(error)
+    );
+    let samples = within as u32 - 1;
+    let end = (samples < rows.samples).then(|| {
+        format!(
+            "--tolerance {tolerance}: the rows end at {} s, because {}",
+            rows.time(samples),
+            limit(&request, rows.samples)
+        )
+    });
+    Ok(Choice {
+        request: Request { samples, ..request },
+        rows,
+        note,
+        error,
+        end,
+    })
 }
 
+/// Returns the exact states at the times of the rows.
+fn exact(options: &SimulateOptions, rows: &Rows) -> Vec<State<f64>> {
+    let bar = Progress::of("reference, rows", rows.samples.into());
+    let mut reference = options.reference();
+    let state = |row| {
+        bar.advance(1);
+        reference.advance_to(rows.time(row));
+        reference.state()
+    };
+    (0..=rows.samples).map(state).collect()
+}
+
+/// Returns the reason why the best trial of rows ends early.
+fn limit(request: &Request, samples: u32) -> String {
+    if request.method.integrator() == Integrator::ClosedForm {
+        return String::from("the linear motion leaves the exact one");
+    }
+    let next = divisions(request.method, samples).find(|parts| *parts > request.stride);
+    match next {
+        Some(_) => String::from(
+            "small errors grow, and finer steps or other methods allowed here do not last longer",
+        ),
+        None => format!("finer steps would be more than {MOST_STEPS} in all"),
+    }
+}
 /// Returns the numbers of steps between rows that are tried: 1, 2, 3, 4, 6, 8, 12 and so on. The
 /// closed form needs only 1.
 fn divisions(method: Method, samples: u32) -> impl Iterator<Item = u32> {

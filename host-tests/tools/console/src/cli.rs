@@ -1,14 +1,17 @@
 //! The behaviour that all commands share: options, output, errors, and the exit code.
 
 use std::env;
+use std::ffi::OsString;
 use std::fmt::{self, Display};
 use std::io::{self, ErrorKind, Write, stderr, stdout};
 use std::path::Path;
 use std::process::{ExitCode, Termination};
 
 use clap::Parser;
-use clap::builder::{PossibleValuesParser, TypedValueParser};
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use double_pendulum::{Error, Parameter};
+
+use super::number::Number;
 
 /// The exit code of a request that cannot be served: wrong options, missing tools.
 pub const REFUSED: u8 = 2;
@@ -107,19 +110,35 @@ pub fn choice<Choice>(
 where
     Choice: Copy + Send + Sync + 'static,
 {
+    choice_with_aliases(choices, move |choice| vec![name(choice)])
+}
+
+/// Returns a parser like that of [`choice`]. The first name of a choice is listed; the others are
+/// aliases that are not.
+pub fn choice_with_aliases<Choice>(
+    choices: impl IntoIterator<Item = Choice>,
+    names: impl Fn(Choice) -> Vec<&'static str>,
+) -> impl TypedValueParser<Value = Choice>
+where
+    Choice: Copy + Send + Sync + 'static,
+{
     let named: Vec<_> = choices
         .into_iter()
-        .map(|choice| (name(choice), choice))
+        .map(|choice| (names(choice), choice))
         .collect();
-    PossibleValuesParser::new(named.iter().map(|(name, _)| *name).collect::<Vec<_>>()).try_map(
-        move |text| {
-            named
-                .iter()
-                .find(|(name, _)| *name == text)
-                .map(|(_, choice)| *choice)
-                .ok_or("unknown")
-        },
-    )
+    let values = named.iter().filter_map(|(names, _)| {
+        let (first, aliases) = names.split_first()?;
+        Some(PossibleValue::new(*first).aliases(aliases.to_vec()))
+    });
+    PossibleValuesParser::new(values.collect::<Vec<_>>()).try_map(move |text| {
+        let is_first = |(names, _): &&(Vec<_>, Choice)| names.first() == Some(&&*text);
+        let is_any = |(names, _): &&(Vec<_>, Choice)| names.contains(&&*text);
+        let found = named
+            .iter()
+            .find(is_first)
+            .or_else(|| named.iter().find(is_any));
+        found.map(|(_, choice)| *choice).ok_or("unknown")
+    })
 }
 
 /// Parses the command line. If it is wrong or requests help, prints a message and returns the exit
@@ -142,7 +161,12 @@ fn parse<Options: Parser>() -> Result<Options, ExitCode> {
     let words = env::args_os()
         .enumerate()
         .filter(|(place, word)| *place != 1 || word.to_str() != Some(own));
-    let matches = command.try_get_matches_from(words.map(|(_, word)| word));
+    let words: Vec<_> = words.map(|(_, word)| word).collect();
+    if let Some(reason) = two_words(&words) {
+        complain(format_args!("error: {reason}"));
+        return Err(ExitCode::from(REFUSED));
+    }
+    let matches = command.try_get_matches_from(words);
     matches
         .and_then(|matches| Options::from_arg_matches(&matches))
         .map_err(|error| {
@@ -155,6 +179,25 @@ fn parse<Options: Parser>() -> Result<Options, ExitCode> {
             let _ = error.print();
             ExitCode::SUCCESS
         })
+}
+
+/// Returns the right form of the first option that is followed by two numbers in two words.
+fn two_words(words: &[OsString]) -> Option<String> {
+    let words: Vec<_> = words.iter().map(|word| word.to_str()).collect();
+    words.windows(3).find_map(|words| {
+        let &[Some(option), Some(first), Some(second)] = words else {
+            return None;
+        };
+        let one = first.trim_end_matches(',');
+        let is_pair = [one, second]
+            .iter()
+            .all(|word| word.parse::<Number>().is_ok());
+        (option.starts_with("--") && is_pair).then(|| {
+            format!(
+                "{option} {first} {second}: write a comma and no space, {option} {one},{second}"
+            )
+        })
+    })
 }
 
 /// Returns the first paragraph of clap's report as one line, with its tip. The usage is omitted;
@@ -185,7 +228,7 @@ fn one_line(report: &str) -> String {
 
 /// Returns the option that sets the refused parameter of the pendulum or its display: `--masses`,
 /// `--lengths`, `--gravity`, `--angles`, `--velocities` (momenta, too), `--height` (the tolerance),
-/// `--duration` or `--rate`. Returns `otherwise` for another parameter and for a diverged motion.
+/// `--seconds` (the duration) or `--rate`. Returns `otherwise` for another parameter and for a diverged motion.
 pub fn option_of(error: &Error, otherwise: &'static str) -> &'static str {
     match error.parameter() {
         _ if matches!(error, Error::Diverged { .. }) => otherwise,
@@ -195,7 +238,7 @@ pub fn option_of(error: &Error, otherwise: &'static str) -> &'static str {
         Parameter::A1 | Parameter::A2 => "--angles",
         Parameter::W1 | Parameter::W2 | Parameter::P1 | Parameter::P2 => "--velocities",
         Parameter::Tolerance => "--height",
-        Parameter::Duration => "--duration",
+        Parameter::Duration => "--seconds",
         Parameter::Rate => "--rate",
         _ => otherwise,
     }

@@ -1,26 +1,19 @@
-//! Numbers as users write them: decimals (`0.25`, `1e-3`) and fractions (`1/256`), stored exactly.
+//! Numbers as users write them: decimals (`0.25`, `1e-3`) and fractions (`1/256`).
 
 use std::fmt;
 use std::str::FromStr;
 
 /// A number with its text: a decimal such as `-2.5`, `.5` or `1e-3`, or two of them with a `/`
-/// between them and no spaces. A number that was parsed is finite: `inf`, `1e999` and `1/0` are
-/// refused. The error of the parser is the reason, in words for the user. Numbers are equal only if
-/// their texts are, too.
-///
-/// It is printed as it was written; after [`Number::divided_by`], as a whole number or a fraction
-/// or, if the exact value is unknown, as a decimal, `inf` or `NaN`.
+/// between them and no spaces. It is finite, and it is printed as it was written.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Number {
     text: String,
     value: f64,
-    /// The exact value. It is `None` if this, or a number of the text, does not fit in 64 bits;
-    /// only `value` is known then.
+    /// The exact value, if its numbers fit in 64 bits.
     fraction: Option<Fraction>,
 }
 
-/// A numerator over a denominator greater than zero, in lowest terms; zero is (0, 1). The functions
-/// here return no other; the type does not check it.
+/// A numerator over a denominator greater than zero.
 pub type Fraction = (i64, u64);
 
 /// The remedy for a number without an [exact](Number::exact) value.
@@ -32,71 +25,26 @@ const NOT_FINITE: &str = "must be a finite number";
 const ZERO_DENOMINATOR: &str = "the denominator is zero";
 
 impl Number {
-    /// Returns the number 1, with the text `1`.
-    pub fn one() -> Self {
-        Self {
-            text: "1".to_owned(),
-            value: 1.0,
-            fraction: Some((1, 1)),
-        }
-    }
-
-    /// Returns the number as the nearest `f64`. Only a fraction or a quotient whose exact value is
-    /// unknown or has numbers of more than 53 bits may be a few units of the last place off.
+    /// Returns the number as the nearest `f64`. Only a fraction with numbers of more than 53 bits
+    /// may be a few units of the last place off.
     pub fn value(&self) -> f64 {
         self.value
     }
 
-    /// Returns the exact value, in lowest terms, or `None` if only [`Number::value`] is known,
-    /// because the exact value or a number of the text does not fit in 64 bits. A decimal and a
-    /// fraction of whole numbers always fit if each number has at most 18 digits, including the
-    /// zeros that an exponent adds. A fraction of decimals of this length may not fit.
+    /// Returns the exact value, or `None` if a number of it does not fit in 64 bits. A decimal of
+    /// at most 18 digits always fits, including the zeros that an exponent adds.
     pub fn exact(&self) -> Option<Fraction> {
         self.fraction
     }
 
-    /// Returns true if [`Number::value`] is greater than zero, also if it is infinite. A positive
-    /// number that is rounded to 0 is not, nor is NaN.
-    pub fn is_positive(&self) -> bool {
-        self.value > 0.0
-    }
-
-    /// Returns how many times `step` divides the number, computed exactly. Returns `None` if that
-    /// is not a whole number from 0 to 2^63 - 1, if `step` is zero, or if one of the exact values
-    /// is unknown.
-    pub fn whole_multiple_of(&self, step: &Number) -> Option<u64> {
-        let (count, parts) = quotient(self.fraction?, step.fraction?)?;
-        count.try_into().ok().filter(|_| parts == 1)
-    }
-
-    /// Returns the number divided by `parts`; by 0 it is infinite or NaN, without an exact value.
-    /// Otherwise a known exact value stays known unless it no longer fits in 64 bits.
-    pub fn divided_by(&self, parts: u32) -> Number {
-        let fraction = self
-            .fraction
-            .and_then(|fraction| quotient(fraction, (parts.into(), 1)));
-        let value = fraction.map_or(self.value / f64::from(parts), nearest);
-        let text = match fraction {
-            Some((whole, 1)) => whole.to_string(),
-            Some((above, below)) => format!("{above}/{below}"),
-            None => value.to_string(),
-        };
-        Self {
-            text,
-            value,
-            fraction,
-        }
-    }
-
-    /// Returns `count` times the number. It is the nearest `f64` if the exact value is known and
-    /// its numerator times `count` and its denominator have at most 53 bits each; otherwise it may
-    /// be a few units of the last place off. It is infinite if the product exceeds the range of
-    /// `f64`. An infinite number times 0 is NaN.
-    pub fn times(&self, count: u64) -> f64 {
-        let count = count as f64;
-        self.fraction.map_or(self.value * count, |(above, below)| {
-            above as f64 * count / below as f64
-        })
+    /// Returns `count`/`parts` of the number, rounded once if the numbers are short: 3 times 0.1 is
+    /// 0.3.
+    pub fn times(&self, count: u32, parts: u32) -> f64 {
+        let [count, parts] = [count, parts].map(f64::from);
+        self.fraction
+            .map_or(self.value * count / parts, |(above, below)| {
+                above as f64 * count / (below as f64 * parts)
+            })
     }
 }
 
@@ -117,14 +65,14 @@ impl FromStr for Number {
             return Err(ZERO_DENOMINATOR);
         }
 
-        // A fraction is the nearest `f64` to its exact value. A decimal was rounded by its parser.
+        // A decimal was rounded by its parser, a fraction is rounded once.
         let fraction = above
             .zip(below)
             .and_then(|(above, below)| quotient(above, below));
-        let is_decimal = !text.contains('/');
-        let value = fraction
-            .filter(|_| !is_decimal)
-            .map_or(numerator / denominator, nearest);
+        let value = match fraction {
+            Some((above, below)) if text.contains('/') => above as f64 / below as f64,
+            _ => numerator / denominator,
+        };
         if value.is_finite() {
             Ok(Self {
                 text: text.to_owned(),
@@ -155,7 +103,7 @@ fn decimal(text: &str) -> Result<(f64, Option<Fraction>), &'static str> {
             .checked_sub(places.len().try_into().ok()?)?;
         let power = 10_i64.checked_pow(exponent.unsigned_abs())?;
         if exponent < 0 {
-            quotient((digits, 1), (power, 1))
+            Some((digits, power.unsigned_abs()))
         } else {
             Some((digits.checked_mul(power)?, 1))
         }
@@ -165,24 +113,9 @@ fn decimal(text: &str) -> Result<(f64, Option<Fraction>), &'static str> {
 
 /// Returns the quotient of two fractions, or `None` if it does not fit or the divisor is zero.
 fn quotient((a, b): Fraction, (c, d): Fraction) -> Option<Fraction> {
-    let above = i128::from(a) * i128::from(d);
-    let below = i128::from(c) * i128::from(b);
-    // Euclid's algorithm for the common divisor of numerator and denominator.
-    let mut common = above.abs();
-    let mut rest = below.abs();
-    while rest != 0 {
-        (common, rest) = (rest, common % rest);
-    }
-    let divisor = common * below.signum();
-    Some((
-        above.checked_div(divisor)?.try_into().ok()?,
-        below.checked_div(divisor)?.try_into().ok()?,
-    ))
-}
-
-/// Returns the `f64` nearest to a fraction, if neither of its numbers has more than 53 bits.
-fn nearest((above, below): Fraction) -> f64 {
-    above as f64 / below as f64
+    let above = a.checked_mul(d.try_into().ok()?)?.checked_mul(c.signum())?;
+    let below = b.checked_mul(c.unsigned_abs())?;
+    (below > 0).then_some((above, below))
 }
 
 /// Two numbers separated by a comma: one for each bob or rod, number 1 first. Spaces around a
@@ -251,40 +184,17 @@ mod tests {
         }
     }
 
-    /// Whole multiples are recognised by the exact fractions, such as 10 as 100 times 0.1. A part
-    /// of a number is the exact fraction, unless that is too long, and a multiple is rounded once.
+    /// A multiple of a short number is rounded once.
     #[test]
-    fn multiples_and_parts_are_exact() -> Result<(), &'static str> {
-        for (time, step, count) in [
-            ("10", "0.1", Some(100)),
-            ("5", "1/4096", Some(20480)),
-            ("1", "1/3", Some(3)),
-            ("1", "0.3", None),
-            ("-1", "0.5", None),
-            ("1", "0", None),
+    fn multiples_are_rounded_once() -> Result<(), &'static str> {
+        for (one, count, parts, product) in [
+            ("0.1", 3, 1, 0.3),
+            ("1/3", 3, 1, 1.0),
+            ("1", 7, 100, 0.07),
+            ("1e-30", 2, 1, 2e-30),
         ] {
-            assert_eq!(
-                time.parse::<Number>()?.whole_multiple_of(&step.parse()?),
-                count,
-                "{time} of {step}"
-            );
+            assert_eq!(one.parse::<Number>()?.times(count, parts), product, "{one}");
         }
-
-        // A part keeps its exact fraction, so that the product with the number of parts has one
-        // rounding.
-        for (one, parts, part, times) in [
-            ("0.1", 3, "1/30", 0.3),
-            ("3", 3, "1", 9.0),
-            ("1e-30", 2, "0.0000000000000000000000000000005", 2e-30),
-        ] {
-            let one = one.parse::<Number>()?;
-            assert_eq!(
-                (one.divided_by(parts).to_string(), one.times(parts.into())),
-                (part.to_owned(), times),
-                "{one}"
-            );
-        }
-
         Ok(())
     }
 }

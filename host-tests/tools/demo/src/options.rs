@@ -21,7 +21,7 @@ use firmware::motion::{Resources, Settings};
 use firmware::scenes::{AnyScene, SceneName};
 
 use super::motion::OwnMotion;
-use console::cli::{Refused, choice};
+use console::cli::{Refused, choice, choice_with_aliases};
 use console::number::Number;
 use emulator::boards::{BOARDS, Board, every_board};
 
@@ -31,8 +31,8 @@ use emulator::boards::{BOARDS, Board, every_board};
 #[command(name = "cargo demo", after_help = after_help())]
 pub struct DemoOptions {
     /// The board
-    #[arg(long, value_name = "NAME", default_value = BOARDS[0].name,
-          value_parser = choice(every_board(), |board| board.name))]
+    #[arg(long, alias = "on", alias = "target", value_name = "NAME", default_value = BOARDS[0].name,
+          value_parser = choice_with_aliases(every_board(), Board::names))]
     pub board: &'static Board,
     /// Use the real board at this serial port; `auto` takes the only one over USB
     #[arg(long, value_name = "PATH", conflicts_with = "board")]
@@ -76,7 +76,7 @@ pub struct DemoOptions {
     #[arg(long)]
     pub headless: bool,
     /// Duration in seconds of the board's clock [default: 10 if headless, else until q is pressed]
-    #[arg(long, value_name = "N", value_parser = seconds)]
+    #[arg(long, alias = "until", alias = "duration", value_name = "N", value_parser = seconds)]
     pub seconds: Option<f64>,
     /// Save the panel's pictures as an animation, 30 frames per second
     #[arg(long, value_name = "FILE.gif", value_parser = |file: &str| ends_in("gif", file))]

@@ -164,7 +164,7 @@ impl<'a> Session<'a> {
                 ToHost::Answer(question, Answer::Status(status)) => self.status(question, &status),
                 ToHost::Answer(SETUP, Answer::Refused(field)) => bail!(self.refused(field)),
                 ToHost::Answer(_, Answer::Refused(field)) => self.readings.lines.push(warning(
-                    format!("no effect here: the board refuses this {}", refusal(field)),
+                    format!("no effect here: the board refuses {}", key_refusal(field)),
                 )),
                 ToHost::Frame(frame) => self.frame(&frame)?,
                 _ => {}
@@ -360,6 +360,17 @@ impl<'a> Session<'a> {
         self.begun.zip(self.now).map_or(0.0, |(begun, now)| {
             (now - begun + 1) as f64 / f64::from(TICK_RATE)
         })
+    }
+}
+
+/// Returns the request of a key that a board refuses, with its limit.
+fn key_refusal(field: Field) -> String {
+    match field {
+        Field::M1 | Field::M2 | Field::Dt => {
+            "a motion so fast; the mass ratio shown is the limit here".to_owned()
+        }
+        Field::A1 | Field::A2 => "an angle beyond the one shown".to_owned(),
+        field => format!("this {}", refusal(field)),
     }
 }
 
