@@ -1,12 +1,14 @@
 //! Files that commands write. Each appears under its name only when it is complete.
 
 use std::ffi::OsString;
-use std::fs::{self, File, TryLockError};
+use std::fs::{self, File};
 use std::io::{self, ErrorKind, Write};
 use std::os::unix::fs::MetadataExt;
 use std::path::{Path, PathBuf};
 
 use anyhow::anyhow;
+use nix::errno::Errno;
+use nix::fcntl::{Flock, FlockArg};
 use tempfile::TempPath;
 
 use crate::process::remove_on_interrupt;
@@ -22,28 +24,32 @@ pub struct OutFile {
     /// The option in errors.
     option: &'static str,
     path: PathBuf,
-    file: File,
-    /// The part, which is removed when this is dropped. A device or a pipe has none and is written
-    /// directly.
-    part: Option<TempPath>,
+    content: Content,
+}
+
+#[derive(Debug)]
+enum Content {
+    /// The part, which is removed when this is dropped, and its open file.
+    Part(TempPath, Flock<File>),
+    /// A device or a pipe, which is written directly.
+    Device(File),
 }
 
 impl OutFile {
     /// Begins the file that `option` names, such as `--out`. A file that cannot be written is
     /// refused, so a command calls this before its work. From now on an interrupt ends the process.
     pub fn create(option: &'static str, path: &Path) -> Result<Self, Refused> {
-        let (file, part) = create(path).map_err(|error| unwritable(option, path, &error))?;
+        let content = create(path).map_err(|error| unwritable(option, path, &error))?;
         Ok(Self {
             option,
             path: path.to_owned(),
-            file,
-            part,
+            content,
         })
     }
 
     /// Gives the file its name. A symbolic link stays one, and its target is replaced.
     pub fn finish(self) -> anyhow::Result<()> {
-        let Some(part) = self.part else {
+        let Content::Part(part, _lock) = self.content else {
             return Ok(());
         };
         let named = part.persist(target(&self.path));
@@ -72,11 +78,17 @@ impl OutFile {
 
 impl Write for OutFile {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        self.file.write(bytes)
+        match &mut self.content {
+            Content::Part(_, file) => file.write(bytes),
+            Content::Device(file) => file.write(bytes),
+        }
     }
 
     fn flush(&mut self) -> io::Result<()> {
-        self.file.flush()
+        match &mut self.content {
+            Content::Part(_, file) => file.flush(),
+            Content::Device(file) => file.flush(),
+        }
     }
 }
 
@@ -93,14 +105,14 @@ fn target(path: &Path) -> PathBuf {
 }
 
 /// Opens a device, or creates and locks the part of a file.
-fn create(path: &Path) -> io::Result<(File, Option<TempPath>)> {
+fn create(path: &Path) -> io::Result<Content> {
     let mut rights = None;
     match fs::metadata(path) {
         Ok(metadata) => {
             // A file that may not be changed is not replaced either.
             let opened = File::options().append(true).open(path)?;
             if !metadata.is_file() {
-                return Ok((opened, None));
+                return Ok(Content::Device(opened));
             }
             rights = Some(metadata.permissions());
         }
@@ -120,9 +132,12 @@ fn create(path: &Path) -> io::Result<(File, Option<TempPath>)> {
 
     // Between opening and locking, the other command may have renamed what was opened.
     let taken = || io::Error::other("another command is writing it");
-    file.try_lock().map_err(|error| match error {
-        TryLockError::WouldBlock => taken(),
-        TryLockError::Error(error) => error,
+    let file = Flock::lock(file, FlockArg::LockExclusiveNonblock).map_err(|(_, errno)| {
+        if errno == Errno::EWOULDBLOCK {
+            taken()
+        } else {
+            errno.into()
+        }
     })?;
     let is_part = fs::metadata(&part).is_ok_and(|named| {
         file.metadata()
@@ -138,5 +153,5 @@ fn create(path: &Path) -> io::Result<(File, Option<TempPath>)> {
     if let Some(rights) = rights {
         file.set_permissions(rights)?;
     }
-    Ok((file, Some(part)))
+    Ok(Content::Part(part, file))
 }
