@@ -11,28 +11,22 @@ use firmware::protocol::{Command, Field, MAX_WIRE, ToHost, encode_command, frame
 use object::elf::{SHF_ALLOC, SHF_WRITE};
 use object::{Object, ObjectSection, SectionFlags, SectionKind};
 
-/// The number of frames after a command that may be expensive, and the number of frames to compute
-/// a requested motion.
+/// After a command that may be expensive, and to compute a requested motion.
 const FRAMES: usize = 24;
 const COMPUTING: usize = 2;
 
-/// A function that sends bytes to a board and returns its messages up to the next frame.
 pub type Next<'a> = &'a mut dyn FnMut(&[u8]) -> anyhow::Result<Vec<ToHost>>;
 
-/// Returns the bytes of a command with the number 1.
 pub fn wire(command: Command) -> Vec<u8> {
     encode_command(1, command, &mut [0; MAX_WIRE]).to_vec()
 }
 
-/// Sends every command, valid and invalid, requests of every kind, and garbage.
 pub fn exercise(next: Next) -> anyhow::Result<()> {
-    // Sends bytes, and waits for some frames.
     let mut play = |words: &[u8], frames: usize| {
         next(words)?;
         (1..frames).try_for_each(|_| next(&[]).map(drop))
     };
 
-    // Every field, with a usual value, with no number, and out of range.
     for field in Field::ALL {
         for value in [0.75, f64::NAN, -1e30] {
             play(
@@ -45,7 +39,6 @@ pub fn exercise(next: Next) -> anyhow::Result<()> {
         }
     }
 
-    // A message that cannot be read, then commands that pause and start again.
     let unreadable = frame(&[0x80, 1, 0xEE], &mut [0; MAX_WIRE]).to_vec();
     play(
         &[
@@ -69,7 +62,6 @@ pub fn exercise(next: Next) -> anyhow::Result<()> {
         1,
     )?;
 
-    // Motions by every method, with a good step, a step that is too long, and none.
     for &method in ON_BOARDS {
         for dt in [1.0 / 256.0, 0.5, 0.0] {
             let request = Request {
@@ -86,7 +78,6 @@ pub fn exercise(next: Next) -> anyhow::Result<()> {
         }
     }
 
-    // Every method of a scene, and the questions about plan and identity.
     for &method in Method::DRAWN {
         play(
             &[
@@ -100,7 +91,6 @@ pub fn exercise(next: Next) -> anyhow::Result<()> {
         )?;
     }
 
-    // Every button, and the changes of scene. At the end, the scene plans by itself.
     let taps = [
         Command::Heavier,
         Command::Lighter,
@@ -118,14 +108,12 @@ pub fn exercise(next: Next) -> anyhow::Result<()> {
         .chain(leaving)
         .try_for_each(|command| play(&wire(command), COMPUTING))?;
 
-    // Bytes that are no message.
     play(&[0x55; 300], FRAMES)?;
 
     // If frames were dropped, a line of the log reports it.
     play(&[0; 2], TICK_RATE as usize)
 }
 
-/// Returns the sizes of text, data and bss in the linked program.
 fn sections(elf: &Path) -> Memory {
     let bytes = std::fs::read(elf).unwrap_or_else(|error| panic!("{error}"));
     let file = object::File::parse(&*bytes).unwrap_or_else(|error| panic!("{error}"));
@@ -135,7 +123,6 @@ fn sections(elf: &Path) -> Memory {
         bss: 0,
         stack: 0,
     };
-    // Only sections that are loaded take flash or memory.
     for section in file.sections() {
         let SectionFlags::Elf { sh_flags } = section.flags() else {
             continue;
@@ -158,8 +145,6 @@ fn sections(elf: &Path) -> Memory {
     memory
 }
 
-/// Prints the README's row of a board whose stack had this depth. Returns the items that exceed
-/// their budget.
 pub fn beyond(board: &Board, elf: &Path, stack: u32, idle: f64) -> Vec<String> {
     let Memory {
         text, data, bss, ..
@@ -170,7 +155,6 @@ pub fn beyond(board: &Board, elf: &Path, stack: u32, idle: f64) -> Vec<String> {
         100.0 * idle
     );
 
-    // The stack was painted before the run, and its used part is not painted any more.
     assert!(
         stack > 0,
         "{name}: nothing is painted any more, or nothing was"
@@ -180,7 +164,6 @@ pub fn beyond(board: &Board, elf: &Path, stack: u32, idle: f64) -> Vec<String> {
         .find(|(of, _)| *of == name)
         .expect("a row for each board");
 
-    // Each part that exceeds its budget, and the time.
     let parts = [
         ("text", text, budget.text),
         ("data", data, budget.data),

@@ -12,9 +12,7 @@ use crate::support::LIMIT;
 use emulator::{process, toolchain};
 use rayon::prelude::*;
 
-/// The emulator that runs the program of a core.
 enum Emulator {
-    /// QEMU's machine and processor.
     Machine(&'static str, &'static str),
     /// QEMU's user mode: the program runs under Linux.
     Linux,
@@ -22,12 +20,10 @@ enum Emulator {
 }
 use Emulator::{Linux, Machine, Node};
 
-/// A core: its name, the compiler's target, and its emulator. If the core computes `f64` in
-/// hardware (the kernel's feature `double-fpu`), the last field is the compiler's name of the
-/// processor.
+/// The name, the compiler's target, the emulator and, if the core computes `f64` in hardware, the
+/// compiler's name of the processor.
 struct Core(&'static str, &'static str, Emulator, Option<&'static str>);
 
-/// Returns the command that runs the core's emulator with the image.
 fn emulated(Core(_, target, emulator, double): &Core) -> anyhow::Result<Command> {
     let toolchain = toolchain::set_up_for(target)?;
     let mut command = Command::new(&toolchain.qemu);
@@ -51,8 +47,7 @@ fn emulated(Core(_, target, emulator, double): &Core) -> anyhow::Result<Command>
     Ok(command)
 }
 
-/// Runs the program of a core and compares its output with the golden file. Skips a core whose
-/// tools are missing, unless a board has this core.
+/// Skips a core whose tools are missing, unless a board has this core.
 fn computes_the_golden_bits(core: &Core, golden: &str) {
     let Core(name, target, _, double) = core;
     let image = (*target, *double);
@@ -100,7 +95,6 @@ const CORES: [Core; 11] = [
     Core("WebAssembly",                 "wasm32-unknown-unknown",       Node,   None),
 ];
 
-/// The output of every core equals `kernel/golden/bits.csv`, line by line.
 #[test]
 fn every_core_computes_the_golden_bits() {
     let file = toolchain::workspace().join("kernel/golden/bits.csv");

@@ -12,16 +12,12 @@ use firmware::job::Request;
 use host_tests::commands::report::accuracy::{SCENES, Scene, request};
 use rayon::prelude::*;
 
-/// The number of compared steps. It is smaller on the Cortex-M0+, which has no long products.
+/// Fewer on the Cortex-M0+, which has no long products.
 const STEPS: [u32; 2] = [1_000_000, 100_000];
-/// The number of steps of unoptimised code, which is slow.
 const STEPS_UNOPTIMISED: u32 = 10_000;
-/// Steps a second.
 const RATE: u32 = 256;
-/// A regular and a chaotic motion.
 const MOTIONS: [&Scene; 2] = [&SCENES[0], &SCENES[1]];
 
-/// Returns a request whose CRC covers the whole state after each of the first steps.
 fn every_state(method: Method, scene: &Scene, steps: u32) -> Request {
     Request {
         samples: steps,
@@ -30,13 +26,10 @@ fn every_state(method: Method, scene: &Scene, steps: u32) -> Request {
     }
 }
 
-/// Every method, in a regular and a chaotic motion, has the same CRC of all states on the host and
-/// on a board of each kind of core, over a million steps, or 100,000 on the Cortex-M0+ ([`STEPS`]).
 #[test]
 #[ignore = "takes hours"]
 fn host_and_targets_agree_after_every_one_of_a_million_steps() -> Result<()> {
     let targets = targets();
-    // Every method in both motions, on every board.
     let motions = || {
         MOTIONS
             .iter()
@@ -62,9 +55,6 @@ fn host_and_targets_agree_after_every_one_of_a_million_steps() -> Result<()> {
         })
 }
 
-/// Every method has the same CRC of all states of a chaotic motion by optimised code and by a
-/// program in which the kernel and its dependencies are compiled without optimisation and with
-/// overflow checks.
 #[test]
 fn unoptimised_code_computes_the_same_bits() {
     let requests: Vec<_> = Method::ALL
@@ -86,7 +76,6 @@ fn unoptimised_code_computes_the_same_bits() {
         ]);
     }
 
-    // The requests differ in the method only.
     let Request {
         parameters: Parameters { m1, m2, l1, l2, g },
         angles: [a1, a2],
@@ -106,7 +95,6 @@ fn unoptimised_code_computes_the_same_bits() {
 
     let text = String::from_utf8(output.stdout).expect("text");
     assert_eq!(text.lines().count(), requests.len());
-    // The host's own code is optimised.
     for (line, request) in text.lines().zip(&requests) {
         let optimised = request.crc().unwrap_or_else(|error| panic!("{error}"));
         assert_eq!(line, format!("{optimised:08x}"), "{}", request.method);
@@ -119,15 +107,12 @@ const CONTRACTED: [&str; 4] = ["vmla, vmls", "vnmla, vnmls", "vfma, vfms", "vfnm
 /// not see its code.
 const SEPARATE: [&str; 2] = ["vmul, vnmul", "vadd, vsub"];
 
-/// The programs for the Cortex-M4F contain no fused or chained multiply-add, which would change
-/// bits.
 #[test]
 fn nothing_is_contracted() {
     for target in targets()
         .iter()
         .filter(|target| target.board.cpu == "cortex-m4")
     {
-        // The instructions of the whole program.
         let words = target.image.words().into_iter();
         let row = |(at, first, second): (u32, u16, Option<u16>)| {
             Some((
@@ -138,7 +123,6 @@ fn nothing_is_contracted() {
             ))
         };
         let rows: Vec<_> = words.filter_map(row).collect();
-        // The search sees the kernel's code.
         for name in SEPARATE {
             assert!(
                 rows.iter().filter(|(_, row)| *row == name).count() > 500,
@@ -146,7 +130,6 @@ fn nothing_is_contracted() {
             );
         }
 
-        // A contracted instruction would round once instead of twice.
         let found = rows.iter().find(|(_, row)| CONTRACTED.contains(row));
         let place = found.map(|(at, row)| (target.image.function_at(*at), row));
         assert_eq!(place, None, "in {}", target.board.name);

@@ -28,33 +28,27 @@ use firmware::protocol::{
 use firmware::scenes::SceneName;
 use host_tests::commands::count::{FULL_CYCLE, Target, affordable_steps, step_cost};
 
-/// A time that is long enough for a whole picture on the panel.
 const PICTURE: Duration = Duration::from_millis(50);
-/// The processor cycles to find the changes on the panel and to hand over a frame: 1.6 ms. It takes
-/// 1.3 ms; waiting for the UART would take 0.9 ms more.
+/// The processor cycles to find the changes on the panel and to hand over a frame. It takes 1.3 ms;
+/// waiting for the UART would take 0.9 ms more.
 const SHOWING: u32 = 200_000;
 const TICK: Duration = Duration::from_nanos(1_000_000_000 / TICK_RATE as u64);
 
-/// The longest time of a restart: the watchdog's time, and the time of the host to find the board
-/// again.
+/// The watchdog's time, and the time of the host to find the board again.
 const RESTART: Duration = Duration::from_millis(2000 * WATCHDOG_SECONDS as u64 + 400);
-/// The longest time of a restart without the watchdog.
 const QUICK_RESTART: Duration = Duration::from_millis(800);
 
-/// Returns a board with its port just opened by the host, after its first frame.
 fn board() -> anyhow::Result<PicoMachine> {
     let mut board = switched_on()?;
     board.next_frame()?;
     Ok(board)
 }
 
-/// Returns a board that has just been switched on.
 fn switched_on() -> anyhow::Result<PicoMachine> {
     let emulator = toolchain::ready_for_pico().unwrap_or_else(|missing| panic!("{missing}"));
     PicoMachine::start(&emulator, &application(&PICO), LIMIT)
 }
 
-/// Returns a request for a motion with a sample after each of its steps.
 fn request(method: Method, samples: u32) -> Request {
     Request {
         angles: [0.5; 2],
@@ -64,7 +58,6 @@ fn request(method: Method, samples: u32) -> Request {
     }
 }
 
-/// The image starts at the address of the flash, and its first 256 bytes end with their checksum.
 #[test]
 fn the_file_is_for_the_chips_flash_and_its_boot_rom() -> anyhow::Result<()> {
     let (start, image) = flash_image(&std::fs::read(application(&PICO))?)?;
@@ -80,13 +73,9 @@ fn the_file_is_for_the_chips_flash_and_its_boot_rom() -> anyhow::Result<()> {
     Ok(())
 }
 
-/// The instructions of the firmware after which the two ways of executing them are compared.
 const COMPARED: u32 = 8_000_000;
 
-/// The usual instructions are executed faster than by the emulator itself, with the same results:
-/// registers, flags, cycles, times, memory and output are equal in the first instructions of the
-/// firmware, after a button, bytes, a fault and a reset, and in a hang; and registers, flags and
-/// cycles after every opcode.
+/// The usual instructions are executed faster than by the emulator itself, with the same results.
 #[test]
 fn faster_execution_has_the_results_of_the_emulators_own() -> anyhow::Result<()> {
     let node = toolchain::ready_for_pico().unwrap_or_else(|missing| panic!("{missing}"));
@@ -111,9 +100,7 @@ fn faster_execution_has_the_results_of_the_emulators_own() -> anyhow::Result<()>
     Ok(())
 }
 
-/// In 4 s every frame arrives over USB and over the UART, equal to the host's and on time, and
-/// neither link delays it. The identity, samples, and commands from both links are answered over
-/// both. A flood of bytes over USB loses nothing, because the host waits.
+/// Neither link delays a frame. A flood of bytes over USB loses nothing, because the host waits.
 #[test]
 fn usb_and_uart_carry_the_hosts_bits_and_every_command() -> anyhow::Result<()> {
     const FRAMES: u32 = 240;
@@ -136,7 +123,6 @@ fn usb_and_uart_carry_the_hosts_bits_and_every_command() -> anyhow::Result<()> {
         sent.push(frame);
     }
 
-    // The same frames arrive over the UART.
     board.run(TICK / 4)?;
     let through_uart: Vec<Frame> = board
         .heard_by_uart()
@@ -146,7 +132,6 @@ fn usb_and_uart_carry_the_hosts_bits_and_every_command() -> anyhow::Result<()> {
         .collect();
     assert_eq!(through_uart, sent);
 
-    // No frame waits for the UART.
     let showing = sent
         .windows(2)
         .map(|frames| frames[1].busy_cycles - frames[0].scene_cycles)
@@ -161,7 +146,6 @@ fn usb_and_uart_carry_the_hosts_bits_and_every_command() -> anyhow::Result<()> {
             .any(|line| line.text == "boot: pico, 125000000 Hz")
     );
 
-    // The identity of the board and of its program.
     let (_, image) = flash_image(&std::fs::read(application(&PICO))?)?;
     board.send(1, Command::Identify)?;
     let [(1, Answer::Identity(identity))] = answers(board.run(4 * TICK)?)[..] else {
@@ -187,7 +171,6 @@ fn usb_and_uart_carry_the_hosts_bits_and_every_command() -> anyhow::Result<()> {
         });
     assert!(indices.eq(0..=SAMPLES));
 
-    // Commands are accepted from both links, and both receive both answers.
     board.send(1, Command::Choose(SceneName::Butterfly))?;
     let mut messages = board.run(4 * TICK)?;
     board.send_through_uart(
@@ -226,12 +209,10 @@ fn usb_and_uart_carry_the_hosts_bits_and_every_command() -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Returns the answers among messages, with the numbers of their commands.
 fn answers(messages: Vec<ToHost>) -> Vec<(u16, Answer)> {
     messages.into_iter().filter_map(ToHost::answer).collect()
 }
 
-/// Returns the cycles of the motion's next steps.
 fn measured(board: &mut PicoMachine) -> anyhow::Result<u32> {
     board.send(2, Command::Measure(MOST_MEASURED_STEPS))?;
     match answers(board.run(4 * TICK)?)[..] {
@@ -240,8 +221,7 @@ fn measured(board: &mut PicoMachine) -> anyhow::Result<u32> {
     }
 }
 
-/// The emulator counts cycles on its own. For three methods they equal the estimate of `cargo
-/// count` to 4 %, which verifies it independently of QEMU.
+/// The emulator counts cycles on its own, so that it verifies `cargo count` independently of QEMU.
 #[test]
 fn the_emulators_cycles_agree_with_the_estimate() -> anyhow::Result<()> {
     // Found: 0.5 % more, 2.6 % less, 0.1 % less.
@@ -256,7 +236,6 @@ fn the_emulators_cycles_agree_with_the_estimate() -> anyhow::Result<()> {
     let target = Target::build(&toolchain::ready()?, emulated)?;
 
     for method in [single, fixed64, Method::Rk4Fixed32] {
-        // The cycles by the emulator.
         board.send(1, Command::Simulate(request(method, 0)))?;
         board.run(4 * TICK)?;
         let steps = FULL_CYCLE / MOST_MEASURED_STEPS;
@@ -265,7 +244,6 @@ fn the_emulators_cycles_agree_with_the_estimate() -> anyhow::Result<()> {
             .sum::<Result<u32, _>>()?;
         let counted = f64::from(cycles) / f64::from(FULL_CYCLE);
 
-        // The cycles by the counter of this project.
         let request = request(method, 1);
         let request = Request {
             stride: affordable_steps(&target, &request)?,
@@ -281,20 +259,16 @@ fn the_emulators_cycles_agree_with_the_estimate() -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Pauses the board, so that the panel has time to receive a whole picture.
 fn stand_still(board: &mut PicoMachine) -> anyhow::Result<Frame> {
     board.send(9, Command::Pause(true))?;
     board.run(PICTURE)?;
     board.next_frame()
 }
 
-/// Panels of both controllers, with several status bytes, are plugged in one after the other.
-/// Within 2 s each is identified by its memory, reported in the log and over the link, and shows
-/// exactly the host's picture. An absent panel is reported as such.
+/// The status bytes are no evidence of the controller.
 #[test]
 fn every_kind_of_panel_shows_the_hosts_picture_after_it_is_plugged_in() -> anyhow::Result<()> {
     let mut board = switched_on()?;
-    // A board without a panel reports that it is absent.
     board.tell("plug none")?;
     board.run(Duration::from_millis(300))?;
     assert!(board.tell("panel")?.is_empty(), "it is off");
@@ -320,7 +294,6 @@ fn every_kind_of_panel_shows_the_hosts_picture_after_it_is_plugged_in() -> anyho
         (SceneName::Flips, "sh1106 8", sh1106),
         (SceneName::Page, "ssd1306 0", ssd1306),
     ] {
-        // The scene changes, and the panel with it.
         board.send(1, Command::Choose(name))?;
         board.send(2, Command::Pause(false))?;
         board.tell("plug none")?;
@@ -336,7 +309,6 @@ fn every_kind_of_panel_shows_the_hosts_picture_after_it_is_plugged_in() -> anyho
         let frame = stand_still(&mut board)?;
 
         let lines = board.lines();
-        // The log names the controller.
         let reported = lines
             .iter()
             .find(|line| line.text.starts_with("panel: s"))
@@ -348,7 +320,6 @@ fn every_kind_of_panel_shows_the_hosts_picture_after_it_is_plugged_in() -> anyho
             name.name()
         );
 
-        // The link reports the same.
         let is_present = matches!(panel_report(&mut board)?.state, PanelState::Shown(_));
         assert_eq!(is_present, panel != "none", "{}", name.name());
 
@@ -376,7 +347,6 @@ fn every_kind_of_panel_shows_the_hosts_picture_after_it_is_plugged_in() -> anyho
     Ok(())
 }
 
-/// Returns the state of the panel by the link.
 fn panel_report(board: &mut PicoMachine) -> anyhow::Result<PanelReport> {
     board.send(7, Command::Ask)?;
     match answers(board.run(4 * TICK)?)[..] {
@@ -385,13 +355,10 @@ fn panel_report(board: &mut PicoMachine) -> anyhow::Result<PanelReport> {
     }
 }
 
-/// The clock's counts for 400 kHz, low and high (RP2040 data sheet, 4.3.14).
 const CLOCK_COUNTS: [u8; 2] = [175, 108];
 
-/// While a panel holds the clock low, as one whose power fails does, the board reports it as absent
-/// and resets the controller of the bus. Within 2 s after the clock is free, the panel shows the
-/// host's picture, and the controller has its setup again. A transfer does not end while the clock
-/// is low, and the controller cannot be disabled; only its reset ends every transfer.
+/// A panel whose power fails holds the clock low. A transfer does not end while the clock is low,
+/// and the controller of the bus cannot be disabled; only its reset ends every transfer.
 #[test]
 fn a_panel_that_holds_the_clock_low_shows_the_picture_when_it_lets_go() -> anyhow::Result<()> {
     let mut board = switched_on()?;
@@ -406,7 +373,6 @@ fn a_panel_that_holds_the_clock_low_shows_the_picture_when_it_lets_go() -> anyho
     let while_held = board.tell("i2c")?[2];
     assert!(while_held > resets);
 
-    // After the clock is released, the panel must show the paused frame again.
     board.tell("hold 0")?;
     board.run(Duration::from_secs(2))?;
     let frame = stand_still(&mut board)?;
@@ -420,8 +386,6 @@ fn a_panel_that_holds_the_clock_low_shows_the_picture_when_it_lets_go() -> anyho
     Ok(())
 }
 
-/// A controller that was chosen by a command is still used after a restart by the watchdog and
-/// after a reset from outside, until the choice is withdrawn.
 #[test]
 fn chosen_controller_outlasts_a_restart() -> anyhow::Result<()> {
     let chosen = Some(Controller::Sh1106);
@@ -437,7 +401,6 @@ fn chosen_controller_outlasts_a_restart() -> anyhow::Result<()> {
     };
     assert!(is_driven(panel_report(&mut board)?));
 
-    // The restarts are by the watchdog and from outside.
     board.tell("hang")?;
     board.run(Duration::from_secs(u64::from(WATCHDOG_SECONDS) * 2) + 8 * PICTURE)?;
     assert!(is_driven(panel_report(&mut board)?));
@@ -456,8 +419,6 @@ fn chosen_controller_outlasts_a_restart() -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Each arrow changes the mass ratio and the start angle as its command does on the host, and
-/// select, held, plays the next scene.
 #[test]
 fn every_button_has_its_effect() -> anyhow::Result<()> {
     let mut board = board()?;
@@ -472,7 +433,6 @@ fn every_button_has_its_effect() -> anyhow::Result<()> {
         (Key::Left, Command::TurnLeft),
     ];
 
-    // A button has the effect of its command on the host's scene.
     for (key, command) in [up, up, left, right, right, down] {
         board.set_key(key, true)?;
         board.run(6 * TICK)?;
@@ -489,20 +449,15 @@ fn every_button_has_its_effect() -> anyhow::Result<()> {
         );
     }
 
-    // A long press of select changes the scene.
     board.set_key(Key::Select, true)?;
     board.run(TICK * (u32::from(HOLD_TICKS) + 6))?;
     assert_eq!(board.next_frame()?.scene, SceneName::Page.next());
     Ok(())
 }
 
-/// A hang restarts the board in the same scene with the same mass ratio, on time, and the message
-/// has the cause and the last frame. A reset from outside starts with the page, and reports no
-/// restart.
 #[test]
 fn the_watchdog_restarts_the_board_in_its_scene() -> anyhow::Result<()> {
     let mut board = board()?;
-    // A scene with settings of its own, in the middle of a tick.
     board.send(1, Command::Choose(SceneName::Butterfly))?;
     board.send(2, Command::Heavier)?;
     board.run(10 * TICK)?;
@@ -512,7 +467,6 @@ fn the_watchdog_restarts_the_board_in_its_scene() -> anyhow::Result<()> {
 
     board.run(RESTART)?;
 
-    // The report names the cause and the last frame.
     let restarted = board
         .heard_by_uart()
         .into_iter()
@@ -555,7 +509,6 @@ fn the_watchdog_restarts_the_board_in_its_scene() -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Returns the answer over USB to the question about restarts.
 fn last_restart(board: &mut PicoMachine) -> anyhow::Result<Option<Restarted>> {
     board.send(4, Command::AskRestart)?;
     match answers(board.run(4 * TICK)?)[..] {
@@ -565,8 +518,8 @@ fn last_restart(board: &mut PicoMachine) -> anyhow::Result<Option<Restarted>> {
 }
 
 /// A fault resets only the processor, a hang the whole chip. A stack frame that is larger than the
-/// memory below it locks the processor up, which is a hang. They end the connection, and the message
-/// about the restart is lost. A host that opens the port later still learns the reason.
+/// memory below it locks the processor up, which is a hang. All end the connection, and the message
+/// about the restart is lost.
 #[test]
 fn a_host_that_opens_the_port_late_receives_the_cause_of_the_restart() -> anyhow::Result<()> {
     let mut board = board()?;
@@ -605,9 +558,8 @@ fn a_host_that_opens_the_port_late_receives_the_cause_of_the_restart() -> anyhow
     Ok(())
 }
 
-/// After a fault, a hang, and both kinds of reset the host connects again, and the frames are
-/// counted from the start. The host keeps the port open. It must notice that the board disconnects;
-/// otherwise it continues to use an address that the board has forgotten.
+/// The host keeps the port open. It must notice that the board disconnects; otherwise it continues
+/// to use an address that the board has forgotten.
 #[test]
 fn every_restart_disconnects_the_board() -> anyhow::Result<()> {
     for end in ["fault", "hang", "reset 0", "reset 1"] {
@@ -631,9 +583,8 @@ fn every_restart_disconnects_the_board() -> anyhow::Result<()> {
     Ok(())
 }
 
-/// After a control transfer that the host breaks off, the frames continue on time, and the port can
-/// be closed and opened. The libraries do not read the first packet of a transfer that is too long
-/// for them, and the controller's interrupt is level-triggered.
+/// The libraries do not read the first packet of a transfer that is too long for them, and the
+/// controller's interrupt is level-triggered.
 #[test]
 fn a_broken_off_control_transfer_does_not_stop_the_board() -> anyhow::Result<()> {
     let mut board = board()?;
@@ -647,16 +598,13 @@ fn a_broken_off_control_transfer_does_not_stop_the_board() -> anyhow::Result<()>
     let counts = board.counts()[0];
     assert_eq!((counts.damaged, counts.lost, counts.restarts), (0, 0, 0));
 
-    // The next request restores the transfer.
     board.set_port(0)?;
     assert!(board.run(10 * TICK)?.len() < 3);
     board.set_port(BAUD)?;
     board.next_frame().map(drop)
 }
 
-/// A reset of the bus that lasts 1 s, as behind a hub without a host, delays the frames of a chip
-/// of the revision B1 by 0.2 s at most. The library leaves the reset pending, and the controller's
-/// interrupt is level-triggered. After the reset the port works again.
+/// The library leaves the reset pending, and the controller's interrupt is level-triggered.
 #[test]
 fn a_reset_of_the_bus_that_lasts_does_not_stop_the_board() -> anyhow::Result<()> {
     let mut board = board()?;
@@ -675,7 +623,6 @@ fn a_reset_of_the_bus_that_lasts_does_not_stop_the_board() -> anyhow::Result<()>
     assert!(steps.abs_diff(TICK_RATE.into()) < 4, "{steps}");
     assert!((1..TICK_RATE / 5).contains(&after.dropped), "{after:?}");
 
-    // The host ends the reset, and finds the device again.
     board.tell("resetBus 0")?;
     let again = board.next_frame()?;
     assert_eq!(again.dropped, after.dropped);
@@ -683,15 +630,12 @@ fn a_reset_of_the_bus_that_lasts_does_not_stop_the_board() -> anyhow::Result<()>
     Ok(())
 }
 
-/// Byte 7 of the device descriptor is 64.
 #[test]
 fn the_control_endpoint_takes_packets_of_64_bytes() -> anyhow::Result<()> {
     assert_eq!(board()?.tell("descriptor")?[7], 64);
     Ok(())
 }
 
-/// The boot loader starts when the port is closed after it was opened at 1200 baud, and not at the
-/// usual speed.
 #[test]
 fn closing_the_port_starts_the_boot_loader_at_1200_baud_only() -> anyhow::Result<()> {
     let mut board = board()?;

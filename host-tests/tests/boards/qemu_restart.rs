@@ -14,27 +14,23 @@ use firmware::app::MOST_RESTARTS;
 use firmware::protocol::{Cause, Command, Field, Frame, Restarted, ToHost};
 use firmware::scenes::SceneName;
 
-/// An address at the low end of the stack, which is never used.
 const UNUSED: u32 = 0x2000_0000;
 /// The size of a frame that is larger than the stack, and than the memory of the smallest board.
 const HUGE: u32 = 100 * 1024;
 /// Two instructions: `b .`, an endless loop, and `udf #0`, which is undefined.
 const HANG: [u8; 2] = [0xfe, 0xe7];
 const UNDEFINED: [u8; 2] = [0x00, 0xde];
-/// The number of frames of the scene to wait for.
 const FRAMES: usize = 20;
 /// The function that reads the cycle counter. It is called at the beginning of a frame, after
 /// drawing, and after sending.
 const STOPWATCH: &str = "clock::cycles";
-/// The mass ratio that the tests set; no scene has it at the start.
 const MASS_RATIO: f32 = 0.7;
 
-/// The time limit of a restart by the host's clock: many times its usual duration.
+/// Many times the usual duration.
 const PATIENCE: Duration = Duration::from_secs(120);
 
 /// Returns the program of a board, the board, and its last sent frame. The board is stopped in the
-/// middle of a frame of `scene` with the tests' mass ratio. It has a debugger that takes its log,
-/// or none.
+/// middle of a frame of `scene` with the tests' mass ratio.
 fn within(
     board: &Board,
     scene: SceneName,
@@ -85,31 +81,25 @@ fn within(
     }
 }
 
-/// Writes an instruction to the unused address and makes the processor continue there.
 fn execute(probe: &mut Machine, instruction: [u8; 2]) -> anyhow::Result<()> {
     probe.write(UNUSED, &instruction)?;
     probe.divert(&[(Register::Pc, UNUSED)])
 }
 
-/// Returns the boards whose watchdog is emulated.
 fn watched() -> impl Iterator<Item = &'static Board> {
     BOARDS.iter().filter(|board| **board != STM32F405)
 }
 
-/// Returns the place in a crash report of this frame.
 fn place(frame: &Frame) -> String {
     format!("scene {}, step {}\n", frame.scene.name(), frame.report.step)
 }
 
-/// Checks that the output of a board contains all `parts`.
 fn assert_logged(board: &Board, log: &str, parts: &[&str]) {
     for part in parts {
         assert!(log.contains(part), "{}: no {part:?} in\n{log}", board.name);
     }
 }
 
-/// Returns the last output of a machine that ends with a failure, and checks that it contains all
-/// `parts`.
 fn last_words(board: &Board, machine: &mut Machine, parts: &[&str]) -> anyhow::Result<String> {
     let mut report = String::new();
     let status = machine.wait(|line| report += &format!("{line}\n"))?;
@@ -118,8 +108,6 @@ fn last_words(board: &Board, machine: &mut Machine, parts: &[&str]) -> anyhow::R
     Ok(report)
 }
 
-/// An undefined instruction in a frame ends the program with a failure. Its report has the cause,
-/// the registers, and the scene and step of the last frame that was sent.
 #[test]
 fn a_fault_in_a_frame_reports_the_scene_and_the_step() -> anyhow::Result<()> {
     let registers = format!("pc {UNUSED:#010x}  lr 0x12345679");
@@ -141,8 +129,6 @@ fn a_fault_in_a_frame_reports_the_scene_and_the_step() -> anyhow::Result<()> {
     Ok(())
 }
 
-/// A function that draws a scene gets a huge stack frame. The report states a stack overflow, and
-/// that the registers are lost.
 #[test]
 fn a_stack_overflow_in_a_frame_is_reported_however_large_the_frame() -> anyhow::Result<()> {
     for board in &BOARDS {
@@ -161,7 +147,6 @@ fn a_stack_overflow_in_a_frame_is_reported_however_large_the_frame() -> anyhow::
     Ok(())
 }
 
-/// Returns the name of the function at the address that follows `what` in the report.
 fn function_after(what: &str, report: &str, image: &Image) -> String {
     let digits = report
         .split_once(what)
@@ -173,8 +158,6 @@ fn function_after(what: &str, report: &str, image: &Image) -> String {
         .map_or(String::new(), |function| function.name.clone())
 }
 
-/// A program with an injected panic ends with a failure. Its report has the file, the message, and
-/// the addresses of the panic and of its caller.
 #[test]
 fn a_panic_reports_its_place_and_reason_and_ends_with_failure() -> anyhow::Result<()> {
     let toolchain = toolchain();
@@ -193,7 +176,6 @@ fn a_panic_reports_its_place_and_reason_and_ends_with_failure() -> anyhow::Resul
             &parts,
         )?;
 
-        // The addresses in the report belong to the panic's functions.
         let image = Image::read(&elf)?;
         for (what, name) in [("pc", "panic_fmt"), ("lr", "main")] {
             let caller = function_after(what, &report, &image);
@@ -208,14 +190,10 @@ fn a_panic_reports_its_place_and_reason_and_ends_with_failure() -> anyhow::Resul
     Ok(())
 }
 
-/// A board in an endless loop is restarted by its watchdog. The link and the log name the hang, its
-/// address, and the last frame. The same scene starts again with the mass ratio of the user, and no
-/// frame is lost.
 #[test]
 fn a_board_that_hangs_restarts_in_its_scene_and_reports_the_cause() -> anyhow::Result<()> {
     for board in watched() {
         let (_, mut probe, before) = within(board, SceneName::Butterfly, true)?;
-        // The watchdog restarts the board, and its first message names the cause.
         execute(&mut probe, HANG)?;
         let machine = probe.run()?;
         let Restarted {
@@ -239,7 +217,6 @@ fn a_board_that_hangs_restarts_in_its_scene_and_reports_the_cause() -> anyhow::R
             board.name
         );
 
-        // The scene starts again, with the same mass ratio and no frame lost.
         for sequence in 0..FRAMES as u32 {
             let frame = machine.next_frame()?;
             let step = u64::from(sequence) + 1;
@@ -263,7 +240,6 @@ fn a_board_that_hangs_restarts_in_its_scene_and_reports_the_cause() -> anyhow::R
             board.name
         );
 
-        // The log has both the report of the hang and the line after the restart.
         let pc = format!("pc {UNUSED:#010x}");
         let last = format!("restarted after a hang (in a row: 1): {pc}");
         assert_logged(

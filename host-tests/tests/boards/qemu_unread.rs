@@ -15,20 +15,16 @@ use nix::sys::signal::{Signal, kill};
 use nix::unistd::Pid;
 use rayon::prelude::*;
 
-/// The interval between two reads of the log.
 const POLL: Duration = Duration::from_millis(20);
-/// The number of frames read after the gap.
 const FRAMES: usize = 120;
 
-/// After the board has logged that its port is full, the host reads again: the frames that follow
-/// equal the host's, and only the frames of the gap are missing. The board is the only one with an
-/// emulated port that reports when it is full. The other machines stop as a whole.
+/// The board is the only one with an emulated port that reports when it is full. The other machines
+/// stop as a whole.
 #[test]
 fn a_host_that_stops_reading_loses_frames_and_nothing_else() -> anyhow::Result<()> {
     let mut machine = on(BOARD, Machine::start)?;
     let first = machine.next_frame()?;
 
-    // The host does not read until the board has logged that its port is full.
     machine.listens = false;
     let mut log = String::new();
     let since = Instant::now();
@@ -43,7 +39,6 @@ fn a_host_that_stops_reading_loses_frames_and_nothing_else() -> anyhow::Result<(
     let mut last = first;
     let mut after = 0;
 
-    // The frames before the gap come first, then a gap, then all frames.
     while after < FRAMES {
         let frame = machine.next_frame()?;
         assert_eq!(frame, show.expected(&frame));
@@ -57,7 +52,6 @@ fn a_host_that_stops_reading_loses_frames_and_nothing_else() -> anyhow::Result<(
         last = frame;
     }
 
-    // The gap is counted as lost frames.
     let counts = machine.counts();
     assert!(counts.lost > 0, "{counts:?}");
     assert!(
@@ -73,8 +67,7 @@ fn a_host_that_stops_reading_loses_frames_and_nothing_else() -> anyhow::Result<(
     Ok(())
 }
 
-/// QEMU is stopped for 2.5 s while a board plays by the host's clock. The log then reports neither
-/// a hang nor a restart, because the board's clock does not advance meanwhile.
+/// The board's clock does not advance while QEMU is stopped.
 #[test]
 fn a_board_whose_emulator_pauses_does_not_take_it_for_a_hang() -> anyhow::Result<()> {
     /// The duration of a stop. It is longer than the watchdog's two stages.
@@ -91,7 +84,6 @@ fn a_board_whose_emulator_pauses_does_not_take_it_for_a_hang() -> anyhow::Result
                 })
             })?;
             let emulator = Pid::from_raw(machine.id().cast_signed());
-            // The board plays, is stopped for a while, and plays again.
             for pause in [true, false] {
                 for _ in 0..FRAMES {
                     machine.next_frame()?;
@@ -112,9 +104,6 @@ fn a_board_whose_emulator_pauses_does_not_take_it_for_a_hang() -> anyhow::Result
         })
 }
 
-/// A host sends 20,000 bytes faster than a board can read them. The frames of every board then
-/// have a number of lost bytes that is greater than zero and less than all, and its log reports
-/// the loss.
 #[test]
 fn received_bytes_that_are_lost_are_counted() -> anyhow::Result<()> {
     // Broken messages of a byte each. A board reads at most four of them in a tick, and they are
@@ -151,13 +140,11 @@ fn received_bytes_that_are_lost_are_counted() -> anyhow::Result<()> {
         }
         assert!(lost < sent, "{}: {lost} of {sent}", board.name);
 
-        // The log is complete from the start.
         assert!(log.contains("boot: "), "{}: {log}", board.name);
     }
     Ok(())
 }
 
-/// Returns the processor time of this thread.
 #[cfg(target_os = "linux")]
 fn processor_time() -> anyhow::Result<Duration> {
     let text = std::fs::read_to_string("/proc/thread-self/schedstat")?;
@@ -165,8 +152,6 @@ fn processor_time() -> anyhow::Result<Duration> {
     Ok(Duration::from_nanos(time.parse()?))
 }
 
-/// A host that does not read the link waits for a message until QEMU's time limit, and uses hardly
-/// any processor time meanwhile, although the link has unread bytes.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_host_that_does_not_read_waits_without_processor_time() -> anyhow::Result<()> {

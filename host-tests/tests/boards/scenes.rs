@@ -26,20 +26,16 @@ use firmware::scenes::SceneName;
 use host_tests::commands::count::FrameProfile;
 use rayon::prelude::*;
 
-/// The number of frames between two comparisons of the panel.
 const EVERY: u32 = 25;
-/// The number of frames after the start of a scene whose cost is not checked.
 const SETTLING: u32 = 6;
-/// The number of frames of a scene in an hour of all scenes, twice.
 const LONG: u32 = 3600 * TICK_RATE / (2 * SceneName::ALL.len() as u32);
-/// The time limit of a long run. The slowest board on a slow host takes a tenth of it.
+/// The slowest board on a slow host takes a tenth of it.
 const LONG_LIMIT: Duration = Duration::from_secs(6 * 3600);
 /// The largest stack use of one interrupt, bytes: the processor's, which also saves the
 /// floating-point registers, and the handler's. Interrupts do not nest. The counted clock does not
 /// determine when the host's bytes arrive, so an interrupt may occur at the deepest place of the
 /// stack in one round only.
 const INTERRUPT: u32 = 108 + 96;
-/// The log line of a firmware whose panel QEMU does not emulate.
 const NO_PANEL: &str = "panel: absent";
 /// The largest number of cycles per instruction, averaged over the work of a frame; 1.1 to 1.9 were
 /// found.
@@ -51,7 +47,6 @@ const PROFILED: usize = 4;
 /// A scene that takes more than this share of a budget is near it.
 const NEAR: f64 = 0.9;
 
-/// Returns the number of frames of a scene in a round of a short run.
 ///
 /// Within 1.1 s the stack has been as deep as in an hour, except for an interrupt, at whatever tick
 /// the scene is left. On the M3 the butterfly's curve grows, and the most expensive frame is after
@@ -66,14 +61,11 @@ fn short(board: &Board, name: SceneName, round: u32) -> u32 {
     }
 }
 
-/// The short run of the module's test: 75 frames of each scene, or 10 s of the most expensive one,
-/// and then 25 frames of each.
 #[test]
 fn every_board_plays_every_scene_as_the_host_does_within_its_budgets() -> anyhow::Result<()> {
     every_board_plays(LIMIT, short)
 }
 
-/// The long run of the module's test, over an hour of each board's clock.
 #[test]
 #[ignore = "an hour of five boards"]
 fn every_board_plays_every_scene_for_an_hour() -> anyhow::Result<()> {
@@ -97,7 +89,6 @@ fn every_board_plays(
     Ok(())
 }
 
-/// Sends bytes to a board that runs freely, and waits for its next frame.
 fn messages_after(machine: &mut Machine, words: &[u8]) -> anyhow::Result<Vec<ToHost>> {
     machine.send_bytes(words)?;
     let mut messages = Vec::new();
@@ -110,14 +101,11 @@ fn messages_after(machine: &mut Machine, words: &[u8]) -> anyhow::Result<Vec<ToH
     Ok(messages)
 }
 
-/// A scene on a board, with the same scene on the host.
 struct SceneRun<'a> {
     board: &'a Board,
     name: SceneName,
     show: Show,
-    /// The bytes that are still to be sent to the board.
     words: Vec<u8>,
-    /// The largest costs of the scene and of a whole frame, in counts of the board's clock.
     highest: [u32; 2],
 }
 
@@ -137,13 +125,10 @@ impl<'a> SceneRun<'a> {
         self.show.report().step as u32
     }
 
-    /// Advances to a tick of the scene, and checks that each frame equals the host's and none is
-    /// late.
     fn to(&mut self, until: u32, next: Next) -> anyhow::Result<()> {
         while self.step() < until {
             let messages = next(&std::mem::take(&mut self.words))?;
 
-            // The command may not have been executed yet.
             let is_here = |frame: &Frame| frame.scene == self.name;
             for frame in messages
                 .into_iter()
@@ -169,15 +154,12 @@ impl<'a> SceneRun<'a> {
     }
 }
 
-/// Returns the average number of cycles per instruction of these parts of frames.
 fn cycles_per_instruction(parts: impl Iterator<Item = Cost>) -> f64 {
     let mut sum = Cost::default();
     parts.for_each(|part| sum += part);
     sum.cycles as f64 / sum.instructions as f64
 }
 
-/// Plays all scenes twice and compares the panel at intervals. Returns the costs that exceed the
-/// board's budgets.
 fn plays(
     board: &'static Board,
     limit: Duration,
@@ -192,7 +174,6 @@ fn plays(
     })?;
     machine.write(stack.start, &vec![PAINT; stack.len()])?;
 
-    // The link is open once a frame has arrived.
     (0..EVERY).try_for_each(|_| machine.run_to_frame().map(drop))?;
     let mut too_much = Vec::new();
     let mut reached = Vec::new();
@@ -214,7 +195,6 @@ fn plays(
                 run.to(until, &mut |words| messages_after(&mut machine, words))?;
                 machine.stop()?;
 
-                // When the processor is about to sleep, the panel shows exactly the received frame.
                 run.to(run.step() + 1, &mut |_| machine.run_to_frame())?;
                 let shown = board.has_panel.then(|| machine.screenshot()).transpose()?;
                 let is_it = shown
@@ -308,7 +288,6 @@ fn plays(
         board.name
     );
 
-    // No byte was lost, and the log has no error.
     let Counts { damaged, lost, .. } = machine.counts();
     assert_eq!((damaged, lost), (0, 0), "{}", board.name);
     let lines = machine.lines().into_iter().filter(|line| line.is_bad());
@@ -330,16 +309,14 @@ fn plays(
     Ok(too_much)
 }
 
-/// In 25 frames of each scene every frame equals the host's and none is late. Memory, stack and the
-/// idle time of the most expensive frame are within the budgets. The Pico's emulator counts cycles
-/// by the processor's manual. It does not model wait states of the flash.
+/// The Pico's emulator counts cycles by the processor's manual. It does not model wait states of
+/// the flash.
 #[test]
 fn the_pico_plays_every_scene_as_the_host_does_within_its_budgets() -> anyhow::Result<()> {
     let node = toolchain::ready_for_pico().unwrap_or_else(|missing| panic!("{missing}"));
     let elf = application(&PICO);
     let stack = stack(&elf);
     let mut machine = PicoMachine::start(&node, &elf, LIMIT)?;
-    // The stack is painted.
     machine.tell(&format!("fill {} {} {PAINT}", stack.start, stack.len()))?;
     machine.next_frame()?;
     let mut next = |words: &[u8]| {
@@ -347,7 +324,6 @@ fn the_pico_plays_every_scene_as_the_host_does_within_its_budgets() -> anyhow::R
         machine.run_to_frame()
     };
 
-    // Each scene is as on the host, and its most expensive frame counts.
     let mut name = SceneName::Page;
     let mut highest = 0;
 

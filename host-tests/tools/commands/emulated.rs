@@ -28,7 +28,6 @@ installed on the system."
 )]
 pub struct SetupOptions {}
 
-/// Provides everything that is missing for the emulated boards, and prints where it is.
 pub fn setup(_: &SetupOptions) -> anyhow::Result<()> {
     let is_ready = toolchain::ready().is_ok() && toolchain::ready_for_pico().is_ok();
     say(toolchain::set_up()?)?;
@@ -42,7 +41,6 @@ pub fn setup(_: &SetupOptions) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// The time limit of a firmware without `--seconds`.
 const LIMIT: Duration = Duration::from_secs(3600);
 
 /// Builds a firmware binary, runs it in QEMU and prints its log; the exit code is the firmware's.
@@ -71,21 +69,7 @@ pub struct FwOptions {
 
 /// Runs a firmware and prints its log to stdout until it ends. Cargo also uses this command as the
 /// runner for the ARM targets. A name without a slash is a binary, which is built first; any other
-/// name is a file, which is run as it is. Missing tools are installed. Not checked: the board must
-/// suit the binary.
-///
-/// Without `--board` the firmware runs on the first board whose application has the name of the
-/// binary, or else on the first board. If the path of a file has a folder named after a target,
-/// only boards of that target are considered.
-///
-/// Returns the exit code of the firmware, 1 if a signal ended QEMU, or success if `--seconds`,
-/// counted from the start of QEMU, ended it. An unknown binary, a file that is no program for ARM
-/// ([`Image::read`]), and a tool that cannot be provided is [`Refused`]. It is an error if the
-/// build fails, if QEMU ends while it starts, and, without `--seconds`, if the firmware runs for an
-/// hour.
-///
-/// With `--check` nothing is run: all binaries are checked for all targets, and a warning is an
-/// error. Clippy must then be installed.
+/// name is a file.
 pub fn fw(options: &FwOptions) -> anyhow::Result<ExitCode> {
     let Some(binary) = &options.binary else {
         toolchain::set_up()?.check()?;
@@ -108,12 +92,10 @@ pub fn fw(options: &FwOptions) -> anyhow::Result<ExitCode> {
         ));
     }
 
-    // The file must be a program for ARM.
     if is_path {
         Image::read(binary).map_err(|error| Refused::because(format_args!("{error:#}")))?;
     }
 
-    // The board is the user's, or follows from the binary.
     let board = options.board.unwrap_or_else(|| board_for(binary));
     let toolchain = toolchain::set_up()?;
     let elf = if is_path {
@@ -136,10 +118,8 @@ pub fn fw(options: &FwOptions) -> anyhow::Result<ExitCode> {
     let mut machine = Machine::start(&settings)?;
     let mut output = stdout().lock();
 
-    // The board continues if the reader of the output has stopped.
     let ended = machine.wait(|line| drop(writeln!(output, "{line}").and_then(|()| output.flush())));
 
-    // With `--seconds` the end of the time is a success. Otherwise the exit code is the firmware's.
     let is_late = |error: &anyhow::Error| {
         error.downcast_ref().map(io::Error::kind) == Some(io::ErrorKind::TimedOut)
     };
@@ -153,9 +133,7 @@ pub fn fw(options: &FwOptions) -> anyhow::Result<ExitCode> {
     }
 }
 
-/// Returns the first board whose application is this binary, or else the first board. If the path
-/// contains a target, as in `target/thumbv7m-none-eabi/release/x`, only boards with that target are
-/// considered.
+/// Of a path that contains a target, only boards with that target are considered.
 fn board_for(binary: &Path) -> &'static Board {
     let is_target = |board: &&Board| {
         binary
@@ -168,12 +146,10 @@ fn board_for(binary: &Path) -> &'static Board {
     } else {
         of_target
     };
-    // The application of a board has the name of the board's binary.
     let runs_it = |board: &&&Board| binary.file_name().is_some_and(|file| file == board.binary);
     boards.iter().find(runs_it).unwrap_or(&boards[0])
 }
 
-/// Returns the end of the help: an example, all binaries of the firmware, and all boards.
 fn runnable() -> String {
     let boards = BOARDS.map(|board| {
         format!(
@@ -190,7 +166,6 @@ fn runnable() -> String {
     )
 }
 
-/// Returns the names of the binaries of the firmware, sorted; none if the sources are not there.
 fn binaries() -> Vec<String> {
     let Ok(files) = fs::read_dir(toolchain::workspace().join("firmware/src/bin")) else {
         return Vec::new();
@@ -218,7 +193,6 @@ const LIMITS: [Duration; 2] = [Duration::from_secs(3600), Duration::from_secs(12
 /// the number of processors together, because many wait for an emulator or a clock.
 const THREADS: [&str; 2] = ["RUST_TEST_THREADS", "RAYON_NUM_THREADS"];
 
-/// The tests that need no firmware, as arguments of `cargo test`.
 const ON_HOST: [&str; 5] = [
     "--lib",
     "--test=firmware",
@@ -226,10 +200,8 @@ const ON_HOST: [&str; 5] = [
     "--test=prove",
     "--test=traits",
 ];
-/// The tests of the boards and of the commands. Both need the firmware.
 const ON_BOARDS: &str = "--test=boards";
 const OF_COMMANDS: &str = "--test=commands";
-/// The examples of the documentation, which cargo does not run together with other tests.
 const IN_DOCUMENTATION: &str = "--doc";
 
 /// Installs missing tools as [`setup`] does, builds the firmware, and runs `cargo test` in four parts. The first part, on the host, runs

@@ -16,13 +16,10 @@ use emulator::out_file;
 use emulator::process;
 use emulator::toolchain::{self, QUICK, target, workspace};
 
-/// The name of the folder, in the target folder.
 const FOLDER: &str = "release-files";
 /// The file of checksums, in the format that `sha256sum --check` reads.
 const SUMS: &str = "SHA256SUMS";
-/// The time limit to package the kernel, including a download of the registry's index.
 const PACKAGE: Duration = Duration::from_secs(300);
-/// The name of the kernel's package.
 const KERNEL: &str = "double-pendulum-kernel";
 /// The programs that print checksums in that format, with their arguments.
 const HASHERS: [(&str, &[&str]); 2] = [("sha256sum", &[]), ("shasum", &["-a", "256"])];
@@ -36,14 +33,6 @@ const HASHERS: [(&str, &[&str]); 2] = [("sha256sum", &[]), ("shasum", &["-a", "2
 #[command(name = "cargo release-files")]
 pub struct ReleaseOptions {}
 
-/// Replaces the folder `release-files` in the target folder, with everything in it, and prints the
-/// checksums and the folder. It has `BOARD.elf` for every board, `pico.uf2`, the page of `cargo
-/// web`, the kernel's package, and `SHA256SUMS`. Uncommitted changes are included. Missing tools
-/// are installed, and cargo contacts the registry if its index is not on this machine.
-///
-/// A machine with neither `sha256sum` nor `shasum`, or whose tools for the boards cannot be
-/// provided, is [`Refused`], and the folder remains unchanged. After any later error the folder is
-/// incomplete: a build or the packaging fails, or the tools of the page cannot be provided.
 pub fn run(_: &ReleaseOptions) -> anyhow::Result<()> {
     let hasher = HASHERS
         .iter()
@@ -61,7 +50,6 @@ pub fn run(_: &ReleaseOptions) -> anyhow::Result<()> {
     }
     fs::create_dir_all(&folder).with_context(|| folder.display().to_string())?;
 
-    // The firmware.
     for board in every_board() {
         let elf = toolchain.build_for(board)?;
         copy(&elf, &folder.join(format!("{}.elf", board.name)))?;
@@ -69,10 +57,8 @@ pub fn run(_: &ReleaseOptions) -> anyhow::Result<()> {
     let (_, file) = flash::uf2_file(&toolchain)?;
     copy(&file, &folder.join(flash::FILE))?;
 
-    // The page for a browser.
     copy(&web::write_page()?, &folder.join(web::FILE))?;
 
-    // The kernel.
     let scratch = tempfile::tempdir_in(target())?;
     package(scratch.path())?;
     let archive = format!("{KERNEL}-{}.crate", env!("CARGO_PKG_VERSION"));
@@ -81,7 +67,6 @@ pub fn run(_: &ReleaseOptions) -> anyhow::Result<()> {
         &folder.join(archive),
     )?;
 
-    // The sums.
     let mut names: Vec<_> = fs::read_dir(&folder)?
         .map(|entry| Ok(entry?.file_name()))
         .collect::<Result<_, std::io::Error>>()?;
@@ -95,14 +80,12 @@ pub fn run(_: &ReleaseOptions) -> anyhow::Result<()> {
     Ok(say(folder.display())?)
 }
 
-/// Copies a file. The error names `from`.
 fn copy(from: &Path, to: &Path) -> anyhow::Result<()> {
     fs::copy(from, to).with_context(|| from.display().to_string())?;
     Ok(())
 }
 
-/// Packages the kernel as for a registry. Cargo contacts the registry only if the data on this
-/// machine is not sufficient.
+/// Cargo contacts the registry only if the data on this machine is not sufficient.
 fn package(into: &Path) -> anyhow::Result<()> {
     let attempt = |more: &[&str]| {
         let mut cargo = Command::new("cargo");

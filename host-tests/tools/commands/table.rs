@@ -1,26 +1,18 @@
 //! A table that can be written as CSV and as Markdown.
 
-/// The headings of the columns, with units, and rows with a cell for each column.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Table {
-    /// The headings.
     pub columns: Vec<&'static str>,
-    /// The rows, each with as many cells as there are columns, which is not checked.
     pub rows: Vec<Vec<String>>,
 }
 
 impl Table {
-    /// Returns the table as CSV: the headings, then the rows, with commas between the cells and a
-    /// newline after each line. Not checked: no heading or cell may contain a comma, a quote or a
-    /// newline.
     pub fn csv(&self) -> String {
         let lines = std::iter::once(self.columns.join(","))
             .chain(self.rows.iter().map(|row| row.join(",")));
         lines.map(|line| line + "\n").collect()
     }
 
-    /// Returns the table in Markdown: the headings, a line of dashes, then the rows, with a newline
-    /// after each line. Not checked: no heading or cell may contain a vertical bar or a newline.
     pub fn markdown(&self) -> String {
         let heads = [
             self.columns.join(" | "),
@@ -33,17 +25,14 @@ impl Table {
     }
 }
 
-/// Returns `page` with `text` in place of everything between the first mark `start` and the next
-/// mark `end` after it. The marks and the rest of the page remain, and nothing is added around
-/// `text`. Returns `None` if there is no `start`, or no `end` after it.
+/// Returns `page` with `text` in place of everything between two marks.
 pub fn between(page: &str, [start, end]: [&str; 2], text: &str) -> Option<String> {
     let (head, rest) = page.split_once(start)?;
     let (_, tail) = rest.split_once(end)?;
     Some(format!("{head}{start}{text}{end}{tail}"))
 }
 
-/// Returns an error or a drift in exponent form, rounded to the nearest two digits, such as
-/// "1.5e-7", "-2.0e-3" or "0.0e0". Returns "none" if it is not finite.
+/// Rounds to two digits in exponent form, such as 1.5e-7.
 pub fn small(value: f64) -> String {
     if value.is_finite() {
         format!("{value:.1e}")
@@ -52,9 +41,7 @@ pub fn small(value: f64) -> String {
     }
 }
 
-/// Returns a bound of two digits, in exponent form, that is greater than the positive `value`,
-/// usually the next one: 1 and 1.01 give 1.1e0. Zero gives 0.0e0, infinity "inf" and NaN "NaN". Not
-/// checked: for a negative `value` the result may be below it or above it.
+/// Returns a bound of two digits that is greater than the positive `value`.
 pub fn at_most(value: f64) -> String {
     let rounded = format!("{value:.1e}");
 
@@ -64,7 +51,6 @@ pub fn at_most(value: f64) -> String {
         return rounded;
     }
 
-    // Half a unit or one unit of the second digit is usually enough.
     let more = value * 1.1;
     let unit = 10_f64.powi(value.log10().floor() as i32 - 1);
     [value + 0.5 * unit, value + unit, more]
@@ -74,7 +60,6 @@ pub fn at_most(value: f64) -> String {
         .unwrap_or_else(|| format!("{:.1e}", 2.0 * value))
 }
 
-/// Each bound has two digits and is no less than the number.
 #[test]
 fn bounds_are_rounded_up() {
     for (value, text) in [
@@ -91,7 +76,6 @@ fn bounds_are_rounded_up() {
     }
 }
 
-/// The marks and the text around them remain. Without the marks in their order there is no result.
 #[test]
 fn text_between_the_marks_is_replaced() {
     let [old, new] = ["old", "new"].map(|text| format!("before [{text}] after"));

@@ -33,15 +33,10 @@ pub struct FiguresOptions {
     out: Option<PathBuf>,
 }
 
-/// Returns the folder of the pictures that the READMEs show, `host-tests/pictures` in the project.
-/// If the project is not found, this ends the process ([`workspace`]).
 pub fn folder() -> PathBuf {
     workspace().join("host-tests/pictures")
 }
 
-/// Returns every figure, 2 to 5 and 7, in this order: the path of its file relative to [`folder`],
-/// such as `figures/figure-2.svg`, and its content. Nothing is written. An error means that a
-/// figure cannot be drawn.
 pub fn figures() -> Result<Vec<(String, String)>> {
     let [light, equal, heavy] = small::MASS_RATIOS;
     let figures = [
@@ -57,11 +52,6 @@ pub fn figures() -> Result<Vec<(String, String)>> {
         .collect())
 }
 
-/// Writes the figures and, on request, the animations into the folders `figures` and `panel` of the
-/// folder of the options. Creates the folders and replaces existing files. The animations take
-/// minutes and need the emulator, which is installed if it is missing. An error means that a file
-/// cannot be written, that the emulator cannot be provided, or that a recording had problems, such
-/// as bits that differ from the host's; the files before it remain.
 pub fn run(options: &FiguresOptions) -> Result<()> {
     let folder = options.out.clone().unwrap_or_else(folder);
     for (name, svg) in figures()? {
@@ -80,14 +70,10 @@ pub fn run(options: &FiguresOptions) -> Result<()> {
     Ok(say(format_args!("wrote {}", folder.display()))?)
 }
 
-/// Returns the path of the animation of a scene, `panel/SCENE.gif` with the name of the scene, if
-/// the pictures are in `folder`. The file need not exist.
 pub fn animation(scene: SceneName, folder: &Path) -> PathBuf {
     folder.join(format!("panel/{}.gif", scene.name()))
 }
 
-/// Records the animation of a scene into `folder`, as `cargo demo --headless` does, and prints the
-/// command.
 fn record(scene: SceneName, folder: &Path) -> Result<()> {
     // Each scene is recorded until it has shown everything.
     let seconds = match scene {

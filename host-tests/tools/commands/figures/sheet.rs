@@ -12,53 +12,37 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 /// The number of plotters' dots in a unit of length. Plotters draws on whole dots; a unit is as
 /// wide as a pixel of a common screen.
 const DOTS: u32 = 8;
-/// The typeface, which the reader's program chooses.
 const TYPEFACE: &str = "sans-serif";
 
-/// The colour of text, softer than black on white.
 pub const TEXT: RGBColor = RGBColor(34, 34, 34);
-/// The colour of the lines of a grid, a light grey.
 pub const GRID: RGBColor = RGBColor(225, 225, 225);
-/// The colour of the first curve. It and [`ORANGE`] can be distinguished without colour vision.
+/// It and [`ORANGE`] can be distinguished without colour vision.
 pub const BLUE: RGBColor = RGBColor(0, 95, 175);
-/// The colour of the second curve.
 pub const ORANGE: RGBColor = RGBColor(205, 85, 15);
 
-/// A rectangle of a figure that is drawn on. Its coordinates are in dots from its top left corner.
 pub type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
-/// A chart with two linear axes. Its coordinates are the numbers of the axes, across and upwards.
 pub type Axes<'a> = ChartContext<'a, SVGBackend<'a>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
 
-/// Returns a length in dots, 8 times `length`, which is in units. Not checked: the result must fit
-/// a `u32`.
 pub const fn units(length: u32) -> u32 {
     length * DOTS
 }
 
-/// Returns the style of a line or an outline, not filled. Its `width` is in tenths of a unit,
-/// rounded up to whole dots.
+/// The `width` is in tenths of a unit.
 pub fn line(colour: RGBColor, width: u32) -> ShapeStyle {
     colour.stroke_width(units(width).div_ceil(10))
 }
 
-/// Returns a colour with a strength from 0 to 1, as it looks on white. With 0 it is white, with 1
-/// unchanged. The strength is not checked: beyond this range a channel ends at 0 or 255, and NaN
-/// gives black.
 pub fn pale(RGBColor(red, green, blue): RGBColor, strength: f64) -> RGBColor {
     let [red, green, blue] =
         [red, green, blue].map(|channel| (255.0 - strength * (255.0 - f64::from(channel))) as u8);
     RGBColor(red, green, blue)
 }
 
-/// Returns the style of text in the colour [`TEXT`]. Its `height`, the size of the font, is in
-/// units.
 pub fn text(height: u32) -> TextStyle<'static> {
     (TYPEFACE, units(height)).into_font().color(&TEXT)
 }
 
-/// Writes a line in `style`, centred, into the top 23 units of the area and returns the rest of the
-/// area. Not checked: the area is higher than that, and the line fits its width. An error means
-/// that the line cannot be drawn.
+/// Writes a centred line into the top of the area and returns the rest.
 pub fn headed<'a>(area: &Area<'a>, line: &str, style: TextStyle<'_>) -> Result<Area<'a>> {
     let (head, rest) = area.split_vertically(units(23));
     let (width, height) = head.dim_in_pixel();
@@ -67,10 +51,8 @@ pub fn headed<'a>(area: &Area<'a>, line: &str, style: TextStyle<'_>) -> Result<A
     Ok(rest)
 }
 
-/// Draws axes. Each has a quantity with its unit (empty if the chart below names it), a range from
-/// its first to its second number, and a largest number of labels. The first quantity is
-/// horizontal, and so is the first number of labels. A range may descend. Not checked: the ends of
-/// a range differ; this panics if one is NaN. An error means that the axes cannot be drawn.
+/// Draws axes. Each has a quantity with its unit (empty if the chart below names it), a range, and
+/// a largest number of labels.
 pub fn axes<'a>(
     area: &Area<'a>,
     (across, [left, right]): (&str, [f64; 2]),
@@ -104,7 +86,6 @@ pub fn axes<'a>(
     Ok(chart)
 }
 
-/// Returns the label of a tick, without trailing zeros and with a typographic minus.
 fn plain(number: &f64) -> String {
     // The ticks are multiples of a round number, except for rounding. The sum with 0 turns -0 into
     // 0.
@@ -112,10 +93,7 @@ fn plain(number: &f64) -> String {
     rounded.to_string().replace('-', "−")
 }
 
-/// Returns a figure as the text of an SVG file. It has this width and height in units, and is drawn
-/// on white below its title, the first of `lines`, and the other lines. Each line takes 23 units of
-/// the height. `draw` receives the area below them. An error is one of `draw`, or means that a line
-/// cannot be drawn. Not checked: the lines are lower than the height.
+/// Returns a figure as an SVG file: its title, the other lines, and `draw` in the area below them.
 pub fn svg<const N: usize>(
     [width, height]: [u32; 2],
     lines: [&str; N],

@@ -10,35 +10,22 @@ use plotters::prelude::*;
 
 use super::sheet::{BLUE, ORANGE, TEXT, axes, line, svg, text, units};
 
-/// The book's rods, m.
 const ROD: f64 = 0.25;
-/// The duration of the motion, s, and the number of intervals in it.
 const DURATION: f64 = 5.0;
 const POINTS: u32 = 1500;
 
-/// The angles of the linear motion and their envelopes at one time. Arrays are in the order of the
-/// rods.
 #[derive(Clone, Copy, Debug)]
 pub struct CurvePoint {
-    /// The time since the start, s.
     pub time: f64,
-    /// The angles of the rods, degrees.
     pub angles: [f64; 2],
-    /// The amplitude of each angle at this time, degrees, 0 or more: while the modes beat, the
-    /// angle swings between plus and minus this.
+    /// While the modes beat, the angle swings between plus and minus this.
     pub envelopes: [f64; 2],
 }
 
-/// Returns the normal modes of the figures: equal rods of 0.25 m in the gravity of the page, 9.8
-/// m/s^2. Frequencies are in rad/s. An error means that the mass ratio is not positive and finite,
-/// or so extreme that a number of the modes is out of range.
 pub fn modes(mass_ratio: f64) -> Result<Modes<f64>, Error> {
     Modes::new(&Parameters::equal_rods(mass_ratio, ROD, PAGE_GRAVITY))
 }
 
-/// Returns the motion of `modes` from a1 = 0, a2 = 30 degrees, let go from rest: 1501 points in 5 s
-/// at equal intervals, the start and the end included. All angles are in degrees.
-///
 /// Each angle is A1 cos (w1 t + f1) + A2 cos (w2 t + f2), the sum of both modes. Its envelope is
 /// sqrt(A1^2 + A2^2 + 2 A1 A2 cos ((w1 - w2) t + f1 - f2)).
 pub fn points(modes: Modes<f64>) -> Vec<CurvePoint> {
@@ -47,7 +34,6 @@ pub fn points(modes: Modes<f64>) -> Vec<CurvePoint> {
     let [fast_phase, slow_phase] = motion.phases();
     let point = |i: u32| {
         let time = DURATION * f64::from(i) / f64::from(POINTS);
-        // The envelopes follow the beat of the two modes.
         let cos = libm::cos(modes.exchange() * time + fast_phase - slow_phase);
         let amplitude =
             |a1: f64, a2: f64| (a1 * a1 + a2 * a2 + 2.0 * a1 * a2 * cos).max(0.0).sqrt();
@@ -65,8 +51,6 @@ pub fn points(modes: Modes<f64>) -> Vec<CurvePoint> {
     (0..=POINTS).map(point).collect()
 }
 
-/// Returns figure `number`, both angles over time for a mass ratio, as the text of an SVG file.
-/// `number` is only for the title. An error is one of [`modes`], or the figure cannot be drawn.
 pub fn figure(number: u32, mass_ratio: f64) -> Result<String> {
     let modes = modes(mass_ratio)?;
     let points = points(modes);
@@ -81,7 +65,6 @@ pub fn figure(number: u32, mass_ratio: f64) -> Result<String> {
         TAU / modes.exchange()
     );
     svg([720, 503], [&title, start, &particulars], |area| {
-        // Angle 1 above angle 2, with a common axis of time.
         let (upper, lower) = area.split_vertically((area.dim_in_pixel().1 - units(20)) / 2);
         let rods = [
             (upper, "", "angle α₁, degrees", BLUE),
@@ -95,7 +78,6 @@ pub fn figure(number: u32, mass_ratio: f64) -> Result<String> {
                 [11, 7],
             )?;
 
-            // The shade between the envelopes, then the angle on top of it.
             let edge = |sign: f64| {
                 points
                     .iter()
@@ -110,20 +92,15 @@ pub fn figure(number: u32, mass_ratio: f64) -> Result<String> {
     })
 }
 
-/// The mass ratios m2/m1 of figures 3 to 5. They are marked in figure 2, whose mass ratios range
-/// from 0 to the last one. At 0 itself there are no modes.
 pub const MASS_RATIOS: [f64; 3] = [0.2, 1.0, 5.0];
 const RATIOS: u32 = 500;
 
-/// Returns a mass ratio and its frequencies, fast and slow, of equal rods in sqrt(g/l).
 fn at_ratio(mass_ratio: f64) -> Result<[f64; 3], Error> {
     let modes = Modes::new(&Parameters::equal_rods(mass_ratio, 1.0, 1.0))?;
     Ok([mass_ratio, modes.fast.frequency, modes.slow.frequency])
 }
 
-/// Returns figure 2 as the text of an SVG file: both frequencies of small oscillations of equal
-/// rods, in sqrt(g/l), over mass ratios from 0 to 5. The curves begin at 2e-5, because there are no
-/// modes at 0. It is an error if the figure cannot be drawn.
+/// The curves begin at 2e-5, because there are no modes at 0.
 pub fn frequencies() -> Result<String> {
     // The points are denser towards 0, where the curves are steep.
     let [.., greatest] = MASS_RATIOS;

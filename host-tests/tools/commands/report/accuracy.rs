@@ -12,19 +12,14 @@ use reference::taylor;
 /// number can be represented in `f32`, so that all arithmetics compute the same pendulum.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scene {
-    /// The name in tables and files.
     pub name: &'static str,
-    /// The angle of both rods at the start, rad.
     pub angle: f64,
-    /// The duration, whole seconds. It is short if neighbouring motions separate quickly.
+    /// Whole seconds. It is short if neighbouring motions separate quickly.
     pub duration: u32,
 }
 
-/// The largest number of states that are compared with the reference in each second.
 pub const SAMPLES: u32 = 4;
 
-/// The regular motion from 0.5 rad for 10 s, named "regular", and a chaotic one from 2 rad for 5 s,
-/// named "chaotic".
 pub const SCENES: [Scene; 2] = [
     Scene {
         name: "regular",
@@ -37,34 +32,28 @@ pub const SCENES: [Scene; 2] = [
         duration: 5,
     },
 ];
-/// The regular motion from 0.5 rad for ten times as long, 100 s, named "regular-long".
 pub const LONG: Scene = Scene {
     name: "regular-long",
     angle: 0.5,
     duration: 100,
 };
 
-/// The largest errors of a motion at the compared moments, of both rods and both bobs; 0 if no
-/// moment is compared. Both are infinite if the motion has diverged.
+/// The largest errors of a motion at the compared moments. Both are infinite if the motion has
+/// diverged.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Error {
-    /// The error of an angle, rad, 0 or more, without whole turns: at most pi.
+    /// Of an angle, rad, without whole turns.
     pub angle: f64,
-    /// The distance of a bob from its exact position on the panel, pixels. Both rods together are
-    /// [`REACH`] long there, 28.5 pixels.
+    /// Of a bob on the panel, pixels.
     pub pixels: f64,
 }
 
-/// The error of a motion that has diverged.
 const LOST: Error = Error {
     angle: f64::INFINITY,
     pixels: f64::INFINITY,
 };
 
-/// Returns the angles a1 and a2 of the exact motion after each of `steps` equal steps through a
-/// scene, by the reference, rounded to `f64`. The start is not among them. Angles are in rad, with
-/// their whole turns. 0 steps give an empty list. Not checked: `steps` times the duration must be
-/// less than 2^32.
+/// Returns the angles of the exact motion after each of `steps` equal steps through a scene.
 pub fn exact(scene: &Scene, steps: u32) -> Vec<[f64; 2]> {
     let Request {
         parameters,
@@ -78,8 +67,7 @@ pub fn exact(scene: &Scene, steps: u32) -> Vec<[f64; 2]> {
         .collect()
 }
 
-/// Returns the number of states that are compared in each second of a motion with `rate` steps a
-/// second: the largest that fall on whole steps.
+/// The largest number of states that fall on whole steps.
 fn samples(rate: u32) -> u32 {
     [SAMPLES, SAMPLES / 2]
         .into_iter()
@@ -87,9 +75,7 @@ fn samples(rate: u32) -> u32 {
         .unwrap_or(1)
 }
 
-/// Returns the request for `method` through `scene` with `rate` steps a second, at least 1, which
-/// is not checked. It requests [`SAMPLES`] states per second, or 2 or 1 if these do not fall on
-/// whole steps.
+/// Requests [`SAMPLES`] states per second, or fewer if these do not fall on whole steps.
 pub fn request(method: Method, scene: &Scene, rate: u32) -> Request {
     Request {
         method,
@@ -102,22 +88,17 @@ pub fn request(method: Method, scene: &Scene, rate: u32) -> Request {
     }
 }
 
-/// Returns a typical number of steps per simulated second, for counts and displays: 16 for an order
-/// above 4, 256 for others, also for the closed forms.
+/// Returns a typical number of steps per simulated second.
 pub fn usual_rate(method: Method) -> u32 {
     if method.order() > 4 { 16 } else { 256 }
 }
 
-/// Small numbers of steps a second, for high and low orders.
 const HIGH: [u32; 21] = [
     4, 5, 6, 7, 8, 9, 10, 11, 12, 14, 16, 18, 20, 24, 28, 32, 40, 48, 64, 80, 96,
 ];
 const LOW: [u32; 3] = [16, 32, 64];
 
-/// Returns the numbers of steps a second to try with `method` in a scene, ascending. The first ones
-/// are 21 numbers from 4 to 96 for an order above 4, and 16, 32 and 64 for any other order. All
-/// powers of two from 2^7 to 2^`finest` follow for every order, none if `finest` is less than 7. Of
-/// these, [`LONG`] is tried with [`usual_rate`] only. Not checked: `finest` is at most 31.
+/// Returns the numbers of steps a second to try with `method` in a scene, ascending.
 pub fn rates(method: Method, scene: &Scene, finest: u32) -> impl Iterator<Item = u32> {
     let few: &[u32] = if method.order() > 4 { &HIGH } else { &LOW };
     let all = few
@@ -127,9 +108,7 @@ pub fn rates(method: Method, scene: &Scene, finest: u32) -> impl Iterator<Item =
     all.filter(move |&rate| scene != &LONG || rate == usual_rate(method))
 }
 
-/// Returns the error of `method` in `steps` equal steps through the scene, compared after each
-/// step, or `None` as in [`error`]. A second need not be a whole number of steps. 0 steps give
-/// `None`. The largest number of steps is that of [`exact`].
+/// Returns the error of `method` in `steps` equal steps through the scene.
 pub fn error_after(method: Method, scene: &Scene, steps: u32) -> Option<Error> {
     let dt = f64::from(scene.duration) / f64::from(steps);
     let request = Request {
@@ -141,9 +120,8 @@ pub fn error_after(method: Method, scene: &Scene, steps: u32) -> Option<Error> {
     error(&request, &exact(scene, steps))
 }
 
-/// Returns the error of a request at its samples after the start, or `None` if its method does not
-/// support the scene or the step. A motion that has diverged has an infinite error. `exact` has the
-/// angles of these samples, as in [`worst`].
+/// Returns the error of a request at its samples after the start; `None` if its method does not
+/// support the scene or the step.
 pub fn error(request: &Request, exact: &[[f64; 2]]) -> Option<Error> {
     let mut angles = Vec::new();
     let run = request.readings::<double_pendulum::Error>(|reading| {
@@ -158,20 +136,13 @@ pub fn error(request: &Request, exact: &[[f64; 2]]) -> Option<Error> {
     }
 }
 
-/// Returns the largest error, in rad and pixels of the panel, of both angles and of both bobs at
-/// all moments of `angles` (a1, a2 in rad). `exact` has the angles of these moments and possibly,
-/// equally often, of moments between them; its length is a multiple of that of `angles`, which is
-/// not checked. The error of an angle is without whole turns, at most pi.
-///
-/// The errors are infinite if a compared angle is not finite or if the kernel refuses the
-/// parameters. Otherwise, if one of the lists is empty, they are 0. With an `exact` that is shorter
-/// than `angles`, only its moments are compared.
+/// Returns the largest errors. `exact` may have more moments than `angles`, equally often between
+/// them.
 pub fn worst(parameters: &Parameters<f64>, angles: &[[f64; 2]], exact: &[[f64; 2]]) -> Error {
     let Ok(pendulum) = Pendulum::new(parameters) else {
         return LOST;
     };
     let scale = f64::from(REACH) / (parameters.l1 + parameters.l2);
-    // The reference may have more moments than the method. Every `apart_by`-th one is compared.
     let mut worst = Error {
         angle: 0.0,
         pixels: 0.0,

@@ -18,26 +18,17 @@ use emulator::boards::Board;
 use emulator::process;
 use emulator::toolchain::{Toolchain, workspace};
 
-/// The programs: the name in tables, and the functions for sine and cosine.
 pub const PROGRAMS: [(&str, [&str; 2]); 2] = [
     ("C with newlib", ["sinf", "cosf"]),
     ("C with CMSIS-DSP", ["arm_sin_f32", "arm_cos_f32"]),
 ];
-/// The time limit to compile, or to load 2 MB and pip's own files.
 const LIMIT: Duration = Duration::from_secs(180);
 
 /// The method in Rust with the same equations.
 const TEXTBOOK: Method = Method::TextbookF32;
 
-/// Builds the programs into `target/peers-c` of the project, runs them in QEMU, and returns the
-/// costs and errors of every program on every board, in 16, 32, 64, 128 and 256 steps per second
-/// through `scenes`: each with its exact angles (rad), [`SAMPLES`](super::accuracy::SAMPLES) per
-/// second. In the long scene it is 256 steps only. The order is that of [`PROGRAMS`], then of the
-/// targets, of the scenes, and of the steps, from the coarsest on.
-///
-/// Also returns a line for each program and board that cannot be built, with the reason; it has no
-/// points. A program that fails on the target is an error, and so is another number of exact
-/// angles.
+/// Builds the programs, runs them in QEMU, and returns the costs and errors of every program on
+/// every board, and a line for each that cannot be built.
 pub fn points(
     toolchain: &Toolchain,
     targets: &[Target],
@@ -50,7 +41,6 @@ pub fn points(
         .flat_map(|program| targets.iter().map(move |target| (program, target.board)));
 
     for ((name, sine), board) in each {
-        // A program that cannot be built here is left out of the report.
         let target = match elf(sine, board) {
             Ok(elf) => Target::of(toolchain, board, elf)?,
             Err(reason) => {
@@ -64,7 +54,6 @@ pub fn points(
             &request(TEXTBOOK, &SCENES[0], usual_rate(TEXTBOOK)),
         )?;
 
-        // The error depends on the scene and the rate, the cost of a step does not.
         for &(scene, ref exact) in scenes {
             for rate in rates(TEXTBOOK, scene, 8) {
                 let error = error(&target, scene, rate, exact).context(name)?;
@@ -83,7 +72,6 @@ pub fn points(
     Ok((points, absent))
 }
 
-/// Compiles a program for `board`. Returns the ELF file, or the first line of the error message.
 fn elf(sine: [&str; 2], board: &Board) -> Result<PathBuf> {
     let elf = format!("{}-{}.elf", sine[0], board.cpu);
     let mut build = Command::new(workspace().join("host-tests/peers/c/build.sh"));
@@ -106,11 +94,9 @@ fn elf(sine: [&str; 2], board: &Board) -> Result<PathBuf> {
     Ok(workspace().join("target/peers-c").join(elf))
 }
 
-/// Returns the error of the states that a program prints.
 fn error(target: &Target, scene: &Scene, rate: u32, exact: &[[f64; 2]]) -> Result<Error> {
     let request = request(TEXTBOOK, scene, rate);
     let printed = target.output(&request)?;
-    // Each line has two angles, as the bits of `f64` in hexadecimal digits.
     let state = |line: &str| {
         let mut bits = line
             .split_ascii_whitespace()

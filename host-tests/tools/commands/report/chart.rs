@@ -13,7 +13,6 @@ use super::c_peers::PROGRAMS;
 use super::join::Point;
 use emulator::boards::Board;
 
-/// The width and height of the chart, pixels.
 const SIZE: (u32, u32) = (860, 460);
 /// The range of errors. Points outside are not drawn, and errors decrease to the right.
 const ERRORS: Range<f64> = 1e-15..0.1;
@@ -30,7 +29,6 @@ const MARKS: [(f64, &str); 3] = [
 /// The number of lines with a name: the programs in C, which are the usual solution today, and the
 /// methods that are the best in some respect.
 const NAMED: usize = 7;
-/// Colours that can be distinguished without colour vision.
 const COLOURS: [RGBColor; NAMED] = [
     RGBColor(0, 95, 175),
     RGBColor(205, 85, 15),
@@ -43,14 +41,10 @@ const COLOURS: [RGBColor; NAMED] = [
 const TEXT: RGBColor = RGBColor(34, 34, 34);
 const GREY: RGBColor = RGBColor(200, 200, 200);
 const FONT: &str = "sans-serif";
-/// The width of a character of a name, and the height of a line, in pixels.
 const LETTER: (i32, i32) = (7, 15);
 
-/// Returns the lines: a count, a name and the points from the coarsest step on that improve the
-/// error.
-///
-/// The count is the number of points that no other point dominates. The programs in C are first,
-/// then the methods with the largest counts.
+/// Returns the lines, each with the number of points that no other point dominates. The programs in
+/// C are first, then the methods with the largest counts.
 fn lines<'a>(
     points: &'a [Point],
     scene: &Scene,
@@ -63,7 +57,6 @@ fn lines<'a>(
         .filter(|point| ERRORS.contains(&point.error.angle))
         .collect();
 
-    // A line has the points that improve the error, from the coarsest step on.
     let line = |all: &[&'a Point]| {
         let mut least = f64::INFINITY;
         let is_better = |point: &&Point| {
@@ -82,26 +75,18 @@ fn lines<'a>(
         (if is_peer { usize::MAX } else { best }, name, line)
     };
 
-    // The points of a method are neighbours in the table.
     let mut lines: Vec<_> = shown.chunk_by(|a, b| a.name == b.name).map(line).collect();
     lines.sort_by_key(|(best, ..)| Reverse(*best));
     lines
 }
 
 /// Returns a chart of the estimated cycles per simulated second against the error of an angle, as
-/// the text of an SVG file. Only the points of this scene and board with an error from 1e-15 rad to
-/// less than 0.1 rad are drawn, and of a method only those that improve the error of its coarser
-/// steps by a tenth. At most seven lines have names: the programs in C, and the methods with the
-/// most points that no other point dominates.
-///
-/// Not checked: at least one point is drawn, and the points of a method are neighbours in `points`,
-/// from the coarsest step on. An error means that the chart cannot be drawn.
+/// an SVG file.
 pub fn speed_against_error(points: &[Point], scene: &Scene, board: &Board) -> Result<String> {
     let lines = lines(points, scene, board);
     let best = lines.iter().take_while(|(best, ..)| *best > 0).count();
     let (named, others) = lines.split_at(best.min(NAMED));
 
-    // The range of cycles of all points.
     let cycles = lines
         .iter()
         .flat_map(|(.., points)| points)
@@ -144,7 +129,6 @@ pub fn speed_against_error(points: &[Point], scene: &Scene, board: &Board) -> Re
             .light_line_style(TRANSPARENT)
             .draw()?;
 
-        // A vertical line for each marked error, with its meaning at the top.
         let small = TextStyle::from((FONT, 12)).color(&TEXT);
         for (error, meaning) in MARKS {
             chart.draw_series([PathElement::new(
@@ -215,9 +199,6 @@ mod tests {
     use super::*;
     use emulator::boards::BOARDS;
 
-    /// A chart of eight methods and both programs in C, none dominated by another, names seven of
-    /// them, with both programs. A method that is dominated has no name. The marked errors are
-    /// labelled.
     #[test]
     fn seven_lines_at_most_have_names_and_the_programs_in_c_do() -> Result<()> {
         let names = [
@@ -238,7 +219,6 @@ mod tests {
         let mut points: Vec<_> = names.iter().enumerate().map(each).collect();
         points.insert(0, point("worse than all others", 1e12, 0.5));
 
-        // Only the best lines have names, and the programs in C always have one.
         let svg = speed_against_error(&points, &SCENES[0], &BOARDS[0])?;
         let named = |name: &str| svg.lines().any(|line| line.trim() == name);
         assert_eq!(

@@ -47,18 +47,8 @@ pub struct ReportOptions {
     out: Option<PathBuf>,
 }
 
-/// Measures, which takes minutes, writes the table and the charts into the folder of the options,
-/// and prints the advice: the cheapest methods for each core. The files are
-/// `speed-against-error.csv` and a chart `SCENE-CPU.svg` for each of [`SCENES`] and each core. The
-/// folder is created, and existing files are replaced. Missing tools are installed. An error means
-/// that a tool cannot be provided or the folder cannot be made
-/// ([`Refused`](console::cli::Refused)), that QEMU or a program fails, that a file cannot be
-/// written, or, after the files of the folder are written, that a README has lost the lines around
-/// its generated part.
-///
-/// With `--readme` the generated parts of the READMEs and the charts that they show are replaced,
-/// too. It is then an error if a program in C could not be built; the READMEs are not changed, but
-/// the other files are written.
+/// Measures, writes the table and the charts into the folder of the options, and prints the advice.
+/// The READMEs are not changed if a program in C could not be built.
 pub fn run(options: &ReportOptions) -> Result<()> {
     let toolchain = toolchain::set_up()?;
     let folder = options
@@ -67,7 +57,6 @@ pub fn run(options: &ReportOptions) -> Result<()> {
         .unwrap_or_else(|| workspace().join("host-tests/report"));
     fs::create_dir_all(&folder).map_err(|error| unwritable("--out", &folder, &error))?;
 
-    // The main result is the table of all points.
     let targets = Target::build_all(&toolchain)?;
     let (points, absent) = join::join(&toolchain, &targets)?;
     write(
@@ -76,7 +65,6 @@ pub fn run(options: &ReportOptions) -> Result<()> {
         join::table(&points).csv(),
     )?;
 
-    // The READMEs show only complete results.
     let is_shown = options.readme && absent.is_empty();
 
     for (scene, target) in SCENES
@@ -111,9 +99,7 @@ pub fn run(options: &ReportOptions) -> Result<()> {
     Ok(say(format_args!("wrote {}", folder.display()))?)
 }
 
-/// The folder of the charts that the READMEs show, in the workspace.
 const CHARTS: &str = "host-tests/pictures/report";
-/// The lines before and after the generated block of a README.
 const MARKS: [&str; 2] = [
     "<!-- made by cargo write-report --readme -->\n",
     "<!-- end of the generated part -->\n",
@@ -133,10 +119,7 @@ const ROWS: [&str; 8] = [
     Method::Extrapolation16Fixed64.name(),
 ];
 
-/// A purpose of computing a motion: a phrase before the cycles, and the condition of a point that
-/// fulfils it.
 type Purpose = (&'static str, fn(&Point) -> bool);
-/// The purposes that the advice names a method for.
 const PURPOSES: [Purpose; 3] = [
     ("draws at 60 fps", |point| {
         point.rate >= 60 && point.error.pixels <= f64::from(HALF_PIXEL)
@@ -152,7 +135,6 @@ fn pages(advice: &[String], points: &[Point]) -> Result<Vec<(PathBuf, [String; 2
         .iter()
         .map(|sentence| format!("- {sentence}\n"))
         .collect();
-    // Replace the block between the marks of each page, and keep the current text, too.
     let page = |(file, rows): (&str, usize)| {
         let path = workspace().join(file);
         let page = fs::read_to_string(&path).with_context(|| format!("no {file}"))?;
@@ -172,14 +154,11 @@ fn pages(advice: &[String], points: &[Point]) -> Result<Vec<(PathBuf, [String; 2
     READMES.into_iter().map(page).collect()
 }
 
-/// Returns the recommended methods for each core in a regular and a chaotic motion, one sentence
-/// each, in Markdown.
 fn advice(points: &[Point]) -> Vec<String> {
     let boards = BOARDS
         .iter()
         .filter(|board| points.iter().any(|point| point.board == *board));
     let sentence = |board: &Board, scene: &Scene| {
-        // The cheapest method of each purpose, for this core and scene.
         let of = points
             .iter()
             .filter(|point| point.scene == scene && point.board == board);
@@ -207,7 +186,6 @@ fn advice(points: &[Point]) -> Vec<String> {
         .collect()
 }
 
-/// Returns a number of cycles in thousands or millions, with two or three digits.
 fn thousands(cycles: f64) -> String {
     match cycles / 1e3 {
         kilo @ ..10.0 => format!("{kilo:.1}k"),
@@ -216,7 +194,6 @@ fn thousands(cycles: f64) -> String {
     }
 }
 
-/// Returns the table of the cycles of a step, and of the errors in the regular and the long scene.
 fn table(points: &[Point], names: &[&str]) -> Table {
     // A method has a row only if it was counted and compared in the long scene.
     let row = |&name: &&str| {
@@ -227,7 +204,6 @@ fn table(points: &[Point], names: &[&str]) -> Table {
             .iter()
             .filter(|point| point.name == name && point.rate == long.rate);
         let short = same.clone().find(|point| point.scene == &SCENES[0])?;
-        // The cost of a step on each core, and the errors of both scenes with the same steps.
         let on = |cpu: &str| {
             same.clone()
                 .find(|point| point.board.cpu == cpu && point.scene == &SCENES[0])
@@ -258,8 +234,6 @@ mod tests {
     use super::join::tests::point;
     use super::*;
 
-    /// The advice has at most 25 words a sentence. For each purpose it names the cheapest of three
-    /// methods that fulfils it, with its cycles.
     #[test]
     fn a_sentence_has_25_words_at_most_and_names_the_cheapest() {
         let points = [

@@ -7,24 +7,19 @@ use emulator::link::{Port, describe_restart};
 
 /// A manual check that the firmware's README describes.
 pub struct Check {
-    /// The name in the README and in the report.
     pub name: &'static str,
-    /// The boards that need the check; all boards if the list is empty.
+    /// All boards if the list is empty.
     boards: &'static [&'static str],
 }
 
-/// Returns a check for these boards.
 const fn check(name: &'static str, boards: &'static [&'static str]) -> Check {
     Check { name, boards }
 }
 
-/// The boards with a panel on an I2C bus.
 const WITH_I2C: &[&str] = &["pico", "stm32f405"];
-/// The boards with a USB port of their own.
 const WITH_USB: &[&str] = &["pico"];
 
-/// The checks, in the order of a new board's first use. Those for `WITH_USB` are for the Pico,
-/// those for `WITH_I2C` for the Pico and the STM32F405, and all others for every board.
+/// In the order of a new board's first use.
 pub const CHECKS: &[Check] = &[
     check("enumeration at the first try", WITH_USB),
     check("control packets of 64 bytes", WITH_USB),
@@ -44,20 +39,14 @@ pub const CHECKS: &[Check] = &[
     check("a night's run", &[]),
 ];
 
-/// A cell that the owner fills in.
 pub const BLANK: &str = "(fill in)";
 
-/// Returns the check list of the board `name`: the number of restarts during the comparison, which
-/// is `compared`, the number that `port` has observed since it was first opened, the last unplanned
-/// restart, and a row for each manual check of this board, with [`BLANK`] as its result. A restart
-/// during the comparison is a fault. A later one is not, because the person at the board may have
-/// caused it. A board that this project does not know has only the checks that every board needs.
-/// Nothing is sent.
+/// Returns the check list of the board `name`. A restart during the comparison is a fault. A later
+/// one is not, because the person at the board may have caused it.
 pub fn section(port: &Port, name: &str, compared: u64) -> Section {
     let note = "The board reports its restarts itself. Please fill in the other rows as the check \
                 list in `firmware/README.md` describes; leave rows that do not apply.";
     let mut section = Section::new("Check list", note, &["what", "found"]);
-    // The observed restarts, then a row to fill in for each manual check.
     let during = "restarts during the comparison";
     let fault = (compared > 0).then(|| format!("{during}: {compared}"));
     section.add(vec![during.to_owned(), compared.to_string()], fault);
@@ -71,7 +60,6 @@ pub fn section(port: &Port, name: &str, compared: u64) -> Section {
     section
 }
 
-/// Returns the rows about the restarts that the board has reported at its port.
 fn restarts(count: u64, last: Option<&Restarted>) -> [(&'static str, String); 2] {
     [
         ("restarts during this verification", count.to_string()),
@@ -87,19 +75,16 @@ mod tests {
     use super::*;
     use emulator::toolchain::workspace;
 
-    /// The name of every check is in the README of the firmware.
     #[test]
     fn the_readme_describes_every_check() {
         let page = std::fs::read_to_string(workspace().join("firmware/README.md")).expect("a page");
 
-        // Line breaks do not matter.
         let page = page.split_whitespace().collect::<Vec<_>>().join(" ");
         for check in CHECKS {
             assert!(page.contains(check.name), "{} is not described", check.name);
         }
     }
 
-    /// The two rows have the number of restarts, and the last one in words.
     #[test]
     fn restarts_are_counted_and_named() {
         let end = Restarted::default();

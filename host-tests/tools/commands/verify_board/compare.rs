@@ -21,8 +21,7 @@ use emulator::toolchain;
 /// and both angles, rad. Costs are measured in the first one.
 const MOTIONS: [(&str, f64, f64); 2] = [("regular", 1.0, 0.5), ("chaotic", 2.75, 2.98)];
 
-/// Returns a motion as a request for the board: 2 s in steps of 1/256 s. In that time, a chaotic
-/// motion turns one wrong bit into thousands.
+/// In 2 s a chaotic motion turns one wrong bit into thousands.
 fn request(method: Method, (_, m2, angle): (&str, f64, f64)) -> Request {
     let parameters = Parameters {
         m1: 1.0,
@@ -44,18 +43,14 @@ fn request(method: Method, (_, m2, angle): (&str, f64, f64)) -> Request {
     }
 }
 
-/// Compares every method of the boards in two motions from rest, a regular and a chaotic one, of
-/// 2 s each in steps of 1/256 s. Returns the section with a row for each motion of each method. The
-/// board computes the motions on request and sends a sample at the start and after every 32 steps.
-/// A motion with a sample that differs in any bit from the host's adds a line to `Section::faults`.
-/// An error means that the board does not answer within 20 s, refuses a request, or loses a sample.
+/// Compares every method of the boards in a regular and a chaotic motion. The board computes the
+/// motions on request.
 pub fn methods(talk: &mut Talk) -> anyhow::Result<Section> {
     let note = "Motions from rest in steps of 1/256 s, computed by the board on request.";
     let mut section = Section::new("Bits", note, &["method", "motion", "steps", "bits"]);
     let all = ON_BOARDS
         .iter()
         .flat_map(|&method| MOTIONS.map(|motion| (method, motion)));
-    // Each request has a number of its own, by which its answers are recognised.
     for (number, (method, motion)) in (0..).zip(all) {
         let request = request(method, motion);
         let difference = difference(talk, &request, number)?;
@@ -76,8 +71,6 @@ pub fn methods(talk: &mut Talk) -> anyhow::Result<Section> {
     Ok(section)
 }
 
-/// Returns the first number that differs between the board and the host. `None` means that all bits
-/// are equal.
 fn difference(talk: &mut Talk, request: &Request, number: u16) -> anyhow::Result<Option<String>> {
     const NAMES: [&str; 7] = ["a1", "a2", "p1", "p2", "w1", "w2", "energy"];
     let bits = |&Reading {
@@ -86,7 +79,6 @@ fn difference(talk: &mut Talk, request: &Request, number: u16) -> anyhow::Result
                     energy,
                 }: &Reading| { [a1, a2, p1, p2, w1, w2, energy].map(f64::to_bits) };
 
-    // The board computes and sends its samples while the host computes the same motion.
     talk.port.send(number, Command::Simulate(*request));
     let mut difference = None;
     let mut index = 0;
@@ -95,7 +87,6 @@ fn difference(talk: &mut Talk, request: &Request, number: u16) -> anyhow::Result
         ensure!(given == index, "sample {index} was lost on the way");
         let board = bits(&sample);
 
-        // The comparison is of bits. Only the first difference is reported.
         let host = bits(reading);
         let differs = NAMES
             .iter()
@@ -113,7 +104,6 @@ fn difference(talk: &mut Talk, request: &Request, number: u16) -> anyhow::Result
     Ok(difference)
 }
 
-/// Returns the next sample of the request with this number.
 fn sample(talk: &mut Talk, number: u16) -> anyhow::Result<(u32, Reading)> {
     talk.answer(number, |answer| {
         if let Answer::Sample { index, reading } = answer {
@@ -124,25 +114,16 @@ fn sample(talk: &mut Talk, number: u16) -> anyhow::Result<(u32, Reading)> {
     })
 }
 
-/// The number of the requests whose steps are measured.
 const REQUEST: u16 = u16::MAX;
 
-/// Measures on the board, and returns for every method of the boards, in the order of
-/// [`ON_BOARDS`], the average cycles of a step over the first second of the regular motion of
-/// [`methods`]; all are `None` without a cycle counter. Errors are as in [`Talk::next`].
+/// Measures the average cycles of a step over a second of the regular motion, for each of
+/// [`ON_BOARDS`]; `None` without a cycle counter.
 pub fn measured(talk: &mut Talk) -> anyhow::Result<Vec<Option<f64>>> {
     ON_BOARDS.iter().map(|&method| step(talk, method)).collect()
 }
 
-/// Returns the section of the measured cycles ([`measured`]) with the estimate of `cargo count`.
-/// `measured` has an element for each method of [`ON_BOARDS`], in this order; the rows end with the
-/// shorter of the two. `board` is the real board that was measured, or `None` if this project does
-/// not know it. There are no faults.
-///
-/// The estimate is from instructions that are counted in QEMU, on the first of [`BOARDS`] with the
-/// same target as `board`. If `board` is `None` or has no cycle counter, the estimates are left out
-/// and no tools are needed. Nothing is installed. Missing tools are refused. Another error means
-/// that the build or QEMU fails.
+/// Returns the section of the measured cycles with the estimate of `cargo count`, from an emulated
+/// board with the same code.
 pub fn cycles(measured: &[Option<f64>], board: Option<&Board>) -> anyhow::Result<Section> {
     let note = "Measured with the processor's cycle counter, interrupts off, over 256 steps of the \
                 regular motion. Estimated for memory without wait states, over the same number of \
@@ -181,9 +162,7 @@ pub fn cycles(measured: &[Option<f64>], board: Option<&Board>) -> anyhow::Result
     Ok(section)
 }
 
-/// Returns the cycles of a step, or `None` if the board has no cycle counter.
 fn step(talk: &mut Talk, method: Method) -> anyhow::Result<Option<f64>> {
-    // The request starts the motion whose steps are measured.
     talk.port.send(
         REQUEST,
         Command::Simulate(Request {
@@ -195,7 +174,6 @@ fn step(talk: &mut Talk, method: Method) -> anyhow::Result<Option<f64>> {
     let mut steps = 0;
     let mut cycles = 0.0;
 
-    // The cycles of several measurements are added up.
     while steps < FULL_CYCLE {
         let (made, taken) = talk.ask(Command::Measure(MOST_MEASURED_STEPS), |answer| {
             if let Answer::Measured { steps, cycles } = answer {
@@ -214,19 +192,11 @@ fn step(talk: &mut Talk, method: Method) -> anyhow::Result<Option<f64>> {
     Ok(Some(cycles / f64::from(steps)))
 }
 
-/// The number of frames of each scene that are compared: a second.
 const FRAMES: u32 = TICK_RATE;
-/// The number of frames within which the board must have reported its scene.
 const PATIENCE: usize = 10 * FRAMES as usize;
 
-/// Plays every scene on the board, whose processor has a clock of `hertz` Hz, and compares a second
-/// of each. The board is left in the last scene. Faults are differences in any bit, and a frame
-/// that by this clock took longer than the whole run; 0 Hz counts as 1 Hz. Dropped frames are no
-/// fault.
-///
-/// An error means that the board sends no frame for 20 s, refuses a command, sends 600 frames of
-/// other scenes instead of the chosen one, or that fewer than 60 of 600 frames of a scene can be
-/// compared.
+/// Plays every scene on the board and compares a second of each. A frame that by the clock of
+/// `hertz` took longer than the whole run is a fault, too.
 pub fn scenes(talk: &mut Talk, hertz: u32) -> anyhow::Result<Section> {
     let columns = &[
         "scene",
@@ -247,7 +217,6 @@ pub fn scenes(talk: &mut Talk, hertz: u32) -> anyhow::Result<Section> {
     Ok(section)
 }
 
-/// Plays a scene and adds its row to the section.
 fn play(talk: &mut Talk, name: SceneName, hertz: u32, section: &mut Section) -> anyhow::Result<()> {
     talk.port.send(0, Command::Choose(name));
     let mut comparison = Comparison::default();
@@ -256,7 +225,6 @@ fn play(talk: &mut Talk, name: SceneName, hertz: u32, section: &mut Section) -> 
     let mut of_others = 0;
 
     while compared < FRAMES && comparison.difference().is_none() {
-        // The next frame, and the answers about the settings before it.
         let frame = talk.next(|message| {
             if let ToHost::Answer(_, Answer::Status(status)) = message {
                 comparison.status(&status);
@@ -289,7 +257,6 @@ fn play(talk: &mut Talk, name: SceneName, hertz: u32, section: &mut Section) -> 
         }
     }
 
-    // The results: the first difference, the dropped frames and the times.
     let difference = comparison
         .difference()
         .map(|difference| difference.to_string());
@@ -304,7 +271,6 @@ fn play(talk: &mut Talk, name: SceneName, hertz: u32, section: &mut Section) -> 
     // another scene.
     let whole = milliseconds(frames[1..].iter().map(|frame| frame.busy_cycles).max());
 
-    // The ticks from the frame before the first to the last one.
     let ticks = last
         .sequence
         .wrapping_sub(first.sequence)

@@ -46,8 +46,6 @@ pub struct VerifyOptions {
     pub report: PathBuf,
 }
 
-/// A section of the report: its title with a note on the columns and the source of the numbers, its
-/// table, and its faults, one line each.
 #[derive(Debug, Default)]
 struct Section {
     head: [&'static str; 2],
@@ -56,7 +54,6 @@ struct Section {
 }
 
 impl Section {
-    /// Returns a section without rows and faults.
     fn new(title: &'static str, note: &'static str, columns: &'static [&'static str]) -> Self {
         Self {
             head: [title, note],
@@ -68,30 +65,19 @@ impl Section {
         }
     }
 
-    /// Adds a row, and its fault if it has one.
     fn add(&mut self, row: Vec<String>, fault: Option<String>) {
         self.table.rows.push(row);
         self.faults.extend(fault);
     }
 }
 
-/// Returns the cell for bits that may differ.
 fn verdict(difference: Option<String>) -> String {
     difference.unwrap_or_else(|| "identical".to_owned())
 }
 
-/// Verifies the board, which takes minutes, asks the person at it unless `no_questions` is set, and
-/// writes the report over an existing file, also if there are faults. The extension of its name is
-/// replaced by `md`. Prints the faults and the port's notices, such as a restart of the board, to
-/// stderr, and the result to stdout. Returns true if there was no fault, and false if there was
-/// one, even if the result cannot be printed. A restart before the questions is a fault. Another
-/// program in flash than this workspace builds is reported, but is no fault.
-///
-/// Before the measurements, a report that cannot be written, a port that cannot be opened, and
-/// missing tools for a board that this project knows are refused, in this order. Another error
-/// means that the board does not answer within 20 s, sends no frames or refuses a request, that a
-/// build or QEMU fails, or that the report can no longer be written. After any of these errors
-/// there is no new report, and an existing one remains.
+/// Verifies the board, asks the person at it unless `no_questions` is set, and writes the report.
+/// Returns true if there was no fault. Another program in flash than this workspace builds is
+/// reported, but is no fault.
 pub fn run(options: &VerifyOptions) -> anyhow::Result<bool> {
     // Refuse before the measurements.
     let path = options.report.with_extension("md");
@@ -138,7 +124,6 @@ pub fn run(options: &VerifyOptions) -> anyhow::Result<bool> {
     let program = program(board, &identity)?;
     let sections = [methods, cycles, scenes, asked, checks];
 
-    // The verdict in one line.
     let faults: Vec<&String> = sections
         .iter()
         .flat_map(|section| &section.faults)
@@ -153,7 +138,6 @@ pub fn run(options: &VerifyOptions) -> anyhow::Result<bool> {
     let headline =
         format!("{name}: {motions} motions of {methods} methods, {scenes} scenes: {verdict}");
 
-    // The report, in Markdown. A section without rows is left out.
     let chip = identity.chip.map(|word| format!("{word:08x}")).join(" ");
     let mut text = format!("# {name}\n\n{headline}.\n\n");
     text += &format!(
@@ -176,7 +160,6 @@ pub fn run(options: &VerifyOptions) -> anyhow::Result<bool> {
         },
     );
 
-    // The faults go to stderr, the verdict to stdout.
     report.write_whole(text.as_bytes())?;
     faults
         .iter()
@@ -187,15 +170,13 @@ pub fn run(options: &VerifyOptions) -> anyhow::Result<bool> {
         path.display()
     ));
 
-    // Faults decide the exit code, also if nobody reads stdout.
     if faults.is_empty() {
         said?;
     }
     Ok(faults.is_empty())
 }
 
-/// Returns a line about the program in the board's flash. It names the commit and the compiler of
-/// this workspace, and says if the flash has the program that they build for `board`.
+/// Returns a line about the program in the board's flash.
 fn program(board: Option<&Board>, identity: &Identity) -> anyhow::Result<String> {
     let output_of = |program: &str, arguments: &[&str]| {
         let output = process::run(
@@ -231,13 +212,9 @@ fn program(board: Option<&Board>, identity: &Identity) -> anyhow::Result<String>
     ))
 }
 
-/// Returns true if the program that is built here for `board` equals the program that the board
-/// reports, from its vectors to its constants. An error means that the program cannot be built or
-/// read.
 fn is_built(board: &Board, identity: &Identity) -> anyhow::Result<bool> {
     let elf = fs::read(toolchain::ready()?.build_for(board)?)?;
     let file = object::File::parse(&*elf)?;
-    // The program's first address, and the address after its constants.
     let address = |name: &str| {
         let symbol = file
             .symbols()
