@@ -24,7 +24,7 @@ pub fn exact_methods() -> impl Iterator<Item = Method> {
 /// A [`Run`] that counts turns, whose method is chosen at run time. Its numbers are widened to
 /// `f64`. Before the first step they are those of the start, as the method holds it. Whole turns
 /// may be miscounted if a step turns a rod by more than a quarter turn.
-pub trait AnyRun: Debug {
+pub trait CountingRun: Debug {
     /// Advances by `steps` steps. 0 steps are possible. An error means that the motion has diverged
     /// ([`Run::advance`]); the run is then unchanged.
     fn advance(&mut self, steps: u32) -> Result<(), Error>;
@@ -41,7 +41,7 @@ pub trait AnyRun: Debug {
     fn energy(&self) -> f64;
 }
 
-impl<F: Form> AnyRun for Run<F, true> {
+impl<F: Form> CountingRun for Run<F, true> {
     fn advance(&mut self, steps: u32) -> Result<(), Error> {
         Run::advance(self, steps)
     }
@@ -71,7 +71,7 @@ struct Start<'a> {
 }
 
 impl FormVisitor for Start<'_> {
-    type Output = Result<Box<dyn AnyRun>, Error>;
+    type Output = Result<Box<dyn CountingRun>, Error>;
 
     fn visit<F: Form>(self) -> Self::Output {
         let run = self.pendulum.run::<F>(self.state, self.dt)?;
@@ -89,7 +89,7 @@ pub fn run(
     parameters: &Parameters<f64>,
     start: &State<f64>,
     dt: f64,
-) -> Result<Box<dyn AnyRun>, Error> {
+) -> Result<Box<dyn CountingRun>, Error> {
     let pendulum = Pendulum::new(parameters)?;
     let state = start;
     visit(

@@ -37,7 +37,7 @@ impl<R: Real> Derivatives<R> for Hamilton<R> {
 
 /// An explicit Runge-Kutta method, for any system of first-order equations.
 ///
-/// To add an integrator, implement this trait in a file of its own, as `rk4.rs` does. The unit test
+/// To add an integrator, implement this trait in a file of its own, as [`Rk4`] does. The unit test
 /// `every_integrator_meets_its_order_conditions` names a weight that is wrong.
 pub trait RungeKutta: Copy + Debug + PartialEq + 'static {
     /// The order p: the error of a step is proportional to dt^(p + 1).
