@@ -294,7 +294,6 @@ impl<R: Real> Advance for ClosedForm<R> {
         Err(Error::OutOfRange { parameter, value })
     }
 
-    #[inline(never)] // Inlined, each enum of motions would have a copy.
     fn advance(&mut self, steps: u32) {
         for _ in 0..steps {
             self.steps += 1;
