@@ -387,17 +387,19 @@ fn a_panel_that_holds_the_clock_low_shows_the_picture_when_it_lets_go() -> anyho
 }
 
 #[test]
-fn chosen_controller_outlasts_a_restart() -> anyhow::Result<()> {
+fn choices_for_the_panel_outlast_a_restart() -> anyhow::Result<()> {
     let chosen = Some(Controller::Sh1106);
     let mut board = board()?;
     board.run(8 * PICTURE)?;
     board.send(1, Command::Panel(chosen))?;
-    assert_eq!(answers(board.run(8 * PICTURE)?), [(1, Answer::Done)]);
+    board.send(1, Command::Turn(true))?;
+    assert_eq!(answers(board.run(8 * PICTURE)?), [(1, Answer::Done); 2]);
     let is_driven = |report: PanelReport| {
         matches!(
             report.state,
             PanelState::Shown(Found { by: By::Choice, .. })
         ) && report.chosen.controller == chosen
+            && report.chosen.is_turned
     };
     assert!(is_driven(panel_report(&mut board)?));
 

@@ -166,14 +166,16 @@ fn state_of_the_panel_is_reported_with_the_remedy_when_it_changes() {
     );
 }
 
-/// `--panel` with a board that has no such panel has exit code 2 and the reason.
+/// An option for the panel with a board that has no such panel has exit code 2 and the reason.
 #[test]
-fn board_without_a_choice_of_controllers_refuses_one() {
-    let [_, messages] = demo(2, "--panel sh1106", |bench| bench.carry(wire));
-    assert!(
-        messages.contains("the board refuses this panel; it has no panel"),
-        "{messages}"
-    );
+fn board_without_an_oled_refuses_the_options_of_one() {
+    for option in ["--panel sh1106", "--turn 180", "--dim off"] {
+        let [_, messages] = demo(2, option, |bench| bench.carry(wire));
+        assert!(
+            messages.contains("the board refuses this panel; it has no OLED"),
+            "{option}: {messages}"
+        );
+    }
 }
 
 /// The board's frames arrive, but they are always of another scene than that of `--scene`. The
