@@ -12,10 +12,8 @@
 //! its row takes the next one. The ends are added in the order of their completion, which is the
 //! same on every machine.
 
-use crate::error::{Error, Parameter, check_finite};
-use crate::methods::direction::{
-    Coefficients, Scale, Sums, changes, directions, prepare, quantities, rates,
-};
+use crate::error::Error;
+use crate::methods::direction::{Coefficients, Scale, Sums, changes, directions, prepare, rates};
 use crate::methods::extrapolation::{Extrapolation, ROWS, is_order, stable};
 use crate::methods::{Advance, FormOperations};
 use crate::numbers::{Lanes, Real, RealOperations};
@@ -210,12 +208,10 @@ impl<const ORDER: u32> ExtrapolationF64<ORDER> {
 
 impl<const ORDER: u32> Advance for ExtrapolationF64<ORDER> {
     fn started(&self, start: &State<f64>) -> Result<Self, Error> {
-        start.check()?;
-        let z = quantities(start, self.coefficients.norm, [self.scale.momentum; 2]);
-        self.scale.check::<f64>([z[4], z[5]])?;
+        let sums = Sums::at(&self.coefficients, &self.scale, start)?;
         Ok(Self {
-            sums: Sums { z, lost: [0.0; 6] },
-            inverse: self.coefficients.inverse_at(z[2]),
+            sums,
+            inverse: self.coefficients.inverse_at(sums.z[2]),
             steps: 0,
             ..*self
         })
@@ -231,29 +227,11 @@ impl<const ORDER: u32> Advance for ExtrapolationF64<ORDER> {
     }
 
     fn check(&self) -> Result<(), Error> {
-        let [sin1, cos1, s, c, p1, p2] = self.sums.z;
-        let [_, [sin2, cos2]] = self.directions::<f64>();
-        let unit = self.scale.momentum;
-
-        // An error names the coordinate that the quantity belongs to.
-        let numbers = [
-            (Parameter::A1, sin1),
-            (Parameter::A1, cos1),
-            (Parameter::A2, s),
-            (Parameter::A2, c),
-            (Parameter::A2, sin2),
-            (Parameter::A2, cos2),
-            (Parameter::P1, p1 / unit),
-            (Parameter::P2, p2 / unit),
-        ];
-        check_finite(numbers).map_err(Error::diverged)
+        self.sums.check(&self.coefficients, self.momenta())
     }
 
     fn sides(&self) -> [[i32; 2]; 2] {
-        let [sin1, cos1, s, c, ..] = self.sums.z;
-        let sin2 = sin1 * c - cos1 * s;
-        let cos2 = cos1 * c + sin1 * s;
-        [[sin1.side(), cos1.side()], [sin2.side(), cos2.side()]]
+        self.sums.sides()
     }
 
     fn directions<Q: Real>(&self) -> [Direction<Q>; 2] {
@@ -282,10 +260,7 @@ impl<const ORDER: u32> FormOperations for ExtrapolationF64<ORDER> {
             coefficients,
             scale,
             method: Extrapolation::new(ORDER)?,
-            sums: Sums {
-                z: [0.0; 6],
-                lost: [0.0; 6],
-            },
+            sums: Sums::ZERO,
             inverse: 0.0,
             steps: 0,
         };
@@ -307,6 +282,7 @@ impl<const ORDER: u32> FormOperations for ExtrapolationF64<ORDER> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::error::Parameter;
 
     const PARAMETERS: Parameters<f64> = Parameters {
         m1: 1.0,
