@@ -11,9 +11,7 @@ use crate::oracle::trials::Trial;
 /// and 1 otherwise. The steps are 2^-4 s, 2^-5 s and so on; the finest are 2^-13 s.
 #[derive(Clone, Copy, Debug)]
 pub struct HardCase {
-    /// The name, for messages.
     pub name: &'static str,
-    /// The first start.
     pub trial: Trial,
     /// The difference of rod 1's angle from one start to the next, rad. The difference of rod 2's
     /// angle is half as large.
@@ -50,9 +48,8 @@ pub struct HardCase {
     pub reason: &'static str,
 }
 
-/// Returns every line, in the file's order. The heading is not among them. The file is compiled
-/// into the program. Panics with the text of the first line that cannot be read. Not checked: the
-/// range of the numbers.
+/// Returns every line, in the file's order. Panics with the text of the first line that cannot be
+/// read.
 pub fn hard_cases() -> Vec<HardCase> {
     let lines = include_str!("../../reference/hard_cases.csv")
         .lines()
@@ -74,7 +71,6 @@ impl HardCase {
             .map(|text| text.parse().ok())
             .collect::<Option<_>>()?;
 
-        // The motion, then its budgets.
         let &[m1, m2, l1, l2, g, a1, a2, p1, p2, seconds, ref budgets @ ..] = numbers.as_slice()
         else {
             return None;

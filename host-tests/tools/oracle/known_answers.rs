@@ -14,41 +14,23 @@ use reference::twofloat::consts::PI;
 /// A line of the table: a scene at one time.
 #[derive(Clone, Debug)]
 pub struct KnownAnswer {
-    /// The scene's name.
     pub scene: &'static str,
-    /// The scene's name, its given numbers and the time, as written in the file, with commas
-    /// between them. Angles are in degrees, velocities in rad/s, all other numbers in SI units.
+    /// As written in the file, with commas between them. Angles are in degrees.
     pub given: &'static str,
-    /// The scene at its start, time 0, in double-double precision. A clone of it advances to
-    /// `time`.
     pub start: Reference,
-    /// The masses (kg), lengths (m) and gravity (m/s^2), rounded to `f64`. The start is not
-    /// rounded.
     pub parameters: Parameters<f64>,
-    /// The time, s.
     pub time: f64,
-    /// (sin a1, cos a1, sin a2, cos a2) at that time, as written.
     pub directions: [TwoFloat; 4],
-    /// The largest error of the directions, each in turn: two units of the last digit written.
     pub radius: [f64; 4],
-    /// About the factor by which a small error of the start has grown until that time. It is an
-    /// estimate; nothing is proved about it.
     pub growth: f64,
 }
 
-/// The names of the columns, with commas between them and without a newline. The angles are in
-/// degrees, the velocities in rad/s, all other numbers in SI units.
+/// Angles are in degrees.
 pub const HEADING: &str =
     "scene,a1_deg,a2_deg,w1_start,w2_start,m1,m2,l1,l2,g,t,sin_a1,cos_a1,sin_a2,cos_a2,growth";
-/// The number of columns that contain the scene, its given numbers and the time.
 const GIVEN: usize = 11;
 
-/// Returns every line, in the file's order, without the heading. The file is compiled into the
-/// program.
-///
-/// # Errors
-/// The error contains the text of the first line that cannot be read. Not checked: the heading and
-/// the range of the numbers.
+/// Returns every line, in the file's order.
 pub fn table() -> anyhow::Result<Vec<KnownAnswer>> {
     let lines = include_str!("../../reference/known_answers.csv")
         .lines()
@@ -63,7 +45,6 @@ pub fn table() -> anyhow::Result<Vec<KnownAnswer>> {
 
 impl KnownAnswer {
     fn read(line: &'static str) -> Option<Self> {
-        // The text up to the time is kept as written.
         let (end, _) = line.match_indices(',').nth(GIVEN - 1)?;
         let (scene, numbers) = line.split_once(',')?;
 
@@ -99,7 +80,6 @@ impl KnownAnswer {
             return None;
         };
 
-        // The start is in full precision, the other numbers are rounded.
         Some(Self {
             scene,
             given: &line[..end],
@@ -122,10 +102,8 @@ impl KnownAnswer {
     }
 }
 
-/// Parses a decimal number in double-double precision: up to 38 digits, with or without a point and
-/// an exponent.
+/// Parses a decimal number of up to 38 digits.
 fn decimal(text: &str) -> Option<TwoFloat> {
-    // The digits without the point, and the power of ten.
     let (mantissa, exponent) = text.split_once('e').unwrap_or((text, "0"));
     let (whole, fraction) = mantissa.split_once('.').unwrap_or((mantissa, ""));
     let digits = i128::from_str(&format!("{whole}{fraction}")).ok()?;

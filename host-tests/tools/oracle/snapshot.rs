@@ -6,16 +6,13 @@ use std::fs;
 
 use emulator::toolchain::workspace;
 
-/// The character of each of the panel's 16 greys, from black (0) to white (15).
 pub const GREYS: &[u8; 16] = b" .,:;-~=+*oaOX#@";
 
-/// The name of the environment variable that makes [`check`] and [`check_lines`] write the files
-/// instead of comparing them. Any value has this effect, even an empty one.
+/// The environment variable that makes [`check`] and [`check_lines`] write the files instead of
+/// comparing them.
 pub const BLESS: &str = "BLESS";
 
-/// Returns a picture as lines of `width` characters of [`GREYS`], each line with a `\n` at its end.
-/// `greys` are 0 to 15, row by row. Only the lower four bits of each byte count. A last row that is
-/// not complete gives a shorter line, and no greys give an empty text. A `width` of 0 panics.
+/// Returns a picture as lines of `width` characters of [`GREYS`].
 pub fn text(greys: &[u8], width: usize) -> String {
     let line = |row: &[u8]| {
         row.iter()
@@ -26,21 +23,12 @@ pub fn text(greys: &[u8], width: usize) -> String {
     greys.chunks(width).map(line).collect()
 }
 
-/// Compares a picture with the committed one, the file `host-tests/golden/scenes/NAME.txt` in the
-/// project's folder ([`workspace`]). Returns `Ok` if both are the same.
-///
-/// The error names the file and says how to accept the picture, and lists the rows that differ,
-/// numbered from 0, each old row above the new row. Rows that only one of the two pictures has, and
-/// other ends of lines, are an error but are not listed. A file that cannot be read is an error,
-/// too.
-///
-/// If [`BLESS`] is set, nothing is compared: the picture replaces the file, or creates it. It is
-/// then an error only if the file cannot be written. The folder must exist.
+/// Compares a picture with the committed one, `host-tests/golden/scenes/NAME.txt`. The error lists
+/// the rows that differ, and says how to accept the picture.
 pub fn check(name: &str, picture: &str) -> Result<(), String> {
     let path = workspace()
         .join("host-tests/golden/scenes")
         .join(format!("{name}.txt"));
-    // A blessed run accepts the picture.
     if env::var_os(BLESS).is_some() {
         return fs::write(&path, picture).map_err(|error| format!("{}: {error}", path.display()));
     }
@@ -59,9 +47,7 @@ pub fn check(name: &str, picture: &str) -> Result<(), String> {
     })
 }
 
-/// Returns the rows that differ, each with the old one above the new one, or `None` if both
-/// pictures are the same, byte by byte. The text is empty if only the numbers of rows or the ends
-/// of lines differ.
+/// Returns the rows that differ, each with the old one above the new one.
 fn differing_rows(committed: &str, picture: &str) -> Option<String> {
     let differs = |(row, (old, new)): (usize, (&str, &str))| {
         (old != new).then(|| format!("row {row}\n  was |{old}|\n  is  |{new}|"))
@@ -75,16 +61,8 @@ fn differing_rows(committed: &str, picture: &str) -> Option<String> {
     (committed != picture).then(|| rows.join("\n"))
 }
 
-/// Compares `text` with a committed file; `file` is its path from the project's folder
-/// ([`workspace`]). Returns `Ok` if both are the same, byte by byte.
-///
-/// The error names the file and says how to accept the text. It contains the numbers of lines
-/// before and now, and the lines that differ, each old line above the new line. Lines that only one
-/// of the two texts has, and other ends of lines, are an error but are not listed. A file that
-/// cannot be read is an error, too.
-///
-/// If [`BLESS`] is set, nothing is compared: the text replaces the file, or creates it. It is then
-/// an error only if the file cannot be written. The folder must exist.
+/// Compares `text` with a committed file. The error lists the lines that differ, and says how to
+/// accept the text.
 pub fn check_lines(file: &str, text: &str) -> Result<(), String> {
     let path = workspace().join(file);
     if env::var_os(BLESS).is_some() {
@@ -95,7 +73,6 @@ pub fn check_lines(file: &str, text: &str) -> Result<(), String> {
     if committed == text {
         return Ok(());
     }
-    // Only lines that both files have are compared; the message has the number of lines.
     let differing: Vec<String> = committed
         .lines()
         .zip(text.lines())
@@ -114,8 +91,6 @@ pub fn check_lines(file: &str, text: &str) -> Result<(), String> {
 mod tests {
     use super::*;
 
-    /// Pictures are the same only if every byte is: other ends of lines differ, also if the number
-    /// of bytes is the same.
     #[test]
     fn other_ends_of_lines_are_a_difference() {
         assert_eq!(differing_rows("ab\ncd\n", "ab\ncd\n"), None);

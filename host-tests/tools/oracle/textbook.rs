@@ -1,13 +1,9 @@
 //! The equal-rod form of the source page ("Double Pendulum", math24.net) with its misprint, for
 //! comparison only.
 
-/// Returns the rates of (a1, a2, p1, p2) by the equal-rod equations exactly as printed, per second,
-/// for m1 = 1 kg and m2 = `mu` kg. All numbers are in SI units: `l`, the length of each rod, in m,
-/// `g` in m/s^2, angles in rad, momenta in kg m^2/s. The angles are from hanging. The denominator
-/// of the second equation lacks the factor mu. Nothing is checked: with `l` of 0, a negative `mu`,
-/// or a number that is not finite, the rates may be infinite or NaN.
-///
-/// Unless mu = 1, they are not Hamilton's equations of any system, and they lose or gain energy.
+/// Returns the rates of (a1, a2, p1, p2) by the equal-rod equations exactly as printed, for m1 = 1
+/// kg and m2 = `mu` kg. The denominator of the second equation lacks the factor mu. Unless mu = 1,
+/// they are not Hamilton's equations of any system, and they lose or gain energy.
 pub fn misprinted_equal_rods(mu: f64, l: f64, g: f64, &[a1, a2, p1, p2]: &[f64; 4]) -> [f64; 4] {
     // The page's own expressions, in its order.
     let (sin_d, cos_d) = libm::sincos(a1 - a2);

@@ -15,24 +15,19 @@ use super::readings::{Readings, energy_error};
 
 /// The smallest width of the numbers that [`draw`] can show, in columns.
 pub const NARROWEST: u16 = 15;
-/// The largest width, beyond which a value would be too distant from its name, in columns.
+/// Beyond it a value would be too distant from its name.
 const WIDEST: u16 = 24;
-/// The number of rows that the numbers need in the narrowest column ([`NARROWEST`]), without the
-/// bars.
 pub const ROWS: u16 = 13;
 /// The smallest scale of the bars. Smaller errors are mainly the rounding of the energy.
 const LEAST_SCALE: f32 = 1e-14;
 
-/// Draws the latest numbers in the area, of which it uses at most 24 columns, and the bars below
-/// them if the present motion has frames with angles. A number that is not known yet, or does not
-/// exist in the scene, is a dash. In an area smaller than [`NARROWEST`] by [`ROWS`] the rest is cut
-/// off.
+/// Draws the latest numbers, and the bars below them. A number that is not known yet, or does not
+/// exist in the scene, is a dash.
 pub fn draw(frame: &mut Frame, area: Rect, readings: &Readings) {
     let area = Rect {
         width: area.width.min(WIDEST),
         ..area
     };
-    // The table has its full height; the bars get the rest.
     let lines: Vec<_> = rows(readings)
         .into_iter()
         .flat_map(|row| lines(row, area.width.into()))
@@ -45,13 +40,11 @@ pub fn draw(frame: &mut Frame, area: Rect, readings: &Readings) {
     }
 }
 
-/// Returns the names and values; a value that is unknown or does not exist in this scene is a dash.
 fn rows(readings: &Readings) -> [(&'static str, String); 9] {
     let is_shown = readings.frame.is_some();
     let moves = readings.frame.is_some_and(|now| now.scene.has_angles());
     let now = readings.frame.unwrap_or_default();
 
-    // The angles at the start; a single one if both rods have the same.
     let degrees = readings
         .start
         .unwrap_or([now.start_angle.to_degrees(); 2])
@@ -67,7 +60,6 @@ fn rows(readings: &Readings) -> [(&'static str, String); 9] {
     let [angle_1, angle_2] =
         [a1, a2].map(|angle| within_half_a_turn(f64::from(angle).to_degrees()));
 
-    // A number that does not exist in this scene is shown as a dash.
     let rows = [
         ("time", is_shown, format!("{:.2} s", now.report.time)),
         (
@@ -90,7 +82,6 @@ fn rows(readings: &Readings) -> [(&'static str, String); 9] {
     rows.map(|(name, is_known, value)| (name, if is_known { value } else { "-".to_owned() }))
 }
 
-/// Returns a row as one line, or as two lines if one is too narrow.
 fn lines((name, value): (&'static str, String), width: usize) -> Vec<Line<'static>> {
     // The name is on the left and the value on the right, with at least one space between them.
     let left = width.saturating_sub(name.chars().count());
@@ -111,7 +102,6 @@ fn lines((name, value): (&'static str, String), width: usize) -> Vec<Line<'stati
 fn energy_errors(frame: &mut Frame, area: Rect, past: &[Report]) {
     const HEIGHT: f32 = 1000.0;
     const STEPS: u64 = TICK_RATE as u64 / 2;
-    // Each bar is the largest error of half a second.
     let largest = |bar: &[Report]| {
         bar.iter()
             .map(|report| report.energy_error.abs())
@@ -122,7 +112,6 @@ fn energy_errors(frame: &mut Frame, area: Rect, past: &[Report]) {
         .map(largest)
         .collect();
 
-    // The newest bars are shown, as many as there are columns.
     let shown = &errors[errors.len().saturating_sub(area.width.into())..];
     let exponent = shown
         .iter()
@@ -131,7 +120,6 @@ fn energy_errors(frame: &mut Frame, area: Rect, past: &[Report]) {
         .log10()
         .ceil() as i32;
 
-    // A narrow column has a shorter title.
     let long = format!("bars: full height 1e{exponent}");
     let scale = if long.len() <= usize::from(area.width) {
         long
@@ -155,7 +143,6 @@ fn energy_errors(frame: &mut Frame, area: Rect, past: &[Report]) {
     );
 }
 
-/// The simulated time that the chart shows, s.
 const SPAN: f64 = 5.0;
 /// The possible limits of the chart, degrees. The chart uses the smallest limit that contains every
 /// shown angle.
@@ -173,12 +160,9 @@ fn within_half_a_turn(degrees: f64) -> f64 {
     degrees - 2.0 * HALF_TURN * ((degrees - HALF_TURN - ROUNDING) / (2.0 * HALF_TURN)).ceil()
 }
 
-/// Draws the chart of both angles, in degrees, over the 5 s of simulated time before the last
-/// report, or from 0 to 5 s if that is earlier than 5 s. `past`, whose angles are in rad, must be
-/// in ascending order of time, which is not checked. Angles with turns are drawn within half a
-/// turn. Without reports the chart has only its axes.
+/// Draws the chart of both angles over the last seconds. Angles with turns are drawn within half a
+/// turn.
 pub fn draw_angles(frame: &mut Frame, area: Rect, past: &[Report]) {
-    // The chart shows the last `SPAN` seconds, and from the start before that time.
     let end = past.last().map_or(0.0, |last| last.time).max(SPAN);
     let past = &past[past.partition_point(|report| report.time < end - SPAN)..];
     let strands: Vec<_> = (0..2)
@@ -189,7 +173,6 @@ pub fn draw_angles(frame: &mut Frame, area: Rect, past: &[Report]) {
         })
         .collect();
 
-    // The smallest scale that contains all angles.
     let largest = strands
         .iter()
         .flat_map(|(_, strand)| strand)
@@ -199,13 +182,11 @@ pub fn draw_angles(frame: &mut Frame, area: Rect, past: &[Report]) {
         .find(|reach| *reach >= largest)
         .unwrap_or(HALF_TURN);
 
-    // Each rod has its own colour and mark.
     let lines = strands.iter().map(|(rod, strand)| {
         let line = Dataset::default().data(strand).graph_type(GraphType::Line);
         line.marker(MARKERS[*rod]).style(COLOURS[*rod])
     });
 
-    // The axes and their labels.
     let faint = Style::new().dim();
     let title = Line::from(vec![
         "angles, degrees: ".into(),
@@ -246,8 +227,6 @@ fn strands(past: &[Report], rod: usize) -> Vec<Vec<(f64, f64)>> {
 mod tests {
     use super::*;
 
-    /// A rod makes two turns in steps of 36 degrees. Its curve has three pieces, each within half a
-    /// turn. The curve of a rod that hangs has one piece.
     #[test]
     fn a_turning_rod_is_cut_where_it_passes_straight_up() {
         let turned = |tenth: u8| State {
@@ -273,8 +252,6 @@ mod tests {
         assert_eq!(strands(&past, 1).len(), 1, "the other rod hangs");
     }
 
-    /// Angles that are straight up to a tenth of a degree, in any turn, are shown as 180.0 degrees.
-    /// Other angles are within half a turn.
     #[test]
     fn straight_up_is_180_and_never_its_negative() {
         for up in [
