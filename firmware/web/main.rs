@@ -10,7 +10,7 @@
 use double_pendulum::State;
 use firmware::app::{App, NoButtons};
 use firmware::config::{CORTEX_M3, PROCESSORS};
-use firmware::display::NoDisplay;
+use firmware::display::{NoDisplay, PanelName};
 use firmware::graphics::{Format, FrameBuffers, View};
 use firmware::protocol::{
     Answer, Command, Decoder, Frame, MAX_WIRE, Status, ToHost, encode_command, read,
@@ -24,9 +24,8 @@ fn panic(_: &core::panic::PanicInfo) -> ! {
     core::arch::wasm32::unreachable()
 }
 
-/// The panels of a board here, the first of them in use.
-const FORMATS: [Format; 1] = [Format::OLED];
-const LARGEST: Format = Format::new(320, 240, 2);
+/// The largest format of a panel.
+const LARGEST: Format = PanelName::Lcd2.format();
 
 /// The board of this instance; `None` before [`start`].
 static mut BOARD: Option<Board> = None;
@@ -111,31 +110,32 @@ fn run(act: impl FnOnce(&mut Application)) -> usize {
 
 /// Defines functions that the page calls.
 macro_rules! exports {
-    ($($(#[$doc:meta])* $name:ident($($argument:ident: $type:ty)?) => $body:expr;)*) => {$(
+    ($($(#[$doc:meta])* $name:ident($($argument:ident: $type:ty),*) => $body:expr;)*) => {$(
         $(#[$doc])*
         // SAFETY: no other function has this name.
         #[unsafe(no_mangle)]
-        extern "C" fn $name($($argument: $type)?) -> usize {
+        extern "C" fn $name($($argument: $type),*) -> usize {
             $body
         }
     )*};
 }
 
 exports! {
-    /// Switches the board on, with a processor of this class, an index of [`PROCESSORS`]; any other
-    /// number is a Cortex-M3. The scene `page` starts at tick 0; the first frame is drawn by
+    /// Switches the board on, with a processor of this class, an index of [`PROCESSORS`], and a
+    /// panel, an index of [`PanelName::ALL`]; any other number is the first one. The scene `page` starts at tick 0; the first frame is drawn by
     /// [`run_to`]. Returns the length of the readings ([`text`]). Later calls do nothing and
     /// return 0.
-    start(processor: usize) => if with(|_| true) { 0 } else {
+    start(processor: usize, panel: usize) => if with(|_| true) { 0 } else {
         static mut BUFFERS: FrameBuffers<{ LARGEST.words() }, { LARGEST.height as usize }> =
             FrameBuffers::BLANK;
-        static mut PANEL: NoDisplay = NoDisplay;
+        static mut NO_PANEL: NoDisplay = NoDisplay;
+        let format = PanelName::ALL.get(panel).copied().unwrap_or_default().format();
         let processor = PROCESSORS.get(processor).copied().unwrap_or(CORTEX_M3);
-        let parts = (&raw mut BUFFERS, &raw mut PANEL, &raw mut BOARD);
+        let parts = (&raw mut BUFFERS, &raw mut NO_PANEL, &raw mut BOARD);
         // SAFETY: only the first call reaches this, so these are the only references.
         let (buffers, panel, board) = unsafe { (&mut *parts.0, &mut *parts.1, &mut *parts.2) };
         *board = Some(Board {
-            app: App::new(processor, buffers.canvas(FORMATS[0]), panel, Vec::new(), NoButtons),
+            app: App::new(processor, buffers.canvas(format), panel, Vec::new(), NoButtons),
             decoder: Decoder::default(),
             readings: Readings::default(),
             text: [0; 2048],
@@ -165,6 +165,10 @@ exports! {
     /// Returns the address of the canvas, row by row from the top: a byte for each pixel, ink high
     /// and foreground low. It stays the same. Returns 0 if the board has not started.
     canvas() => with(|board| board.app.player.canvas.row(0).as_ptr() as usize);
+    /// Returns the address of the 256 colours of a pixel in the present scene, as
+    /// [`Palette::colours`](firmware::graphics::Palette::colours) has them. Returns 0 if the board
+    /// has not started.
+    colours() => with(|board| board.app.player.canvas.palette.colours().as_ptr() as usize);
     /// Returns the address of the bytes that the board has sent in the last call of [`start`],
     /// [`run_to`] or [`command`] that did not return 0: its messages, the status at the end. A
     /// message that would exceed 1,024 bytes in all is lost. Returns 0 if the board has not

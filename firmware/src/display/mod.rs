@@ -10,10 +10,12 @@ use crate::graphics::Canvas;
 
 mod bus;
 mod oled_i2c;
+mod panels;
 mod ssd0323;
 
 pub use bus::{OutByte, Outbox, PanelBus, SILENCE, Sent, free_bus};
 pub use oled_i2c::{OledError, OledI2c};
+pub use panels::PanelName;
 pub use ssd0323::Ssd0323;
 
 /// The driver of a panel. It takes a frame in each tick.

@@ -12,7 +12,7 @@ const wasm = new WebAssembly.Module(Buffer.from(part('module'), 'hex'));
 for (const { id } of scenes) {
   for (const processor of processors) {
     const board = new WebAssembly.Instance(wasm).exports;
-    board.start(Number(processor));
+    board.start(Number(processor), 0);
     const bytes = (at, length) => Buffer.from(board.memory.buffer, at, length);
     board.command(bytes(board.text()).write(JSON.stringify({ Choose: id })));
     for (let tick = 1; tick <= 18 * rate + 1; tick++) {

@@ -60,7 +60,7 @@ const SETUP = `
   window.picture = () => {
     const copy = document.createElement('canvas').getContext('2d', { willReadFrequently: true });
     copy.drawImage(at('panel'), 0, 0);
-    return [...new Uint32Array(copy.getImageData(0, 0, 128, 64).data.buffer)];
+    return [...new Uint32Array(copy.getImageData(0, 0, at('panel').width, at('panel').height).data.buffer)];
   };`;
 
 /** Opens the page with a link and the settings of a user, and runs its first tick. */
@@ -96,6 +96,8 @@ async function drag(isTouch, id, places, between = '') {
   await of('run(1)');
 }
 
+const OLED = '#scene=page&processor=m3&panel=oled';
+
 async function test() {
   const { targetId } = await call('Target.createTarget', { url: 'about:blank' });
   ({ sessionId } = await call('Target.attachToTarget', { targetId, flatten: true }));
@@ -103,8 +105,8 @@ async function test() {
   await call('Page.addScriptToEvaluateOnNewDocument', { source: SETUP });
 
   // Every scene is its picture, pixel by pixel.
-  await open('');
-  const { scenes, palette } = await of("JSON.parse(at('facts').textContent)");
+  await open(OLED);
+  const { scenes, palette, panels } = await of("JSON.parse(at('facts').textContent)");
   const colours = palette.map((colour) => Buffer.from([...colour, 255]).readUInt32LE());
   for (const { key, name } of scenes) {
     await press(key);
@@ -117,8 +119,18 @@ async function test() {
     }
   }
 
-  // The keys.
+  // By default the display is a colour panel.
   await open('');
+  await see({ display: panels[0].text });
+  await of('run(60)');
+  assert.ok(await of("new Set(picture().map((one) => one & 0xffffff)).size > 16"));
+  await of(`at('display').selectedIndex = ${panels.length - 1},
+    at('display').dispatchEvent(new Event('change')), later()`);
+  await see({ display: 'OLED' });
+  assert.match(await of("later().then(() => location.hash)"), /panel=oled/);
+
+  // The keys.
+  await open(OLED);
   const keys = [['ArrowUp', 'mu-now', '^1.25$'], ['ArrowDown', 'mu-now', '^1$'],
     ['ArrowRight', 'angle-now', '^121°$'], ['ArrowLeft', 'angle-now', '^120°$'],
     ['p', 'caption', 'paused'], ['.', 'time', '0.03 s'], ['Enter', 'time', '0.00 s'],
@@ -144,13 +156,13 @@ async function test() {
     at('${id}').dispatchEvent(new Event('change')), later()`);
   await choose('method', 3);
   await see({ stepping: '^rk4-fixed32, ' });
-  await choose('processor', 1);
+  await choose('processor', 2);
   await see({ board: 'Cortex-M4F' });
-  const kept = '#scene=page&mu=80&angle=-179&method=rk4-fixed32&speed=0.5&processor=m4f';
+  const kept = '#scene=page&mu=80&angle=-179&method=rk4-fixed32&speed=0.5&processor=m4f&panel=oled';
   assert.equal(await of('later().then(() => location.hash)'), kept);
 
   // Bobs: time stops while one is held, and each turns its own rod.
-  await open('#scene=page&mu=2.5&angle=90');
+  await open('#scene=page&mu=2.5&angle=90&panel=oled');
   await drag(false, 'panel', [[92.5 / 128, 0.5], [88.25 / 128, 42 / 64]], `run(30);
     window.held = ['caption', 'time', 'angle-now'].map((id) => at(id).textContent).join('|')`);
   assert.match(await of('held'), /paused.*\|0\.00 s\|90°, 45°$/);
@@ -166,7 +178,7 @@ async function test() {
   assert.deepEqual([await scrolls(0.5, 0.72), await scrolls(0.1, 0.5)], [false, true]);
 
   // The link restores everything. What is wrong in one is reported.
-  const other = '#scene=butterfly&m1=2&m2=3&l1=0.7&g=1.62&a1=10&a2=-20.5&w2=1&processor=m0';
+  const other = '#scene=butterfly&m1=2&m2=3&l1=0.7&g=1.62&a1=10&a2=-20.5&w2=1&processor=m3';
   for (const hash of [kept, other]) {
     await open(hash);
     assert.equal(await of("at('link').getAttribute('href')"), hash);
@@ -184,8 +196,8 @@ async function test() {
     await call('Emulation.setDeviceMetricsOverride', size);
     await open('');
     assert.ok(await of('document.documentElement.scrollWidth <= innerWidth'), `${width}`);
-    const scale = await of("at('panel').getBoundingClientRect().width * devicePixelRatio / 128");
-    assert.ok(scale > 1.9 && Math.abs(scale - Math.round(scale)) < 0.01, `${width}: ${scale}`);
+    const scale = await of("at('panel').getBoundingClientRect().width * devicePixelRatio / at('panel').width");
+    assert.ok(scale > 0.9 && Math.abs(scale - Math.round(scale)) < 0.01, `${width}: ${scale}`);
   }
   for (const [value, colour] of [['light', 'rgb(245, 242, 236)'], ['dark', 'rgb(21, 19, 15)']]) {
     await open('', [{ name: 'prefers-color-scheme', value }]);

@@ -11,7 +11,9 @@ use firmware::config::{
     CORTEX_M0PLUS, CORTEX_M3, CORTEX_M4F, PIVOT, PROCESSOR, Processor, REACH, STM32F405, TICK_RATE,
     TRAIL_FADING, TRAIL_HALF_WIDTH,
 };
+use firmware::display::PanelName;
 use firmware::graphics::{Anchor, Format, plot, text};
+use firmware::job::CRC;
 use firmware::motion::{Resources, Settings};
 use firmware::protocol::{Command, PlayState};
 use firmware::scenes::{AnyScene, Flips, Scene, SceneName};
@@ -541,4 +543,63 @@ fn the_butterfly_is_planned_while_it_is_played() {
         found.is_some() && found == show.report().stepping,
         "{found:?}"
     );
+}
+
+/// The picture of each scene on each colour panel, after four seconds, has the stored hash.
+#[test]
+fn every_scene_has_the_golden_colours_on_every_panel() -> Result<(), String> {
+    let mut lines = String::from("panel,scene,picture\n");
+    for panel in [PanelName::Lcd13, PanelName::Lcd2, PanelName::Display] {
+        for &name in SceneName::ALL {
+            let settings = name.first_settings();
+            let mut show = Show::in_format(panel.format(), CORTEX_M0PLUS, name, &settings)
+                .expect("a scene of the catalogue");
+            (0..240).for_each(|_| show.tick());
+            let colours = show.frame().colours.expect("a colour panel");
+            let bytes: Vec<u8> = colours
+                .iter()
+                .flat_map(|colour| colour.to_le_bytes())
+                .collect();
+            let hash = CRC.checksum(&bytes);
+            lines += &format!("{},{},{hash:08x}\n", panel.name(), name.name());
+        }
+    }
+    snapshot::check_lines("host-tests/golden/colours.csv", &lines)
+}
+
+/// Writes a sheet of all scenes for each format into the target folder, to be looked at.
+#[test]
+#[ignore = "writes pictures"]
+fn sheets_of_all_formats() {
+    for format in PanelName::ALL.iter().map(|panel| panel.format()) {
+        for ticks in [300, 1500] {
+            let pictures: Vec<_> = SceneName::ALL
+                .iter()
+                .map(|&name| {
+                    let settings = name.first_settings();
+                    let mut show =
+                        Show::in_format(format, CORTEX_M0PLUS, name, &settings).expect("a scene");
+                    (0..ticks).for_each(|_| show.tick());
+                    show.frame().rgb(|grey| [17 * grey; 3])
+                })
+                .collect();
+            let (width, height) = (usize::from(format.width), usize::from(format.height));
+            let mut sheet =
+                format!("P6\n{} {}\n255\n", 5 * (width + 4), 3 * (height + 4)).into_bytes();
+            for y in 0..3 * (height + 4) {
+                for x in 0..5 * (width + 4) {
+                    let place = y % (height + 4) * width + x % (width + 4);
+                    let is_inside = x % (width + 4) < width && y % (height + 4) < height;
+                    let picture = pictures.get(y / (height + 4) * 5 + x / (width + 4));
+                    let rgb = picture
+                        .filter(|_| is_inside)
+                        .map_or([90, 90, 90], |all| all[place]);
+                    sheet.extend(rgb);
+                }
+            }
+            let folder = env!("CARGO_TARGET_TMPDIR");
+            let path = format!("{folder}/sheet-{width}x{height}-{ticks}.ppm");
+            std::fs::write(path, sheet).expect("a file");
+        }
+    }
 }

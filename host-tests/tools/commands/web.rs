@@ -9,6 +9,8 @@ use anyhow::{bail, ensure};
 use clap::Parser;
 use double_pendulum::Method;
 use firmware::config::{CORTEX_M0PLUS, CORTEX_M3, CORTEX_M4F, MASS_RATIOS, Processor, TICK_RATE};
+use firmware::display::PanelName;
+use firmware::graphics::Format;
 use firmware::scenes::{LEAST_ENERGY_ERROR, SceneName};
 use serde_json::{Value, json};
 
@@ -24,12 +26,18 @@ pub const FILE: &str = "double-pendulum.html";
 const TEMPLATE: &str = include_str!("../../../firmware/web/page.html");
 
 /// The processors that the page offers, each with its name in links (`#processor=m3`), a
-/// description, and its costs and budgets. The first one is the default. `cargo plan` has other
-/// names: this `m4f` is its `slow-m4f`, and `m0` is its `pico`.
+/// description, and its costs and budgets. The first one is the default.
 pub const PROCESSORS: [(&str, &str, Processor); 3] = [
+    ("pico", "Raspberry Pi Pico (Cortex-M0+)", CORTEX_M0PLUS),
     ("m3", "Cortex-M3 at 50 MHz", CORTEX_M3),
     ("m4f", "Cortex-M4F at 25 MHz", CORTEX_M4F),
-    ("m0", "Cortex-M0+ at 125 MHz", CORTEX_M0PLUS),
+];
+/// The panels that the page offers. The first one is the default.
+pub const PANELS: [PanelName; 4] = [
+    PanelName::Lcd13,
+    PanelName::Display2,
+    PanelName::Display,
+    PanelName::Oled,
 ];
 
 /// The options of Chromium without a window, also for root, without requests of its own, with a
@@ -151,6 +159,16 @@ fn facts() -> Value {
         "scenes": scenes.collect::<Vec<_>>(),
         "processors": PROCESSORS
             .map(|(name, text, chip)| json!({"name": name, "text": text, "code": chip.code})),
+        "panels": PANELS.map(|panel| {
+            let Format { width, height, .. } = panel.format();
+            json!({
+                "name": panel.name(),
+                "text": panel.text(),
+                "code": panel as usize,
+                "width": width,
+                "height": height,
+            })
+        }),
         "methods": Method::ALL.iter().map(named).collect::<Vec<_>>(),
         "drawn": Method::DRAWN.iter().map(named).collect::<Vec<_>>(),
         "massRatios": MASS_RATIOS.to_vec(),
