@@ -10,13 +10,15 @@ use std::io::{self, ErrorKind};
 use std::os::unix::process::{CommandExt, ExitStatusExt};
 use std::path::Path;
 use std::process::{Child, Command, ExitCode, ExitStatus, Stdio, exit};
-use std::sync::atomic::AtomicUsize;
+use std::sync::atomic::{AtomicBool, AtomicUsize};
 use std::sync::{Arc, Mutex, Once, PoisonError};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use signal_hook::consts::{SIGHUP, SIGINT, SIGKILL, SIGQUIT, SIGTERM};
-use signal_hook::flag::register_usize;
+use nix::sys::signal::{Signal, kill};
+use nix::unistd::Pid;
+use signal_hook::consts::{SIGCONT, SIGHUP, SIGINT, SIGKILL, SIGQUIT, SIGTERM};
+use signal_hook::flag::{register, register_usize};
 use signal_hook::iterator::Signals;
 
 use super::stream::{Stream, wait};
@@ -244,4 +246,17 @@ pub fn remove_on_interrupt(path: &Path) {
     on_interrupt(move || {
         drop(std::fs::remove_file(&path).or_else(|_| std::fs::remove_dir_all(path)))
     });
+}
+
+/// Stops this process and those that the shell started with it, as Ctrl-Z does. Returns when they
+/// are continued.
+pub fn suspend() -> io::Result<()> {
+    Ok(kill(Pid::from_raw(0), Signal::SIGTSTP)?)
+}
+
+/// Returns a variable that becomes true whenever this process is continued after it was stopped.
+pub fn continued() -> io::Result<Arc<AtomicBool>> {
+    let continued = Arc::default();
+    register(SIGCONT, Arc::clone(&continued))?;
+    Ok(continued)
 }

@@ -10,7 +10,8 @@ use indicatif::{MultiProgress, ProgressBar, ProgressStyle};
 
 use super::cli::complain;
 
-/// The seconds between two lines.
+/// The seconds before the first line, and between two lines.
+const FIRST: u64 = 5;
 const REMINDER: u64 = 15;
 /// The time between two pictures of the spinner.
 const TURN: Duration = Duration::from_millis(120);
@@ -39,8 +40,8 @@ pub struct Progress {
 
 impl Progress {
     /// Begins work of unknown length and announces it at once; `doing` names it. If standard error
-    /// is a terminal, it is a spinner that turns by itself. Elsewhere it is a line, which the first
-    /// call of [`Self::alive`] or [`Self::advance`] after every 15 s repeats with the time.
+    /// is a terminal, it is a spinner that turns by itself. Elsewhere it is a line, which calls of
+    /// [`Self::alive`] or [`Self::advance`] repeat with the time after 5 s, and then every 15 s.
     pub fn start(doing: &str) -> Self {
         let progress = Self::new(
             doing,
@@ -56,8 +57,9 @@ impl Progress {
     }
 
     /// Begins work with a known number of pieces, named `doing`. If standard error is a terminal,
-    /// it is a bar. Elsewhere nothing is printed at first; the first call of [`Self::advance`] or
-    /// [`Self::alive`] after every 15 s prints a line with the completed pieces and the time.
+    /// it is a bar. Elsewhere nothing is printed at first; calls of [`Self::advance`] or
+    /// [`Self::alive`] print a line with the completed pieces and the time after 5 s, and then every
+    /// 15 s.
     pub fn of(doing: &str, length: u64) -> Self {
         let style = "{prefix} {elapsed} {wide_bar} {pos}/{len}, {per_sec}, {eta} left";
         Self::new(doing, ProgressBar::new(length), style)
@@ -91,11 +93,11 @@ impl Progress {
         self.remind();
     }
 
-    /// Prints a line, if there is no terminal and the last line is 15 s old.
+    /// Prints a line if there is no terminal and one is due.
     fn remind(&self) {
         let bar = &self.bar;
         let seconds = bar.elapsed().as_secs();
-        let due = seconds / REMINDER;
+        let due = (seconds + REMINDER - FIRST) / REMINDER;
 
         // A hidden bar means that the output is no terminal. Its reminders are lines.
         if bar.is_hidden() && self.reminders.fetch_max(due, Ordering::Relaxed) < due {

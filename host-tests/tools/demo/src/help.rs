@@ -10,9 +10,9 @@ use super::options::{KEYS, scene_key};
 use super::readings::Help;
 
 /// The numbers in the terminal and on the panel, with their meanings.
-const NUMBERS: [(&str, &str); 10] = [
+const NUMBERS: [(&str, &str); 9] = [
     (
-        "½px>19.8 s on the panel",
+        "½px or ½ pixel, >19.8 s",
         "accurate to half a pixel until at least 19.8 s; without >: until then; ?: not known yet; \
          ok: for ever",
     ),
@@ -24,7 +24,6 @@ const NUMBERS: [(&str, &str); 10] = [
     ),
     ("frames/s", "frames in the last second; 60 are due"),
     ("dropped", "frames skipped because the board was busy"),
-    ("CRC errors", "messages damaged on the way"),
     (
         "energy error",
         "of the motion as computed, relative to the energy above hanging at rest; < 4e-15: too \

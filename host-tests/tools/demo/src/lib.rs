@@ -24,6 +24,7 @@ pub use panel::palette;
 pub use panel::played;
 pub use session::SPEEDS;
 
+use std::env;
 use std::io::{IsTerminal, stdin, stdout};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
@@ -66,7 +67,9 @@ const LIMIT: [f64; 2] = [60.0, 20.0];
 /// at a port does not begin the requested scene within 10 s, or sends no frame for 10 s after that.
 /// After an error there is no summary.
 pub fn run(options: &DemoOptions) -> anyhow::Result<bool> {
-    let is_live = !options.headless && stdout().is_terminal() && stdin().is_terminal();
+    let is_dumb = env::var_os("TERM").is_some_and(|name| name == "dumb");
+    let is_terminal = stdout().is_terminal() && stdin().is_terminal() && !is_dumb;
+    let is_live = !options.headless && is_terminal;
     // All options are checked before anything is built.
     options.check()?;
     let [record, screenshot] = [

@@ -1,14 +1,20 @@
 //! The live view in the terminal: the current panel, with the keys sent as commands.
 
-use std::io::stdout;
+use std::io::{self, stdout};
+use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 
 use firmware::config::TICK_RATE;
 use firmware::protocol::Command;
-use ratatui::DefaultTerminal;
 use ratatui::crossterm::event::{self, Event, KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
 use ratatui::crossterm::style::Colored;
+use ratatui::crossterm::terminal::{
+    Clear, ClearType, EnterAlternateScreen, LeaveAlternateScreen, disable_raw_mode,
+    enable_raw_mode, size,
+};
 use ratatui::crossterm::{cursor, execute};
+use ratatui::layout::Rect;
+use ratatui::{DefaultTerminal, TerminalOptions, Viewport};
 
 use super::options::scene_of_key;
 use super::readings::Help;
@@ -34,18 +40,54 @@ pub fn watch(session: &mut Session, seconds: f64) -> anyhow::Result<()> {
         // A failure cannot be reported any more.
         let _ = execute!(stdout(), cursor::Show);
     });
-    let terminal = ratatui::try_init()?;
-    let outcome = show(session, seconds, terminal);
+    let outcome = show(session, seconds, init()?);
     ratatui::try_restore()?;
     outcome
+}
+
+/// The size of a terminal that does not know its own, such as a serial console.
+const USUAL_SIZE: Rect = Rect::new(0, 0, 80, 24);
+
+/// Begins the view.
+fn init() -> io::Result<DefaultTerminal> {
+    if !matches!(size(), Ok((0, _) | (_, 0))) {
+        return ratatui::try_init();
+    }
+    let viewport = Viewport::Fixed(USUAL_SIZE);
+    let terminal = ratatui::try_init_with_options(TerminalOptions { viewport })?;
+    execute!(stdout(), EnterAlternateScreen, Clear(ClearType::All))?;
+    Ok(terminal)
+}
+
+/// Gives the terminal back to the shell until the process is continued.
+fn suspend() -> io::Result<()> {
+    execute!(stdout(), LeaveAlternateScreen, cursor::Show)?;
+    disable_raw_mode()?;
+    process::suspend()
+}
+
+/// Takes the terminal from the shell again, which may have changed its mode.
+fn resume(terminal: &mut DefaultTerminal) -> io::Result<()> {
+    disable_raw_mode()?;
+    enable_raw_mode()?;
+    execute!(stdout(), EnterAlternateScreen, Clear(ClearType::All))?;
+
+    // The next picture is drawn whole. `Terminal::clear` would ask the terminal for its cursor.
+    terminal.swap_buffers();
+    Ok(())
 }
 
 /// Draws and reads keys in a loop, until the time is over or the user quits.
 fn show(session: &mut Session, seconds: f64, mut terminal: DefaultTerminal) -> anyhow::Result<()> {
     let colours = !Colored::ansi_color_disabled();
+    let continued = process::continued()?;
     let mut is_due = false;
 
     while session.seconds() < seconds {
+        if continued.swap(false, Ordering::Relaxed) {
+            resume(&mut terminal)?;
+        }
+
         // The messages of one tick.
         let heard = Instant::now();
         session.hear()?;
@@ -73,6 +115,7 @@ fn show(session: &mut Session, seconds: f64, mut terminal: DefaultTerminal) -> a
             match action(key, session.readings.help) {
                 Action::Nothing => {}
                 Action::Quit => return Ok(()),
+                Action::Suspend => suspend()?,
                 Action::Help(page) => session.readings.help = page,
                 Action::Send(command) => session.command(command)?,
                 Action::Slower => session.change_speed(slower)?,
@@ -91,6 +134,8 @@ enum Action {
     Nothing,
     /// Ends the demo.
     Quit,
+    /// Stops the demo until the shell continues it.
+    Suspend,
     /// Shows this page of the help, or none.
     Help(Help),
     /// Sends this command to the board.
@@ -116,6 +161,7 @@ fn action(key: KeyEvent, help: Help) -> Action {
     // These keys have their effect on every page.
     match code {
         KeyCode::Char('c') if modifiers.contains(KeyModifiers::CONTROL) => return Action::Quit,
+        KeyCode::Char('z') if modifiers.contains(KeyModifiers::CONTROL) => return Action::Suspend,
         KeyCode::Char('?') => return Action::Help(help.next()),
         _ if help != Help::Hidden => return Action::Help(Help::Hidden),
         _ => {}

@@ -3,6 +3,7 @@
 
 use double_pendulum::State;
 use firmware::config::TICK_RATE;
+use firmware::motion::Horizon;
 use firmware::scenes::Report;
 use ratatui::Frame;
 use ratatui::layout::{Constraint, Layout, Rect};
@@ -72,7 +73,7 @@ fn rows(readings: &Readings) -> [(&'static str, String); 9] {
         ("angle 2", moves, format!("{angle_2:.1}°")),
         ("frames/s", is_shown, readings.rate().to_string()),
         ("dropped", is_shown, now.dropped.to_string()),
-        ("CRC errors", true, readings.counts.damaged.to_string()),
+        ("½ pixel", is_shown, horizon(now.report.horizon)),
         (
             "energy error",
             moves && !now.scene.is_linear(),
@@ -80,6 +81,16 @@ fn rows(readings: &Readings) -> [(&'static str, String); 9] {
         ),
     ];
     rows.map(|(name, is_known, value)| (name, if is_known { value } else { "-".to_owned() }))
+}
+
+/// Returns the accuracy horizon, which Braille makes unreadable on the panel itself.
+fn horizon(horizon: Horizon) -> String {
+    match horizon {
+        Horizon::Always => "-".to_owned(),
+        Horizon::Undecided => "?".to_owned(),
+        Horizon::AtLeast(time) => format!(">{time:.1} s"),
+        Horizon::Until(time) => format!("{time:.1} s"),
+    }
 }
 
 fn lines((name, value): (&'static str, String), width: usize) -> Vec<Line<'static>> {

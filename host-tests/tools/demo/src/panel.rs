@@ -24,9 +24,9 @@ use emulator::qemu::{HEIGHT, Screenshot, WIDTH};
 /// The smallest grey that is shown as a dot. Only the end of a fading trail is darker.
 const SET: u8 = 3;
 
-/// Draws the screenshot over the area: with a pixel in half a character if the area has at least
-/// as many columns, or else in Braille, without the three darkest greys, 0 to 2. The picture fills
-/// the area; its shape is right if a character shows as many rows as twice its columns.
+/// Draws the screenshot over the area: in squares of half characters if there are as many columns
+/// as pixels, or else in Braille, without the three darkest greys. The picture fills the area; its
+/// shape is right if a character shows as many rows as twice its columns.
 pub fn draw(frame: &mut Frame, area: Rect, screenshot: &Screenshot) {
     let width = usize::from(screenshot.format.width);
     // A terminal that is wide enough shows every pixel in its colour.
@@ -36,15 +36,25 @@ pub fn draw(frame: &mut Frame, area: Rect, screenshot: &Screenshot) {
     } else {
         Marker::Braille
     });
+
+    // The points of a pixel are the squares of half characters that it covers, at least one.
+    let scale = (usize::from(area.width) / width).max(1);
+    let height = usize::from(screenshot.format.height) * scale;
     let canvas = canvas
-        .x_bounds([0.0, width as f64 - 1.0])
-        .y_bounds([1.0 - f64::from(screenshot.format.height), 0.0]);
-    let place = |index: usize| ((index % width) as f64, -((index / width) as f64));
+        .x_bounds([0.0, (width * scale) as f64 - 1.0])
+        .y_bounds([1.0 - height as f64, 0.0]);
+    let points = |index: usize| {
+        let [left, top] = [index % width, index / width].map(|place| place * scale);
+        (0..scale * scale).map(move |part| {
+            let [x, y] = [left + part % scale, top + part / scale];
+            (x as f64, -(y as f64))
+        })
+    };
     let canvas = canvas.paint(|context| {
         if let Some(colours) = screenshot.colours.as_ref().filter(|_| in_colours) {
             for (index, [red, green, blue]) in colours.iter().map(|one| rgb(*one)).enumerate() {
                 context.draw(&Points {
-                    coords: &[place(index)],
+                    coords: &points(index).collect::<Vec<_>>(),
                     color: Color::Rgb(red, green, blue),
                 });
             }
@@ -57,7 +67,7 @@ pub fn draw(frame: &mut Frame, area: Rect, screenshot: &Screenshot) {
                 .iter()
                 .enumerate()
                 .filter(|(_, pixel)| **pixel == grey);
-            let coords: Vec<_> = lit.map(|(index, _)| place(index)).collect();
+            let coords: Vec<_> = lit.flat_map(|(index, _)| points(index)).collect();
             context.draw(&Points {
                 coords: &coords,
                 color: in_terminal(grey),

@@ -180,8 +180,8 @@ fn keys(width: u16) -> Vec<String> {
     rows_of(few.map(|place| KEYS[place]).collect())
 }
 
-/// Returns the width of the panel. A pixel is half a character if there are colours, or else a dot
-/// of a Braille pattern. If there is not enough room, it is the largest width that keeps the
+/// Returns the width of the panel. If there are colours, a pixel is half a character, or a square of
+/// several in a large terminal; else it is a dot of a Braille pattern. If there is not enough room, it is the largest width that keeps the
 /// panel's shape. Returns `None` if the terminal is too small.
 fn panel_width(area: Rect, colours: bool) -> Option<u16> {
     let columns = area.width.checked_sub(GAP + numbers::NARROWEST)?;
@@ -189,7 +189,7 @@ fn panel_width(area: Rect, colours: bool) -> Option<u16> {
     // The panel needs a quarter as many rows as columns, because a character is two pixels high.
     let most = columns.min(4 * rows);
     let best = if colours && most >= PIXELS {
-        PIXELS
+        most / PIXELS * PIXELS
     } else {
         BRAILLE
     };
@@ -322,6 +322,14 @@ mod tests {
             .chunks(usize::from(width))
             .map(|cells| row(cells).trim_end().to_owned() + "\n")
             .collect()
+    }
+
+    #[test]
+    fn panel_is_enlarged_in_whole_steps() {
+        let width = |columns, rows| panel_width(Rect::new(0, 0, columns, rows), true);
+        assert_eq!(width(80, 24), Some(64));
+        assert_eq!(width(150, 45), Some(128));
+        assert_eq!(width(300, 100), Some(256));
     }
 
     /// The terminal at six sizes, one of them too small, in scenes with and without a motion,
