@@ -54,9 +54,12 @@ pub struct CountOptions {
     /// The length of rod 2, m; rod 1 has 1 m
     #[arg(long, value_name = "M", default_value_t = 1.0)]
     l2: f64,
-    /// Both starting angles, rad; the start is at rest, and gravity is 9.81 m/s^2
-    #[arg(long, value_name = "RAD", default_value_t = 0.5)]
+    /// Both starting angles, rad (see --degrees); the start is at rest, and gravity is 9.81 m/s^2
+    #[arg(long, value_name = "A", default_value_t = 0.5)]
     angle: f64,
+    /// Read the angle in degrees
+    #[arg(long, requires = "angle")]
+    degrees: bool,
     /// The step is 1/2^K s
     #[arg(
         long,
@@ -144,7 +147,12 @@ impl CountOptions {
     /// Returns a request for each method whose name matches and that accepts this pendulum; at
     /// least one. The host checks this before anything is built or printed.
     fn requests(&self) -> anyhow::Result<Vec<Request>> {
-        let Self { m2, l2, angle, .. } = *self;
+        let Self { m2, l2, .. } = *self;
+        let angle = if self.degrees {
+            self.angle.to_radians()
+        } else {
+            self.angle
+        };
         let request = |method| Request {
             parameters: Parameters {
                 m1: 1.0,
@@ -207,11 +215,13 @@ impl CountOptions {
             l2,
             angle,
             halvings,
+            degrees,
             ..
         } = self;
+        let unit = if *degrees { "degrees" } else { "rad" };
         format!(
-            "one step of 2^-{halvings} s, averaged over the first steps from rest at {angle} rad; \
-             masses 1,{m2} kg, lengths 1,{l2} m, gravity {GRAVITY} m/s^2 (as an f32); \
+            "one step of 2^-{halvings} s, averaged over the first steps from rest at {angle} \
+             {unit}; masses 1,{m2} kg, lengths 1,{l2} m, gravity {GRAVITY} m/s^2 (as an f32); \
              instructions are counted"
         )
     }
