@@ -15,10 +15,9 @@ pub const TICK_RATE: u32 = 60;
 pub const STEPS_PER_TICK: u32 = 2;
 /// The length of a step at [`STEPS_PER_TICK`] steps per tick, s: 1/120.
 pub const DT: f64 = 1.0 / (TICK_RATE * STEPS_PER_TICK) as f64;
-/// The largest number of ticks of the clock that are completed before a frame is drawn. So a board
-/// that keeps up with the motion, but not with drawing every frame, still shows 60/15 = 4 frames
-/// per second. The other ticks are completed before the next frame; none is skipped. A board that
-/// needs more than 15/60 s for 15 ticks shows fewer frames, and falls behind without a limit.
+/// The largest number of ticks of the scene before a frame is drawn. So a board that keeps up with
+/// the motion, but not with drawing every frame, still shows 60/15 = 4 frames per second. The other
+/// ticks are completed before the next frame; none is skipped.
 pub const MOST_TICKS_PER_FRAME: u32 = 15;
 
 /// The time without a finished frame that counts as a hang, s. It is four times the time of the

@@ -142,10 +142,10 @@ exports! {
         });
         run(|app| pass(app, Command::Choose(SceneName::Page)))
     };
-    /// Runs the board to this tick of 1/60 s since the start, at most 15 ticks at once, and draws a
-    /// frame. The ticks that are left are run by the next call, also if its tick is the same; if
+    /// Runs the board to this tick of 1/60 s since the start, at most 15 ticks of the scene at once,
+    /// and draws a frame. The ticks that are left are run by the next call, also if its tick is the same; if
     /// none is left, no frame is drawn. The tick wraps at 2^32. It must not be less than that of
-    /// the call before: that counts as a wrap, and 15 ticks are run. Returns the length of the
+    /// the call before: that counts as a wrap. Returns the length of the
     /// readings ([`text`]), 0 if the board has not started.
     run_to(tick: u32) => run(|app| _ = app.run_to(tick, |_| ()));
     /// Sends the [`Command`] in the first `length` bytes at [`text`], as JSON, and replaces it by

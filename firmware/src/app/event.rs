@@ -46,6 +46,8 @@ pub enum Event<Panel, Link> {
     Asked,
     /// The scene's motion is too fast for this chip, or for the method that the user has selected.
     Stopped,
+    /// The board could not keep the speed, and has lowered it to this one.
+    Slowed(f32),
     /// The longest step that resolves every motion of that energy, s. The motion is computed all
     /// the same.
     StepTooLong(f64),

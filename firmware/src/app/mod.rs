@@ -10,8 +10,7 @@ mod warm_restart;
 use embedded_io::Write;
 
 use crate::config::{
-    DIM_TICKS, MOST_MEASURED_STEPS, MOST_MESSAGES_PER_TICK, MOST_TICKS_PER_FRAME, Processor,
-    RECEIVE_QUEUE,
+    DIM_TICKS, MOST_MEASURED_STEPS, MOST_MESSAGES_PER_TICK, Processor, RECEIVE_QUEUE,
 };
 use crate::display::{Display, PanelOptions};
 use crate::graphics::Canvas;
@@ -132,11 +131,13 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
     /// tick is left out, however late it is, so that the state after n ticks does not depend on the
     /// number of calls.
     ///
-    /// A call completes at most [`MOST_TICKS_PER_FRAME`] ticks; all but the last count as ticks
-    /// without a frame. Returns false if ticks are left.
+    /// A call advances the scene by at most [`MOST_TICKS_PER_FRAME`] ticks; all ticks of the clock
+    /// but the last count as ticks without a frame. Returns false if ticks are left.
+    ///
+    /// [`MOST_TICKS_PER_FRAME`]: crate::config::MOST_TICKS_PER_FRAME
     pub fn run_to(&mut self, clock: u32, mut log: impl Log<Panel, Link>) -> bool {
         let late = clock.wrapping_sub(self.ticks);
-        let ticks = late.min(MOST_TICKS_PER_FRAME);
+        let ticks = late.min(self.player.most_ticks());
         if ticks == 0 {
             return true;
         }
@@ -153,6 +154,7 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
                 total: self.dropped.total,
             });
         }
+        self.player.note_frame(ticks);
         if self.player.check() {
             log(Event::Stopped);
         }
@@ -162,6 +164,14 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
         self.show(scene_cycles, &mut log);
         self.busy_cycles = (self.instruments.stopwatch)().wrapping_sub(start);
         ticks == late
+    }
+
+    /// Lowers a speed above 1 that the board cannot keep. Only for a board: the frames of a browser
+    /// may be rare although it computes fast enough.
+    pub fn keep_pace(&mut self, mut log: impl Log<Panel, Link>) {
+        if let Some(speed) = self.player.lower_speed() {
+            log(Event::Slowed(speed));
+        }
     }
 
     /// Sends the last frame to the panel if it is still waiting for the bus and the bus is free.

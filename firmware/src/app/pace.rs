@@ -1,10 +1,12 @@
 //! The pace of a scene: at full speed, slower, faster, or step by step.
 
-use crate::config::GREATEST_SPEED;
+use crate::config::{GREATEST_SPEED, MOST_TICKS_PER_FRAME, TICK_RATE};
 use crate::protocol::Field;
 
 /// The number of parts of a tick. One part per tick is the smallest speed.
 const WHOLE_TICK: u32 = 100;
+/// The number of ticks without a frame that make a second of the clock late.
+const LATE: u32 = 4;
 
 /// The pace of a scene. The default is full speed, not paused.
 #[derive(Clone, Copy, Debug)]
@@ -19,6 +21,11 @@ pub struct Pace {
     speed: u32,
     /// The parts of the scene's next tick that have passed.
     part: u32,
+    /// The ticks of the present second of the clock, and those of them without a frame.
+    ticks: u32,
+    dropped: u32,
+    /// True if the second before was late.
+    was_late: bool,
 }
 
 impl Default for Pace {
@@ -28,6 +35,9 @@ impl Default for Pace {
             steps: 0,
             speed: WHOLE_TICK,
             part: 0,
+            ticks: 0,
+            dropped: 0,
+            was_late: false,
         }
     }
 }
@@ -52,6 +62,37 @@ impl Pace {
         let ticks = self.part / WHOLE_TICK;
         self.part %= WHOLE_TICK;
         ticks
+    }
+
+    /// Returns the largest number of ticks of the clock that a frame may complete, so that the scene
+    /// advances by [`MOST_TICKS_PER_FRAME`] at most.
+    pub fn most_ticks(&self) -> u32 {
+        MOST_TICKS_PER_FRAME / self.speed.div_ceil(WHOLE_TICK)
+    }
+
+    /// Notes a frame that completes this number of ticks of the clock.
+    pub fn note_frame(&mut self, ticks: u32) {
+        self.ticks = self.ticks.saturating_add(ticks);
+        self.dropped = self.dropped.saturating_add(ticks - 1);
+    }
+
+    /// Halves a speed above full speed, to full speed at least, after two late seconds in a row, and
+    /// returns the new one. After one, the board may only have to catch up, with the start of a
+    /// scene or with what a higher speed has left.
+    pub fn lower(&mut self) -> Option<f32> {
+        if self.ticks < TICK_RATE {
+            return None;
+        }
+
+        let is_late = self.dropped >= LATE;
+        let is_too_fast = is_late && self.was_late && self.speed > WHOLE_TICK && !self.paused;
+        self.ticks = 0;
+        self.dropped = 0;
+        self.was_late = is_late && !is_too_fast;
+        is_too_fast.then(|| {
+            self.speed = (self.speed / 2).max(WHOLE_TICK);
+            self.speed()
+        })
     }
 
     /// Sets the speed, simulated time per real time, rounded to the nearest hundredth, a half

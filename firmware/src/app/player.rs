@@ -407,6 +407,21 @@ impl<'a> Player<'a> {
         }
     }
 
+    /// Returns the largest number of ticks of the clock that a frame may complete.
+    pub(super) fn most_ticks(&self) -> u32 {
+        self.pace.most_ticks()
+    }
+
+    /// Notes a frame that completes this number of ticks of the clock.
+    pub(super) fn note_frame(&mut self, ticks: u32) {
+        self.pace.note_frame(ticks);
+    }
+
+    /// Lowers the speed if the last frames were late. Returns the new speed.
+    pub(super) fn lower_speed(&mut self) -> Option<f32> {
+        self.pace.lower()
+    }
+
     /// Returns true if the scene does not advance on its own: it is paused, also with ticks left of
     /// a [`Command::Step`], or stopped.
     pub fn is_still(&self) -> bool {

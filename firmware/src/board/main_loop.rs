@@ -148,6 +148,7 @@ fn run<Panel: Display<Error: fmt::Display>, Link: Write, Keys: Buttons>(
             if app.frames != before {
                 retained::keep(&journal.note(app.status(), app.player.report.step));
                 watchdog.feed();
+                app.keep_pace(log);
             }
 
             // Execute the commands of the host, also while the board is late.
@@ -253,6 +254,9 @@ fn log<Panel: fmt::Display, Link: Error>(event: Event<Panel, Link>) {
         }
         Event::Dropped { ticks, total } => {
             defmt::warn!("dropped {} frames, {} since reset", ticks, total)
+        }
+        Event::Slowed(speed) => {
+            defmt::warn!("speed lowered to {}: this board cannot keep up", speed)
         }
         Event::Panel(error) => defmt::warn!("panel: {}", Display2Format(&error)),
         Event::PanelFound(Found {

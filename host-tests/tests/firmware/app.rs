@@ -15,7 +15,7 @@ use firmware::config::{DIM_TICKS, GRAVITY, MOST_TICKS_PER_FRAME, ROD, TICK_RATE}
 use firmware::display::{Controller, Display, NoDisplay, PanelOptions, PanelReport};
 use firmware::graphics::{Canvas, Format, Place, RodDirections, View};
 use firmware::motion::Settings;
-use firmware::protocol::{Answer, Cause, Command, LinkError, Restarted, Status, ToHost};
+use firmware::protocol::{Answer, Cause, Command, Field, LinkError, Restarted, Status, ToHost};
 use firmware::scenes::{Report, SceneName};
 use host_tests::oracle::tolerances::ENERGY_SHOWN;
 
@@ -153,6 +153,39 @@ fn dropped_pictures_are_counted_and_no_tick_is_lost() {
             total: 57
         }]
     );
+}
+
+/// A board that draws every second tick at speed 4 halves the speed every two seconds, down to full
+/// speed; one that misses a tick in every 20 keeps it. No frame advances the scene by more than
+/// [`MOST_TICKS_PER_FRAME`] ticks, however late it is.
+#[test]
+fn a_speed_that_the_board_cannot_keep_is_lowered() {
+    for (drops_every, expected) in [(1, &[2.0, 1.0][..]), (20, &[])] {
+        let mut app = app();
+        app.player
+            .execute(Command::Set {
+                field: Field::Speed,
+                value: 4.0,
+            })
+            .expect("a possible speed");
+        let mut slowed = Vec::new();
+        let mut now = 0;
+        while now < 10 * TICK_RATE {
+            now += 1 + u32::from(now.is_multiple_of(drops_every));
+            assert!(app.run_to(now, |_| ()));
+            app.keep_pace(|event| slowed.push(event));
+        }
+        let expected: Vec<_> = expected.iter().map(|&speed| Event::Slowed(speed)).collect();
+        assert_eq!(slowed, expected);
+        assert_eq!(
+            app.player.status().speed,
+            if expected.is_empty() { 4.0 } else { 1.0 }
+        );
+
+        let before = app.player.report.step;
+        app.run_to(now + 1000, |_| ());
+        assert!(app.player.report.step - before <= MOST_TICKS_PER_FRAME.into());
+    }
 }
 
 /// One more received byte is lost in each of 120 ticks, and one message is damaged. The log has a

@@ -201,8 +201,10 @@ impl<'a> Session<'a> {
             self.begun.get_or_insert(now);
         }
 
-        // Once a second the state of a real board's panel is requested.
-        let is_time = self.source.is_port() && frame.sequence.is_multiple_of(TICK_RATE);
+        // Once a second the state of a real board's panel is requested, and the speed of a board
+        // that is late, which may have lowered it.
+        let is_asked = self.source.is_port() || frame.dropped > 0;
+        let is_time = is_asked && frame.sequence.is_multiple_of(TICK_RATE);
         if self.readings.frame(*frame) || is_time {
             self.ask()
         } else {
