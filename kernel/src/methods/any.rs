@@ -48,7 +48,6 @@ macro_rules! motions {
                             $crate::parts::start(parameters, start, dt).map(Self::$method)
                         }
                     )*
-                    #[allow(unreachable_patterns)]
                     method => Err($crate::Error::NotDrawn { method }),
                 }
             }
