@@ -17,9 +17,13 @@ use firmware::graphics::{Canvas, Format, Place, RodDirections, View};
 use firmware::motion::Settings;
 use firmware::protocol::{Answer, Cause, Command, Field, LinkError, Restarted, Status, ToHost};
 use firmware::scenes::{Report, SceneName};
-use host_tests::oracle::tolerances::ENERGY_SHOWN;
 
 use crate::bench::{Plain, app, frames, messages, of, starting_with, wire};
+
+/// The largest difference of the relative energy errors of a frame by the directions in 64 bits and
+/// by the angles: some roundings of `f64`. The rounded numbers are three times as large as the
+/// energy above rest, and the difference is relative to that energy.
+const ENERGY_SHOWN: f64 = 1e-14;
 
 /// Runs the application to each of the clock's readings (ticks) in turn, until it has caught up
 /// with each.

@@ -18,9 +18,12 @@ use firmware::motion::{Resources, Settings};
 use firmware::protocol::{Command, PlayState};
 use firmware::scenes::{AnyScene, Flips, Scene, SceneName};
 use host_tests::oracle::snapshot;
-use host_tests::oracle::tolerances::SHOWN_HEIGHT;
 
 use crate::bench::{app, blank, places, wire};
+
+/// The relative error of the height, pixels, for which a scene of beats is planned. The expected
+/// height follows from the length of its largest swing, 21.5 pixels, a number of three digits.
+const SHOWN_HEIGHT: f32 = 1e-3;
 
 const LINE: i32 = Format::OLED.line();
 const LOWEST: i32 = Format::OLED.lowest();

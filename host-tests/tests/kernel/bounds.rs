@@ -11,6 +11,17 @@ use host_tests::oracle::{random, tolerances};
 use reference::optimised::Step;
 use reference::taylor::Reference;
 
+/// The excess over the bounds from the energy along 100 steps of RK4, in which no rod turns by more
+/// than 0.05 rad each, relative to each bound: the energy error of the steps (measured: no excess
+/// at all).
+const BOUNDS_DRIFT: f64 = 1e-6;
+
+/// The error of one admissible step, divided by the fastest rate times dt, which is 1/4: rad in an
+/// angle, and in units of the fastest rate in a velocity. The first value is for RK4 in angles
+/// (`Pendulum::step`), the second for the direction form. They were measured for the worst motions
+/// that a search found over masses 1e-6..1e6 and lengths 1:100..100:1: 2.8e-5 and 7.7e-5.
+const ADMISSIBLE: [f64; 2] = [3e-5, 8e-5];
+
 fn shares<R: Real>(pendulum: &Pendulum<R>, bounds: &Bounds<R>, state: &State<R>) -> [f64; 7] {
     let motion = pendulum.to_motion(state);
     let [v1, v2] = pendulum
@@ -51,9 +62,7 @@ fn hold<R: Step>() -> Result<(), Error> {
         for _ in 0..100 {
             state = R::step(&pendulum, &state, dt);
             let shares = shares(&pendulum, &bounds, &state);
-            let are_kept = shares
-                .iter()
-                .all(|share| *share <= 1.0 + tolerances::BOUNDS_DRIFT);
+            let are_kept = shares.iter().all(|share| *share <= 1.0 + BOUNDS_DRIFT);
             assert!(
                 are_kept,
                 "{shares:?} for {:?} from {start:?}",
@@ -299,7 +308,7 @@ fn an_admissible_step_resolves_every_motion() -> Result<(), Error> {
         for (i, next) in after.iter().enumerate() {
             let miss = miss(&pendulum, &start, next, dt, rate) / (rate * dt);
             assert!(
-                miss <= tolerances::ADMISSIBLE[i],
+                miss <= ADMISSIBLE[i],
                 "form {i}: {miss:e} for {parameters:?} from {start:?}"
             );
             largest[i] = largest[i].max(miss);
@@ -307,7 +316,7 @@ fn an_admissible_step_resolves_every_motion() -> Result<(), Error> {
     }
 
     println!("classical step and direction form miss at most {largest:?}");
-    for (largest, allowed) in largest.into_iter().zip(tolerances::ADMISSIBLE) {
+    for (largest, allowed) in largest.into_iter().zip(ADMISSIBLE) {
         assert!(
             largest >= allowed / 3.0,
             "never above {largest:e}: the limit is timid"

@@ -7,8 +7,22 @@ use double_pendulum::parts::DirectionF64;
 use double_pendulum::{Error, Motion, Parameters};
 use fastrand::Rng;
 use host_tests::commands::flips::map::{FlipPair, Map};
-use host_tests::oracle::tolerances;
 use reference::taylor::Reference;
+
+/// The smallest share, of 1, of correct points in a map of flips with a limit of 10 sqrt(l/g),
+/// among the points that may turn over. A point is correct if it differs from far finer steps in
+/// `f64` by at most one grey level of the panel's map, which has 14 for the time of a flip.
+const FLIPS_RIGHT: f64 = 0.999;
+
+/// The largest share, of 1, of points that are wrong by more than a grey level, as in
+/// [`FLIPS_RIGHT`], but in a map with a limit of 100 sqrt(l/g), where chaos leaves fewer correct
+/// ones.
+const FLIPS_WRONG: f64 = 0.04;
+
+/// The largest share, of 1, of points that are wrong without being in doubt, among the points that
+/// may turn over, in a map with a limit of 100 sqrt(l/g). A point is in doubt if half the step
+/// changes it by more than a grey level.
+const FLIPS_UNSUSPECTED: f64 = 0.01;
 
 const FINER: u32 = 16;
 /// The time between two samples of the exact motion, sqrt(l1/g).
@@ -88,8 +102,7 @@ fn points_are_accurate_to_a_grey_level() -> Result<(), Error> {
     let [wrong, .., points] = judge(&short)?;
     println!("limit 10: {wrong} of {points} wrong");
     assert!(
-        (1000..1700).contains(&points)
-            && wrong as f64 <= (1.0 - tolerances::FLIPS_RIGHT) * points as f64,
+        (1000..1700).contains(&points) && wrong as f64 <= (1.0 - FLIPS_RIGHT) * points as f64,
         "{wrong} of {points}"
     );
 
@@ -114,11 +127,11 @@ fn most_wrong_points_are_in_doubt() -> Result<(), Error> {
     );
     assert!(wrong > 0 && doubtful > 0, "nothing is in doubt");
     assert!(
-        (wrong as f64) < tolerances::FLIPS_WRONG * points as f64,
+        (wrong as f64) < FLIPS_WRONG * points as f64,
         "{wrong} of {points}"
     );
     assert!(
-        unsuspected as f64 <= tolerances::FLIPS_UNSUSPECTED * points as f64,
+        unsuspected as f64 <= FLIPS_UNSUSPECTED * points as f64,
         "{unsuspected} of {points}"
     );
     Ok(())

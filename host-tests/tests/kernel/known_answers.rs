@@ -11,6 +11,13 @@ use rayon::prelude::*;
 use reference::taylor::Reference;
 use reference::twofloat::TwoFloat;
 
+/// The smallest number of rows of the table for which a method must have a tolerance below 1
+/// ([`known_answer`]), so that the test is meaningful. The other rows are chaotic.
+const KNOWN_ANSWERS_CLAIMED: tolerances::PerPrecision = tolerances::PerPrecision {
+    single: 36.0,
+    double: 45.0,
+};
+
 /// Returns the largest distance of a sine or cosine from the interval of the row's value.
 fn distance(row: &KnownAnswer, directions: [TwoFloat; 4]) -> f64 {
     let off = |i: usize| f64::from(directions[i] - row.directions[i]).abs() - row.radius[i];
@@ -87,7 +94,7 @@ fn keeps_its_budgets(rows: &[(KnownAnswer, Reference)], method: Method) {
     }
 
     println!("{method}: {tested}");
-    let claimed = tolerances::KNOWN_ANSWERS_CLAIMED.by(method);
+    let claimed = KNOWN_ANSWERS_CLAIMED.by(method);
     assert!(
         f64::from(tested) >= claimed,
         "{method}: only {tested} rows of the table have a budget below 1"

@@ -12,6 +12,40 @@ use reference::taylor::Reference;
 
 use super::hard_cases::HALVINGS;
 
+/// The error of the time when rod 1 of a pendulum that stood upright has fallen by a radian, s,
+/// compared with the reference: one sampling interval, 1/64 s, and RK4's error of the growth rate
+/// in steps of 2^-6 s.
+const FALL: f64 = 1.5 / 64.0;
+
+/// The error of the time for which plain sums of angles keep a pendulum upright, relative to the
+/// predicted time. The fall begins at a whole step, and the angular velocity is rounded.
+const STAYS: f64 = 0.05;
+
+/// Two limits of the largest angle of a swing from 1e-5 rad in steps 101 to 200, rad. It must be
+/// below the first in steps 2 % below the limit of stability, and above the second in steps 2 %
+/// above it: decayed and grown at least ten times (measured: to 6e-12 at most, to 7e-4 at least).
+const STABILITY_EDGE: [f64; 2] = [1e-6, 1e-4];
+
+/// The change of each angle, rad, and of each momentum, kg m^2/s, of a pendulum at rest in 10,000
+/// steps of 64-bit fixed point, in which numbers are rounded (measured 2.6e-13).
+const REST_OF_FIXED_64: f64 = 1e-12;
+
+/// Straight rods that turn evenly without gravity for 20 s: the error of the angles, rad, and that
+/// of the sum of the momenta, relative. In f32 the error comes from some 5000 steps of plain sums,
+/// each rounded. In f64 it is the direction form's own error, 6e-11 rad a second at 2 rad/s.
+const STRAIGHT: tolerances::PerPrecision = tolerances::PerPrecision {
+    single: 1e-3,
+    double: 2e-9,
+};
+
+/// The error of a tiny swing in the slow mode compared with the cosine, relative to the amplitude,
+/// in 10 s of steps of 1/256 s, in floating point: the roundings of 2560 plain sums. RK4's own
+/// error is 1e-9.
+const TINY: tolerances::PerPrecision = tolerances::PerPrecision {
+    single: 1e-3,
+    double: 1e-8,
+};
+
 /// Returns the parameters of rods of 1 m and bobs of 1 kg.
 fn even(gravity: f64) -> Parameters<f64> {
     Parameters::equal_rods(1.0, 1.0, gravity)
@@ -26,7 +60,7 @@ fn fall(mut angle: impl FnMut() -> f64) -> f64 {
 
 /// A pendulum starts upright, to the last digit of an angle. In the direction form in floating
 /// point it falls by a radian when the exact motion from this start does, to 1.5/64 s
-/// ([`tolerances::FALL`]), in steps from 2^-6 to 2^-13 s.
+/// ([`FALL`]), in steps from 2^-6 to 2^-13 s.
 ///
 /// In angles small increments are lost by rounding, which the next test covers. In fixed point a
 /// sine has too few digits.
@@ -66,7 +100,7 @@ fn upright_pendulum_falls_with_the_exact_motion_in_direction_form() -> Result<()
 
             let error = (falls - exact).abs();
             assert!(
-                error <= tolerances::FALL,
+                error <= FALL,
                 "{method}, 2^-{halvings} s: after {falls} s instead of {exact} s"
             );
         }
@@ -110,7 +144,7 @@ fn upright_pendulum_stays_for_the_predicted_time_in_plain_sums() -> Result<(), E
             }
             let stayed = f64::from(steps) * dt;
             assert!(
-                (stayed / stays - 1.0).abs() <= tolerances::STAYS,
+                (stayed / stays - 1.0).abs() <= STAYS,
                 "{method}: {stayed} s instead of {stays} s"
             );
         }
@@ -121,7 +155,7 @@ fn upright_pendulum_stays_for_the_predicted_time_in_plain_sums() -> Result<(), E
 
 /// A straight pendulum turns uniformly without gravity: a = a(0) + w t for 20 s, with whole turns.
 /// By each of the [`exact_methods`] the angles, rad, and the sum of the momenta, relative, may be
-/// wrong by 1e-3 in 32 bits and 2e-9 in 64 bits ([`tolerances::STRAIGHT`]).
+/// wrong by 1e-3 in 32 bits and 2e-9 in 64 bits ([`STRAIGHT`]).
 #[test]
 fn straight_rods_turn_uniformly_without_gravity() -> Result<(), Error> {
     let parameters = Parameters {
@@ -146,7 +180,7 @@ fn straight_rods_turn_uniformly_without_gravity() -> Result<(), Error> {
             let lost = ((p1 + p2) / (start.p1 + start.p2) - 1.0).abs();
             let worst = miss1.max(miss2).max(lost);
             assert!(
-                worst <= tolerances::STRAIGHT.by(method),
+                worst <= STRAIGHT.by(method),
                 "{method}: {worst:e} rad or relative after {seconds} s"
             );
         }
@@ -173,7 +207,7 @@ fn pendulum_at_rest_stays_at_rest() -> Result<(), Error> {
             let moved = (now.a1 - start.a1).abs().max((now.a2 - start.a2).abs());
             // Fixed point in 64 bits rounds the momenta in each step.
             let [angle, momentum] = match method.numbers() {
-                Numbers::Fixed64 => [tolerances::REST_OF_FIXED_64; 2],
+                Numbers::Fixed64 => [REST_OF_FIXED_64; 2],
                 _ if method.is_single() => [f32::EPSILON.into(), 0.0],
                 _ => [f64::EPSILON, 0.0],
             };
@@ -190,7 +224,7 @@ fn pendulum_at_rest_stays_at_rest() -> Result<(), Error> {
 }
 
 /// An oscillation whose squares all underflow is the linear one for 10 s, in floating point, to
-/// 1e-3 of its amplitude in `f32` and 1e-8 in `f64` ([`tolerances::TINY`]). An oscillation in
+/// 1e-3 of its amplitude in `f32` and 1e-8 in `f64` ([`TINY`]). An oscillation in
 /// subnormal numbers grows by no more than a factor of 1000 in 10,000 steps.
 #[test]
 fn tiny_oscillations_are_linear_and_subnormal_ones_stay_small() -> Result<(), Error> {
@@ -218,10 +252,7 @@ fn tiny_oscillations_are_linear_and_subnormal_ones_stay_small() -> Result<(), Er
             motion.advance(4)?;
             let expected = (slow.frequency * f64::from(step) / 64.0).cos();
             let miss = (motion.state().a1 / tiny - expected).abs();
-            assert!(
-                miss <= tolerances::TINY.by(method),
-                "{method}: {miss:e} at step {step}"
-            );
+            assert!(miss <= TINY.by(method), "{method}: {miss:e} at step {step}");
         }
 
         // The subnormal one loses all its digits, but does not grow.
@@ -245,7 +276,7 @@ fn tiny_oscillations_are_linear_and_subnormal_ones_stay_small() -> Result<(), Er
 
 /// The fast mode, from 1e-5 rad, decays in steps 2 % below the limit of RK4, by every RK4 method in
 /// floating point, and grows in steps 2 % above it, by `Pendulum::step`. The amplitude after 100 to
-/// 200 steps must be below 1e-6 rad and above 1e-4 rad ([`tolerances::STABILITY_EDGE`]).
+/// 200 steps must be below 1e-6 rad and above 1e-4 rad ([`STABILITY_EDGE`]).
 ///
 /// It grows by 15 % per step until its amplitude changes its frequency, which may be at less than
 /// 0.001 rad. Runs refuse such steps. `Modes::check_step` must accept the limit itself, and refuse
@@ -281,7 +312,7 @@ fn fast_mode_decays_below_the_step_limit_and_grows_above() -> Result<(), Error> 
             State::at_rest(SMALL, SMALL * shape)
         };
 
-        let [decayed, grown] = tolerances::STABILITY_EDGE;
+        let [decayed, grown] = STABILITY_EDGE;
         for method in exact_methods().filter(is_meant) {
             let mut motion = run(method, &parameters, &start, 0.98 * modes.step_limit())?;
             motion.advance(100)?;
