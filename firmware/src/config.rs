@@ -208,7 +208,7 @@ const FLOAT: FlipsPace = FlipsPace {
 /// The length of either rod at power-on, m, and in the initial settings of all scenes except
 /// `small-0.2`, `small-1` and `small-5`. It gives a period of about 2 s, which is pleasant to
 /// watch.
-pub const ROD: f32 = 1.0;
+pub const ROD: f64 = 1.0;
 /// The gravity in the initial settings of all scenes except those of [`PAGE_GRAVITY`], m/s^2. A
 /// command can change it.
 pub const GRAVITY: f64 = 9.81;
@@ -217,25 +217,25 @@ pub const GRAVITY: f64 = 9.81;
 pub const PAGE_GRAVITY: f64 = 9.8;
 /// The mass ratio mu = m2/m1 at power-on, with m1 = 1 kg. It is also in the initial settings of
 /// `page`, `frequencies`, `butterfly` and `flips`; the other scenes have their own.
-pub const FIRST_MASS_RATIO: f32 = 1.0;
+pub const FIRST_MASS_RATIO: f64 = 1.0;
 /// The start angle of both rods at power-on, degrees from the downward vertical. It is well in the
 /// chaotic regime. The scenes that share it are those of [`FIRST_MASS_RATIO`].
-pub const FIRST_ANGLE: f32 = 120.0;
+pub const FIRST_ANGLE: f64 = 120.0;
 /// The mass ratios that the buttons select, in ascending order.
 ///
 /// They are the Renard series R10 (ISO 3), which is geometric with the ratio 10^(1/10) = 1.26 and
 /// rounded so that every label is short. They cover two decades on either side of 1.
-pub const MASS_RATIOS: [f32; 41] = [
+pub const MASS_RATIOS: [f64; 41] = [
     0.01, 0.0125, 0.016, 0.02, 0.025, 0.0315, 0.04, 0.05, 0.063, 0.08, //
     0.1, 0.125, 0.16, 0.2, 0.25, 0.315, 0.4, 0.5, 0.63, 0.8, //
     1.0, 1.25, 1.6, 2.0, 2.5, 3.15, 4.0, 5.0, 6.3, 8.0, //
     10.0, 12.5, 16.0, 20.0, 25.0, 31.5, 40.0, 50.0, 63.0, 80.0, 100.0,
 ];
 /// The change of the start angle by a press of left or right, degrees. The panel shows whole ones.
-pub const ANGLE_STEP: f32 = 1.0;
+pub const ANGLE_STEP: f64 = 1.0;
 /// The largest start angle, degrees: straight up. The smallest is its negative. The buttons stop
 /// there, and commands refuse an angle beyond it.
-pub const GREATEST_ANGLE: f32 = 180.0;
+pub const GREATEST_ANGLE: f64 = 180.0;
 
 // ---- Buttons, in ticks of 1/60 s ----------------------------------------------------------------
 

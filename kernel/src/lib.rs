@@ -154,7 +154,7 @@ pub use methods::{
     ClosedFormF32, ClosedFormF64, DirectionF32, DirectionF32Plain, ExtrapolationF64, Fixed32,
     Fixed64, Form, HamiltonF32, HamiltonF64, Run, SmallOscillations, rk4,
 };
-pub use numbers::{Real, sin_cos};
+pub use numbers::{Real, radians, sin_cos};
 pub use pendulum::{Direction, Motion, Parameters, Pendulum, State, Vector};
 pub use small::{Mode, Modes, periodic_mass_ratio};
 pub use table::{Equations, FormVisitor, Integrator, Method, Numbers};

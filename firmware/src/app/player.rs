@@ -120,11 +120,14 @@ impl<'a> Player<'a> {
         };
         let height = self.scene.start(name, &settings, &resources)?;
 
+        // A pendulum that stands still needs no plan: its picture is right for ever. The linear
+        // motion may move where the exact one does not.
+        let stands = !name.is_linear() && settings.rests();
         self.name = name;
         self.settings = settings;
         self.motion = if self.scene.is_too_fast() {
             MotionState::Stopped
-        } else if method.is_some() {
+        } else if method.is_some() || stands {
             MotionState::KeepsMethod
         } else {
             MotionState::FollowsPlan
@@ -133,7 +136,7 @@ impl<'a> Player<'a> {
         // Start the planner with the method that the scene has chosen.
         let initial = self.scene.report(0).stepping;
         let keeps_initial = method.is_some() || self.scene.planned().is_none();
-        let height = height.filter(|_| !self.is_stopped());
+        let height = height.filter(|_| !self.is_stopped() && !stands);
         self.planner
             .start(&settings, height, initial, keeps_initial);
 
@@ -145,8 +148,7 @@ impl<'a> Player<'a> {
     /// Executes a command. Returns true if a scene was started, the same or another one; false for
     /// a change of pause or speed. A command that does not concern the player, such as
     /// [`Command::Ask`], does nothing, and the result is false. So does a turn of the start angles
-    /// in a scene that has none. Angles are in rad in [`Command::Set`], but in degrees in
-    /// [`Command::Play`].
+    /// in a scene that has none.
     ///
     /// If the command is impossible, nothing is changed, and the result is the field that is wrong:
     /// for [`Command::Set`] its own field, or [`Field::Field`] if that cannot be set; for
@@ -458,7 +460,7 @@ impl<'a> Player<'a> {
             scene: self.name,
             state: self.state(),
             mass_ratio: self.settings.mass_ratio(),
-            start_angle,
+            start_angle: start_angle as f32,
             report: self.report,
             ..Frame::default()
         }
@@ -542,7 +544,7 @@ impl<'a> Player<'a> {
         Ok(true)
     }
 
-    /// Returns the settings with one field changed to `value`, in SI units: of an angle in rad.
+    /// Returns the settings with one field changed to `value`, in the unit of the field.
     /// Refuses an angle that is beyond straight up or NaN, and a field that is not a setting. The
     /// angle that is not set is not checked.
     fn with(&self, field: Field, value: f64) -> Result<Settings, Field> {
@@ -552,10 +554,8 @@ impl<'a> Player<'a> {
             degrees: [a1, a2],
             velocities: [w1, w2],
         } = &mut settings;
-        let angle = value.to_degrees() as f32;
-        let value = value as f32;
         let is_angle = matches!(field, Field::A1 | Field::A2 | Field::Angle);
-        if is_angle && is_beyond(angle) {
+        if is_angle && is_beyond(value) {
             return Err(field);
         }
 
@@ -565,9 +565,9 @@ impl<'a> Player<'a> {
             Field::L1 => parameters.l1 = value,
             Field::L2 => parameters.l2 = value,
             Field::G => parameters.g = value,
-            Field::A1 => *a1 = angle,
-            Field::A2 => *a2 = angle,
-            Field::Angle => [*a1, *a2] = [angle; 2],
+            Field::A1 => *a1 = value,
+            Field::A2 => *a2 = value,
+            Field::Angle => [*a1, *a2] = [value; 2],
             Field::W1 => *w1 = value,
             Field::W2 => *w2 = value,
             Field::MassRatio => parameters.m2 = parameters.m1 * value,
@@ -587,6 +587,6 @@ fn in_range(settings: Settings) -> Result<Settings, Field> {
 }
 
 /// Returns true for an angle, degrees, that is beyond straight up or NaN.
-fn is_beyond(degrees: f32) -> bool {
+fn is_beyond(degrees: f64) -> bool {
     !(-GREATEST_ANGLE..=GREATEST_ANGLE).contains(&degrees)
 }

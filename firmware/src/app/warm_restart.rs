@@ -14,7 +14,7 @@ use crate::config::TICK_RATE;
 use crate::display::{BUILT_FOR, Controller};
 use crate::protocol::{Cause, Decoder, MAX_WIRE, Restarted, Status, encode, read};
 
-/// The memory for a retained record, 105 bytes ([`MAX_WIRE`]). Any contents are possible;
+/// The memory for a retained record, 141 bytes ([`MAX_WIRE`]). Any contents are possible;
 /// [`Record::read`] checks them.
 pub type Kept = [u8; MAX_WIRE];
 

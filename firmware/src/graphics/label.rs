@@ -24,7 +24,8 @@ pub fn mass_ratio(ratio: f32) -> Label {
 
 /// Returns a start angle, degrees, after its name: `α 120°`. It is rounded to one decimal if it is
 /// not a whole number of degrees: `α 12.5°`. NaN gives `0.0°`.
-pub fn degrees(name: &str, degrees: f32) -> Label {
+pub fn degrees(name: &str, degrees: f64) -> Label {
+    let degrees = degrees as f32;
     let decimals = if degrees == (degrees as i32) as f32 {
         0
     } else {

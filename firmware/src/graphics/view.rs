@@ -110,8 +110,8 @@ impl View {
     /// OLED, in proportion to the reach. No radius is less than [`LEAST_RADIUS`], 1.5 pixels,
     /// widened as the rods are. A ratio of masses that is NaN gives the least radius,
     /// and a rod length that is NaN the positions of [`turn`](Self::turn) for NaN.
-    pub fn new(parameters: &Parameters<f32>, place: Place, directions: RodDirections) -> Self {
-        let &Parameters { m1, m2, l1, l2, .. } = parameters;
+    pub fn new(parameters: &Parameters<f64>, place: Place, directions: RodDirections) -> Self {
+        let Parameters { m1, m2, l1, l2, .. } = parameters.cast::<f32>();
         let greatest = GREATEST_RADIUS * place.reach / REACH;
         let radius = |mass: f32| {
             let pixels = greatest * libm::cbrtf(mass / m1.max(m2));

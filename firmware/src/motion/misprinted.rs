@@ -60,21 +60,15 @@ impl Misprinted {
         &Parameters {
             m1, m2, l1: l, g, ..
         }: &Parameters<f32>,
-        start: &State<f32>,
+        start: &State<f64>,
     ) -> Self {
         // Everything is divided by m1 l^2 or by the length of the rods.
         let inertia = m1 * l * l;
         let (sin1, cos1) = sin_cos(start.a1);
-        let elbow = start.a1 - start.a2;
-        let (sin_d, cos_d) = sin_cos(elbow);
-        let z = [
-            sin1,
-            cos1,
-            sin_d,
-            cos_d,
-            start.p1 / inertia,
-            start.p2 / inertia,
-        ];
+        let (sin_d, cos_d) = sin_cos(start.a1 - start.a2);
+        let [sin1, cos1, sin_d, cos_d, p1, p2] =
+            [sin1, cos1, sin_d, cos_d, start.p1, start.p2].map(|number| number as f32);
+        let z = [sin1, cos1, sin_d, cos_d, p1 / inertia, p2 / inertia];
         Self {
             mass_ratio: m2 / m1,
             gravity: g / l,

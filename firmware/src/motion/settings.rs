@@ -1,7 +1,7 @@
 //! The settings of a motion: the pendulum and its start.
 
 use double_pendulum::plan::{PlannedRun, Problem, Stepping};
-use double_pendulum::{Error, Motion, Parameters, Pendulum, State};
+use double_pendulum::{Error, Motion, Parameters, Pendulum, State, radians};
 
 use crate::config::{
     ANGLE_STEP, FIRST_ANGLE, FIRST_MASS_RATIO, GRAVITY, GREATEST_ANGLE, HALF_PIXEL, MASS_RATIOS,
@@ -18,12 +18,12 @@ use crate::graphics::Format;
 #[cfg_attr(target_os = "none", derive(defmt::Format))]
 pub struct Settings {
     /// Masses (kg), lengths (m) and gravity (m/s^2).
-    pub parameters: Parameters<f32>,
+    pub parameters: Parameters<f64>,
     /// The start angles of rod 1 and rod 2, degrees from the downward vertical, positive
     /// counter-clockwise.
-    pub degrees: [f32; 2],
+    pub degrees: [f64; 2],
     /// The angular velocities of rod 1 and rod 2 at the start, rad/s.
-    pub velocities: [f32; 2],
+    pub velocities: [f64; 2],
 }
 
 impl Default for Settings {
@@ -36,8 +36,8 @@ impl Settings {
     /// Returns a pendulum with equal rods: rods of 1 m ([`ROD`]), a first bob of 1 kg, a gravity of
     /// 9.81 m/s^2 ([`GRAVITY`]), and the mass ratio m2/m1. Both rods are released from rest at the
     /// angle `degrees`.
-    pub fn equal_rods(mass_ratio: f32, degrees: f32) -> Self {
-        let parameters = Parameters::equal_rods(mass_ratio, ROD, GRAVITY as f32);
+    pub fn equal_rods(mass_ratio: f64, degrees: f64) -> Self {
+        let parameters = Parameters::equal_rods(mass_ratio, ROD, GRAVITY);
         Self {
             parameters,
             degrees: [degrees; 2],
@@ -47,12 +47,12 @@ impl Settings {
 
     /// Returns the mass ratio m2/m1. An m1 of 0 gives infinity or NaN.
     pub fn mass_ratio(&self) -> f32 {
-        self.parameters.mass_ratio()
+        self.parameters.mass_ratio() as f32
     }
 
     /// Returns the settings with the mass of bob 2 changed, so that the mass ratio m2/m1 is
     /// `mass_ratio`, which is not checked. An m1 of 0 gives an m2 of 0, and no such ratio.
-    pub fn with_mass_ratio(self, mass_ratio: f32) -> Self {
+    pub fn with_mass_ratio(self, mass_ratio: f64) -> Self {
         Self {
             parameters: Parameters {
                 m2: self.parameters.m1 * mass_ratio,
@@ -71,7 +71,7 @@ impl Settings {
             .iter()
             .copied()
             .map(|ratio| self.with_mass_ratio(ratio))
-            .find(|next| next.mass_ratio() > self.mass_ratio());
+            .find(|next| next.parameters.mass_ratio() > self.parameters.mass_ratio());
         next.unwrap_or(self)
     }
 
@@ -84,7 +84,7 @@ impl Settings {
             .copied()
             .rev()
             .map(|ratio| self.with_mass_ratio(ratio))
-            .find(|next| next.mass_ratio() < self.mass_ratio());
+            .find(|next| next.parameters.mass_ratio() < self.parameters.mass_ratio());
         next.unwrap_or(self)
     }
 
@@ -93,8 +93,8 @@ impl Settings {
     /// straight up, 180 or -180 degrees; an angle that is already beyond is moved there, also by 0
     /// steps. An angle that is NaN stays NaN.
     pub fn turned(self, steps: i8) -> Self {
-        let turn = |degrees: f32| {
-            (degrees + f32::from(steps) * ANGLE_STEP).clamp(-GREATEST_ANGLE, GREATEST_ANGLE)
+        let turn = |degrees: f64| {
+            (degrees + f64::from(steps) * ANGLE_STEP).clamp(-GREATEST_ANGLE, GREATEST_ANGLE)
         };
         Self {
             degrees: self.degrees.map(turn),
@@ -103,12 +103,12 @@ impl Settings {
     }
 
     /// Returns the start angles of rod 1 and rod 2, rad: pi/180 times the degrees.
-    pub fn angles(&self) -> [f32; 2] {
-        self.degrees.map(f32::to_radians)
+    pub fn angles(&self) -> [f64; 2] {
+        self.degrees.map(radians)
     }
 
     /// Returns the angles, rad, and the angular velocities, rad/s, at the start.
-    pub fn motion(&self) -> Motion<f32> {
+    pub fn motion(&self) -> Motion<f64> {
         let ([a1, a2], [w1, w2]) = (self.angles(), self.velocities);
         Motion { a1, a2, w1, w2 }
     }
@@ -120,7 +120,7 @@ impl Settings {
     ///
     /// Refuses masses, lengths and gravity that [`Pendulum::new`] refuses, and angles, velocities
     /// or resulting momenta that are not finite. Angles beyond straight up are accepted.
-    pub fn start(&self) -> Result<(Pendulum<f32>, State<f32>), Error> {
+    pub fn start(&self) -> Result<(Pendulum<f64>, State<f64>), Error> {
         let pendulum = Pendulum::new(&self.parameters)?;
         let motion = self.motion();
         motion.check()?;
@@ -129,15 +129,20 @@ impl Settings {
         Ok((pendulum, state))
     }
 
+    /// Returns true if the pendulum never moves from its start.
+    pub fn rests(&self) -> bool {
+        self.start()
+            .is_ok_and(|(pendulum, start)| pendulum.rests(&start))
+    }
+
     /// Returns the problem to plan for a display `height` pixels high, in whose half height both
     /// rods fit: a tolerance of half a pixel, in m, [`PLANNED`] seconds, 30, and [`TICK_RATE`]
     /// frames per second, 60. Angles are in rad there. Nothing is checked.
     pub fn problem(&self, height: f32) -> Problem {
-        let pendulum = self.parameters.cast();
         Problem {
-            pendulum,
-            start: self.motion().cast(),
-            tolerance: half_pixel(&pendulum, height.into()),
+            pendulum: self.parameters,
+            start: self.motion(),
+            tolerance: half_pixel(&self.parameters, height.into()),
             duration: PLANNED,
             rate: TICK_RATE as u16,
         }

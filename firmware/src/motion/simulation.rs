@@ -226,8 +226,8 @@ impl Energy {
     ///
     /// Refuses masses, lengths and gravity that [`Pendulum::new`] refuses.
     pub fn new(settings: &Settings) -> Result<Self, Error> {
-        let pendulum = Pendulum::new(&settings.parameters.cast())?;
-        let start = pendulum.energy_above_rest(&pendulum.to_state(&settings.motion().cast()));
+        let pendulum = Pendulum::new(&settings.parameters)?;
+        let start = pendulum.energy_above_rest(&pendulum.to_state(&settings.motion()));
         Ok(Self { pendulum, start })
     }
 

@@ -43,11 +43,7 @@ pub enum Command {
     /// It accepts `M1` to `W2`, `MassRatio` (by another m2), `Angle` (both start angles) and
     /// `Speed`, and refuses other fields with [`Field::Field`]. A value with which the scene cannot
     /// start is refused with its own field.
-    Set {
-        field: Field,
-        /// An angle is in rad, not in degrees. All but the speed are stored in `f32`.
-        value: f64,
-    },
+    Set { field: Field, value: f64 },
     /// Starts the scene again by this method and no other; `None` leaves the choice to the plan.
     /// Later starts use the method where they can, and otherwise follow their plan.
     ///
@@ -129,9 +125,9 @@ choice! {
         /// The length of rod 2, m.
         L2 = "l2";
         G = "g";
-        /// The start angle of rod 1, rad.
+        /// The start angle of rod 1, degrees.
         A1 = "a1";
-        /// The start angle of rod 2, rad.
+        /// The start angle of rod 2, degrees.
         A2 = "a2";
         /// The angular velocity of rod 1 at the start, rad/s.
         W1 = "w1";
@@ -140,7 +136,7 @@ choice! {
         /// The step size, s, and every error of a motion that is about no other field.
         Dt = "step size";
         MassRatio = "mu";
-        /// The start angle of both rods, rad.
+        /// The start angle of both rods, degrees.
         Angle = "angle";
         Speed = "speed";
         Field = "field";

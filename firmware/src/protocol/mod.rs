@@ -34,9 +34,9 @@ pub use to_host::{
 };
 
 /// The version of the protocol: the first byte of every message. A receiver refuses any other.
-pub const VERSION: u8 = 13;
+pub const VERSION: u8 = 14;
 /// The largest size of a message without version and CRC, bytes.
-pub const MAX_MESSAGE: usize = 97;
+pub const MAX_MESSAGE: usize = 133;
 /// The largest size of a message before framing, with version and CRC, bytes.
 const MAX_BODY: usize = 1 + MAX_MESSAGE + 4;
 /// The largest size of a message on the wire. Version and CRC add five bytes, COBS adds one,

@@ -107,7 +107,7 @@ impl ToHost {
 /// COBS then replaces the zeros, and a zero before and after marks the ends
 /// ([`encode`](super::encode)): at most 94 bytes in all. `report` is a [`Report`].
 ///
-/// The numbers of all kinds are in `wire-13.txt` in this folder (test `link`). To add a field:
+/// The numbers of all kinds are in `wire-14.txt` in this folder (test `link`). To add a field:
 ///
 /// 1. Add it here, and to `Player::frame`. If only the board knows it, such as its cycles, add it
 ///    to `App::show`, and to `Show::expected` of the host's emulator.

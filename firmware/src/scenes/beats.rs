@@ -15,7 +15,7 @@ const HALF_WIDTH: i32 = 18;
 const SPOT_RADIUS: i32 = 60;
 const GAP: i32 = 6;
 /// The amplitude of angle 2 in each mode, degrees.
-const AMPLITUDE: f32 = 12.0;
+const AMPLITUDE: f64 = 12.0;
 
 /// Returns the settings of equal rods of 1 m, m1 = 1 kg and mass ratio m2/m1 at 9.81 m/s^2. Both
 /// modes have the same amplitude of angle 2, 12 degrees. The slow mode starts at its turning point,
@@ -24,12 +24,11 @@ const AMPLITUDE: f32 = 12.0;
 /// the catalogue.
 ///
 /// Not checked: the mass ratio is positive and finite. Otherwise numbers may be infinite or NaN.
-pub fn closing(mass_ratio: f32) -> Settings {
-    let gravity = GRAVITY as f32;
-    let parameters = Parameters::equal_rods(mass_ratio, ROD, gravity);
-    let shape = libm::sqrtf((1.0 + mass_ratio) / mass_ratio);
-    let root = libm::sqrtf((1.0 + mass_ratio) * mass_ratio);
-    let fast = libm::sqrtf(gravity / ROD * (1.0 + mass_ratio + root));
+pub fn closing(mass_ratio: f64) -> Settings {
+    let parameters = Parameters::equal_rods(mass_ratio, ROD, GRAVITY);
+    let shape = libm::sqrt((1.0 + mass_ratio) / mass_ratio);
+    let root = libm::sqrt((1.0 + mass_ratio) * mass_ratio);
+    let fast = libm::sqrt(GRAVITY / ROD * (1.0 + mass_ratio + root));
     let velocity = fast * AMPLITUDE.to_radians();
     Settings {
         parameters,
@@ -143,8 +142,8 @@ impl Scene for Beats {
         let simulation = Simulation::new(settings, resources)?;
 
         // Scale the larger amplitude to the figure.
-        let modes = Modes::new(&settings.parameters.cast())?;
-        let linear = SmallOscillations::new(modes, &settings.motion());
+        let modes = Modes::new(&settings.parameters)?;
+        let linear = SmallOscillations::<f32>::new(modes, &settings.motion().cast());
         let shape = [modes.fast.shape, modes.slow.shape].map(|shape| shape as f32);
         let [fast, slow] = linear.amplitudes();
         let greatest = (fast * shape[0].abs()).max(slow * shape[1].abs());

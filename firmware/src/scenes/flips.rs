@@ -178,7 +178,7 @@ impl Flips {
         format: Format,
     ) -> Result<Self, Error> {
         // The search lasts for a fixed number of units of time.
-        let parameters = &settings.parameters;
+        let parameters = &settings.parameters.cast();
         let unit = libm::sqrtf(parameters.l1 / parameters.g);
         let dt = step_size(parameters)?;
         let steps = (LIMIT * unit / dt as f32) as u32;

@@ -2,15 +2,15 @@
 //!
 //! - `page`: the animation of the page;
 //! - `figure-7`: the page's chaotic motion, by the correct equations and by the misprinted ones;
-//! - `upright`: both rods start at exactly 180 degrees, where the pendulum would remain for ever if
-//!   the number pi could be represented exactly.
+//! - `upright`: both rods start at the `f32` nearest to pi, 180.000005 degrees. At 180 degrees the
+//!   pendulum would stand for ever.
 
 use double_pendulum::plan::Stepping;
 use double_pendulum::{DirectionF32, Error, Method, Parameters, Pendulum, Run, State, sin_cos};
 
 use crate::config::{
-    HALF_PIXEL, PAGE_GRAVITY, Processor, STEPS_PER_TICK, TICK_RATE, TRAIL_BRIGHTNESS, TRAIL_FADING,
-    TRAIL_HALF_WIDTH,
+    GREATEST_ANGLE, HALF_PIXEL, PAGE_GRAVITY, Processor, STEPS_PER_TICK, TICK_RATE,
+    TRAIL_BRIGHTNESS, TRAIL_FADING, TRAIL_HALF_WIDTH,
 };
 use crate::graphics::{
     Anchor, Canvas, Fading, Format, Place, RodDirections, SUBPIXELS, TRACE_HALF_WIDTH, View, label,
@@ -169,7 +169,7 @@ impl Halves {
 /// The page gives no more. The gravity, 9.8 m/s^2, is from its worked example. The rods are 1 m
 /// long, and bob 1 has 1 kg.
 pub fn figure_7() -> Settings {
-    let parameters = Parameters::equal_rods(2.75, 1.0, PAGE_GRAVITY as f32);
+    let parameters = Parameters::equal_rods(2.75, 1.0, PAGE_GRAVITY);
     Settings {
         parameters,
         degrees: [171.0; 2],
@@ -195,15 +195,12 @@ impl Scene for Figure7 {
     fn new(settings: &Settings, resources: &Resources) -> Result<(Self, Option<f32>), Error> {
         let &Parameters { l1, l2, .. } = &settings.parameters;
         if l1 != l2 {
-            return Err(Error::UnequalRods {
-                l1: l1.into(),
-                l2: l2.into(),
-            });
+            return Err(Error::UnequalRods { l1, l2 });
         }
 
-        // Both motions start from the same state, in its rounded numbers.
         let right = Simulation::new(settings, resources)?;
-        let misprinted = Misprinted::new(&settings.parameters, &right.motion.rounded_state());
+        let (_, start) = settings.start()?;
+        let misprinted = Misprinted::new(&settings.parameters.cast(), &start);
         let halves = Halves::new(
             settings,
             [right.motion.directions(), misprinted.directions()],
@@ -281,6 +278,8 @@ pub struct Upright {
     /// The motion in 64 bits.
     exact: Simulation,
     halves: Halves,
+    /// True if the start is the scene's own, the `f32` nearest to pi.
+    is_pi: bool,
     horizon: Horizon,
 }
 
@@ -319,7 +318,17 @@ impl Scene for Upright {
     const SHOWS: Shows = Shows::Motion;
     #[inline(never)] // As for the butterfly, and 716 bytes of flash (M3).
     fn new(settings: &Settings, resources: &Resources) -> Result<(Self, Option<f32>), Error> {
-        let (pendulum, plain) = settings.start()?;
+        let is_pi = settings.degrees.map(f64::abs) == [GREATEST_ANGLE; 2];
+        // Both motions in `f32` and the one in 64 bits start from the angles nearest in `f32`.
+        let settings = &Settings {
+            degrees: settings
+                .angles()
+                .map(|angle| f64::from(angle as f32).to_degrees()),
+            ..*settings
+        };
+        let (_, start) = settings.start()?;
+        let plain = start.cast();
+        let pendulum = Pendulum::new(&settings.parameters.cast())?;
 
         // RK4 with the step count that a search would try first, and at least the one at power-on.
         let steps = Stepping::of(
@@ -359,6 +368,7 @@ impl Scene for Upright {
             steps,
             exact,
             halves,
+            is_pi,
             horizon: Horizon::AtLeast(0.0),
         };
         Ok((scene, None))
@@ -392,6 +402,14 @@ impl Scene for Upright {
     fn draw(&self, report: &Report, canvas: &mut Canvas) {
         let names = ["plain", "compensated"];
         self.halves.draw(names, false, report, canvas);
+        if self.is_pi {
+            // Between the two names.
+            text::write(
+                canvas,
+                "f32 pi",
+                Anchor::At(i32::from(9 * canvas.format.width / 32), 0),
+            );
+        }
     }
 
     fn report(&self, ticks: u64) -> Report {

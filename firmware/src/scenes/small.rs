@@ -52,8 +52,8 @@ const CLOSED_FORM: Stepping = Stepping {
 
 /// Returns the worked example of the page: equal rods of 0.25 m, m1 = 1 kg, g = 9.8 m/s^2, a1 = 0,
 /// a2 = 30 degrees, released from rest, with the mass ratio m2/m1, which is not checked.
-pub fn example(mass_ratio: f32) -> Settings {
-    let parameters = Parameters::equal_rods(mass_ratio, 0.25, PAGE_GRAVITY as f32);
+pub fn example(mass_ratio: f64) -> Settings {
+    let parameters = Parameters::equal_rods(mass_ratio, 0.25, PAGE_GRAVITY);
     Settings {
         parameters,
         degrees: [0.0, 30.0],
@@ -170,9 +170,10 @@ impl Scene for Small {
     const FADING: Fading = Fading::NEVER;
 
     fn new(settings: &Settings, resources: &Resources) -> Result<(Self, Option<f32>), Error> {
-        let (pendulum, _) = settings.start()?;
-        let modes = Modes::new(&settings.parameters.cast())?;
-        let motion = SmallOscillations::new(modes, &settings.motion());
+        settings.start()?;
+        let pendulum = Pendulum::new(&settings.parameters.cast())?;
+        let modes = Modes::new(&settings.parameters)?;
+        let motion = SmallOscillations::<f32>::new(modes, &settings.motion().cast());
 
         // The amplitudes, and the largest value of an angle, rad.
         let [c1, c2] = motion.amplitudes();

@@ -10,7 +10,7 @@
 
 use double_pendulum::{Motion, Parameters, State};
 use twofloat::TwoFloat;
-use twofloat::consts::{FRAC_PI_2, PI};
+use twofloat::consts::FRAC_PI_2;
 
 use super::enclosure::Start;
 
@@ -42,15 +42,22 @@ pub struct Reference {
 }
 
 impl Reference {
-    /// Starts at time 0 from `motion`. Every `f64` is taken as exact.
+    /// Starts at time 0 from `motion`. Every `f64` is taken as exact, but for angles that the kernel
+    /// takes as quarter turns (`double_pendulum::radians`).
     pub fn new(parameters: &Parameters<f64>, motion: &Motion<f64>) -> Self {
         let &Parameters { m1, m2, l1, l2, g } = parameters;
         let &Motion { a1, a2, w1, w2 } = motion;
         let [m1, m2, l1, l2, g] = [m1, m2, l1, l2, g].map(TwoFloat::from);
-        Self::exact(
-            Parameters { m1, m2, l1, l2, g },
-            [a1, a2, w1, w2].map(TwoFloat::from),
-        )
+        let [a1, a2] = [a1, a2].map(|angle| {
+            let quarters = (angle / f64::from(FRAC_PI_2)).round();
+            if quarters * f64::from(FRAC_PI_2) == angle {
+                FRAC_PI_2 * quarters
+            } else {
+                TwoFloat::from(angle)
+            }
+        });
+        let [w1, w2] = [w1, w2].map(TwoFloat::from);
+        Self::exact(Parameters { m1, m2, l1, l2, g }, [a1, a2, w1, w2])
     }
 
     /// Starts from numbers of full precision: a1, a2 (rad), w1, w2 (rad/s).
@@ -76,7 +83,12 @@ impl Reference {
         let [a1, a2, w1, w2, m1, m2, l1, l2, g] =
             fractions.map(|(above, below)| divide(TwoFloat::from(above), TwoFloat::from(below)));
         let radians = |x: TwoFloat, degrees: bool| {
-            if degrees { x * PI / 180.0 } else { x }
+            // Exact at quarter turns.
+            if degrees {
+                divide(x, TwoFloat::from(90.0)) * FRAC_PI_2
+            } else {
+                x
+            }
         };
         let [in_degrees, per_second] = start.degrees;
         let [a1, a2] = [a1, a2].map(|a| radians(a, in_degrees));

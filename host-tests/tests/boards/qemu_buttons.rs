@@ -38,10 +38,10 @@ fn choose_and_restart(board: &Board) -> anyhow::Result<()> {
     let place = |frame: &Frame| {
         MASS_RATIOS
             .iter()
-            .position(|ratio| *ratio == frame.mass_ratio)
+            .position(|ratio| *ratio as f32 == frame.mass_ratio)
             .expect("one of them")
     };
-    let degrees = |frame: &Frame| frame.start_angle.to_degrees().round();
+    let degrees = |frame: &Frame| f64::from(frame.start_angle).to_degrees().round();
 
     // Up and down change the mass ratio, left and right the start angle.
     for (key, ratios, turn) in [

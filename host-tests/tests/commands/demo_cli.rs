@@ -1,6 +1,6 @@
 //! `cargo demo` as a process: exit codes, summary, and the files it saves.
 
-use std::f32::consts::PI;
+use std::f64::consts::PI;
 use std::fs::File;
 use std::io::BufReader;
 use std::path::{Path, PathBuf};

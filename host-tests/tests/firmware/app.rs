@@ -5,7 +5,7 @@ use std::convert::Infallible;
 use std::sync::atomic::{AtomicU32, Ordering};
 
 use double_pendulum::plan::Stepping;
-use double_pendulum::{Method, Parameters, Pendulum, State};
+use double_pendulum::{Method, Parameters, Pendulum, State, radians};
 use embedded_io::{ErrorKind, ErrorType, Write};
 use emulator::host::Show;
 use emulator::link::Inbox;
@@ -63,10 +63,10 @@ fn every_frame_carries_the_kernels_state_bit_identically() {
     assert_eq!(frames.len(), 600);
 
     // The expected motion by the kernel alone.
-    let parameters = Parameters::equal_rods(1.0, ROD, GRAVITY as f32).cast::<f64>();
+    let parameters = Parameters::equal_rods(1.0, ROD, GRAVITY);
     let pendulum = Pendulum::new(&parameters).expect("good");
-    let start_angle = 120.0_f32.to_radians();
-    let start = State::at_rest(start_angle, start_angle).cast();
+    let start_angle = radians(120.0);
+    let start = State::at_rest(start_angle, start_angle);
     let start_energy = pendulum.energy(&start);
     let scale = start_energy - pendulum.least_energy();
     let stepping = Stepping {
@@ -95,7 +95,10 @@ fn every_frame_carries_the_kernels_state_bit_identically() {
             (sequence, 0, u64::from(sequence) + 1)
         );
         assert_eq!(time, f64::from(sequence + 1) / 60.0);
-        assert_eq!((frame.mass_ratio, frame.start_angle), (1.0, start_angle));
+        assert_eq!(
+            (frame.mass_ratio, frame.start_angle),
+            (1.0, start_angle as f32)
+        );
 
         // This is the error of the computed motion. The state in the frame, rounded to f32, has an
         // error of some 1e-7.

@@ -167,7 +167,7 @@ fn printed_form_is_shown_only_while_it_is_resolved() {
         };
         // The scene's own motion, and the same equations in `f64` with finer steps.
         let (_, start) = settings.start().expect("good settings");
-        let mut shown = Misprinted::new(&settings.parameters, &start);
+        let mut shown = Misprinted::new(&settings.parameters.cast(), &start);
         let parameters = settings.parameters.cast::<f64>();
         let pendulum = Pendulum::new(&parameters).expect("good settings");
         let span = -2.0 * pendulum.least_energy();
@@ -176,7 +176,7 @@ fn printed_form_is_shown_only_while_it_is_resolved() {
             shown.tick();
             for _ in 0..STEPS_PER_TICK {
                 let rhs = |z: &[f64; 4]| {
-                    textbook::misprinted_equal_rods(mass_ratio.into(), 1.0, parameters.g, z)
+                    textbook::misprinted_equal_rods(mass_ratio, 1.0, parameters.g, z)
                 };
                 z = rk4::step(rhs, &z, 1.0 / (TICK_RATE as usize * STEPS_PER_TICK) as f64);
             }
@@ -202,8 +202,8 @@ fn printed_form_is_shown_only_while_it_is_resolved() {
         }
     }
 
-    let least = lost.iter().copied().fold(f32::INFINITY, f32::min);
-    assert!(lost.len() > 10 && least > MU as f32, "{lost:?}");
+    let least = lost.iter().copied().fold(f64::INFINITY, f64::min);
+    assert!(lost.len() > 10 && least > MU, "{lost:?}");
 }
 
 /// A motion without gravity whose rods turn together is lost in the first tick if they turn by more
@@ -221,7 +221,15 @@ fn a_motion_is_lost_when_its_rods_turn_too_far_in_the_shortest_step() {
             let [p1, p2] = momenta.map(|p| p * share * most);
             let [a1, a2] = [0.3; 2];
             let parameters = Parameters::equal_rods(mass_ratio, 1.0, 0.0);
-            let mut shown = Misprinted::new(&parameters, &State { a1, a2, p1, p2 });
+            let mut shown = Misprinted::new(
+                &parameters,
+                &State {
+                    a1,
+                    a2,
+                    p1: p1.into(),
+                    p2: p2.into(),
+                },
+            );
             shown.tick();
             assert_eq!(shown.is_lost(), share.abs() > 1.0, "{mass_ratio}, {share}");
         }
@@ -272,7 +280,7 @@ fn a_lost_motion_tries_no_other_step() {
 fn figure_7_shows_the_printed_form_for_ten_minutes() {
     let settings = SceneName::Figure7.first_settings();
     let (_, start) = settings.start().expect("good settings");
-    let mut shown = Misprinted::new(&settings.parameters, &start);
+    let mut shown = Misprinted::new(&settings.parameters.cast(), &start);
     for tick in 0..600 * TICK_RATE {
         shown.tick();
         assert!(!shown.is_lost(), "tick {tick}");
@@ -306,7 +314,7 @@ fn a_diverged_motion_is_not_drawn() {
 fn the_printed_form_is_shown_right_to_half_a_pixel_for_10_s() {
     const STEPS_PER_TICK: usize = 64;
     let (pendulum, start) = figure_7();
-    let mut shown = Misprinted::new(&pendulum.parameters().cast(), &start.cast());
+    let mut shown = Misprinted::new(&pendulum.parameters().cast(), &start);
     let view = View::new(
         &pendulum.parameters().cast(),
         Place::halves(Format::OLED)[1],

@@ -32,7 +32,7 @@ struct Case {
 impl Case {
     /// Returns the scene with this mass ratio, and with both rods turned so that rod 2 starts at
     /// `degrees`.
-    fn new(name: SceneName, mass_ratio: f32, degrees: f32) -> Self {
+    fn new(name: SceneName, mass_ratio: f64, degrees: f64) -> Self {
         let first = name.first_settings();
         let turn = degrees - first.degrees[1];
         let settings = Settings {
@@ -164,7 +164,7 @@ fn in_modes(parameters: &Parameters<f64>, [a1, a2]: [f64; 2]) -> [f64; 2] {
 /// amplitudes of both modes allow is drawn 10.5 pixels high.
 fn curve_scale(settings: &Settings) -> f64 {
     let modes = Modes::new(&settings.parameters.cast()).expect("good settings");
-    let motion = SmallOscillations::<f32>::new(modes, &settings.motion());
+    let motion = SmallOscillations::<f32>::new(modes, &settings.motion().cast());
     let [fast, slow] = motion.amplitudes().map(f64::from);
     let greatest = (fast + slow).max(modes.fast.shape.abs() * fast + modes.slow.shape.abs() * slow);
     10.5 / greatest
@@ -205,8 +205,12 @@ fn faults(case: &Case) -> Vec<(Case, u8, Fault)> {
 
     // The exact motion, as long as any processor claims accurate frames.
     let frames = shown.iter().map(Shown::claimed_frames).max().unwrap_or(0);
-    let start = case.settings.motion().cast();
-    let mut reference = Reference::new(&case.settings.parameters.cast(), &start);
+    let mut start = case.settings.motion();
+    if case.name == SceneName::Upright {
+        // The scene shows `f32`.
+        [start.a1, start.a2] = start.angles().map(|angle| f64::from(angle as f32));
+    }
+    let mut reference = Reference::new(&case.settings.parameters, &start);
     let exact: Vec<_> = (1..=frames)
         .map(|frame| {
             reference.advance_to(frame as f64 / f64::from(TICK_RATE));
@@ -331,8 +335,8 @@ fn settings_of_all_kinds_are_shown_as_claimed() {
 }
 
 /// Returns every 15th degree, and the neighbours of 0 and 180.
-fn some_degrees() -> Vec<f32> {
-    let every_15th = (-12..=12).map(|turn| 15.0 * turn as f32);
+fn some_degrees() -> Vec<f64> {
+    let every_15th = (-12..=12).map(|turn| 15.0 * f64::from(turn));
     every_15th.chain([-179.0, -1.0, 1.0, 179.0]).collect()
 }
 
@@ -365,7 +369,7 @@ fn all_mass_ratios_and_degrees_of_the_page_are_shown_as_claimed() {
     let mut cases = Vec::new();
     for ratio in MASS_RATIOS {
         for degrees in -180..=180 {
-            cases.push(Case::new(SceneName::Page, ratio, degrees as f32));
+            cases.push(Case::new(SceneName::Page, ratio, degrees.into()));
         }
     }
     sweep(&cases);

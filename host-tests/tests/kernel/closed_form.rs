@@ -62,8 +62,7 @@ fn frequencies(mass_ratio: f64, gravity: f64, rod: f64) -> [f64; 2] {
 fn small_oscillation_scenes_follow_the_formulas_for_an_hour() {
     for (name, mass_ratio) in SMALL {
         let mut scene = show(name);
-        let [mass_ratio, gravity] = [mass_ratio, 9.8].map(|number| f64::from(number as f32));
-        let [w1, w2] = frequencies(mass_ratio, gravity, 0.25);
+        let [w1, w2] = frequencies(mass_ratio, 9.8, 0.25);
         let mut worst: f64 = 0.0;
         for tick in 1..=FOLLOWED * TICK_RATE {
             scene.tick();
@@ -135,7 +134,7 @@ fn beats_follow_the_formulas_and_only_the_linear_figure_closes() {
 
         // The linear motion is at its start again, the exact motion is not.
         let modes = Modes::new(&settings.parameters.cast()).expect("a pendulum");
-        let linear = SmallOscillations::new(modes, &settings.motion());
+        let linear = SmallOscillations::<f32>::new(modes, &settings.motion().cast());
         let [first, last] = [0.0, period].map(|t| linear.at(t));
         let parted = |a: f32, b: f32| f64::from((a - b).abs()) / AMPLITUDE;
         let missed = parted(last.a1, first.a1).max(parted(last.a2, first.a2));

@@ -5,6 +5,7 @@ use std::f64::consts::{PI, TAU};
 
 use double_pendulum::{
     Equations, Error, Integrator, Method, Modes, Motion, Numbers, Parameters, Pendulum, State,
+    radians,
 };
 use host_tests::oracle::tolerances;
 use host_tests::oracle::trials::{exact_methods, run};
@@ -58,7 +59,7 @@ fn fall(mut angle: impl FnMut() -> f64) -> f64 {
     looks.map_or(f64::INFINITY, |looks| f64::from(looks) / 64.0)
 }
 
-/// A pendulum starts upright, to the last digit of an angle. In the direction form in floating
+/// A pendulum starts upright, but for a digit of an angle. In the direction form in floating
 /// point it falls by a radian when the exact motion from this start does, to 1.5/64 s
 /// ([`FALL`]), in steps from 2^-6 to 2^-13 s.
 ///
@@ -71,7 +72,11 @@ fn upright_pendulum_falls_with_the_exact_motion_in_direction_form() -> Result<()
     for &method in Method::ALL.iter().filter(is_meant) {
         // The angle of a method in `f32` is the nearest `f32` to pi.
         let single = f64::from(std::f32::consts::PI);
-        let up = if method.is_single() { single } else { PI };
+        let up = if method.is_single() {
+            single
+        } else {
+            PI.next_up()
+        };
         let parameters = even(9.81_f64 as f32 as f64);
         let mut reference = Reference::new(&parameters, &Motion::at_rest(up, up));
         let mut time = 0.0;
@@ -127,9 +132,9 @@ fn upright_pendulum_stays_for_the_predicted_time_in_plain_sums() -> Result<(), E
         ),
         (
             Method::Rk4F64,
-            PI,
+            PI.next_up(),
             2.0 * f64::EPSILON,
-            1.224_646_799_147_353_2e-16,
+            2.0 * f64::EPSILON - 1.224_646_799_147_353_2e-16,
         ),
     ] {
         for steps_per_second in [64_u32, 256] {
@@ -349,4 +354,31 @@ fn fast_mode_decays_below_the_step_limit_and_grows_above() -> Result<(), Error> 
 /// Returns the larger magnitude of both angles, rad.
 fn largest_angle(state: &State<f64>) -> f64 {
     state.a1.abs().max(state.a2.abs())
+}
+
+/// From exactly 180 degrees nothing moves, by every method that the boards draw and by every method
+/// in 64 bits. The angle of `rk4-f32` is the nearest `f32`, from which the pendulum falls.
+#[test]
+fn pendulum_that_stands_upright_never_falls() -> Result<(), Error> {
+    let start = State::at_rest(radians(180.0), radians(-180.0));
+    for &method in Method::ALL {
+        if method.equations() == Equations::Linear
+            || method.is_single() && method.equations() != Equations::Directions
+        {
+            continue;
+        }
+        let mut motion = run(method, &even(9.81), &start, 1.0 / 256.0)?;
+        motion.advance(256 * 60)?;
+        let State { a1, a2, p1, p2 } = motion.state();
+        assert_eq!(
+            ([a1.abs(), a2.abs()], [p1, p2]),
+            ([PI; 2], [0.0; 2]),
+            "{method}"
+        );
+    }
+
+    let pendulum = Pendulum::new(&even(9.81))?;
+    assert!(pendulum.rests(&start) && pendulum.rests(&State::default()));
+    assert!(!pendulum.rests(&State::at_rest(PI.next_up(), PI)));
+    Ok(())
 }

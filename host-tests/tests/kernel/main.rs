@@ -14,4 +14,5 @@ mod limits;
 mod methods;
 mod plan;
 mod plan_study;
+mod range;
 mod small_oscillations;

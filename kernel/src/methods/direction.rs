@@ -156,10 +156,9 @@ pub(crate) fn start<R: Real>(
     scale: &Scale,
     start: &State<f64>,
 ) -> Result<[[R; 6]; 2], Error> {
-    let start = start.cast::<R>();
     start.check()?;
     let norm = coefficients.norm.to_f64();
-    let exact = quantities(&start.cast(), norm, [scale.momentum; 2]);
+    let exact = quantities(start, norm, [scale.momentum; 2]);
     scale.check::<R>([exact[4], exact[5]])?;
     let lost = exact.map(|z| R::from_f64(z - R::from_f64(z).to_f64()));
     Ok([exact.map(R::from_f64), lost])
@@ -274,14 +273,17 @@ pub(crate) struct Scale {
 /// Refuses the parameters and steps that [`Parameters::check`] and [`check_step`] refuse, and, by
 /// [`Error::OutOfRange`], parameters whose constants or their reciprocals leave the range of `R`.
 /// The error names the step if that alone takes G1 or G2 out of range.
+///
+/// The constants follow from `f64` numbers, and the unit of time from G2 as it is rounded, so that
+/// the rounding of g to `f32` does not show in the motion of a method in `f32`.
 pub(crate) fn prepare<R: Real>(
-    parameters: &Parameters<R>,
+    parameters: &Parameters<f64>,
     dt: f64,
     step: f64,
 ) -> Result<(Coefficients<R>, Scale), Error> {
     parameters.check()?;
     check_step::<R>(dt)?;
-    let Parameters { m1, m2, l1, l2, g } = parameters.cast::<f64>();
+    let &Parameters { m1, m2, l1, l2, g } = parameters;
     let norm = l1 / l2;
     let [inertia, total] = [m1, m1 + m2].map(|mass| mass / m2 * norm * norm);
 

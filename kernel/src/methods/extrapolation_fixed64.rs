@@ -37,7 +37,7 @@ use crate::bounds::{Bounds, check_step};
 use crate::error::{Error, Parameter};
 use crate::methods::direction::{quantities, state_of};
 use crate::methods::extrapolation::{is_order, stable};
-use crate::methods::scaling::{Scaling, check_energy, lost};
+use crate::methods::scaling::{Scaling, check_energy, lost, without_least_momenta};
 use crate::methods::{Advance, FormOperations};
 use crate::numbers::Real;
 use crate::numbers::fixed::Q64;
@@ -159,7 +159,7 @@ impl Fixed64State {
             inverse_norm: 1.0 / scaling.norm,
             lost: false,
         };
-        Ok(motion.started(start))
+        Ok(motion.started(&without_least_momenta(start, energy)))
     }
 
     /// Returns the motion of the same pendulum from `start`, which must be finite and have no more
@@ -177,8 +177,17 @@ impl Fixed64State {
     /// Advances the motion by `steps` steps. A lost motion goes on, without meaning.
     fn advance(&mut self, steps: u32) {
         for _ in 0..steps {
-            self.step();
+            if !self.rests() {
+                self.step();
+            }
         }
+    }
+
+    /// Returns true if both rods hang or stand straight up and nothing turns. A step would push
+    /// them, because its results are the middles of what they may have been before rounding.
+    fn rests(&self) -> bool {
+        let [sin1, _, s, _, p1, p2] = self.z;
+        [sin1, s, p1, p2].iter().all(|z| z.0 == 0)
     }
 
     /// Advances the motion by one step.

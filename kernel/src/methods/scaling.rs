@@ -88,6 +88,16 @@ pub(super) fn check_energy(
     }
 }
 
+/// Returns the start as fixed point takes it. With less than 1e-280 J nothing moves in the age of
+/// the universe, and the unit of time that suits such momenta would be out of range.
+pub(super) fn without_least_momenta(start: &State<f64>, energy: f64) -> State<f64> {
+    if energy < 1e-280 {
+        State::at_rest(start.a1, start.a2)
+    } else {
+        *start
+    }
+}
+
 impl Scaling {
     /// Returns the same scaling with a unit of time that is `time` times as long. A negative `time`
     /// reverses the time. `time` must be finite and not 0; this is not checked.

@@ -8,3 +8,4 @@ mod sine;
 
 pub(crate) use lanes::Lanes;
 pub use real::{Real, RealOperations, sin_cos};
+pub use sine::radians;

@@ -2,8 +2,45 @@
 //!
 //! The argument is reduced by the nearest multiple of pi/2 (Cody-Waite reduction). Then minimax
 //! polynomials are used. `host-tests/tools/sine_polynomials.py` computes the constants.
+//!
+//! No `f64` is pi. A pendulum that starts straight up would therefore fall, if the `f64` nearest to
+//! pi were taken literally. So a whole number times the `f64` nearest to pi/2 is that number of
+//! quarter turns here, and its sine and cosine are exactly 0 and 1. The change is smaller than half
+//! a unit in the last place of the angle. An `f32` is taken literally.
 
 use core::ops::Neg;
+
+/// Returns an angle of `degrees`, rad, whose [`sin_cos`](crate::sin_cos) has the direction of that
+/// angle.
+///
+/// The direction is exact at multiples of 90 degrees. The result is the `f64` nearest to
+/// pi/180 times `degrees`, except that one number in 10^7 is off by a unit in the last place, and
+/// that multiples of 90 degrees are multiples of the `f64` nearest to pi/2.
+///
+/// ```
+/// use double_pendulum::{radians, sin_cos};
+///
+/// assert_eq!(sin_cos(radians(180.0)), (0.0, -1.0));
+/// assert_eq!(sin_cos(radians(-270.0)), (1.0, 0.0));
+/// assert_eq!(radians(30.0), core::f64::consts::FRAC_PI_6);
+/// ```
+#[must_use]
+pub fn radians(degrees: f64) -> f64 {
+    /// pi/180, first the upper 26 bits and then the rest.
+    const DEGREE: [f64; 2] = [0.01745329238474369, 1.3519960527851425e-10];
+    /// The lower half of a fraction.
+    const LOWER: u64 = (1 << 27) - 1;
+
+    let quarters = degrees / 90.0;
+    if libm::rint(quarters) == quarters && quarters * 90.0 == degrees {
+        return quarters * core::f64::consts::FRAC_PI_2;
+    }
+
+    // The products of halves are exact.
+    let upper = f64::from_bits(degrees.to_bits() & !LOWER);
+    let lower = degrees - upper;
+    upper * DEGREE[0] + (lower * DEGREE[0] + degrees * DEGREE[1])
+}
 
 use super::Real;
 
@@ -83,9 +120,19 @@ pub(super) fn double(x: f64) -> (f64, f64) {
         let middle = k * PI_OVER_TWO[1];
         let rough = coarse - middle;
         let lost = ((coarse - rough) - middle) - k * PI_OVER_TWO[2];
-        by_quarters(
-            first_octant(rough + lost, SINE, COSINE),
-            rounded.to_bits() as u32,
+        let is_quarters = k != 0.0 && x == k * core::f64::consts::FRAC_PI_2;
+        let rest = if is_quarters { 0.0 } else { rough + lost };
+        let (sine, cosine) =
+            by_quarters(first_octant(rest, SINE, COSINE), rounded.to_bits() as u32);
+        // The sine of pi is 0 and not -0, whose `atan2` would be -pi.
+        let is_zero = is_quarters && sine == 0.0;
+        (
+            if is_zero {
+                libm::copysign(0.0, x)
+            } else {
+                sine
+            },
+            cosine,
         )
     } else {
         huge(x)

@@ -27,41 +27,34 @@ pub struct Pendulum<R> {
 impl<R: Real> Pendulum<R> {
     /// Checks the parameters and prepares the equations.
     ///
+    /// # Errors
+    ///
     /// Refuses the first parameter, in the order m1, m2, l1, l2, g, that is NaN or infinite
     /// ([`Error::NotFinite`]), a mass or length that is zero or negative ([`Error::NotPositive`]),
-    /// or a negative gravity ([`Error::TooSmall`]). Zero gravity is allowed. Also refuses, by
-    /// [`Error::OutOfRange`], combinations whose products or quotients in the equations overflow,
-    /// underflow or are subnormal in `R`; it names the parameter that is farthest from 1 as a
-    /// factor.
+    /// and a number below 1e-9 or above 1e9 ([`Error::TooSmall`], [`Error::TooLarge`]). Zero gravity
+    /// is allowed.
     pub fn new(parameters: &Parameters<R>) -> Result<Self, Error> {
         parameters.check()?;
+        Ok(Self::unchecked(parameters))
+    }
+
+    /// Prepares the equations of parameters that are known to be valid.
+    pub(crate) fn unchecked(parameters: &Parameters<R>) -> Self {
         let &Parameters { m1, m2, l1, l2, g } = parameters;
-        let pendulum = Self {
+        Self {
             parameters: *parameters,
             inverse_length: [R::ONE / l1, R::ONE / l2],
             total_over_m2: (m1 + m2) / m2,
             coupling: m2 * l1 * l2,
             torque: [(m1 + m2) * g * l1, m2 * g * l2],
-        };
-
-        let [inverse_l1, inverse_l2] = pendulum.inverse_length;
-        // 1/m1 is the largest value of 1/den.
-        let products = [
-            R::ONE / m1,
-            m1 + m2,
-            inverse_l1,
-            inverse_l2,
-            pendulum.total_over_m2,
-            pendulum.coupling,
-        ];
-        let torque_in_range = |torque: R| g == R::ZERO || torque.is_normal();
-        if products.into_iter().all(R::is_normal)
-            && pendulum.torque.into_iter().all(torque_in_range)
-        {
-            Ok(pendulum)
-        } else {
-            Err(parameters.out_of_range())
         }
+    }
+
+    /// Returns true if a pendulum in this state never moves: each rod hangs or stands straight up,
+    /// or there is no gravity, and nothing turns.
+    #[must_use]
+    pub fn rests(&self, state: &State<R>) -> bool {
+        self.derivatives(&(*state).into()) == [R::ZERO; 4]
     }
 
     /// Returns the parameters.
@@ -203,7 +196,8 @@ impl<R: Real> Pendulum<R> {
         let q2 = p2 * self.inverse_length[1];
         let den = m1 + m2 * sin_d * sin_d;
         let q = q1 - q2 * cos_d;
-        R::HALF * (q * q / den + q2 * q2 / m2)
+        // A square alone may underflow in `f32`.
+        R::HALF * (q * (q / den) + q2 * (q2 / m2))
     }
 }
 

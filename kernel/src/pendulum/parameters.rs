@@ -3,10 +3,15 @@
 use crate::error::{Error, Parameter};
 use crate::numbers::Real;
 
+/// The least and the greatest mass, kg, length, m, and gravity, m/s^2.
+const LEAST: f64 = 1e-9;
+const GREATEST: f64 = 1e9;
+
 /// The five constants of a double pendulum, in SI units, chosen by the caller.
 ///
-/// The masses and lengths must be finite and more than 0, gravity finite and at least 0.
-/// [`Pendulum::new`](crate::Pendulum::new) and [`Modes::new`](crate::Modes::new) check this.
+/// Masses and lengths are from 1e-9 to 1e9 kg and m. Gravity is 0, or from 1e-9 to 1e9 m/s^2. In
+/// this range no product of the equations overflows or underflows, also in `f32`.
+/// [`Pendulum::new`](crate::Pendulum::new) and [`Modes::new`](crate::Modes::new) check it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -63,23 +68,35 @@ impl<R: Real> Parameters<R> {
 
     /// Refuses the first number, in the order m1, m2, l1, l2, g, that is NaN or infinite
     /// ([`Error::NotFinite`]), a mass or length that is zero or negative ([`Error::NotPositive`]),
-    /// or a negative gravity ([`Error::TooSmall`]). Accepts zero gravity.
+    /// and numbers below 1e-9 or above 1e9 ([`Error::TooSmall`], [`Error::TooLarge`]). Accepts zero
+    /// gravity.
     pub(crate) fn check(&self) -> Result<(), Error> {
         for (parameter, value) in self.named() {
+            let is_gravity = parameter == Parameter::G;
             if !value.is_finite() {
                 return Err(Error::NotFinite { parameter, value });
             }
-
-            // Gravity may be 0; the masses and lengths must be positive.
-            if value < 0.0 && parameter == Parameter::G {
+            if is_gravity && value == 0.0 {
+                continue;
+            }
+            if value <= 0.0 && !is_gravity {
+                return Err(Error::NotPositive { parameter, value });
+            }
+            // The limits are those of `R`: as an `f32`, 1e9 is exact and 1e-9 is not.
+            let [least, greatest] = [LEAST, GREATEST].map(|limit| R::from_f64(limit).to_f64());
+            if value < least {
                 return Err(Error::TooSmall {
                     parameter,
                     value,
-                    limit: 0.0,
+                    limit: if value < 0.0 { 0.0 } else { LEAST },
                 });
             }
-            if value <= 0.0 && parameter != Parameter::G {
-                return Err(Error::NotPositive { parameter, value });
+            if value > greatest {
+                return Err(Error::TooLarge {
+                    parameter,
+                    value,
+                    limit: GREATEST,
+                });
             }
         }
         Ok(())

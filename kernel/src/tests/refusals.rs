@@ -2,7 +2,7 @@
 
 use std::string::ToString;
 
-use double_pendulum::Parameter::{A1, A2, Dt, FrequencyRatio, G, L1, L2, M1, M2, P1, P2, W1, W2};
+use double_pendulum::Parameter::{A1, A2, Dt, FrequencyRatio, G, L1, L2, M2, P1, P2, W1, W2};
 use double_pendulum::{
     ClosedFormF32, DirectionF32, DirectionF32Plain, Error, ExtrapolationF64, Fixed32, Fixed64,
     Form, HamiltonF32, Modes, Motion, Parameters, Pendulum, State, periodic_mass_ratio,
@@ -44,6 +44,11 @@ fn errors_contain_the_parameter_and_its_value() {
     let infinite = f64::INFINITY;
     let not_finite = |parameter, value| Error::NotFinite { parameter, value };
     let not_positive = |parameter, value| Error::NotPositive { parameter, value };
+    let too_large = |parameter, value| Error::TooLarge {
+        parameter,
+        value,
+        limit: 1e9,
+    };
     let too_small = |parameter, value, limit| Error::TooSmall {
         parameter,
         value,
@@ -68,10 +73,16 @@ fn errors_contain_the_parameter_and_its_value() {
         ),
         (
             periods(3, 2, [1e-170, 1.5e-170]),
-            Error::OutOfRange {
-                parameter: L1,
-                value: 1e-170,
-            },
+            too_small(L1, 1e-170, 1e-9),
+        ),
+        (
+            pendulum(Parameters { m2: 1e-10, ..GOOD }),
+            too_small(M2, 1e-10, 1e-9),
+        ),
+        (pendulum(Parameters { l2: 2e9, ..GOOD }), too_large(L2, 2e9)),
+        (
+            pendulum(Parameters { g: 1e-10, ..GOOD }),
+            too_small(G, 1e-10, 1e-9),
         ),
         (
             single_step(1e-50),
@@ -83,17 +94,6 @@ fn errors_contain_the_parameter_and_its_value() {
         (
             pendulum(Parameters { g: -9.8, ..GOOD }),
             too_small(G, -9.8, 0.0),
-        ),
-        (
-            pendulum(Parameters {
-                m1: 1e300,
-                l1: 1e200,
-                ..GOOD
-            }),
-            Error::OutOfRange {
-                parameter: M1,
-                value: 1e300,
-            },
         ),
         (
             Modes::new(&Parameters { g: 0.0, ..GOOD }).map(drop),
@@ -113,33 +113,6 @@ fn errors_contain_the_parameter_and_its_value() {
         (
             Motion::at_rest(0.0, infinite).check(),
             not_finite(A2, infinite),
-        ),
-        // Both numerators overflow.
-        (
-            periods(3, 2, [1e308, 1e308]),
-            Error::OutOfRange {
-                parameter: L1,
-                value: 1e308,
-            },
-        ),
-        // Only one numerator overflows, or only the sum of both, which is not needed.
-        (
-            periods(1, 2, [1e308, 1.0]),
-            Error::OutOfRange {
-                parameter: L1,
-                value: 1e308,
-            },
-        ),
-        (
-            periods(1, 2, [1.0, 1e308]),
-            Error::OutOfRange {
-                parameter: L2,
-                value: 1e308,
-            },
-        ),
-        (
-            periods(1, 2, [4e307, 4e307]),
-            too_small(FrequencyRatio, 0.5, 1.0),
         ),
         (
             periods(3, 0, [1.0, 1.0]),
@@ -249,26 +222,6 @@ fn closed_form_names_the_number_that_is_out_of_range() -> Result<(), Error> {
         refused(1.2e10),
         Some(Error::OutOfRange { parameter: A2, .. })
     ));
-
-    // The velocity of a heavy pendulum is in range, but its momentum is infinite in `f32`.
-    let heavy = Pendulum::new(&Parameters {
-        m1: 1e36,
-        m2: 1e36,
-        l1: 10.0,
-        l2: 10.0,
-        g: 1.0,
-    })?;
-    let start = State {
-        p2: 1e39,
-        ..State::default()
-    };
-    assert_eq!(
-        heavy.run::<ClosedFormF32>(&start, 0.01).map(drop),
-        Err(Error::NotFinite {
-            parameter: P2,
-            value: f64::INFINITY,
-        })
-    );
     Ok(())
 }
 
@@ -309,52 +262,27 @@ fn run_names_a_step_that_takes_constants_out_of_range() -> Result<(), Error> {
             out_of_range(Dt, 1e-200)
         );
     }
-
-    // Not the step is at fault.
-    let light = Parameters::equal_rods(1.0, 1.0, 1e-40);
-    let rounded = f64::from(1e-40_f32);
-    assert_eq!(
-        refused::<DirectionF32>(&light, 0.01)?,
-        out_of_range(G, rounded)
-    );
     Ok(())
 }
 
-/// (l1/l2)^2 = 1e38 has a subnormal reciprocal in `f32`. G1 and G2 may be out of range in this step
-/// only, or with any unit of time.
+/// (m1/m2) (l1/l2)^2 = 1e54 is infinite in `f32`. G1 and G2 may be out of range in this step only.
 #[test]
-fn direction_form_names_the_rod_gravity_or_step_that_is_out_of_range() -> Result<(), Error> {
-    let refused = |l1, l2, g, dt| {
+fn direction_form_names_the_rod_or_step_that_is_out_of_range() -> Result<(), Error> {
+    let refused = |ratio, g, dt| {
         let pendulum = Pendulum::new(&Parameters {
             m1: 1.0,
-            m2: 1.0,
-            l1,
-            l2,
+            m2: 1.0 / ratio,
+            l1: 1e9,
+            l2: 1e9 / ratio,
             g,
         })?;
         let run = pendulum.run::<DirectionF32>(&State::default(), dt);
         Ok(run.err())
     };
-    let out_of_range = |parameter, value: f32| Error::OutOfRange {
-        parameter,
-        value: value.into(),
-    };
-    let of_step = |value| Error::OutOfRange {
-        parameter: Dt,
-        value,
-    };
+    let out_of_range = |parameter, value| Some(Error::OutOfRange { parameter, value });
 
-    assert_eq!(refused(1e9, 2e-10, 9.81, 1e-6)?, None);
-    let error = out_of_range(L2, 1e-10);
-    assert_eq!(refused(1e9, 1e-10, 9.81, 1e-6)?, Some(error));
-
-    let error = out_of_range(L1, 3e20);
-    assert_eq!(refused(3e20, 3e15, 1e-20, 1e-6)?, Some(error));
-    let error = out_of_range(G, 1e-24);
-    assert_eq!(refused(1e-15, 1.0, 1e-24, 1e-6)?, Some(error));
-
-    assert_eq!(refused(1.0, 1.0, 10.0, 1e-20)?, Some(of_step(1e-20)));
-    assert_eq!(refused(1e10, 1e10, 1e30, 1e-30)?, Some(of_step(1e-30)));
+    assert_eq!(refused(1e9, 9.81, 1e-6)?, None);
+    assert_eq!(refused(1.0, 10.0, 1e-20)?, out_of_range(Dt, 1e-20));
     Ok(())
 }
 
@@ -377,22 +305,6 @@ fn fixed_point_names_the_momentum_of_infinite_energy() -> Result<(), Error> {
             assert_eq!(pendulum.run::<Fixed64<12>>(&start, dt).map(drop), error);
         }
     }
-
-    // Without momenta the weight is at fault.
-    let heavy = Pendulum::new(&Parameters {
-        m1: 1e307,
-        m2: 1e307,
-        l1: 1.0,
-        l2: 1.0,
-        g: 6.0,
-    })?;
-    let error = Err(Error::OutOfRange {
-        parameter: M1,
-        value: 1e307,
-    });
-    let start = State::at_rest(3.0, 3.0);
-    assert_eq!(heavy.run::<Fixed32>(&start, 0.01).map(drop), error);
-    assert_eq!(heavy.run::<Fixed64<12>>(&start, 0.01).map(drop), error);
     Ok(())
 }
 

@@ -4,7 +4,7 @@
 //! A test of every float in [-pi, pi] takes 2 minutes: `cargo test --release --package
 //! double-pendulum-kernel --lib -- --ignored`.
 
-use double_pendulum::sin_cos;
+use double_pendulum::{radians, sin_cos};
 
 /// The error of the `f32` pair on [-pi, pi] (measured: 8.56e-8).
 ///
@@ -68,6 +68,11 @@ fn own_f32_is_within_its_bound_near_multiples_of_half_pi() {
     }
 }
 
+/// Returns the next number above a positive one.
+fn next(x: f64) -> f64 {
+    f64::from_bits(x.to_bits() + 1)
+}
+
 #[test]
 fn own_f64_is_within_two_units_of_the_last_place() {
     let mut worst = 0.0_f64;
@@ -75,7 +80,8 @@ fn own_f64_is_within_two_units_of_the_last_place() {
     let huge = (0..200_000).map(|i| f64::from(i) * 8.235_490_1);
     let every_size =
         (0..4_000_000).map(|i| f64::from_bits(0x3c00_0000_0000_0000 + i * 0x12_4000_0000));
-    let cancelling = (1..1_000_000).map(|k| f64::from(k) * core::f64::consts::FRAC_PI_2);
+    // The quarter turns themselves are the next test's.
+    let cancelling = (1..1_000_000).map(|k| next(f64::from(k) * core::f64::consts::FRAC_PI_2));
     for x in uniform.chain(huge).chain(every_size).chain(cancelling) {
         let (sine, cosine) = sin_cos(x);
         let (true_sine, true_cosine) = x.sin_cos();
@@ -86,6 +92,55 @@ fn own_f64_is_within_two_units_of_the_last_place() {
 
     std::println!("largest error: {worst:.3} ulp");
     assert!(worst <= ULPS, "{worst:.3}");
+}
+
+#[test]
+fn quarter_turns_have_exact_directions() {
+    const AROUND: [(f64, f64); 4] = [(0.0, 1.0), (1.0, 0.0), (0.0, -1.0), (-1.0, 0.0)];
+    for quarters in -1_000_000_i32..=1_000_000 {
+        let expected = AROUND[quarters.rem_euclid(4) as usize];
+        assert_eq!(sin_cos(radians(90.0 * f64::from(quarters))), expected);
+    }
+
+    let pi = core::f64::consts::PI;
+    assert_eq!(radians(180.0), pi);
+    for angle in [pi, -pi] {
+        let (sine, cosine) = sin_cos(angle);
+        assert_eq!(libm::atan2(sine, cosine), angle);
+    }
+    assert!(sin_cos(next(pi)).0 < 0.0);
+}
+
+/// The expected angles are pi/180 times the degrees, rounded to nearest from 60 digits.
+#[test]
+fn degrees_become_the_nearest_radians() {
+    for (degrees, expected) in [
+        (1.0, 0.017453292519943295),
+        (120.0, 2.0943951023931957),
+        (120.3, 2.0996310901491784),
+        (171.0, 2.9845130209103035),
+        (179.0, 3.12413936106985),
+        (179.99999, 3.141592479056868),
+        (0.1, 0.0017453292519943296),
+        (1e-09, 1.7453292519943298e-11),
+        (359.0, 6.265732014659643),
+        (1234.5, 21.54608961587),
+        (224.244610160293, 3.9138067771482423),
+        (129.072784232122, 2.2527450595667498),
+        (339.282102159738, 5.921589775775192),
+        (234.731410831489, 4.096835976860964),
+        (10.441882, 0.18224522100473053),
+        (279.35, 4.87557726544616),
+        (233.63, 4.077612731434352),
+        (40.754147, 0.7112940489917695),
+        (312.640365, 5.456603743886841),
+        (195.753909324935, 3.416550241370546),
+        (89.759057199367, 1.5665910816148747),
+        (78.022728, 1.3617534949879704),
+    ] {
+        assert_eq!(radians(degrees), expected, "{degrees}");
+        assert_eq!(radians(-degrees), -expected);
+    }
 }
 
 #[test]

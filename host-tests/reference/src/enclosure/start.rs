@@ -43,6 +43,20 @@ impl Start {
         }
     }
 
+    /// Returns true if the given numbers are exactly those of a pendulum that hangs or stands
+    /// straight up at rest, and so never moves. An angle in rad is never straight up.
+    pub fn rests(&self) -> bool {
+        let (_, Motion { a1, a2, w1, w2 }) = self.about;
+        let is_vertical = |(numerator, denominator): (i64, u64)| {
+            i128::from(numerator) % (180 * i128::from(denominator)) == 0
+        };
+        let are_vertical = match self.fractions {
+            Some([a1, a2, ..]) if self.degrees[0] => is_vertical(a1) && is_vertical(a2),
+            _ => [a1, a2] == [0.0; 2],
+        };
+        are_vertical && [w1, w2] == [0.0; 2]
+    }
+
     /// Returns the set that contains the start, for `rate` frames a second.
     ///
     /// The unit of time is so short that no rod turns by more than 4 rad in it, and 2^e is near the

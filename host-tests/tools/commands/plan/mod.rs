@@ -6,7 +6,7 @@ pub use options::{CHIPS, Chip, SceneOptions};
 
 use clap::Parser;
 use double_pendulum::plan::{Limit, Plan, Problem};
-use double_pendulum::{Method, Pendulum};
+use double_pendulum::{Method, Parameters, Pendulum};
 use firmware::config::HALF_PIXEL;
 
 use console::cli::{Refused, complain, say};
@@ -47,7 +47,12 @@ pub fn run(PlanOptions { scene }: &PlanOptions) -> anyhow::Result<()> {
 fn words(scene: &Problem, plan: &Result<Plan, Limit>, chip: &Chip) -> Vec<String> {
     // One line for each number, and two lines of reasons.
     let frame = chip.processor.budget(scene).frame;
-    let mut lines = match plan {
+    let mut lines = vec![format!("scene    {}", pendulum(scene))];
+    if rests(scene) {
+        lines.push("horizon  for ever: the pendulum is at rest, and nothing moves".into());
+        return lines;
+    }
+    lines.extend(match plan {
         Ok(plan) => {
             let share = 100.0 * plan.cost * f32::from(scene.rate) / chip.clock;
             let Plan { horizon, cost, .. } = plan;
@@ -79,9 +84,26 @@ fn words(scene: &Problem, plan: &Result<Plan, Limit>, chip: &Chip) -> Vec<String
             format!("method   none is fast enough for a {}", chip.title),
             format!("why      {}", forbidden(*limit, frame)),
         ],
-    };
+    });
     lines.extend(energy(scene).map(|line| format!("         {line}")));
     lines
+}
+
+/// Returns the pendulum in words, and with the size of half a pixel, on which a horizon
+/// depends.
+pub fn pendulum(scene: &Problem) -> String {
+    let Parameters { m1, m2, l1, l2, g } = scene.pendulum;
+    let height = 2.0 * f64::from(HALF_PIXEL) * (l1 + l2) / scene.tolerance;
+    format!(
+        "masses {m1}, {m2} kg; rods {l1}, {l2} m; gravity {g} m/s^2; drawn {height:.0} \
+         pixels high"
+    )
+}
+
+/// Returns true if nothing moves.
+fn rests(scene: &Problem) -> bool {
+    Pendulum::new(&scene.pendulum)
+        .is_ok_and(|pendulum| pendulum.rests(&pendulum.to_state(&scene.start)))
 }
 
 /// Returns the lines of a scene that shows the linear motion, with its horizon.

@@ -34,7 +34,7 @@ pub struct SceneOptions {
     /// What moves, without `--scene`.
     #[command(flatten)]
     pub start: StartOptions,
-    /// A built-in scene, with the f32 values that the boards start it with (excludes --angles,
+    /// A built-in scene, as the boards start it (excludes --angles,
     /// --velocities, --degrees, --masses, --lengths, --gravity, --height, --seconds and --rate)
     #[arg(
         long,

@@ -48,9 +48,18 @@ pub fn frames<'a>(
     let mut motion = PlannedRun::new(scene, stepping)?;
     let scene = *scene;
     let mut set = start.enclose(scene.rate);
+    // The enclosure of a pendulum that stands upright would grow all the same.
+    let rests = start.rests();
     let mut last = None;
     Ok((0..scene.frames()).map_while(move |_| {
-        (last != Some(false)).then(|| set.advance_unless(stopped))??;
+        let advance = || {
+            if rests {
+                Some(())
+            } else {
+                set.advance_unless(stopped)
+            }
+        };
+        (last != Some(false)).then(advance)??;
         // The exact motion and the drawn motion advance by one frame each.
         let exact = set.directions();
         let drawn = motion.advance(1);

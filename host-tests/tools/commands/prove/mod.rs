@@ -12,14 +12,14 @@ use clap::{Parser, value_parser};
 use double_pendulum::plan::{Problem, Stepping};
 use double_pendulum::{Error, Method, Parameter};
 
-use crate::commands::plan::{SceneOptions, no_method};
+use crate::commands::plan::{SceneOptions, no_method, pendulum};
+use crate::commands::simulate::StartOptions;
 use crate::oracle::known_answers;
 use console::cli::{Refused, choice, complain, say};
 use console::number::FEWER_DIGITS;
 use console::progress::Progress;
 use emulator::process::{interrupted, interrupted_by};
 use horizon::{frames, time, words};
-use reference::enclosure::Start;
 
 const EXAMPLES: &str = "Examples:
   cargo prove --scene page
@@ -37,8 +37,7 @@ const MOST_STEPS: u32 = 65_536;
 /// encloses that motion, rounding errors included, and checks each frame of the planned method,
 /// which is bit-identical on every chip.
 ///
-/// The exact motion starts from exactly the decimals and fractions given, or with --scene from the
-/// board's f32 values.
+/// The exact motion starts from exactly the decimals and fractions given, or those of --scene.
 #[derive(Debug, Parser)]
 #[command(name = "cargo prove", after_help = EXAMPLES)]
 pub struct ProveOptions {
@@ -100,22 +99,18 @@ pub fn run(options: &ProveOptions) -> anyhow::Result<ExitCode> {
         return Ok(ExitCode::SUCCESS);
     }
 
-    // The exact start: the user's decimals and fractions, or the board's own numbers.
+    // The exact start: the decimals and fractions of the user or of the scene.
     let (scene, plan) = options.scene.plan().map_err(Refused::because)?;
-    let given = || {
-        let start = &options.scene.start;
-        start.exact().ok_or_else(|| {
-            format!(
-                "{}: a number of more than 64 bits cannot be enclosed; {FEWER_DIGITS}",
-                start.too_long()
-            )
-        })
-    };
-    let of_board = options
-        .scene
-        .scene
-        .map(|_| Start::of(&scene.pendulum, &scene.start));
-    let start = of_board.map_or_else(given, Ok).map_err(Refused::because)?;
+    let given = options.scene.scene.map_or_else(
+        || options.scene.start.clone(),
+        |name| StartOptions::of(&name.first_settings()),
+    );
+    let start = given.exact().ok_or_else(|| {
+        Refused::because(format_args!(
+            "{}: a number of more than 64 bits cannot be enclosed; {FEWER_DIGITS}",
+            given.too_long()
+        ))
+    })?;
 
     // The drawn method: the user's, or the planned one.
     let asked = options.method.map(|method| Stepping {
@@ -163,6 +158,7 @@ pub fn run(options: &ProveOptions) -> anyhow::Result<ExitCode> {
         if asked.is_none() && options.scene.is_linear() {
             say("scene      shows the linear motion on purpose, not the exact one")?;
         }
+        say(format_args!("scene      {}", pendulum(&scene)))?;
         say(words(&scene, &plan, stepping, &proved, &stopped))?;
     }
 

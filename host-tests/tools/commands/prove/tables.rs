@@ -9,6 +9,7 @@ use reference::enclosure::Start;
 
 use super::horizon::{counts, frames, time};
 use crate::commands::plan::SceneOptions;
+use crate::commands::simulate::StartOptions;
 use crate::oracle::known_answers::KnownAnswer;
 use console::number::Number;
 
@@ -41,7 +42,8 @@ pub fn horizons(name: SceneName) -> Result<String> {
         cells.extend(match plan {
             Err(_) => ["none", "none"].map(String::from),
             Ok(plan) => {
-                let start = Start::of(&scene.pendulum, &scene.start);
+                let start = StartOptions::of(&name.first_settings()).exact();
+                let start = start.context("a number with too many digits")?;
                 let never = AtomicUsize::new(0);
                 let (right, open) =
                     counts(&frames(&scene, &start, plan.stepping(), &never)?.collect::<Vec<_>>());

@@ -8,8 +8,8 @@ use firmware::job::Request;
 use crate::oracle::trials::apart;
 use reference::taylor;
 
-/// A motion of equal rods (1 m) and bobs (1 kg) from rest, at 9.81 m/s^2 rounded to `f32`. Every
-/// number can be represented in `f32`, so that all arithmetics compute the same pendulum.
+/// A motion of equal rods (1 m) and bobs (1 kg) from rest, at 9.81 m/s^2. No
+/// `f32` is 9.81: an error includes that a method rounds the numbers that a user types.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scene {
     pub name: &'static str,
@@ -79,7 +79,7 @@ fn samples(rate: u32) -> u32 {
 pub fn request(method: Method, scene: &Scene, rate: u32) -> Request {
     Request {
         method,
-        parameters: Parameters::equal_rods(1.0, 1.0, (GRAVITY as f32).into()),
+        parameters: Parameters::equal_rods(1.0, 1.0, GRAVITY),
         angles: [scene.angle; 2],
         velocities: [0.0; 2],
         dt: 1.0 / f64::from(rate),

@@ -4,8 +4,9 @@ use std::f64::consts::TAU;
 use std::path::PathBuf;
 
 use clap::{ArgAction, Args, Parser};
-use double_pendulum::{Error, Method, Motion, Parameters};
+use double_pendulum::{Error, Method, Motion, Parameters, radians};
 use firmware::config::{FIRST_ANGLE, GRAVITY};
+use firmware::motion::Settings;
 use firmware::scenes::SceneName;
 use reference::enclosure::Start as Exact;
 use reference::taylor::Reference;
@@ -131,7 +132,7 @@ impl SimulateOptions {
     /// Returns the pendulum and its start: those of the scene, or the given ones.
     pub fn motion(&self) -> (Parameters<f64>, Motion<f64>) {
         match self.scene.map(SceneName::first_settings) {
-            Some(settings) => (settings.parameters.cast(), settings.motion().cast()),
+            Some(settings) => (settings.parameters, settings.motion()),
             None => (self.start.parameters(), self.start.motion()),
         }
     }
@@ -190,7 +191,26 @@ pub struct StartOptions {
     degrees: bool,
 }
 
+/// Returns a number that is not typed.
+fn number(value: f64) -> Number {
+    value.to_string().parse().expect("a decimal")
+}
+
 impl StartOptions {
+    /// Returns the options that describe the settings of a scene, as a user would type them.
+    pub fn of(settings: &Settings) -> Self {
+        let Parameters { m1, m2, l1, l2, g } = settings.parameters;
+        let pair = |[one, other]: [f64; 2]| Pair(number(one), number(other));
+        Self {
+            masses: pair([m1, m2]),
+            lengths: pair([l1, l2]),
+            gravity: Some(number(g)),
+            angles: Some(pair(settings.degrees)),
+            velocities: pair(settings.velocities.map(f64::to_degrees)),
+            degrees: true,
+        }
+    }
+
     /// Returns the pendulum in kg, m and m/s^2, each number rounded to `f64`. The numbers are
     /// finite, but otherwise not checked.
     pub fn parameters(&self) -> Parameters<f64> {
@@ -208,20 +228,16 @@ impl StartOptions {
     /// Without `--angles` both angles are 120 degrees, also without `--degrees`. The numbers are
     /// finite, but otherwise not checked.
     pub fn motion(&self) -> Motion<f64> {
-        let radians = |angle: f64| {
-            if self.degrees {
-                angle.to_radians()
-            } else {
-                angle
-            }
+        let in_radians = |angle: f64| {
+            if self.degrees { radians(angle) } else { angle }
         };
         // Without `--angles`, both rods have the usual start angle, which is in degrees.
-        let first = [f64::from(FIRST_ANGLE).to_radians(); 2];
+        let first = [radians(FIRST_ANGLE); 2];
         let [a1, a2] = self
             .angles
             .as_ref()
-            .map_or(first, |angles| angles.values().map(radians));
-        let [w1, w2] = self.velocities.values().map(radians);
+            .map_or(first, |angles| angles.values().map(in_radians));
+        let [w1, w2] = self.velocities.values().map(in_radians);
         Motion { a1, a2, w1, w2 }
     }
 

@@ -7,7 +7,7 @@
 use std::fmt::Display;
 
 use clap::Args;
-use double_pendulum::{Error, Parameter};
+use double_pendulum::{Error, Parameter, radians};
 use firmware::config::{GREATEST_ANGLE, Processor};
 use firmware::graphics::Format;
 use firmware::motion::{Resources, Settings};
@@ -86,7 +86,7 @@ impl OwnMotion {
     /// Returns the settings to play `scene` with, or `None` if no option is given. `--degrees`
     /// alone counts as none.
     ///
-    /// The given values replace those of the scene's own first settings, rounded to `f32`. The user
+    /// The given values replace those of the scene's own first settings. The user
     /// gives angles in rad and velocities in rad/s or, with `--degrees`, in degrees and degrees/s.
     /// In the settings, angles are always in degrees and velocities in rad/s. All other numbers are
     /// in SI units in both.
@@ -135,24 +135,22 @@ impl OwnMotion {
 
     /// Returns the settings, with the given values replaced.
     fn applied_to(&self, mut settings: Settings) -> Settings {
-        // The board computes scenes in `f32`.
-        let single = |pair: &Pair| pair.values().map(|value| value as f32);
         let parameters = &mut settings.parameters;
         if let Some(masses) = &self.masses {
-            [parameters.m1, parameters.m2] = single(masses);
+            [parameters.m1, parameters.m2] = masses.values();
         }
         if let Some(lengths) = &self.lengths {
-            [parameters.l1, parameters.l2] = single(lengths);
+            [parameters.l1, parameters.l2] = lengths.values();
         }
         if let Some(gravity) = &self.gravity {
-            parameters.g = gravity.value() as f32;
+            parameters.g = gravity.value();
         }
         if let Some(angles) = &self.angles {
             settings.degrees = angles.values().map(|angle| {
                 if self.degrees {
-                    angle as f32
+                    angle
                 } else {
-                    angle.to_degrees() as f32
+                    angle.to_degrees()
                 }
             });
         }
@@ -160,9 +158,9 @@ impl OwnMotion {
         if let Some(velocities) = &self.velocities {
             settings.velocities = velocities.values().map(|velocity| {
                 if self.degrees {
-                    velocity.to_radians() as f32
+                    radians(velocity)
                 } else {
-                    velocity as f32
+                    velocity
                 }
             });
         }
@@ -183,7 +181,7 @@ impl OwnMotion {
         let limit = if self.degrees {
             format!("at most {GREATEST_ANGLE} degrees either way")
         } else {
-            let radians = f64::from(GREATEST_ANGLE).to_radians();
+            let radians = radians(GREATEST_ANGLE);
             format!("at most {radians:.4} rad either way; if these are degrees, add --degrees")
         };
         Err(Refused::because(format_args!("{ANGLES} {angles}: {limit}")))

@@ -156,7 +156,9 @@ pub fn shows(scene: SceneName) -> &'static str {
         SceneName::Beats3To1 => "frequencies in the ratio 3 to 1: the curve of both angles closes",
         SceneName::Figure7 => "the right equations next to those misprinted on math24.net (`book`)",
         SceneName::Butterfly => "two pendulums a millionth of a radian apart, until they part",
-        SceneName::Upright => "balanced straight up: when it falls in plain and in compensated f32",
+        SceneName::Upright => {
+            "from the f32 nearest to pi, 180.000005 degrees: when it falls in plain and compensated f32"
+        }
         SceneName::Flips => "a map of all starts: the time until a rod turns over",
     }
 }

@@ -143,7 +143,7 @@ impl Readings {
     /// If the scene does not use the method that the report says is requested, a warning is added
     /// to the lines, once until the scene or the method changes.
     pub fn status(&mut self, status: &Status) {
-        self.start = Some(status.settings.degrees);
+        self.start = Some(status.settings.degrees.map(|degrees| degrees as f32));
         self.note_method(status);
         self.comparison.status(status);
     }
