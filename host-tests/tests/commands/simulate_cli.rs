@@ -75,6 +75,8 @@ fn the_note_says_until_when_rows_hold() {
          --seconds 9 --every 0.01",
         "--masses 1,1000 --seconds 15 --every 0.01",
         "--masses 1,0.01 --angles 2.5,-3 --velocities 3,-9 --seconds 40 --every 0.01",
+        // Balanced straight up, which the rounding of pi sets in motion.
+        "--angles 180,-180 --degrees --seconds 20 --every 0.01",
         // Single precision, the linear motion, and the most accurate method, whose errors are those
         // of the given numbers.
         "--seconds 20 --every 0.01 --method rk4-f32",

@@ -12,7 +12,7 @@ use anyhow::bail;
 use clap::Parser;
 use cycles::Image;
 
-use console::cli::{Refused, choice, complain, say};
+use console::cli::{Refused, choice_with_aliases, complain, say};
 use emulator::boards::{BOARDS, Board, PICO};
 use emulator::process;
 use emulator::qemu::{Clock, Machine, Settings};
@@ -53,9 +53,10 @@ pub struct FwOptions {
     /// The board to run it on [default: the first below whose application it is, else the first]
     #[arg(
         long,
-        visible_alias = "on",
+        alias = "on",
+        alias = "target",
         value_name = "NAME",
-        value_parser = choice(&BOARDS, |board| board.name),
+        value_parser = choice_with_aliases(&BOARDS, Board::names),
         hide_possible_values = true,
     )]
     board: Option<&'static Board>,

@@ -13,7 +13,7 @@ use reference::taylor::Reference;
 
 use super::NAMES;
 use console::cli::{choice, choice_with_aliases, option_of};
-use console::number::{Number, Pair};
+use console::number::{Fraction, Number, Pair};
 use emulator::boards::{BOARDS, Board};
 
 /// The place where the motion is computed: the firmware on an emulated board, or, with `None`, this
@@ -135,6 +135,22 @@ impl SimulateOptions {
             Some(settings) => (settings.parameters, settings.motion()),
             None => (self.start.parameters(), self.start.motion()),
         }
+    }
+
+    /// Returns true if the start is at rest and each rod is given as exactly upright or hanging.
+    pub fn is_still(&self) -> bool {
+        let start = self.start.exact().filter(|_| self.scene.is_none());
+        let Some(Exact {
+            fractions: Some([a1, a2, w1, w2, ..]),
+            degrees: [true, _],
+            ..
+        }) = start
+        else {
+            return false;
+        };
+        let is_vertical =
+            |(above, below): Fraction| i128::from(above) % (180 * i128::from(below)) == 0;
+        is_vertical(a1) && is_vertical(a2) && w1.0 == 0 && w2.0 == 0
     }
 
     /// Returns the exact motion, from exactly the given decimals if they are not too long.

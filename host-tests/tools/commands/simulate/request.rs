@@ -176,12 +176,12 @@ pub fn check(request: &Request) -> Result<(), Error> {
 
 /// Returns the reason why the kernel refuses the motion or the step, with the option.
 pub fn refusal(options: &SimulateOptions, error: &Error) -> String {
-    let otherwise = if error.parameter() == Parameter::Dt {
-        "--step"
-    } else {
-        "the start"
-    };
-    options.start.refusal(error, otherwise)
+    match error {
+        Error::Diverged { parameter, value } => format!(
+            "the start: {parameter} = {value:?}: out of range; take lower --velocities or --gravity"
+        ),
+        error => options.start.refusal(error, "--step"),
+    }
 }
 
 /// Returns the method of the options, or the first of the table (`rk4-f64`) without one. It is an

@@ -18,10 +18,19 @@ const FEW: u32 = 16;
 /// The changes of m2 and g, relative to them. Each is rounded by at most a quarter of this.
 const ROUNDINGS: [f64; 2] = [2.0 * f64::EPSILON, -2.0 * f64::EPSILON];
 
+/// A motion to compare the rows with.
+enum Second {
+    /// A pendulum at rest, exactly upright or hanging, which never moves.
+    Still([f64; 2]),
+    /// A run.
+    Moving(Box<Run<ExtrapolationF64<16>, true>>),
+    /// A run that cannot go on.
+    Lost,
+}
+
 /// The comparison of rows with a second run.
 pub struct SecondRun {
-    /// The run, or `None` once it cannot go on.
-    run: Option<Run<ExtrapolationF64<16>, true>>,
+    motion: Second,
     /// The number of its steps from one row to the next.
     stride: u32,
     /// The largest difference of an angle so far, rad.
@@ -33,8 +42,9 @@ pub struct SecondRun {
 }
 
 impl SecondRun {
-    /// Begins the second run of a request whose rows are `every` s apart.
-    pub fn new(request: &Request, every: f64) -> Self {
+    /// Begins the second run of a request whose rows are `every` s apart. `is_still` means that the
+    /// exact pendulum never moves.
+    pub fn new(request: &Request, every: f64, is_still: bool) -> Self {
         let longest = Request {
             method: Method::Rk4F64,
             ..*request
@@ -42,15 +52,21 @@ impl SecondRun {
         let longest = longest.admissible_step().unwrap_or(every) * SHARE;
         // Steps of the same length by the same method would have the same errors.
         let least = if request.method == Method::Extrapolation16F64 {
-            request.stride + request.stride.div_ceil(2)
+            request.stride.saturating_add(request.stride.div_ceil(2))
         } else {
             1
         };
         // An extremely fast motion is not followed more finely than by the rows.
         let most = (request.stride / 2).max(FEW);
         let stride = ((every / longest).ceil() as u32).min(most).max(least);
+        let motion = if is_still {
+            Second::Still(request.angles)
+        } else {
+            begun(request, every / f64::from(stride))
+                .map_or(Second::Lost, |run| Second::Moving(Box::new(run)))
+        };
         Self {
-            run: begun(request, every / f64::from(stride)).ok(),
+            motion,
             stride,
             worst: 0.0,
             until: [None; LEVELS.len()],
@@ -65,16 +81,20 @@ impl SecondRun {
             self.end = time;
             return;
         }
-        if time > 0.0 {
-            let is_well = |run: &mut Run<_, true>| run.advance(self.stride).is_ok();
-            self.run.take_if(|run| !is_well(run));
+        if let Second::Moving(run) = &mut self.motion
+            && time > 0.0
+            && run.advance(self.stride).is_err()
+        {
+            self.motion = Second::Lost;
         }
-        let apart = self.run.as_ref().map_or(f64::INFINITY, |run| {
-            let state = run.state();
-            let [one, other] = [angles[0] - state.a1, angles[1] - state.a2].map(f64::abs);
-            let rounding = f64::EPSILON * angles[0].abs().max(angles[1].abs());
-            one.max(other) + rounding
-        });
+        let second = match &self.motion {
+            Second::Still(angles) => *angles,
+            Second::Moving(run) => run.state().angles(),
+            Second::Lost => [f64::INFINITY; 2],
+        };
+        let [one, other] = [0, 1].map(|rod| (angles[rod] - second[rod]).abs());
+        let rounding = f64::EPSILON * angles[0].abs().max(angles[1].abs());
+        let apart = one.max(other) + rounding;
         self.worst = if apart.is_nan() {
             f64::INFINITY
         } else {
