@@ -27,16 +27,25 @@
 //! - the conversion between these six quantities and a [`State`]: [`quantities`], [`state_of`];
 //! - the equations in floating point: [`rates`], [`changes`];
 //! - their constants: [`Coefficients`], [`prepare`];
-//! - the six quantities as sums: [`Sums`];
-//! - the bookkeeping of a step that is not exactly dt, because its constants are rounded:
-//!   [`Scale`], [`Lead`].
+//! - the units: [`Scale`].
+//!
+//! # What the other files contain
+//!
+//! - [`sums`]: the six quantities as sums that may carry their rounding errors.
+//! - [`lead`]: the excess of a step over dt, because its constants are rounded.
+
+mod lead;
+mod sums;
 
 use core::ops::{Add, Mul, Neg, Sub};
 
 use crate::bounds::check_step;
-use crate::error::{Error, Parameter, check_finite};
+use crate::error::{Error, Parameter};
 use crate::numbers::{Real, RealOperations};
 use crate::pendulum::{Direction, Parameters, State};
+
+pub(crate) use lead::{BLOCK, Lead};
+pub(crate) use sums::Sums;
 
 /// Returns sin a1, cos a1, S, C, P1 and P2 of a state.
 ///
@@ -143,110 +152,6 @@ impl<R: Real> Coefficients<R> {
     /// Returns r = 1/(m + S^2) where S is `s`.
     pub fn inverse_at(&self, s: R) -> R {
         R::ONE / (self.inertia + s * s)
-    }
-}
-
-/// Returns the six quantities of a motion at its start, and the part that rounding to `R` loses.
-///
-/// # Errors
-///
-/// Refuses a start that is not finite, or whose scaled momenta are out of the range of `R`.
-pub(crate) fn start<R: Real>(
-    coefficients: &Coefficients<R>,
-    scale: &Scale,
-    start: &State<f64>,
-) -> Result<[[R; 6]; 2], Error> {
-    start.check()?;
-    let norm = coefficients.norm.to_f64();
-    let exact = quantities(start, norm, [scale.momentum; 2]);
-    scale.check::<R>([exact[4], exact[5]])?;
-    let lost = exact.map(|z| R::from_f64(z - R::from_f64(z).to_f64()));
-    Ok([exact.map(R::from_f64), lost])
-}
-
-/// The six quantities of a motion. If `COMPENSATED`, the rounding error of each addition is carried
-/// into the next.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Sums<R, const COMPENSATED: bool> {
-    /// sin a1, cos a1, S, C, P1 and P2.
-    pub z: [R; 6],
-    /// The rounding errors of the last addition to `z`; zero if not `COMPENSATED`.
-    pub lost: [R; 6],
-}
-
-impl<R: Real, const COMPENSATED: bool> Sums<R, COMPENSATED> {
-    /// The sums before there is a start.
-    pub const ZERO: Self = Self {
-        z: [R::ZERO; 6],
-        lost: [R::ZERO; 6],
-    };
-
-    /// Returns the sums at a start, which [`start`] may refuse.
-    pub fn at(
-        coefficients: &Coefficients<R>,
-        scale: &Scale,
-        state: &State<f64>,
-    ) -> Result<Self, Error> {
-        let [z, lost] = start(coefficients, scale, state)?;
-        Ok(Self {
-            z,
-            lost: if COMPENSATED { lost } else { [R::ZERO; 6] },
-        })
-    }
-
-    /// Refuses numbers that are not finite. `momenta` are p1 and p2 in SI units.
-    pub fn check(&self, coefficients: &Coefficients<R>, momenta: [R; 2]) -> Result<(), Error> {
-        let [sin1, cos1, s, c, ..] = self.z;
-        let [_, [sin2, cos2]] = directions(&self.z, coefficients.norm);
-        let [p1, p2] = momenta;
-
-        // An error names the coordinate that the quantity belongs to.
-        let numbers = [
-            (Parameter::A1, sin1),
-            (Parameter::A1, cos1),
-            (Parameter::A2, s),
-            (Parameter::A2, c),
-            (Parameter::A2, sin2),
-            (Parameter::A2, cos2),
-            (Parameter::P1, p1),
-            (Parameter::P2, p2),
-        ];
-        check_finite(numbers).map_err(Error::diverged)
-    }
-
-    /// Returns (sin, cos) of both rods as words whose highest bit is the sign.
-    pub fn sides(&self) -> [[i32; 2]; 2] {
-        let [sin1, cos1, s, c, ..] = self.z;
-        let sin2 = sin1 * c - cos1 * s;
-        let cos2 = cos1 * c + sin1 * s;
-        [[sin1.side(), cos1.side()], [sin2.side(), cos2.side()]]
-    }
-
-    /// Adds `increment` to quantity `i`.
-    pub fn add(&mut self, i: usize, increment: R) {
-        if COMPENSATED {
-            let wanted = increment + self.lost[i];
-            let sum = self.z[i] + wanted;
-            self.lost[i] = wanted - (sum - self.z[i]);
-            self.z[i] = sum;
-        } else {
-            self.z[i] = self.z[i] + increment;
-        }
-    }
-
-    /// Restores sin^2 a1 + cos^2 a1 = 1 and S^2 + C^2 = nu^2, to first order in the error.
-    pub fn restore_lengths(&mut self, coefficients: &Coefficients<R>) {
-        let pairs = [
-            (0, R::ONE, R::HALF),
-            (2, coefficients.norm, coefficients.half_inverse_square),
-        ];
-        for (i, length, gain) in pairs {
-            let [s, c] = [self.z[i], self.z[i + 1]];
-            let lost = s * self.lost[i] + c * self.lost[i + 1];
-            let missing = missing([s, c], length, gain, lost);
-            self.add(i, s * missing);
-            self.add(i + 1, c * missing);
-        }
     }
 }
 
@@ -420,115 +325,9 @@ impl Scale {
     }
 }
 
-/// The number of steps of a block. After each block the lead is compared with half a step.
-///
-/// The lengths of the directions are restored at the same interval.
-pub(crate) const BLOCK: u32 = 32;
-
-/// The excess of a step over dt. It exists because the constants of the equations are rounded.
-///
-/// The steps since the start are counted in blocks of [`BLOCK`] = 32. When a motion would be half a
-/// step or more ahead of the time, the last step of a block is left out. The motion is then about
-/// half a step behind.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Lead {
-    /// The lead of each step in multiples of 2^-64 of a step.
-    ///
-    /// A wrapping product with the number of steps is the lead beyond whole steps.
-    each: u64,
-}
-
-/// A step in the unit of [`Lead::each`].
-const STEP: f64 = (1_u128 << 64) as f64;
-
-impl Lead {
-    /// Returns the lead of steps of length `step` instead of `dt`, both in the same unit and of the
-    /// same sign.
-    ///
-    /// A step that is shorter than `dt`, as a rounding can make it, counts as exact. The lead must
-    /// be below 1/64 of a step, and both arguments finite and not 0; this is not checked.
-    pub fn new(step: f64, dt: f64) -> Self {
-        Self {
-            each: ((step - dt) / step * STEP) as u64,
-        }
-    }
-
-    /// Returns the number of steps to compute for the next `steps` steps, after which the count of
-    /// steps since the start is `count`: `steps`, or one less. They must not go beyond the end of a
-    /// block, and `steps` must be at least 1; neither is checked.
-    pub fn made(self, steps: u32, count: u64) -> u32 {
-        if count as u32 % BLOCK == 0 {
-            steps - u32::from(self.is_left_out(count))
-        } else {
-            steps
-        }
-    }
-
-    /// Returns true if the last step of the block that ends at `count` steps since the start is
-    /// left out, because the lead reached half a step within the block. `count` must be a multiple
-    /// of 32, which is not checked; 0 gives false.
-    pub fn is_left_out(self, count: u64) -> bool {
-        let after = count.wrapping_mul(self.each) as i64;
-        after < i64::MIN + (self.each * u64::from(BLOCK)) as i64
-    }
-
-    /// Returns the motion's lead over the exact time at `count` steps since the start, in steps of
-    /// the motion, whatever the sign of dt. It is negative if the motion is behind. Its magnitude
-    /// is at most half a step, plus the lead of one block of 32 steps, below 1e-4 of a step in
-    /// `f32`.
-    pub fn ahead(self, count: u64) -> f64 {
-        let within = count % u64::from(BLOCK);
-        let before = (count - within).wrapping_mul(self.each) as i64;
-        (before as f64 + within as f64 * self.each as f64) / STEP
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    /// Adds up the steps that a method computes, for steps that are too long by up to 1 %, in calls
-    /// of 1 to 7 steps. The lead must be that sum less the time, at most half a step and the lead
-    /// of one block. Steps must be left out for the three largest excesses only.
-    #[test]
-    fn motion_is_at_most_half_a_step_ahead() {
-        for longer in [-f64::EPSILON, 0.0, 1e-16, 1.9e-6, 3e-4, 0.01] {
-            let step = 1.0 + longer;
-            let lead = Lead::new(step, 1.0);
-            let mut count = 0_u64;
-            let mut made = 0_u64;
-            for call in 0..200_000_u32 {
-                // A call must not cross the end of a block.
-                let steps = (call % 7 + 1).min(BLOCK - count as u32 % BLOCK);
-                count += u64::from(steps);
-                made += u64::from(lead.made(steps, count));
-
-                // Compare the lead with its definition, in steps.
-                let ahead = (made as f64 * step - count as f64) / step;
-                assert!(
-                    (ahead - lead.ahead(count)).abs() < 1e-9,
-                    "{longer} after {count}: {ahead}"
-                );
-                assert!(
-                    ahead.abs() <= 0.5 + f64::from(BLOCK) * longer,
-                    "{longer} after {count}: {ahead}"
-                );
-            }
-
-            // In this time only the three largest excesses add up to half a step.
-            assert_eq!(made < count, longer > 1e-6, "{longer}");
-        }
-    }
-
-    /// The last step of a block is left out when the lead reaches half a step, and not again until
-    /// it has grown by another step. Steps that are too long by 1/128 reach half a step after 64
-    /// steps, and one and a half after 192.
-    #[test]
-    fn one_step_is_left_out_for_each_step_of_lead() {
-        let lead = Lead::new(1.0, 127.0 / 128.0);
-        let left_out = [32, 64, 96, 128, 160, 192].map(|count| lead.is_left_out(count));
-        assert_eq!(left_out, [false, true, false, false, false, true]);
-    }
 
     /// A number that `f32` rounds down is replaced by the next one above it.
     #[test]
