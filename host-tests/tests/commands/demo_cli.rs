@@ -252,6 +252,28 @@ fn half_speed_simulates_half_the_time() {
     );
 }
 
+/// The map of flips takes half of a tick of the Cortex-M3, so that no board of it keeps speed 4. The
+/// board lowers the speed, which the user is told, and 4 s are 4 s of its clock. The comparison may
+/// add 3 s for an answer.
+#[test]
+fn a_board_that_cannot_keep_a_speed_lowers_it() {
+    toolchain();
+    let mut command = program("demo");
+    command.args(["--scene", "flips", "--speed", "4"]);
+    let output = output(command.args(["--headless", "--seconds", "4"]));
+    assert_eq!(output.status.code(), Some(1), "{output:?}");
+    assert!(output.stderr.contains("speed lowered to 2"), "{output:?}");
+
+    let number = |name| {
+        let lines = output.stdout.lines();
+        let mut words = lines.filter_map(|line| line.strip_prefix(name));
+        let word = words.next().map(str::trim).unwrap_or_default();
+        word.parse::<u32>().expect(name)
+    };
+    let ticks = number("frames ") + number("dropped frames");
+    assert!((240..=420).contains(&ticks), "{output:?}");
+}
+
 /// `cargo demo` without a terminal runs with success and prints the reason and the options that
 /// save pictures, on stderr. With `--headless` it does not print them.
 #[test]

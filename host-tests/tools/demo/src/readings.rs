@@ -97,6 +97,9 @@ pub struct Readings {
     simulated: f64,
 }
 
+/// The beginning of the log line of a board that could not keep the speed.
+const SLOWED: &str = "speed lowered";
+
 impl Readings {
     /// Takes a frame that has just arrived, and passes it to the comparison. A frame of another
     /// scene, or of an earlier time, begins a new motion: `start` and `past` are emptied. A frame
@@ -204,8 +207,8 @@ impl Readings {
 
     /// Returns the faults of an emulated board, a text for each kind or line; empty if all is well.
     /// Faults are damaged messages, frames that were sent and not received (lost) or not drawn in
-    /// time (dropped), errors in the log, and plain text in the log, which is a crash report or a
-    /// complaint of QEMU. A difference of bits is not among them. For a board at a port or with the
+    /// time (dropped), a speed that the board has lowered, errors in the log, and plain text in the
+    /// log, which is a crash report or a complaint of QEMU. A difference of bits is not among them. For a board at a port or with the
     /// host's clock the same numbers need not be faults.
     pub fn faults(&self) -> Vec<String> {
         // Everything that goes wrong between an emulated board and the host is a fault of the
@@ -225,7 +228,7 @@ impl Readings {
             .chain(
                 self.lines
                     .iter()
-                    .filter(|line| line.is_bad())
+                    .filter(|line| line.is_bad() || line.text.starts_with(SLOWED))
                     .map(LogLine::to_string),
             )
             .collect()
