@@ -163,7 +163,7 @@ pub use table::{Equations, FormVisitor, Integrator, Method, Numbers};
 #[doc(hidden)] // Needed by one of these each, not by a user who computes a motion.
 pub mod parts {
     pub use crate::flips::falling::Falling;
-    pub use crate::methods::any::start;
+    pub use crate::methods::any::{advance, start};
     pub use crate::methods::{
         Advance, Canonical, Derivatives, DirectionF64, Rk4, Rk4Direction, RungeKutta, Turns,
     };

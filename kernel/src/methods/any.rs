@@ -63,7 +63,7 @@ macro_rules! motions {
             #[inline(never)] // Inlined, each caller would have a copy of every step.
             fn advance(&mut self, steps: u32) {
                 match self {
-                    $(Self::$method(motion) => motion.advance(steps),)*
+                    $(Self::$method(motion) => $crate::parts::advance(motion, steps),)*
                 }
             }
 
@@ -120,6 +120,12 @@ pub fn start<F: Form>(
     dt: f64,
 ) -> Result<F, Error> {
     F::new(parameters, start, dt)
+}
+
+/// Advances a motion by `steps` steps, for [`motions!`].
+#[inline(never)] // Inlined, each enum would have a copy.
+pub fn advance<F: Form>(motion: &mut F, steps: u32) {
+    motion.advance(steps);
 }
 
 motions! {

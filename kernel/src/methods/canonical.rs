@@ -87,7 +87,6 @@ impl<R: Real, E: Derivatives<R>, I: RungeKutta> Advance for Canonical<R, E, I> {
         Ok(Self { state, ..*self })
     }
 
-    #[inline(never)] // Inlined, each enum of motions would have a copy.
     fn advance(&mut self, steps: u32) {
         for _ in 0..steps {
             self.state = I::step(
