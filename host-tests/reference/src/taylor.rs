@@ -239,20 +239,11 @@ fn product(a: &[TwoFloat], b: &[TwoFloat]) -> TwoFloat {
     TwoFloat::new_add(sum, errors)
 }
 
-/// A distance from a multiple of 90 degrees that is only the rounding of pi.
-const ROUNDING_OF_PI: f64 = 1e-30;
-
 /// Returns the sine and cosine, computed by their power series about the nearest multiple of pi/2.
 fn sin_cos(angle: TwoFloat) -> [TwoFloat; 2] {
     let quarter_turns = f64::from(angle / FRAC_PI_2).round();
     // The first quarter turn that is left over is at most half a quarter.
     let x = angle - FRAC_PI_2 * quarter_turns;
-    // Exactly 90 or 180 degrees, which the rounding of pi would set in motion.
-    let x = if x.hi().abs() < ROUNDING_OF_PI {
-        0.0.into()
-    } else {
-        x
-    };
     let alternating = |first: TwoFloat, mut power: f64| {
         let mut sum = first;
         let mut term = first;

@@ -91,8 +91,7 @@ const HIGHEST: f64 = 1e6;
 impl SceneOptions {
     /// Returns the scene with its plan, or with the limit that forbids any plan. Lengths are in m,
     /// angles in rad, times in s, costs in cycles. The tolerance is half a pixel. An error is one
-    /// line that names the option and the value; it is caused by a number out of range, also an
-    /// angle of more than 2^26 rad, by a pendulum that the kernel refuses, or by a built-in scene
+    /// line that names the option and the value; it is caused by a number out of range, by a pendulum that the kernel refuses, or by a built-in scene
     /// without a motion to plan.
     ///
     /// The plan of a [linear](SceneName::is_linear) scene always has the closed form. Its horizon

@@ -127,7 +127,7 @@ impl<'a> Job<'a> {
             ..
         } = self;
         let mut output = BufWriter::new(output);
-        let mut second = SecondRun::new(request, rows.time(1), options.is_still());
+        let mut second = SecondRun::new(request, rows.time(1));
         let bar = Progress::of("rows", u64::from(request.samples) + 1);
         let mut number = 0;
         let mut unwritten = None;

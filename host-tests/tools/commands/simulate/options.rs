@@ -13,7 +13,7 @@ use reference::taylor::Reference;
 
 use super::NAMES;
 use console::cli::{choice, choice_with_aliases, option_of};
-use console::number::{Fraction, Number, Pair};
+use console::number::{Number, Pair};
 use emulator::boards::{BOARDS, Board};
 
 /// The place where the motion is computed: the firmware on an emulated board, or, with `None`, this
@@ -55,7 +55,7 @@ pub struct SimulateOptions {
     /// What moves.
     #[command(flatten)]
     pub start: StartOptions,
-    /// A built-in scene, with the f32 values that the boards start it with
+    /// A built-in scene, as the boards start it
     #[arg(
         long,
         value_name = "NAME",
@@ -129,38 +129,26 @@ pub struct SimulateOptions {
 }
 
 impl SimulateOptions {
-    /// Returns the pendulum and its start: those of the scene, or the given ones.
-    pub fn motion(&self) -> (Parameters<f64>, Motion<f64>) {
-        match self.scene.map(SceneName::first_settings) {
-            Some(settings) => (settings.parameters, settings.motion()),
-            None => (self.start.parameters(), self.start.motion()),
-        }
+    /// Returns the start of the scene, or the given one.
+    fn start(&self) -> StartOptions {
+        self.scene.map_or_else(
+            || self.start.clone(),
+            |scene| StartOptions::of(&scene.first_settings()),
+        )
     }
 
-    /// Returns true if the start is at rest and each rod is given as exactly upright or hanging.
-    pub fn is_still(&self) -> bool {
-        let start = self.start.exact().filter(|_| self.scene.is_none());
-        let Some(Exact {
-            fractions: Some([a1, a2, w1, w2, ..]),
-            degrees: [true, _],
-            ..
-        }) = start
-        else {
-            return false;
-        };
-        let is_vertical =
-            |(above, below): Fraction| i128::from(above) % (180 * i128::from(below)) == 0;
-        is_vertical(a1) && is_vertical(a2) && w1.0 == 0 && w2.0 == 0
+    /// Returns the pendulum and its start.
+    pub fn motion(&self) -> (Parameters<f64>, Motion<f64>) {
+        let start = self.start();
+        (start.parameters(), start.motion())
     }
 
     /// Returns the exact motion, from exactly the given decimals if they are not too long.
     pub fn reference(&self) -> Reference {
-        match self.start.exact() {
-            Some(start) if self.scene.is_none() => Reference::of(&start),
-            _ => {
-                let (parameters, motion) = self.motion();
-                Reference::new(&parameters, &motion)
-            }
+        let start = self.start();
+        match start.exact() {
+            Some(exact) => Reference::of(&exact),
+            None => Reference::new(&start.parameters(), &start.motion()),
         }
     }
 }

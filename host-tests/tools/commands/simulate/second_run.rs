@@ -18,19 +18,10 @@ const FEW: u32 = 16;
 /// The changes of m2 and g, relative to them. Each is rounded by at most a quarter of this.
 const ROUNDINGS: [f64; 2] = [2.0 * f64::EPSILON, -2.0 * f64::EPSILON];
 
-/// A motion to compare the rows with.
-enum Second {
-    /// A pendulum at rest, exactly upright or hanging, which never moves.
-    Still([f64; 2]),
-    /// A run.
-    Moving(Box<Run<ExtrapolationF64<16>, true>>),
-    /// A run that cannot go on.
-    Lost,
-}
-
 /// The comparison of rows with a second run.
 pub struct SecondRun {
-    motion: Second,
+    /// The run, or `None` once it cannot go on.
+    run: Option<Run<ExtrapolationF64<16>, true>>,
     /// The number of its steps from one row to the next.
     stride: u32,
     /// The largest difference of an angle so far, rad.
@@ -42,9 +33,8 @@ pub struct SecondRun {
 }
 
 impl SecondRun {
-    /// Begins the second run of a request whose rows are `every` s apart. `is_still` means that the
-    /// exact pendulum never moves.
-    pub fn new(request: &Request, every: f64, is_still: bool) -> Self {
+    /// Begins the second run of a request whose rows are `every` s apart.
+    pub fn new(request: &Request, every: f64) -> Self {
         let longest = Request {
             method: Method::Rk4F64,
             ..*request
@@ -59,14 +49,8 @@ impl SecondRun {
         // An extremely fast motion is not followed more finely than by the rows.
         let most = (request.stride / 2).max(FEW);
         let stride = ((every / longest).ceil() as u32).min(most).max(least);
-        let motion = if is_still {
-            Second::Still(request.angles)
-        } else {
-            begun(request, every / f64::from(stride))
-                .map_or(Second::Lost, |run| Second::Moving(Box::new(run)))
-        };
         Self {
-            motion,
+            run: begun(request, every / f64::from(stride)).ok(),
             stride,
             worst: 0.0,
             until: [None; LEVELS.len()],
@@ -81,17 +65,14 @@ impl SecondRun {
             self.end = time;
             return;
         }
-        if let Second::Moving(run) = &mut self.motion
-            && time > 0.0
-            && run.advance(self.stride).is_err()
-        {
-            self.motion = Second::Lost;
+        if time > 0.0 {
+            let is_lost = |run: &mut Run<_, true>| run.advance(self.stride).is_err();
+            self.run.take_if(is_lost);
         }
-        let second = match &self.motion {
-            Second::Still(angles) => *angles,
-            Second::Moving(run) => run.state().angles(),
-            Second::Lost => [f64::INFINITY; 2],
-        };
+        let second = self
+            .run
+            .as_ref()
+            .map_or([f64::INFINITY; 2], |run| run.state().angles());
         let [one, other] = [0, 1].map(|rod| (angles[rod] - second[rod]).abs());
         let rounding = f64::EPSILON * angles[0].abs().max(angles[1].abs());
         let apart = one.max(other) + rounding;
