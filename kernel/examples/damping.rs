@@ -22,6 +22,10 @@ fn main() -> Result<(), Error> {
     }
 
     let left = pendulum.energy_above_rest(&state);
+    println!(
+        "after 20 s {left:.3} J of 41.7 J are left, at {:.3} and {:.3} rad",
+        state.a1, state.a2
+    );
     assert!(left < 2.0, "{left} J: of 41.7 J almost all is lost");
     Ok(())
 }

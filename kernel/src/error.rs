@@ -53,8 +53,13 @@ pub enum Parameter {
     /// Cost of a step, of a frame by the closed form, or of preparing a motion, in the unit of the
     /// price list.
     Cost,
-    /// Largest allowed cost of computing a frame, or of planning, in the unit of the price list.
-    Budget,
+    /// Price of a step by this method, or of a frame by the closed form, in the unit of the price
+    /// list.
+    Price(Method),
+    /// Largest allowed cost of computing a frame, in the unit of the price list.
+    FrameBudget,
+    /// Largest allowed cost of planning, in the unit of the price list.
+    PlanningBudget,
 }
 
 impl fmt::Display for Parameter {
@@ -80,7 +85,9 @@ impl fmt::Display for Parameter {
             Parameter::Duration => "duration",
             Parameter::Rate => "rate",
             Parameter::Cost => "cost",
-            Parameter::Budget => "budget",
+            Parameter::Price(method) => return write!(f, "cost of {method}"),
+            Parameter::FrameBudget => "frame budget",
+            Parameter::PlanningBudget => "planning budget",
         })
     }
 }
@@ -222,6 +229,10 @@ impl fmt::Display for Error {
                 "{parameter} = {value:?}: the motion has diverged; \
                  use a shorter step or, for the closed form, a shorter time"
             ),
+            Error::OutOfRange {
+                parameter: Parameter::Dt,
+                value: 0.0,
+            } => f.write_str("dt = 0.0: must not be zero"),
             Error::OutOfRange { parameter, value } => write!(
                 f,
                 "{parameter} = {value:?}: too large or too small for this arithmetic, \

@@ -12,7 +12,6 @@ use super::{BoardMotion, Reading, Request};
 #[derive(Clone, Copy, Debug)]
 pub struct Job<R = BoardMotion> {
     run: R,
-    /// The pendulum, with parameters rounded as in the method.
     pendulum: Pendulum<f64>,
     /// The counters of whole turns; `None` if the method counts them.
     turns: Option<[Turns; 2]>,
@@ -28,19 +27,12 @@ impl<R: Advance> Job<R> {
     /// Creates the job of a request, where `run` is its motion at the start.
     pub fn new(run: R, request: &Request) -> Result<Self, Error> {
         let Request {
-            method,
             angles,
             stride,
             samples,
             ..
         } = *request;
-        let parameters = request.parameters;
-        let parameters = if method.is_single() {
-            parameters.cast::<f32>().cast()
-        } else {
-            parameters
-        };
-        let pendulum = Pendulum::new(&parameters)?;
+        let pendulum = Pendulum::new(&request.parameters)?;
         let turns = if run.has_turns() {
             None
         } else {

@@ -8,7 +8,7 @@ use double_pendulum::{
 };
 
 use super::comparison::{Micromath, Textbook};
-use super::run::{rounded, start};
+use super::run::{checked, start};
 use super::{Reading, Request, answer, crc};
 
 /// Calls `visitor` with the type that computes `method`: a type of the kernel or, for a comparison
@@ -58,7 +58,7 @@ impl BoardMotion {
     /// Returns the motion of a request at its start. Refuses, by [`Error::NotDrawn`], methods that
     /// boards do not have.
     pub fn start(request: &Request) -> Result<Self, Error> {
-        let (parameters, state) = rounded(request)?;
+        let (parameters, state) = checked(request)?;
         Self::new(request.method, &parameters, &state, request.dt)
     }
 }

@@ -16,3 +16,4 @@ mod plan;
 mod plan_study;
 mod range;
 mod small_oscillations;
+mod stated_errors;

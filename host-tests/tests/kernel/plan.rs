@@ -634,7 +634,7 @@ fn errors_contain_the_parameter_and_its_value() {
                 ..M4F
             },
             budget,
-            error(Parameter::Cost),
+            error(Parameter::Price(Method::Rk4F32Direction)),
         );
 
         refused(
@@ -644,7 +644,7 @@ fn errors_contain_the_parameter_and_its_value() {
                 frame: single,
                 ..budget
             },
-            error(Parameter::Budget),
+            error(Parameter::FrameBudget),
         );
 
         refused(
@@ -654,7 +654,7 @@ fn errors_contain_the_parameter_and_its_value() {
                 planning: single,
                 ..budget
             },
-            error(Parameter::Budget),
+            error(Parameter::PlanningBudget),
         );
     }
 

@@ -40,11 +40,18 @@ impl Problem {
         // The prices and budgets, each with the parameter that an error names.
         let prices = Method::DRAWN
             .iter()
-            .filter_map(|method| costs.step(*method));
-        let of = |parameter| move |value: f32| (parameter, f64::from(value));
-        let others = [costs.fixed32_unlike, costs.preparation];
-        let costs = prices.chain(others).map(of(Parameter::Cost));
-        let budgets = [budget.frame, budget.planning].map(of(Parameter::Budget));
+            .filter_map(|&method| Some((Parameter::Price(method), costs.step(method)?)));
+        let others = [
+            (Parameter::Price(Method::Rk4Fixed32), costs.fixed32_unlike),
+            (Parameter::Cost, costs.preparation),
+        ];
+        let in_f64 = |(parameter, value)| (parameter, f64::from(value));
+        let costs = prices.chain(others).map(in_f64);
+        let budgets = [
+            (Parameter::FrameBudget, budget.frame),
+            (Parameter::PlanningBudget, budget.planning),
+        ]
+        .map(in_f64);
 
         // Check in this order; the error names the first value that is refused.
         let shown = [
