@@ -253,8 +253,7 @@ fn half_speed_simulates_half_the_time() {
 }
 
 /// The map of flips takes half of a tick of the Cortex-M3, so that no board of it keeps speed 4. The
-/// board lowers the speed, which the user is told, and 4 s are 4 s of its clock. The comparison may
-/// add 3 s for an answer.
+/// board lowers the speed, which the user is told. The run ends once it has caught up.
 #[test]
 fn a_board_that_cannot_keep_a_speed_lowers_it() {
     toolchain();
@@ -271,7 +270,7 @@ fn a_board_that_cannot_keep_a_speed_lowers_it() {
         word.parse::<u32>().expect(name)
     };
     let ticks = number("frames ") + number("dropped frames");
-    assert!((240..=420).contains(&ticks), "{output:?}");
+    assert!((240..=1200).contains(&ticks), "{output:?}");
 }
 
 /// `cargo demo` without a terminal runs with success and prints the reason and the options that

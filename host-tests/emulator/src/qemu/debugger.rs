@@ -41,8 +41,6 @@ pub enum Register {
 #[derive(Debug, Default)]
 pub(super) struct Places {
     sleeps: Vec<u32>,
-    /// The function that an application calls after each frame.
-    frame_end: Option<u32>,
     breakpoints: Vec<u32>,
     here: Option<u32>,
 }
@@ -54,12 +52,7 @@ impl Machine {
             clock: Clock::Counted,
             ..*settings
         })?;
-        let image = Image::read(settings.elf)?;
-        machine.places.frame_end = image
-            .functions_named("retained::keep")
-            .next()
-            .map(|function| function.address);
-        let words = image.words().into_iter();
+        let words = Image::read(settings.elf)?.words().into_iter();
         machine.places.sleeps = words
             .filter(|(_, first, _)| *first == WFI)
             .map(|(address, ..)| address)
@@ -69,15 +62,11 @@ impl Machine {
 
     /// Runs to the first sleep of the board after which a frame has arrived, and returns all
     /// messages. The machine is then stopped with that frame on the panel. A board that is late
-    /// does not sleep: it is stopped after its second frame.
+    /// does not sleep, and runs on until it has caught up.
     pub fn run_to_frame(&mut self) -> anyhow::Result<Vec<ToHost>> {
-        let places = self.places.sleeps.iter().copied();
-        let places: Vec<_> = places.chain(self.places.frame_end).collect();
+        let sleeps = self.places.sleeps.clone();
         up_to_frame(PATIENCE, || {
-            self.run_until(&places)?;
-            if self.places.here == self.places.frame_end {
-                self.run_until(&places)?;
-            }
+            self.run_until(&sleeps)?;
             self.messages()
         })
     }
