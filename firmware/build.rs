@@ -6,6 +6,12 @@ use std::env;
 fn main() {
     println!("cargo:rerun-if-changed=build.rs");
     println!("cargo:rerun-if-changed=../memory.x");
+    // The Pico drives either an OLED or a colour panel, which this variable names.
+    println!("cargo:rerun-if-env-changed=PANEL");
+    println!("cargo:rustc-check-cfg=cfg(lcd)");
+    if env::var("PANEL").is_ok_and(|name| name.contains("lcd") || name.contains("display")) {
+        println!("cargo:rustc-cfg=lcd");
+    }
     // The code uses this name for features that a Cortex-M0+ lacks.
     println!("cargo:rustc-check-cfg=cfg(armv6m)");
     if env::var("TARGET").is_ok_and(|target| target.starts_with("thumbv6m")) {
@@ -34,6 +40,8 @@ fn main() {
     for argument in [
         "--defsym=flash_origin=0x10000100",
         "--defsym=flash_length=0x001fff00",
+        // The picture of a colour panel takes up to 75 KB.
+        "--defsym=ram_of_statics=0x00038000",
         "-Tpico/pico.x",
     ] {
         println!("cargo:rustc-link-arg-bin=pico={argument}");

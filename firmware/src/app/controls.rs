@@ -23,6 +23,8 @@ pub struct Pressed {
     pub left: bool,
     pub right: bool,
     pub select: bool,
+    /// A, B, X and Y of a panel with buttons.
+    pub letters: [bool; 4],
 }
 
 pub trait Buttons {
@@ -47,7 +49,15 @@ const ARROWS: [[Command; 2]; 4] = [
     [Command::TurnRight, Command::NextScene],
 ];
 
-/// The state of the five buttons, from readings of one tick to commands.
+/// The commands of the buttons A, B, X and Y.
+const LETTERS: [Command; 4] = [
+    Command::PreviousScene,
+    Command::NextScene,
+    Command::TogglePause,
+    Command::Restart,
+];
+
+/// The state of the buttons, from readings of one tick to commands.
 ///
 /// A button has no effect until it has been released once.
 ///
@@ -66,6 +76,7 @@ pub struct Controls {
     arrows: [Button; 4],
     select: Button,
     alone: OneButton,
+    letters: [Button; 4],
 }
 
 impl Controls {
@@ -79,6 +90,7 @@ impl Controls {
             left,
             right,
             select,
+            letters,
         }: Pressed,
     ) -> impl Iterator<Item = Command> + use<> {
         let select = self.select.tick(select);
@@ -103,7 +115,15 @@ impl Controls {
         let alone = self
             .alone
             .tick(select, commands.iter().any(Option::is_some));
-        commands.into_iter().flatten().chain(alone)
+
+        let mut lettered = [None; 4];
+        let letters = LETTERS.into_iter().zip(&mut self.letters).zip(letters);
+        for (command, ((letter, button), pressed)) in lettered.iter_mut().zip(letters) {
+            let is_pressed = button.tick(pressed) == Some(Change::Pressed);
+            *command = is_pressed.then_some(letter);
+        }
+        let commands = commands.into_iter().flatten().chain(alone);
+        commands.chain(lettered.into_iter().flatten())
     }
 }
 

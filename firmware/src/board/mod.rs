@@ -16,6 +16,7 @@
 pub mod cortex_m;
 pub mod lm3s6965evb;
 #[cfg(any(feature = "pico", feature = "stm32f405"))]
+#[cfg_attr(lcd, allow(dead_code))]
 mod panel_bus;
 #[cfg(feature = "pico")]
 pub mod pico;

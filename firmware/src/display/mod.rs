@@ -12,11 +12,13 @@ mod bus;
 mod oled_i2c;
 mod panels;
 mod ssd0323;
+mod st7789;
 
 pub use bus::{OutByte, Outbox, PanelBus, SILENCE, Sent, free_bus};
 pub use oled_i2c::{OledError, OledI2c};
 pub use panels::PanelName;
 pub use ssd0323::Ssd0323;
+pub use st7789::{PixelBus, St7789};
 
 /// The driver of a panel. It takes a frame in each tick.
 pub trait Display {
@@ -158,6 +160,8 @@ pub struct PanelOptions {
 /// The state of the panel for the host.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct PanelReport {
+    /// The panel that the program was built for.
+    pub name: PanelName,
     /// The state of the search.
     pub state: PanelState,
     /// The choices of the user.
@@ -180,14 +184,24 @@ impl Controller {
     }
 }
 
+/// The panel that the build variable `PANEL` names. It is an OLED without the variable, and also if
+/// that names a controller of an OLED.
+pub const PANEL: PanelName = match option_env!("PANEL") {
+    None => PanelName::Oled,
+    Some(name) => match PanelName::named(name) {
+        None => PanelName::Oled,
+        Some(panel) => panel,
+    },
+};
+
 /// The controller that the build variable `PANEL` names: `ssd1306`, also for an SSD1309, `sh1106`
-/// or `sh1107`. Another value is an error of the build. It is `None` without the variable, and then
-/// the controller is identified. The host's choice has precedence, also after a reset that leaves
-/// memory powered, unless a program with another value made it.
+/// or `sh1107`. It is `None` without the variable, and then the controller is identified. The
+/// host's choice has precedence, also after a reset that leaves memory powered, unless a program
+/// with another value made it.
 pub const BUILT_FOR: Option<Controller> = match option_env!("PANEL") {
     None => None,
-    Some(name) => match Controller::named(name) {
-        None => panic!("PANEL is neither ssd1306, sh1106 nor sh1107"),
-        named => named,
+    Some(name) => match (Controller::named(name), PanelName::named(name)) {
+        (None, None) => panic!("PANEL names neither a panel nor a controller"),
+        (controller, _) => controller,
     },
 };

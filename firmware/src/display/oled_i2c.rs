@@ -22,7 +22,9 @@ use core::fmt;
 use embedded_hal::i2c::ErrorKind;
 
 use super::bus::{Outbox, PanelBus, Sent};
-use super::{BusFault, By, Controller, Display, Found, PanelOptions, PanelReport, PanelState};
+use super::{
+    BusFault, By, Controller, Display, Found, PanelName, PanelOptions, PanelReport, PanelState,
+};
 use crate::config::TICK_RATE;
 use crate::graphics::{Bitmap, Canvas, Format};
 
@@ -475,6 +477,7 @@ impl<Bus: PanelBus> Display for OledI2c<'_, Bus> {
             _ => PanelState::Starting,
         };
         PanelReport {
+            name: PanelName::Oled,
             state,
             chosen: self.chosen,
             shown: self.counts.shown as u8,

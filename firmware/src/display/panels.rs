@@ -19,6 +19,26 @@ choice! {
 }
 
 impl PanelName {
+    /// Returns the panel with this name; `None` if no panel has it.
+    pub const fn named(name: &str) -> Option<Self> {
+        match name.as_bytes() {
+            b"oled" => Some(Self::Oled),
+            b"lcd-1.3" => Some(Self::Lcd13),
+            b"lcd-2" => Some(Self::Lcd2),
+            b"display-2" => Some(Self::Display2),
+            b"display" => Some(Self::Display),
+            _ => None,
+        }
+    }
+
+    /// Returns the place of the panel's top left pixel in the memory of its controller.
+    pub const fn offset(self) -> (usize, usize) {
+        match self {
+            Self::Display => (40, 53),
+            _ => (0, 0),
+        }
+    }
+
     /// Returns the format of the panel.
     pub const fn format(self) -> Format {
         match self {

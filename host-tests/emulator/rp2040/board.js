@@ -3,6 +3,7 @@
 import { RP2040 } from 'rp2040js';
 import { fast } from './fast.js';
 import { Panel } from './panel.js';
+import { PANELS, St7789 } from './st7789.js';
 import { BOOT, addRom } from './rom.js';
 import { addTime } from './uart.js';
 import { UsbHost } from './usb_host.js';
@@ -33,7 +34,9 @@ export const NOWHERE = -1;
 const [AIRCR, MPU_TYPE, MPU_LAST, DHCSR] = [0xd0c, 0xd90, 0xda0, 0xdf0];
 
 export class Board {
-  constructor(uf2, say) {
+  /** Without the name of a colour panel, the panel is an OLED. */
+  constructor(uf2, say, panel) {
+    this.lcd = PANELS[panel] && new St7789(PANELS[panel]);
     this.image = flashed(uf2, FLASH);
     this.say = say;
     this.panel = new Panel();
@@ -74,10 +77,12 @@ export class Board {
     addRom(chip);
     chip.onBreak = (code) => code === BOOT && this.enterBootLoader();
     this.panel.connect(chip);
+    this.lcd?.connect(chip);
     this.usb.attach(chip, !before || reason !== 0);
     this.sent = [];
     addTime(chip.uart[0], chip.clock, (byte) => this.sent.push(byte));
-    BUTTONS.forEach((pin) => chip.gpio[pin].setInputValue(!this.pressed.has(pin)));
+    const buttons = this.lcd?.panel.keys ?? BUTTONS;
+    buttons.forEach((pin) => chip.gpio[pin].setInputValue(!this.pressed.has(pin)));
     this.due = null;
     this.hungAt = NOWHERE;
     this.isLocked = false;

@@ -6,7 +6,8 @@ import { createInterface } from 'node:readline';
 import { Board } from './board.js';
 
 const say = (word, bytes) => writeSync(1, `${word} ${Buffer.from(bytes ?? []).toString('hex')}\n`);
-const board = new Board(readFileSync(process.argv[2]), say);
+const [, , file, panel] = process.argv;
+const board = new Board(readFileSync(file), say, panel);
 
 const commands = {
   /** Lets so many microseconds pass. */
@@ -22,8 +23,8 @@ const commands = {
   /** The board's device descriptor, as the USB host has read it; nothing if no board is there. */
   descriptor: () => say('descriptor', board.usb.device),
   uart: (hex) => Buffer.from(hex, 'hex').forEach((byte) => board.chip.uart[0].feedByte(byte)),
-  /** The panel's memory; nothing while it is off. */
-  panel: () => say('panel', board.panel.shown()),
+  /** The panel's memory, or the colours of a colour panel; nothing while it is off. */
+  panel: () => say('panel', (board.lcd ?? board.panel).shown()),
   /** Plugs a panel of this kind with these status bits in, or pulls it: none. */
   plug: (kind, status) => board.panel.plug(kind, Number(status)),
   /** A device holds the clock of the panel's bus low: 1; or lets it go: 0. */

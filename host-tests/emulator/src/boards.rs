@@ -2,6 +2,7 @@
 
 use cycles::Core;
 use firmware::config::{self, Processor};
+use firmware::display::PanelName;
 
 /// A board that the firmware is built for, and its emulation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -26,6 +27,8 @@ pub struct Board {
     pub hertz: u32,
     /// True if the emulated board has the OLED panel and the five buttons.
     pub has_panel: bool,
+    /// The panel that the firmware is built for.
+    pub panel: PanelName,
 }
 
 impl Board {
@@ -120,6 +123,7 @@ pub const LM3S6965EVB: Board = Board {
     serial_port: 0,
     hertz: 50_000_000,
     has_panel: true,
+    panel: PanelName::Oled,
 };
 
 /// The boards of QEMU: the LM3S6965 with a Cortex-M3 (`lm3s6965evb`), then with a Cortex-M4F
@@ -153,6 +157,7 @@ pub const STM32F405: Board = Board {
     serial_port: 2, // USART3
     hertz: 168_000_000,
     has_panel: false,
+    panel: PanelName::Oled,
 };
 
 /// The Raspberry Pi Pico with a Cortex-M0+ at 125 MHz, a panel and buttons. It is emulated by
@@ -168,6 +173,11 @@ pub const PICO: Board = Board {
     hertz: 125_000_000,
     ..LM3S6965EVB
 };
+
+/// Returns the Pico with this panel.
+pub const fn pico_with(panel: PanelName) -> Board {
+    Board { panel, ..PICO }
+}
 
 /// Returns every board that the firmware is built for: the [`BOARDS`] of QEMU in their order, then
 /// the [`PICO`].

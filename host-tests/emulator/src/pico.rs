@@ -11,6 +11,7 @@ use std::time::Duration;
 
 use anyhow::{Context, ensure};
 use firmware::app::Key;
+use firmware::display::PanelName;
 use firmware::protocol::{self, Frame, MAX_WIRE, ToHost, encode_command};
 
 use crate::flash::{flash_image, uf2};
@@ -38,14 +39,20 @@ pub struct PicoMachine {
     heard_by_usb: Vec<ToHost>,
     heard_by_uart: Vec<ToHost>,
     is_in_boot_loader: bool,
+    panel: PanelName,
 }
 
 impl PicoMachine {
     /// Starts a board with this firmware in its flash, exactly as `cargo pico` copies it. `limit`
     /// is a time of the host, after which the emulator is killed.
-    pub fn start(node: &Path, elf: &Path, limit: Duration) -> anyhow::Result<Self> {
+    pub fn start(
+        node: &Path,
+        elf: &Path,
+        panel: PanelName,
+        limit: Duration,
+    ) -> anyhow::Result<Self> {
         let (start, image) = flash_image(&std::fs::read(elf)?)?;
-        Self::flashed(node, &uf2(start, &image), elf, limit)
+        Self::flashed(node, &uf2(start, &image), elf, panel, limit)
     }
 
     /// Starts a board whose flash has been written by this UF2 file. The ELF file is used to decode
@@ -54,6 +61,7 @@ impl PicoMachine {
         node: &Path,
         blocks: &[u8],
         elf: &Path,
+        panel: PanelName,
         limit: Duration,
     ) -> anyhow::Result<Self> {
         let folder = Scratch::new()?;
@@ -65,7 +73,8 @@ impl PicoMachine {
         command
             .arg("--single-threaded")
             .arg(workspace().join("host-tests/emulator/rp2040/main.js"))
-            .arg(&file);
+            .arg(&file)
+            .arg(panel.name());
         command.stdin(Stdio::piped()).stdout(Stdio::piped());
 
         let mut process = process::spawn(&mut command, limit)?;
@@ -91,6 +100,7 @@ impl PicoMachine {
             heard_by_usb,
             heard_by_uart,
             is_in_boot_loader: false,
+            panel,
         })
     }
 
@@ -166,7 +176,11 @@ impl PicoMachine {
 
     /// Returns the picture in the memory of the panel; it is black while the panel is off.
     pub fn screenshot(&mut self) -> anyhow::Result<Screenshot> {
-        Ok(Screenshot::from_pages(&self.tell("panel")?))
+        let bytes = self.tell("panel")?;
+        Ok(match self.panel {
+            PanelName::Oled => Screenshot::from_pages(&bytes),
+            panel => Screenshot::from_colours(panel.format(), &bytes),
+        })
     }
 
     /// Presses (`down`) or releases a button.

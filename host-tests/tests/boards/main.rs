@@ -1,6 +1,7 @@
 //! The firmware on emulated boards: bits, frames, faults, costs.
 
 mod budgets;
+mod colour;
 mod cores;
 mod count;
 mod identity;

@@ -19,7 +19,7 @@ use firmware::app::Key;
 use firmware::config::{
     BAUD, HOLD_TICKS, MOST_MEASURED_STEPS, RECEIVE_QUEUE, TICK_RATE, WATCHDOG_SECONDS,
 };
-use firmware::display::{BusFault, By, Controller, Found, PanelReport, PanelState};
+use firmware::display::{BusFault, By, Controller, Found, PanelName, PanelReport, PanelState};
 use firmware::graphics::Bitmap;
 use firmware::job::{CRC, Request};
 use firmware::protocol::{
@@ -46,7 +46,7 @@ fn board() -> anyhow::Result<PicoMachine> {
 
 fn switched_on() -> anyhow::Result<PicoMachine> {
     let emulator = toolchain::ready_for_pico().unwrap_or_else(|missing| panic!("{missing}"));
-    PicoMachine::start(&emulator, &application(&PICO), LIMIT)
+    PicoMachine::start(&emulator, &application(&PICO), PanelName::Oled, LIMIT)
 }
 
 fn request(method: Method, samples: u32) -> Request {

@@ -21,6 +21,7 @@ use emulator::pico::PicoMachine;
 use emulator::qemu::{Machine, Settings};
 use emulator::toolchain;
 use firmware::config::TICK_RATE;
+use firmware::display::PanelName;
 use firmware::protocol::{Command, Frame, ToHost};
 use firmware::scenes::SceneName;
 use host_tests::commands::count::FrameProfile;
@@ -316,7 +317,7 @@ fn the_pico_plays_every_scene_as_the_host_does_within_its_budgets() -> anyhow::R
     let node = toolchain::ready_for_pico().unwrap_or_else(|missing| panic!("{missing}"));
     let elf = application(&PICO);
     let stack = stack(&elf);
-    let mut machine = PicoMachine::start(&node, &elf, LIMIT)?;
+    let mut machine = PicoMachine::start(&node, &elf, PanelName::Oled, LIMIT)?;
     machine.tell(&format!("fill {} {} {PAINT}", stack.start, stack.len()))?;
     machine.next_frame()?;
     let mut next = |words: &[u8]| {

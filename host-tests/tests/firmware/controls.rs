@@ -15,6 +15,7 @@ const NONE: Pressed = Pressed {
     left: false,
     right: false,
     select: false,
+    letters: [false; 4],
 };
 const UP: Pressed = Pressed { up: true, ..NONE };
 const SELECT: Pressed = Pressed {
@@ -50,6 +51,7 @@ fn a_button_held_since_reset_counts_only_once_released() {
         left: true,
         right: true,
         select: false,
+        letters: [false; 4],
     };
     let all = Pressed {
         select: true,

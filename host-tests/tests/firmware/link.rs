@@ -6,7 +6,9 @@ use std::fmt::Debug;
 use double_pendulum::plan::{Limit, Plan, PlanError, Stepping};
 use double_pendulum::{Error, Method};
 use firmware::app::Record;
-use firmware::display::{BusFault, By, Controller, Found, PanelOptions, PanelReport, PanelState};
+use firmware::display::{
+    BusFault, By, Controller, Found, PanelName, PanelOptions, PanelReport, PanelState,
+};
 use firmware::job::{CRC, Reading, Request};
 use firmware::motion::{Horizon, PlanResult, Planned, Settings};
 use firmware::protocol::{
@@ -217,6 +219,7 @@ fn every_message_fits() {
     let settings = Settings::default();
     let method = Some(method);
     let panel = PanelReport {
+        name: PanelName::Lcd13,
         state: PanelState::Shown(Found {
             controller: Controller::Sh1107,
             by: By::Choice,

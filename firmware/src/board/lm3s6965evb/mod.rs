@@ -77,6 +77,7 @@ impl Buttons for Keys {
             left,
             right,
             select: pins::F.are_low(1 << 1),
+            ..Pressed::default()
         }
     }
 }

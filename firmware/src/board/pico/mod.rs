@@ -1,5 +1,6 @@
-//! Raspberry Pi Pico: an RP2040 with a Cortex-M0+ at 125 MHz, a one-colour OLED panel on I2C0, up
-//! to five buttons, and the serial link over USB and UART0 at once. The second core is not used.
+//! Raspberry Pi Pico: an RP2040 with a Cortex-M0+ at 125 MHz, a panel, buttons, and the serial link
+//! over USB and UART0 at once. The second core is not used. The panel is a one-colour OLED or, if
+//! the build variable `PANEL` names one, a colour panel that plugs on ([`PanelName`]).
 //!
 //! A host that opens the USB port at 1200 baud and closes it again restarts the chip in its boot
 //! loader.
@@ -9,32 +10,37 @@
 //!
 //! | part | GPIO |
 //! |---|---|
-//! | panel | I2C0: 4 data, 5 clock; address 0x3C or 0x3D |
-//! | buttons | 10 up, 11 down, 12 left, 13 right, 14 select; each pulls low |
+//! | OLED | I2C0: 4 data, 5 clock; address 0x3C or 0x3D |
+//! | buttons with an OLED | 10 up, 11 down, 12 left, 13 right, 14 select; each pulls low |
+//! | Waveshare panel | SPI1: 10 clock, 11 data; 9 select, 8 data/command, 12 reset, 13 light |
+//! | keys of Pico-LCD-1.3 | 2 up, 18 down, 16 left, 20 right, 3 press; 15 A, 17 B, 19 X, 21 Y |
+//! | keys of Pico-LCD-2 | 15, 17, 2, 3 as A, B, X, Y |
+//! | Pimoroni panel | SPI0: 18 clock, 19 data; 17 select, 16 data/command, 20 light |
+//! | keys of Pimoroni | 12 A, 13 B, 14 X, 15 Y |
 //! | serial link | UART0: 0 out, 1 in; and the USB socket |
 
+#[cfg(not(lcd))]
 mod i2c;
+#[cfg(lcd)]
+mod lcd;
 mod link;
+mod pins;
 mod usb;
 
-use embedded_hal::digital::InputPin;
 use rp2040_hal::clocks::{Clock, init_clocks_and_plls};
 use rp2040_hal::fugit::ExtU32;
-use rp2040_hal::gpio::{DynPinId, FunctionSioInput, Pin, Pins, PullUp};
+use rp2040_hal::gpio::Pins;
 use rp2040_hal::watchdog::{ScratchRegister, Watchdog};
 use rp2040_hal::{Sio, pac};
 
 use crate::app::{Buttons, Pressed};
 use crate::board::cortex_m::{start, watchdog};
-use crate::board::panel_bus::Bus;
 use crate::board::serial::Outward;
 use crate::board::{Board, log};
 use crate::config::WATCHDOG_SECONDS;
-use crate::display::{BUILT_FOR, OledI2c};
-use crate::graphics::{Bitmap, Format};
+use crate::display::{PANEL, PanelName};
+use crate::graphics::Format;
 use crate::protocol::BoardName;
-
-use i2c::I2c0;
 
 /// The code that the chip's boot ROM runs first. It makes the flash readable as memory, if that is
 /// a W25Q080 or a chip with the same commands.
@@ -47,11 +53,16 @@ static BOOT: [u8; 256] = rp2040_boot2::BOOT_LOADER_W25Q080;
 const CRYSTAL: u32 = 12_000_000;
 
 /// The format of the panel.
-pub const FORMAT: Format = Format::OLED;
+pub const FORMAT: Format = PANEL.format();
+
+#[cfg(not(lcd))]
+type Panel = crate::display::OledI2c<'static, crate::board::panel_bus::Bus<i2c::I2c0>>;
+#[cfg(lcd)]
+type Panel = crate::display::St7789<lcd::Lcd>;
 
 /// The parts of this board. The watchdog, a type of `rp2040_hal`, has no interrupt: it resets the
 /// board 2 s after the last feeding.
-pub type Pico = Board<OledI2c<'static, Bus<I2c0>>, Outward, PinKeys, Watchdog>;
+pub type Pico = Board<Panel, Outward, PinKeys, Watchdog>;
 
 /// Sets the board up. The tick and the watchdog run from then on, and the watchdog must be fed. The
 /// panel and the buttons may be absent. The log is opened first, in memory.
@@ -110,41 +121,75 @@ pub fn take() -> Option<Pico> {
     link::enable_interrupts();
 
     // The panel.
-    let wires = (pins.gpio4.reconfigure(), pins.gpio5.reconfigure());
-    let bus = i2c::start(chip.I2C0, wires)?;
-    let memory = cortex_m::singleton!(: Bitmap = Bitmap::BLACK)?;
+    #[cfg(not(lcd))]
+    let panel = {
+        let wires = (pins.gpio4.reconfigure(), pins.gpio5.reconfigure());
+        let bus = i2c::start(chip.I2C0, wires)?;
+        let memory =
+            cortex_m::singleton!(: crate::graphics::Bitmap = crate::graphics::Bitmap::BLACK)?;
+        Panel::new(bus, memory, crate::display::BUILT_FOR)
+    };
+    #[cfg(lcd)]
+    let panel = {
+        let lines = cortex_m::singleton!(: lcd::Lines = [[0; 320]; 2])?;
+        Panel::new(lcd::Lcd::start(&mut chip.RESETS, lines), PANEL)
+    };
+    defmt::info!("built for the panel {=str}", PANEL.name());
 
-    // The panel and the buttons may be absent: the driver looks for a panel, and an open pin reads
-    // as high.
+    // The panel and the buttons may be absent: an open pin reads as high.
+    KEYS.iter().flatten().copied().for_each(pins::use_for_input);
     Some(Board {
-        panel: OledI2c::new(bus, memory, BUILT_FOR),
+        panel,
         link,
-        keys: PinKeys([
-            pins.gpio10.into_pull_up_input().into_dyn_pin(),
-            pins.gpio11.into_pull_up_input().into_dyn_pin(),
-            pins.gpio12.into_pull_up_input().into_dyn_pin(),
-            pins.gpio13.into_pull_up_input().into_dyn_pin(),
-            pins.gpio14.into_pull_up_input().into_dyn_pin(),
-        ]),
+        keys: PinKeys,
         instruments,
         watchdog: start_watchdog(unit),
         reset_by_watchdog,
     })
 }
 
-/// The five buttons: up, down, left, right and select, each low while pressed. Absent ones are
-/// never pressed, and select alone is sufficient.
-pub struct PinKeys([Pin<DynPinId, FunctionSioInput, PullUp>; 5]);
+/// The pins of up, down, left, right and select, then of A, B, X and Y.
+const KEYS: [Option<usize>; 9] = match PANEL {
+    PanelName::Oled => keys([10, 11, 12, 13, 14], [NONE; 4]),
+    PanelName::Lcd13 => keys([2, 18, 16, 20, 3], [15, 17, 19, 21]),
+    PanelName::Lcd2 => keys([NONE; 5], [15, 17, 2, 3]),
+    PanelName::Display | PanelName::Display2 => keys([NONE; 5], [12, 13, 14, 15]),
+};
+/// No pin.
+const NONE: usize = usize::MAX;
+
+const fn keys(arrows: [usize; 5], letters: [usize; 4]) -> [Option<usize>; 9] {
+    let mut keys = [None; 9];
+    let mut place = 0;
+    while place < 9 {
+        let pin = if place < 5 {
+            arrows[place]
+        } else {
+            letters[place - 5]
+        };
+        if pin != NONE {
+            keys[place] = Some(pin);
+        }
+        place += 1;
+    }
+    keys
+}
+
+/// The buttons, each low while pressed. Absent ones are never pressed, and with an OLED select
+/// alone is sufficient.
+pub struct PinKeys;
 
 impl Buttons for PinKeys {
     fn read(&mut self) -> Pressed {
-        let [up, down, left, right, select] = self.0.each_mut().map(|pin| pin.is_low() == Ok(true));
+        let [up, down, left, right, select, a, b, x, y] =
+            KEYS.map(|pin| pin.is_some_and(pins::is_low));
         Pressed {
             up,
             down,
             left,
             right,
             select,
+            letters: [a, b, x, y],
         }
     }
 }

@@ -57,6 +57,25 @@ impl Screenshot {
         }
     }
 
+    /// Makes a screenshot from the colours of a panel, two bytes each, the low one first. Pixels
+    /// without a colour are black. Greys are the brightness.
+    pub fn from_colours(format: Format, bytes: &[u8]) -> Self {
+        let mut colours: Vec<_> = bytes
+            .chunks_exact(2)
+            .map(|two| u16::from_le_bytes([two[0], two[1]]))
+            .collect();
+        colours.resize(usize::from(format.width) * usize::from(format.height), 0);
+        let brightness = |colour: &u16| {
+            let [red, green, blue] = rgb(*colour).map(u32::from);
+            ((2 * red + 5 * green + blue) / 8 / 17) as u8
+        };
+        Self {
+            format,
+            greys: colours.iter().map(brightness).collect(),
+            colours: Some(colours),
+        }
+    }
+
     /// Returns the grey of a pixel, 0 to 15; `None` outside the panel.
     pub fn get(&self, x: i32, y: i32) -> Option<u8> {
         let is_inside = (0..self.format.right()).contains(&x) && y >= 0;

@@ -14,6 +14,8 @@ use anyhow::{anyhow, ensure};
 
 use super::run::{quick_output, run_shown};
 use super::{TARGETS, Toolchain, WASM, remap, set_up_for, target, workspace};
+use firmware::display::PanelName;
+
 use crate::boards::{Board, every_board};
 
 /// The list saves time: another call of cargo takes half a second.
@@ -80,7 +82,30 @@ impl Toolchain {
     }
 
     pub fn build_for(&self, board: &Board) -> anyhow::Result<PathBuf> {
-        self.build(board.binary, board.target)
+        if board.panel == PanelName::Oled {
+            return self.build(board.binary, board.target);
+        }
+
+        // Cargo gives the images for all panels the same name. Each is copied before the next
+        // build replaces it.
+        static TURN: Mutex<()> = Mutex::new(());
+        let _turn = TURN.lock().unwrap_or_else(PoisonError::into_inner);
+        let name = board.panel.name();
+        let folder = Self::folder().join(board.target).join("release");
+        let image = folder.join(format!("{}-{name}", board.binary));
+        let this = (image.display().to_string(), board.target.to_owned());
+        if !BUILT.lock().is_ok_and(|built| built.contains(&this)) {
+            let mut command = self.for_targets("build", &[board.target])?;
+            command.args(["--bin", board.binary, "--features", board.feature]);
+            command.env("PANEL", name);
+            self.finish(command, &format!("building {} for {name}", board.binary))?;
+            fs::copy(folder.join(board.binary), &image)?;
+            BUILT
+                .lock()
+                .into_iter()
+                .for_each(|mut built| built.push(this.clone()));
+        }
+        Ok(image)
     }
 
     /// Builds a binary of the firmware with all optimisations and, if it is the application of a

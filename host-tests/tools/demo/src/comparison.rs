@@ -82,7 +82,10 @@ impl Comparison {
             state: PlayState::Playing,
             steps: 0,
             speed: 1.0,
-            panel: PanelReport::default(),
+            panel: PanelReport {
+                name: status.panel.name,
+                ..PanelReport::default()
+            },
             ..*status
         };
         match (self.doubt.take(), &self.playing) {
@@ -184,7 +187,8 @@ fn played(start: &Status) -> Result<Show, Field> {
         .get(usize::from(start.processor))
         .copied()
         .unwrap_or(PROCESSOR);
-    let mut show = Show::on(processor, SceneName::Page, &Settings::default())?;
+    let format = start.panel.name.format();
+    let mut show = Show::in_format(format, processor, SceneName::Page, &Settings::default())?;
     show.player.resume(start)?;
     Ok(show)
 }

@@ -86,11 +86,11 @@ pub fn run(options: &DemoOptions) -> anyhow::Result<bool> {
     });
     let source = match &options.port {
         Some(name) => Source::Port(port(name)?),
-        None => emulated(options.board, seconds, is_live)?,
+        None => emulated(&options.board(), seconds, is_live)?,
     };
 
-    let scale = options.scale.into();
-    let recording = record.map(|file| Recording::begin(file, scale));
+    let format = options.board().panel.format();
+    let recording = record.map(|file| Recording::begin(file, format, options.scale()));
     let recording = recording.transpose()?;
     if !is_live && !options.headless {
         complain(NO_TERMINAL);
@@ -114,15 +114,18 @@ pub fn port(name: &str) -> Result<Port, Refused> {
 
 /// Builds the application and starts an emulated board. `seconds` of its time must be possible
 /// within the time limit.
-fn emulated(board: &'static Board, seconds: f64, is_live: bool) -> anyhow::Result<Source> {
+fn emulated(board: &Board, seconds: f64, is_live: bool) -> anyhow::Result<Source> {
     let (toolchain, elf) = toolchain::set_up_and_build(board)?;
     let limit = Duration::from_secs_f64(LIMIT[0] + LIMIT[1] * seconds.min(MOST_SECONDS));
 
     // The Pico runs in its own emulator, all other boards in QEMU.
-    if *board == PICO {
+    if board.binary == PICO.binary {
         let emulator = toolchain::set_up_pico()?;
         return Ok(Source::Pico(Box::new(PicoMachine::start(
-            &emulator, &elf, limit,
+            &emulator,
+            &elf,
+            board.panel,
+            limit,
         )?)));
     }
     let settings = Settings {
@@ -275,7 +278,7 @@ fn save_files(
     }
     if let Some(file) = screenshot {
         saved += &format!("\nsaved                 {}{source}", file.path().display());
-        file.write_whole(&png(&session.screenshot, options.scale.into())?)?;
+        file.write_whole(&png(&session.screenshot, options.scale())?)?;
     }
     Ok(saved)
 }

@@ -15,7 +15,7 @@ use clap::{Parser, value_parser};
 use double_pendulum::plan::Stepping;
 use double_pendulum::{Method, Parameter};
 use firmware::config::{GREATEST_SPEED, Processor, STM32F405};
-use firmware::display::Controller;
+use firmware::display::{Controller, PanelName};
 use firmware::graphics::Format;
 use firmware::motion::{Resources, Settings};
 use firmware::scenes::{AnyScene, SceneName};
@@ -23,7 +23,7 @@ use firmware::scenes::{AnyScene, SceneName};
 use super::motion::OwnMotion;
 use console::cli::{Refused, choice, choice_with_aliases};
 use console::number::Number;
-use emulator::boards::{BOARDS, Board, every_board};
+use emulator::boards::{BOARDS, Board, PICO, every_board, pico_with};
 
 /// Shows the double pendulum on a board's panel, live in the terminal, and compares each frame with
 /// the host's own. For a real board the picture is rebuilt from the data it sends.
@@ -50,11 +50,9 @@ pub struct DemoOptions {
           value_parser = choice([None].into_iter().chain(Method::DRAWN.iter().copied().map(Some)),
                                 |method| method.map_or("plan", Method::name)))]
     pub method: Option<MethodChoice>,
-    /// The controller of the panel, kept until the board is switched off; `auto` identifies it
-    /// [default: as it is]
-    #[arg(long, value_name = "NAME",
-          value_parser = choice([None].into_iter().chain(Controller::ALL.iter().copied().map(Some)),
-                                |panel| panel.map_or("auto", Controller::name)))]
+    /// The panel. Of an OLED the controller, kept until the board is switched off; `auto`
+    /// identifies it [default: as it is]. The other panels are those of an emulated Pico
+    #[arg(long, value_name = "NAME", value_parser = choice(panels(), PanelChoice::name))]
     pub panel: Option<PanelChoice>,
     /// Turn the panel's picture by 180 degrees, or back by 0; kept as --panel
     #[arg(long, value_name = "DEGREES",
@@ -84,9 +82,10 @@ pub struct DemoOptions {
     /// Save the last picture of the panel
     #[arg(long, value_name = "FILE.png", value_parser = |file: &str| ends_in("png", file))]
     pub screenshot: Option<PathBuf>,
-    /// The width and height of a pixel of the panel in these files, 1 to 16; 3 gives 384 x 192
-    #[arg(long, value_name = "N", default_value_t = 3, value_parser = value_parser!(u8).range(1..=16))]
-    pub scale: u8,
+    /// The width and height of a pixel of the panel in these files, 1 to 16 [default: 3, which
+    /// gives 384 x 192, and 2 for a colour panel]
+    #[arg(long, value_name = "N", value_parser = value_parser!(u8).range(1..=16))]
+    pub scale: Option<u8>,
 }
 
 /// Returns the keys, the content of each scene, and examples.
@@ -166,8 +165,38 @@ pub fn shows(scene: SceneName) -> &'static str {
 /// A method, or `None` to leave it to the board's plan.
 pub type MethodChoice = Option<Method>;
 
-/// A controller of the panel, or `None` to let the board identify it.
-pub type PanelChoice = Option<Controller>;
+/// A panel, as the user names it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum PanelChoice {
+    /// An OLED with this controller, or `None` to let the board identify it.
+    Oled(Option<Controller>),
+    /// A colour panel, which the program is built for.
+    Colour(PanelName),
+}
+
+impl PanelChoice {
+    fn name(self) -> &'static str {
+        match self {
+            Self::Oled(None) => "auto",
+            Self::Oled(Some(controller)) => controller.name(),
+            Self::Colour(panel) => panel.name(),
+        }
+    }
+}
+
+/// Returns every panel that a user can name.
+fn panels() -> impl Iterator<Item = PanelChoice> {
+    let controllers = [None]
+        .into_iter()
+        .chain(Controller::ALL.iter().copied().map(Some));
+    let colour = PanelName::ALL
+        .iter()
+        .copied()
+        .filter(|panel| panel.format().is_large());
+    controllers
+        .map(PanelChoice::Oled)
+        .chain(colour.map(PanelChoice::Colour))
+}
 
 impl DemoOptions {
     /// Refuses requests that are known to fail before anything is built: a speed out of range, a
@@ -178,6 +207,16 @@ impl DemoOptions {
         // An emulated board starts with the first scene. The scene of a board at a port is not
         // known yet.
         self.speed()?;
+        if let Some(PanelChoice::Colour(panel)) = self.panel
+            && (self.port.is_some() || *self.board != PICO)
+        {
+            return Err(Refused::because(format_args!(
+                "--panel {}: a colour panel is built into the program of an emulated Pico; add \
+                 --board pico, or flash a real one by cargo pico --panel {}",
+                panel.name(),
+                panel.name()
+            )));
+        }
         let first = self.port.is_none().then_some(SceneName::Page);
         match self.scene.or(first) {
             Some(scene) => self.start(scene).map(|_| ()),
@@ -223,6 +262,24 @@ impl DemoOptions {
             })?;
         }
         Ok(own)
+    }
+
+    /// Returns the board with its panel.
+    pub fn board(&self) -> Board {
+        match self.panel {
+            Some(PanelChoice::Colour(panel)) => pico_with(panel),
+            _ => *self.board,
+        }
+    }
+
+    /// Returns the width and height of a pixel of the panel in files.
+    pub fn scale(&self) -> usize {
+        let default = if self.board().panel.format().is_large() {
+            2
+        } else {
+            3
+        };
+        self.scale.map_or(default, usize::from)
     }
 
     /// Returns the class of the board's processor. A board at a port reports its class only later

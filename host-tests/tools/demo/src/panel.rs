@@ -3,13 +3,14 @@
 //! If the terminal is large enough, a pixel is half a character in its grey. Otherwise a character
 //! shows eight pixels or more as dots, in the colour of the brightest.
 
+use std::collections::HashMap;
 use std::fs::File;
 use std::io::{self, BufWriter, ErrorKind};
 use std::path::{Path, PathBuf};
 
 use anyhow::anyhow;
 use firmware::config::TICK_RATE;
-use firmware::graphics::rgb;
+use firmware::graphics::{Format, rgb};
 use gif::{ColorOutput, DecodeOptions, Encoder, EncodingError, Frame as Picture, Repeat};
 use ratatui::Frame;
 use ratatui::layout::Rect;
@@ -24,14 +25,19 @@ use emulator::qemu::{HEIGHT, Screenshot, WIDTH};
 /// The smallest grey that is shown as a dot. Only the end of a fading trail is darker.
 const SET: u8 = 3;
 
-/// Draws the screenshot over the area: in squares of half characters if there are as many columns
-/// as pixels, or else in Braille, without the three darkest greys. The picture fills the area; its
-/// shape is right if a character shows as many rows as twice its columns.
-pub fn draw(frame: &mut Frame, area: Rect, screenshot: &Screenshot) {
+/// Draws the screenshot over the area. A colour panel has two pixels in each character, above each
+/// other, in colours averaged over the pixels of the panel that they cover. An OLED has its pixels
+/// in squares of half characters if there are as many columns. Otherwise, and without `colours`, the
+/// panel is drawn in Braille, without the three darkest greys, 0 to 2. The picture fills the area;
+/// its shape is right if a character is twice as high as it is wide.
+pub fn draw(frame: &mut Frame, area: Rect, screenshot: &Screenshot, colours: bool) {
+    if let Some(pixels) = screenshot.colours.as_ref().filter(|_| colours) {
+        return draw_colours(frame, area, screenshot.format, pixels);
+    }
     let width = usize::from(screenshot.format.width);
-    // A terminal that is wide enough shows every pixel in its colour.
-    let in_colours = usize::from(area.width) >= width;
-    let canvas = Canvas::default().marker(if in_colours {
+    // A terminal that is wide enough shows every pixel in its grey.
+    let in_greys = colours && usize::from(area.width) >= width;
+    let canvas = Canvas::default().marker(if in_greys {
         Marker::HalfBlock
     } else {
         Marker::Braille
@@ -51,17 +57,8 @@ pub fn draw(frame: &mut Frame, area: Rect, screenshot: &Screenshot) {
         })
     };
     let canvas = canvas.paint(|context| {
-        if let Some(colours) = screenshot.colours.as_ref().filter(|_| in_colours) {
-            for (index, [red, green, blue]) in colours.iter().map(|one| rgb(*one)).enumerate() {
-                context.draw(&Points {
-                    coords: &points(index).collect::<Vec<_>>(),
-                    color: Color::Rgb(red, green, blue),
-                });
-            }
-            return;
-        }
         // The brightest pixels are drawn last, because they determine the colour of a character.
-        for grey in if in_colours { 0 } else { SET }..=BRIGHTEST_GREY {
+        for grey in if in_greys { 0 } else { SET }..=BRIGHTEST_GREY {
             let lit = screenshot
                 .greys
                 .iter()
@@ -75,6 +72,48 @@ pub fn draw(frame: &mut Frame, area: Rect, screenshot: &Screenshot) {
         }
     });
     frame.render_widget(canvas, area);
+}
+
+/// Draws a colour panel in half characters.
+fn draw_colours(frame: &mut Frame, area: Rect, format: Format, pixels: &[u16]) {
+    let [width, height] = [format.width, format.height].map(usize::from);
+    let [columns, halves] = [usize::from(area.width), 2 * usize::from(area.height)];
+    let part = |place: usize, count: usize, size: usize| {
+        let from = place * size / count;
+        from..((place + 1) * size / count).max(from + 1)
+    };
+    let colour = |column: usize, half: usize| {
+        let rows = part(half, halves, height);
+        let covered = rows.flat_map(|y| part(column, columns, width).map(move |x| y * width + x));
+        let mut sum = [0; 3];
+        let mut count = 0;
+        for place in covered {
+            let channels = rgb(pixels[place]).map(u32::from);
+            (0..3).for_each(|channel| sum[channel] += channels[channel]);
+            count += 1;
+        }
+        nearest(sum.map(|channel| (channel / count) as u8))
+    };
+    for row in 0..area.height {
+        for column in 0..area.width {
+            let [upper, lower] =
+                [0, 1].map(|half| colour(column.into(), 2 * usize::from(row) + half));
+            if let Some(cell) = frame.buffer_mut().cell_mut((area.x + column, area.y + row)) {
+                cell.set_symbol("▀").set_fg(upper).set_bg(lower);
+            }
+        }
+    }
+}
+
+/// Returns a colour that the terminal shows: by the variable `COLORTERM` every colour, or else the
+/// nearest of the cube of 216 common ones.
+fn nearest([red, green, blue]: [u8; 3]) -> Color {
+    let has_all = std::env::var("COLORTERM").is_ok_and(|it| it == "truecolor" || it == "24bit");
+    if has_all {
+        return Color::Rgb(red, green, blue);
+    }
+    let step = |channel: u8| (u16::from(channel) * 5 + 127) / 255;
+    Color::Indexed((16 + 36 * step(red) + 6 * step(green) + step(blue)) as u8)
 }
 
 /// The brightest grey of a screenshot; 0 is black.
@@ -128,8 +167,11 @@ pub struct Recording {
     scale: usize,
     /// The number of its pictures.
     pictures: usize,
+    format: Format,
     /// The greys of the latest picture, in pixels of the file; empty before the first.
     shown: Vec<u8>,
+    /// The colours of the latest picture of a colour panel; empty before the first.
+    shown_colours: Vec<u16>,
     /// The first tick of the next picture, until which the last one is shown; `None` before the
     /// first.
     due: Option<i64>,
@@ -137,19 +179,25 @@ pub struct Recording {
 
 impl Recording {
     /// Begins an animation without a picture.
-    pub fn begin(file: OutFile, scale: usize) -> anyhow::Result<Self> {
+    pub fn begin(file: OutFile, format: Format, scale: usize) -> anyhow::Result<Self> {
         let path = file.path().to_owned();
         // The palette has one entry more, for unchanged pixels.
-        let [width, height] = size(scale);
-        let palette = [palette(), vec![0; 3]].concat();
+        let [width, height] = size(format, scale);
+        let palette = if format.is_large() {
+            Vec::new()
+        } else {
+            [palette(), vec![0; 3]].concat()
+        };
         let mut encoder = Encoder::new(BufWriter::new(file), width, height, &palette)?;
         encoder.set_repeat(Repeat::Infinite)?;
         Ok(Self {
             path,
             encoder,
             scale,
+            format,
             pictures: 0,
             shown: Vec::new(),
+            shown_colours: Vec::new(),
             due: None,
         })
     }
@@ -178,7 +226,11 @@ impl Recording {
         let next = tick + TICKS_PER_FRAME;
         let length = hundredths(next) - hundredths(self.due.replace(next).unwrap_or(tick));
         let delay = u16::try_from(length).unwrap_or(u16::MAX);
-        let [width, height] = size(self.scale);
+        self.pictures += 1;
+        if let Some(colours) = &screenshot.colours {
+            return self.add_colours(colours, delay);
+        }
+        let [width, height] = size(self.format, self.scale);
 
         // Only the pixels that have changed are written.
         let now = magnified(screenshot, self.scale);
@@ -206,9 +258,63 @@ impl Recording {
             buffer,
             ..Picture::default()
         };
-        self.pictures += 1;
+        self.write(&picture)
+    }
+
+    /// Adds a picture of a colour panel: the rectangle that has changed, in colours of its own.
+    fn add_colours(&mut self, colours: &[u16], delay: u16) -> anyhow::Result<()> {
+        let width = usize::from(self.format.width);
+        let is_changed = |place: usize| self.shown_colours.get(place) != Some(&colours[place]);
+        let changed: Vec<_> = (0..colours.len())
+            .filter(|place| is_changed(*place))
+            .collect();
+        let columns = || changed.iter().map(|place| place % width);
+        let left = columns().min().unwrap_or(0);
+        let right = columns().max().unwrap_or(0) + 1;
+        let top = changed.first().map_or(0, |place| place / width);
+        let bottom = changed.last().map_or(0, |place| place / width) + 1;
+
+        // The first colour of the picture is for unchanged pixels. A picture has few others.
+        let mut palette = vec![0; 3];
+        let mut known = HashMap::new();
+        let scale = self.scale;
+        let mut buffer = Vec::with_capacity((right - left) * (bottom - top) * scale * scale);
+        for y in top * scale..bottom * scale {
+            for x in left * scale..right * scale {
+                let place = y / scale * width + x / scale;
+                buffer.push(if is_changed(place) {
+                    let colour = colours[place];
+                    let next = known.len().min(254) as u8 + 1;
+                    *known.entry(colour).or_insert_with(|| {
+                        if usize::from(next) * 3 == palette.len() {
+                            palette.extend(rgb(colour));
+                        }
+                        next
+                    })
+                } else {
+                    0
+                });
+            }
+        }
+
+        let picture = Picture {
+            delay,
+            left: (left * scale) as u16,
+            top: (top * scale) as u16,
+            width: ((right - left) * scale) as u16,
+            height: ((bottom - top) * scale) as u16,
+            transparent: Some(0),
+            palette: Some(palette),
+            buffer: buffer.into(),
+            ..Picture::default()
+        };
+        self.shown_colours = colours.to_vec();
+        self.write(&picture)
+    }
+
+    fn write(&mut self, picture: &Picture) -> anyhow::Result<()> {
         self.encoder
-            .write_frame(&picture)
+            .write_frame(picture)
             .map_err(|error| unwritten(&self.path, &cause(error)))
     }
 
@@ -241,8 +347,8 @@ fn unwritten(path: &Path, error: &io::Error) -> anyhow::Error {
 }
 
 /// Returns the width and height of a picture in pixels of the file.
-fn size(scale: usize) -> [u16; 2] {
-    [WIDTH, HEIGHT].map(|pixels| (pixels * scale) as u16)
+fn size(Format { width, height, .. }: Format, scale: usize) -> [u16; 2] {
+    [width, height].map(|pixels| pixels * scale as u16)
 }
 
 /// Returns the greys of the picture in pixels of the file, row by row.
@@ -284,9 +390,23 @@ pub fn played(path: &Path) -> anyhow::Result<Vec<(Vec<u8>, u16)>> {
 
 /// Returns the screenshot as the bytes of a PNG file in the colours of [`palette`].
 pub fn png(screenshot: &Screenshot, scale: usize) -> anyhow::Result<Vec<u8>> {
-    let [width, height] = size(scale).map(u32::from);
+    let [width, height] = size(screenshot.format, scale).map(u32::from);
     let mut file = Vec::new();
     let mut encoder = png::Encoder::new(&mut file, width, height);
+    if let Some(colours) = &screenshot.colours {
+        let width = usize::from(screenshot.format.width);
+        let rows = colours
+            .chunks(width)
+            .flat_map(|row| std::iter::repeat_n(row, scale));
+        let pixels = rows
+            .flatten()
+            .flat_map(|colour| std::iter::repeat_n(rgb(*colour), scale));
+        encoder.set_color(png::ColorType::Rgb);
+        let mut writer = encoder.write_header()?;
+        writer.write_image_data(&pixels.flatten().collect::<Vec<_>>())?;
+        writer.finish()?;
+        return Ok(file);
+    }
     encoder.set_color(png::ColorType::Indexed);
     encoder.set_palette(palette());
     let mut writer = encoder.write_header()?;
@@ -315,7 +435,7 @@ mod tests {
         let mut terminal =
             Terminal::new(TestBackend::new(width, width / 4)).expect("a terminal of characters");
         terminal
-            .draw(|frame| draw(frame, frame.area(), &Screenshot::from(&canvas)))
+            .draw(|frame| draw(frame, frame.area(), &Screenshot::from(&canvas), true))
             .expect("it is drawn");
 
         // Blank characters and completely filled ones show no single pixel.
@@ -347,7 +467,8 @@ mod tests {
     #[test]
     fn a_full_disk_is_named_once() {
         let file = OutFile::create("--record", Path::new("/dev/full")).expect("a device");
-        let mut recording = Recording::begin(file, 1).expect("a header in the buffer");
+        let mut recording =
+            Recording::begin(file, Format::OLED, 1).expect("a header in the buffer");
         let failed = (0..2000).find_map(|number| {
             let mut canvas = canvas(Format::OLED);
             canvas.update(number % 128, number / 128, |_| 15);

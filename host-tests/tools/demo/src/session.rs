@@ -7,6 +7,7 @@ use firmware::motion::Settings;
 use firmware::protocol::{Answer, Command, Field, Frame, Status, ToHost};
 
 use super::DemoOptions;
+use super::options::PanelChoice;
 use super::panel::Recording;
 use super::readings::{Readings, warning};
 use console::cli::Refused;
@@ -287,7 +288,10 @@ impl<'a> Session<'a> {
         };
 
         // The panel is selected first, so that the scene is visible from its first frame.
-        let panel = self.options.panel.map(Command::Panel);
+        let panel = match self.options.panel {
+            Some(PanelChoice::Oled(controller)) => Some(Command::Panel(controller)),
+            _ => None,
+        };
         let turn = self.options.turn.map(Command::Turn);
         let dim = self.options.dim.map(Command::Dim);
         let method = self.options.method.map(Command::Method);

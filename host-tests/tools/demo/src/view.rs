@@ -3,6 +3,7 @@
 
 use std::borrow::Cow;
 
+use firmware::graphics::Format;
 use firmware::protocol::PlayState;
 use ratatui::Frame;
 use ratatui::layout::Constraint::{Fill, Length, Min, Percentage};
@@ -14,12 +15,9 @@ use textwrap::{Options, WordSplitter, wrap};
 
 use super::readings::{Help, Readings, stepping};
 use super::{help, numbers, panel};
-use emulator::qemu::{LogLine, Screenshot, WIDTH};
+use emulator::qemu::{LogLine, Screenshot};
 
-/// The widths of the panel, in columns: with a column for each pixel, in Braille with two pixels in
-/// a column, and the narrowest useful one.
-const PIXELS: u16 = WIDTH as u16;
-const BRAILLE: u16 = PIXELS / 2;
+/// The narrowest useful width of the panel, in columns.
 const NARROWEST: u16 = 32;
 /// The number of columns between the panel and the numbers.
 const GAP: u16 = 1;
@@ -60,7 +58,8 @@ pub fn draw(
     colours: bool,
 ) {
     let area = frame.area();
-    let Some(width) = panel_width(area, colours) else {
+    let format = screenshot.format;
+    let Some(width) = panel_width(area, format, colours) else {
         let least = (NARROWEST + GAP + numbers::NARROWEST, numbers::ROWS + WORDS);
         let text = format!(
             "terminal too small: {} x {}\nneeded: {} x {}",
@@ -82,7 +81,8 @@ pub fn draw(
     // The words and the keys take as many rows as this width needs.
     let words = rows(&words, area.width, "");
     let keys = keys(area.width);
-    let top = (width / 4).max(numbers::ROWS);
+    let height = panel_height(width, format);
+    let top = height.max(numbers::ROWS);
 
     // The layout of the areas.
     let parts = [
@@ -116,14 +116,7 @@ pub fn draw(
     .collect::<Vec<_>>()
     .join(" · ");
     frame.render_widget(Line::from(title).bold(), title_at);
-    panel::draw(
-        frame,
-        Rect {
-            height: width / 4,
-            ..panel_at
-        },
-        screenshot,
-    );
+    panel::draw(frame, Rect { height, ..panel_at }, screenshot, colours);
     numbers::draw(frame, side, readings);
     frame.render_widget(Paragraph::new(words.join("\n")), words_at);
 
@@ -180,21 +173,35 @@ fn keys(width: u16) -> Vec<String> {
     rows_of(few.map(|place| KEYS[place]).collect())
 }
 
-/// Returns the width of the panel. If there are colours, a pixel is half a character, or a square of
-/// several in a large terminal; else it is a dot of a Braille pattern. If there is not enough room, it is the largest width that keeps the
-/// panel's shape. Returns `None` if the terminal is too small.
-fn panel_width(area: Rect, colours: bool) -> Option<u16> {
+/// Returns the width of the panel in characters. Of an OLED, a pixel is half
+/// a character if there are colours, or a square of several in a large terminal; else it is a dot of
+/// a Braille pattern. A colour panel with colours fills the room. If
+/// there is not enough room, it is the largest width that keeps the panel's shape. Returns `None`
+/// if the terminal is too small.
+fn panel_width(area: Rect, format: Format, colours: bool) -> Option<u16> {
     let columns = area.width.checked_sub(GAP + numbers::NARROWEST)?;
     let rows = area.height.checked_sub(WORDS)?;
-    // The panel needs a quarter as many rows as columns, because a character is two pixels high.
-    let most = columns.min(4 * rows);
-    let best = if colours && most >= PIXELS {
-        most / PIXELS * PIXELS
+    let most = columns
+        .min((2 * u32::from(rows) * u32::from(format.width) / u32::from(format.height)) as u16);
+    let best = if colours && format.is_large() {
+        most
+    } else if colours && most >= format.width {
+        most / format.width * format.width
     } else {
-        BRAILLE
+        format.width / 2
     };
     let width = best.min(most / 4 * 4);
     (width >= NARROWEST && rows >= numbers::ROWS).then_some(width)
+}
+
+/// Returns the height of a panel of this width, in characters, which are twice as high as wide.
+fn panel_height(width: u16, format: Format) -> u16 {
+    let Format {
+        width: pixels,
+        height,
+        ..
+    } = format;
+    (u32::from(width) * u32::from(height) / (2 * u32::from(pixels))) as u16
 }
 
 /// Returns a text as rows of `width`.
@@ -228,7 +235,6 @@ mod tests {
     use double_pendulum::plan::Stepping;
     use double_pendulum::{Method, State};
     use emulator::host::canvas;
-    use firmware::graphics::Format;
     use firmware::graphics::text::{self, Anchor};
     use firmware::motion::Horizon;
     use firmware::protocol::Frame as Reading;

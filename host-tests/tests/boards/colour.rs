@@ -1,0 +1,80 @@
+//! The Pico with each colour panel in the emulator: pixels, time, buttons and restarts.
+
+use std::time::Duration;
+
+use crate::support::{LIMIT, application};
+use emulator::boards::pico_with;
+use emulator::host::Show;
+use emulator::pico::PicoMachine;
+use emulator::toolchain;
+use firmware::config::{CORTEX_M0PLUS, TICK_RATE};
+use firmware::display::PanelName;
+use firmware::protocol::{Command, ToHost};
+use firmware::scenes::SceneName;
+
+/// The frames that are compared in each scene.
+const FRAMES: u32 = 40;
+/// The frames at the start of a scene that may take longer: the first is whole.
+const FIRST: u32 = 6;
+/// The smallest part of a tick that remains after a frame is drawn and sent.
+const IDLE: f64 = 0.25;
+
+fn start(panel: PanelName) -> anyhow::Result<PicoMachine> {
+    let node = toolchain::ready_for_pico().unwrap_or_else(|missing| panic!("{missing}"));
+    PicoMachine::start(&node, &application(&pico_with(panel)), panel, LIMIT)
+}
+
+/// Returns the smallest idle part of a tick.
+fn play(board: &mut PicoMachine, panel: PanelName, scene: SceneName) -> anyhow::Result<f64> {
+    board.send(1, Command::Choose(scene))?;
+    let settings = scene.first_settings();
+    let mut show = Show::in_format(panel.format(), CORTEX_M0PLUS, scene, &settings)?;
+    let mut busiest = 0;
+    let mut frames = 0;
+    while frames < FRAMES {
+        let messages = board.run_to_frame()?;
+        for frame in messages.into_iter().filter_map(ToHost::frame) {
+            if frame.scene != scene || frame.report.step > u64::from(2 * FRAMES) {
+                continue;
+            }
+            assert_eq!(frame, show.expected(&frame), "{panel:?}, {scene:?}");
+            frames += 1;
+            if frames > FIRST {
+                busiest = busiest.max(frame.busy_cycles);
+            }
+        }
+        // The rest of the millisecond in which the frame was sent is longer than its last line.
+        if frames > 0 && frames.is_multiple_of(8) {
+            let is_shown = board.screenshot()?.colours == show.frame().colours;
+            assert!(is_shown, "{panel:?}, {scene:?}, frame {frames}");
+        }
+    }
+    Ok(1.0 - f64::from(busiest * TICK_RATE) / 125e6)
+}
+
+/// Every scene on the panel of 240 x 240 has the host's frames and pixels, and leaves a quarter of
+/// each tick. The panel is dark until its first frame is complete.
+#[test]
+fn the_plug_on_panel_shows_the_hosts_pixels_in_every_scene() -> anyhow::Result<()> {
+    let mut board = start(PanelName::Lcd13)?;
+    while board.tell("panel")?.is_empty() {
+        board.run(Duration::from_micros(500))?;
+    }
+    let settings = SceneName::Page.first_settings();
+    let mut first = Show::in_format(
+        PanelName::Lcd13.format(),
+        CORTEX_M0PLUS,
+        SceneName::Page,
+        &settings,
+    )?;
+    first.tick();
+    assert!(board.screenshot()?.colours == first.frame().colours);
+
+    let mut idle = Vec::new();
+    for scene in SceneName::ALL.iter().copied().rev() {
+        idle.push((scene.name(), play(&mut board, PanelName::Lcd13, scene)?));
+    }
+    println!("{idle:.2?}");
+    assert!(idle.iter().all(|(_, idle)| *idle >= IDLE), "{idle:?}");
+    Ok(())
+}
