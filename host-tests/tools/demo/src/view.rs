@@ -332,7 +332,7 @@ mod tests {
 
     #[test]
     fn panel_is_enlarged_in_whole_steps() {
-        let width = |columns, rows| panel_width(Rect::new(0, 0, columns, rows), true);
+        let width = |columns, rows| panel_width(Rect::new(0, 0, columns, rows), Format::OLED, true);
         assert_eq!(width(80, 24), Some(64));
         assert_eq!(width(150, 45), Some(128));
         assert_eq!(width(300, 100), Some(256));
