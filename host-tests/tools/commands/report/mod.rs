@@ -1,7 +1,7 @@
 //! `cargo write-report`: the cost of every method on the target against its error, as CSV and
 //! charts.
 //!
-//! The READMEs show an extract: the recommended method for each core, the cost of a step and its
+//! The README of host-tests shows an extract: the recommended method for each core, the cost of a step and its
 //! error, and a chart for each core.
 //!
 //! Costs are counted on the emulated targets. Errors are computed on the host, which is valid
@@ -39,7 +39,7 @@ use join::Point;
     after_help = "Example: cargo write-report --out /tmp/report"
 )]
 pub struct ReportOptions {
-    /// Also put the recommendations, the main table and the charts into the READMEs
+    /// Also put the recommendations, the main table and the charts into the README of host-tests
     #[arg(long)]
     readme: bool,
     /// The folder to write to [default: host-tests/report]
@@ -48,7 +48,7 @@ pub struct ReportOptions {
 }
 
 /// Measures, writes the table and the charts into the folder of the options, and prints the advice.
-/// The READMEs are not changed if a program in C could not be built.
+/// The README is not changed if a program in C could not be built.
 pub fn run(options: &ReportOptions) -> Result<()> {
     let toolchain = toolchain::set_up()?;
     let folder = options
@@ -79,21 +79,19 @@ pub fn run(options: &ReportOptions) -> Result<()> {
         }
     }
 
-    // The advice is always printed. It is written into the READMEs only on request.
+    // The advice is always printed. It is written into the README only on request.
     let advice = advice(&points);
     absent.iter().chain(&advice).try_for_each(say)?;
-    let pages = pages(&advice, &points)?;
+    let (path, [page, made]) = page(&advice, &points)?;
 
     if options.readme {
         ensure!(
             absent.is_empty(),
-            "the READMEs were not changed, because some figures are missing, see above"
+            "the README was not changed, because some figures are missing, see above"
         );
-        pages
-            .iter()
-            .try_for_each(|(path, [_, made])| write("--readme", path, made))?;
-    } else if pages.iter().any(|(_, [page, made])| page != made) {
-        say("the READMEs show other figures; cargo write-report --readme updates them")?;
+        write("--readme", &path, &made)?;
+    } else if page != made {
+        say("the README shows other figures; cargo write-report --readme updates it")?;
     }
 
     Ok(say(format_args!("wrote {}", folder.display()))?)
@@ -104,10 +102,8 @@ const MARKS: [&str; 2] = [
     "<!-- made by cargo write-report --readme -->\n",
     "<!-- end of the generated part -->\n",
 ];
-/// The READMEs, with the number of rows that each shows.
-const READMES: [(&str, usize); 2] = [("README.md", 5), ("host-tests/README.md", 8)];
-/// The rows: the existing alternatives, the page's own equations, and the recommended methods. The
-/// rows of the first README are first.
+const README: &str = "host-tests/README.md";
+/// The existing alternatives, the page's own equations, and the recommended methods.
 const ROWS: [&str; 8] = [
     PROGRAMS[1].0,
     Method::TextbookF32.name(),
@@ -128,30 +124,19 @@ const PURPOSES: [Purpose; 3] = [
     ("keeps 1e-12 rad", |point| point.error.angle <= 1e-12),
 ];
 
-/// Returns the READMEs, each with its current text and with the text that contains the new block:
-/// the advice as a list, and its rows of the table.
-fn pages(advice: &[String], points: &[Point]) -> Result<Vec<(PathBuf, [String; 2])>> {
+/// Returns the README's path, its current text, and the text that contains the new block: the
+/// advice as a list, and the table.
+fn page(advice: &[String], points: &[Point]) -> Result<(PathBuf, [String; 2])> {
     let items: String = advice
         .iter()
         .map(|sentence| format!("- {sentence}\n"))
         .collect();
-    let page = |(file, rows): (&str, usize)| {
-        let path = workspace().join(file);
-        let page = fs::read_to_string(&path).with_context(|| format!("no {file}"))?;
-        let made = between(
-            &page,
-            MARKS,
-            &format!("\n{items}\n{}\n", table(points, &ROWS[..rows]).markdown()),
-        );
-        Ok((
-            path,
-            [
-                page,
-                made.with_context(|| format!("{file} has no place for it"))?,
-            ],
-        ))
-    };
-    READMES.into_iter().map(page).collect()
+    let path = workspace().join(README);
+    let page = fs::read_to_string(&path).with_context(|| format!("no {README}"))?;
+    let block = format!("\n{items}\n{}\n", table(points, &ROWS).markdown());
+    let made = between(&page, MARKS, &block);
+    let made = made.with_context(|| format!("{README} has no place for it"))?;
+    Ok((path, [page, made]))
 }
 
 fn advice(points: &[Point]) -> Vec<String> {
