@@ -68,9 +68,8 @@ pub struct FwOptions {
     check: bool,
 }
 
-/// Runs a firmware and prints its log to stdout until it ends. Cargo also uses this command as the
-/// runner for the ARM targets. A name without a slash is a binary, which is built first; any other
-/// name is a file.
+/// Runs a firmware and prints its log. Cargo also uses this command as the runner for the ARM
+/// targets.
 pub fn fw(options: &FwOptions) -> anyhow::Result<ExitCode> {
     let Some(binary) = &options.binary else {
         toolchain::set_up()?.check()?;
@@ -186,12 +185,9 @@ pub struct TestOptions {
     long: bool,
 }
 
-/// The time limits of all tests, including their compilation, on a slow, busy machine: without and
-/// with the long tests.
 const LIMITS: [Duration; 2] = [Duration::from_secs(3600), Duration::from_secs(12 * 3600)];
-/// The environment variables with the numbers of concurrent tests, and of concurrent pieces of
-/// work within tests. If the user has not set one, the tests that run at the same time have twice
-/// the number of processors together, because many wait for an emulator or a clock.
+/// The variables with the numbers of concurrent tests, and of concurrent pieces of work within
+/// tests. More than processors, because many tests wait for an emulator or a clock.
 const THREADS: [&str; 2] = ["RUST_TEST_THREADS", "RAYON_NUM_THREADS"];
 
 const ON_HOST: [&str; 5] = [
@@ -205,24 +201,13 @@ const ON_BOARDS: &str = "--test=boards";
 const OF_COMMANDS: &str = "--test=commands";
 const IN_DOCUMENTATION: &str = "--doc";
 
-/// Installs missing tools as [`setup`] does, builds the firmware, and runs `cargo test` in four parts. The first part, on the host, runs
-/// during the installation and the builds, whose errors are returned only after it has ended. If it
-/// passes, the other three run, all at once: on the boards, of the commands, and of the
-/// documentation. The output of the last two is printed when all three have ended.
-///
-/// Returns success if all parts pass, or else the exit code of the first one in this order that
-/// fails. `--long` adds `-- --include-ignored`. Each of `RUST_TEST_THREADS` and `RAYON_NUM_THREADS`
-/// that is not set is twice the number of processors for the tests on the host, and the number of
-/// processors for each of the three parts that run at once.
-///
-/// An error means that the set-up ([`Refused`]) or a build of the firmware fails, or that a time
-/// limit is exceeded: 1 hour for compiling the tests and again for each part, or 12 hours each with
-/// `--long`. If the tests do not compile, the result is the exit code of `cargo test`. If the tools
-/// of the page for a browser cannot be provided, its tests are skipped, which is no error.
+/// Sets up, and runs `cargo test` in four parts: on the host during the installation and the
+/// builds, and then on the boards, of the commands and of the documentation, all at once. Returns
+/// the exit code of the first part that fails. Without the tools of the page for a browser, its
+/// tests are skipped.
 pub fn verify(options: &TestOptions) -> anyhow::Result<ExitCode> {
     let limit = LIMITS[usize::from(options.long)];
     let processors = available_parallelism()?.get();
-    // Returns a command that runs `cargo test` with these arguments and this number of threads.
     let test = |arguments: &[&str], threads: usize| {
         let mut command = Command::new("cargo");
         command
@@ -265,7 +250,6 @@ pub fn verify(options: &TestOptions) -> anyhow::Result<ExitCode> {
         let toolchain = toolchain::set_up()?;
         toolchain::set_up_pico()?;
         toolchain.build_ahead()?;
-        // An application is linked on a single processor, so other programs are compiled too.
         let others = scope.spawn({
             let toolchain = toolchain.clone();
             move || {
@@ -313,7 +297,6 @@ pub fn verify(options: &TestOptions) -> anyhow::Result<ExitCode> {
         say(String::from_utf8_lossy(&text).trim_end())
     });
 
-    // A failure of the tests comes before a failure to print.
     for (part, result) in [ON_BOARDS, OF_COMMANDS, IN_DOCUMENTATION]
         .iter()
         .zip(results)
@@ -329,7 +312,7 @@ pub fn verify(options: &TestOptions) -> anyhow::Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Every test program is in one of the lists, so that `cargo verify` leaves none out.
+/// `cargo verify` leaves no test program out.
 #[test]
 fn every_test_program_is_run() {
     let listed = |name: &str| {
@@ -351,8 +334,7 @@ fn every_test_program_is_run() {
     assert!(found >= 5, "{found}");
 }
 
-/// `cargo fw` without `--board` takes the first board whose application the binary is, or else the
-/// first board; of a path that contains a target, only boards with that target.
+/// Of a path that contains a target, only boards with that target are considered.
 #[test]
 fn the_board_follows_from_the_binary() {
     for (binary, name) in [

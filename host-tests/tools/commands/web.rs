@@ -20,19 +20,14 @@ use emulator::out_file::{self, OutFile};
 use emulator::process;
 use emulator::toolchain::{self, find, target};
 
-/// The name of the page's file in the target folder.
 pub const FILE: &str = "double-pendulum.html";
-/// The page without its facts and its module.
 const TEMPLATE: &str = include_str!("../../../firmware/web/page.html");
 
-/// The processors that the page offers, each with its name in links (`#processor=m3`), a
-/// description, and its costs and budgets. The first one is the default.
 pub const PROCESSORS: [(&str, &str, Processor); 3] = [
     ("pico", "Raspberry Pi Pico (Cortex-M0+)", CORTEX_M0PLUS),
     ("m3", "Cortex-M3 at 50 MHz", CORTEX_M3),
     ("m4f", "Cortex-M4F at 25 MHz", CORTEX_M4F),
 ];
-/// The panels that the page offers. The first one is the default.
 pub const PANELS: [PanelName; 4] = [
     PanelName::Lcd13,
     PanelName::Display2,
@@ -40,13 +35,10 @@ pub const PANELS: [PanelName; 4] = [
     PanelName::Oled,
 ];
 
-/// The options of Chromium without a window, also for root, without requests of its own, with a
-/// space between two options.
+/// Without a window, also for root, without requests of its own.
 pub const HEADLESS: &str = "--headless --no-sandbox --disable-gpu --disable-quic --no-first-run \
     --disable-background-networking --disable-component-update --disable-sync --hide-scrollbars";
-/// The options of a picture. The virtual time passes in a moment.
 const PICTURE: &str = "--window-size=1000,850 --virtual-time-budget=60000";
-/// The time limit to make a picture.
 const PICTURE_LIMIT: Duration = Duration::from_secs(120);
 /// A clock for the picture: 8.5 s in frames of 1/60 s, independent of the speed of the machine. The
 /// module is compiled at once, because the virtual time does not wait for a compilation, and a page
@@ -68,17 +60,9 @@ pub struct WebOptions {
     picture: Option<PathBuf>,
 }
 
-/// Writes the page, and makes the picture and opens the page if the options demand it. Prints the
-/// path of each file. Existing files are replaced. The picture shows the page after 8.5 s of its
-/// own time.
-///
-/// If the picture cannot be written or a program is missing, this is [`Refused`] before the build,
-/// and no file is changed; a missing Chromium is installed first. Other errors before the page is
-/// written are those of [`write_page`]. After that, an error means that Chromium fails, writes no
-/// picture or takes longer than 120 s, that the picture's file cannot be written, or that the
-/// browser cannot be started; the page remains. The browser is not waited for.
+/// Writes the page, and makes the picture and opens the page if the options demand it. If the
+/// picture cannot be written or a program is missing, this is refused before the build.
 pub fn run(options: &WebOptions) -> anyhow::Result<()> {
-    // Refuse before the build.
     let picture = options.picture.as_deref();
     let picture = picture.map(|path| OutFile::create("--picture", path));
     let picture = picture.transpose()?;
@@ -94,7 +78,6 @@ pub fn run(options: &WebOptions) -> anyhow::Result<()> {
         say(format_args!("wrote {}", path.display()))?;
     }
     if let Some(opener) = opener {
-        // It starts a browser, which stays open.
         Command::new(opener)
             .arg(page)
             .stdin(Stdio::null())
@@ -103,7 +86,6 @@ pub fn run(options: &WebOptions) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Returns the desktop's program that opens files.
 fn opener() -> Result<PathBuf, Refused> {
     find("xdg-open").or_else(|| find("open")).ok_or_else(|| {
         Refused::because(
@@ -113,10 +95,6 @@ fn opener() -> Result<PathBuf, Refused> {
     })
 }
 
-/// Builds the application and writes the page into the target folder, over an existing one. Missing
-/// tools are installed. Returns the path of the page. An error means that a tool cannot be provided
-/// or the file cannot be created ([`Refused`]), that the build fails, or that writing fails; an
-/// existing page then remains.
 pub fn write_page() -> anyhow::Result<PathBuf> {
     let module = fs::read(toolchain::set_up_web()?.build_web()?)?;
     let page = TEMPLATE
@@ -127,13 +105,11 @@ pub fn write_page() -> anyhow::Result<PathBuf> {
     Ok(file)
 }
 
-/// Returns bytes in lower-case hexadecimal digits, two for each byte, without separators.
 pub fn digits(bytes: &[u8]) -> String {
     bytes.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
-/// Returns the tables of the firmware and of the terminal that the page uses. An `id` is a name in
-/// the messages of the page's module.
+/// Returns the tables of the firmware and of the terminal that the page uses.
 fn facts() -> Value {
     let scenes = SceneName::ALL.iter().enumerate().map(|(index, &scene)| {
         json!({
@@ -178,7 +154,6 @@ fn facts() -> Value {
     })
 }
 
-/// Returns a picture of the page some seconds after its start, a PNG file.
 fn take_picture(chromium: &Path, page: &Path) -> anyhow::Result<Vec<u8>> {
     let folder = tempfile::tempdir()?;
     let timed = folder.path().join(FILE);
@@ -204,14 +179,12 @@ mod tests {
 
     use super::*;
 
-    /// A fake of Chromium that writes a picture.
     const WRITES: &str = "#!/bin/sh
 for option; do
     case $option in --screenshot=*) printf new > \"${option#*=}\" ;; esac
 done
 ";
 
-    /// A program that ends with success but writes no picture is an error.
     #[test]
     fn a_picture_that_was_not_written_is_an_error() -> anyhow::Result<()> {
         let folder = tempfile::tempdir()?;

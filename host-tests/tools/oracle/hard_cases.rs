@@ -5,16 +5,14 @@ use double_pendulum::{Parameters, State};
 
 use crate::oracle::trials::Trial;
 
-/// A motion, and starts near it, each a little further from it. The typical error of many starts is
-/// meaningful, while that of one start can be accidental. It is the geometric mean of the largest
-/// errors of the starts: 24 starts in compensated `f32`, 8 in plain `f32` and 32-bit fixed point,
-/// and 1 otherwise. The steps are 2^-4 s, 2^-5 s and so on; the finest are 2^-13 s.
+/// A motion, and starts near it. The typical error of many starts is meaningful, while that of one
+/// start can be accidental: it is the geometric mean of the largest errors of 24 starts in
+/// compensated `f32`, 8 in plain `f32` and 32-bit fixed point, and 1 otherwise.
 #[derive(Clone, Copy, Debug)]
 pub struct HardCase {
     pub name: &'static str,
     pub trial: Trial,
-    /// The difference of rod 1's angle from one start to the next, rad. The difference of rod 2's
-    /// angle is half as large.
+    /// The difference of rod 1's angle from one start to the next, rad; rod 2's is half of it.
     pub spread: f64,
     /// The largest allowed typical error of compensated `f32` with the finest steps, rad. It is
     /// twice the measured error. In plain `f32` in directions 2000 times this error is allowed.
@@ -48,8 +46,6 @@ pub struct HardCase {
     pub reason: &'static str,
 }
 
-/// Returns every line, in the file's order. Panics with the text of the first line that cannot be
-/// read.
 pub fn hard_cases() -> Vec<HardCase> {
     let lines = include_str!("../../reference/hard_cases.csv")
         .lines()

@@ -38,10 +38,9 @@ pub const REFERENCE: f64 = 1e-31;
 /// energies along the plotted path.
 pub const FIGURE_7_ENERGY: f64 = 0.01;
 
-/// Returns the tolerance of a method compared with a known answer, for each sine and cosine; it has
-/// no unit. `a1` and `a2` are the exact angles at that time, rad, with all turns; the momenta are
-/// not used. It is the growth times the sum of three errors of plain RK4 in 4096 steps a second,
-/// which no other of the [`exact_methods`](crate::oracle::trials::exact_methods) exceeds.
+/// Returns the tolerance of a method compared with a known answer, for each sine and cosine: the
+/// growth times the sum of three errors of plain RK4 in 4096 steps a second, which no other of the
+/// [`exact_methods`](crate::oracle::trials::exact_methods) exceeds.
 ///
 /// - Truncation: RK4 has an error of (W dt)^5/120 in each step of an oscillation of rate W. W is
 ///   the larger of the fast normal frequency and the largest angular velocity that the energy
@@ -54,9 +53,8 @@ pub const FIGURE_7_ENERGY: f64 = 0.01;
 ///   epsilon W t sqrt((m1 + m2)/m1). The change of all rates by the rounding of the parameters is
 ///   as large, and is not added.
 ///
-/// The epsilon is that of `f32` for numbers in `f32` and in 32-bit fixed point, and that of `f64`
-/// otherwise. Where the tolerance exceeds 1, the test claims nothing. [`KNOWN_ANSWERS_CLAIMED`]
-/// counts the other rows. Not checked: that the angles are finite.
+/// Where the tolerance exceeds 1, the test claims nothing. [`KNOWN_ANSWERS_CLAIMED`] counts the
+/// other rows.
 pub fn known_answer(row: &KnownAnswer, method: Method, &State { a1, a2, .. }: &State<f64>) -> f64 {
     const STEPS_PER_SECOND: f64 = 4096.0;
     let rate = fastest_rate(&row.parameters, &row.start.motion());

@@ -11,9 +11,8 @@ use double_pendulum::{
 use firmware::job::visit;
 use reference::{advance, taylor};
 
-/// Returns all methods whose errors depend on the step, in the order of [`Method::ALL`]. The
-/// others, which are left out, are the closed form in `f32` and `f64`, with the error of its linear
-/// equations, and the `micromath` method, with the error of its sines.
+/// Returns all methods whose errors depend on the step. The closed form has the error of its linear
+/// equations, and `micromath` that of its sines.
 pub fn exact_methods() -> impl Iterator<Item = Method> {
     let is_exact = |method: &Method| {
         method.equations() != Equations::Linear && *method != Method::Rk4F32Micromath
@@ -21,23 +20,16 @@ pub fn exact_methods() -> impl Iterator<Item = Method> {
     Method::ALL.iter().copied().filter(is_exact)
 }
 
-/// A [`Run`] that counts turns, whose method is chosen at run time. Its numbers are widened to
-/// `f64`. Before the first step they are those of the start, as the method holds it. Whole turns
-/// may be miscounted if a step turns a rod by more than a quarter turn.
+/// A [`Run`] that counts turns, whose method is chosen at run time, in `f64`.
 pub trait CountingRun: Debug {
-    /// Advances by `steps` steps. 0 steps are possible. An error means that the motion has diverged
-    /// ([`Run::advance`]); the run is then unchanged.
     fn advance(&mut self, steps: u32) -> Result<(), Error>;
-    /// Returns the angles, rad, with all turns, and the canonical momenta, kg m^2/s, at the number
-    /// of steps times `dt`.
     fn state(&self) -> State<f64>;
-    /// Returns (sin, cos) of both angles, rod 1 first. In the direction form in floating point they
-    /// may be up to half a step ahead of the state or behind it.
+    /// In the direction form in floating point they may be up to half a step ahead of the state or
+    /// behind it.
     fn directions(&self) -> [Direction<f64>; 2];
-    /// Returns the angles a1 and a2, rad, with all turns, at the time of the directions.
+    /// At the time of the directions.
     fn angles(&self) -> [f64; 2];
-    /// Returns the energy, J, at the time of the directions. The potential energy is 0 where both
-    /// bobs are level with the pivot.
+    /// At the time of the directions.
     fn energy(&self) -> f64;
 }
 
@@ -63,7 +55,6 @@ impl<F: Form> CountingRun for Run<F, true> {
     }
 }
 
-/// Starts a motion of `pendulum`.
 struct Start<'a> {
     pendulum: Pendulum<f64>,
     state: &'a State<f64>,
@@ -79,11 +70,6 @@ impl FormVisitor for Start<'_> {
     }
 }
 
-/// Returns the motion of a pendulum from its start by `method`, in steps of `dt` s; a negative `dt`
-/// runs backwards. All numbers are in SI units and are rounded to those of the method. An error
-/// means that the kernel refuses the pendulum ([`Pendulum::new`]), the start or the step
-/// ([`Pendulum::run`]): a step of 0, for example, or one that is too long. The closed form accepts
-/// large angles, too, for which it is wrong.
 pub fn run(
     method: Method,
     parameters: &Parameters<f64>,
@@ -102,25 +88,19 @@ pub fn run(
     )
 }
 
-/// A motion to try, in SI units. Nothing is checked until it is computed; the duration is not
-/// checked even then.
+/// A motion to try, in SI units.
 #[derive(Clone, Copy, Debug)]
 pub struct Trial {
-    /// Masses (kg), lengths (m) and gravity (m/s^2).
     pub parameters: Parameters<f64>,
-    /// The start of the motion: angles, rad, and canonical momenta, kg m^2/s.
     pub start: State<f64>,
-    /// The duration, s, finite and greater than 0.
     pub seconds: f64,
 }
 
-/// The number of moments of a comparison, evenly spread over the motion. The last one is its end;
-/// the start is not included.
+/// The moments of a comparison, evenly spread over the motion, without its start.
 pub const MOMENTS: u32 = 16;
 
 impl Trial {
-    /// Returns a motion from rest at (`a1`, `a2`), rad, with rods of 1 m, a bob 1 of 1 kg, a bob 2
-    /// of `mass_ratio` kg, and g = 9.81 m/s^2. It takes `seconds` s.
+    /// A motion from rest, with rods of 1 m, a bob 1 of 1 kg, and g = 9.81 m/s^2.
     pub fn at_rest(mass_ratio: f64, a1: f64, a2: f64, seconds: f64) -> Self {
         Self {
             parameters: Parameters::equal_rods(mass_ratio, 1.0, 9.81),
@@ -129,20 +109,17 @@ impl Trial {
         }
     }
 
-    /// Returns a regular motion of `seconds` s, from rest with both rods at 0.5 rad. The bobs have
-    /// 1 kg, the rods 1 m, and g is 9.81 m/s^2.
+    /// From rest with both rods at 0.5 rad.
     pub fn regular(seconds: f64) -> Self {
         Self::at_rest(1.0, 0.5, 0.5, seconds)
     }
 
-    /// Returns a chaotic motion of `seconds` s, from rest with both rods at 2 rad. After some time
-    /// rods turn over. The bobs have 1 kg, the rods 1 m, and g is 9.81 m/s^2.
+    /// From rest with both rods at 2 rad. After some time rods turn over.
     pub fn chaotic(seconds: f64) -> Self {
         Self::at_rest(1.0, 2.0, 2.0, seconds)
     }
 
-    /// Returns a motion of `seconds` s at small angles that is in motion at the start, with bobs of
-    /// 0.7 kg and 1.3 kg, rods of 0.6 m and 1.1 m, and g = 9.81 m/s^2.
+    /// At small angles, in motion at the start, with unlike bobs and rods.
     pub fn unlike(seconds: f64) -> Self {
         let parameters = Parameters {
             m1: 0.7,
@@ -164,9 +141,7 @@ impl Trial {
     }
 
     /// Returns the trial with its numbers rounded once to `f32`, if the numbers of `method` are
-    /// `f32`, plain or compensated ([`Method::is_single`]). A number beyond the range of `f32`
-    /// becomes infinite, and one that is too small 0. For all other methods, also in 32-bit fixed
-    /// point, the trial is unchanged. The duration is never rounded.
+    /// `f32`. 32-bit fixed point rounds them itself.
     pub fn held_by(&self, method: Method) -> Self {
         if !method.is_single() {
             return *self;
@@ -180,18 +155,12 @@ impl Trial {
         }
     }
 
-    /// Returns the number of steps of `dt`, s, from one of `moments` moments to the next.
     fn steps(&self, dt: f64, moments: u32) -> u32 {
         (self.seconds / dt / f64::from(moments)).round() as u32
     }
 
-    /// Returns the states by `method` at the [`MOMENTS`] moments, in steps of `dt`, s, with all
-    /// turns. All four numbers are NaN after the motion has diverged. An error means that the
-    /// kernel refuses the trial or the step, as in [`run`].
-    ///
-    /// The number of steps between two moments is rounded, so the moments are exact only if they
-    /// fall on whole steps. If `dt` is more than twice the time between two moments, or negative,
-    /// each state is the start.
+    /// Returns the states by `method` at the [`MOMENTS`] moments, which must fall on whole steps;
+    /// NaN after the motion has diverged.
     pub fn states(&self, method: Method, dt: f64) -> Result<Vec<State<f64>>, Error> {
         let mut run = run(method, &self.parameters, &self.start, dt)?;
         let steps = self.steps(dt, MOMENTS);
@@ -202,11 +171,8 @@ impl Trial {
         Ok((0..MOMENTS).map(next).collect())
     }
 
-    /// Returns the states at `moments` moments, evenly spread up to the end, by RK4 in the
-    /// direction form in compensated `f64`, which is not in the table, in steps of `dt`, s. The
-    /// start is not among them. The number of steps between two moments is rounded as in
-    /// [`Trial::states`]. 0 moments give an empty list. An error means that the kernel refuses the
-    /// trial or the step, or that the motion diverges.
+    /// Returns the states by RK4 in the direction form in compensated `f64`, which is not in the
+    /// table.
     pub fn states_in_f64(&self, dt: f64, moments: u32) -> Result<Vec<State<f64>>, Error> {
         let mut run = Pendulum::new(&self.parameters)?
             .run::<DirectionF64>(&self.start, dt)?
@@ -217,12 +183,6 @@ impl Trial {
             .collect()
     }
 
-    /// Returns the exact states at the [`MOMENTS`] moments, by the reference, with all turns and
-    /// rounded to `f64`. The start is not among them. An error means that the kernel refuses the
-    /// parameters.
-    ///
-    /// Not checked: a start that is not finite gives numbers without a meaning, and an infinite
-    /// duration never returns. If the duration is negative, each state is the start.
     pub fn exact(&self) -> Result<Vec<State<f64>>, Error> {
         let pendulum = Pendulum::new(&self.parameters)?;
         let at = |moment: u32| self.seconds * f64::from(moment) / f64::from(MOMENTS);
@@ -233,13 +193,9 @@ impl Trial {
         ))
     }
 
-    /// Returns the largest error of an angle at the [`MOMENTS`] moments, rad and at most pi, by
-    /// `method` with steps of `dt`, s; infinite if the motion has diverged. Whole turns do not
-    /// count. The reference is the exact motion of the rounded numbers ([`Trial::held_by`]). An
-    /// error is one of [`Trial::states`].
-    ///
-    /// The moments must fall on whole steps, which is not checked; otherwise two different times
-    /// are compared. The conditions of [`Trial::exact`] apply, too.
+    /// Returns the largest error of an angle at the [`MOMENTS`] moments, rad, without whole turns;
+    /// infinite if the motion has diverged. It is compared with the exact motion of the rounded
+    /// numbers ([`Trial::held_by`]).
     pub fn error(&self, method: Method, dt: f64) -> Result<f64, Error> {
         Ok(largest_difference(
             &self.states(method, dt)?,
@@ -248,8 +204,7 @@ impl Trial {
     }
 }
 
-/// Returns the angle between two directions, rad, from 0 to pi. `a` and `b` are angles in rad. It
-/// is infinite if one of them is not finite.
+/// Returns the angle between two directions, rad, from 0 to pi; infinite if one is not finite.
 pub fn apart(a: f64, b: f64) -> f64 {
     let turns = (a - b) / TAU;
     let apart = (turns - turns.round()).abs() * TAU;
@@ -260,9 +215,7 @@ pub fn apart(a: f64, b: f64) -> f64 {
     }
 }
 
-/// Returns the largest difference of the angles, rad, at most pi, without whole turns. Momenta are
-/// not compared. The shorter list decides the number of states. It is infinite if an angle is not
-/// finite, and 0 if a list is empty.
+/// Returns the largest difference of the angles, rad, without whole turns.
 pub fn largest_difference(states: &[State<f64>], others: &[State<f64>]) -> f64 {
     let pairs = states.iter().zip(others);
     pairs

@@ -1,6 +1,4 @@
-//! The costs of a frame of an application: of its scene, of all that a frame must do, and of
-//! showing it; and the costs of the calls of a function. The planner's price lists are counted here
-//! as well.
+//! The costs of a frame of an application, and the planner's price lists.
 
 use std::collections::BTreeSet;
 use std::fs::File;
@@ -21,21 +19,17 @@ use emulator::boards::Board;
 use emulator::qemu::{Clock, Machine, Settings};
 use emulator::toolchain::{Toolchain, workspace};
 
-/// A function of an application: the path of its module, and its name. It is not inlined, and
-/// exists once in a program.
+/// The path of a function's module, and its name. It is not inlined.
 type Place = (&'static str, &'static str);
 
-/// The functions that compute and draw a scene.
 const SCENE: [Place; 3] = [
     ("firmware::app::player::", "::tick"),
     ("firmware::app::player::", "::check"),
     ("firmware::app::player::", "::draw"),
 ];
 
-/// The function that sends a frame to the panel and over the link.
 const SENDING: Place = ("firmware::app::App", "::show");
 
-/// The functions that show a frame: they draw it, and send it to the panel and over the link.
 const SHOWING: [Place; 7] = [
     ("firmware::graphics::brush::", "::lighten"),
     ("firmware::graphics::canvas::", "::fade"),
@@ -46,32 +40,23 @@ const SHOWING: [Place; 7] = [
     KEEPING,
 ];
 
-/// The function that records a frame. It is the last one that a frame must call.
+/// The last function that a frame must call.
 const KEEPING: Place = ("firmware::board::cortex_m::retained::", "keep");
 
-/// The cost of one frame of an application: executed instructions (exact) and cycles (estimated).
-/// All functions that the named ones call, and interrupts meanwhile, are included.
+/// The cost of one frame, with all calls and interrupts.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct FrameProfile {
-    /// The cost of computing and drawing the scene.
+    /// Of computing and drawing.
     pub scene: Cost,
-    /// The cost of computing, drawing and sending: what a frame must do. Planning in the time that
-    /// is left is not included.
+    /// Of computing, drawing and sending. Planning in the time that is left is not included.
     pub busy: Cost,
-    /// The cost of drawing the frame, and of sending it to the panel and over the link.
+    /// Of drawing and sending.
     pub showing: Cost,
 }
 
 impl FrameProfile {
-    /// Profiles what `board` executes for one of its next frames. `image` is the program that runs
-    /// on it, and `core` its core. The machine is stopped after a frame, and the messages up to
-    /// then are dropped.
-    ///
-    /// Not checked: the machine must be from [`Machine::halted`] and stopped after a frame
-    /// ([`Machine::run_to_frame`]); elsewhere the profile is not of one frame, and another machine
-    /// runs to its time limit. An error means that `image` lacks any of the functions of an
-    /// application that compute, draw or send a frame, that an instruction has no known timing,
-    /// that the board sleeps 1000 times without a frame, or that QEMU ends.
+    /// Profiles the next frame of `board`, a machine from [`Machine::halted`] that is stopped after
+    /// a frame.
     pub fn of_next(board: &mut Machine, image: &Image, core: Core) -> Result<Self> {
         let busy = [&SCENE[..], &[SENDING]].concat();
         let parts = [&SCENE[..], &busy, &SHOWING, &[KEEPING]].map(|places| {
@@ -83,7 +68,6 @@ impl FrameProfile {
         let [scene, busy, showing, keeping] = parts;
         let parts = [scene?, busy?, showing?, keeping?];
 
-        // The planning that follows the last part would be several times as long as the frame.
         let end = end_of_frame(board, image)?;
         let [scene, busy, showing, keeping] =
             board.next_frame_logged(end, |log| calls_in(log, image, core, parts))?;
@@ -108,7 +92,6 @@ fn end_of_frame(board: &mut Machine, image: &Image) -> Result<u32> {
     Ok(after + image.instruction_at(after)?.size())
 }
 
-/// Returns the address of a function of an application. The error names a function that is missing.
 fn address(image: &Image, module: &str, name: &str) -> Result<u32> {
     // Some versions of the compiler write <path::Type>::name, others path::Type::name.
     let is_it =
@@ -121,8 +104,7 @@ fn address(image: &Image, module: &str, name: &str) -> Result<u32> {
         .ok_or_else(|| image.lacks(&format!("{module}..{name}")))
 }
 
-/// Returns the calls in a log of the functions that begin at the given addresses: for each set of
-/// addresses, the calls from outside these functions.
+/// Returns the calls of these functions from outside of them.
 fn calls_in<'a, const N: usize>(
     mut log: File,
     image: &'a Image,
@@ -136,26 +118,17 @@ fn calls_in<'a, const N: usize>(
     Ok(calls)
 }
 
-/// The file of the price lists.
 const PRICES_FILE: &str = "kernel/src/plan/prices.rs";
-/// The lines before and after the price lists in their file.
 const MARKS: [&str; 2] = [
     "// made by cargo count --write-prices\n",
     "// end of the generated part\n",
 ];
 
 /// Returns the price list of every method that a plan chooses from, on one board for each kind of
-/// core: a Cortex-M3, a Cortex-M4F and a Cortex-M0+, in this order. It builds the programs and runs
-/// them in QEMU. An error means that a program cannot be built, that QEMU fails, that an
-/// instruction has no known timing, or that a counted frame does not call the function with a
-/// price.
-///
-/// The costs are in cycles (estimated). `preparation` is the larger of two costs: the most
-/// expensive preparation of a motion when each method in turn is selected in the application, and
-/// the first restart of the shadows of its plan. `fixed64` is per step: the most expensive one in a
-/// frame of the application. All others are per step of 1/256 s, averages over a motion of equal
-/// rods and bobs from rest at 0.5 rad; `fixed32_unlike` is per step of 2^-13 s, with a bob 2 of
-/// 30 kg on a rod of 3 m, from rest at 2 rad.
+/// core. `preparation` is the larger of two costs: the most expensive preparation of a motion in
+/// the application, and the first restart of the shadows of its plan. `fixed64` is the most
+/// expensive step in a frame of the application. All others are averages over a regular motion;
+/// `fixed32_unlike` is of unlike bobs and rods.
 pub fn prices(toolchain: &Toolchain) -> Result<Vec<(&'static Board, Costs)>> {
     let targets = Target::build_all(toolchain)?;
     targets
@@ -164,7 +137,6 @@ pub fn prices(toolchain: &Toolchain) -> Result<Vec<(&'static Board, Costs)>> {
         .collect()
 }
 
-/// Returns the price list of the core of this target, in cycles.
 fn on(target: &Target, toolchain: &Toolchain) -> Result<Costs> {
     let step = |method| {
         let request = Request {
@@ -190,21 +162,15 @@ fn on(target: &Target, toolchain: &Toolchain) -> Result<Costs> {
     })
 }
 
-/// The function that makes 64-bit fixed-point steps.
 const STEP: &str = "Fixed64State::advance";
-/// The function that prepares a motion.
 const PREPARATION: &str = "PlannedRun::new";
-/// The function that restarts the shadows of a plan.
 const RESTART: &str = "Trial::restart_shadows";
 
-/// Returns the costs that only the application has: a 64-bit fixed-point step of the plans' order,
-/// and the most expensive preparation.
 fn in_application(board: &'static Board, toolchain: &Toolchain) -> Result<(f32, f32)> {
     let elf = toolchain.build_for(board)?;
     let image = Image::read(&elf)?;
     let qemu = &toolchain.qemu;
     let settings = Settings {
-        // The application is built and started, halted before its first instruction.
         qemu,
         board,
         elf: &elf,
@@ -219,7 +185,6 @@ fn in_application(board: &'static Board, toolchain: &Toolchain) -> Result<(f32, 
     let step = BTreeSet::from([image.function(STEP)?.address]);
     let [calls] =
         machine.next_frame_logged(end, |log| calls_in(log, &image, board.core(), [step]))?;
-    // A call makes the steps of a frame, as many as the next frame reports.
     let messages = machine.run_to_frame()?;
     let frame = messages.into_iter().rev().find_map(ToHost::frame);
     let shown = frame.and_then(|frame| frame.report.stepping);
@@ -233,7 +198,6 @@ fn in_application(board: &'static Board, toolchain: &Toolchain) -> Result<(f32, 
     })?;
     let mut prepared = most(RESTART, &calls.ended)?;
 
-    // A motion is prepared whenever the method changes, so every method is selected once.
     let preparation = image.function(PREPARATION)?.address;
     for &method in Method::DRAWN {
         machine.send(1, Command::Method(Some(method)))?;
@@ -246,19 +210,13 @@ fn in_application(board: &'static Board, toolchain: &Toolchain) -> Result<(f32, 
     Ok((fixed64, prepared))
 }
 
-/// Returns the cycles of the most expensive of these calls of `function`. It is an error if there
-/// is none, because the price would be 0.
 fn most(function: &str, calls: &[Cost]) -> Result<f32> {
     let most = calls.iter().map(|call| call.cycles).max();
     most.map(|cycles| cycles as f32)
         .with_context(|| format!("{function} was not called in the counted frame: no price"))
 }
 
-/// Writes the price lists into the kernel's source, `kernel/src/plan/prices.rs`, in place of the
-/// lists there, rounded to one decimal. Each is a constant named after the core of its board; not
-/// checked: there is one for each kind of core, as by [`prices`]. Returns the path of the file. An
-/// error means that the file cannot be read or written, or that it has lost the lines around the
-/// lists.
+/// Writes the price lists into the kernel's source.
 pub fn write_prices(prices: &[(&Board, Costs)]) -> Result<PathBuf> {
     let path = workspace().join(PRICES_FILE);
     let old = std::fs::read_to_string(&path)?;
@@ -268,8 +226,6 @@ pub fn write_prices(prices: &[(&Board, Costs)]) -> Result<PathBuf> {
     Ok(path)
 }
 
-/// Returns the text of the file, `old`, with these price lists, or `None` if it has no place for
-/// them.
 fn with_lists(old: &str, prices: &[(&Board, Costs)]) -> Option<String> {
     let lists: Vec<String> = prices
         .iter()
@@ -282,7 +238,6 @@ fn with_lists(old: &str, prices: &[(&Board, Costs)]) -> Option<String> {
     )
 }
 
-/// Returns the constant with the price list of a board's core, as rustfmt formats it.
 fn list(board: &Board, costs: &Costs) -> String {
     let title = board.core().name();
     let name = title.to_uppercase().replace('-', "_").replace('+', "PLUS");
@@ -296,8 +251,6 @@ mod tests {
     use super::*;
     use emulator::boards::BOARDS;
 
-    /// The price of a function is that of its most expensive call. Without a call there is no
-    /// price, and the error names the function.
     #[test]
     fn a_function_that_was_not_called_has_no_price() -> Result<()> {
         let call = |cycles| Cost {
@@ -310,7 +263,6 @@ mod tests {
         Ok(())
     }
 
-    /// The file with its own prices written again is the same file, in the format of rustfmt.
     #[test]
     fn price_lists_are_written_as_they_are_in_the_file() -> Result<()> {
         let boards = BOARDS.iter().filter(|board| board.has_panel);

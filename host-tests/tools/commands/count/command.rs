@@ -17,8 +17,7 @@ use emulator::toolchain::{self, Toolchain};
 
 /// The gravity of the report's regular scene, m/s^2, so that the figures agree with it.
 const GRAVITY: f32 = 9.81;
-/// The limit of steps. Every executed instruction is logged, so a much larger number would take
-/// hours.
+/// Every executed instruction is logged, so a much larger number would take hours.
 const MOST_STEPS: i64 = 65_536;
 
 const EXAMPLES: &str = "Examples:
@@ -91,13 +90,8 @@ pub struct CountOptions {
     write_prices: bool,
 }
 
-/// Counts as the options demand and prints a row for each method and board. A method that does not accept the pendulum is left out. Missing tools are installed.
-/// With `--write-prices` it changes the price lists in the kernel's source, with `--readme` the
-/// table in its README.
-///
-/// Options that cannot be served, also a pendulum that no method accepts, and tools that cannot be
-/// provided, are [`Refused`] before anything is built. A build or a count that fails is an error
-/// after the rows before it.
+/// Counts, and prints a row for each method and board. A method that does not accept the pendulum
+/// is left out.
 pub fn run(options: &CountOptions) -> anyhow::Result<()> {
     if options.write_prices {
         let toolchain = toolchain::set_up()?;
@@ -124,7 +118,6 @@ pub fn run(options: &CountOptions) -> anyhow::Result<()> {
             say(ERROR_BAR)?;
             say(line(TITLES.map(str::to_owned)))?;
         }
-        // The methods are counted in groups, so that the first rows appear soon.
         for requests in requests.chunks(rayon::current_num_threads()) {
             let rows = requests.par_iter().map(|request| {
                 let given = options.steps.map(|stride| Request { stride, ..*request });
@@ -144,8 +137,7 @@ pub fn run(options: &CountOptions) -> anyhow::Result<()> {
 }
 
 impl CountOptions {
-    /// Returns a request for each method whose name matches and that accepts this pendulum; at
-    /// least one. The host checks this before anything is built or printed.
+    /// The host checks the requests before anything is built or printed.
     fn requests(&self) -> anyhow::Result<Vec<Request>> {
         let Self { m2, l2, .. } = *self;
         let angle = if self.degrees {
@@ -166,7 +158,6 @@ impl CountOptions {
             samples: 1,
             ..Request::on_any_core(method)
         };
-        // A request of one step shows whether the method accepts the pendulum.
         let check = |request| {
             Request {
                 stride: 1,
@@ -177,7 +168,6 @@ impl CountOptions {
             .map(|_| request)
         };
 
-        // A complete name selects this method only, a part of a name all methods that contain it.
         let is_name = Method::ALL
             .iter()
             .any(|method| method.name() == self.method);
@@ -199,7 +189,6 @@ impl CountOptions {
             bail!("{}: no such method; choose from {names}", self.method)
         }
 
-        // A method may refuse the pendulum, but not all of them may.
         if checked.iter().all(Result::is_err) {
             let requests = checked.into_iter().collect::<Result<_, _>>();
             return requests.map_err(|error| anyhow!("{}{error}", option_of(&error)));
@@ -227,8 +216,6 @@ impl CountOptions {
     }
 }
 
-/// Returns the option that sets the refused parameter, as the beginning of an error; empty if no
-/// option does.
 fn option_of(error: &Error) -> &'static str {
     match error.parameter() {
         Parameter::M2 => "--m2: ",
@@ -239,14 +226,12 @@ fn option_of(error: &Error) -> &'static str {
     }
 }
 
-/// The titles of the columns of [`line`].
 #[rustfmt::skip]
 const TITLES: [&str; 9] = [
     "method", "board", "steps", "instructions", "cycles (estimate)", "stalls",
     "hot bytes", "code bytes", "stack bytes",
 ];
 
-/// Returns a row of the table of steps, with its cells right-aligned below [`TITLES`].
 fn line(
     [
         method,
@@ -264,7 +249,6 @@ fn line(
     format!("{method:>29} {board:>16} {counts} {hot:>9} {code:>10} {stack:>11}")
 }
 
-/// Returns the row of a method on a board. Instructions, cycles and stalls are per step.
 fn row(method: Method, board: &Board, cost: &StepCost) -> String {
     let StepCost {
         steps,
@@ -275,7 +259,6 @@ fn row(method: Method, board: &Board, cost: &StepCost) -> String {
         code_bytes,
         stack_bytes,
     } = cost;
-    // Counts of a step are averages; sizes are whole bytes.
     let [instructions, cycles, stalls] =
         [instructions, cycles, stalls].map(|count| format!("{count:.1}"));
     let [steps, hot, code, stack] = [steps, hot_bytes, code_bytes, stack_bytes].map(u32::to_string);
@@ -292,7 +275,6 @@ fn row(method: Method, board: &Board, cost: &StepCost) -> String {
     ])
 }
 
-/// Prints the prices that a user of the kernel pays in a crate outside of this workspace.
 fn count_minimal(toolchain: &Toolchain, options: &CountOptions) -> anyhow::Result<()> {
     let boards = if options.on.is_empty() {
         one_of_each_core().collect()
@@ -300,7 +282,6 @@ fn count_minimal(toolchain: &Toolchain, options: &CountOptions) -> anyhow::Resul
         options.on.clone()
     };
 
-    // The titles come with the first board's rows, once its programs have been counted.
     let mut all = Vec::new();
     for (place, board) in boards.into_iter().enumerate() {
         let counted = MinimalPrices::count(toolchain, board)?;
@@ -340,7 +321,6 @@ fn count_minimal(toolchain: &Toolchain, options: &CountOptions) -> anyhow::Resul
         all.push(counted);
     }
 
-    // The README changes only after every board has been counted.
     if options.readme {
         write_table(&all)?;
         say("wrote kernel/README.md")?;
@@ -352,8 +332,6 @@ fn minimal_line(form: &str, board: &str, [steps, step, call, flash]: [String; 4]
     format!("{form:>30} {board:>16} {steps:>5} {step:>17} {call:>8} {flash:>11}")
 }
 
-/// The full name of a method selects it alone, although it is a part of another name. A part of a
-/// name selects all methods that contain it, and no name selects all.
 #[test]
 fn a_full_name_counts_that_method_alone() {
     for (name, methods) in [

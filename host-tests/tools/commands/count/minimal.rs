@@ -15,31 +15,23 @@ use crate::commands::table::between;
 use emulator::boards::Board;
 use emulator::toolchain::{Toolchain, workspace};
 
-/// The function of the programs whose calls are counted.
 const COUNTED: &str = "minimal::advance";
 
-/// The register in which that function receives its number of steps. The first two hold the places
-/// of its result and of the motion.
+/// The register with its number of steps. The first two hold the places of its result and of the
+/// motion.
 const STEPS: usize = 2;
 
-/// The program that starts and ends without a motion.
 const START_UP: &str = "start_up";
 
-/// A program of `kernel/minimal`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Program {
-    /// The type that it passes to `Pendulum::run`, such as "Fixed64<12>", without a path.
+    /// The type that it passes to `Pendulum::run`, such as "Fixed64<12>".
     pub form: &'static str,
-    /// The name of its binary.
     pub binary: &'static str,
-    /// The method that the type implements.
     pub method: Method,
-    /// True if it counts whole turns.
     pub counts_turns: bool,
 }
 
-/// Writes the type as the kernel's README does: in backquotes, and ", counting turns" after it if
-/// the program counts turns.
 impl fmt::Display for Program {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let turns = if self.counts_turns {
@@ -51,8 +43,7 @@ impl fmt::Display for Program {
     }
 }
 
-/// The programs with a motion, in the order of the kernel's README: one each for seven methods, and
-/// one that counts turns.
+/// In the order of the kernel's README.
 pub const PROGRAMS: [Program; 8] = [
     Program {
         form: "DirectionF32",
@@ -104,43 +95,30 @@ pub const PROGRAMS: [Program; 8] = [
     },
 ];
 
-/// The price of a program's calls of `Run::advance`: steps of 1/256 s from rest at 0.5 rad, with
-/// rods of 1 m and bobs of 1 kg.
+/// The price of a program's calls of `Run::advance`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Minimal {
-    /// The program.
     pub program: &'static Program,
-    /// The number of steps over which `step` is averaged, all after the first.
     pub steps: u32,
-    /// The number of cycles (estimated) of a step.
     pub step: f64,
-    /// The number of cycles (estimated) of a call on top of its steps: the checks. It is the cost
-    /// of a call with no step.
+    /// The cycles of a call with no step: the checks.
     pub call: u64,
-    /// The size of the program in flash minus the size of a program without a motion, bytes.
+    /// In flash, on top of a program without a motion.
     pub flash: usize,
 }
 
-/// The prices on a board.
 #[derive(Clone, Debug)]
 pub struct MinimalPrices {
-    /// The board, for the kind of its core.
     pub board: &'static Board,
-    /// The prices of `PROGRAMS`, in that order.
     pub prices: Vec<Minimal>,
-    /// The size of a program without a motion in flash, bytes.
+    /// The flash of a program without a motion.
     pub start_up: usize,
 }
 
 impl MinimalPrices {
-    /// Builds all programs for `board` and counts them. An error means that a program cannot be
-    /// built, fails in QEMU, executes an instruction without a known timing, or does not make its
-    /// three calls: with no step, with one step, and with more. Each program that runs for half an
-    /// hour is stopped, which is an error, too.
     pub fn count(toolchain: &Toolchain, board: &'static Board) -> Result<Self> {
         let folder = toolchain.build_minimal(board.target)?;
         let target = |binary| Target::of(toolchain, board, folder.join(binary));
-        // Sizes are relative to this program, which has no motion.
         let start_up = target(START_UP)?.flash_bytes()?;
         let prices = PROGRAMS.par_iter().map(|program| {
             let target = target(program.binary)?;
@@ -154,8 +132,6 @@ impl MinimalPrices {
         })
     }
 
-    /// Counts all programs on one board for each kind of core: a Cortex-M3, a Cortex-M4F and a
-    /// Cortex-M0+, in this order. An error is one of [`MinimalPrices::count`].
     pub fn count_all(toolchain: &Toolchain) -> Result<Vec<Self>> {
         one_of_each_core()
             .map(|board| Self::count(toolchain, board))
@@ -163,18 +139,13 @@ impl MinimalPrices {
     }
 }
 
-/// The lines before and after the table of prices in the kernel's README.
 const MARKS: [&str; 2] = [
     "<!-- made by cargo count --minimal --readme -->\n",
     "<!-- end of the generated part -->\n",
 ];
 
-/// The kernel's README.
 const README: &str = "kernel/README.md";
 
-/// Returns the table of prices as the kernel's README shows it now, with its last newline and
-/// without the lines around it. An error means that the file or the lines around the table are
-/// missing.
 pub fn table_in_readme() -> Result<String> {
     let page = std::fs::read_to_string(workspace().join(README))?;
     let [start, end] = MARKS;
@@ -186,9 +157,6 @@ pub fn table_in_readme() -> Result<String> {
 
 const NO_PLACE: &str = "kernel/README.md has no place for the prices";
 
-/// Writes the table of prices ([`table`]) into the kernel's README, in place of the table there. An
-/// error means that the file cannot be read or written, or that the lines around the table are
-/// missing.
 pub fn write_table(boards: &[MinimalPrices]) -> Result<()> {
     let path = workspace().join(README);
     let page = std::fs::read_to_string(&path)?;
@@ -196,14 +164,8 @@ pub fn write_table(boards: &[MinimalPrices]) -> Result<()> {
     emulator::out_file::write("--readme", &path, page)
 }
 
-/// Returns the table of prices for the kernel's README, in Markdown, with a newline after each
-/// line: a row for each of `PROGRAMS`, and one for a program without a motion. There is a column
-/// for the core of each board, in the order of `boards`.
-///
-/// A cell of a core has the cycles of a step, rounded, and of a call, as in "1,234 + 56"; it is
-/// empty without a motion. The last column has the flash on each board, in bytes, as in "1,234 /
-/// 5,678": of the program without a motion the whole size, of the others the rest beyond it. Each
-/// board must have a price for each of `PROGRAMS`, else this panics.
+/// Returns the table for the kernel's README. A cell has the cycles of a step and of a call, as in
+/// "1,234 + 56". The last column has the flash on each board.
 pub fn table(boards: &[MinimalPrices]) -> String {
     let cores: Vec<_> = boards
         .iter()
@@ -212,7 +174,6 @@ pub fn table(boards: &[MinimalPrices]) -> String {
     let mut table = format!("| type | {} | flash, bytes |\n", cores.join(" | "));
     table += &format!("|---|{}---|\n", "---|".repeat(cores.len()));
 
-    // Joins a size on every board into one cell.
     let all = |size: &dyn Fn(&MinimalPrices) -> usize| {
         let sizes: Vec<_> = boards
             .iter()
@@ -232,12 +193,10 @@ pub fn table(boards: &[MinimalPrices]) -> String {
         table += &format!("| {program} | {} | {flash} |\n", costs.join(" | "));
     }
 
-    // The last row has only a size in flash, because this program makes no steps.
     let flash = all(&|board| board.start_up);
     table + &format!("| no motion |{} {flash} |\n", " |".repeat(cores.len()))
 }
 
-/// Returns a number with commas between thousands.
 fn grouped(number: u64) -> String {
     if number < 1000 {
         number.to_string()
@@ -252,7 +211,6 @@ impl Minimal {
         let entries = BTreeSet::from([entry]);
         let mut calls = Calls::of(&target.image, target.board.core(), entries.clone());
 
-        // The number of steps of each call is in a register at its entry.
         let mut steps = Vec::new();
         target.trace("", &entries, &mut |registers| {
             calls.see(registers)?;

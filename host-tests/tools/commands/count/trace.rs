@@ -27,41 +27,29 @@ use emulator::scratch::Scratch;
 use emulator::stream::{self, Channel};
 use emulator::toolchain::{QUICK, Toolchain};
 
-/// The time limit of a run in QEMU, after which QEMU is killed.
 pub(super) const LIMIT: Duration = Duration::from_secs(1800);
 
-/// The items of QEMU's log: the registers before each instruction.
 const LOGGED: &str = "cpu,nochain";
-/// The size of an instruction with a breakpoint, bytes. QEMU does not use it.
 const SIZE: u32 = 2;
 
-/// An emulated board with a program. The default program runs one request and prints its result.
 #[derive(Debug)]
 pub struct Target {
-    /// The emulated board.
     pub board: &'static Board,
     qemu: PathBuf,
     elf: PathBuf,
-    /// The code and symbols of the program, as the file was when this target was made.
     pub image: Image,
 }
 
-/// Returns one board for each kind of core: the LM3S6965 with a Cortex-M3, with a Cortex-M4F and
-/// with a Cortex-M0+, in this order.
 pub fn one_of_each_core() -> impl Iterator<Item = &'static Board> {
     BOARDS.iter().filter(|board| board.has_panel)
 }
 
 impl Target {
-    /// Builds the default program, `measure`, for this board. An error means that the build fails.
     pub fn build(toolchain: &Toolchain, board: &'static Board) -> Result<Self> {
         Self::of(toolchain, board, toolchain.build("measure", board.target)?)
     }
 
-    /// Returns a target with another program. A program that takes the same requests must make its
-    /// steps in a function called `counted_steps`, which is not checked before they are counted.
-    /// The file must remain where it is. The program must suit the board, which is not checked. An
-    /// error means that the file is unreadable or no program for ARM.
+    /// Returns a target with another program, whose steps are made in `counted_steps`.
     pub fn of(toolchain: &Toolchain, board: &'static Board, elf: PathBuf) -> Result<Self> {
         let image = Image::read(&elf)?;
         Ok(Self {
@@ -72,28 +60,20 @@ impl Target {
         })
     }
 
-    /// Returns the size of the program in the flash, bytes: code, constants and initial values, and
-    /// gaps between them. An error means that the file cannot be read, or has no program of at most
-    /// 2 MiB ([`flash_image`]).
     pub fn flash_bytes(&self) -> Result<usize> {
         Ok(flash_image(&std::fs::read(&self.elf)?)?.1.len())
     }
 
-    /// Builds the default program for the boards of [`one_of_each_core`]: a Cortex-M3, a Cortex-M4F
-    /// and a Cortex-M0+, in this order. An error means that a build fails.
     pub fn build_all(toolchain: &Toolchain) -> Result<Vec<Self>> {
         one_of_each_core()
             .map(|board| Self::build(toolchain, board))
             .collect()
     }
 
-    /// Runs `request` at full speed. Returns its CRC ([`Request::crc`]) and the ticks that it took
-    /// of the board's SysTick, at the processor's clock after reset, under `-icount`, where an
-    /// instruction takes 1 ns. On the LM3S6965 that clock has 12.5 MHz, so that a tick is 80
-    /// instructions. After 2^24 ticks they begin again from 0. A program that prints anything else
-    /// has failed, and the error contains its output. Other errors are as in [`Self::output`].
+    /// Runs `request` at full speed. Returns its CRC and the ticks of the board's SysTick. Under
+    /// `-icount` an instruction takes 1 ns, so on the LM3S6965, at 12.5 MHz after reset, a tick is
+    /// 80 instructions.
     pub fn run(&self, request: &Request) -> Result<(u32, u64)> {
-        // The program prints the CRC in hexadecimal digits and then the ticks.
         let output = self.output(request)?;
         let numbers = output.trim().split_once(' ');
         let numbers = numbers.and_then(|(crc, ticks)| {
@@ -102,10 +82,7 @@ impl Target {
         numbers.with_context(|| format!("{}: {}", request.method, output.trim()))
     }
 
-    /// Runs `request` at full speed and returns everything that the program prints to standard
-    /// output, even if it or QEMU fails; the exit code is not returned. Bytes that are not UTF-8
-    /// are replaced. An error means that QEMU cannot be started or exceeds its time limit, half an
-    /// hour.
+    /// Returns everything that the program prints, even if it or QEMU fails.
     pub fn output(&self, request: &Request) -> Result<String> {
         Ok(process::run(
             self.emulator(&request.to_string())
@@ -115,17 +92,14 @@ impl Target {
         .stdout)
     }
 
-    /// Runs the program with `argument` on its semihosting command line and calls `each` before
-    /// every instruction from the first one at any of these addresses on.
-    ///
-    /// `argument` must not contain a comma. It is an error if the program fails.
+    /// Runs the program with `argument`, which contains no comma, on its semihosting command line
+    /// and calls `each` before every instruction from the first one at any of these addresses on.
     pub(super) fn trace(
         &self,
         argument: &str,
         entries: &BTreeSet<u32>,
         each: &mut dyn FnMut(Registers) -> Result<()>,
     ) -> Result<()> {
-        // QEMU writes the registers to stderr before every instruction.
         let mut command = self.emulator(argument);
         command
             .args(self.single_step()?)
@@ -134,7 +108,8 @@ impl Target {
             .stdout(Stdio::piped())
             .stderr(Stdio::piped());
 
-        // A debugger switches the log on at the first of the addresses, which saves most of the time.
+        // A debugger switches the log on at the first of the addresses, which saves most of the
+        // time.
         let folder = Scratch::new()?;
         let path = folder.path().join("debugger");
         command
@@ -154,7 +129,6 @@ impl Target {
             for_each_instruction(&mut log, each)?;
         }
 
-        // A program that ends closes its log.
         let status = child.wait()?;
         let output = stdout
             .and_then(|reader| reader.join().ok())
@@ -164,12 +138,10 @@ impl Target {
         Ok(())
     }
 
-    /// Returns the QEMU command with only the semihosting console attached.
     fn emulator(&self, argument: &str) -> Command {
         let mut command = Command::new(&self.qemu);
         command.args(["-machine", self.board.machine, "-cpu", self.board.cpu]);
         command.args(["-display", "none", "-monitor", "none", "-serial", "null"]);
-        // Semihosting passes the argument to the program.
         let argument = if argument.is_empty() {
             String::new()
         } else {
@@ -183,8 +155,7 @@ impl Target {
         command
     }
 
-    /// Returns the options for one instruction per translation block, which QEMU 8.1 renamed. QEMU
-    /// is asked once per process.
+    /// QEMU 8.1 has renamed the options.
     fn single_step(&self) -> Result<&'static [&'static str]> {
         static IS_RENAMED: Mutex<Option<(PathBuf, bool)>> = Mutex::new(None);
         let mut known = IS_RENAMED.lock().unwrap_or_else(PoisonError::into_inner);
@@ -205,11 +176,9 @@ impl Target {
     }
 }
 
-/// Lets QEMU, which waits for its debugger, run to the first of these addresses, switches its log
-/// on and lets it run on. If the program ends before, this does nothing more. An error means that
-/// QEMU refuses the debugger.
+/// Lets QEMU, which waits for its debugger, run to the first of these addresses, and switches its
+/// log on. Does nothing if the program ends before.
 fn log_from(entries: &BTreeSet<u32>, debugger: &mut Channel, child: &mut Running) -> Result<()> {
-    // Sends a packet and returns the reply, or nothing if QEMU has ended.
     let mut ask = |packet: &str| -> Result<Option<String>> {
         send_packet(&mut debugger.sender, packet)?;
         loop {
@@ -229,7 +198,6 @@ fn log_from(entries: &BTreeSet<u32>, debugger: &mut Channel, child: &mut Running
         .map(|byte| format!("{byte:02x}"))
         .collect();
 
-    // The steps, each with the beginning of its reply.
     let breakpoints = |change| {
         let packet = move |entry| (format!("{change}0,{entry:x},{SIZE}"), "OK");
         entries.iter().map(packet)
@@ -252,9 +220,6 @@ fn log_from(entries: &BTreeSet<u32>, debugger: &mut Channel, child: &mut Running
     Ok(send_packet(&mut debugger.sender, "c")?)
 }
 
-/// Runs `request` on `target` and returns all calls of `counted_steps`, with interrupts. An error
-/// means that QEMU cannot be started, that the program fails or runs for half an hour, that no call
-/// returns, or that a call executes an instruction without a known timing.
 pub fn counted<'a>(target: &'a Target, request: &Request) -> Result<Calls<'a>> {
     // The compiler makes one copy of the function for each method.
     let entries: BTreeSet<_> = target
@@ -263,7 +228,6 @@ pub fn counted<'a>(target: &'a Target, request: &Request) -> Result<Calls<'a>> {
         .map(|function| function.address)
         .collect();
 
-    // Every call of any copy is counted.
     let mut calls = Calls::of(&target.image, target.board.core(), entries.clone());
     target.trace(&request.to_string(), &entries, &mut |registers| {
         calls.see(registers)

@@ -8,45 +8,34 @@ use plotters::prelude::*;
 use super::sheet::{Axes, BLUE, ORANGE, TEXT, axes, headed, line, pale, svg, text, units};
 use crate::oracle::textbook::misprinted_equal_rods;
 
-/// The figure's mass ratio, start angle of both rods (degrees) and rods (m).
 const MASS_RATIO: f64 = 2.75;
 const START: f64 = 171.0;
 const ROD: f64 = 1.0;
-/// The duration of the motion, s. In this time the path by the right equations follows the exact
-/// motion (test `figures`).
+/// In this time the path by the right equations follows the exact motion (test `figures`).
 pub const DURATION: u32 = 10;
-/// The integration steps per second, and the number of steps between two points of the path.
 const STEPS: u32 = 8192;
 const STEPS_PER_POINT: u32 = 32;
 
-/// The length of the axes in each direction, m.
 const REACH: f64 = 2.1;
 
-/// The path of bob 2 during [`DURATION`], from its start.
 pub struct Path {
-    /// 256 points per second, the start and the end included, so 2561; in m right of the pivot and
-    /// above it.
+    /// In m right of the pivot and above it.
     pub points: Vec<(f64, f64)>,
-    /// The smallest and the largest energy, J; the potential energy is 0 where both bobs are level
-    /// with the pivot. They are by the right equations, for bob 1 of 1 kg, at the points.
+    /// The smallest and the largest energy, J, by the right equations.
     pub energies: [f64; 2],
 }
 
-/// Returns the pendulum of the figure: bobs of 1 kg and 2.75 kg and rods of 1 m in the gravity of
-/// the page, 9.8 m/s^2. The kernel accepts it, so that there is no error.
+/// The page has g = 9.8 m/s^2.
 pub fn pendulum() -> Result<Pendulum<f64>, Error> {
     Pendulum::new(&Parameters::equal_rods(MASS_RATIO, ROD, PAGE_GRAVITY))
 }
 
-/// Returns the start of the figure: both rods at rest at 171 degrees. The state is in rad.
 pub fn start() -> State<f64> {
     State::at_rest(START.to_radians(), START.to_radians())
 }
 
-/// Returns the paths by the right equations and by the misprinted ones, in this order, by RK4 with
-/// `refinement` times the figure's 8192 steps a second. 1 is the figure itself. The points are at
-/// the same times with any `refinement`, which must be from 1 to 50,000; this is not checked. There
-/// is no error, as in [`pendulum`].
+/// Returns the paths by the right equations and by the misprinted ones, by RK4 with `refinement`
+/// times the figure's steps.
 pub fn paths(refinement: u32) -> Result<[Path; 2], Error> {
     let pendulum = pendulum()?;
     let right = path(&pendulum, refinement, |z| pendulum.derivatives(z));
@@ -56,14 +45,12 @@ pub fn paths(refinement: u32) -> Result<[Path; 2], Error> {
     Ok([right, printed])
 }
 
-/// Returns the path by RK4 with these equations, at the points of the figure.
 fn path(pendulum: &Pendulum<f64>, refinement: u32, rhs: impl Fn(&[f64; 4]) -> [f64; 4]) -> Path {
     let mut state = start();
     let dt = 1.0 / f64::from(STEPS * refinement);
     let mut points = Vec::new();
     let [mut least, mut greatest] = [f64::INFINITY, f64::NEG_INFINITY];
     for step in 0..=DURATION * STEPS * refinement {
-        // Finer steps give the same number of points.
         if step.is_multiple_of(STEPS_PER_POINT * refinement) {
             let [_, bob2] = pendulum.positions(state.angles());
             points.push((bob2.x, bob2.y));
@@ -79,8 +66,6 @@ fn path(pendulum: &Pendulum<f64>, refinement: u32, rhs: impl Fn(&[f64; 4]) -> [f
     }
 }
 
-/// Returns figure 7 as the text of an SVG file: the path by the right equations on the left, by the
-/// misprinted ones on the right. Nothing is written. It is an error if the figure cannot be drawn.
 pub fn figure() -> Result<String> {
     let paths = paths(1)?;
     let title = format!("Figure 7: path of bob 2 in the first {DURATION} s");
@@ -91,14 +76,11 @@ pub fn figure() -> Result<String> {
     let marks =
         "○ start, ● end; · every 1 s, with the seconds; paler earlier, darker later; × pivot";
     svg([800, 468], [&title, &particulars, marks], |area| {
-        // The right equations on the left, the misprinted ones on the right.
         let halves = area.split_evenly((1, 2));
         let names = ["the right equations", "as printed, a factor μ missing"];
         for (((area, name), colour), path) in
             halves.iter().zip(names).zip([BLUE, ORANGE]).zip(&paths)
         {
-            // The right equations keep the energy, so its smallest and largest values look the
-            // same.
             let [least, greatest] = path.energies.map(|energy| format!("{energy:.1} J"));
             let energy = if least == greatest {
                 least
@@ -119,12 +101,9 @@ pub fn figure() -> Result<String> {
     })
 }
 
-/// The shades of a path, from its start to its end.
 const SHADES: usize = 10;
 const PALEST: f64 = 0.35;
 
-/// Draws a path that becomes darker with time, with its start, its end, and a mark for every
-/// second.
 fn draw(points: &[(f64, f64)], chart: &mut Axes, colour: RGBColor) -> Result<()> {
     let length = points.len().div_ceil(SHADES);
     for shade in 0..SHADES {
@@ -134,7 +113,6 @@ fn draw(points: &[(f64, f64)], chart: &mut Axes, colour: RGBColor) -> Result<()>
         chart.draw_series(LineSeries::new(piece, line(pale(colour, strength), 9)))?;
     }
 
-    // A dot and the number of each second. The start and the end have their own marks.
     let per_second = (STEPS / STEPS_PER_POINT) as usize;
     for (second, &(x, y)) in points
         .iter()
@@ -155,7 +133,6 @@ fn draw(points: &[(f64, f64)], chart: &mut Axes, colour: RGBColor) -> Result<()>
         return Ok(());
     };
 
-    // The start is a white disc with a rim, the end a dark disc.
     for (place, style) in [
         (start, WHITE.filled()),
         (start, line(TEXT, 12)),

@@ -88,14 +88,10 @@ pub struct FlipsOptions {
     out: PathBuf,
 }
 
-/// The largest number of steps of a start without a note. With more steps even a small map takes a
-/// minute or more.
+/// With more steps even a small map takes a minute or more.
 const ANNOUNCED_STEPS: f64 = 1e6;
 
-/// Computes the map, writes the file and prints how much of the map is uncertain, in starts and
-/// percent. The file replaces an existing one when the map is complete; until then, and after
-/// Ctrl-C, it is unchanged. The computation may take hours. Options that cannot be used, and a file
-/// that cannot be written, are [`Refused`] before the computation.
+/// Computes the map and writes the file. An existing file is replaced when the map is complete.
 pub fn run(options: &FlipsOptions) -> Result<()> {
     let map = options
         .map()
@@ -122,7 +118,6 @@ pub fn run(options: &FlipsOptions) -> Result<()> {
     drop(bar);
     file.write_whole(&output::file(&options.out, &map, &points, options.doubt)?)?;
 
-    // The summary shows the share of starts whose flips differ between the two steps.
     let out = options.out.display();
     let doubtful = map
         .shown(&points)
@@ -134,10 +129,8 @@ pub fn run(options: &FlipsOptions) -> Result<()> {
     ))?)
 }
 
-/// The smallest and the largest number of pixels across or down.
 const SIZES: std::ops::RangeInclusive<usize> = 2..=32_768;
 
-/// Parses the numbers of pixels across and down.
 fn size(text: &str) -> Result<[usize; 2], String> {
     let number = |text: &str| {
         let number = text
@@ -155,7 +148,6 @@ fn size(text: &str) -> Result<[usize; 2], String> {
     Ok([number(width)?, number(height)?])
 }
 
-/// Accepts a name that ends in `.png` or `.csv`.
 fn picture_or_table(file: &str) -> Result<PathBuf, &'static str> {
     let is_it = [".png", ".csv"].into_iter().any(|end| file.ends_with(end));
     if is_it {
@@ -165,8 +157,8 @@ fn picture_or_table(file: &str) -> Result<PathBuf, &'static str> {
     }
 }
 
-/// The smallest time limit, sqrt(l1/g), because colours show its logarithm; and the largest number
-/// of steps of a start.
+/// The smallest time limit, because colours show its logarithm; and the largest number of steps of
+/// a start.
 const LEAST_LIMIT: f64 = 2.0;
 const MOST_STEPS: f64 = 1e9;
 
@@ -174,12 +166,10 @@ const MOST_STEPS: f64 = 1e9;
 const FINEST: f64 = 8.0 * 2.4e-7;
 
 impl FlipsOptions {
-    /// Returns the map of the options. An error names the option and its value.
     fn map(&self) -> Result<Map> {
         let Self {
             limit, zoom, size, ..
         } = self;
-        // The options in the order of the help.
         ensure!(
             limit.value() >= LEAST_LIMIT,
             "--limit {limit}: must be at least {LEAST_LIMIT}"
@@ -211,7 +201,6 @@ impl FlipsOptions {
         }
         .cast::<f32>();
 
-        // An error of the kernel is attributed to the option that sets the refused value.
         let map =
             Map::new(parameters, limit.value() as f32, *size).map_err(|error| {
                 match option_of(&error, "") {
@@ -229,7 +218,6 @@ impl FlipsOptions {
             ..map
         };
 
-        // A start must end within `MOST_STEPS` steps.
         let longest = limit.value() * MOST_STEPS / map.steps();
 
         // The limit has two digits, rounded down.

@@ -9,21 +9,13 @@ use firmware::graphics::glyph;
 
 use super::map::{FlipPair, Map};
 
-/// Returns the content of a file with this name: a table in CSV if its extension is `csv`, in lower
-/// case, or else a PNG. Nothing is written. `points` must come from `map`; this panics if there are
-/// fewer, and may if a size of the map is 0. An error means that the picture cannot be encoded.
-///
-/// The picture has a legend below the map, and is wide enough for both. With `doubt`, points of a picture whose time is uncertain ([`Map::differ`]) have their
-/// own colour. The table has a heading, then the angles, rad, and both times, sqrt(l1/g), of each
-/// pixel from the top left on; `doubt` does not change it. A time is empty if no rod can turn over,
-/// and `inf` if no rod does within the limit.
+/// Returns the content of a file with this name: a table in CSV or a PNG.
 pub fn file(name: &Path, map: &Map, points: &[FlipPair], doubt: bool) -> Result<Vec<u8>> {
     let pixels = map.shown(points);
     if name.extension().is_some_and(|end| end == "csv") {
         return table(map, pixels);
     }
 
-    // The map above its legend.
     let [across, _] = map.size;
     let legend = legend(map, doubt);
     let width = legend.width;
@@ -53,15 +45,13 @@ const NEVER: Colour = [0, 0, 0];
 const LATER: Colour = [110, 110, 118];
 const DOUBT: Colour = [255, 0, 90];
 
-/// Returns the colour of a share of the scale. In this scale, viridis, equal steps look equal.
-/// Bright colours are early.
+/// In this scale, viridis, equal steps look equal.
 fn scale(share: f32) -> Colour {
     colorous::VIRIDIS
         .eval_continuous(f64::from(1.0 - share))
         .as_array()
 }
 
-/// Returns the colour of a point by its first flip, or [`DOUBT`] if doubts are marked.
 fn colour(map: &Map, point: FlipPair, doubt: bool) -> Colour {
     match point[0] {
         _ if doubt && map.differ(point) => DOUBT,
@@ -70,8 +60,8 @@ fn colour(map: &Map, point: FlipPair, doubt: bool) -> Colour {
     }
 }
 
-/// Returns a row for each pixel, from the top left corner. A time is empty if no rod can turn over,
-/// and `inf` if no rod does within the limit.
+/// Returns the table. A time is empty if no rod can turn over, and `inf` if no rod does within the
+/// limit.
 fn table(map: &Map, pixels: impl Iterator<Item = ([usize; 2], FlipPair)>) -> Result<Vec<u8>> {
     let mut text =
         String::from("a1 [rad],a2 [rad],time [sqrt(l1/g)],time_by_half_the_step [sqrt(l1/g)]\n");
@@ -88,10 +78,9 @@ fn table(map: &Map, pixels: impl Iterator<Item = ([usize; 2], FlipPair)>) -> Res
     Ok(text.into_bytes())
 }
 
-/// The smallest width of the legend and its height, in units; a unit is a whole number of pixels.
+/// In units; a unit is a whole number of pixels.
 const WIDTH: usize = 400;
 const HEIGHT: usize = 42;
-/// The left end of the scale, its length, and the left end of the rest, in units.
 const LEFT: usize = 8;
 const LENGTH: usize = 160;
 const BESIDE: usize = LEFT + LENGTH + 20;
@@ -99,14 +88,12 @@ const BESIDE: usize = LEFT + LENGTH + 20;
 const WHITE: Colour = [255; 3];
 const TEXT: Colour = [34; 3];
 
-/// The picture below the map.
 struct Legend {
     width: usize,
     unit: usize,
     pixels: Vec<Colour>,
 }
 
-/// Returns the legend of `map`, as wide as the map or as its longest line.
 fn legend(map: &Map, doubt: bool) -> Legend {
     let [width, _] = map.size;
     let unit = (width / WIDTH).max(1);
@@ -119,7 +106,6 @@ fn legend(map: &Map, doubt: bool) -> Legend {
         pixels: vec![WHITE; width * HEIGHT * unit],
     };
 
-    // The scale.
     for x in 0..LENGTH {
         legend.fill(
             [LEFT + x, 4, 1, 10],
@@ -127,8 +113,7 @@ fn legend(map: &Map, doubt: bool) -> Legend {
         );
     }
 
-    // The powers of ten below the limit, and the limit itself, are centred under their places on
-    // the scale. A power too close to the limit would overlap it, so it is left out.
+    // A power too close to the limit would overlap it.
     let tens = std::iter::successors(Some(1.0), |time| Some(10.0 * time));
     let tens = tens
         .take_while(|time| *time < 0.7 * map.limit)
@@ -141,7 +126,6 @@ fn legend(map: &Map, doubt: bool) -> Legend {
         legend.text([x.saturating_sub(half), 17], &words);
     }
 
-    // The colours of starts without a time.
     let mut x = BESIDE;
     for (colour, name) in [
         (NEVER, "cannot"),
@@ -160,12 +144,10 @@ fn legend(map: &Map, doubt: bool) -> Legend {
     legend
 }
 
-/// Returns the number of units that a character is wide.
 fn across(character: char) -> usize {
     glyph(character).width as usize
 }
 
-/// Returns the ranges of the axes, and the pendulum.
 fn motion(map: &Map) -> String {
     let [width, height] = map.size;
     let longer = width.max(height) as f64;
@@ -182,13 +164,11 @@ fn motion(map: &Map) -> String {
     format!("let go at α₁ → {a1}, α₂ ↑ {a2}; m₂/m₁ = {masses}, l₂/l₁ = {lengths}")
 }
 
-/// Rounds a number to four digits after the point.
 fn short(number: f64) -> f64 {
     (number * 1e4).round() / 1e4 + 0.0
 }
 
 impl Legend {
-    /// Fills a rectangle: left, top, width and height, in units. Parts outside are left out.
     fn fill(&mut self, place: [usize; 4], colour: Colour) {
         let [x, y, width, height] = place.map(|units| units * self.unit);
         for row in self.pixels.chunks_mut(self.width).skip(y).take(height) {
@@ -199,7 +179,6 @@ impl Legend {
         }
     }
 
-    /// Writes words with their top left corner at this place, in units. Returns their right end.
     fn text(&mut self, [mut x, y]: [usize; 2], words: &str) -> usize {
         for glyph in words.chars().map(glyph) {
             for bit in (0..64).filter(|bit| glyph.rows << bit >> 63 == 1) {

@@ -28,12 +28,9 @@ pub struct PlanOptions {
     scene: SceneOptions,
 }
 
-/// Prints the plan of the scene, or the reason why no plan was found. Advice about the options goes
-/// to stderr. Only options that cannot be used are an error ([`Refused`]).
 pub fn run(PlanOptions { scene }: &PlanOptions) -> anyhow::Result<()> {
     let (problem, plan) = scene.plan().map_err(Refused::because)?;
     scene.start.advice().iter().for_each(complain);
-    // A linear scene has no plan, only the horizon of its linear motion.
     if let (true, Ok(plan)) = (scene.is_linear(), &plan) {
         return Ok(linear_words(plan).iter().try_for_each(say)?);
     }
@@ -42,10 +39,7 @@ pub fn run(PlanOptions { scene }: &PlanOptions) -> anyhow::Result<()> {
         .try_for_each(say)?)
 }
 
-/// Returns the plan with its reasons, one line each, or the lines that no method meets the
-/// tolerance.
 fn words(scene: &Problem, plan: &Result<Plan, Limit>, chip: &Chip) -> Vec<String> {
-    // One line for each number, and two lines of reasons.
     let frame = chip.processor.budget(scene).frame;
     let mut lines = vec![format!("scene    {}", pendulum(scene))];
     if rests(scene) {
@@ -89,8 +83,6 @@ fn words(scene: &Problem, plan: &Result<Plan, Limit>, chip: &Chip) -> Vec<String
     lines
 }
 
-/// Returns the pendulum in words, and with the size of half a pixel, on which a horizon
-/// depends.
 pub fn pendulum(scene: &Problem) -> String {
     let Parameters { m1, m2, l1, l2, g } = scene.pendulum;
     let height = 2.0 * f64::from(HALF_PIXEL) * (l1 + l2) / scene.tolerance;
@@ -100,13 +92,11 @@ pub fn pendulum(scene: &Problem) -> String {
     )
 }
 
-/// Returns true if nothing moves.
 fn rests(scene: &Problem) -> bool {
     Pendulum::new(&scene.pendulum)
         .is_ok_and(|pendulum| pendulum.rests(&pendulum.to_state(&scene.start)))
 }
 
-/// Returns the lines of a scene that shows the linear motion, with its horizon.
 fn linear_words(plan: &Plan) -> [String; 3] {
     [
         format!("method   {}", plan.method),
@@ -118,7 +108,7 @@ fn linear_words(plan: &Plan) -> [String; 3] {
     ]
 }
 
-/// Returns an error, pixels, in words. It is rounded up.
+/// Rounded up.
 fn pixels(error: f32) -> String {
     if error < 1e-3 {
         String::from("a thousandth of a pixel")
@@ -127,7 +117,6 @@ fn pixels(error: f32) -> String {
     }
 }
 
-/// Returns the step size of the plan in words.
 fn step(scene: &Problem, plan: &Plan) -> String {
     match plan.steps {
         0 => String::from("none: the closed form computes each frame directly"),
@@ -139,7 +128,6 @@ fn step(scene: &Problem, plan: &Plan) -> String {
     }
 }
 
-/// Returns the reason why this method was chosen.
 fn method(method: Method) -> String {
     let directions = |why| format!("drawing needs only directions, no angles; {why}");
     match method {
@@ -156,8 +144,6 @@ fn method(method: Method) -> String {
     }
 }
 
-/// Returns the reason why the plan ends, or why nothing cheaper was chosen. `frame` is the budget
-/// of a frame, cycles.
 fn limit(plan: &Plan, frame: f32) -> String {
     match plan.limit {
         Limit::End if plan.steps > 1 => {
@@ -177,7 +163,6 @@ fn limit(plan: &Plan, frame: f32) -> String {
     }
 }
 
-/// Returns the reason why there is no plan. `frame` is the budget of a frame, cycles.
 fn forbidden(limit: Limit, frame: f32) -> String {
     match limit {
         Limit::Budget => {
@@ -188,15 +173,12 @@ fn forbidden(limit: Limit, frame: f32) -> String {
     }
 }
 
-/// Returns the result that the chip has no method for the scene, with the reason, as a sentence
-/// without a full stop.
 pub fn no_method(scene: &Problem, limit: Limit, chip: &Chip) -> String {
     let frame = chip.processor.budget(scene).frame;
     let why = forbidden(limit, frame);
     format!("no method is fast enough for a {}: {why}", chip.title)
 }
 
-/// Returns a line about the energy of the scene, or `None` if the kernel refuses the scene.
 fn energy(scene: &Problem) -> Option<String> {
     let pendulum = Pendulum::new(&scene.pendulum).ok()?;
     let state = pendulum.to_state(&scene.start);

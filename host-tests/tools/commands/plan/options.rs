@@ -19,7 +19,6 @@ const LINEAR: Stepping = Stepping {
     steps: 1,
 };
 
-/// Advances a search to its end.
 fn finish(mut search: Search) -> Result<Plan, PlanError> {
     loop {
         if let Some(plan) = search.advance(f32::INFINITY)? {
@@ -89,22 +88,16 @@ pub struct SceneOptions {
 const HIGHEST: f64 = 1e6;
 
 impl SceneOptions {
-    /// Returns the scene with its plan, or with the limit that forbids any plan. Lengths are in m,
-    /// angles in rad, times in s, costs in cycles. The tolerance is half a pixel. An error is one
-    /// line that names the option and the value; it is caused by a number out of range, by a pendulum that the kernel refuses, or by a built-in scene
-    /// without a motion to plan.
-    ///
-    /// The plan of a [linear](SceneName::is_linear) scene always has the closed form. Its horizon
-    /// is the time until which the linear motion is within half a pixel of the exact motion.
+    /// Returns the scene with its plan, or with the limit that forbids any plan. The tolerance is
+    /// half a pixel. The plan of a linear scene has the closed form and the horizon of the linear
+    /// motion.
     pub fn plan(&self) -> anyhow::Result<(Problem, Result<Plan, Limit>)> {
-        // A built-in scene defines the whole problem; otherwise the options do.
         let problem = self
             .scene
             .map_or_else(|| self.given(), |name| self.of_scene(name))?;
         let Processor { costs, .. } = &self.target.processor;
         let budget = self.target.processor.budget(&problem);
 
-        // A linear scene always has the same method, so only its horizon is evaluated.
         let found = if self.is_linear() {
             Search::of(LINEAR, &problem, costs, &budget).and_then(finish)
         } else {
@@ -118,13 +111,10 @@ impl SceneOptions {
         }
     }
 
-    /// Returns true if the built-in scene of the options shows the linear motion, on purpose
-    /// ([`SceneName::is_linear`]); false without a built-in scene.
     pub fn is_linear(&self) -> bool {
         self.scene.is_some_and(SceneName::is_linear)
     }
 
-    /// Returns the problem that a board of this class plans when it starts the scene.
     fn of_scene(&self, name: SceneName) -> anyhow::Result<Problem> {
         let settings = name.first_settings();
         // The board's own code starts the scene, and so determines the size of the drawing.
@@ -138,7 +128,6 @@ impl SceneOptions {
         Ok(settings.problem(planned.height))
     }
 
-    /// Returns the problem of the options, without a built-in scene.
     fn given(&self) -> anyhow::Result<Problem> {
         let height = &self.height;
         ensure!(
@@ -159,22 +148,16 @@ impl SceneOptions {
     }
 }
 
-/// A chip, with the data that a plan needs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Chip {
-    /// The name of its board on the command line.
     pub board: &'static str,
-    /// The short name.
     pub name: &'static str,
     /// The core and its clock, for people.
     pub title: &'static str,
-    /// The frequency of its clock, Hz.
     pub clock: f32,
-    /// The costs of its steps and its budgets, in cycles.
     pub processor: Processor,
 }
 
-/// Every chip; the first is the default.
 pub const CHIPS: [Chip; 4] = [
     Chip {
         board: "lm3s6965evb",

@@ -9,36 +9,23 @@ use reference::enclosure::{Fixed, Start, up};
 
 use crate::commands::table::at_most;
 
-/// A frame compared with the exact motion. The exact motion is known to be in a box: each number of
-/// the directions is known up to a radius. The frame is proved right, proved wrong, or undecided,
-/// because the box is too wide. It is right if both bobs, and bob 2 as seen from bob 1, are within
-/// the tolerance of the scene ([`Problem::tolerance`]).
+/// A frame compared with the box that is proved to contain the exact motion.
 #[derive(Clone, Copy, Debug)]
 pub struct Verdict {
-    /// The box: the directions of the rods, (sin, cos) each, with their radii.
+    /// (sin, cos) of each rod.
     exact: [[Fixed; 2]; 2],
-    /// The largest radius of the box. It has no unit, as the directions.
     width: f64,
-    /// True if the drawn frame is proved to be within the tolerance, false if it is proved not to
-    /// be, `None` if the box is too wide to decide.
+    /// `None` if the box is too wide to decide.
     is_right: Option<bool>,
 }
 
-/// Returns the time of frame `frame` of the scene, s since the start, which is frame 0. The frame
-/// may be after the scene's end. Not checked: the scene's rate is not 0.
 pub fn time(scene: &Problem, frame: u32) -> f64 {
     f64::from(frame) / f64::from(scene.rate)
 }
 
-/// Returns the frames after the start one by one, at most `scene.frames()` of them. The sequence
-/// ends after a frame that is proved wrong, when the motion can no longer be enclosed, or when
-/// `stopped` is not zero. A drawn motion that diverges counts as proved wrong. After an undecided
-/// frame the sequence continues.
-///
-/// Each frame is computed when it is requested. The drawn motion is that of `scene`, by the method
-/// and steps per frame of `stepping`, where 0 steps count as 1; the exact motion begins at `start`.
-/// An error means that the method does not accept the scene or the step, so that nothing is drawn.
-/// Not checked: `start` must be the start of `scene`.
+/// Returns the frames after the start one by one, computed as they are requested. The sequence ends
+/// after a frame that is proved wrong, when the motion can no longer be enclosed, or when `stopped`
+/// is not zero. An undecided frame does not end it.
 pub fn frames<'a>(
     scene: &Problem,
     start: &Start,
@@ -48,7 +35,6 @@ pub fn frames<'a>(
     let mut motion = PlannedRun::new(scene, stepping)?;
     let scene = *scene;
     let mut set = start.enclose(scene.rate);
-    // The enclosure of a pendulum that stands upright would grow all the same.
     let rests = start.rests();
     let mut last = None;
     Ok((0..scene.frames()).map_while(move |_| {
@@ -60,7 +46,6 @@ pub fn frames<'a>(
             }
         };
         (last != Some(false)).then(advance)??;
-        // The exact motion and the drawn motion advance by one frame each.
         let exact = set.directions();
         let drawn = motion.advance(1);
         let shown = || {
@@ -68,7 +53,6 @@ pub fn frames<'a>(
                 .directions()
                 .map(|direction| direction.map(|x| Fixed::of(x.into())))
         };
-        // A drawn motion that diverges is wrong.
         last = drawn.map_or(Some(false), |()| are_near(&scene, &exact, &shown()));
         let width = exact
             .as_flattened()
@@ -83,13 +67,9 @@ pub fn frames<'a>(
     }))
 }
 
-/// Returns true if the positions by these two sets of directions are within the scene's tolerance
-/// of each other ([`Problem::tolerance`]). This applies to both bobs, and to bob 2 as seen from bob
-/// 1.
-///
-/// Returns `None` if the result depends on the positions of the directions in their boxes.
+/// Returns true if both bobs, and bob 2 as seen from bob 1, are within the scene's tolerance, and
+/// `None` if the boxes are too wide to decide.
 fn are_near(scene: &Problem, one: &[[Fixed; 2]; 2], other: &[[Fixed; 2]; 2]) -> Option<bool> {
-    // One bob that is too far away is enough to be wrong; all must be near to be right.
     let apart = are_apart(scene, one, other, scene.tolerance);
     if apart.contains(&Some(true)) {
         Some(false)
@@ -99,8 +79,7 @@ fn are_near(scene: &Problem, one: &[[Fixed; 2]; 2], other: &[[Fixed; 2]; 2]) -> 
 }
 
 /// Returns for bob 1, bob 2, and bob 2 as seen from bob 1 true if they are more than `distance`, m,
-/// apart in these directions. An element is `None` if it depends on the positions of the directions
-/// in their boxes.
+/// apart.
 fn are_apart(
     scene: &Problem,
     one: &[[Fixed; 2]; 2],
@@ -108,11 +87,9 @@ fn are_apart(
     distance: f64,
 ) -> [Option<bool>; 3] {
     let Parameters { l1, l2, .. } = scene.pendulum;
-    // No two positions are so far apart. The square of a longer distance can be out of the range
-    // of `Fixed`.
+    // The square of a longer distance can be out of the range of `Fixed`.
     let distance = distance.min(FARTHEST * l1.max(l2));
 
-    // All lengths are divided by the length of the longer rod, and rounded.
     let [l1, l2, distance] =
         [l1, l2, distance].map(|x| Fixed::of(x / l1.max(l2)).wider(f64::EPSILON));
     let off = |rod: usize, l: Fixed| [0, 1].map(|axis| (one[rod][axis] - other[rod][axis]) * l);
@@ -122,8 +99,7 @@ fn are_apart(
         .map(|[x, y]| (x * x + y * y - distance * distance).is_positive())
 }
 
-/// Returns the number of frames that are proved right before the first other one, and the number of
-/// undecided frames among all.
+/// Returns the frames that are proved right before the first other one, and the undecided ones.
 pub fn counts(frames: &[Verdict]) -> (u32, usize) {
     let right = frames
         .iter()
@@ -139,13 +115,8 @@ pub fn counts(frames: &[Verdict]) -> (u32, usize) {
 }
 
 impl Verdict {
-    /// Returns the row of the frame at `time`, s, without a newline. Its cells, with commas between
-    /// them, are the time, the middles of the box that contains the exact motion (sin a1, cos a1,
-    /// sin a2, cos a2), the largest radius of the box, and the verdict: "right", "wrong", or "open"
-    /// if the frame is not decided.
-    ///
-    /// The box refers to the printed numbers, read as decimals or as `f64`: its radius includes the
-    /// rounding of the middles and is rounded up to two digits.
+    /// Returns the row of `--csv`. The radius of the box includes the rounding of the printed
+    /// middles.
     pub fn row(&self, time: f64) -> String {
         let middles = self
             .exact
@@ -154,7 +125,6 @@ impl Verdict {
             .map(|x| x.about().to_string())
             .collect::<Vec<_>>()
             .join(",");
-        // The largest radius of the box, including the rounding of the printed middles.
         let radius = self
             .exact
             .as_flattened()
@@ -168,28 +138,20 @@ impl Verdict {
     }
 }
 
-/// Returns the distance from the shortest decimal of the `f64` next to the middle, and from that
-/// `f64`, within which the true number is.
-///
-/// The decimal is at most half a unit of the last place, 2^-53 of itself, from the `f64`.
+/// Returns a bound for the rounding of a printed number: half a unit of its last place, both as a
+/// decimal and as an `f64`.
 fn printed_radius(x: Fixed) -> f64 {
     let about = x.about();
     let rounding = (x.middle() - Fixed::of(about)).size();
     up(x.radius() + rounding + about.abs() * f64::EPSILON)
 }
 
-/// Returns the time after which the panel's numbers do not determine the position of a bob.
-///
-/// This is the time of the first frame with two motions more than the longer rod apart, although
-/// their starts look the same on the panel (the mass ratio to three digits, angles to a degree).
-/// Only the first `frames` frames are searched, until `stopped`. `None` means that no such frame
-/// was found.
+/// Returns the time of the first frame in which two motions, whose starts look the same on the
+/// panel, are more than the longer rod apart.
 fn ambiguity_time(scene: &Problem, frames: u32, stopped: &AtomicUsize) -> Option<f64> {
     let Parameters { m1, m2, l1, l2, .. } = scene.pendulum;
-    // One unit of the third digit of the mass ratio.
     let digit = m1 * 10_f64.powf((m2 / m1).log10().floor() - 2.0);
     let shown = [scene.start.a1, scene.start.a2].map(|a| a.to_degrees().round());
-    // Two starts near opposite ends of the range that rounds to the same digits.
     let [mut one, mut other] = [-0.49, 0.49].map(|share| {
         let [a1, a2] = shown.map(|degrees| (degrees + share).to_radians());
         let pendulum = Parameters {
@@ -218,11 +180,9 @@ fn ambiguity_time(scene: &Problem, frames: u32, stopped: &AtomicUsize) -> Option
         .map(|(frame, _)| time(scene, frame))
 }
 
-/// Returns the reason why the motion is not enclosed further, and the option to change.
 fn not_enclosed(scene: &Problem, frames: &[Verdict]) -> String {
     let Parameters { m1, m2, l1, l2, .. } = scene.pendulum;
     let ratio = |a: f64, b: f64| (a / b).max(b / a);
-    // The likeliest cause first.
     if frames.last().is_some_and(|frame| frame.width > WIDE) {
         String::from("its enclosure has become too wide; a shorter --seconds ends before this time")
     } else if ratio(l1, l2) > LENGTHS {
@@ -234,28 +194,17 @@ fn not_enclosed(scene: &Problem, frames: &[Verdict]) -> String {
     }
 }
 
-/// A distance that no two positions of a bob have, in lengths of the longer rod: twice the diameter
-/// of the largest circle.
+/// A distance that no two positions of a bob have, in lengths of the longer rod.
 const FARTHEST: f64 = 8.0;
 
-/// The width of a box beyond which the width is the reason that the enclosure ends.
 const WIDE: f64 = 1e-12;
 
-/// The ratios of lengths and of masses that keep the numbers of the equations in range
-/// ([`Start::enclose`]).
+/// The ratios that keep the numbers of the equations in range ([`Start::enclose`]).
 const LENGTHS: f64 = 30.0;
 const MASSES: f64 = 1000.0;
 
-/// Returns the results of the proof, one line each, without a newline at the end: the method, the
-/// proved frames, the reason why the sequence ended, the undecided frames, the prediction of
-/// `plan`, and the width of the last box. Times are in s since the start. `frames` are all frames
-/// of [`frames`], and `stopped` is its argument.
-///
-/// A last line, "unknown", has the time after which the numbers on the panel do not determine the
-/// motion: two motions, whose mass ratios look the same to three digits and whose angles look the
-/// same to a degree, are then farther apart than the longer rod. To find it, this computes both
-/// motions, which may take as long as the proof. The line is absent if that does not happen within
-/// `frames`, or if `stopped` is not zero before.
+/// Returns the results of the proof, one line each. The last line, [`ambiguity_time`], computes two
+/// more motions, which may take as long as the proof.
 pub fn words(
     scene: &Problem,
     plan: &Result<Plan, Limit>,
@@ -266,7 +215,6 @@ pub fn words(
     let (right, open) = counts(frames);
     let end = time(scene, frames.len() as u32);
     let is_complete = frames.len() as u32 == scene.frames();
-    // The reason why the sequence of frames has ended.
     let first = match frames.last().map(|frame| frame.is_right) {
         Some(Some(false)) => format!("wrong at {end:.3} s: more than {HALF_PIXEL} pixels off"),
         _ if stopped.load(Ordering::Relaxed) != 0 => {
@@ -282,7 +230,6 @@ pub fn words(
         ),
     };
 
-    // The prediction of the board, for comparison.
     let predicted = match plan {
         Ok(plan) => format!(
             "right until {:.3} s by {}, steps per frame: {}",
@@ -326,8 +273,6 @@ mod tests {
 
     use console::number::Number;
 
-    /// Returns a scene with two rods of 1 m, let go at 2 rad, with a frame of 1 s and a tolerance
-    /// of half a metre.
     fn scene() -> Problem {
         Problem {
             pendulum: Parameters::equal_rods(1.0, 1.0, 9.81),
@@ -338,17 +283,13 @@ mod tests {
         }
     }
 
-    /// Returns the directions of rods at these angles, rad.
     fn rods(angles: [f64; 2]) -> [[Fixed; 2]; 2] {
         angles.map(|a| [a.sin(), a.cos()].map(Fixed::of))
     }
 
-    /// A frame is wrong if bob 1, bob 2, or bob 2 as seen from bob 1 is too far off, even if the
-    /// other two are near. It is undecided if the boxes allow both results.
     #[test]
     fn bob_2_is_judged_as_seen_from_bob_1_as_well() {
-        // Rod 1 has moved by 0.4 m, rod 2 back by 0.6 m. Only as seen from bob 1 is bob 2 too far
-        // away.
+        // Only as seen from bob 1 is bob 2 too far away.
         let [one, other] = [[0.0, 0.0], [0.4, -0.6]].map(rods);
 
         let near = |tolerance| {
@@ -362,16 +303,14 @@ mod tests {
         assert_eq!(near(0.5), Some(false));
         assert_eq!(near(0.61), Some(true));
 
-        // Both rods have moved the same way. Each error is near, but bob 2 has both.
+        // Each error is near, but bob 2 has both.
         let [one, other] = [[0.0, 0.0], [0.4, 0.4]].map(rods);
         assert_eq!(are_near(&scene(), &one, &other), Some(false), "bob 2");
 
-        // Boxes that are half a unit wide allow both results.
         let wide = one.map(|rod| rod.map(|x| x.wider(0.5)));
         assert_eq!(are_near(&scene(), &one, &wide), None);
     }
 
-    /// If half a pixel is more than the whole circle, every frame is right.
     #[test]
     fn no_frame_is_wrong_by_more_than_the_circle() {
         let [one, other] = [[0.0, 0.0], [PI, PI]].map(rods);
@@ -389,8 +328,6 @@ mod tests {
         }
     }
 
-    /// The printed box contains the ends of the ball, both if its middle is read as a decimal and
-    /// as an `f64`.
     #[test]
     fn the_printed_box_contains_the_exact_motion() {
         // Fractions with short and long decimals, of either sign.
@@ -402,7 +339,6 @@ mod tests {
             (1, 1000),
         ] {
             for width in [0.0, 1e-33, 3e-17, 2e-9] {
-                // The exact number is within `width` of the fraction.
                 let x = Fixed::fraction(above, below, 0).wider(width);
                 let text = x.about().to_string();
                 let decimal: Number = text.parse().expect("a decimal");
@@ -418,9 +354,6 @@ mod tests {
         }
     }
 
-    /// After a signal, the proof has no frame, and the search for motions that look the same on the
-    /// panel finds nothing. Without a signal, the latter finds a time, and only within the given
-    /// number of frames.
     #[test]
     fn an_interruption_ends_every_search_at_once() {
         let scene = scene();
@@ -439,8 +372,6 @@ mod tests {
         assert!(first(&running).is_some());
         assert!(first(&stopped).is_none());
 
-        // The motions with the same digits on the panel separate after some seconds, and later
-        // frames are not searched.
         let parted = |frames, stopped| ambiguity_time(&scene, frames, stopped);
         let time = parted(scene.frames(), &running).expect("they part");
         assert_eq!(parted(time as u32, &running), Some(time));

@@ -27,10 +27,8 @@ const EXAMPLES: &str = "Examples:
 
 Ctrl-C ends early and prints the proof so far.";
 
-/// The columns of `--csv`, which [`Verdict::row`](horizon::Verdict::row) fills.
 const CSV_HEADING: &str = "t,sin_a1,cos_a1,sin_a2,cos_a2,radius,verdict";
 
-/// The largest number of steps per frame.
 const MOST_STEPS: u32 = 65_536;
 
 /// Proves how long the frames that a chip draws stay within half a pixel of the exact motion. It
@@ -72,17 +70,9 @@ pub struct ProveOptions {
     known_answers: bool,
 }
 
-/// Prints the proof, with `--csv` only a heading and a row for each frame, or, with `--table` or
-/// `--known-answers`, a table of many scenes. The exit code is a success for any result of the
-/// proof, also if no method is fast enough, so that nothing is proved; with `--csv` the reason then
-/// goes to stderr. If Ctrl-C ended the proof, the frames until then are reported and it is the code
-/// of the signal, 130. Options that cannot be used, also a number with too many digits, or a method
-/// that does not accept the scene, are [`Refused`].
-///
-/// A table takes neither `--scene` nor `--method` nor `--csv`, and ignores the other options.
-/// Ctrl-C ends it at once.
+/// Prints the proof or a table. Any result of the proof is a success. Ctrl-C ends it with the
+/// frames that are proved until then; a table ends at once.
 pub fn run(options: &ProveOptions) -> anyhow::Result<ExitCode> {
-    // Tables of many scenes, without a scene of the user.
     if options.table {
         say(HEADING)?;
         for &name in moving() {
@@ -99,7 +89,6 @@ pub fn run(options: &ProveOptions) -> anyhow::Result<ExitCode> {
         return Ok(ExitCode::SUCCESS);
     }
 
-    // The exact start: the decimals and fractions of the user or of the scene.
     let (scene, plan) = options.scene.plan().map_err(Refused::because)?;
     let given = options.scene.scene.map_or_else(
         || options.scene.start.clone(),
@@ -112,7 +101,6 @@ pub fn run(options: &ProveOptions) -> anyhow::Result<ExitCode> {
         ))
     })?;
 
-    // The drawn method: the user's, or the planned one.
     let asked = options.method.map(|method| Stepping {
         method,
         steps: options.steps,
@@ -123,7 +111,6 @@ pub fn run(options: &ProveOptions) -> anyhow::Result<ExitCode> {
         (None, Ok(plan)) => plan.stepping(),
         (None, Err(limit)) => {
             let reason = no_method(&scene, *limit, &options.scene.target);
-            // The table has no rows.
             if options.csv {
                 say(CSV_HEADING)?;
                 complain(reason);
@@ -134,7 +121,6 @@ pub fn run(options: &ProveOptions) -> anyhow::Result<ExitCode> {
         }
     };
 
-    // Ctrl-C ends the proof, and the frames that are already proved are reported.
     let stopped = interrupted()?;
     let verdicts = frames(&scene, &start, stepping, &stopped)
         .map_err(|error| refused(options, &scene, stepping, &error))?;
@@ -165,7 +151,6 @@ pub fn run(options: &ProveOptions) -> anyhow::Result<ExitCode> {
     Ok(interrupted_by(stopped.load(Ordering::Relaxed)))
 }
 
-/// Returns the refusal of a scene that the method does not accept, with the option to change.
 fn refused(
     options: &ProveOptions,
     scene: &Problem,

@@ -28,23 +28,17 @@ use emulator::qemu::{Clock, Machine, Settings};
 use emulator::toolchain;
 use second_run::SecondRun;
 
-/// A motion to write as rows.
 struct Job<'a> {
     options: &'a SimulateOptions,
     request: Request,
     rows: Rows,
-    /// How accurate the rows are, if the reference has told already.
+    /// The accuracy of the rows, if the search for a method has measured it.
     note: Option<String>,
-    /// The reason why the rows end before the time of the options.
     end: Option<String>,
 }
 
-/// Prints the table of methods or the motion, or writes the motion to the file of the options. The
-/// motion is CSV: a heading, a row of the start, and a row for each `--every`. A line on stderr,
-/// which is the last line of the file, too, says until when the rows hold.
-///
-/// Bad options are [`Refused`] before the first row. A motion that diverges later, a board that
-/// fails, and a tolerance that is kept for a part of the time only, are errors after the rows.
+/// Prints the table of methods, or the motion as CSV. A line on stderr, which is the last line of a
+/// file, too, says until when the rows hold.
 pub fn run(options: &SimulateOptions) -> anyhow::Result<()> {
     if options.list {
         return Ok(say(list())?);
@@ -58,7 +52,6 @@ pub fn run(options: &SimulateOptions) -> anyhow::Result<()> {
     let job = Job::new(options).map_err(|error| Refused::because(format_args!("{error:#}")))?;
     options.start.advice().iter().for_each(complain);
 
-    // Without a file the rows are printed.
     let Some(mut file) = file else {
         let Written { rows, note, done } = job.write(&mut stdout().lock())?;
         if rows > 0 {
@@ -80,13 +73,9 @@ pub fn run(options: &SimulateOptions) -> anyhow::Result<()> {
     done
 }
 
-/// The result of writing rows.
 struct Written {
-    /// The number of rows.
     rows: u32,
-    /// How long they hold.
     note: String,
-    /// How the motion ended.
     done: anyhow::Result<()>,
 }
 
@@ -118,7 +107,6 @@ impl<'a> Job<'a> {
         })
     }
 
-    /// Writes the rows. An error is one of the output.
     fn write(&self, output: &mut impl Write) -> io::Result<Written> {
         let Self {
             options,
@@ -138,8 +126,7 @@ impl<'a> Job<'a> {
                 let [a1, a2, ..] = reading.state;
                 second.compare(time, [a1, a2]);
             }
-            // The heading is written with the first row, so that a motion that fails at once prints
-            // nothing.
+            // A motion that fails at once prints no heading.
             let head = (number == 0).then(|| header(options) + "\n");
             let line = head.unwrap_or_default() + &row(request, options, time, reading);
             writeln!(output, "{line}").map_err(|error| {
@@ -149,14 +136,12 @@ impl<'a> Job<'a> {
             number += 1;
             Ok(())
         };
-        // The motion is computed here, or on a board by the same code.
         let done = match options.place {
             None => request.readings(&mut write),
             Some(board) => on_board(request, board, &mut write),
         };
         drop(bar);
 
-        // An error of the output is not an error of the motion.
         if let Some(error) = unwritten {
             return Err(error);
         }
@@ -174,14 +159,11 @@ impl<'a> Job<'a> {
     }
 }
 
-/// The time limit to start QEMU and to send the rows.
 const OVERHEAD: Duration = Duration::from_secs(120);
-/// The time limit of a step. A step takes at most 200,000 instructions (f64 in steps of order 8,
-/// `cargo count`), and a busy host executes 10 million a second.
+/// A step takes at most 200,000 instructions (f64 in steps of order 8, `cargo count`), and a busy
+/// host executes 10 million a second.
 const PER_STEP: Duration = Duration::from_millis(20);
 
-/// Sends the request to the firmware on `board` and passes each reading to `row`. An error means
-/// that the board cannot be built or started, refuses the request, or loses a row.
 fn on_board(
     request: &Request,
     board: &'static Board,
@@ -230,7 +212,7 @@ fn on_board(
     Ok(())
 }
 
-/// The columns and their units. x points to the right and y upwards from the pivot.
+/// x points to the right and y upwards from the pivot.
 const NAMES: [&str; 12] = [
     "t", "a1", "a2", "p1", "p2", "w1", "w2", "energy", "x1", "y1", "x2", "y2",
 ];
@@ -238,7 +220,6 @@ const UNITS: [&str; 12] = [
     "s", "rad", "rad", "kg m^2/s", "kg m^2/s", "rad/s", "rad/s", "J", "m", "m", "m", "m",
 ];
 
-/// Returns the first line: the columns of the options, with units if they demand it.
 fn header(options: &SimulateOptions) -> String {
     let name = |&column: &usize| match options.units {
         true => format!("{} [{}]", NAMES[column], UNITS[column]),
@@ -257,14 +238,12 @@ fn header(options: &SimulateOptions) -> String {
         .join(",")
 }
 
-/// Returns the line of the reading at `time`, s: the columns of the options.
 fn row(request: &Request, options: &SimulateOptions, time: f64, reading: &Reading) -> String {
     let Reading {
         state: [a1, a2, p1, p2],
         velocities: [w1, w2],
         energy,
     } = *reading;
-    // The positions follow from the angles.
     let pendulum = Pendulum::<f64>::new(&request.parameters);
     let bobs = pendulum.map(|pendulum| pendulum.positions([a1, a2]).map(|bob| [bob.x, bob.y]));
     let [[x1, y1], [x2, y2]] = bobs.unwrap_or([[f64::NAN; 2]; 2]);
@@ -288,8 +267,7 @@ fn row(request: &Request, options: &SimulateOptions, time: f64, reading: &Readin
     numbers.chain(bits).collect::<Vec<_>>().join(",")
 }
 
-/// Returns the fewest digits that are parsed to the same number, in exponent form if that is
-/// shorter.
+/// Returns the fewest digits that are parsed to the same number.
 fn shortest(number: impl Display + LowerExp) -> String {
     let plain = number.to_string();
     let exponent = format!("{number:e}");
@@ -300,7 +278,6 @@ fn shortest(number: impl Display + LowerExp) -> String {
     }
 }
 
-/// Returns a line for each method: name, equations, numbers, integrator, order, and where it runs.
 fn list() -> String {
     const HEAD: &str =
         "method                   equations   numbers         integrator     order  runs on";
@@ -310,7 +287,6 @@ fn list() -> String {
         let equations = method.equations().to_string();
         let numbers = method.numbers().to_string();
         let integrator = method.integrator().to_string();
-        // Only some methods are available on the boards or usable for drawing.
         let boards = if ON_BOARDS.contains(method) {
             ", boards"
         } else {

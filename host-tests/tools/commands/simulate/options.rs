@@ -16,19 +16,15 @@ use console::cli::{choice, choice_with_aliases, option_of};
 use console::number::{Number, Pair};
 use emulator::boards::{BOARDS, Board};
 
-/// The place where the motion is computed: the firmware on an emulated board, or, with `None`, this
-/// program.
+/// The emulated board that computes the motion, or `None` for this program.
 pub type Place = Option<&'static Board>;
 
-/// The name of this program as a place.
 const HOST: &str = "host";
 
-/// Returns the name of a place on the command line: that of the board, or `host`.
 pub(super) fn name(place: Place) -> &'static str {
     names(place)[0]
 }
 
-/// Returns the name of a place, and its aliases.
 fn names(place: Place) -> Vec<&'static str> {
     place.map_or_else(|| vec![HOST], Board::names)
 }
@@ -129,7 +125,6 @@ pub struct SimulateOptions {
 }
 
 impl SimulateOptions {
-    /// Returns the start of the scene, or the given one.
     fn start(&self) -> StartOptions {
         self.scene.map_or_else(
             || self.start.clone(),
@@ -137,7 +132,6 @@ impl SimulateOptions {
         )
     }
 
-    /// Returns the pendulum and its start.
     pub fn motion(&self) -> (Parameters<f64>, Motion<f64>) {
         let start = self.start();
         (start.parameters(), start.motion())
@@ -153,10 +147,7 @@ impl SimulateOptions {
     }
 }
 
-/// A pendulum and its start. Without these options the bobs have 1 kg, the rods are 1 m long, the
-/// gravity is 9.81 m/s^2, and both rods are at rest at 120 degrees. Given angles are in rad and
-/// velocities in rad/s, or, with `--degrees`, in degrees and degrees per second. All numbers are
-/// finite, but otherwise not checked here.
+/// A pendulum and its start.
 #[derive(Args, Clone, Debug)]
 pub struct StartOptions {
     /// Masses of the bobs, kg
@@ -195,13 +186,11 @@ pub struct StartOptions {
     degrees: bool,
 }
 
-/// Returns a number that is not typed.
 fn number(value: f64) -> Number {
     value.to_string().parse().expect("a decimal")
 }
 
 impl StartOptions {
-    /// Returns the options that describe the settings of a scene, as a user would type them.
     pub fn of(settings: &Settings) -> Self {
         let Parameters { m1, m2, l1, l2, g } = settings.parameters;
         let pair = |[one, other]: [f64; 2]| Pair(number(one), number(other));
@@ -215,8 +204,6 @@ impl StartOptions {
         }
     }
 
-    /// Returns the pendulum in kg, m and m/s^2, each number rounded to `f64`. The numbers are
-    /// finite, but otherwise not checked.
     pub fn parameters(&self) -> Parameters<f64> {
         let [[m1, m2], [l1, l2]] = [&self.masses, &self.lengths].map(Pair::values);
         Parameters {
@@ -228,14 +215,10 @@ impl StartOptions {
         }
     }
 
-    /// Returns the start in rad and rad/s, converted in `f64` from the units of the options.
-    /// Without `--angles` both angles are 120 degrees, also without `--degrees`. The numbers are
-    /// finite, but otherwise not checked.
     pub fn motion(&self) -> Motion<f64> {
         let in_radians = |angle: f64| {
             if self.degrees { radians(angle) } else { angle }
         };
-        // Without `--angles`, both rods have the usual start angle, which is in degrees.
         let first = [radians(FIRST_ANGLE); 2];
         let [a1, a2] = self
             .angles
@@ -245,15 +228,13 @@ impl StartOptions {
         Motion { a1, a2, w1, w2 }
     }
 
-    /// Returns a line of advice, without a newline, if an angle looks like degrees: more than a
-    /// turn to either side, without --degrees. Otherwise, and without `--angles`, returns `None`.
-    /// Velocities do not matter. Nothing is printed.
+    /// Returns a line of advice if an angle is more than a turn to either side and may be meant in
+    /// degrees.
     pub fn advice(&self) -> Option<String> {
         let angles = self.angles.as_ref().filter(|_| !self.degrees)?;
         let largest = [&angles.0, &angles.1]
             .into_iter()
             .max_by(|one, other| one.value().abs().total_cmp(&other.value().abs()))?;
-        // A start may need more than one turn, but rarely does.
         let turns = largest.value().abs() / TAU;
         (turns > 1.0).then(|| {
             format!(
@@ -263,16 +244,11 @@ impl StartOptions {
         })
     }
 
-    /// Returns the reason why the kernel refuses the pendulum or its start, as one line with the
-    /// option, which is `otherwise` for a parameter that no option sets.
     pub fn refusal(&self, error: &Error, otherwise: &'static str) -> String {
         format!("{}: {error}", option_of(error, otherwise))
     }
 
-    /// Returns the first option whose number has too many digits for [`Self::exact`], with its
-    /// value, as in "--masses 1,2". The order is masses, lengths, angles, velocities. Gravity is
-    /// not checked: it is the result if all others are short enough and it is given. Otherwise the
-    /// result is empty.
+    /// Returns the first option whose number has too many digits for [`Self::exact`].
     pub fn too_long(&self) -> String {
         let pairs = [
             ("--masses", Some(&self.masses)),
@@ -289,21 +265,15 @@ impl StartOptions {
         found.or(gravity).unwrap_or_default()
     }
 
-    /// Returns the pendulum and its start with all given digits, as the
-    /// [`Start`](reference::enclosure::Start) of an enclosure, or `None` if a number has too many.
-    /// Up to 18 digits, when it is written without an exponent, are never too many for a decimal,
-    /// or for each number of a fraction of whole numbers. The result also says if angles and
-    /// velocities are in degrees, as the default angles always are, and has the exact defaults of
-    /// options that are not given. The numbers are not checked.
+    /// Returns the pendulum and its start with all given digits, or `None` if a number has too
+    /// many. Default angles are in degrees.
     pub fn exact(&self) -> Option<Exact> {
         let [gravity, first] =
-            // The values of options that were not given.
             [GRAVITY.to_string(), FIRST_ANGLE.to_string()].map(|text| text.parse::<Number>().ok());
         let first = first?;
         let angles = self.angles.clone().unwrap_or(Pair(first.clone(), first));
         let degrees = [self.degrees || self.angles.is_none(), self.degrees];
         let [m, l, a, w] = [&self.masses, &self.lengths, &angles, &self.velocities];
-        // The order of [`Exact::fractions`].
         let numbers = [
             &a.0,
             &a.1,

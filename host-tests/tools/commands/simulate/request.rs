@@ -9,12 +9,9 @@ use super::options::name;
 use super::tolerance::methods;
 use console::number::Number;
 
-/// The longest step, s, that is chosen by default.
 const USUAL_STEP: f64 = 1.0 / 1024.0;
-/// The largest number of steps for which the default step is shortened, so that a fast motion takes
-/// seconds and not hours.
+/// The limit for a default step, so that a fast motion takes seconds and not hours.
 const MOST_CHOSEN: f64 = (1 << 22) as f64;
-/// The number of rows after the first if the time between them is not given.
 const ROWS: u32 = 100;
 /// A quotient of two times is rounded by less than this share.
 const ROUNDING: f64 = 1e-9;
@@ -24,12 +21,10 @@ const ROUNDING: f64 = 1e-9;
 pub struct Rows {
     unit: Number,
     parts: u32,
-    /// The number of rows after the first.
     pub samples: u32,
 }
 
 impl Rows {
-    /// Returns the times of the rows of the options.
     pub fn of(options: &SimulateOptions) -> anyhow::Result<Self> {
         let SimulateOptions {
             seconds,
@@ -76,13 +71,10 @@ impl Rows {
         })
     }
 
-    /// Returns the time of a row, s. Row 0 is the start.
     pub fn time(&self, row: u32) -> f64 {
         self.unit.times(row, self.parts)
     }
 
-    /// Returns the request for these rows, in steps of at most `longest`, s, which all have the
-    /// same length.
     fn request(
         &self,
         options: &SimulateOptions,
@@ -99,7 +91,6 @@ impl Rows {
         Ok(self.in_parts(options, method, parts as u32))
     }
 
-    /// Returns the request for these rows with `parts` steps from one to the next.
     pub fn in_parts(&self, options: &SimulateOptions, method: Method, parts: u32) -> Request {
         let (parameters, Motion { a1, a2, w1, w2 }) = options.motion();
         Request {
@@ -114,11 +105,9 @@ impl Rows {
     }
 }
 
-/// Returns the request of the options without a tolerance, and the times of its rows.
-///
-/// The step divides the time between rows. It is at most that of the options, or else at most
-/// [`USUAL_STEP`] and short enough for the fastest motion of this energy, if that takes no more
-/// than [`MOST_CHOSEN`] steps. An error is one line that names the option and the value.
+/// Returns the request of the options, and the times of its rows. The step divides the time between
+/// rows. Its default is at most [`USUAL_STEP`] and short enough for the fastest motion of this
+/// energy, if that takes no more than [`MOST_CHOSEN`] steps.
 pub fn plan(options: &SimulateOptions) -> anyhow::Result<(Request, Rows)> {
     let rows = Rows::of(options)?;
     let method = method(options)?;
@@ -165,7 +154,6 @@ pub fn plan(options: &SimulateOptions) -> anyhow::Result<(Request, Rows)> {
     Ok((request, rows))
 }
 
-/// Returns the kernel's error if it refuses the start or the step. No step is computed.
 pub fn check(request: &Request) -> Result<(), Error> {
     Request {
         samples: 0,
@@ -174,7 +162,6 @@ pub fn check(request: &Request) -> Result<(), Error> {
     .readings(|_| Ok(()))
 }
 
-/// Returns the reason why the kernel refuses the motion or the step, with the option.
 pub fn refusal(options: &SimulateOptions, error: &Error) -> String {
     match error {
         Error::Diverged { parameter, value } => format!(
@@ -184,8 +171,6 @@ pub fn refusal(options: &SimulateOptions, error: &Error) -> String {
     }
 }
 
-/// Returns the method of the options, or the first of the table (`rk4-f64`) without one. It is an
-/// error if the place of the options cannot compute it.
 pub fn method(options: &SimulateOptions) -> anyhow::Result<Method> {
     let method = options.method.unwrap_or(Method::ALL[0]);
     ensure!(

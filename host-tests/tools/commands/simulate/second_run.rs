@@ -9,7 +9,6 @@ use firmware::job::Request;
 
 use crate::commands::table::at_most;
 
-/// The errors of an angle, rad, whose times are reported.
 const LEVELS: [(f64, &str); 3] = [(1e-6, "1e-6"), (0.01, "0.01"), (1.0, "1")];
 /// The step, in admissible steps of RK4. The error of order 16 is then that of `f64`.
 const SHARE: f64 = 2.0;
@@ -18,22 +17,16 @@ const FEW: u32 = 16;
 /// The changes of m2 and g, relative to them. Each is rounded by at most a quarter of this.
 const ROUNDINGS: [f64; 2] = [2.0 * f64::EPSILON, -2.0 * f64::EPSILON];
 
-/// The comparison of rows with a second run.
 pub struct SecondRun {
-    /// The run, or `None` once it cannot go on.
     run: Option<Run<ExtrapolationF64<16>, true>>,
-    /// The number of its steps from one row to the next.
     stride: u32,
     /// The largest difference of an angle so far, rad.
     worst: f64,
-    /// For each level the last time until which all rows were within it.
     until: [Option<f64>; LEVELS.len()],
-    /// The time of the last row.
     end: f64,
 }
 
 impl SecondRun {
-    /// Begins the second run of a request whose rows are `every` s apart.
     pub fn new(request: &Request, every: f64) -> Self {
         let longest = Request {
             method: Method::Rk4F64,
@@ -58,9 +51,7 @@ impl SecondRun {
         }
     }
 
-    /// Compares the row at `time`, s; `angles` are in rad. The first row is the start.
     pub fn compare(&mut self, time: f64, angles: [f64; 2]) {
-        // The second run is not needed any more once the rows are wrong.
         if self.worst > LEVELS[2].0 {
             self.end = time;
             return;
@@ -89,7 +80,6 @@ impl SecondRun {
         self.end = time;
     }
 
-    /// Returns how long the rows hold, in one line.
     pub fn words(&self) -> String {
         if self.worst <= LEVELS[0].0 {
             let worst = at_most(self.worst);
@@ -120,7 +110,6 @@ impl SecondRun {
     }
 }
 
-/// Begins the motion of a request in steps of `dt`, s, with changed parameters.
 fn begun(request: &Request, dt: f64) -> Result<Run<ExtrapolationF64<16>, true>, Error> {
     let ([a1, a2], [w1, w2]) = (request.angles, request.velocities);
     let [heavier, stronger] = ROUNDINGS;

@@ -13,17 +13,14 @@ use double_pendulum::{Error, Parameter};
 
 use super::number::Number;
 
-/// The exit code of a request that cannot be served: wrong options, missing tools.
 pub const REFUSED: u8 = 2;
 
 /// A request that cannot be served, with the reason: one line, or one for each missing tool. The
-/// exit code is 2, also if the error has a context; any other error has the exit code 1.
+/// exit code is 2, that of any other error 1.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Refused(String);
 
 impl Refused {
-    /// Returns a refusal with the reason that [`main`] prints after `error: `, with any newlines in
-    /// it. It should be one line without a newline, which is not checked.
     pub fn because(reason: impl Display) -> Self {
         Self(reason.to_string())
     }
@@ -37,17 +34,9 @@ impl Display for Refused {
     }
 }
 
-/// Runs a command with the options of the command line. If it fails, prints `error: ` with the
-/// error and its causes to stderr: one line, or several if the error has several, such as a
-/// compiler's output. Returns the exit code: 2 for wrong options and [`Refused`], 1 for any other
-/// error, else that of the result of `run`. With `--help` it prints the help to stdout, returns
-/// success, and does not call `run`.
-///
-/// The first argument is left out if it is the name of the command without `cargo `, because cargo
-/// passes it.
-///
-/// The reader of the output may stop at any time (`| head`). If `run` returns the error of [`say`]
-/// about it, an [`io::Error`] of kind `BrokenPipe`, the command ends quietly and with success.
+/// Runs a command with the options of the command line. The first argument is left out if it is the
+/// name of the command without `cargo `, because cargo passes it. The reader of the output may stop
+/// at any time (`| head`): the command then ends quietly and with success.
 pub fn main<Options: Parser, Done: Termination>(
     run: impl FnOnce(&Options) -> anyhow::Result<Done>,
 ) -> ExitCode {
@@ -56,8 +45,7 @@ pub fn main<Options: Parser, Done: Termination>(
         Err(code) => return code,
     };
 
-    // The reader has closed our output. (A broken pipe to a child process is wrapped in another
-    // error.)
+    // A broken pipe to a child process is wrapped in another error.
     let is_closed = |error: &io::Error| error.kind() == ErrorKind::BrokenPipe;
     match run(&options) {
         Ok(done) => done.report(),
@@ -73,26 +61,20 @@ pub fn main<Options: Parser, Done: Termination>(
     }
 }
 
-/// Returns the exit code of a command that checks for faults: 0 if `well`, else 1.
 pub fn verdict(well: bool) -> ExitCode {
     ExitCode::from(u8::from(!well))
 }
 
-/// Prints a line of the command's result to stdout, with a newline. Any failure to print is an
-/// error, to be returned to [`main`], which ends the command quietly if the reader has closed the
-/// output.
+/// Prints a line of the command's result.
 pub fn say(line: impl Display) -> io::Result<()> {
     writeln!(stdout(), "{line}")
 }
 
-/// Prints a line to standard error, with a newline: an error, a warning, progress. A failure to
-/// print is ignored.
+/// Prints an error, a warning or progress.
 pub fn complain(line: impl Display) {
     let _ = writeln!(stderr(), "{line}");
 }
 
-/// Returns the refusal of a file that cannot be written: `OPTION: cannot write PATH: ERROR`. The
-/// option has its dashes, such as `--out`.
 pub fn unwritable(option: &str, path: &Path, error: &io::Error) -> Refused {
     Refused::because(format_args!(
         "{option}: cannot write {}: {error}",
@@ -100,9 +82,7 @@ pub fn unwritable(option: &str, path: &Path, error: &io::Error) -> Refused {
     ))
 }
 
-/// Returns a parser that accepts the names of these choices, which the help lists. Case matters.
-/// Another text is a wrong option, and the error lists the names. The names must differ, which is
-/// not checked; of equal ones the first is taken.
+/// Returns a parser that accepts the names of these choices, which the help lists.
 pub fn choice<Choice>(
     choices: impl IntoIterator<Item = Choice>,
     name: impl Fn(Choice) -> &'static str,
@@ -113,8 +93,8 @@ where
     choice_with_aliases(choices, move |choice| vec![name(choice)])
 }
 
-/// Returns a parser like that of [`choice`]. The first name of a choice is listed; the others are
-/// aliases that are not.
+/// Returns a parser like [`choice`]. The first name of a choice is listed; the others are aliases
+/// that are not.
 pub fn choice_with_aliases<Choice>(
     choices: impl IntoIterator<Item = Choice>,
     names: impl Fn(Choice) -> Vec<&'static str>,
@@ -141,8 +121,6 @@ where
     })
 }
 
-/// Parses the command line. If it is wrong or requests help, prints a message and returns the exit
-/// code.
 fn parse<Options: Parser>() -> Result<Options, ExitCode> {
     // A negative number is also accepted as the value of an option. The option itself then reports
     // why the number is invalid.
@@ -157,7 +135,6 @@ fn parse<Options: Parser>() -> Result<Options, ExitCode> {
         }
     });
 
-    // When cargo runs the program, the first argument is the command's name, which is skipped.
     let words = env::args_os()
         .enumerate()
         .filter(|(place, word)| *place != 1 || word.to_str() != Some(own));
@@ -175,7 +152,6 @@ fn parse<Options: Parser>() -> Result<Options, ExitCode> {
                 return ExitCode::from(REFUSED);
             }
 
-            // Help was requested. A closed output is not a failure.
             let _ = error.print();
             ExitCode::SUCCESS
         })
@@ -200,9 +176,8 @@ fn two_words(words: &[OsString]) -> Option<String> {
     })
 }
 
-/// Returns the first paragraph of clap's report as one line, with its tip. The usage is omitted;
-/// `--help` prints it.
-// Only the first paragraph explains the error; the others repeat the usage.
+/// Returns the first paragraph of clap's report. The others repeat the usage, which `--help`
+/// prints.
 fn one_line(report: &str) -> String {
     let first = report.lines().take_while(|line| !line.is_empty());
     let line = first.map(str::trim).collect::<Vec<_>>().join(" ");
@@ -211,7 +186,6 @@ fn one_line(report: &str) -> String {
         .find_map(|line| line.trim().strip_prefix("tip: a similar "))
         .map_or(String::new(), |tip| format!("; a similar {tip}"));
 
-    // Use plainer words than clap and, about invalid numbers, the standard library.
     let line = line
         .replace(
             "one or more of the other specified arguments",
@@ -226,9 +200,7 @@ fn one_line(report: &str) -> String {
     line + &tip
 }
 
-/// Returns the option that sets the refused parameter of the pendulum or its display: `--masses`,
-/// `--lengths`, `--gravity`, `--angles`, `--velocities` (momenta, too), `--height` (the tolerance),
-/// `--seconds` (the duration) or `--rate`. Returns `otherwise` for another parameter and for a diverged motion.
+/// Returns the option that sets the refused parameter, or `otherwise`.
 pub fn option_of(error: &Error, otherwise: &'static str) -> &'static str {
     match error.parameter() {
         _ if matches!(error, Error::Diverged { .. }) => otherwise,

@@ -3,36 +3,31 @@
 use std::fmt;
 use std::str::FromStr;
 
-/// A number with its text: a decimal such as `-2.5`, `.5` or `1e-3`, or two of them with a `/`
-/// between them and no spaces. It is finite, and it is printed as it was written.
+/// A number with its text, which is printed as it was written.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Number {
     text: String,
     value: f64,
-    /// The exact value, if its numbers fit in 64 bits.
     fraction: Option<Fraction>,
 }
 
 /// A numerator over a denominator greater than zero.
 pub type Fraction = (i64, u64);
 
-/// The remedy for a number without an [exact](Number::exact) value.
 pub const FEWER_DIGITS: &str = "write at most 18 digits, counting the zeros that an exponent adds";
 
-/// The reasons why a text is not a [`Number`].
 const NOT_A_NUMBER: &str = "not a number (write a decimal or a fraction such as 1/256)";
 const NOT_FINITE: &str = "must be a finite number";
 const ZERO_DENOMINATOR: &str = "the denominator is zero";
 
 impl Number {
-    /// Returns the number as the nearest `f64`. Only a fraction with numbers of more than 53 bits
-    /// may be a few units of the last place off.
+    /// Returns the nearest `f64`. Only a fraction with numbers of more than 53 bits may be a few
+    /// units of the last place off.
     pub fn value(&self) -> f64 {
         self.value
     }
 
-    /// Returns the exact value, or `None` if a number of it does not fit in 64 bits. A decimal of
-    /// at most 18 digits always fits, including the zeros that an exponent adds.
+    /// Returns the exact value, or `None` if a number of it does not fit in 64 bits.
     pub fn exact(&self) -> Option<Fraction> {
         self.fraction
     }
@@ -85,8 +80,6 @@ impl FromStr for Number {
     }
 }
 
-/// Parses `[+-]digits[.digits][e[+-]digits]`. Returns the nearest `f64`, and the exact value if it
-/// fits.
 fn decimal(text: &str) -> Result<(f64, Option<Fraction>), &'static str> {
     let value: f64 = text.parse().map_err(|_| NOT_A_NUMBER)?;
     if !value.is_finite() {
@@ -94,7 +87,6 @@ fn decimal(text: &str) -> Result<(f64, Option<Fraction>), &'static str> {
     }
     let (mantissa, exponent) = text.split_once(['e', 'E']).unwrap_or((text, "0"));
     let (whole, places) = mantissa.split_once('.').unwrap_or((mantissa, ""));
-    // The digits without the point are a whole number, times a power of ten.
     let exact = || {
         let digits: i64 = format!("{whole}{places}").parse().ok()?;
         let exponent = exponent
@@ -111,20 +103,17 @@ fn decimal(text: &str) -> Result<(f64, Option<Fraction>), &'static str> {
     Ok((value, exact()))
 }
 
-/// Returns the quotient of two fractions, or `None` if it does not fit or the divisor is zero.
 fn quotient((a, b): Fraction, (c, d): Fraction) -> Option<Fraction> {
     let above = a.checked_mul(d.try_into().ok()?)?.checked_mul(c.signum())?;
     let below = b.checked_mul(c.unsigned_abs())?;
     (below > 0).then_some((above, below))
 }
 
-/// Two numbers separated by a comma: one for each bob or rod, number 1 first. Spaces around a
-/// number are accepted, and not printed. Any other text is refused, with the reason in words.
+/// Two numbers separated by a comma: one for each bob or rod.
 #[derive(Clone, Debug)]
 pub struct Pair(pub Number, pub Number);
 
 impl Pair {
-    /// Returns the [`Number::value`] of both, in their order.
     pub fn values(&self) -> [f64; 2] {
         [self.0.value(), self.1.value()]
     }
@@ -156,8 +145,6 @@ impl FromStr for Pair {
 mod tests {
     use super::*;
 
-    /// A decimal or a fraction is read as the `f64` nearest to its exact value. Other texts,
-    /// numbers that are not finite and a denominator of zero are refused with their reason.
     #[test]
     fn decimals_and_fractions_round_once_and_other_text_is_refused() {
         for (text, value) in [
@@ -184,7 +171,6 @@ mod tests {
         }
     }
 
-    /// A multiple of a short number is rounded once.
     #[test]
     fn multiples_are_rounded_once() -> Result<(), &'static str> {
         for (one, count, parts, product) in [

@@ -10,18 +10,14 @@ use indicatif::{MultiProgress, ProgressBar, ProgressStyle};
 
 use super::cli::complain;
 
-/// The seconds before the first line, and between two lines.
 const FIRST: u64 = 5;
 const REMINDER: u64 = 15;
-/// The time between two pictures of the spinner.
 const TURN: Duration = Duration::from_millis(120);
-/// The number of characters of a child's last line that the spinner shows.
 const SHOWN: usize = 60;
 
-/// All pieces of work that are shown. Concurrent ones each have a line of their own.
 static BARS: OnceLock<MultiProgress> = OnceLock::new();
 
-/// Prints a line to standard error as [`complain`] does, above the progress that a terminal shows.
+/// Prints a line above the progress that a terminal shows.
 pub fn complain_above(line: impl Display) {
     match BARS.get() {
         Some(bars) => bars.suspend(|| complain(line)),
@@ -29,19 +25,16 @@ pub fn complain_above(line: impl Display) {
     }
 }
 
-/// Work in progress. It appears on standard error; several at once have a line each. A failure to
-/// print is ignored. Dropping it removes the bar or spinner; a plain line stays.
+/// Work in progress: a spinner, a bar, or lines.
 #[derive(Debug)]
 pub struct Progress {
     bar: ProgressBar,
-    /// The number of lines that were already due.
     reminders: AtomicU64,
 }
 
 impl Progress {
-    /// Begins work of unknown length and announces it at once; `doing` names it. If standard error
-    /// is a terminal, it is a spinner that turns by itself. Elsewhere it is a line, which calls of
-    /// [`Self::alive`] or [`Self::advance`] repeat with the time after 5 s, and then every 15 s.
+    /// Begins work of unknown length: a spinner on a terminal, elsewhere a line, repeated from time
+    /// to time.
     pub fn start(doing: &str) -> Self {
         let progress = Self::new(
             doing,
@@ -56,10 +49,8 @@ impl Progress {
         progress
     }
 
-    /// Begins work with a known number of pieces, named `doing`. If standard error is a terminal,
-    /// it is a bar. Elsewhere nothing is printed at first; calls of [`Self::advance`] or
-    /// [`Self::alive`] print a line with the completed pieces and the time after 5 s, and then every
-    /// 15 s.
+    /// Begins work with a known number of pieces: a bar on a terminal, elsewhere a line from time
+    /// to time.
     pub fn of(doing: &str, length: u64) -> Self {
         let style = "{prefix} {elapsed} {wide_bar} {pos}/{len}, {per_sec}, {eta} left";
         Self::new(doing, ProgressBar::new(length), style)
@@ -75,16 +66,12 @@ impl Progress {
         }
     }
 
-    /// Adds this number to the completed pieces. The sum is not checked against the length and is
-    /// shown as it is. Several threads may call this.
     pub fn advance(&self, pieces: u64) {
         self.bar.inc(pieces);
         self.remind();
     }
 
-    /// Shows that the work continues. It is called often, with the last line of a child process, or
-    /// with `None` if there is no new line; the last one then stays. A spinner shows the first 60
-    /// characters of the line; a bar and a plain line do not show it.
+    /// Shows that the work continues, with the last line of a child process, if there is a new one.
     pub fn alive(&self, line: Option<&str>) {
         if let Some(line) = line {
             self.bar
@@ -93,7 +80,6 @@ impl Progress {
         self.remind();
     }
 
-    /// Prints a line if there is no terminal and one is due.
     fn remind(&self) {
         let bar = &self.bar;
         let seconds = bar.elapsed().as_secs();

@@ -23,21 +23,15 @@ const PATIENCE: u32 = TICK_RATE;
 /// catches up.
 const MOST_TICKS: u32 = 2000;
 
-/// The comparison of a board with the host. The board's frames and reports of its scene go in, and
-/// frames come out in the same order once they are compared.
-///
-/// The compared numbers are the scene, the mass ratio, the start angle, and the report without
-/// method and step count, bit by bit.
+/// The comparison of a board with the host, bit by bit, of all but method and step count.
 #[derive(Debug, Default)]
 pub struct Comparison {
-    /// The board's scene from its start, and the same scene on the host.
     playing: Option<(Status, Show)>,
     waiting: VecDeque<Frame>,
-    /// The number of waiting frames that arrived before the board reported its scene. The board may
-    /// have started another scene in between.
+    /// The waiting frames that arrived before the board reported its scene. They may be of another
+    /// one.
     unsure: usize,
-    /// The difference in the first waiting frame, unless the board reports that it has started
-    /// another scene.
+    /// The difference in the first waiting frame, unless the board has started another scene.
     doubt: Option<String>,
     unknown: u32,
     last: Option<Frame>,
@@ -48,11 +42,8 @@ pub struct Comparison {
 }
 
 impl Comparison {
-    /// Takes a frame that has just arrived. Returns true if the host must ask for the board's
-    /// scene.
-    ///
-    /// A frame of another scene, or with a smaller step number than the one before, is a new start.
-    /// The scene is not known then until the next report.
+    /// Takes a frame. Returns true if the host must ask for the board's scene. A frame of another
+    /// scene, or with a smaller step number, is a new start.
     pub fn frame(&mut self, frame: &Frame) -> bool {
         let starts =
             |last: &Frame| frame.scene != last.scene || frame.report.step < last.report.step;
@@ -74,8 +65,7 @@ impl Comparison {
         self.unknown % PATIENCE == 1
     }
 
-    /// Takes the board's report of its scene. A difference in doubt is real if the report is of the
-    /// same scene; otherwise the host starts the reported one.
+    /// A difference in doubt is real if the report is of the same scene.
     pub fn status(&mut self, status: &Status) {
         // Only the start of the scene is compared. Its pause and speed do not matter.
         let start = Status {
@@ -93,8 +83,6 @@ impl Comparison {
                 self.first.get_or_insert(doubt);
             }
             (None, Some(_)) => {}
-            // The board plays another scene than assumed. Earlier waiting frames may belong to
-            // either.
             _ => {
                 self.playing = played(&start).ok().map(|show| (start, show));
                 self.unsure = self.waiting.len();
@@ -102,8 +90,7 @@ impl Comparison {
         }
     }
 
-    /// Advances the host's scene to the oldest waiting frame, compares the frame and returns it;
-    /// `None` if no frame can be compared yet.
+    /// Advances the host's scene to the oldest waiting frame and compares the two.
     pub fn follow(&mut self) -> Option<Frame> {
         let (_, show) = self.playing.as_mut().filter(|_| self.doubt.is_none())?;
         let frame = self
@@ -119,7 +106,6 @@ impl Comparison {
             return None;
         }
 
-        // Frames of a scene that has ended in the meantime are skipped, not faults.
         self.waiting.pop_front();
         self.unsure = self.unsure.saturating_sub(1);
         *(if difference.is_none() {
@@ -204,7 +190,6 @@ fn is_reached(show: &mut Show, frame: &Frame) -> bool {
 }
 
 fn difference(board: &Frame, here: &Frame) -> Option<String> {
-    // Floating-point numbers are compared by their bits.
     let numbers = |frame: &Frame| {
         let report = &frame.report;
         let [a1, a2, p1, p2] =

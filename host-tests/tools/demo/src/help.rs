@@ -9,7 +9,6 @@ use ratatui::widgets::{Block, Paragraph, Wrap};
 use super::options::{KEYS, scene_key};
 use super::readings::Help;
 
-/// The numbers in the terminal and on the panel, with their meanings.
 const NUMBERS: [(&str, &str); 9] = [
     (
         "½px or ½ pixel, >19.8 s",
@@ -36,8 +35,6 @@ const NUMBERS: [(&str, &str); 9] = [
     ),
 ];
 
-/// Draws a page of the help over the whole terminal. With [`Help::Hidden`] it draws nothing. Lines
-/// are wrapped, and those beyond the last row are cut off.
 pub fn draw(frame: &mut Frame, page: Help) {
     let (title, text) = match page {
         Help::Hidden => return,
@@ -51,7 +48,6 @@ pub fn draw(frame: &mut Frame, page: Help) {
     );
 }
 
-/// Returns the keys with their effects, and the keys of the scenes.
 fn keys() -> Text<'static> {
     let mut text = entries(&KEYS);
     let scenes = SceneName::ALL
@@ -65,7 +61,6 @@ fn keys() -> Text<'static> {
     text
 }
 
-/// Returns a line for each entry: its name, in bold, and its meaning.
 fn entries(entries: &[(&'static str, &'static str)]) -> Text<'static> {
     entries
         .iter()

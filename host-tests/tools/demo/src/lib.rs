@@ -43,34 +43,19 @@ use emulator::pico::PicoMachine;
 use emulator::qemu::{Clock, Machine, Settings};
 use emulator::toolchain;
 
-/// The duration of a run without a terminal, if the user gives none.
 const DEFAULT_SECONDS: f64 = 10.0;
 const NO_TERMINAL: &str = "no terminal: running headless; --record FILE.gif or --screenshot \
                            FILE.png saves what the panel shows";
-/// The time limit of an emulated board: a constant part, and a part for each second of the board's
-/// time.
+/// The time limit of an emulated board: a constant part, and a part for each second of its time.
 const LIMIT: [f64; 2] = [60.0, 20.0];
 
-/// Shows the board in the terminal until the user quits, or runs it without one. In both cases it
-/// then prints a summary to stdout. It runs without a terminal by `--headless`, or if stdin or
-/// stdout is not a terminal. `--seconds` limits both; without a terminal the default is 10 s.
-///
-/// Missing tools of an emulated board are installed, from the network, and its application is
-/// built. System packages, which only the Pico needs, are installed only if the user agrees on the
-/// terminal. The files of the options are replaced at the end.
-///
-/// Returns true if no compared bit differs from the host's and if, on an emulated board that is run
-/// frame by frame, nothing else went wrong. Without a terminal, a frame must have been compared.
-/// Each problem is a line on stderr. Options that cannot be served, also by the board, are
-/// [`Refused`]. It is another error if a build fails, if the emulator ends, if no frame has arrived
-/// at the end, or if a file cannot be written. Without a terminal, it is also an error if a board
-/// at a port does not begin the requested scene within 10 s, or sends no frame for 10 s after that.
-/// After an error there is no summary.
+/// Shows the board in the terminal, or runs it without one, and prints a summary. Returns true if
+/// no compared bit differs from the host's and if, on an emulated board that is run frame by frame,
+/// nothing else went wrong. Without a terminal, a frame must have been compared.
 pub fn run(options: &DemoOptions) -> anyhow::Result<bool> {
     let is_dumb = env::var_os("TERM").is_some_and(|name| name == "dumb");
     let is_terminal = stdout().is_terminal() && stdin().is_terminal() && !is_dumb;
     let is_live = !options.headless && is_terminal;
-    // All options are checked before anything is built.
     options.check()?;
     let [record, screenshot] = [
         ("--record", &options.record),
@@ -105,20 +90,14 @@ pub fn run(options: &DemoOptions) -> anyhow::Result<bool> {
     finish(options, session, screenshot, is_live)
 }
 
-/// Opens a serial port by its path, or the only one over USB for `auto`, which waits up to 3 s for
-/// it. The refusal, which names `--port`, means that the port is missing, in use, not accessible
-/// or, with `auto`, one of several. Not checked: that a board is at its other end.
 pub fn port(name: &str) -> Result<Port, Refused> {
     Port::open(name).map_err(|reason| Refused::because(format_args!("--port {reason}")))
 }
 
-/// Builds the application and starts an emulated board. `seconds` of its time must be possible
-/// within the time limit.
 fn emulated(board: &Board, seconds: f64, is_live: bool) -> anyhow::Result<Source> {
     let (toolchain, elf) = toolchain::set_up_and_build(board)?;
     let limit = Duration::from_secs_f64(LIMIT[0] + LIMIT[1] * seconds.min(MOST_SECONDS));
 
-    // The Pico runs in its own emulator, all other boards in QEMU.
     if board.binary == PICO.binary {
         let emulator = toolchain::set_up_pico()?;
         return Ok(Source::Pico(Box::new(PicoMachine::start(
@@ -143,20 +122,14 @@ fn emulated(board: &Board, seconds: f64, is_live: bool) -> anyhow::Result<Source
     }
 }
 
-/// The time between two reads of a port.
 const LOOK: Duration = Duration::from_millis(4);
-/// The time after which a port without a frame of the requested scene is given up.
 const PATIENCE: Duration = Duration::from_secs(10);
 
-/// The time to wait for an answer to the last question of the comparison, in seconds of the board's
-/// time.
+/// The time to wait for an answer to the last question of the comparison, by the board's clock, s.
 const ANSWER: f64 = 3.0;
 
-/// Runs without a terminal: an emulated board frame by frame, bit-identical in every run, or the
-/// board at a port.
 fn headless(session: &mut Session, seconds: f64) -> anyhow::Result<()> {
     let name = session.name().to_owned();
-    // The comparison may need an answer of the board after the last frame.
     let progress = Progress::start(&format!("running {name} for {seconds} s of its time"));
     let mut reached = 0.0;
     let mut since = Instant::now();
@@ -172,7 +145,6 @@ fn headless(session: &mut Session, seconds: f64) -> anyhow::Result<()> {
             session.look()?;
         }
 
-        // A real board keeps its own time. The run fails if its time does not advance.
         if session.source.is_port() {
             session
                 .readings
@@ -196,13 +168,12 @@ fn headless(session: &mut Session, seconds: f64) -> anyhow::Result<()> {
     session.look()
 }
 
-/// The fault of a run without a comparison.
 const NOT_COMPARED: &str = "no frame was compared: the host computes the scene from its start, and \
                             has not reached the board's frames; choose a --scene, which starts it \
                             again, or a longer --seconds";
 
-/// Completes the files and prints the summary. Returns true if all was well. A board with a real
-/// clock may drop frames, and a cable may corrupt bits. Both are printed, and neither is a fault.
+/// Completes the files and prints the summary. A board with a real clock may drop frames, and a
+/// cable may corrupt bits: neither is a fault.
 fn finish(
     options: &DemoOptions,
     mut session: Session,
@@ -216,7 +187,6 @@ fn finish(
         session.name()
     );
 
-    // All messages are collected before they are judged.
     let saved = save_files(options, &mut session, screenshot)?;
     session
         .readings
@@ -229,7 +199,6 @@ fn finish(
         },
     ) = (session.name(), &session);
 
-    // Only an emulated board that is run frame by frame has no excuse for a lost frame.
     let is_repeatable = matches!(source, Source::Lockstep(_) | Source::Pico(_));
     let mut faults = if is_repeatable {
         readings.faults()
@@ -256,7 +225,6 @@ fn finish(
     Ok(faults.is_empty())
 }
 
-/// Completes the animation and the screenshot. Returns the lines of the summary that name them.
 fn save_files(
     options: &DemoOptions,
     session: &mut Session,

@@ -26,12 +26,7 @@ use emulator::process;
 /// frame is no faster than a real one.
 const LOOK: Duration = Duration::from_nanos(1_000_000_000 / TICK_RATE as u64);
 
-/// Shows the board in the terminal until [`Session::seconds`] reaches `seconds`, which may be
-/// infinite, or until the user quits by q or Ctrl-C; both are `Ok`. If `seconds` is 0, negative or
-/// NaN, it returns at once. A board at a port that is silent is waited for.
-///
-/// An error means that the terminal or the session fails, as in [`Session::hear`]. The terminal is
-/// restored in each case. A signal restores it, too, and ends the process.
+/// Shows the board until the time is over or the user quits. The terminal is restored in each case.
 pub fn watch(session: &mut Session, seconds: f64) -> anyhow::Result<()> {
     // Ctrl-C must leave a usable terminal.
     process::on_interrupt(|| {
@@ -48,7 +43,6 @@ pub fn watch(session: &mut Session, seconds: f64) -> anyhow::Result<()> {
 /// The size of a terminal that does not know its own, such as a serial console.
 const USUAL_SIZE: Rect = Rect::new(0, 0, 80, 24);
 
-/// Begins the view.
 fn init() -> io::Result<DefaultTerminal> {
     if !matches!(size(), Ok((0, _) | (_, 0))) {
         return ratatui::try_init();
@@ -66,7 +60,7 @@ fn suspend() -> io::Result<()> {
     process::suspend()
 }
 
-/// Takes the terminal from the shell again, which may have changed its mode.
+/// The shell may have changed the terminal's mode.
 fn resume(terminal: &mut DefaultTerminal) -> io::Result<()> {
     disable_raw_mode()?;
     enable_raw_mode()?;
@@ -77,7 +71,6 @@ fn resume(terminal: &mut DefaultTerminal) -> io::Result<()> {
     Ok(())
 }
 
-/// Draws and reads keys in a loop, until the time is over or the user quits.
 fn show(session: &mut Session, seconds: f64, mut terminal: DefaultTerminal) -> anyhow::Result<()> {
     let colours = !Colored::ansi_color_disabled();
     let continued = process::continued()?;
@@ -88,7 +81,6 @@ fn show(session: &mut Session, seconds: f64, mut terminal: DefaultTerminal) -> a
             resume(&mut terminal)?;
         }
 
-        // The messages of one tick.
         let heard = Instant::now();
         session.hear()?;
 
@@ -127,27 +119,17 @@ fn show(session: &mut Session, seconds: f64, mut terminal: DefaultTerminal) -> a
     Ok(())
 }
 
-/// The effect of a key.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Action {
-    /// The key has no effect.
     Nothing,
-    /// Ends the demo.
     Quit,
-    /// Stops the demo until the shell continues it.
     Suspend,
-    /// Shows this page of the help, or none.
     Help(Help),
-    /// Sends this command to the board.
     Send(Command),
-    /// Selects the next smaller speed.
     Slower,
-    /// Selects the next larger speed.
     Faster,
 }
 
-/// Returns the effect of a key while this page of the help is shown. If a page is shown, any key
-/// except `?` only closes it.
 fn action(key: KeyEvent, help: Help) -> Action {
     let KeyEvent {
         code,
@@ -158,7 +140,6 @@ fn action(key: KeyEvent, help: Help) -> Action {
     if kind == KeyEventKind::Release {
         return Action::Nothing;
     }
-    // These keys have their effect on every page.
     match code {
         KeyCode::Char('c') if modifiers.contains(KeyModifiers::CONTROL) => return Action::Quit,
         KeyCode::Char('z') if modifiers.contains(KeyModifiers::CONTROL) => return Action::Suspend,
@@ -199,8 +180,6 @@ mod tests {
         KeyEvent::new(code, KeyModifiers::NONE)
     }
 
-    /// Any key but `?` and Ctrl-C closes a page of the help and does nothing else. Without a page,
-    /// q quits and Esc does nothing. Ctrl-C quits always.
     #[test]
     fn any_key_closes_the_help_and_escape_never_quits() {
         for code in [KeyCode::Esc, KeyCode::Char('q'), KeyCode::Up] {
@@ -209,7 +188,6 @@ mod tests {
             }
         }
 
-        // Without a help page the same keys have their usual effects.
         let hidden = |code| action(pressed(code), Help::Hidden);
         assert_eq!(hidden(KeyCode::Esc), Action::Nothing);
         assert_eq!(hidden(KeyCode::Char('q')), Action::Quit);
@@ -218,7 +196,6 @@ mod tests {
         assert_eq!(action(interrupt, Help::Keys), Action::Quit);
     }
 
-    /// The key `?` shows the first page, then the second, then none.
     #[test]
     fn the_help_is_turned_over_page_by_page() {
         let mut pages = vec![Help::Hidden];
@@ -230,8 +207,6 @@ mod tests {
         assert_eq!(pages, [Help::Hidden, Help::Keys, Help::Numbers]);
     }
 
-    /// The keys 1 to 9 and a to d choose the scenes in the order of the catalogue. The keys next to
-    /// these do nothing.
     #[test]
     fn every_scene_has_a_key_of_its_own() {
         let chosen = |key| action(pressed(KeyCode::Char(key)), Help::Hidden);

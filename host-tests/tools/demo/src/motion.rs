@@ -45,7 +45,6 @@ const GRAVITY: &str = "--gravity";
 const ANGLES: &str = "--angles";
 const VELOCITIES: &str = "--velocities";
 
-/// Returns the options that affect a scene.
 fn used_by(scene: SceneName) -> &'static [&'static str] {
     match scene {
         SceneName::Frequencies => &[MASSES],
@@ -65,7 +64,6 @@ fn used_by(scene: SceneName) -> &'static [&'static str] {
 }
 
 impl OwnMotion {
-    /// Returns the options that are given, with their values.
     fn given(&self) -> Vec<(&'static str, String)> {
         fn text(value: &Option<impl Display>) -> Option<String> {
             value.as_ref().map(ToString::to_string)
@@ -83,17 +81,8 @@ impl OwnMotion {
             .collect()
     }
 
-    /// Returns the settings to play `scene` with, or `None` if no option is given. `--degrees`
-    /// alone counts as none.
-    ///
-    /// The given values replace those of the scene's own first settings. The user
-    /// gives angles in rad and velocities in rad/s or, with `--degrees`, in degrees and degrees/s.
-    /// In the settings, angles are always in degrees and velocities in rad/s. All other numbers are
-    /// in SI units in both.
-    ///
-    /// Returns an error if the scene does not use an option, if a given angle is more than half a
-    /// turn, or if the scene cannot show the motion on `processor`: a number that is too large for
-    /// `f32`, a mass or length that is not positive, negative gravity, zero gravity or unequal rods
+    /// Returns the settings to play `scene` with, or `None` if no option is given. Settings have
+    /// angles in degrees and velocities in rad/s, whatever the units of the options.
     /// in some scenes, or a motion that is too fast for every method.
     pub fn settings(
         &self,
@@ -114,7 +103,6 @@ impl OwnMotion {
             return Ok(None);
         }
 
-        // The values are checked by the rules of the board, and by starting its scene.
         let settings = self.applied_to(scene.first_settings());
         self.check_angles(&settings)?;
 
@@ -133,7 +121,6 @@ impl OwnMotion {
         Ok(Some(settings))
     }
 
-    /// Returns the settings, with the given values replaced.
     fn applied_to(&self, mut settings: Settings) -> Settings {
         let parameters = &mut settings.parameters;
         if let Some(masses) = &self.masses {
@@ -168,9 +155,7 @@ impl OwnMotion {
         settings
     }
 
-    /// Refuses angles beyond half a turn, if the user has given them.
     fn check_angles(&self, settings: &Settings) -> Result<(), Refused> {
-        // Only an angle that the user has given can be too large.
         let is_beyond = settings
             .degrees
             .iter()
@@ -188,10 +173,10 @@ impl OwnMotion {
     }
 }
 
-/// Returns the reason why a scene cannot start, with the responsible option. It is the option of
-/// the refused parameter if that is given, or else all given options.
+/// Returns the reason why a scene cannot start.
 fn refusal(given: &[(&'static str, String)], scene: SceneName, error: &Error) -> Refused {
-    // The refused parameter names the option, if the user has given that option.
+    // The refused parameter names the option, if the user has given that option, or else all
+    // options.
     let option = option_of(error, "");
     let is_to_blame = |(name, _): &&(&str, String)| *name == option;
     let blamed = match given.iter().find(is_to_blame) {
@@ -210,7 +195,6 @@ fn refusal(given: &[(&'static str, String)], scene: SceneName, error: &Error) ->
     }
 }
 
-/// Returns the options with their values, as they were given.
 fn all(given: &[(&'static str, String)]) -> String {
     let words = given
         .iter()
@@ -218,7 +202,6 @@ fn all(given: &[(&'static str, String)]) -> String {
     words.collect::<Vec<_>>().join(" ")
 }
 
-/// Returns the refusal of a motion whose steps are too long on this processor.
 fn too_fast(blamed: &str) -> Refused {
     Refused::because(format_args!(
         "{blamed}: too fast a motion for this chip; take masses more alike, longer rods, less \

@@ -14,7 +14,6 @@ use ratatui::widgets::{Axis, Block, Chart, Dataset, GraphType, Paragraph, Sparkl
 
 use super::readings::{Readings, energy_error};
 
-/// The smallest width of the numbers that [`draw`] can show, in columns.
 pub const NARROWEST: u16 = 15;
 /// Beyond it a value would be too distant from its name.
 const WIDEST: u16 = 24;
@@ -22,8 +21,6 @@ pub const ROWS: u16 = 13;
 /// The smallest scale of the bars. Smaller errors are mainly the rounding of the energy.
 const LEAST_SCALE: f32 = 1e-14;
 
-/// Draws the latest numbers, and the bars below them. A number that is not known yet, or does not
-/// exist in the scene, is a dash.
 pub fn draw(frame: &mut Frame, area: Rect, readings: &Readings) {
     let area = Rect {
         width: area.width.min(WIDEST),
@@ -94,7 +91,6 @@ fn horizon(horizon: Horizon) -> String {
 }
 
 fn lines((name, value): (&'static str, String), width: usize) -> Vec<Line<'static>> {
-    // The name is on the left and the value on the right, with at least one space between them.
     let left = width.saturating_sub(name.chars().count());
     if value.chars().count() < left {
         return vec![Line::from(vec![
@@ -108,8 +104,7 @@ fn lines((name, value): (&'static str, String), width: usize) -> Vec<Line<'stati
     ]
 }
 
-/// Draws the size of the energy error, the largest of each half second, as bars. The full height is
-/// a power of ten, which is printed.
+/// Draws the size of the energy error, the largest of each half second, as bars.
 fn energy_errors(frame: &mut Frame, area: Rect, past: &[Report]) {
     const HEIGHT: f32 = 1000.0;
     const STEPS: u64 = TICK_RATE as u64 / 2;
@@ -155,24 +150,18 @@ fn energy_errors(frame: &mut Frame, area: Rect, past: &[Report]) {
 }
 
 const SPAN: f64 = 5.0;
-/// The possible limits of the chart, degrees. The chart uses the smallest limit that contains every
-/// shown angle.
 const REACHES: [f64; 5] = [10.0, 30.0, 60.0, 90.0, HALF_TURN];
 const HALF_TURN: f64 = 180.0;
-/// The colours and marks of angle 1 and angle 2. A thin and a thick line can also be distinguished
-/// without colours.
+/// A thin and a thick line can also be distinguished without colours.
 const COLOURS: [Color; 2] = [Color::Cyan, Color::Yellow];
 const MARKERS: [Marker; 2] = [Marker::Braille, Marker::Dot];
 
-/// Returns an angle, degrees, in (-180, 180] as it is displayed. An angle that rounds to straight
-/// up at a tenth of a degree is 180, never -180.
+/// An angle that rounds to straight up at a tenth of a degree is 180, never -180.
 fn within_half_a_turn(degrees: f64) -> f64 {
     const ROUNDING: f64 = 0.05;
     degrees - 2.0 * HALF_TURN * ((degrees - HALF_TURN - ROUNDING) / (2.0 * HALF_TURN)).ceil()
 }
 
-/// Draws the chart of both angles over the last seconds. Angles with turns are drawn within half a
-/// turn.
 pub fn draw_angles(frame: &mut Frame, area: Rect, past: &[Report]) {
     let end = past.last().map_or(0.0, |last| last.time).max(SPAN);
     let past = &past[past.partition_point(|report| report.time < end - SPAN)..];
@@ -223,8 +212,7 @@ fn strands(past: &[Report], rod: usize) -> Vec<Vec<(f64, f64)>> {
     let point = |Report { time, state, .. }: &Report| {
         let angle = within_half_a_turn(f64::from([state.a1, state.a2][rod]).to_degrees());
 
-        // An angle slightly above straight up is drawn on the chart's edge instead of being left
-        // out.
+        // An angle slightly above straight up is drawn on the chart's edge.
         (*time, angle.clamp(-HALF_TURN, HALF_TURN))
     };
     let points: Vec<_> = past.iter().map(point).collect();
@@ -252,8 +240,6 @@ mod tests {
         let past: Vec<_> = (0..=20).map(report).collect();
         let cut = strands(&past, 0);
 
-        // The pieces are from 0 to 180 degrees, then from just beyond straight up all around, and
-        // so on.
         assert_eq!(cut.iter().map(Vec::len).collect::<Vec<_>>(), [6, 10, 5]);
         assert!(
             cut.iter()

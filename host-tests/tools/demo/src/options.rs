@@ -1,13 +1,7 @@
 //! The command line of `cargo demo`.
 //!
-//! The texts of [`DemoOptions`] are the help of the command. `--port` excludes `--board`. Without
-//! both, the board is the first of [`BOARDS`], emulated. Without `--scene`, `--method`, `--panel`
-//! or `--speed`, whose field is then `None`, the board keeps its present one.
-//!
-//! `--seconds` must be greater than 0 and at most [`MOST_SECONDS`]. The file of `--record` is a
-//! GIF, and that of `--screenshot` a PNG; their names must end so. Without a terminal at stdin and
-//! stdout the command runs as with `--headless`. A board at a port keeps its own time then, too, so
-//! that its results are not the same every time.
+//! The texts of [`DemoOptions`] are the help of the command. A field that is `None` leaves the
+//! board's present choice.
 
 use std::path::PathBuf;
 
@@ -88,7 +82,6 @@ pub struct DemoOptions {
     pub scale: Option<u8>,
 }
 
-/// Returns the keys, the content of each scene, and examples.
 fn after_help() -> String {
     let keys = KEYS
         .iter()
@@ -109,9 +102,8 @@ fn after_help() -> String {
     )
 }
 
-/// The keys of the live view with their effects, as texts for the user. Keys in one entry are
-/// separated by ", "; their effects are in the same order. Left is clockwise. While a page of the
-/// help is shown, every other key than `?` and Ctrl-C only closes it.
+/// The keys of the live view. Keys in one entry are separated by ", "; their effects are in the
+/// same order.
 pub const KEYS: [(&str, &str); 10] = [
     ("up, down", "mass ratio m2/m1: next larger, next smaller"),
     ("left, right", "start angle of both rods by 1 degree"),
@@ -125,8 +117,6 @@ pub const KEYS: [(&str, &str); 10] = [
     ("q, ctrl-C", "quit"),
 ];
 
-/// Returns the key of the scene at `place` in the catalogue, counted from 0: 1 to 9, then a, b, c
-/// and so on. Beyond z, place 34, it is a space.
 pub fn scene_key(place: usize) -> char {
     u32::try_from(place + 1)
         .ok()
@@ -134,14 +124,11 @@ pub fn scene_key(place: usize) -> char {
         .unwrap_or(' ')
 }
 
-/// Returns the scene with this key ([`scene_key`]), or `None` if no scene has it. Capital letters
-/// and the space are no such keys.
 pub fn scene_of_key(key: char) -> Option<SceneName> {
     let place = (0..SceneName::ALL.len()).find(|place| scene_key(*place) == key)?;
     SceneName::ALL.get(place).copied()
 }
 
-/// Returns the description of a scene for the user, in one line without a newline.
 pub fn shows(scene: SceneName) -> &'static str {
     match scene {
         SceneName::Page => "the animation of math24.net: from 120 degrees, soon chaotic",
@@ -162,15 +149,12 @@ pub fn shows(scene: SceneName) -> &'static str {
     }
 }
 
-/// A method, or `None` to leave it to the board's plan.
 pub type MethodChoice = Option<Method>;
 
-/// A panel, as the user names it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PanelChoice {
-    /// An OLED with this controller, or `None` to let the board identify it.
+    /// `None` lets the board identify it.
     Oled(Option<Controller>),
-    /// A colour panel, which the program is built for.
     Colour(PanelName),
 }
 
@@ -184,7 +168,6 @@ impl PanelChoice {
     }
 }
 
-/// Returns every panel that a user can name.
 fn panels() -> impl Iterator<Item = PanelChoice> {
     let controllers = [None]
         .into_iter()
@@ -199,13 +182,9 @@ fn panels() -> impl Iterator<Item = PanelChoice> {
 }
 
 impl DemoOptions {
-    /// Refuses requests that are known to fail before anything is built: a speed out of range, a
-    /// method or a motion that the scene cannot show ([`DemoOptions::start`]). An emulated board
-    /// without `--scene` shows the page. For a board at a port without `--scene` the last two are
-    /// not checked, because its scene is not known yet.
+    /// Refuses requests that are known to fail before anything is built. For a board at a port
+    /// without `--scene` the scene is not known yet.
     pub fn check(&self) -> Result<(), Refused> {
-        // An emulated board starts with the first scene. The scene of a board at a port is not
-        // known yet.
         self.speed()?;
         if let Some(PanelChoice::Colour(panel)) = self.panel
             && (self.port.is_some() || *self.board != PICO)
@@ -224,15 +203,12 @@ impl DemoOptions {
         }
     }
 
-    /// Returns the requested speed, simulated time per real time. `None` means that no speed is
-    /// requested. A speed outside 0.01 to 4, both included, is refused. The board rounds it to
-    /// hundredths.
+    /// Returns the requested speed. The board stores it in hundredths.
     pub fn speed(&self) -> Result<Option<f64>, Refused> {
         let Some(speed) = &self.speed else {
             return Ok(None);
         };
 
-        // The board stores the speed in hundredths.
         let least = 0.01;
         let most = f64::from(GREATEST_SPEED);
         if (least..=most).contains(&speed.value()) {
@@ -244,13 +220,9 @@ impl DemoOptions {
         }
     }
 
-    /// Returns the settings to start `scene` with, or `None` if the scene's own settings apply
-    /// ([`OwnMotion::settings`]). `scene` need not be that of `--scene`.
-    ///
-    /// Returns an error if the scene cannot show the motion or use the requested method, which is
-    /// checked with the scene's own settings, too. For a board at a port the fastest processor
-    /// class is assumed, so the board may still refuse them. In the settings, angles are in
-    /// degrees, velocities in rad/s, and all other numbers in SI units.
+    /// Returns the settings to start `scene` with, or `None` for its own ([`OwnMotion::settings`]).
+    /// For a board at a port the fastest processor class is assumed, so the board may still refuse
+    /// them.
     pub fn start(&self, scene: SceneName) -> Result<Option<Settings>, Refused> {
         let own = self.motion.settings(scene, self.processor())?;
         let settings = own.unwrap_or_else(|| scene.first_settings());
@@ -264,7 +236,6 @@ impl DemoOptions {
         Ok(own)
     }
 
-    /// Returns the board with its panel.
     pub fn board(&self) -> Board {
         match self.panel {
             Some(PanelChoice::Colour(panel)) => pico_with(panel),
@@ -272,7 +243,6 @@ impl DemoOptions {
         }
     }
 
-    /// Returns the width and height of a pixel of the panel in files.
     pub fn scale(&self) -> usize {
         let default = if self.board().panel.format().is_large() {
             2
@@ -282,8 +252,7 @@ impl DemoOptions {
         self.scale.map_or(default, usize::from)
     }
 
-    /// Returns the class of the board's processor. A board at a port reports its class only later
-    /// and may refuse then, so the fastest class is assumed.
+    /// A board at a port reports its class only later, so the fastest class is assumed.
     fn processor(&self) -> Processor {
         if self.port.is_some() {
             STM32F405
@@ -293,10 +262,7 @@ impl DemoOptions {
     }
 }
 
-/// Starts the scene as a trial, without a board. Returns an error, the reason in words, if a scene
-/// with these settings does not use this method on this processor: it always uses another one, has
-/// no choice, is too slow with it, needs shorter steps, or cannot be started with these settings at
-/// all.
+/// Starts the scene as a trial, and refuses a method that it does not use with these settings.
 pub fn usable(
     method: Method,
     scene: SceneName,
@@ -308,13 +274,11 @@ pub fn usable(
         method: Some(method),
         format: Format::OLED,
     };
-    // The scene is started with the method as a trial.
     let mut started = AnyScene::empty();
     let stepping = started
         .start(scene, settings, &resources)
         .map(|_| started.report(0).stepping);
 
-    // A scene either uses this method, always uses another one, or refuses it with an error.
     let scene = scene.name();
     match stepping {
         Ok(Some(stepping)) if stepping.method == method => Ok(()),
@@ -330,7 +294,6 @@ pub fn usable(
     }
 }
 
-/// Returns the path of a file if its name ends in this format.
 fn ends_in(kind: &str, file: &str) -> Result<PathBuf, String> {
     let path = PathBuf::from(file);
     let is_it = path
@@ -345,11 +308,9 @@ fn ends_in(kind: &str, file: &str) -> Result<PathBuf, String> {
     }
 }
 
-/// The longest run that `--seconds` accepts, in seconds of the board's clock: a day. Without
-/// `--seconds` the live view has no limit.
+/// A day, in seconds of the board's clock.
 pub const MOST_SECONDS: f64 = 86_400.0;
 
-/// Accepts a number of seconds greater than 0, at most [`MOST_SECONDS`].
 fn seconds(text: &str) -> Result<f64, String> {
     let wrong = || format!("write a number of seconds greater than 0, at most {MOST_SECONDS}");
     text.parse()

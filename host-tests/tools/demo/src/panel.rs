@@ -25,17 +25,14 @@ use emulator::qemu::{HEIGHT, Screenshot, WIDTH};
 /// The smallest grey that is shown as a dot. Only the end of a fading trail is darker.
 const SET: u8 = 3;
 
-/// Draws the screenshot over the area. A colour panel has two pixels in each character, above each
-/// other, in colours averaged over the pixels of the panel that they cover. An OLED has its pixels
-/// in squares of half characters if there are as many columns. Otherwise, and without `colours`, the
-/// panel is drawn in Braille, without the three darkest greys, 0 to 2. The picture fills the area;
-/// its shape is right if a character is twice as high as it is wide.
+/// Draws the screenshot over the area: a colour panel in half characters, an OLED in greys if there
+/// is a column for each pixel, or else in Braille. The shape is right if a character is twice as
+/// high as it is wide.
 pub fn draw(frame: &mut Frame, area: Rect, screenshot: &Screenshot, colours: bool) {
     if let Some(pixels) = screenshot.colours.as_ref().filter(|_| colours) {
         return draw_colours(frame, area, screenshot.format, pixels);
     }
     let width = usize::from(screenshot.format.width);
-    // A terminal that is wide enough shows every pixel in its grey.
     let in_greys = colours && usize::from(area.width) >= width;
     let canvas = Canvas::default().marker(if in_greys {
         Marker::HalfBlock
@@ -43,7 +40,6 @@ pub fn draw(frame: &mut Frame, area: Rect, screenshot: &Screenshot, colours: boo
         Marker::Braille
     });
 
-    // The points of a pixel are the squares of half characters that it covers, at least one.
     let scale = (usize::from(area.width) / width).max(1);
     let height = usize::from(screenshot.format.height) * scale;
     let canvas = canvas
@@ -74,7 +70,6 @@ pub fn draw(frame: &mut Frame, area: Rect, screenshot: &Screenshot, colours: boo
     frame.render_widget(canvas, area);
 }
 
-/// Draws a colour panel in half characters.
 fn draw_colours(frame: &mut Frame, area: Rect, format: Format, pixels: &[u16]) {
     let [width, height] = [format.width, format.height].map(usize::from);
     let [columns, halves] = [usize::from(area.width), 2 * usize::from(area.height)];
@@ -105,8 +100,8 @@ fn draw_colours(frame: &mut Frame, area: Rect, format: Format, pixels: &[u16]) {
     }
 }
 
-/// Returns a colour that the terminal shows: by the variable `COLORTERM` every colour, or else the
-/// nearest of the cube of 216 common ones.
+/// Returns a colour that the terminal shows: any colour with `COLORTERM`, or else the nearest of
+/// the cube of 216 common ones.
 fn nearest([red, green, blue]: [u8; 3]) -> Color {
     let has_all = std::env::var("COLORTERM").is_ok_and(|it| it == "truecolor" || it == "24bit");
     if has_all {
@@ -116,7 +111,6 @@ fn nearest([red, green, blue]: [u8; 3]) -> Color {
     Color::Indexed((16 + 36 * step(red) + 6 * step(green) + step(blue)) as u8)
 }
 
-/// The brightest grey of a screenshot; 0 is black.
 const BRIGHTEST_GREY: u8 = 15;
 /// The red, green and blue of the brightest grey and of black, because the panel's glass is not
 /// quite dark.
@@ -129,13 +123,11 @@ const TERMINAL: [u8; 16] = [
     16, 233, 234, 235, 237, 239, 94, 94, 130, 136, 136, 172, 178, 214, 214, 221,
 ];
 
-/// Returns the colour of a grey in a terminal.
 fn in_terminal(grey: u8) -> Color {
     Color::Indexed(TERMINAL[usize::from(grey.min(BRIGHTEST_GREY))])
 }
 
-/// Returns the colours of all 16 greys from black on, as 48 bytes: red, green and blue of each, 0
-/// to 255, in the format of image files. They are ambers, from nearly black to the brightest.
+/// The colours of all greys, from black on, in the format of image files.
 pub fn palette() -> Vec<u8> {
     let most = u32::from(BRIGHTEST_GREY);
     let mix = |grey: u32| {
@@ -150,38 +142,28 @@ pub fn palette() -> Vec<u8> {
         .collect()
 }
 
-/// The number of board ticks between two screenshots: 60/2 = 30 frames per second.
 const TICKS_PER_FRAME: i64 = TICK_RATE as i64 / 30;
 /// The colour of an unchanged pixel in a picture after the first. Few pixels change, so this makes
-/// long runs. It is the palette's first colour after the greys.
+/// long runs.
 const UNCHANGED: u8 = 16;
-/// The unit of time in GIF: hundredths of a second.
 const GIF_RATE: i64 = 100;
 
-/// An animation (GIF) that is being written, at most 30 pictures per second of the board, repeated
-/// for ever. The file has its name only after [`Recording::finish`].
+/// An animation (GIF) that is being written. The file has its name only after
+/// [`Recording::finish`].
 pub struct Recording {
     path: PathBuf,
     encoder: Encoder<BufWriter<OutFile>>,
-    /// The width and height of a pixel of the panel, in pixels of the file.
     scale: usize,
-    /// The number of its pictures.
     pictures: usize,
     format: Format,
-    /// The greys of the latest picture, in pixels of the file; empty before the first.
     shown: Vec<u8>,
-    /// The colours of the latest picture of a colour panel; empty before the first.
     shown_colours: Vec<u16>,
-    /// The first tick of the next picture, until which the last one is shown; `None` before the
-    /// first.
     due: Option<i64>,
 }
 
 impl Recording {
-    /// Begins an animation without a picture.
     pub fn begin(file: OutFile, format: Format, scale: usize) -> anyhow::Result<Self> {
         let path = file.path().to_owned();
-        // The palette has one entry more, for unchanged pixels.
         let [width, height] = size(format, scale);
         let palette = if format.is_large() {
             Vec::new()
@@ -202,19 +184,11 @@ impl Recording {
         })
     }
 
-    /// Returns true if a picture is to be added at this tick of the board's clock, 1/60 s: from two
-    /// ticks after the last added one on, and always before the first picture.
     pub fn is_due(&self, tick: i64) -> bool {
         self.due.is_none_or(|due| tick >= due)
     }
 
-    /// Adds the panel's picture, if it is due at `tick` ([`Recording::is_due`]), and does nothing
-    /// otherwise, also for an earlier tick. Ticks are of 1/60 s.
-    ///
-    /// The picture is shown until two ticks after `tick`. If it is late, it is shown from the tick
-    /// at which one was due, so that the animation keeps the board's time, for at most 655 s.
-    ///
-    /// An error means that the file cannot be written. The recording is then of no further use.
+    /// Adds the panel's picture, if it is due.
     pub fn add(&mut self, screenshot: &Screenshot, tick: i64) -> anyhow::Result<()> {
         if !self.is_due(tick) {
             return Ok(());
@@ -232,7 +206,6 @@ impl Recording {
         }
         let [width, height] = size(self.format, self.scale);
 
-        // Only the pixels that have changed are written.
         let now = magnified(screenshot, self.scale);
         let change = |(index, grey): (usize, &u8)| {
             if self.shown.get(index) == Some(grey) {
@@ -261,7 +234,6 @@ impl Recording {
         self.write(&picture)
     }
 
-    /// Adds a picture of a colour panel: the rectangle that has changed, in colours of its own.
     fn add_colours(&mut self, colours: &[u16], delay: u16) -> anyhow::Result<()> {
         let width = usize::from(self.format.width);
         let is_changed = |place: usize| self.shown_colours.get(place) != Some(&colours[place]);
@@ -274,7 +246,6 @@ impl Recording {
         let top = changed.first().map_or(0, |place| place / width);
         let bottom = changed.last().map_or(0, |place| place / width) + 1;
 
-        // The first colour of the picture is for unchanged pixels. A picture has few others.
         let mut palette = vec![0; 3];
         let mut known = HashMap::new();
         let scale = self.scale;
@@ -318,10 +289,7 @@ impl Recording {
             .map_err(|error| unwritten(&self.path, &cause(error)))
     }
 
-    /// Writes the rest of the file. Returns its path and the number of its pictures, which may be
-    /// 0. The last picture is shown until two ticks after its own.
     pub fn finish(self) -> anyhow::Result<(PathBuf, usize)> {
-        // The encoder writes the end of the animation, then the buffer its rest.
         let finished = self
             .encoder
             .into_inner()
@@ -333,7 +301,7 @@ impl Recording {
     }
 }
 
-/// Returns the error of the file within an error of the encoder.
+/// An encoder's error may hide the error of the file.
 fn cause(error: EncodingError) -> io::Error {
     match error {
         EncodingError::Io(error) => error,
@@ -341,27 +309,22 @@ fn cause(error: EncodingError) -> io::Error {
     }
 }
 
-/// Returns the error of an animation that cannot be written to the end.
 fn unwritten(path: &Path, error: &io::Error) -> anyhow::Error {
     anyhow!(unwritable("--record", path, error).to_string())
 }
 
-/// Returns the width and height of a picture in pixels of the file.
 fn size(Format { width, height, .. }: Format, scale: usize) -> [u16; 2] {
     [width, height].map(|pixels| pixels * scale as u16)
 }
 
-/// Returns the greys of the picture in pixels of the file, row by row.
 fn magnified(screenshot: &Screenshot, scale: usize) -> Vec<u8> {
     let width = WIDTH * scale;
     let at = |index: usize| screenshot.greys[index / width / scale * WIDTH + index % width / scale];
     (0..width * HEIGHT * scale).map(at).collect()
 }
 
-/// Reads an animation for tests. Returns the greys of each picture, one for each pixel of the
-/// panel, row by row, and its duration in hundredths of a second. Greys are from 0, black, to 15.
-/// It must be an animation of `cargo demo`, which is not checked; another one gives numbers without
-/// a meaning. An error means that the file cannot be read or is no GIF.
+/// Reads an animation for tests. Returns the greys of each picture and its duration in hundredths
+/// of a second.
 pub fn played(path: &Path) -> anyhow::Result<Vec<(Vec<u8>, u16)>> {
     let mut options = DecodeOptions::new();
     options.set_color_output(ColorOutput::Indexed);
@@ -370,14 +333,12 @@ pub fn played(path: &Path) -> anyhow::Result<Vec<(Vec<u8>, u16)>> {
     let mut greys = vec![0; WIDTH * HEIGHT];
     let scale = usize::from(decoder.width()) / WIDTH;
     while let Some(frame) = decoder.read_next_frame()? {
-        // Each pixel is a square of dots; one of them is read.
         let dots = frame
             .buffer
             .chunks(WIDTH * scale)
             .step_by(scale)
             .flat_map(|row| row.iter().step_by(scale));
 
-        // A transparent dot keeps the colour of the picture before.
         for (grey, &dot) in greys.iter_mut().zip(dots) {
             if frame.transparent != Some(dot) {
                 *grey = dot;
@@ -388,7 +349,6 @@ pub fn played(path: &Path) -> anyhow::Result<Vec<(Vec<u8>, u16)>> {
     Ok(played)
 }
 
-/// Returns the screenshot as the bytes of a PNG file in the colours of [`palette`].
 pub fn png(screenshot: &Screenshot, scale: usize) -> anyhow::Result<Vec<u8>> {
     let [width, height] = size(screenshot.format, scale).map(u32::from);
     let mut file = Vec::new();
@@ -425,8 +385,7 @@ mod tests {
 
     use super::*;
 
-    /// Returns the characters, with their colours, that contain lit pixels of a panel with three
-    /// lit pixels.
+    /// Returns the characters that show a panel with three lit pixels, with their colours.
     fn drawn(width: u16) -> Vec<(String, Color, Color)> {
         let mut canvas = canvas(Format::OLED);
         [(0, 0, 15), (3, 2, 15), (127, 63, 6)]
@@ -438,7 +397,6 @@ mod tests {
             .draw(|frame| draw(frame, frame.area(), &Screenshot::from(&canvas), true))
             .expect("it is drawn");
 
-        // Blank characters and completely filled ones show no single pixel.
         let cells = terminal.backend().buffer().content();
         let lit = cells
             .iter()
@@ -447,8 +405,7 @@ mod tests {
             .collect()
     }
 
-    /// Three lit pixels are drawn at their places and in the colours of their greys: as dots in 64
-    /// columns, as half characters in 128.
+    /// The pixels are dots in 64 columns and half characters in 128.
     #[test]
     fn a_lit_pixel_is_a_dot_or_half_a_character_in_its_colour() {
         let dots = [("⠁", 15), ("⠠", 15), ("⢀", 6)];
@@ -463,7 +420,6 @@ mod tests {
         );
     }
 
-    /// A recording on a full disk fails with one reason that names the file.
     #[test]
     fn a_full_disk_is_named_once() {
         let file = OutFile::create("--record", Path::new("/dev/full")).expect("a device");

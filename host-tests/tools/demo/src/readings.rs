@@ -1,5 +1,4 @@
-//! The data that a board has sent: the latest numbers, some past ones for the terminal, and the
-//! faults.
+//! The data that a board has sent, and the faults in it.
 
 use std::time::{Duration, Instant};
 
@@ -16,28 +15,20 @@ use super::options::usable;
 use emulator::link::{self, Counts};
 use emulator::qemu::LogLine;
 
-/// The number of past frames that are kept, for 12 s; no more are shown.
 const KEPT: usize = 12 * TICK_RATE as usize;
-/// The time of a first frame, s, from which on the board has played before it was connected.
+/// A board whose first frame is later than this, s, has played before it was connected.
 const BEFORE: f64 = 1.0;
-/// The time over which frames are counted for their rate.
 const RATE_SPAN: Duration = Duration::from_secs(1);
 
-/// The page of the help that is shown.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Help {
-    /// No page.
     #[default]
     Hidden,
-    /// The keys and the scenes.
     Keys,
-    /// The meanings of the numbers.
     Numbers,
 }
 
 impl Help {
-    /// Returns the page after the key `?`: after no page the keys, then the numbers, then no page
-    /// again.
     pub fn next(self) -> Self {
         match self {
             Self::Hidden => Self::Keys,
@@ -47,8 +38,7 @@ impl Help {
     }
 }
 
-/// Returns a warning of the host, as a line of the board's log: with the level `warn`, the text as
-/// it is, and no place.
+/// A warning of the host is shown in the board's log.
 pub fn warning(text: String) -> LogLine {
     LogLine {
         level: Some("warn".to_owned()),
@@ -57,54 +47,38 @@ pub fn warning(text: String) -> LogLine {
     }
 }
 
-/// The data that a board has sent since the start of the session. The default is empty: no message
-/// has arrived.
 #[derive(Debug, Default)]
 pub struct Readings {
-    /// The latest frame; `None` before the first.
     pub frame: Option<Frame>,
-    /// The angles at the start of the motion, degrees; `None` until the board has reported them.
+    /// Degrees.
     pub start: Option<[f32; 2]>,
-    /// The counts of the link since it was opened, set by the session.
+    /// Set by the session.
     pub counts: Counts,
-    /// The state of the panel when the board was last asked. It is `None` before, and for an
-    /// emulated board.
+    /// `None` for an emulated board.
     pub panel: Option<PanelReport>,
-    /// The reports since the start of the motion, oldest first. It is empty in scenes without
-    /// angles. At most the latest 720 are kept, which last 12 s if no frame is dropped.
+    /// The reports since the start of the motion, for the charts. Empty in scenes without angles.
     pub past: Vec<Report>,
-    /// All lines of the log, with the warnings of the host, oldest first. They are kept without a
-    /// limit, except that a run without a terminal takes those of a port.
+    /// The board's log and the warnings of the host. A run without a terminal takes those of a
+    /// port.
     pub lines: Vec<LogLine>,
-    /// The comparison of the frames with the host's.
     pub comparison: Comparison,
-    /// The page of the help that is shown instead of the readings.
     pub help: Help,
-    /// The simulated time per real time, as last reported by the board or set by the user. `None`
-    /// before either.
     pub speed: Option<f32>,
-    /// The last scene and method of a warning that the scene does not use the requested method.
+    /// The last scene and method that were warned about.
     unusable: Option<(SceneName, Method)>,
-    /// The times when frames arrived, oldest first. Those older than a second are removed when the
-    /// next frame arrives.
     pub(super) arrivals: Vec<Instant>,
-    /// The number of all frames.
     frames: u64,
-    /// The size of the largest energy error of all scenes together, relative to the energy above
-    /// rest.
+    /// Of all scenes together, relative to the energy above rest.
     greatest_energy_error: f32,
     /// The simulated time of all scenes and restarts together, s.
     simulated: f64,
 }
 
-/// The beginning of the log line of a board that could not keep the speed.
 const SLOWED: &str = "speed lowered";
 
 impl Readings {
-    /// Takes a frame that has just arrived, and passes it to the comparison. A frame of another
-    /// scene, or of an earlier time, begins a new motion: `start` and `past` are emptied. A frame
-    /// of the same time, as in a pause, is not added to `past`. Returns true if the host must send
-    /// a request for the board's scene ([`Comparison::frame`]).
+    /// Takes a frame that has just arrived. Returns true if the host must ask for the board's scene
+    /// ([`Comparison::frame`]).
     pub fn frame(&mut self, frame: Frame) -> bool {
         let last = self.frame.replace(frame);
         let report = frame.report;
@@ -116,7 +90,6 @@ impl Readings {
             self.past.clear();
         }
 
-        // These figures are of all motions together. The time before the first frame is not seen.
         let seen = match (before, last) {
             (Some(before), _) => before.report.time,
             (None, None) if report.time >= BEFORE => report.time,
@@ -126,34 +99,26 @@ impl Readings {
         self.greatest_energy_error = self.greatest_energy_error.max(report.energy_error.abs());
         self.frames += 1;
 
-        // The chart shows the frames of this motion, but none twice while the scene is paused.
+        // A pause repeats the same time.
         if frame.scene.has_angles() && self.past.last().is_none_or(|last| report.time > last.time) {
             self.past.push(report);
         }
         self.past.drain(..self.past.len().saturating_sub(KEPT));
 
-        // The arrivals of the last second give the frame rate.
         self.arrivals.push(Instant::now());
         self.arrivals
             .retain(|arrival| arrival.elapsed() <= RATE_SPAN);
         self.comparison.frame(&frame)
     }
 
-    /// Takes the board's report of its scene: sets `start` and passes the report to
-    /// [`Comparison::status`]. It is needed because frames contain the start angle of rod 1 only.
-    /// `speed` and `panel` are not changed.
-    ///
-    /// If the scene does not use the method that the report says is requested, a warning is added
-    /// to the lines, once until the scene or the method changes.
+    /// Takes the board's report of its scene, because frames contain the start angle of rod 1 only.
     pub fn status(&mut self, status: &Status) {
         self.start = Some(status.settings.degrees.map(|degrees| degrees as f32));
         self.note_method(status);
         self.comparison.status(status);
     }
 
-    /// Takes the state of the panel, and adds a line if it has changed: at the first report, or if
-    /// the panel is found, lost or identified as another one. A board without a panel that reports
-    /// its state causes no line.
+    /// Adds a line to the log when the panel changes.
     pub fn panel(&mut self, report: &PanelReport) {
         let before = self.panel.replace(*report);
         let is_news = before.is_none_or(|before| before.state != report.state);
@@ -171,9 +136,7 @@ impl Readings {
         }
     }
 
-    /// Warns once in a scene that it does not use the requested method.
     fn note_method(&mut self, status: &Status) {
-        // Nothing is requested, so nothing can be unusable.
         let Some(method) = status.method else {
             self.unusable = None;
             return;
@@ -188,7 +151,6 @@ impl Readings {
         };
         let unusable = Some((status.scene, method));
 
-        // A restart of the same scene causes no second warning.
         if self.unusable != unusable {
             self.unusable = unusable;
             self.lines
@@ -196,8 +158,7 @@ impl Readings {
         }
     }
 
-    /// Returns the number of frames that have arrived in the second of the host's clock before this
-    /// call. It is 0 if the board is silent.
+    /// Returns the frames of the last second.
     pub fn rate(&self) -> usize {
         self.arrivals
             .iter()
@@ -205,14 +166,9 @@ impl Readings {
             .count()
     }
 
-    /// Returns the faults of an emulated board, a text for each kind or line; empty if all is well.
-    /// Faults are damaged messages, frames that were sent and not received (lost) or not drawn in
-    /// time (dropped), a speed that the board has lowered, errors in the log, and plain text in the
-    /// log, which is a crash report or a complaint of QEMU. A difference of bits is not among them. For a board at a port or with the
-    /// host's clock the same numbers need not be faults.
+    /// Returns the faults of an emulated board, one text each. At a port, or with the host's clock,
+    /// the same numbers need not be faults. A difference of bits is counted elsewhere.
     pub fn faults(&self) -> Vec<String> {
-        // Everything that goes wrong between an emulated board and the host is a fault of the
-        // program.
         let Counts { damaged, lost, .. } = self.counts;
         let dropped = self.frame.map_or(0, |last| last.dropped);
         let findings = [
@@ -220,7 +176,6 @@ impl Readings {
             (lost > 0, format!("{lost} frames were lost on the way")),
             (dropped > 0, format!("{dropped} frames were dropped")),
         ];
-        // Errors in the log are faults as well, and so is plain text ([`LogLine::is_bad`]).
         let findings = findings
             .into_iter()
             .filter_map(|(found, text)| found.then_some(text));
@@ -234,11 +189,8 @@ impl Readings {
             .collect()
     }
 
-    /// Returns the summary, a line for each number and no newline at the end, of all scenes and
-    /// restarts together: frames, simulated time (s), method and horizon, largest energy error
-    /// (relative to the energy above rest), damaged messages, lost and dropped frames, panel, and
-    /// the comparison. The dropped frames, the method and the horizon are taken from the latest
-    /// frame; without a frame they are those of an empty one.
+    /// Returns the summary of all scenes and restarts together. The dropped frames, the method and
+    /// the horizon are those of the latest frame.
     pub fn report(&self) -> String {
         let Self {
             frames,
@@ -256,7 +208,6 @@ impl Readings {
             .map_or(String::new(), |panel| {
                 format!("panel                 {panel}\n")
             });
-        // A scene without a motion has no energy.
         let error = if *greatest_energy_error == 0.0 && !last.scene.has_angles() {
             "-".to_owned()
         } else {
@@ -280,11 +231,8 @@ impl Readings {
     }
 }
 
-/// Returns the method of a frame, with its steps per frame, and the accuracy horizon, in one line
-/// without a newline. The horizon is in s of simulated time since the motion began; the words say
-/// if it is not known yet, may still grow, or has passed, and nothing if it is infinite. A scene
-/// without a method has words instead of it. For a stopped scene it returns the reason and the
-/// remedy.
+/// Returns the method of a frame and its accuracy horizon in words, or the reason and the remedy if
+/// the motion has stopped.
 pub fn stepping(frame: &Frame) -> String {
     if frame.state == PlayState::Stopped {
         return "this motion is too fast for this chip: change the masses or the angle, or choose \
@@ -292,7 +240,6 @@ pub fn stepping(frame: &Frame) -> String {
             .to_owned();
     }
     let computed = computed(frame);
-    // The wording also depends on whether the horizon has passed.
     let accuracy = match frame.report.horizon {
         Horizon::Always => return computed,
         Horizon::Undecided => "accuracy not known yet".to_owned(),
@@ -308,7 +255,6 @@ pub fn stepping(frame: &Frame) -> String {
     format!("{computed} · {accuracy}")
 }
 
-/// Returns the method, with its number of steps.
 fn computed(frame: &Frame) -> String {
     if frame.scene.is_linear() {
         return "the linear motion on purpose".to_owned();
@@ -321,9 +267,7 @@ fn computed(frame: &Frame) -> String {
     }
 }
 
-/// Returns an energy error, relative to the energy above rest, as text, formatted by `write`. If
-/// its size is below 4e-15, also if it is 0, the result is `< 4e-15` without a sign, because `f64`
-/// cannot resolve it. NaN and infinity are passed to `write`.
+/// Formats an energy error. Below 4e-15 it is `< 4e-15`, because `f64` cannot resolve it.
 pub fn energy_error(error: f32, write: impl Fn(f32) -> String) -> String {
     if error.abs() < LEAST_ENERGY_ERROR {
         format!("< {LEAST_ENERGY_ERROR:.0e}")
@@ -339,9 +283,7 @@ mod tests {
 
     use super::*;
 
-    /// A warning appears once per visit of a scene that does not use the requested method: not
-    /// again at a restart, but again after another scene in between. A scene that uses the method
-    /// causes none.
+    /// A warning appears once per visit of a scene, and again after another scene in between.
     #[test]
     fn a_method_that_a_scene_does_not_use_is_reported_once() {
         let mut readings = Readings::default();
@@ -364,7 +306,6 @@ mod tests {
             SceneName::Flips,
         ];
         for scene in scenes {
-            // A restart causes no new warning.
             readings.status(&status(scene, Some(method)));
             readings.status(&status(scene, Some(method)));
         }
@@ -374,8 +315,6 @@ mod tests {
         assert_eq!(said, [small, flips, flips]);
     }
 
-    /// Each kind of horizon, a linear scene and a motion that is too fast have their own words,
-    /// next to the method and its steps.
     #[test]
     fn horizon_and_stop_are_shown_in_words() {
         let words = |scene, state, horizon| {
@@ -399,7 +338,7 @@ mod tests {
             page(Horizon::Until(2.5)),
             format!("{head} accurate to half a pixel until 2.5 s")
         );
-        // A linear scene departs from the exact motion by design, so it is not called inaccurate.
+        // A linear scene departs from the exact motion by design.
         assert_eq!(
             words(
                 SceneName::SmallHeavy,
@@ -408,7 +347,6 @@ mod tests {
             ),
             "the linear motion on purpose · leaves the exact motion by half a pixel at 0.02 s"
         );
-        // A motion that has stopped has a remedy instead of a horizon.
         assert!(
             words(SceneName::Page, PlayState::Stopped, Horizon::Until(0.0))
                 .starts_with("this motion is too fast for this chip: change the masses")
@@ -433,8 +371,6 @@ mod tests {
         })
     }
 
-    /// An error of 2.4e-14 is shown with its digits. An error below 4e-15 in size, or zero, is
-    /// shown as "< 4e-15".
     #[test]
     fn energy_error_below_the_resolution_of_f64_is_shown_as_a_limit() {
         let written = |error| energy_error(error, |error| format!("{error:+.1e}"));
@@ -443,8 +379,7 @@ mod tests {
         assert_eq!(written(0.0), "< 4e-15");
     }
 
-    /// After a frame with an energy error of 0, the summary has a dash in a scene without a motion,
-    /// and the limit of `f64` in a scene with one.
+    /// A scene without a motion has no energy, so the summary has a dash.
     #[test]
     fn scene_without_a_motion_reports_no_energy_error() {
         for (scene, line) in [
@@ -460,13 +395,12 @@ mod tests {
         }
     }
 
-    /// Two scenes are shown, the first with a restart. The simulated time of the summary is the sum
-    /// of the three motions, and a repeated frame adds nothing.
+    /// The simulated time is the sum of all motions, and a repeated frame adds nothing.
     #[test]
     fn simulated_time_adds_up_all_restarts_and_scenes() {
         let mut readings = Readings::default();
         let [page, butterfly] = [SceneName::Page, SceneName::Butterfly];
-        // In the first scene the time falls from 0.5 s to 0.125 s: a restart.
+        // The time falls: a restart.
         for (scene, times) in [
             (page, &[0.25, 0.5, 0.5, 0.125, 0.75][..]),
             (butterfly, &[0.875, 1.0]),
@@ -482,7 +416,7 @@ mod tests {
         );
     }
 
-    /// A board that has played for an hour is connected. The summary counts from its first frame.
+    /// A board that has played for an hour before it was connected.
     #[test]
     fn simulated_time_before_the_first_frame_does_not_count() {
         let mut readings = Readings::default();
@@ -496,7 +430,6 @@ mod tests {
         );
     }
 
-    /// Returns a frame of a scene at this time, s.
     fn at(scene: SceneName, time: f64) -> Frame {
         Frame {
             scene,

@@ -15,21 +15,17 @@ use emulator::link::{Counts, Port, refusal};
 use emulator::pico::PicoMachine;
 use emulator::qemu::{LogLine, Machine, Screenshot};
 
-/// The board of a session, emulated or real, from which the messages come.
 pub enum Source {
-    /// A board in QEMU that runs freely, by the host's clock.
+    /// In QEMU, by the host's clock.
     Live(Machine),
-    /// A board in QEMU that is run from frame to frame.
+    /// In QEMU, from frame to frame.
     Lockstep(Machine),
-    /// A Raspberry Pi Pico in its emulator, run from frame to frame.
     Pico(Box<PicoMachine>),
-    /// A board at a serial port.
     Port(Port),
 }
 
 impl Source {
-    /// Returns the messages since the last call. If the board is run frame by frame, runs to the
-    /// next frame first.
+    /// Returns the messages since the last call, after a run to the next frame in lockstep.
     fn messages(&mut self) -> anyhow::Result<Vec<ToHost>> {
         match self {
             Self::Live(machine) => machine.messages(),
@@ -39,8 +35,7 @@ impl Source {
         }
     }
 
-    /// Sends a command with this request number. A port never fails here; it reports by its
-    /// notices.
+    /// A port never fails here; it reports by its notices.
     fn send(&mut self, request: u16, command: Command) -> anyhow::Result<()> {
         match self {
             Self::Live(machine) | Self::Lockstep(machine) => machine.send(request, command)?,
@@ -50,8 +45,7 @@ impl Source {
         Ok(())
     }
 
-    /// Returns the lines of an emulated board's log since the last call, or the notices of a port
-    /// as warnings, and the counts of the link since it was opened. A board at a port sends no log.
+    /// The notices of a port are shown as warnings, because a board at a port sends no log.
     pub fn log_and_counts(&mut self) -> (Vec<LogLine>, Counts) {
         match self {
             Self::Live(machine) | Self::Lockstep(machine) => (machine.lines(), machine.counts()),
@@ -63,64 +57,41 @@ impl Source {
         }
     }
 
-    /// Returns true if the board is at a serial port, and not emulated by this program.
     pub fn is_port(&self) -> bool {
         matches!(self, Self::Port(_))
     }
 }
 
-/// The request number of a command that comes from a key.
 const KEY: u16 = 0;
-/// The request number of the commands that set the board up. If one of them is refused, the session
-/// ends.
 const SETUP: u16 = 1;
 
-/// The speeds that the keys select, simulated time per real time, from the smallest to the largest
-/// possible one.
 pub const SPEEDS: [f32; 9] = [0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 4.0];
 
-/// Returns the smallest of [`SPEEDS`] that is larger than this speed, or `None` if no speed is
-/// larger, also for NaN.
 pub fn faster(now: f32) -> Option<f32> {
     SPEEDS.into_iter().find(|speed| *speed > now)
 }
 
-/// Returns the largest of [`SPEEDS`] that is smaller than this speed, or `None` if no speed is
-/// smaller, also for NaN.
 pub fn slower(now: f32) -> Option<f32> {
     SPEEDS.into_iter().rev().find(|speed| *speed < now)
 }
 
-/// A session with one board: its messages are received, the user's options are sent to it once,
-/// after its first frame, and its panel is recorded from the first frame of the requested scene on.
-///
-/// Without `--scene` every scene counts as the requested one. If the user gives a motion, the
-/// requested scene begins when the board has reported that motion. The caller calls
-/// [`Session::hear`] again and again, and [`Session::look`] for a picture.
+/// A session with one board, which gets the user's options after its first frame and whose panel is
+/// recorded from the first frame of the requested scene on. If the user gives a motion, the
+/// requested scene begins when the board has reported that motion.
 pub struct Session<'a> {
     options: &'a DemoOptions,
-    /// The board.
     pub source: Source,
-    /// The data that the board has sent.
     pub readings: Readings,
-    /// The latest picture of the panel; black before the first.
     pub screenshot: Screenshot,
-    /// The animation, if one is requested.
     recording: Option<Recording>,
-    /// The latest tick, and the tick of the first frame of the requested scene.
     now: Option<i64>,
     begun: Option<i64>,
-    /// The number of ticks before the last restart of the board's clock.
     before: i64,
-    /// The start that the user has given, until the board reports it.
     awaited: Option<Settings>,
-    /// The request number of the latest question for the board's status.
     question: u16,
 }
 
 impl<'a> Session<'a> {
-    /// Returns a session before the first message. Nothing is sent yet. The options are not checked
-    /// here ([`DemoOptions::check`]).
     pub fn new(options: &'a DemoOptions, source: Source, recording: Option<Recording>) -> Self {
         let readings = Readings::default();
         let screenshot = Screenshot::from_pages(&[]);
@@ -138,8 +109,7 @@ impl<'a> Session<'a> {
         }
     }
 
-    /// Returns the name of the emulated board, or the path of the port, also if it was found by
-    /// `auto`.
+    /// The path of a port is also known if it was found by `auto`.
     pub fn name(&self) -> &str {
         if let Source::Port(port) = &self.source {
             &port.name
@@ -148,20 +118,11 @@ impl<'a> Session<'a> {
         }
     }
 
-    /// Receives the board's messages; a board that is run frame by frame runs to its next frame,
-    /// others are not waited for. Sends the options after the first frame, and asks the board for
-    /// its scene whenever the comparison needs it. Draws and records, from the host's own scene,
-    /// the panel of a board whose panel cannot be read.
-    ///
-    /// An error means that the user's options do not suit the board's scene or are refused by the
-    /// board, that an emulator has ended or brings no further frame, or that the recording cannot
-    /// be written. Messages that have arrived, but are not processed yet, may then be lost. A port
-    /// that is gone or silent is no error: it causes a warning in the log and is opened again when
-    /// it is back. The refusal of a key is a line of the log, too.
+    /// Receives the board's messages, and draws the panel of a board whose panel cannot be read. A
+    /// port that is gone or silent is no error: it is opened again when it is back.
     pub fn hear(&mut self) -> anyhow::Result<()> {
         for message in self.source.messages()? {
             match message {
-                // Answers about the scene, and refusals of the user's options or of a key.
                 ToHost::Answer(question, Answer::Status(status)) => self.status(question, &status),
                 ToHost::Answer(SETUP, Answer::Refused(field)) => bail!(self.refused(field)),
                 ToHost::Answer(_, Answer::Refused(field)) => self.readings.lines.push(warning(
@@ -172,7 +133,6 @@ impl<'a> Session<'a> {
             }
         }
 
-        // Each compared frame of a board without a readable panel is drawn and recorded here.
         while let Some(frame) = self.readings.comparison.follow() {
             if !self.has_panel() {
                 self.screenshot = self.readings.comparison.panel(&frame);
@@ -185,7 +145,6 @@ impl<'a> Session<'a> {
         Ok(())
     }
 
-    /// Takes a frame: sends the options with the first one, and counts the time.
     fn frame(&mut self, frame: &Frame) -> anyhow::Result<()> {
         match self.now {
             None => self.begin(frame)?,
@@ -218,8 +177,7 @@ impl<'a> Session<'a> {
         self.source.send(self.question, Command::Ask)
     }
 
-    /// Takes the answer to a question. Only the answer to the latest question contains the speed
-    /// that was set last.
+    /// Only the answer to the latest question contains the speed that was set last.
     fn status(&mut self, question: u16, status: &Status) {
         self.awaited.take_if(|start| *start == status.settings);
         if question == self.question {
@@ -227,13 +185,11 @@ impl<'a> Session<'a> {
         }
         self.readings.status(status);
 
-        // An emulated panel can be seen directly.
         if self.source.is_port() {
             self.readings.panel(&status.panel);
         }
     }
 
-    /// Returns the error of a board that refuses the user's options.
     fn refused(&self, field: Field) -> Refused {
         let option = match field {
             Field::Method => "--method",
@@ -253,17 +209,13 @@ impl<'a> Session<'a> {
         ))
     }
 
-    /// Sends the command of a key and does not wait for its answer. Only an emulator that has ended
-    /// is an error. While a port is gone, the command is dropped; it may take 0.5 s to notice that.
+    /// Sends the command of a key.
     pub fn command(&mut self, command: Command) -> anyhow::Result<()> {
         self.source.send(KEY, command)
     }
 
-    /// Sets the speed, simulated time per real time, that `next` returns for the current one, and
-    /// asks the board for its status. Does nothing until the board has reported a speed, or if
-    /// `next` returns `None`, as at the last speed. The new speed counts as the current one at
-    /// once; if the board refuses it, which is a line of the log, its answer corrects that. Only an
-    /// emulator that has ended is an error.
+    /// Sets the speed that `next` returns. It counts at once; the board's answer corrects it if the
+    /// board refuses.
     pub fn change_speed(&mut self, next: fn(f32) -> Option<f32>) -> anyhow::Result<()> {
         let Some(speed) = self.readings.speed.and_then(next) else {
             return Ok(());
@@ -277,7 +229,6 @@ impl<'a> Session<'a> {
         self.ask()
     }
 
-    /// Sends the user's options to the board.
     fn begin(&mut self, first: &Frame) -> anyhow::Result<()> {
         // The board restarts its scene only if the user's options require it.
         let scene = self.options.scene.unwrap_or(first.scene);
@@ -287,7 +238,6 @@ impl<'a> Session<'a> {
             None => (scene != first.scene).then_some(Command::Choose(scene)),
         };
 
-        // The panel is selected first, so that the scene is visible from its first frame.
         let panel = match self.options.panel {
             Some(PanelChoice::Oled(controller)) => Some(Command::Panel(controller)),
             _ => None,
@@ -308,16 +258,11 @@ impl<'a> Session<'a> {
         Ok(())
     }
 
-    /// Returns true if the board is emulated with a panel, which the host can read. Otherwise
-    /// [`Session::hear`] draws the panel of the host's own scene.
     pub fn has_panel(&self) -> bool {
         self.options.board.has_panel && !self.source.is_port()
     }
 
-    /// Takes a screenshot of an emulated panel, also before the first frame, and adds it to the
-    /// recording if the requested scene has begun and a picture is due. Does nothing if the panel
-    /// cannot be read. An error means that the emulator has ended or the recording cannot be
-    /// written.
+    /// Takes a screenshot of an emulated panel, and records it if a picture is due.
     pub fn look(&mut self) -> anyhow::Result<()> {
         if self.has_panel() {
             self.screenshot = match &mut self.source {
@@ -330,8 +275,6 @@ impl<'a> Session<'a> {
         Ok(())
     }
 
-    /// Returns true if the animation needs a screenshot of the latest tick; false without an
-    /// animation and before the requested scene.
     pub fn is_recording_due(&self) -> bool {
         self.begun
             .and(self.now)
@@ -339,8 +282,6 @@ impl<'a> Session<'a> {
             .is_some_and(|(now, recording)| recording.is_due(now))
     }
 
-    /// Adds the screenshot to the recording, if one was requested and the requested scene has
-    /// begun.
     fn record(&mut self, tick: i64) -> anyhow::Result<()> {
         let recording = self
             .recording
@@ -349,19 +290,16 @@ impl<'a> Session<'a> {
         recording.map_or(Ok(()), |recording| recording.add(&self.screenshot, tick))
     }
 
-    /// Returns the animation so far, to be finished; `None` if none was requested or it was taken
-    /// before. Nothing is recorded afterwards.
     pub fn take_recording(&mut self) -> Option<Recording> {
         self.recording.take()
     }
 
-    /// Returns the tick of a frame by the board's clock, including those before its restarts.
     fn tick(&self, frame: &Frame) -> i64 {
         self.before + i64::from(frame.sequence) + i64::from(frame.dropped)
     }
 
-    /// Returns the seconds of the board's clock since the first frame of the requested scene,
-    /// including that frame, which gives 1/60; 0 before it. They continue when the board restarts.
+    /// Returns the seconds of the board's clock since the requested scene began, also across
+    /// restarts of the board.
     pub fn seconds(&self) -> f64 {
         self.begun.zip(self.now).map_or(0.0, |(begun, now)| {
             (now - begun + 1) as f64 / f64::from(TICK_RATE)
@@ -369,7 +307,6 @@ impl<'a> Session<'a> {
     }
 }
 
-/// Returns the request of a key that a board refuses, with its limit.
 fn key_refusal(field: Field) -> String {
     match field {
         Field::M1 | Field::M2 | Field::Dt => {
@@ -386,8 +323,7 @@ mod tests {
 
     use super::*;
 
-    /// The keys pass through all of [`SPEEDS`], upwards to the greatest speed of the firmware and
-    /// downwards. From a speed in between they go to its neighbours.
+    /// From a speed in between, the keys go to its neighbours.
     #[test]
     fn the_speed_keys_step_from_the_least_to_the_greatest_and_back() {
         let steps = |from, next: fn(f32) -> Option<f32>| {
@@ -404,7 +340,6 @@ mod tests {
         down.reverse();
         assert_eq!(down, SPEEDS);
 
-        // The user may have set a speed between these.
         assert_eq!([faster(0.25), slower(0.25)], [Some(0.5), Some(0.2)]);
     }
 }

@@ -17,19 +17,13 @@ use super::readings::{Help, Readings, stepping};
 use super::{help, numbers, panel};
 use emulator::qemu::{LogLine, Screenshot};
 
-/// The narrowest useful width of the panel, in columns.
 const NARROWEST: u16 = 32;
-/// The number of columns between the panel and the numbers.
 const GAP: u16 = 1;
-/// The number of rows for everything except the panel and the numbers: the title, and in a narrow
-/// terminal four rows of words and two of keys.
+/// The rows for everything except the panel and the numbers, in a narrow terminal.
 const WORDS: u16 = 7;
-/// The smallest number of rows for the chart of both angles, including its frame, and its share of
-/// the width, percent.
+/// The rows of the chart of both angles, and its share of the width, percent.
 const ANGLES: u16 = 7;
 const ANGLES_WIDTH: u16 = 60;
-/// The keys, in at most `KEYS_ROWS` rows at the bottom. If there is not enough room, the
-/// `LEAST_USED` ones are left out.
 const KEYS: [&str; 9] = [
     "↑↓ masses",
     "←→ angle",
@@ -43,13 +37,10 @@ const KEYS: [&str; 9] = [
 ];
 const KEYS_ROWS: usize = 2;
 const LEAST_USED: [usize; 2] = [4, 6];
-/// A space at which a row must not break.
 const JOINT: &str = "\u{a0}";
 
-/// Draws the whole terminal: a page of the help, the readings, or, in any case, only a note if the
-/// terminal has fewer than 48 columns or 20 rows. `board` is the name in the title. Without
-/// `colours` the panel is drawn in Braille, and no cell has a colour. With them it is drawn in
-/// Braille, too, if there is no room for 128 columns and the numbers.
+/// Draws the whole terminal. Without colours, or without room for 128 columns and the numbers, the
+/// panel is drawn in Braille.
 pub fn draw(
     frame: &mut Frame,
     board: &str,
@@ -69,7 +60,6 @@ pub fn draw(
         return;
     };
     if readings.help != Help::Hidden {
-        // A page of the help replaces everything else.
         return help::draw(frame, readings.help);
     }
 
@@ -78,13 +68,11 @@ pub fn draw(
     let words = now.map_or("no frame yet".to_owned(), |now| {
         format!("{} · {}", stepping(now), readings.comparison)
     });
-    // The words and the keys take as many rows as this width needs.
     let words = rows(&words, area.width, "");
     let keys = keys(area.width);
     let height = panel_height(width, format);
     let top = height.max(numbers::ROWS);
 
-    // The layout of the areas.
     let parts = [
         Length(1),
         Length(top),
@@ -97,7 +85,6 @@ pub fn draw(
         .spacing(GAP)
         .areas(top);
 
-    // The title, the panel, the numbers and the words.
     let scene = now.map(|now| now.scene.name());
     let state = now.map(|now| now.state);
     let still = state.filter(|state| *state != PlayState::Playing);
@@ -120,7 +107,6 @@ pub fn draw(
     numbers::draw(frame, side, readings);
     frame.render_widget(Paragraph::new(words.join("\n")), words_at);
 
-    // The angles and the log.
     let mut log = lower;
     let block = Block::bordered().title("log");
     if lower.height >= ANGLES {
@@ -135,7 +121,6 @@ pub fn draw(
         frame.render_widget(block, framed);
     }
 
-    // The newest lines are at the bottom.
     let latest = &readings.lines[readings.lines.len().saturating_sub(log.height.into())..];
     let lines: Vec<_> = latest
         .iter()
@@ -148,7 +133,6 @@ pub fn draw(
         keys_at,
     );
 
-    // A terminal without colours gets its own foreground and background everywhere.
     if !colours {
         frame
             .buffer_mut()
@@ -158,7 +142,6 @@ pub fn draw(
     }
 }
 
-/// Returns the rows that name the keys.
 fn keys(width: u16) -> Vec<String> {
     let rows_of = |keys: Vec<&str>| {
         let keys: Vec<_> = keys.iter().map(|key| key.replace(' ', JOINT)).collect();
@@ -173,11 +156,9 @@ fn keys(width: u16) -> Vec<String> {
     rows_of(few.map(|place| KEYS[place]).collect())
 }
 
-/// Returns the width of the panel in characters. Of an OLED, a pixel is half
-/// a character if there are colours, or a square of several in a large terminal; else it is a dot of
-/// a Braille pattern. A colour panel with colours fills the room. If
-/// there is not enough room, it is the largest width that keeps the panel's shape. Returns `None`
-/// if the terminal is too small.
+/// Returns the width of the panel in characters. A pixel of an OLED is half a character, or a dot
+/// of a Braille pattern without colours; a colour panel fills the room. `None` if the terminal is
+/// too small.
 fn panel_width(area: Rect, format: Format, colours: bool) -> Option<u16> {
     let columns = area.width.checked_sub(GAP + numbers::NARROWEST)?;
     let rows = area.height.checked_sub(WORDS)?;
@@ -194,7 +175,6 @@ fn panel_width(area: Rect, format: Format, colours: bool) -> Option<u16> {
     (width >= NARROWEST && rows >= numbers::ROWS).then_some(width)
 }
 
-/// Returns the height of a panel of this width, in characters, which are twice as high as wide.
 fn panel_height(width: u16, format: Format) -> u16 {
     let Format {
         width: pixels,
@@ -204,7 +184,6 @@ fn panel_height(width: u16, format: Format) -> u16 {
     (u32::from(width) * u32::from(height) / (2 * u32::from(pixels))) as u16
 }
 
-/// Returns a text as rows of `width`.
 fn rows(text: &str, width: u16, indent: &str) -> Vec<String> {
     let options = Options::new(width.into())
         .subsequent_indent(indent)
@@ -215,8 +194,6 @@ fn rows(text: &str, width: u16, indent: &str) -> Vec<String> {
         .collect()
 }
 
-/// Returns a line of the log as rows and indents all but the first row. The place in the source is
-/// left out.
 fn logged(line: &LogLine, width: u16) -> Vec<Line<'static>> {
     let (level, colour) = match line.level.as_deref() {
         None => ("", Color::Red),
@@ -245,7 +222,6 @@ mod tests {
     use super::*;
     use crate::snapshot;
 
-    /// Returns the readings after half a second of a scene, with the longest possible numbers.
     fn readings(scene: SceneName) -> Readings {
         let mut readings = Readings::default();
         let text = "plan: direction form, 4 steps to a frame, and as many words as make it longer \
@@ -283,16 +259,13 @@ mod tests {
             });
         }
 
-        // The number of frames in the last second depends on the machine, so it is cleared.
         readings.arrivals.clear();
         readings.counts.damaged = 12_345;
         readings.start = Some([-179.9, 179.9]);
         readings
     }
 
-    /// Returns the rows of the terminal, for a panel with a frame, a line and words.
     fn rows(readings: &Readings, colours: bool, (width, height): (u16, u16)) -> String {
-        // The frame, a line and words on the panel.
         let mut canvas = canvas(Format::OLED);
         (0..128).for_each(|x| {
             [0, x / 2, 63]
@@ -338,9 +311,7 @@ mod tests {
         assert_eq!(width(300, 100), Some(256));
     }
 
-    /// The terminal at six sizes, one of them too small, in scenes with and without a motion,
-    /// before the first frame, and with both pages of the help equals the committed snapshots.
-    /// Without colours, no cell has a colour.
+    /// The snapshots cover six sizes, scenes with and without a motion, and both pages of the help.
     #[test]
     fn common_terminals_look_as_they_did() {
         let butterfly = readings(SceneName::Butterfly);
@@ -351,7 +322,6 @@ mod tests {
         };
         let mut slow = readings(SceneName::Page);
         slow.speed = Some(0.1);
-        // A snapshot is named after the size of the terminal or after its special content.
         let shown = [
             ("150x45", rows(&butterfly, true, (150, 45))),
             ("100x30", rows(&butterfly, false, (100, 30))),
@@ -367,7 +337,6 @@ mod tests {
             ("help-keys", rows(&help(Help::Keys), false, (48, 20))),
             ("help", rows(&help(Help::Numbers), false, (48, 20))),
         ];
-        // Report all differences at once instead of stopping at the first.
         let check =
             |(name, rows): (_, String)| snapshot::check(&format!("terminal-{name}"), &rows).err();
         let differences: Vec<_> = shown.into_iter().filter_map(check).collect();

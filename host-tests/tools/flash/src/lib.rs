@@ -26,23 +26,17 @@ use emulator::link::{running_board, touch};
 use emulator::out_file;
 use emulator::toolchain::{self, Toolchain, target};
 
-/// The name of the firmware's file, in the target folder and on a board's drive.
 pub const FILE: &str = "pico.uf2";
-/// The name of the label on a board's drive.
 const LABEL: &str = "INFO_UF2.TXT";
-/// The line in the label of an RP2040.
 const OURS: &str = "Board-ID: RPI-RP2";
 /// The line in the label of an RP2350, whose boot loader ignores a file for the RP2040.
 const PICO_2: &str = "Board-ID: RP2350";
 /// The drive of a board on Linux, also if it is not mounted.
 const DEVICE: &str = "/dev/disk/by-label/RPI-RP2";
 
-/// The type of the drive's file system, which the boot ROM emulates.
 const DRIVE_TYPE: &str = "vfat";
-/// The time that the drive may take to appear after the board was sent to its boot loader. The
-/// enumeration takes a second, and the desktop's mounting another.
+/// The enumeration takes a second, and the desktop's mounting another.
 const MOUNTING: Duration = Duration::from_secs(10);
-/// The time between two searches for the drive.
 const LOOK: Duration = Duration::from_millis(250);
 
 /// Builds the firmware of the Raspberry Pi Pico as target/pico.uf2, and copies it onto the board if
@@ -59,10 +53,8 @@ pub struct PicoOptions {
     drive: Option<PathBuf>,
 }
 
-/// Builds the firmware of the Raspberry Pi Pico and writes it to the target folder as [`FILE`], in
-/// the format UF2, over an existing file. Returns the number of bytes in the flash, and the file.
-/// The number includes gaps between parts of the program, but not the overhead of the format. An
-/// error means that the build or the writing fails; the file may then be incomplete.
+/// Builds the firmware of the Raspberry Pi Pico. Returns the number of bytes in the flash, and the
+/// file.
 pub fn uf2_file(toolchain: &Toolchain) -> anyhow::Result<(usize, PathBuf)> {
     let (start, image) = flash_image(&fs::read(toolchain.build_for(&PICO)?)?)?;
     let file = target().join(FILE);
@@ -70,11 +62,9 @@ pub fn uf2_file(toolchain: &Toolchain) -> anyhow::Result<(usize, PathBuf)> {
     Ok((image.len(), file))
 }
 
-/// Builds the UF2 file and copies it to a board: to the drive of the options, else to the mounted
-/// drive of an RP2040, else to the only board that runs this firmware at a USB port, which is
-/// restarted in its boot loader. Without a board, it prints how to copy the file by hand.
-///
-/// A drive that cannot take the file is [`Refused`] before the build, which takes minutes.
+/// Builds the UF2 file and copies it to the drive of the options, else to the mounted drive of an
+/// RP2040, else to the only board that runs this firmware at a USB port. A drive that cannot take
+/// the file is refused before the build, which takes minutes.
 pub fn pico(options: &PicoOptions) -> anyhow::Result<()> {
     if options.drive.is_none() {
         find_drive()?;
@@ -83,7 +73,6 @@ pub fn pico(options: &PicoOptions) -> anyhow::Result<()> {
     say(format_args!("{}: {bytes} bytes of flash", file.display()))?;
 
     let blocks = fs::read(&file)?;
-    // The drive is the user's, or a mounted one, or appears after a running board was restarted.
     let drive = match options
         .drive
         .clone()
@@ -113,13 +102,11 @@ pub fn pico(options: &PicoOptions) -> anyhow::Result<()> {
     ))?)
 }
 
-/// Restarts the board at this port in its boot loader and waits for its drive.
 fn restart_in_boot_loader(port: &str) -> anyhow::Result<PathBuf> {
     say(format_args!(
         "{port}: the board restarts in its boot loader"
     ))?;
     touch(port).map_err(Refused::because)?;
-    // The system mounts the drive some time after the restart.
     let since = Instant::now();
     loop {
         let found = find_drive();
@@ -137,8 +124,7 @@ fn restart_in_boot_loader(port: &str) -> anyhow::Result<PathBuf> {
     }
 }
 
-/// Returns the mounted drive of an RP2040, or `None` without a board in its boot loader. The drive
-/// of a Pico 2 is refused, and so is one that is not mounted.
+/// The drive of a Pico 2 is refused, and so is one that is not mounted.
 fn find_drive() -> Result<Option<PathBuf>, Refused> {
     let folders = match fs::read_to_string("/proc/mounts") {
         Ok(mounts) => mounted(&mounts),
@@ -165,7 +151,6 @@ fn find_drive() -> Result<Option<PathBuf>, Refused> {
 
 const IS_PICO_2: &str = "this board is a Pico 2 (RP2350); the firmware is for the Pico (RP2040)";
 
-/// Accepts a folder that is the drive of an RP2040 by its label.
 fn drive(folder: &str) -> Result<PathBuf, String> {
     match fs::read_to_string(Path::new(folder).join(LABEL)) {
         Ok(label) if label.contains(OURS) => Ok(folder.into()),
@@ -180,7 +165,6 @@ fn drive(folder: &str) -> Result<PathBuf, String> {
 /// network file system whose server is gone would never answer.
 fn mounted(mounts: &str) -> Vec<String> {
     let folder = |line: &str| {
-        // A line has the device, the folder, the type and more.
         let mut fields = line.split(' ').skip(1);
         let folder = fields.next()?;
         // The system writes a space in a path as `\040`.
@@ -189,7 +173,6 @@ fn mounted(mounts: &str) -> Vec<String> {
     mounts.lines().filter_map(folder).collect()
 }
 
-/// Returns the mounted drives on macOS.
 fn volumes() -> Vec<String> {
     let entries = fs::read_dir("/Volumes").into_iter().flatten().flatten();
     entries
@@ -197,7 +180,6 @@ fn volumes() -> Vec<String> {
         .collect()
 }
 
-/// The chips that have everything the firmware uses.
 const CHIPS: [&str; 4] = ["STM32F405", "STM32F407", "STM32F415", "STM32F417"];
 
 const EXAMPLES: &str = "Examples:
@@ -220,7 +202,6 @@ pub struct FlashOptions {
     dfu: bool,
 }
 
-/// Accepts the name of a chip that begins like one of [`CHIPS`], in either case.
 fn chip(name: &str) -> Result<String, String> {
     let is_it = CHIPS
         .iter()
@@ -232,15 +213,8 @@ fn chip(name: &str) -> Result<String, String> {
     }
 }
 
-/// Builds the firmware of the STM32F405 and flashes it. A missing program or tool is [`Refused`];
-/// nothing is installed.
-///
-/// With `--dfu` it writes a flat image next to the ELF file, with the extension `bin`, over an
-/// existing one, and returns when `dfu-util` has ended. It is then an error if `dfu-util` has not
-/// printed that the file is downloaded, for example because no board is in its USB loader; its exit
-/// code does not count. Otherwise probe-rs replaces this process, so this function only returns if
-/// probe-rs cannot be started, which is refused. Another error means that the build fails or that
-/// the image cannot be written.
+/// Builds the firmware of the STM32F405 and flashes it. A missing program is refused; nothing is
+/// installed.
 pub fn stm32f405(options: &FlashOptions) -> anyhow::Result<()> {
     let (program, source) = if options.dfu {
         (
@@ -254,7 +228,6 @@ pub fn stm32f405(options: &FlashOptions) -> anyhow::Result<()> {
         )
     };
 
-    // This check precedes the build, which takes a long time.
     if toolchain::find(program).is_none() {
         bail!(Refused::because(format_args!(
             "flashing needs {program}, which is not installed: {source}"
@@ -262,7 +235,6 @@ pub fn stm32f405(options: &FlashOptions) -> anyhow::Result<()> {
     }
     let elf = toolchain::ready()?.build_for(&STM32F405)?;
 
-    // A debug probe takes the ELF file, the USB loader a flat image and its address.
     let mut command = Command::new(program);
 
     if options.dfu {
@@ -289,7 +261,6 @@ pub fn stm32f405(options: &FlashOptions) -> anyhow::Result<()> {
         command.args(["run", "--chip", &options.chip]).arg(elf);
     }
 
-    // `dfu-util` is watched, because its exit code is not reliable.
     let start = |error| Refused::because(format_args!("cannot start {program}: {error}"));
     if options.dfu {
         let mut child = command.stdout(Stdio::piped()).spawn().map_err(start)?;
@@ -304,8 +275,7 @@ pub fn stm32f405(options: &FlashOptions) -> anyhow::Result<()> {
         )?);
     }
 
-    // The flashing program replaces this process, so that it has the terminal and Ctrl-C, and its
-    // exit code is the result.
+    // The flashing program replaces this process, so that it has the terminal and Ctrl-C.
     bail!(start(command.exec()))
 }
 
@@ -368,8 +338,6 @@ mod tests {
         assert_eq!(drive("/nowhere"), Err("there is no such folder".to_owned()));
     }
 
-    /// A download by `dfu-util` is a success only if its output has the line that the file is
-    /// downloaded. The output is shown unchanged in either case.
     #[test]
     fn a_download_is_judged_by_the_tools_own_line() {
         let judged = |text: &str| {
