@@ -351,7 +351,7 @@ fn the_drive_of_another_board_is_refused() {
         (Some(2), "")
     );
     assert!(
-        output.stderr.lines().count() == 1 && output.stderr.contains("another board"),
+        output.stderr.lines().count() == 1 && output.stderr.contains("Pico 2"),
         "{}",
         output.stderr
     );

@@ -15,6 +15,7 @@ use emulator::boards::every_board;
 use emulator::out_file;
 use emulator::process;
 use emulator::toolchain::{self, QUICK, target, workspace};
+use firmware::display::PanelName;
 
 const FOLDER: &str = "release-files";
 /// The file of checksums, in the format that `sha256sum --check` reads.
@@ -24,7 +25,7 @@ const KERNEL: &str = "double-pendulum-kernel";
 /// The programs that print checksums in that format, with their arguments.
 const HASHERS: [(&str, &[&str]); 2] = [("sha256sum", &[]), ("shasum", &["-a", "256"])];
 
-/// Makes target/release-files/: the Pico's UF2, the ELF file of every board, the page for a
+/// Makes target/release-files/: the Pico's UF2 for each panel, the ELF file of every board, the page for a
 /// browser, the packaged kernel, and their SHA-256 sums.
 ///
 /// The files depend only on the commit and the compiler, not on folders or the machine. Uncommitted
@@ -54,8 +55,10 @@ pub fn run(_: &ReleaseOptions) -> anyhow::Result<()> {
         let elf = toolchain.build_for(board)?;
         copy(&elf, &folder.join(format!("{}.elf", board.name)))?;
     }
-    let (_, file) = flash::uf2_file(&toolchain)?;
-    copy(&file, &folder.join(flash::FILE))?;
+    for panel in PanelName::ALL {
+        let (_, file) = flash::uf2_file(&toolchain, *panel)?;
+        copy(&file, &folder.join(flash::file_name(*panel)))?;
+    }
 
     copy(&web::write_page()?, &folder.join(web::FILE))?;
 

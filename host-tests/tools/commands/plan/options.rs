@@ -5,6 +5,7 @@ use clap::{Parser, value_parser};
 use double_pendulum::Method;
 use double_pendulum::plan::{Limit, Plan, PlanError, Problem, Search, Stepping};
 use firmware::config::{CORTEX_M0PLUS, CORTEX_M3, CORTEX_M4F, Processor, STM32F405};
+use firmware::display::PanelName;
 use firmware::motion::half_pixel;
 use firmware::scenes::SceneName;
 
@@ -46,13 +47,22 @@ pub struct SceneOptions {
     )]
     pub scene: Option<SceneName>,
     /// Height of the display, pixels, at most 1e6; both rods together have half this length
+    /// [default: that of the panel]
     #[arg(
         long,
         value_name = "PIXELS",
-        default_value = "64",
+        conflicts_with = "panel",
         allow_hyphen_values = true
     )]
-    pub height: Number,
+    pub height: Option<Number>,
+    /// The panel, whose pixels are the tolerance, as in cargo pico --panel
+    #[arg(
+        long,
+        value_name = "NAME",
+        default_value = PanelName::Oled.name(),
+        value_parser = choice(PanelName::ALL.iter().copied(), PanelName::name),
+    )]
+    pub panel: PanelName,
     /// Duration of the scene, s
     #[arg(
         long,
@@ -118,7 +128,8 @@ impl SceneOptions {
     fn of_scene(&self, name: SceneName) -> anyhow::Result<Problem> {
         let settings = name.first_settings();
         // The board's own code starts the scene, and so determines the size of the drawing.
-        let show = Show::on(self.target.processor, name, &settings)?;
+        let format = self.panel.format();
+        let show = Show::in_format(format, self.target.processor, name, &settings)?;
         let planned = show.player.plan().with_context(|| {
             format!(
                 "--scene {}: has no motion to plan; choose another scene, as in --scene page",
@@ -129,19 +140,19 @@ impl SceneOptions {
     }
 
     fn given(&self) -> anyhow::Result<Problem> {
-        let height = &self.height;
-        ensure!(
-            height.value() > 0.0,
-            "--height {height}: must be greater than zero"
-        );
-        ensure!(
-            height.value() <= HIGHEST,
-            "--height {height}: more than {HIGHEST}, finer than the rods' directions in f32"
-        );
+        let mut pixels = f64::from(self.panel.format().height);
+        if let Some(height) = &self.height {
+            pixels = height.value();
+            ensure!(pixels > 0.0, "--height {height}: must be greater than zero");
+            ensure!(
+                pixels <= HIGHEST,
+                "--height {height}: more than {HIGHEST}, finer than the rods' directions in f32"
+            );
+        }
         Ok(Problem {
             pendulum: self.start.parameters(),
             start: self.start.motion(),
-            tolerance: half_pixel(&self.start.parameters(), height.value()),
+            tolerance: half_pixel(&self.start.parameters(), pixels),
             duration: self.seconds.value(),
             rate: self.rate,
         })

@@ -19,14 +19,22 @@ use std::time::{Duration, Instant};
 use anyhow::{Context, bail};
 use clap::Parser;
 
-use console::cli::{Refused, complain, say};
-use emulator::boards::{PICO, STM32F405};
+use console::cli::{Refused, choice, complain, say};
+use emulator::boards::{STM32F405, pico_with};
 use emulator::flash::{flash_image, uf2};
 use emulator::link::{running_board, touch};
 use emulator::out_file;
 use emulator::toolchain::{self, Toolchain, target};
+use firmware::display::PanelName;
 
-pub const FILE: &str = "pico.uf2";
+/// Returns the name of the firmware's file, in the target folder and on a board's drive.
+pub fn file_name(panel: PanelName) -> String {
+    match panel {
+        PanelName::Oled => "pico.uf2".to_owned(),
+        panel => format!("pico-{}.uf2", panel.name()),
+    }
+}
+
 const LABEL: &str = "INFO_UF2.TXT";
 const OURS: &str = "Board-ID: RPI-RP2";
 /// The line in the label of an RP2350, whose boot loader ignores a file for the RP2040.
@@ -42,22 +50,35 @@ const LOOK: Duration = Duration::from_millis(250);
 /// Builds the firmware of the Raspberry Pi Pico as target/pico.uf2, and copies it onto the board if
 /// one is connected: as the drive RPI-RP2, or running this firmware at a USB port.
 #[derive(Debug, Parser)]
-#[command(
-    name = "cargo pico",
-    after_help = "Example: cargo pico --drive /media/$USER/RPI-RP2"
-)]
+#[command(name = "cargo pico", after_help = panels())]
 pub struct PicoOptions {
     /// The board's drive; it appears if BOOTSEL is held while the cable is plugged in [default: the
     /// mounted drive RPI-RP2]
     #[arg(long, value_name = "FOLDER", value_parser = drive)]
     drive: Option<PathBuf>,
+    /// The panel
+    #[arg(
+        long,
+        value_name = "NAME",
+        default_value = PanelName::Oled.name(),
+        value_parser = choice(PanelName::ALL.iter().copied(), PanelName::name),
+        hide_possible_values = true,
+    )]
+    panel: PanelName,
 }
 
-/// Builds the firmware of the Raspberry Pi Pico. Returns the number of bytes in the flash, and the
-/// file.
-pub fn uf2_file(toolchain: &Toolchain) -> anyhow::Result<(usize, PathBuf)> {
-    let (start, image) = flash_image(&fs::read(toolchain.build_for(&PICO)?)?)?;
-    let file = target().join(FILE);
+/// Returns the panels with their names, for the help.
+fn panels() -> String {
+    let line = |panel: &PanelName| format!("\n  {:10} {}", panel.name(), panel.text());
+    let lines: String = PanelName::ALL.iter().map(line).collect();
+    format!("Panels:{lines}\n\nExample: cargo pico --panel lcd-1.3")
+}
+
+/// Builds the firmware of the Raspberry Pi Pico for a panel. Returns the number of bytes in the
+/// flash, and the file.
+pub fn uf2_file(toolchain: &Toolchain, panel: PanelName) -> anyhow::Result<(usize, PathBuf)> {
+    let (start, image) = flash_image(&fs::read(toolchain.build_for(&pico_with(panel))?)?)?;
+    let file = target().join(file_name(panel));
     out_file::write("the firmware", &file, uf2(start, &image))?;
     Ok((image.len(), file))
 }
@@ -69,7 +90,7 @@ pub fn pico(options: &PicoOptions) -> anyhow::Result<()> {
     if options.drive.is_none() {
         find_drive()?;
     }
-    let (bytes, file) = uf2_file(&toolchain::set_up()?)?;
+    let (bytes, file) = uf2_file(&toolchain::set_up()?, options.panel)?;
     say(format_args!("{}: {bytes} bytes of flash", file.display()))?;
 
     let blocks = fs::read(&file)?;
@@ -89,7 +110,7 @@ pub fn pico(options: &PicoOptions) -> anyhow::Result<()> {
             restart_in_boot_loader(port)?
         }
     };
-    let to = drive.join(FILE);
+    let to = drive.join(file_name(options.panel));
 
     // Wait until the drive has the data. `fs::copy` is not suitable, because it also sets the
     // file's mode, which a drive mounted by root refuses.
