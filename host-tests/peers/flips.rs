@@ -15,22 +15,17 @@ use host_tests::commands::flips::map::Map;
 use rayon::prelude::*;
 use vectors::Search;
 
-/// The number of starts across the map, and the time limit, sqrt(l1/g).
 const SIDE: usize = 128;
 const LIMIT: f32 = 100.0;
-/// The number of runs of each way, in turns.
 const ROUNDS: usize = 30;
-/// The number of starts that a thread takes at once.
 const PORTION: usize = 1024;
 
-/// The flip of each start, in order.
 type Found = Result<Vec<Flip<f32>>, Error>;
-/// A way to find flips: its name, the function, and its goal on one thread, as a multiple of the
-/// speed of C. The goals are 280 million steps a second in vectors of 8 numbers, and 130 million in
-/// vectors of 4, where plain C made 11 million.
+/// The name, the function, and the goal on one thread, as a multiple of the speed of C: 280 million
+/// steps a second in vectors of 8 numbers and 130 million in vectors of 4, where plain C made 11
+/// million.
 type Way = (&'static str, fn(&Search, &[[f32; 2]]) -> Found, Option<f64>);
 
-/// The ways that are compared with C. All must find the same flips.
 const WAYS: [Way; 4] = [
     ("this kernel: one start after the other", one_by_one, None),
     (
@@ -46,12 +41,10 @@ const WAYS: [Way; 4] = [
     ("the same on all threads", threads, None),
 ];
 
-/// Finds the flips by the search for one start.
 fn one_by_one(search: &Search, starts: &[[f32; 2]]) -> Found {
     starts.iter().map(|&[a1, a2]| search.of(a1, a2)).collect()
 }
 
-/// Finds the flips in vectors, on all threads.
 fn threads(search: &Search, starts: &[[f32; 2]]) -> Found {
     let portions = starts
         .par_chunks(PORTION)
@@ -64,7 +57,6 @@ fn main() -> Result<()> {
     let starts = map.starts();
     let [search, _] = map.searches;
 
-    // The number of steps that a flip took. A start that cannot flip takes none.
     let most = (f64::from(map.limit) / map.dt).ceil();
     let steps = |flip: &Flip<f32>| match *flip {
         Flip::Never => 0.0,
@@ -72,7 +64,6 @@ fn main() -> Result<()> {
         Flip::Later => most,
     };
 
-    // The same search in C.
     let program = workspace().join("target/peers-c-flips");
     let mut cc = Command::new("cc");
     cc.current_dir(workspace().join("host-tests/peers/c"));
@@ -91,7 +82,6 @@ fn main() -> Result<()> {
         "cc refuses flips.c"
     );
 
-    // Million steps a second.
     let mut c = 0.0_f64;
     let mut rates = [0.0_f64; WAYS.len()];
     // C and all ways run in turns, because the speed of a machine drifts. The fastest run of each
@@ -123,7 +113,6 @@ fn main() -> Result<()> {
         );
     }
 
-    // The table of speeds, with the goals.
     let threads = rayon::current_num_threads();
     println!("map of {SIDE} x {SIDE} starts, limit {LIMIT} sqrt(l/g), {threads} threads");
     println!(

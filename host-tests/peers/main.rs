@@ -16,7 +16,6 @@ use ode_solvers::dop_shared::OutputType;
 use ode_solvers::{Dop853, Rk4, System, Vector4};
 use reference::taylor;
 
-/// The pendulum of all scenes, in SI units.
 const PARAMETERS: Parameters<f64> = Parameters {
     m1: 1.0,
     m2: 1.0,
@@ -24,14 +23,11 @@ const PARAMETERS: Parameters<f64> = Parameters {
     l2: 1.0,
     g: 9.81,
 };
-/// The motions from rest: a name, both angles, rad, and the duration, s.
 const SCENES: [(&str, f64, u32); 2] = [("regular", 0.5, 10), ("chaotic", 2.0, 5)];
-/// The number of parts of a scene. Errors are measured at the ends of the parts.
 const PARTS: u32 = 8;
 /// The number of runs of each contestant, in turns; the fastest is used.
 const ROUNDS: usize = 200;
 
-/// The start of a motion and the duration of a part of it.
 #[derive(Clone, Copy)]
 struct Scene {
     start: [f64; 4],
@@ -39,18 +35,14 @@ struct Scene {
 }
 
 /// A way to integrate a scene: its name, the largest useful effort, and the function that returns
-/// the state after some parts of the scene.
-///
-/// The effort, the last argument, is the number of steps in a part. If an integrator chooses its
-/// steps, it is a tolerance of 10^(-effort/8), which is at least 1e-16.
+/// the state after some parts of the scene. The effort is the number of steps in a part, or a
+/// tolerance of 10^(-effort/8).
 type Contestant = (&'static str, u32, fn(Scene, u32, u32) -> [f64; 4]);
 
-/// The beginning of the names of this kernel's contestants, and the names of the two with goals.
 const OURS: &str = "double-pendulum";
 const DIRECTION: &str = "double-pendulum, direction form";
 const EXTRAPOLATED: &str = "double-pendulum, extrapolated to order 16";
 
-/// The contestants with classical RK4.
 const CLASSICAL: &[Contestant] = &[
     (OURS, 8192, |scene, parts, steps| {
         let pendulum = pendulum();
@@ -77,7 +69,6 @@ const CLASSICAL: &[Contestant] = &[
     ),
 ];
 
-/// The contestants for small errors.
 const TIGHT: &[Contestant] = &[
     (EXTRAPOLATED, 8192, form::<ExtrapolationF64<16>>),
     (
@@ -97,13 +88,10 @@ const TIGHT: &[Contestant] = &[
     ),
 ];
 
-/// Returns the pendulum of all scenes.
 fn pendulum() -> double_pendulum::Pendulum<f64> {
     double_pendulum::Pendulum::new(&PARAMETERS).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// Returns the state after some parts of the scene by a form of the kernel, in `steps` steps per
-/// part.
 fn form<F: Form>(scene: Scene, parts: u32, steps: u32) -> [f64; 4] {
     let dt = scene.part / f64::from(steps);
     let motion = F::new(&PARAMETERS, &scene.start.into(), dt);
@@ -112,14 +100,13 @@ fn form<F: Form>(scene: Scene, parts: u32, steps: u32) -> [f64; 4] {
     motion.state().into()
 }
 
-/// Returns this kernel's equations.
 fn ours() -> impl Fn(&[f64; 4]) -> [f64; 4] {
     let pendulum = pendulum();
     move |z| pendulum.derivatives(z)
 }
 
-/// Returns the rates by the equations as the book prints them, with the standard library's sine and
-/// cosine. A user would probably write them this way.
+/// The equations as the book prints them, with the standard library's sine and cosine. A user would
+/// probably write them this way.
 fn book(&[a1, a2, p1, p2]: &[f64; 4]) -> [f64; 4] {
     let Parameters { m1, m2, l1, l2, g } = PARAMETERS;
     let sin = (a1 - a2).sin();
@@ -137,7 +124,6 @@ fn book(&[a1, a2, p1, p2]: &[f64; 4]) -> [f64; 4] {
     ]
 }
 
-/// The equations in the library's form.
 struct Problem<E>(E);
 
 impl<E: Fn(&[f64; 4]) -> [f64; 4]> System<f64, Vector4<f64>> for Problem<E> {
@@ -146,11 +132,10 @@ impl<E: Fn(&[f64; 4]) -> [f64; 4]> System<f64, Vector4<f64>> for Problem<E> {
     }
 }
 
-/// The result of an integrator that ends before its time, as some do at tolerances near the
+/// Some integrators end early at tolerances near the resolution of f64.
 /// resolution of f64.
 const ENDED_EARLY: [f64; 4] = [f64::NAN; 4];
 
-/// Returns the state by the library's RK4, in `steps` steps per part.
 fn library_rk4(
     equations: impl Fn(&[f64; 4]) -> [f64; 4],
     scene: Scene,
@@ -167,7 +152,6 @@ fn library_rk4(
     stepper.y_out().last().map_or(ENDED_EARLY, |&z| z.into())
 }
 
-/// Returns the state by the library's DOP853, with the tolerance of this effort.
 fn dop853(
     equations: impl Fn(&[f64; 4]) -> [f64; 4],
     scene: Scene,
@@ -193,7 +177,6 @@ fn dop853(
         .map_or(ENDED_EARLY, Into::into)
 }
 
-/// A contestant, its effort, its error, rad, and its fastest time.
 struct Entry {
     contestant: Contestant,
     effort: u32,
@@ -202,10 +185,8 @@ struct Entry {
 }
 
 /// Returns the contestants, each with the smallest effort that has an error of at most `largest`,
-/// rad, and with the fastest of its runs in turns. A contestant that never reaches this error is
-/// left out.
+/// rad, and its fastest time.
 fn race(contestants: &[Contestant], scene: Scene, largest: f64) -> Vec<Entry> {
-    // The errors are measured in the second half of the scene.
     let parts = PARTS / 2 + 1..=PARTS;
     let times = parts.clone().map(|parts| scene.part * f64::from(parts));
     let exact = taylor::states(
@@ -214,7 +195,6 @@ fn race(contestants: &[Contestant], scene: Scene, largest: f64) -> Vec<Entry> {
         times,
     );
 
-    // The efforts are tried in small steps, until the error is small enough.
     let entry = |&contestant: &Contestant| {
         let (_, most, follow) = contestant;
         let efforts = successors(Some(4), |last| Some(last + 1 + last / 128))
@@ -245,8 +225,8 @@ fn race(contestants: &[Contestant], scene: Scene, largest: f64) -> Vec<Entry> {
     entries
 }
 
-/// The races: the contestants, the error to reach, rad, the contestant with a goal, and its largest
-/// share of the fastest peer's time in each scene.
+/// The contestants, the error to reach, rad, the contestant with a goal, and its largest share of
+/// the fastest peer's time in each scene.
 const RACES: [(&[Contestant], f64, &str, [f64; 2]); 3] = [
     (CLASSICAL, 1e-8, DIRECTION, [0.45; 2]),
     (TIGHT, 1e-9, EXTRAPOLATED, [1.0 / 1.5; 2]),
@@ -263,7 +243,6 @@ fn main() {
         for (contestants, error, counted, most) in RACES {
             let entries = race(contestants, scene, error);
 
-            // The times are relative to the fastest peer's.
             let peers = entries
                 .iter()
                 .filter(|entry| !entry.contestant.0.starts_with(OURS));
@@ -273,7 +252,6 @@ fn main() {
                 "", "effort", "error", "time"
             );
 
-            // The contestant with a goal is compared with it at the end.
             let mut measured = f64::INFINITY;
             for Entry {
                 contestant: (entrant, ..),

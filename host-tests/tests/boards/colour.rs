@@ -12,11 +12,9 @@ use firmware::display::PanelName;
 use firmware::protocol::{Command, ToHost};
 use firmware::scenes::SceneName;
 
-/// The frames that are compared in each scene.
 const FRAMES: u32 = 40;
 /// The frames at the start of a scene that may take longer: the first is whole.
 const FIRST: u32 = 6;
-/// The smallest part of a tick that remains after a frame is drawn and sent.
 const IDLE: f64 = 0.25;
 
 fn start(panel: PanelName) -> anyhow::Result<PicoMachine> {
@@ -24,7 +22,6 @@ fn start(panel: PanelName) -> anyhow::Result<PicoMachine> {
     PicoMachine::start(&node, &application(&pico_with(panel)), panel, LIMIT)
 }
 
-/// Returns the smallest idle part of a tick.
 fn play(board: &mut PicoMachine, panel: PanelName, scene: SceneName) -> anyhow::Result<f64> {
     board.send(1, Command::Choose(scene))?;
     let settings = scene.first_settings();
@@ -52,8 +49,7 @@ fn play(board: &mut PicoMachine, panel: PanelName, scene: SceneName) -> anyhow::
     Ok(1.0 - f64::from(busiest * TICK_RATE) / 125e6)
 }
 
-/// Every scene on the panel of 240 x 240 has the host's frames and pixels, and leaves a quarter of
-/// each tick. The panel is dark until its first frame is complete.
+/// The panel is dark until its first frame is complete.
 #[test]
 fn the_plug_on_panel_shows_the_hosts_pixels_in_every_scene() -> anyhow::Result<()> {
     let mut board = start(PanelName::Lcd13)?;

@@ -20,8 +20,8 @@ enum Emulator {
 }
 use Emulator::{Linux, Machine, Node};
 
-/// The name, the compiler's target, the emulator and, if the core computes `f64` in hardware, the
-/// compiler's name of the processor.
+/// The name, the compiler's target, the emulator and, with `f64` in hardware, the compiler's name
+/// of the processor.
 struct Core(&'static str, &'static str, Emulator, Option<&'static str>);
 
 fn emulated(Core(_, target, emulator, double): &Core) -> anyhow::Result<Command> {

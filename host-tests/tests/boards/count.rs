@@ -14,11 +14,9 @@ use host_tests::commands::count::{
 };
 use rayon::prelude::*;
 
-/// The instructions in a tick of the board's clock, 12.5 MHz after reset, under `-icount`, where an
-/// instruction takes 1 ns.
+/// At 12.5 MHz after reset, under `-icount`, where an instruction takes 1 ns.
 const INSTRUCTIONS_PER_TICK: f64 = 80.0;
 
-/// Returns a request for steps of 1/256 s from rest.
 fn request(method: Method, angle: f64, stride: u32) -> Request {
     Request {
         angles: [angle; 2],
@@ -28,14 +26,11 @@ fn request(method: Method, angle: f64, stride: u32) -> Request {
     }
 }
 
-/// On the Cortex-M4F, the number of instructions in a step that is counted from QEMU's log equals
-/// the number by the board's clock, over 400 steps, to two ticks of the clock.
 #[test]
 fn the_log_counts_as_many_instructions_as_the_clock() -> Result<()> {
     let steps = 400;
     for target in targets().iter().filter(|target| target.board.cpu == M4F) {
         let request = |steps| request(Method::Rk4F32, 2.0, steps);
-        // The counter and the clock measure the same steps.
         let logged = step_cost(target, &request(steps))?.instructions;
         let [one, all] = [
             target.run(&request(1))?.1,
@@ -53,10 +48,8 @@ fn the_log_counts_as_many_instructions_as_the_clock() -> Result<()> {
     Ok(())
 }
 
-/// A step of the textbook form on the Cortex-M4F takes 20,000 to 27,000 instructions. The parts of
-/// its cost are consistent: fewer instructions than cycles, and no more executed code than code. A
-/// count outside of this project gave 23,692, averaged over other states and with another version
-/// of the compiler.
+/// A count outside of this project gave 23,692 instructions, averaged over other states and with
+/// another version of the compiler.
 #[test]
 fn the_book_by_the_libm_crate_takes_twenty_thousand_instructions() -> Result<()> {
     for target in targets().iter().filter(|target| target.board.cpu == M4F) {
@@ -74,21 +67,16 @@ fn the_book_by_the_libm_crate_takes_twenty_thousand_instructions() -> Result<()>
     Ok(())
 }
 
-/// A core, by QEMU's name.
 const M4F: &str = "cortex-m4";
 
-/// The allowed ratio of counted costs to the costs of the price lists, which depend on the version
-/// of the compiler.
+/// The counted costs depend on the version of the compiler.
 const PRICED: RangeInclusive<f32> = 0.97..=1.03;
 
-/// Each price of each processor class, including the price of the preparation, is within 3 % of the
-/// cycles that are counted now.
 #[test]
 fn price_lists_equal_the_counted_costs() -> Result<()> {
     let mut wrong = Vec::new();
     for (board, counted) in prices(&toolchain())? {
         println!("{}: {counted:?}", board.name);
-        // The lists in the order of their fields.
         let listed = board.processor().costs;
         let all = |costs: Costs| {
             let steps = Method::DRAWN
@@ -112,7 +100,6 @@ fn price_lists_equal_the_counted_costs() -> Result<()> {
     Ok(())
 }
 
-/// Returns the prices in a crate outside of this workspace, on one board for each kind of core.
 fn minimal() -> &'static [MinimalPrices] {
     static COUNTED: OnceLock<Vec<MinimalPrices>> = OnceLock::new();
     COUNTED.get_or_init(|| {
@@ -120,15 +107,12 @@ fn minimal() -> &'static [MinimalPrices] {
     })
 }
 
-/// The allowed ratio of a step by `Run::advance` in a crate outside to one by the hidden function
-/// that the methods are compared by: the same loop, compiled in two programs.
+/// The same loop, compiled in two programs.
 const PUBLIC: RangeInclusive<f64> = 0.97..=1.03;
 
-/// A step by `Run::advance` in a crate outside of the workspace costs as many cycles as one by the
-/// hidden function, to 3 %, for each method and kind of core.
+/// The hidden function is the one that the methods are compared by.
 #[test]
 fn a_crate_outside_pays_what_the_hidden_function_costs() -> Result<()> {
-    // Each pair of a target and a program outside.
     let targets = targets();
     let pairs: Vec<_> = targets
         .iter()
@@ -144,7 +128,6 @@ fn a_crate_outside_pays_what_the_hidden_function_costs() -> Result<()> {
         })
         .collect();
 
-    // The same motion and the same number of steps, without `Run::advance`.
     let hidden: Vec<_> = pairs
         .par_iter()
         .map(|(target, price)| {
@@ -167,10 +150,8 @@ fn a_crate_outside_pays_what_the_hidden_function_costs() -> Result<()> {
     Ok(())
 }
 
-/// A row of a table of prices: its name, and the numbers in its cells.
 type Row<'a> = (&'a str, Vec<f32>);
 
-/// Returns the rows of a table. Its numbers have commas between thousands.
 fn rows(table: &str) -> Vec<Row<'_>> {
     let rows = table.lines().skip(2).filter_map(|row| {
         let (name, cells) = row.strip_prefix("| ")?.split_once(" |")?;
@@ -180,7 +161,6 @@ fn rows(table: &str) -> Vec<Row<'_>> {
     rows.collect()
 }
 
-/// Returns true if both rows have the same name and about the same numbers.
 fn is_near((name, row): &Row, (counted_name, counted): &Row) -> bool {
     name == counted_name
         && row.len() == counted.len()
@@ -190,8 +170,6 @@ fn is_near((name, row): &Row, (counted_name, counted): &Row) -> bool {
             .all(|(shown, counted)| PRICED.contains(&(shown / counted)))
 }
 
-/// The table of costs in the kernel's README has the rows of the table that is counted now, and its
-/// numbers to 3 %.
 #[test]
 fn the_kernels_readme_shows_what_a_crate_outside_pays() -> Result<()> {
     let [shown, counted] = [table_in_readme()?, table(minimal())];

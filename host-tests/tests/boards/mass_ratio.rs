@@ -10,16 +10,13 @@ use firmware::scenes::SceneName;
 
 use crate::support::on;
 
-/// The duration of each scene, ticks. With steps that do not resolve the motion, it diverged after
-/// 2.6 s, and `figure-7` after 1 s.
+/// In ticks. With steps that do not resolve the motion, it diverged after 2.6 s, and `figure-7`
+/// after 1 s.
 const FOLLOWED: u64 = 4 * TICK_RATE as u64;
 
-/// The largest relative energy error of a frame. An error of 1 % becomes visible after some
-/// seconds.
+/// Relative. An error of 1 % becomes visible after some seconds.
 const ENERGY: f32 = 1e-3;
 
-/// `page` and `figure-7` at mass ratio 100, for 4 s: each frame equals the host's, none is late or
-/// stopped, the energy error stays within [`ENERGY`], and the log has no error.
 #[test]
 fn up_held_down_shows_the_hosts_motion_at_mass_ratio_100() -> anyhow::Result<()> {
     let board = &LM3S6965EVB;
@@ -27,7 +24,6 @@ fn up_held_down_shows_the_hosts_motion_at_mass_ratio_100() -> anyhow::Result<()>
     machine.next_frame()?;
 
     for name in [SceneName::Page, SceneName::Figure7] {
-        // The scene, with the button up pressed until the largest ratio is reached.
         let mut settings = name.first_settings();
         machine.send(1, Command::Choose(name))?;
         assert_eq!(machine.next_answer()?, (1, Answer::Done));
@@ -38,7 +34,6 @@ fn up_held_down_shows_the_hosts_motion_at_mass_ratio_100() -> anyhow::Result<()>
         }
         assert_eq!(settings.mass_ratio(), 100.0);
 
-        // Each frame equals the host's, is on time, and keeps its energy.
         let mut show = Show::on(board.processor(), name, &settings)?;
         loop {
             let frame = machine.next_frame()?;
@@ -60,7 +55,6 @@ fn up_held_down_shows_the_hosts_motion_at_mass_ratio_100() -> anyhow::Result<()>
         }
     }
 
-    // The log has no error.
     let bad: Vec<_> = machine
         .lines()
         .into_iter()

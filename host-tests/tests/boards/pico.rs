@@ -29,8 +29,8 @@ use firmware::scenes::SceneName;
 use host_tests::commands::count::{FULL_CYCLE, Target, affordable_steps, step_cost};
 
 const PICTURE: Duration = Duration::from_millis(50);
-/// The processor cycles to find the changes on the panel and to hand over a frame. It takes 1.3 ms;
-/// waiting for the UART would take 0.9 ms more.
+/// Finding the changes on the panel and handing over a frame takes 1.3 ms; waiting for the UART
+/// would take 0.9 ms more.
 const SHOWING: u32 = 200_000;
 const TICK: Duration = Duration::from_nanos(1_000_000_000 / TICK_RATE as u64);
 
@@ -75,7 +75,6 @@ fn the_file_is_for_the_chips_flash_and_its_boot_rom() -> anyhow::Result<()> {
 
 const COMPARED: u32 = 8_000_000;
 
-/// The usual instructions are executed faster than by the emulator itself, with the same results.
 #[test]
 fn faster_execution_has_the_results_of_the_emulators_own() -> anyhow::Result<()> {
     let node = toolchain::ready_for_pico().unwrap_or_else(|missing| panic!("{missing}"));
@@ -138,7 +137,6 @@ fn usb_and_uart_carry_the_hosts_bits_and_every_command() -> anyhow::Result<()> {
         .max();
     assert!(showing < Some(SHOWING), "{showing:?}");
 
-    // The clock is derived from the crystal by the PLL.
     assert!(
         board
             .lines()
@@ -187,8 +185,6 @@ fn usb_and_uart_carry_the_hosts_bits_and_every_command() -> anyhow::Result<()> {
     let frame = board.next_frame()?;
     assert_eq!((frame.scene, frame.mass_ratio), (SceneName::Butterfly, 2.5));
 
-    // A flood over USB, more than the board reads in many ticks, fills its queue. Nothing is lost,
-    // because the host waits.
     let mut flood = vec![1; 5 * RECEIVE_QUEUE];
     for request in 0..100 {
         flood.extend_from_slice(encode_command(request, Command::Ask, &mut [0; MAX_WIRE]));
@@ -323,7 +319,6 @@ fn every_kind_of_panel_shows_the_hosts_picture_after_it_is_plugged_in() -> anyho
         let is_present = matches!(panel_report(&mut board)?.state, PanelState::Shown(_));
         assert_eq!(is_present, panel != "none", "{}", name.name());
 
-        // The panel shows the host's picture, with the mark of a pause.
         let mut show = show(&PICO, name);
         (0..frame.report.step).for_each(|_| show.tick());
         show.player.draw();

@@ -9,14 +9,10 @@ use firmware::config::{ANGLE_STEP, MASS_RATIOS};
 use firmware::protocol::Frame;
 use firmware::scenes::SceneName;
 
-/// The number of frames that are enough for the firmware to notice a released button, even if the
-/// host is slow.
+/// Enough frames for the firmware to notice a released button, even if the host is slow.
 const SETTLING: usize = 60;
-/// The largest number of frames before a press has its effect.
 const PATIENCE: usize = 2000;
 
-/// Each arrow of each board with buttons restarts the scene with the next mass ratio, or with the
-/// start angle turned by one step, and select, held, plays the next scene.
 #[test]
 fn buttons_choose_and_restart() -> anyhow::Result<()> {
     BOARDS
@@ -43,7 +39,6 @@ fn choose_and_restart(board: &Board) -> anyhow::Result<()> {
     };
     let degrees = |frame: &Frame| f64::from(frame.start_angle).to_degrees().round();
 
-    // Up and down change the mass ratio, left and right the start angle.
     for (key, ratios, turn) in [
         (Key::Up, 1, 0.0),
         (Key::Down, -1, 0.0),
@@ -68,16 +63,13 @@ fn choose_and_restart(board: &Board) -> anyhow::Result<()> {
         );
     }
 
-    // If select is held, it chooses the next scene.
     let (_, after) = press(&mut machine, Key::Select)?;
     assert_eq!(after.scene, SceneName::Page.next(), "{}", board.name);
     Ok(())
 }
 
-/// Holds a button until a motion starts, and releases it. Returns the frames before and after the
-/// start.
+/// Holds a button until a motion starts. Returns the frames before and after the start.
 fn press(machine: &mut Machine, key: Key) -> anyhow::Result<(Frame, Frame)> {
-    // The first smaller step number shows that a motion has started.
     let mut before = settle(machine)?;
     machine.set_key(key, true)?;
     for _ in 0..PATIENCE {
@@ -95,11 +87,10 @@ fn press(machine: &mut Machine, key: Key) -> anyhow::Result<(Frame, Frame)> {
     panic!("{key:?} had no effect")
 }
 
-/// Waits until nothing has restarted for a while and returns the last frame.
+/// Waits until nothing has restarted for a while.
 fn settle(machine: &mut Machine) -> anyhow::Result<Frame> {
     let mut last = machine.next_frame()?;
     let mut quiet = 0;
-    // After a restart the wait begins again.
     while quiet < SETTLING {
         let frame = machine.next_frame()?;
         quiet = if frame.report.step < last.report.step {

@@ -20,19 +20,13 @@ const SCENES: [SceneName; 4] = [
     SceneName::Page,
     SceneName::SmallLight,
 ];
-/// The number of ticks until all plans are found.
 const FOLLOWED: u64 = 18 * TICK_RATE as u64;
 
-/// Every frame of every board has, in 18 s of two scenes, the host's method and horizon, and none
-/// is dropped. The answer to `AskPlan` and the log have the host's plan and its changes of method.
 #[test]
 fn every_board_finds_the_hosts_plan_and_follows_it_from_the_same_tick() -> anyhow::Result<()> {
     every_board_plans(&SCENES[..2])
 }
 
-/// Every frame of every board has the host's method and horizon in 18 s of two further scenes, and
-/// none is dropped. The answer to `AskPlan` and the log have the host's plan and its changes of
-/// method.
 #[test]
 #[ignore = "minutes: two scenes more"]
 fn every_board_plans_further_scenes_as_the_host_does() -> anyhow::Result<()> {
@@ -55,10 +49,8 @@ fn every_board_plans(scenes: &[SceneName]) -> anyhow::Result<()> {
     })
 }
 
-/// Follows a scene frame by frame as the host shows it, then checks the answer and the log.
 fn followed(machine: &mut Machine, board: &Board, name: SceneName) -> anyhow::Result<()> {
     let mut show = show(board, name);
-    // Each frame has the host's method and horizon.
     loop {
         let frame = machine.next_frame()?;
         assert_eq!(frame.dropped, 0, "{}: {frame:?}", board.name);
@@ -74,7 +66,6 @@ fn followed(machine: &mut Machine, board: &Board, name: SceneName) -> anyhow::Re
         }
     }
 
-    // The host's events: the plan, and the changes of method.
     let changes = show
         .news
         .iter()
@@ -97,7 +88,6 @@ fn followed(machine: &mut Machine, board: &Board, name: SceneName) -> anyhow::Re
         changes
     );
 
-    // A scene without a motion has no plan.
     assert_eq!(
         name == SceneName::Frequencies,
         plan.is_none(),
@@ -110,7 +100,6 @@ fn followed(machine: &mut Machine, board: &Board, name: SceneName) -> anyhow::Re
         panic!("{answer:?}")
     };
 
-    // The answer has the same plan.
     let known = |plan: &Plan| (plan.method, plan.steps, plan.error, plan.cost, plan.limit);
     assert_eq!(
         known(&answered),

@@ -15,22 +15,18 @@ use firmware::protocol::{Cause, Command, Field, Frame, Restarted, ToHost};
 use firmware::scenes::SceneName;
 
 const UNUSED: u32 = 0x2000_0000;
-/// The size of a frame that is larger than the stack, and than the memory of the smallest board.
 const HUGE: u32 = 100 * 1024;
 /// Two instructions: `b .`, an endless loop, and `udf #0`, which is undefined.
 const HANG: [u8; 2] = [0xfe, 0xe7];
 const UNDEFINED: [u8; 2] = [0x00, 0xde];
 const FRAMES: usize = 20;
-/// The function that reads the cycle counter. It is called at the beginning of a frame, after
-/// drawing, and after sending.
+/// Reads the cycle counter at the beginning of a frame, after drawing, and after sending.
 const STOPWATCH: &str = "clock::cycles";
 const MASS_RATIO: f32 = 0.7;
 
-/// Many times the usual duration.
 const PATIENCE: Duration = Duration::from_secs(120);
 
-/// Returns the program of a board, the board, and its last sent frame. The board is stopped in the
-/// middle of a frame of `scene` with the tests' mass ratio.
+/// Returns a board that is stopped in the middle of a frame of `scene` with the tests' mass ratio.
 fn within(
     board: &Board,
     scene: SceneName,
@@ -257,9 +253,7 @@ fn a_board_that_hangs_restarts_in_its_scene_and_reports_the_cause() -> anyhow::R
     Ok(())
 }
 
-/// Faults in a row, one of them while the scene is started, each restart the board, although one
-/// copy of the record is damaged. The message precedes the first frame and has the cause and the
-/// count. The scene is played again until more than [`MOST_RESTARTS`] restarts; then the page is.
+/// One copy of the record is damaged. One fault is while the scene is started.
 #[test]
 fn without_a_debugger_a_fault_restarts_the_board() -> anyhow::Result<()> {
     for board in watched() {
@@ -269,14 +263,12 @@ fn without_a_debugger_a_fault_restarts_the_board() -> anyhow::Result<()> {
             probe.write(address(&elf, "retained::KEPT") + 8, &[0; 8])?;
             execute(&mut probe, UNDEFINED)?;
 
-            // This crash happens while the scene is started, after the first scene was started.
             if restarts == 2 {
                 probe.run_to(address(&elf, "Player::play_by"))?;
                 probe.run_to(address(&elf, "Player::play_by"))?;
                 continue;
             }
 
-            // Run to the first frame after the restart.
             let stopwatch = address(&elf, STOPWATCH);
             let mut restarted = None;
             let mut frame = None;
@@ -288,7 +280,6 @@ fn without_a_debugger_a_fault_restarts_the_board() -> anyhow::Result<()> {
                 }
             }
 
-            // The message precedes the first frame.
             let restarted = restarted.expect("sent before the first frame");
             let cfsr = if board.reports_causes() { 1 << 16 } else { 0 };
             assert_eq!(restarted.cause, Some(Cause::Fault), "{}", board.name);
@@ -300,7 +291,6 @@ fn without_a_debugger_a_fault_restarts_the_board() -> anyhow::Result<()> {
             );
             assert_eq!(restarted.scene, before.scene, "{}", board.name);
 
-            // A scene that ends the board every time is abandoned.
             let scene = if restarts <= MOST_RESTARTS {
                 SceneName::Figure7
             } else {
@@ -318,8 +308,7 @@ fn without_a_debugger_a_fault_restarts_the_board() -> anyhow::Result<()> {
     Ok(())
 }
 
-/// The report of a fault takes so long that the watchdog's non-maskable interrupt arrives in it.
-/// The restarted board reports the fault as the cause, and the log contains no hang.
+/// The watchdog's non-maskable interrupt arrives in the report.
 #[test]
 fn a_report_that_takes_long_is_no_hang() -> anyhow::Result<()> {
     for board in watched() {
@@ -329,7 +318,6 @@ fn a_report_that_takes_long_is_no_hang() -> anyhow::Result<()> {
         probe.run_to(address(&elf, "crash::say"))?;
         execute(&mut probe, HANG)?;
 
-        // The first cause is reported, not the hang.
         let machine = probe.run()?;
         let restarted = machine.wait_for(ToHost::restarted)?;
         assert_eq!(restarted.cause, Some(Cause::Fault), "{}", board.name);

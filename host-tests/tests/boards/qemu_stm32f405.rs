@@ -5,12 +5,10 @@ use crate::support::{address, application, on};
 use emulator::boards::STM32F405;
 use emulator::qemu::Machine;
 
-/// The image sets the address of its vectors. Without a panel no frame is late in 300, no button
-/// counts as pressed, and the log reports only the absent panel.
 #[test]
 fn the_image_sets_its_vectors_and_runs_without_a_panel() -> anyhow::Result<()> {
     const VTOR: u32 = 0xe000_ed08;
-    /// The number of frames. It is enough for several searches for the panel.
+    /// Enough for several searches for the panel.
     const FRAMES: u32 = 300;
 
     // The chip's own loader starts the program while the ROM is at address 0, so the program must
@@ -22,7 +20,6 @@ fn the_image_sets_its_vectors_and_runs_without_a_panel() -> anyhow::Result<()> {
 
     let machine = probe.run()?;
 
-    // Frames are on time although no panel answers.
     for sequence in 0..FRAMES {
         let frame = machine.next_frame()?;
         assert_eq!(

@@ -179,7 +179,6 @@ fn plays(
     let mut too_much = Vec::new();
     let mut reached = Vec::new();
     let mut least_idle = 1.0_f64;
-    // On the M3 every scene has a profile of its own.
     let mut profiles = Vec::new();
     if board.core() != Core::M3 {
         profiles.push(FrameProfile::of_next(&mut machine, &image, board.core())?);
@@ -188,7 +187,6 @@ fn plays(
     for round in 0..2 {
         let mut name = SceneName::Page;
         for _ in SceneName::ALL {
-            // The current scene is never chosen again.
             name = name.next();
             let mut run = SceneRun::new(board, name);
             for until in (EVERY..=ticks(board, name, round)).step_by(EVERY as usize) {
@@ -204,7 +202,6 @@ fn plays(
                 assert!(is_it, "{}: {}\n{shown:?}", board.name, name.name());
             }
 
-            // The cost is measured in the first round only.
             if round > 0 {
                 continue;
             }
@@ -216,7 +213,6 @@ fn plays(
                 .highest
                 .map(|cycles| f64::from(cycles) / f64::from(board.hertz) / frame);
 
-            // The page has a budget of its own on the M3.
             let most = if (board.core(), name) == (Core::M3, SceneName::Page) {
                 budgets::PAGE
             } else {

@@ -1,6 +1,5 @@
-//! The page of `cargo web`: its boards send the host's bytes; in Chromium it shows the pictures of
-//! the scenes, and its keys, sliders, bobs and links work. A test whose tools are missing reports
-//! them.
+//! The page of `cargo web`: its boards send the host's bytes, and it works in Chromium. A test
+//! whose tools are missing reports them.
 
 use std::fs;
 use std::io::{Write, stderr};
@@ -19,7 +18,6 @@ use host_tests::commands::web::{HEADLESS, PROCESSORS, digits, write_page};
 
 use crate::support::LIMIT;
 
-/// Runs a script in Node.js with the arguments that `add` adds, and returns its output.
 fn run(script: &str, add: impl FnOnce(&mut Command)) -> anyhow::Result<String> {
     let mut node = Command::new(set_up_for(WASM)?.qemu);
     node.arg(workspace().join("host-tests/emulator/web").join(script));
@@ -29,7 +27,7 @@ fn run(script: &str, add: impl FnOnce(&mut Command)) -> anyhow::Result<String> {
     Ok(output.stdout)
 }
 
-/// Runs a test. If a tool is missing, reports that instead; this message is not captured.
+/// This message is not captured.
 fn unless_missing(test: fn() -> anyhow::Result<()>) -> anyhow::Result<()> {
     test().or_else(|error| {
         let missing = error.downcast::<Refused>()?;
@@ -44,7 +42,6 @@ fn page() -> anyhow::Result<PathBuf> {
     write_page()
 }
 
-/// The messages of 18 s of every scene have the host's bytes. So do plans, which they contain.
 #[test]
 fn boards_on_the_page_send_the_hosts_bytes() -> anyhow::Result<()> {
     unless_missing(|| {
@@ -53,7 +50,6 @@ fn boards_on_the_page_send_the_hosts_bytes() -> anyhow::Result<()> {
         let output = run("board.js", |node| _ = node.arg(page).args(codes))?;
         let mut sent = output.lines();
 
-        // The script prints its boards in this order: every processor for each scene.
         for scene in SceneName::ALL {
             for (chip, _, processor) in PROCESSORS {
                 let mut show = Show::on(processor, *scene, &scene.first_settings())?;
@@ -80,7 +76,6 @@ fn boards_on_the_page_send_the_hosts_bytes() -> anyhow::Result<()> {
     })
 }
 
-/// The script `browser.js` checks the page in Chromium. The file of the page is smaller than 1 MB.
 #[test]
 fn page_works_in_chromium_and_makes_no_request() -> anyhow::Result<()> {
     unless_missing(|| {

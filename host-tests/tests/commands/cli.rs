@@ -1,8 +1,6 @@
-//! The output of the commands. The files `golden/commands/*.txt` contain command lines with their
-//! outputs and exit codes; `BLESS=1` writes them again.
-//!
-//! A command and its arguments follow `$`. Then come the lines on stdout after `> ` and those on
-//! stderr after `! `, and the exit code. Another test closes the output early (`| head`).
+//! The output of the commands. The files `golden/commands/*.txt` contain command lines after `$`,
+//! with their lines on stdout after `> `, those on stderr after `! `, and the exit code. `BLESS=1`
+//! writes them again.
 
 use std::ffi::OsStr;
 use std::os::unix::ffi::OsStrExt;
@@ -21,19 +19,16 @@ use rayon::prelude::*;
 
 use crate::support::LIMIT;
 
-/// Returns a command of this project.
 pub fn program(name: &str) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_host-tests"));
     command.arg(name);
     command
 }
 
-/// Runs a command and returns its output and exit status.
 pub fn output(command: &mut Command) -> Output {
     run(command, LIMIT).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// Runs a command line of this project in `folder` and returns the text for a snapshot.
 fn played(line: &str, folder: &Path) -> String {
     let mut words = line.split_whitespace();
     let output = output(
@@ -54,8 +49,6 @@ fn played(line: &str, folder: &Path) -> String {
     text + &code.map_or(String::from("killed\n"), |code| format!("exit {code}\n"))
 }
 
-/// Every command line of the snapshots has its committed output and exit code, and writes no file.
-/// Command lines in `refused.txt` print only the error on stderr, in one line, with exit code 2.
 #[test]
 fn output_of_every_command_equals_its_snapshot() {
     let empty = tempfile::tempdir().expect("a folder");
@@ -65,7 +58,6 @@ fn output_of_every_command_equals_its_snapshot() {
         .map(|file| file.expect("a file").path());
     let mut differences = Vec::new();
 
-    // Each file has command lines, which run in parallel in an empty folder.
     for file in files {
         let old =
             fs::read_to_string(&file).unwrap_or_else(|error| panic!("{}: {error}", file.display()));
@@ -78,7 +70,6 @@ fn output_of_every_command_equals_its_snapshot() {
             .map(|line| played(line, empty.path()))
             .collect();
 
-        // Every refusal has one line, nothing on stdout, exit code 2, and writes nothing.
         for block in blocks.iter().filter(|_| file.ends_with("refused.txt")) {
             let lines: Vec<_> = block.lines().collect();
             assert!(
@@ -87,7 +78,6 @@ fn output_of_every_command_equals_its_snapshot() {
             );
         }
 
-        // The files are renewed on request, otherwise compared.
         if std::env::var_os(BLESS).is_some() {
             fs::write(&file, blocks.join("\n"))
                 .unwrap_or_else(|error| panic!("{}: {error}", file.display()));
@@ -114,22 +104,19 @@ fn output_of_every_command_equals_its_snapshot() {
     );
 }
 
-/// Commands that print by clap, in rows and in one piece. All others use the same functions.
+/// Commands that print by clap, in rows and in one piece.
 const COMMANDS: [&str; 3] = [
     "verify --help",
     "simulate --angles 1,1",
     "plan --angles 1,1",
 ];
 
-/// Returns a pipe whose other end is closed.
 fn closed() -> io::Result<Stdio> {
     let (reader, writer) = io::pipe()?;
     drop(reader);
     Ok(writer.into())
 }
 
-/// If stdout has no reader, every command of [`COMMANDS`] ends with exit code 0 and without an
-/// error. A refused option still has exit code 2.
 #[test]
 fn a_closed_output_ends_every_command_quietly() -> io::Result<()> {
     for line in COMMANDS {
@@ -141,14 +128,12 @@ fn a_closed_output_ends_every_command_quietly() -> io::Result<()> {
         let report = String::from_utf8_lossy(&output.stderr);
         assert_eq!(output.status.code(), Some(0), "{line}: {report}");
 
-        // Progress may be printed there, but no error.
         assert!(
             !report.contains("error") && !report.contains("panicked"),
             "{line}: {report}"
         );
     }
 
-    // The exit code of an error does not depend on a reader.
     let status = program("simulate")
         .args(["--seconds", "-1"])
         .stdout(closed()?)
@@ -158,7 +143,6 @@ fn a_closed_output_ends_every_command_quietly() -> io::Result<()> {
     Ok(())
 }
 
-/// An argument that is not UTF-8 is a wrong option, also as the name of a command.
 #[test]
 fn an_argument_that_is_no_text_is_refused() {
     let word = OsStr::from_bytes(b"\xff");
@@ -177,15 +161,12 @@ fn an_argument_that_is_no_text_is_refused() {
     }
 }
 
-/// `cargo plan --scene page` prints the horizon that the board's own code finds, for two chips, and
-/// so it does for the same angles on a display of the same height.
 #[test]
 fn a_scene_is_planned_as_the_boards_start_it() {
     let name = SceneName::Page;
     for (board, processor) in [("lm3s6965evb", CORTEX_M3), ("stm32f405", STM32F405)] {
         let mut show =
             Show::on(processor, name, &name.first_settings()).expect("a scene of the catalogue");
-        // A simulated board plans the scene and gives the expected horizon.
         let horizon = loop {
             show.tick();
             if let [.., (_, PlannerEvent::Found(Ok(plan)))] = show.news[..] {
@@ -219,9 +200,6 @@ fn wait_for_handler(process: u32) {
     }
 }
 
-/// `cargo prove` is interrupted by SIGINT and by SIGTERM. It ends at once, prints the frames that
-/// it has proved, and its exit code is 128 plus the signal. The proof would take hours, and so
-/// would the search for motions that look the same on the panel.
 #[cfg(target_os = "linux")]
 #[test]
 fn an_interrupted_proof_prints_what_it_has_proved() {
@@ -231,7 +209,6 @@ fn an_interrupted_proof_prints_what_it_has_proved() {
     use std::io::Read;
 
     let words = "--angles 0.1,0.1 --seconds 1e4 --method rk4-fixed32 --steps 16";
-    // Interrupt the proof after its start.
     for signal in [Signal::SIGINT, Signal::SIGTERM] {
         let mut command = program("prove");
         command
@@ -243,7 +220,6 @@ fn an_interrupted_proof_prints_what_it_has_proved() {
         wait_for_handler(process);
         kill(Pid::from_raw(process as i32), signal).expect("it runs");
 
-        // The frames that are proved are printed, and the exit code comes from the signal.
         let mut text = String::new();
         let mut output = running.child.stdout.take().expect("piped");
         output.read_to_string(&mut text).expect("text");

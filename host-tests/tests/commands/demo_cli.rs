@@ -15,13 +15,11 @@ use firmware::motion::Settings;
 use firmware::scenes::SceneName;
 use tempfile::TempDir;
 
-/// The recorded seconds and the number of pictures: 30 frames per second, 3 x 3 dots for each of
 /// 128 x 64 pixels.
 const SECONDS: u32 = 2;
 const FRAMES: usize = 60;
 const SIZE: (u32, u32) = (384, 192);
 
-/// Records on a board and checks that there is no fault. Returns the files and the output.
 fn recorded(board: &str, folder: &TempDir, name: &str) -> ([PathBuf; 2], String) {
     toolchain();
     let files = ["gif", "png"].map(|kind| folder.path().join(format!("{name}.{kind}")));
@@ -43,9 +41,7 @@ fn recorded(board: &str, folder: &TempDir, name: &str) -> ([PathBuf; 2], String)
     (files, output.stdout)
 }
 
-/// All 120 frames of a headless run of 2 s equal the host's, and the animation has a different
-/// picture for every second frame. A second run writes the same bytes. The boards are one in QEMU
-/// and the Pico in its own emulator, which reads the panel through the panel's own bus.
+/// The Pico's emulator reads the panel through the panel's own bus.
 #[test]
 fn a_recording_shows_a_swinging_pendulum_and_is_the_same_every_time() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -62,7 +58,6 @@ fn a_recording_shows_a_swinging_pendulum_and_is_the_same_every_time() {
             assert!(summary.contains(line), "no {line:?} in\n{summary}");
         }
 
-        // The Pico has played for some frames before the host has found it at its USB port.
         let late = if board == "pico" {
             0.1..0.2
         } else {
@@ -77,8 +72,6 @@ fn a_recording_shows_a_swinging_pendulum_and_is_the_same_every_time() {
             "{board}: {simulated}"
         );
 
-        // The animation has a picture for every second frame, and each picture differs from the one
-        // before.
         let frames = played(&animation).expect("a GIF file");
         let time: u32 = frames.iter().map(|(_, delay)| u32::from(*delay)).sum();
         assert_eq!((frames.len(), time), (FRAMES, 100 * SECONDS));
@@ -87,7 +80,6 @@ fn a_recording_shows_a_swinging_pendulum_and_is_the_same_every_time() {
             .filter(|pair| pair[0].0 != pair[1].0)
             .count();
 
-        // The Pico first identifies its panel, which stays dark meanwhile, for 0.1 s at most.
         let dark = frames
             .iter()
             .take_while(|(dots, _)| dots.iter().all(|dot| *dot == dots[0]))
@@ -99,7 +91,6 @@ fn a_recording_shows_a_swinging_pendulum_and_is_the_same_every_time() {
             "every frame differs from the one before"
         );
 
-        // The screenshot has the same size, and a second recording the same bytes.
         let screenshot = png::Decoder::new(BufReader::new(File::open(last).expect("a file")));
         let screenshot = screenshot.read_info().expect("a PNG file");
         assert_eq!((screenshot.info().width, screenshot.info().height), SIZE);
@@ -109,8 +100,6 @@ fn a_recording_shows_a_swinging_pendulum_and_is_the_same_every_time() {
     }
 }
 
-/// The summary of two seconds names the method, its steps and its horizon, with `--method plan` and
-/// with a method.
 #[test]
 fn the_method_can_be_chosen_and_is_named() {
     toolchain();
@@ -128,8 +117,6 @@ fn the_method_can_be_chosen_and_is_named() {
     }
 }
 
-/// The host draws a panel that it cannot read from the received numbers. Each of the 30 recorded
-/// pictures of `figure-7` equals the picture of the host's scene at that tick.
 #[test]
 fn the_panel_of_a_board_without_one_is_redrawn_and_recorded() {
     toolchain();
@@ -156,7 +143,6 @@ fn the_panel_of_a_board_without_one_is_redrawn_and_recorded() {
         output.stdout
     );
 
-    // The host's scene advances two ticks for each picture.
     let name = SceneName::Figure7;
     let mut scene =
         Show::on(STM32F405, name, &name.first_settings()).expect("a scene of the catalogue");
@@ -170,7 +156,6 @@ fn the_panel_of_a_board_without_one_is_redrawn_and_recorded() {
     }
 }
 
-/// The animation begins with the motion, and each frame is equal to the host's.
 #[test]
 fn a_motion_of_the_user_is_played_recorded_and_compared() {
     toolchain();
@@ -215,7 +200,6 @@ fn a_motion_of_the_user_is_played_recorded_and_compared() {
     let played = played(&animation).expect("a GIF file");
     assert_eq!(played.len(), 30);
 
-    // The first picture shows the first frame after the board has reported this motion.
     while scene.frame().greys != played[0].0 {
         scene.tick();
         assert!(scene.report().step < 10, "it is another motion");
@@ -227,14 +211,11 @@ fn a_motion_of_the_user_is_played_recorded_and_compared() {
     }
 }
 
-/// 2 s of the board's clock simulate about 1 s with `--speed 1/2`, and all frames are identical to
-/// the host's. A new tick is shown in every second frame.
 #[test]
 fn half_speed_simulates_half_the_time() {
     toolchain();
     let output = output(program("demo").args(["--speed", "1/2", "--headless", "--seconds", "2"]));
     assert_eq!(output.status.code(), Some(0), "{output:?}");
-    // The summary must have about 1 s: 2 s at half the speed.
     let summary = &output.stdout;
     let time = summary
         .lines()
@@ -252,8 +233,7 @@ fn half_speed_simulates_half_the_time() {
     );
 }
 
-/// The map of flips takes half of a tick of the Cortex-M3, so that no board of it keeps speed 4. The
-/// board lowers the speed, which the user is told. The run ends once it has caught up.
+/// The map of flips takes half of a tick of the Cortex-M3, so that the board cannot keep speed 4.
 #[test]
 fn a_board_that_cannot_keep_a_speed_lowers_it() {
     toolchain();
@@ -273,8 +253,6 @@ fn a_board_that_cannot_keep_a_speed_lowers_it() {
     assert!((240..=1200).contains(&ticks), "{output:?}");
 }
 
-/// `cargo demo` without a terminal runs with success and prints the reason and the options that
-/// save pictures, on stderr. With `--headless` it does not print them.
 #[test]
 fn without_a_terminal_the_reason_and_the_options_are_printed() {
     toolchain();
@@ -293,8 +271,7 @@ fn without_a_terminal_the_reason_and_the_options_are_printed() {
     assert!(!headless.contains("no terminal"), "{headless}");
 }
 
-/// The pipes to QEMU are in the folder `TMPDIR`. If that is no folder, the command has exit code 2,
-/// prints nothing on stdout, and one line on stderr that names the variable and its value.
+/// The pipes to QEMU are in the folder `TMPDIR`.
 #[test]
 fn an_unusable_folder_for_pipes_is_named() {
     let output = output(

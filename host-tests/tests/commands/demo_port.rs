@@ -14,13 +14,10 @@ use firmware::protocol::{Answer, Cause, Frame, Restarted, ToHost};
 use firmware::scenes::{Report, SceneName};
 use nix::pty::{OpenptyResult, Winsize, openpty};
 
-/// The duration of the observation of a terminal.
 const SILENCE: Duration = Duration::from_secs(3);
-/// The data of a foreign device, and the duration of its connection.
 const FOREIGNER: &[u8] = b"$GPGGA,123519,4807.038,N,01131.000,E,1,08,0.9,545.4,M,46.9,M,,*47\r\n";
 const FOREIGN: Duration = Duration::from_secs(4);
 
-/// Returns the output on stdout and on stderr, and checks that the command ends with `code`.
 fn demo(code: i32, arguments: &str, play: impl FnMut(&mut Bench)) -> [String; 2] {
     let mut command = program("demo");
     command.arg("--headless").args(arguments.split_whitespace());
@@ -29,8 +26,6 @@ fn demo(code: i32, arguments: &str, play: impl FnMut(&mut Bench)) -> [String; 2]
     [output.stdout, output.stderr]
 }
 
-/// One of eight seconds of frames has a wrong bit on the wire. The others are identical to the
-/// host's, and the summary counts one CRC error and one lost frame. The command succeeds.
 #[test]
 fn every_frame_of_a_board_at_a_port_is_compared_and_a_damaged_one_counted() {
     let damaged = |message: ToHost| {
@@ -53,7 +48,6 @@ fn every_frame_of_a_board_at_a_port_is_compared_and_a_damaged_one_counted() {
     );
 }
 
-/// A motion by options is played by the board, and all frames are identical to the host's.
 #[test]
 fn a_motion_of_the_user_is_played_at_a_port() {
     let arguments = "--scene butterfly --angles 90,45 --degrees --masses 1,3 --seconds 2";
@@ -64,9 +58,7 @@ fn a_motion_of_the_user_is_played_at_a_port() {
     );
 }
 
-/// The board refuses `--method`: exit code 2, no summary, and an error that names the method and
-/// the option. The fastest board could execute these steps in time, so only this board can refuse
-/// them.
+/// The fastest board could execute these steps in time, so only this board can refuse them.
 #[test]
 fn a_method_that_the_board_refuses_is_named() {
     let arguments = "--method extrapolation10-fixed64 --angles 120,120 --degrees --lengths 1,1/10";
@@ -78,8 +70,6 @@ fn a_method_that_the_board_refuses_is_named() {
     );
 }
 
-/// A bit of p1 in frame 300 is flipped before the checksum is made. The command fails and names the
-/// frame and the number.
 #[test]
 fn one_flipped_bit_is_named_and_fails() {
     let flipped = |mut message: ToHost| {
@@ -96,8 +86,7 @@ fn one_flipped_bit_is_named_and_fails() {
     assert!(messages.lines().any(is_it), "{messages}");
 }
 
-/// The board has played its scene for months. The host, which computes the scene from its start,
-/// does not reach the frames in 4 s. The command fails and says so, and no frame counts as skipped.
+/// The board has played its scene for months, so the host does not reach the frames in 4 s.
 #[test]
 fn frames_that_the_host_does_not_reach_are_no_success() {
     let late = |mut message: ToHost| {
@@ -119,7 +108,6 @@ fn frames_that_the_host_does_not_reach_are_no_success() {
     );
 }
 
-/// Returns the message with this state of the panel.
 fn with_panel(mut message: ToHost, report: PanelReport) -> ToHost {
     if let ToHost::Answer(_, Answer::Status(status)) = &mut message {
         status.panel = report;
@@ -127,8 +115,6 @@ fn with_panel(mut message: ToHost, report: PanelReport) -> ToHost {
     message
 }
 
-/// The board reports an absent panel, and a panel from frame 200 on. Each state is reported once,
-/// the first with its remedy, and the summary has the last one.
 #[test]
 fn state_of_the_panel_is_reported_with_the_remedy_when_it_changes() {
     let absent = PanelReport {
@@ -146,7 +132,6 @@ fn state_of_the_panel_is_reported_with_the_remedy_when_it_changes() {
         ..PanelReport::default()
     };
     let [summary, messages] = demo(0, "--seconds 8", |bench| {
-        // The panel is plugged in after some frames.
         let report = if bench.frame < 200 { absent } else { shown };
         bench.carry(|message| wire(with_panel(message, report)));
     });
@@ -166,7 +151,6 @@ fn state_of_the_panel_is_reported_with_the_remedy_when_it_changes() {
     );
 }
 
-/// An option for the panel with a board that has no such panel has exit code 2 and the reason.
 #[test]
 fn board_without_an_oled_refuses_the_options_of_one() {
     for option in ["--panel sh1106", "--turn 180", "--dim off"] {
@@ -178,13 +162,10 @@ fn board_without_an_oled_refuses_the_options_of_one() {
     }
 }
 
-/// The board's frames arrive, but they are always of another scene than that of `--scene`. The
-/// command has exit code 1 and reports that no frame has arrived for 10 s.
 #[test]
 fn a_board_that_never_plays_the_requested_scene_is_an_error() {
     let mut sequence = 0;
     let [_, messages] = demo(1, "--scene butterfly", |bench| {
-        // Send another frame of the default scene every 16 ms.
         sequence += 1;
         let report = Report {
             step: sequence.into(),
@@ -201,7 +182,6 @@ fn a_board_that_never_plays_the_requested_scene_is_an_error() {
     assert!(messages.contains("no frame for 10 s"), "{messages}");
 }
 
-/// The cable is pulled: one line and exit code 1.
 #[test]
 fn a_pulled_cable_ends_the_command() {
     let [summary, messages] = demo(1, "--seconds 8", |bench| {
@@ -242,13 +222,10 @@ fn the_last_restart_of_a_board_is_reported_once() {
     assert!(restarts[0].ends_with(line), "{messages}");
 }
 
-/// A device sends foreign bytes for 4 s, then a board is at the port. The foreign device and the
-/// recovery are reported once each, and the command succeeds.
 #[test]
 fn a_foreign_device_is_reported_and_a_board_in_its_place_is_accepted() {
     let mut foreign = None;
     let [_, messages] = demo(0, "--seconds 2", |bench| {
-        // The foreign bytes start once the host listens; afterwards the board takes over.
         if bench.is_heard() && foreign.get_or_insert_with(Instant::now).elapsed() < FOREIGN {
             bench.say(FOREIGNER);
             sleep(Duration::from_millis(20));
@@ -264,14 +241,10 @@ fn a_foreign_device_is_reported_and_a_board_in_its_place_is_accepted() {
     );
 }
 
-/// The session in a terminal has no time limit, because the user can quit. The terminal shows no
-/// number that was not received. After `q` the exit code is 1, and the error is that the session
-/// ended before the first frame.
 #[test]
 fn the_terminal_shows_no_number_of_a_silent_or_foreign_device() {
     for says in [b"", FOREIGNER] {
         let mut bench = Bench::new();
-        // The command runs in a terminal of the usual size.
         let size = Winsize {
             ws_row: 24,
             ws_col: 80,
@@ -300,7 +273,6 @@ fn the_terminal_shows_no_number_of_a_silent_or_foreign_device() {
             String::from_utf8_lossy(&bytes).into_owned()
         });
 
-        // The device sends nothing, or foreign data, until the user quits.
         let ends = Instant::now() + SILENCE;
         while Instant::now() < ends {
             bench.is_heard();
@@ -321,8 +293,6 @@ fn the_terminal_shows_no_number_of_a_silent_or_foreign_device() {
     }
 }
 
-/// At a port without any data the command fails after 10 s, reports the silence and prints no
-/// summary.
 #[test]
 fn a_silent_port_is_an_error() {
     let [summary, messages] = demo(1, "", |_| sleep(WAIT));

@@ -15,38 +15,33 @@ use reference::taylor::Reference;
 
 use super::cli::{output, program};
 
-/// Two energies, J. The plotted path of the misprinted form must reach the first or less, and more
-/// than the second, at some time in the first 10 s of figure 7. It does not conserve the energy
-/// (measured -45 to 63.1, from 62.9 at the start).
+/// In J: the plotted path of the misprinted form must reach the first or less, and more than the
+/// second (measured -45 to 63.1, from 62.9 at the start).
 const MISPRINT_SWING: [f64; 2] = [-40.0, 60.0];
 
-/// The error of a frequency or period measured in a plotted curve where it crosses a level,
-/// relative. It is half of the last digit of the shortest given number, 1.3e-6, and the shift of a
-/// crossing by joining the points with straight lines, which is (w dt)^3/16 of a radian for points
-/// dt apart and a frequency w, or 2e-5 for the fastest curve, over the 23 rad shown at least.
+/// Relative, where a curve crosses a level: half of the last digit of the shortest given number,
+/// 1.3e-6, and the shift of a crossing by joining the points with straight lines, which is (w
+/// dt)^3/16 of a radian for points dt apart and a frequency w, or 2e-5 for the fastest curve, over
+/// the 23 rad shown at least.
 const PLOTTED_FREQUENCY: f64 = 3e-6;
 
-/// The distance of the largest of a plotted curve's points from the maximum of the curve, relative
-/// to this maximum. Between two points, dt apart, a curve of frequency w is at most (w dt/2)^2/2
-/// higher, 4e-4 for the fastest envelope. A curve that is nearer to its envelope than this part of
-/// the maximum touches it.
+/// Relative to a curve's maximum. Between two points, dt apart, a curve of frequency w is at most
+/// (w dt/2)^2/2 higher, 4e-4 for the fastest envelope. A curve this near to its envelope touches
+/// it.
 const PLOTTED_AMPLITUDE: f64 = 5e-4;
 
-/// The error of each plotted position of bob 2 in the 10 s of figure 7, m: a hundredth of the width
-/// of its lines (measured: 3e-6).
+/// In m: a hundredth of the width of the lines (measured: 3e-6).
 const FIGURE_7_PATH: f64 = 1e-4;
 
-/// The expected values of figures 3 to 5: w1, w2 (rad/s), the envelope's period (s), the largest
-/// |a1| (degrees).
+/// Figures 3 to 5: w1, w2 (rad/s), the envelope's period (s), the largest |a1| (degrees).
 const SMALL: [[f64; 4]; 3] = [
     [8.139042, 5.275983, 2.194571, 12.2474],
     [11.568802, 4.791955, 0.927155, 21.2132],
     [21.211017, 4.526893, 0.376597, 27.3861],
 ];
-/// The angle 2 at the start, degrees, which is also the largest.
+/// The angle 2 at the start, which is also the largest, degrees.
 const START: f64 = 30.0;
 
-/// Each committed SVG file is equal, byte by byte, to the drawing that the kernel makes now.
 #[test]
 fn the_committed_figures_equal_the_kernels() {
     for (name, svg) in figures().expect("the figures can be drawn") {
@@ -57,14 +52,12 @@ fn the_committed_figures_equal_the_kernels() {
     }
 }
 
-/// The number of pictures between two comparisons of an animation, and of ticks between two
 /// pictures.
 const EVERY: usize = 30;
 const TICKS_PER_FRAME: usize = 2;
 
-/// Pictures of the committed animation of every scene, one in a second, equal the frames that the
-/// host draws now, up to a small delay. The host's frames equal the emulated panel's (test `boards
-/// scenes`), so no animation may be older than the firmware.
+/// The host's frames equal the emulated panel's (test `boards scenes`), so no animation may be
+/// older than the firmware.
 #[test]
 fn the_committed_animations_show_what_the_host_draws() {
     let outdated: Vec<_> = SceneName::ALL
@@ -78,12 +71,9 @@ fn the_committed_animations_show_what_the_host_draws() {
     );
 }
 
-/// The largest delay of a picture, ticks. A recording takes the first screenshot at its time or
-/// later.
+/// In ticks. A recording takes the first screenshot at its time or later.
 const LATE: usize = 2;
 
-/// Returns true if the committed animation shows the host's frames, none more than [`LATE`] ticks
-/// after its time.
 fn is_shown(name: SceneName) -> bool {
     let Ok(frames) = played(&animation(name, &folder())) else {
         return false;
@@ -100,10 +90,8 @@ fn is_shown(name: SceneName) -> bool {
                 0
             };
 
-            // Advance to the first tick at which this picture may be shown.
             (0..to_its_time).for_each(|_| scene.tick());
 
-            // Any tick from here to `LATE` ticks later may be the recorded one.
             let mut is_shown = scene.frame().greys == *greys;
             for _ in 0..LATE {
                 scene.tick();
@@ -114,9 +102,7 @@ fn is_shown(name: SceneName) -> bool {
     !frames.is_empty() && is_shown
 }
 
-/// Returns the mean time between two zero crossings, s.
 fn between_crossings(points: &[CurvePoint], value: impl Fn(&CurvePoint) -> f64) -> f64 {
-    // A straight line between the two points gives the crossing.
     let crossing = |pair: &[CurvePoint]| {
         let [(t, before), (later, after)] =
             [&pair[0], &pair[1]].map(|point| (point.time, value(point)));
@@ -136,9 +122,6 @@ fn assert_close(value: f64, expected: f64, relative: f64, what: &str) {
     );
 }
 
-/// The plotted points have the frequencies, the period of the envelopes and the largest angles of
-/// [`SMALL`], within the tolerances `PLOTTED_FREQUENCY` and `PLOTTED_AMPLITUDE`. The angles touch
-/// their envelopes and never leave them.
 #[test]
 fn figures_3_to_5_show_the_frequencies_envelopes_and_amplitudes_of_the_table() {
     for (mu, [w1, w2, envelope, largest_a1]) in MASS_RATIOS.into_iter().zip(SMALL) {
@@ -163,7 +146,6 @@ fn figures_3_to_5_show_the_frequencies_envelopes_and_amplitudes_of_the_table() {
                 .fold(0.0, f64::max);
             assert_close(highest, largest, PLOTTED_AMPLITUDE, "amplitude");
 
-            // The curve touches the envelope and never leaves it.
             let beyond = |point: &CurvePoint| point.angles[rod].abs() - point.envelopes[rod];
             let farthest = points.iter().map(beyond).fold(f64::NEG_INFINITY, f64::max);
             assert!(
@@ -178,9 +160,8 @@ fn figures_3_to_5_show_the_frequencies_envelopes_and_amplitudes_of_the_table() {
     }
 }
 
-/// The exact path must follow the reference and keep its energy. The misprinted equations have no
-/// known exact solution: their path must equal a path in half the step, and must not keep the
-/// energy. Another test compares the stored file.
+/// The misprinted equations have no known exact solution: their path must equal a path in half the
+/// step, and must not keep the energy.
 #[test]
 fn figure_7_shows_the_exact_path_and_a_converged_misprinted_path() {
     let pendulum = chaos::pendulum().expect("a pendulum");
@@ -189,7 +170,6 @@ fn figure_7_shows_the_exact_path_and_a_converged_misprinted_path() {
     let [[right, printed], [_, finer]] =
         [1, 2].map(|refinement| chaos::paths(refinement).expect("a pendulum"));
 
-    // The exact positions at the times of the points.
     let last = right.points.len() - 1;
     let exact = (0..=last).map(|i| {
         exact.advance_to(f64::from(chaos::DURATION) * i as f64 / last as f64);
@@ -205,14 +185,12 @@ fn figure_7_shows_the_exact_path_and_a_converged_misprinted_path() {
         }
     }
 
-    // The right equations conserve the energy.
     let [least, greatest] = right.energies;
     assert!(
         greatest - least < tolerances::FIGURE_7_ENERGY,
         "{least} J to {greatest} J"
     );
 
-    // The misprinted equations do not.
     let [least, greatest] = printed.energies;
     let swing = least..greatest;
     assert!(
@@ -221,7 +199,6 @@ fn figure_7_shows_the_exact_path_and_a_converged_misprinted_path() {
     );
 }
 
-/// Returns the file that `cargo flips` writes.
 fn flips(arguments: &[&str], name: &str) -> Vec<u8> {
     let folder = tempfile::tempdir().expect("a folder");
     let out = folder.path().join(name);
@@ -230,8 +207,6 @@ fn flips(arguments: &[&str], name: &str) -> Vec<u8> {
     fs::read(out).expect("a file")
 }
 
-/// The committed picture of the flips is equal, byte by byte, to the picture that the command of
-/// the README writes now.
 #[test]
 fn the_committed_map_equals_a_new_one() {
     let committed = fs::read(folder().join("figures/flips.png")).expect("a picture");
@@ -241,9 +216,6 @@ fn the_committed_map_equals_a_new_one() {
     );
 }
 
-/// A table of 12 x 6 starts has 72 rows, the same times in reverse order, some starts that cannot
-/// flip and some that do not within the limit. All cells are numbers or empty, and the heading has
-/// the units.
 #[test]
 fn a_table_has_every_start_and_is_its_own_mirror_image() {
     let table =
@@ -267,7 +239,6 @@ fn a_table_has_every_start_and_is_its_own_mirror_image() {
         "{table}"
     );
 
-    // Every cell is a number or empty, as programs that read tables expect.
     let cells = table.lines().skip(1).flat_map(|line| line.split(','));
     assert!(
         cells

@@ -1,6 +1,4 @@
-//! `cargo fw`: its end, and the project that it uses. `cargo flash-f4` with a fake `probe-rs`, and
-//! without one. `cargo pico`: the file that it makes, and the drive that it copies it to. `cargo
-//! count`: its listing.
+//! `cargo fw`, `cargo flash-f4` with a fake `probe-rs` and without one, and `cargo pico`.
 
 use std::env;
 use std::fs::{self, Permissions};
@@ -22,13 +20,10 @@ use nix::unistd::Pid;
 use super::cli::{output, program};
 use crate::support::LIMIT;
 
-/// Runs `cargo fw` with these arguments.
 fn fw(arguments: &[&str]) -> Output {
     output(program("fw").args(arguments))
 }
 
-/// `cargo fw --seconds 5` stops the application with exit code 0 and reports it. A program that
-/// fails before its time has exit code 1.
 #[test]
 fn a_program_without_end_is_stopped_with_success_on_request() {
     let output = fw(&["lm3s6965evb", "--seconds", "5"]);
@@ -49,8 +44,7 @@ fn a_program_without_end_is_stopped_with_success_on_request() {
     );
 }
 
-/// Starts a board whose folder is in `temporary`, and ends the command by a signal once the board
-/// runs. Returns the exit code.
+/// Ends the command by a signal once the board runs. Returns the exit code.
 fn ended_by(signal: Signal, temporary: &Path) -> Option<i32> {
     let mut command = program("fw");
     command.arg("lm3s6965evb").env("TMPDIR", temporary);
@@ -60,7 +54,6 @@ fn ended_by(signal: Signal, temporary: &Path) -> Option<i32> {
         .stderr(Stdio::null());
     let mut fw = process::spawn(&mut command, LIMIT).unwrap_or_else(|error| panic!("{error}"));
     let mut log = BufReader::new(fw.child.stdout.take().expect("piped"));
-    // The first line of the log shows that the board runs.
     log.read_line(&mut String::new())
         .expect("the board says something");
     assert!(
@@ -71,7 +64,6 @@ fn ended_by(signal: Signal, temporary: &Path) -> Option<i32> {
     fw.wait().expect("it ends").code()
 }
 
-/// Returns the entries of a folder.
 fn left(folder: &Path) -> Vec<PathBuf> {
     let entries = fs::read_dir(folder).expect("it is there");
     entries
@@ -79,7 +71,6 @@ fn left(folder: &Path) -> Vec<PathBuf> {
         .collect()
 }
 
-/// `cargo fw` with a running board is ended by SIGTERM: exit code 143, and its folder is gone.
 #[test]
 fn an_interrupted_command_leaves_no_temporary_folder() {
     let temporary = tempfile::tempdir().expect("there is room for it");
@@ -87,8 +78,6 @@ fn an_interrupted_command_leaves_no_temporary_folder() {
     assert_eq!(left(temporary.path()), [""; 0].map(PathBuf::from));
 }
 
-/// A command that is killed leaves its folder. Once the folder is an hour old, the next `cargo fw`
-/// removes it and leaves no folder of its own.
 #[test]
 fn the_folder_of_a_killed_command_is_removed_by_the_next_command() {
     const LONG_AGO: Duration = Duration::from_secs(3600);
@@ -99,7 +88,6 @@ fn the_folder_of_a_killed_command_is_removed_by_the_next_command() {
         panic!("{folders:?}")
     };
 
-    // The next command considers a folder as abandoned only if it is old.
     let opened = fs::File::open(folder).expect("a folder");
     opened
         .set_modified(SystemTime::now() - LONG_AGO)
@@ -111,8 +99,6 @@ fn the_folder_of_a_killed_command_is_removed_by_the_next_command() {
     assert_eq!(left(temporary.path()), [""; 0].map(PathBuf::from));
 }
 
-/// A command that was built in one checkout and is run in another uses the latter. Outside of any
-/// checkout it reports an error.
 #[test]
 fn a_command_uses_the_project_that_it_is_run_in() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -120,7 +106,6 @@ fn a_command_uses_the_project_that_it_is_run_in() {
     let checkout = folder.path().join("checkout");
     fs::copy(env!("CARGO_BIN_EXE_host-tests"), &copy).expect("a copy");
 
-    // Another checkout has the files that identify it, and one binary.
     for file in [
         "kernel/Cargo.toml",
         "firmware/Cargo.toml",
@@ -139,7 +124,6 @@ fn a_command_uses_the_project_that_it_is_run_in() {
                 .env_remove("CARGO_MANIFEST_DIR"),
         )
     };
-    // Inside the other checkout, then outside of any.
     let inside = help(&checkout.join("firmware/src"));
     assert!(
         inside.status.success() && inside.stdout.contains("Binaries:\n  elsewhere\n"),
@@ -157,7 +141,6 @@ fn a_command_uses_the_project_that_it_is_run_in() {
     );
 }
 
-/// Runs `cargo flash-f4` with these arguments and this search path.
 fn flash(arguments: &[&str], path: impl IntoIterator<Item = PathBuf>) -> Output {
     output(program("flash-f4").args(arguments).env(
         "PATH",
@@ -165,8 +148,6 @@ fn flash(arguments: &[&str], path: impl IntoIterator<Item = PathBuf>) -> Output 
     ))
 }
 
-/// With an empty search path, `cargo flash-f4` has exit code 2 and one line that names probe-rs and
-/// how to install it.
 #[test]
 fn without_probe_rs_the_error_names_it() -> io::Result<()> {
     let nothing = tempfile::tempdir()?;
@@ -181,9 +162,8 @@ fn without_probe_rs_the_error_names_it() -> io::Result<()> {
     Ok(())
 }
 
-/// Runs the command with a fake program of this name first on the PATH. The fake prints its
-/// arguments and then executes `ends`. Checks that the command prints `said` first and ends with
-/// `code`. Returns the last argument, a file.
+/// Runs the command with a fake program of this name, which prints its arguments and then executes
+/// `ends`. Returns the last argument, a file.
 fn handed(
     name: &str,
     arguments: &[&str],
@@ -195,7 +175,6 @@ fn handed(
     let fake = folder.path().join(name);
     fs::write(&fake, format!("#!/bin/sh\necho \"$@\"\n{ends}\n"))?;
     fs::set_permissions(&fake, Permissions::from_mode(0o755))?;
-    // The fake comes first on the PATH, before a real program of the same name.
     let rest = env::var_os("PATH").unwrap_or_default();
     let output = flash(
         arguments,
@@ -211,8 +190,6 @@ fn handed(
     Ok(line.split_whitespace().last().unwrap_or_default().into())
 }
 
-/// A fake probe-rs is called with the chip and the ELF file of the F405, and its exit code is that
-/// of the command.
 #[test]
 fn probe_rs_receives_the_image() -> io::Result<()> {
     let image = handed(
@@ -231,9 +208,8 @@ fn probe_rs_receives_the_image() -> io::Result<()> {
     Ok(())
 }
 
-/// A fake `dfu-util` is called with the right device and address, and `cargo flash-f4 --dfu`
-/// succeeds although its exit code is 74. The file that it receives is a program: QEMU runs exactly
-/// these bytes to the first frame.
+/// The exit code of `dfu-util` does not count. The file that it receives is a program that QEMU
+/// runs.
 #[test]
 fn dfu_util_receives_the_bytes_of_the_flash() -> io::Result<()> {
     let bin = handed(
@@ -243,7 +219,6 @@ fn dfu_util_receives_the_bytes_of_the_flash() -> io::Result<()> {
         "echo 'File downloaded successfully'; exit 74",
         0,
     )?;
-    // The bytes are a program that runs.
     let mut qemu = Command::new(toolchain::ready().expect("the tools").qemu);
     qemu.args([
         "-machine",
@@ -269,8 +244,6 @@ fn dfu_util_receives_the_bytes_of_the_flash() -> io::Result<()> {
     Ok(())
 }
 
-/// A fake `dfu-util` that ends with exit code 0, but does not report that the file is downloaded,
-/// makes the command fail.
 #[test]
 fn a_download_that_is_not_reported_as_complete_fails_with_any_exit_code() -> io::Result<()> {
     let said = "-d 0483:df11 -a 0 -s 0x08000000 -D /";
@@ -280,13 +253,11 @@ fn a_download_that_is_not_reported_as_complete_fails_with_any_exit_code() -> io:
 /// The label on an RP2040's drive.
 const LABEL: &str = "UF2 Bootloader v3.0\nModel: Raspberry Pi RP2\nBoard-ID: RPI-RP2\n";
 
-/// Runs `cargo pico` with this drive.
 fn pico(drive: &Path) -> Output {
     output(program("pico").arg("--drive").arg(drive))
 }
 
-/// `cargo pico` copies a file to the drive whose blocks have the right heads and contain exactly
-/// the program as in flash. The blocks are read as by the boot ROM.
+/// The blocks are read as by the boot ROM.
 #[test]
 fn the_copied_file_has_the_program_as_in_flash() {
     let drive = tempfile::tempdir().expect("a folder");
@@ -297,7 +268,6 @@ fn the_copied_file_has_the_program_as_in_flash() {
     let (blocks, rest) = file.as_chunks::<512>();
     assert!(rest.is_empty());
 
-    // The program as it must be in flash.
     let elf = toolchain::ready()
         .expect("the tools")
         .build_for(&PICO)
@@ -330,13 +300,10 @@ fn the_copied_file_has_the_program_as_in_flash() {
         flashed.extend(&block[32..][..256]);
     }
 
-    // The last block is filled up to 256 bytes.
     assert_eq!(flashed.len(), image.len().next_multiple_of(256));
     assert!(flashed.starts_with(&image));
 }
 
-/// `cargo pico` with the drive of an RP2350 has exit code 2 and one line, and prints nothing on
-/// stdout.
 #[test]
 fn the_drive_of_another_board_is_refused() {
     let drive = tempfile::tempdir().expect("a folder");

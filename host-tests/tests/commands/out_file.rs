@@ -25,8 +25,7 @@ const LONG: [&str; 7] = [
     "--bits",
 ];
 
-/// An existing file survives a full disk and Ctrl-C. While it is written, a second writer is
-/// refused. A complete file replaces it, also through a link. Nothing else remains in the folder.
+/// A second writer is refused. Nothing else remains in the folder.
 #[test]
 fn a_file_is_replaced_by_a_complete_one_only() {
     let folder = tempfile::tempdir().expect("a folder");

@@ -27,8 +27,7 @@ use proptest::prelude::*;
 use proptest::sample::{Index, select};
 use proptest::test_runner::RngSeed;
 
-/// Returns a configuration with the same cases in every run, and more of them if the environment
-/// requests it.
+/// The same cases in every run, and more of them on request.
 fn cases(least: u32) -> ProptestConfig {
     let usual = ProptestConfig::default();
     let cases = if usual.cases == 256 {
@@ -66,12 +65,10 @@ fn number() -> impl Strategy<Value = f64> {
     ]
 }
 
-/// Returns parameters of any numbers, possible or not.
 fn parameters() -> impl Strategy<Value = Parameters<f64>> {
     uniform5(number()).prop_map(|[m1, m2, l1, l2, g]| Parameters { m1, m2, l1, l2, g })
 }
 
-/// Returns the intact messages in a stream.
 fn intact(bytes: &[u8]) -> Vec<Vec<u8>> {
     let mut decoder = Decoder::default();
     bytes
@@ -80,19 +77,17 @@ fn intact(bytes: &[u8]) -> Vec<Vec<u8>> {
         .collect()
 }
 
-/// Returns the bytes of a message on the link.
 fn wire(message: &[u8]) -> Vec<u8> {
     frame(message, &mut [0; MAX_WIRE]).to_vec()
 }
 
-/// Returns a part of a stream, and the message in it if it is intact. The part is noise, or a
-/// message with some bytes possibly changed.
+/// Returns a part of a stream, and the message in it if it is intact.
 fn part() -> impl Strategy<Value = (Vec<u8>, Option<Vec<u8>>)> {
     let noise = vec(any::<u8>(), 0..200).prop_map(|noise| (noise, None));
     let changes = vec((any::<Index>(), any::<u8>()), 0..4);
     let sent = (vec(any::<u8>(), 0..=MAX_MESSAGE), changes).prop_map(|(message, changes)| {
         let mut sent = wire(&message);
-        // Some bytes of the message may change, and may change to their old value.
+        // Some bytes may change to their old value.
         for (at, change) in changes {
             let at = at.index(sent.len());
             sent[at] ^= change;
@@ -103,7 +98,6 @@ fn part() -> impl Strategy<Value = (Vec<u8>, Option<Vec<u8>>)> {
     prop_oneof![1 => noise, 4 => sent]
 }
 
-/// Returns a command of any kind as an intact message, whose fields may have a wrong length.
 fn command() -> impl Strategy<Value = Vec<u8>> {
     let set = (select(Field::ALL), number()).prop_map(|(field, value)| {
         encode_command(1, Command::Set { field, value }, &mut [0; MAX_WIRE]).to_vec()
@@ -114,7 +108,6 @@ fn command() -> impl Strategy<Value = Vec<u8>> {
     prop_oneof![4 => set, 4 => short, 1 => any]
 }
 
-/// Makes up to twelve steps by a method. Each result is finite or refused.
 fn stepped(
     method: Method,
     parameters: &Parameters<f64>,
@@ -137,7 +130,6 @@ fn stepped(
     Ok(())
 }
 
-/// Calls all functions of a pendulum with these numbers. An error is a refusal by the kernel.
 fn constructed<R: Real>(
     parameters: Parameters<f64>,
     dt: f64,
@@ -146,7 +138,6 @@ fn constructed<R: Real>(
     let parameters = parameters.cast::<R>();
     let state = state.cast::<R>();
 
-    // Modes of valid parameters oscillate.
     if let Ok(modes) = Modes::new(&parameters) {
         let frequencies = [modes.fast.frequency, modes.slow.frequency];
         assert!(
@@ -157,7 +148,6 @@ fn constructed<R: Real>(
 
     let pendulum = Pendulum::new(&parameters)?;
 
-    // Hanging at rest is a motion of every pendulum, and it remains one.
     let still = State::at_rest(R::ZERO, R::ZERO);
     assert_eq!(
         pendulum.derivatives(&still.into()),
@@ -165,7 +155,6 @@ fn constructed<R: Real>(
         "{parameters:?}"
     );
 
-    // No function of a valid pendulum panics.
     let _ = (
         pendulum.bounds(&state),
         pendulum.energy(&state),
@@ -185,8 +174,6 @@ fn constructed<R: Real>(
 proptest! {
     #![proptest_config(cases(1000))]
 
-    /// Any bytes may be between the messages: no damaged message is accepted and no intact one is
-    /// missed.
     #[test]
     fn intact_messages_are_received_and_nothing_else(stream in vec(part(), 0..40)) {
         let (bytes, messages): (Vec<_>, Vec<_>) = stream.into_iter().unzip();
@@ -194,9 +181,7 @@ proptest! {
         prop_assert_eq!(intact(&bytes.concat()), messages);
     }
 
-    /// Each intact command has exactly one answer at once, except a request, which may be answered
-    /// later, and a message that is no command, which has no answer. A refused command changes
-    /// nothing in the status, and the state of the scene stays finite.
+    /// A request may be answered later, and a message that is no command has no answer.
     #[test]
     fn every_command_is_answered(commands in vec(command(), 1..3)) {
         let mut panel = NoDisplay;
@@ -205,18 +190,15 @@ proptest! {
         for (tick, bytes) in (1..).zip(commands) {
             let status = app.player.status();
             let sent = app.link.len();
-            // The answers to this part of the input.
             app.receive(bytes.iter().copied(), |_| ());
             let mut inbox = Inbox::default();
             let new = app.link[sent..].iter();
             let answers: Vec<_> = new.filter_map(|&byte| inbox.take(byte)).collect();
             prop_assert_eq!(inbox.damage, None);
-            // A message that is no command has no answer, and a request may be answered later.
             let asked = intact(&bytes).first().and_then(|message| decode_command(message));
             let is_silent = matches!(asked, None | Some((_, Some(Command::Simulate(_)))));
             let is_one = matches!(*answers, [_]) && asked.is_some();
             prop_assert!(is_one || answers.is_empty() && is_silent, "{answers:?} to {asked:?}");
-            // A refused command changes nothing.
             if let [ToHost::Answer(_, Answer::Refused(_))] = *answers {
                 prop_assert_eq!(app.player.status(), status, "{:?}", asked);
             }
@@ -227,8 +209,6 @@ proptest! {
         }
     }
 
-    /// A request is refused at its start, or its first readings are finite until it fails and is
-    /// then finished.
     #[test]
     fn requests_are_refused_or_computed(
         (method, parameters) in (select(ON_BOARDS), parameters()),
@@ -245,7 +225,6 @@ proptest! {
             samples,
         };
         let run = BoardMotion::start(&request);
-        // A request that is refused at the start is a valid outcome.
         let Ok(mut job) = run.and_then(|run| Job::new(run, &request)) else { return Ok(()) };
         for _ in 0..24 {
             let Ok(reading) = job.advance() else {
@@ -260,9 +239,6 @@ proptest! {
         }
     }
 
-    /// Random parameters are refused, or no function of the pendulum panics, its modes have finite
-    /// frequencies above zero, and hanging at rest it does not move. By every method, the first
-    /// twelve steps are finite or refused.
     #[test]
     fn the_kernel_refuses_or_stays_finite(
         parameters in parameters(),
@@ -344,7 +320,6 @@ proptest! {
         }
     }
 
-    /// A displayed number can be parsed and is the same number.
     #[test]
     fn numbers_are_read_as_they_are_shown(
         text in "[-+]?[0-9]{0,4}\\.?[0-9]{0,4}(e-?[0-9]{1,4})?(/[0-9]{1,3})?|\\PC{0,8}",
@@ -355,8 +330,6 @@ proptest! {
         }
     }
 
-    /// A random command line of `simulate` is refused, or its plan has a step and a time between
-    /// rows that are greater than zero.
     #[test]
     fn command_lines_are_refused_or_good(
         words in vec(

@@ -9,23 +9,19 @@ use emulator::toolchain::workspace;
 
 use super::cli::output;
 
-/// Returns the text of a file of the project.
 fn read(file: impl AsRef<Path>) -> String {
     let file = workspace().join(file);
     fs::read_to_string(&file).unwrap_or_else(|error| panic!("{}: {error}", file.display()))
 }
 
-/// The first README, and the READMEs of the crates.
 const README: [&str; 4] = [
     "README.md",
     "kernel/README.md",
     "firmware/README.md",
     "host-tests/README.md",
 ];
-/// The commands in READMEs that a user installs.
 const INSTALLED: [&str; 2] = ["deny", "mutants"];
 
-/// Returns the names of the project's commands.
 fn ours() -> BTreeSet<String> {
     let config = read(".cargo/config.toml");
     let aliases = config
@@ -38,8 +34,6 @@ fn ours() -> BTreeSet<String> {
         .collect()
 }
 
-/// Returns the names of cargo's own commands, which are available without a project and without any
-/// installed command.
 fn built_in() -> BTreeSet<String> {
     let nowhere = tempfile::tempdir().expect("a temporary folder");
     let mut cargo = Command::new(env!("CARGO"));
@@ -57,7 +51,6 @@ fn built_in() -> BTreeSet<String> {
         .collect()
 }
 
-/// Returns the commands in a page's text: in `backquotes` and in indented blocks.
 fn named(page: &str) -> BTreeSet<String> {
     let words = page
         .split("`cargo ")
@@ -71,8 +64,6 @@ fn named(page: &str) -> BTreeSet<String> {
     words.filter_map(name).collect()
 }
 
-/// Every command of the project is in at least one README. Every command in a README belongs to the
-/// project, to cargo, or to [`INSTALLED`].
 #[test]
 fn the_readmes_name_every_command_and_no_other() {
     let named: BTreeSet<_> = README.iter().flat_map(|file| named(&read(file))).collect();
@@ -84,7 +75,6 @@ fn the_readmes_name_every_command_and_no_other() {
     );
 }
 
-/// Every file and folder that a README links to exists.
 #[test]
 fn every_link_of_the_readmes_has_its_file() {
     for file in README {
@@ -104,7 +94,6 @@ fn every_link_of_the_readmes_has_its_file() {
     }
 }
 
-/// Returns the anchors of a page's headings, as GitHub makes them.
 fn anchors(page: &str) -> BTreeSet<String> {
     let headings = page.lines().filter(|line| line.starts_with('#'));
     let anchor = |heading: &str| {
@@ -120,8 +109,6 @@ fn anchors(page: &str) -> BTreeSet<String> {
     headings.map(anchor).collect()
 }
 
-/// Every link to a section, within a README or in another file, names an existing heading. There
-/// are more than 20.
 #[test]
 fn readme_links_to_a_section_name_one_of_its_headings() {
     let mut checked = 0;
@@ -134,7 +121,6 @@ fn readme_links_to_a_section_name_one_of_its_headings() {
             .filter_map(|rest| rest.split_once(')')?.0.split_once('#'))
             .filter(|(target, _)| !target.starts_with("http"));
 
-        // A target without a file is a heading of the same page.
         for (target, anchor) in targets {
             let linked = match target {
                 "" => page.clone(),

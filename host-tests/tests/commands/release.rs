@@ -17,28 +17,22 @@ use emulator::toolchain::{target, workspace};
 use super::cli::{output, program};
 use crate::support::{application, toolchain};
 
-/// A small image that every kind of core runs.
 const SMALL: (&str, &str) = ("inject-panic", "thumbv7m-none-eabi");
 
-/// The time limit of a command in the copy, on a slow, busy machine.
 const LONG: Duration = Duration::from_secs(3600);
 
-/// Returns cargo's home folder.
 fn cargo_home() -> PathBuf {
     let home = || Path::new(&env::var_os("HOME").expect("a home")).join(".cargo");
     env::var_os("CARGO_HOME").map_or_else(home, PathBuf::from)
 }
 
-/// A copy of the checkout with its own cargo folder and target folder.
 struct Elsewhere(tempfile::TempDir);
 
 impl Elsewhere {
-    /// Copies the checkout, and shares the downloaded crates and the unpacked QEMU by links.
     fn new() -> io::Result<Self> {
         let folder = tempfile::tempdir()?;
         copy(workspace(), &folder.path().join("checkout"))?;
 
-        // The downloaded crates, under other names.
         let home = folder.path().join("cargo");
         fs::create_dir_all(&home)?;
         for name in ["registry", "config.toml"] {
@@ -47,24 +41,20 @@ impl Elsewhere {
                 symlink(there, home.join(name))?;
             }
         }
-        // The tools are shared; only the builds are separate.
         let elsewhere = Self(folder);
         fs::create_dir_all(elsewhere.target())?;
         symlink(target().join("qemu"), elsewhere.target().join("qemu"))?;
         Ok(elsewhere)
     }
 
-    /// Returns the folder of the copy.
     fn checkout(&self) -> PathBuf {
         self.0.path().join("checkout")
     }
 
-    /// Returns the target folder of the copy.
     fn target(&self) -> PathBuf {
         self.checkout().join("target")
     }
 
-    /// Runs a command of the project there.
     fn output(&self, command: &mut Command) -> Output {
         command
             .current_dir(self.checkout())
@@ -75,10 +65,8 @@ impl Elsewhere {
     }
 }
 
-/// The folders that are built or downloaded, and the history.
 const LEFT_OUT: [&str; 3] = ["target", "node_modules", ".git"];
 
-/// Copies the files of a folder. A link stays a link.
 fn copy(from: &Path, to: &Path) -> io::Result<()> {
     fs::create_dir_all(to)?;
     for entry in fs::read_dir(from)? {
@@ -98,8 +86,6 @@ fn copy(from: &Path, to: &Path) -> io::Result<()> {
     Ok(())
 }
 
-/// The ELF file of no board's application contains the path of the workspace, the target folder,
-/// cargo's home or the compiler.
 #[test]
 fn no_folder_of_the_builder_is_in_an_image() {
     let sysroot = output(Command::new("rustc").args(["--print", "sysroot"])).stdout;
@@ -120,8 +106,6 @@ fn no_folder_of_the_builder_is_in_an_image() {
     }
 }
 
-/// A small program is built here and in a copy of the checkout. Both ELF files are equal as a
-/// whole, and so are the bytes that are loaded. The copy's program runs.
 #[test]
 #[ignore = "compiles for half a minute; `.ci/run` runs it"]
 fn an_image_built_elsewhere_has_the_same_bytes() -> anyhow::Result<()> {
@@ -131,7 +115,6 @@ fn an_image_built_elsewhere_has_the_same_bytes() -> anyhow::Result<()> {
         .unwrap_or_else(|error| panic!("{error}"));
     let elsewhere = Elsewhere::new()?;
 
-    // The command also runs the image, which ends with a panic as intended.
     let mut command = program("fw");
     command.arg(binary);
     let ran = elsewhere.output(&mut command);
@@ -140,7 +123,6 @@ fn an_image_built_elsewhere_has_the_same_bytes() -> anyhow::Result<()> {
         "{ran:?}"
     );
 
-    // The image is compared as loaded bytes and as a whole file.
     let there = elsewhere
         .target()
         .join("firmware")

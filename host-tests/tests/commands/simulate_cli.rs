@@ -8,19 +8,17 @@ use host_tests::commands::simulate::{SimulateOptions, choose, plan};
 
 use super::cli::{output, program};
 
-/// Runs `cargo simulate`.
 fn simulate(arguments: &str) -> Output {
     output(program("simulate").args(arguments.split_whitespace()))
 }
 
-/// Returns the options of a command line.
 fn options(arguments: &str) -> SimulateOptions {
     let words = std::iter::once("simulate").chain(arguments.split_whitespace());
     SimulateOptions::try_parse_from(words).unwrap_or_else(|error| panic!("{arguments}: {error}"))
 }
 
 /// Returns the time and the error of an angle, rad, of each row of a table with the columns t, a1
-/// and a2, by the double-double reference.
+/// and a2.
 fn errors(arguments: &str, table: &str) -> Vec<(f64, f64)> {
     let mut reference = options(arguments).reference();
     let error = |row: &str| {
@@ -38,8 +36,6 @@ fn errors(arguments: &str, table: &str) -> Vec<(f64, f64)> {
     table.lines().skip(1).map(error).collect()
 }
 
-/// `cargo simulate --bits` prints the same text on the host and on every board, for two methods.
-/// The test `verify_board` compares every method, and `identity` every step.
 #[test]
 fn unequal_rods_with_velocities_have_the_same_bits_on_every_board() {
     let rods = "--masses 2,0.5 --lengths 0.3,1.1 --velocities 3,-4 \
@@ -58,14 +54,12 @@ fn unequal_rods_with_velocities_have_the_same_bits_on_every_board() {
     }
 }
 
-/// The share of the true time that the note says at least. It is less than 1 only for rows that are
-/// as accurate as the second run.
+/// Less than 1 only for rows that are as accurate as the second run.
 const SHORT: f64 = 0.8;
-/// Two rows, s: the table has fewer digits than the compared numbers.
+/// In s: the table has fewer digits than the compared numbers.
 const ROWS: f64 = 0.02;
 
-/// The note says until when the angles are within 1e-6, 0.01 and 1 rad. Each time is that of the
-/// exact motion of the given decimals, or a little earlier.
+/// Each time is that of the exact motion of the given decimals, or a little earlier.
 #[test]
 fn the_note_says_until_when_rows_hold() {
     for motion in [
@@ -87,7 +81,6 @@ fn the_note_says_until_when_rows_hold() {
         let output = simulate(&arguments);
         let errors = errors(&arguments, &output.stdout);
         let end = errors.last().map_or(0.0, |(time, _)| *time);
-        // The last part of the note is for all rows if they hold.
         let holds = |level: f64| {
             let worst = output
                 .stderr
@@ -116,7 +109,6 @@ fn the_note_says_until_when_rows_hold() {
     }
 }
 
-/// The motions to choose a method for.
 const MOTIONS: [&str; 4] = [
     "--angles 0.5,0.5 --seconds 10 --every 1/4",
     "--angles 120,120 --degrees --seconds 5 --every 1",
@@ -130,8 +122,7 @@ const PLACES: [(&str, &[f64]); 3] = [
     ("stm32f405", &[1e-2, 1e-9]),
 ];
 
-/// For each motion, place and tolerance, the chosen method keeps the tolerance in every row. The
-/// same method in the next smaller number of steps does not.
+/// In the next smaller number of steps the chosen method must not keep the tolerance.
 #[test]
 fn every_row_is_within_the_tolerance_and_longer_steps_are_not() {
     for motion in MOTIONS {
@@ -180,8 +171,6 @@ fn every_row_is_within_the_tolerance_and_longer_steps_are_not() {
     }
 }
 
-/// A tolerance that cannot be kept until the end gives the rows that keep it, the reason why they
-/// end, and exit code 1.
 #[test]
 fn a_tolerance_is_kept_by_the_rows_before_its_end() {
     let arguments = "--seconds 30 --every 1 --tolerance 1e-3 --columns t,a1,a2";

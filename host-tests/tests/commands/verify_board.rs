@@ -18,12 +18,8 @@ use firmware::job::ON_BOARDS;
 use firmware::protocol::{Answer, Cause, Restarted, ToHost};
 use firmware::scenes::SceneName;
 
-/// The cells of a method without a cycle count.
 const UNCOUNTED: &str = "| no cycle counter | - |";
 
-/// An emulated board with an absent panel is verified without questions. The exit code is 0, and
-/// the report has the board's data, the panel's fault, all motions and scenes as identical, no
-/// cycles, and the check list.
 #[test]
 fn a_board_with_the_hosts_bits_is_verified_and_reported() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -31,7 +27,6 @@ fn a_board_with_the_hosts_bits_is_verified_and_reported() {
     command
         .args(["--no-questions", "--report"])
         .arg(folder.path().join("board"));
-    // The board's panel is absent.
     let output = at_port(&mut Bench::new(), &mut command, |bench| {
         bench.carry(|mut message| {
             if let ToHost::Answer(_, Answer::Status(status)) = &mut message {
@@ -47,7 +42,6 @@ fn a_board_with_the_hosts_bits_is_verified_and_reported() {
         output.stdout
     );
 
-    // The report has every method without a cycle count, and the board's data.
     let markdown = fs::read_to_string(folder.path().join("board.md")).expect("the report");
     assert_eq!(
         markdown.matches(UNCOUNTED).count(),
@@ -65,7 +59,6 @@ fn a_board_with_the_hosts_bits_is_verified_and_reported() {
         "{markdown}"
     );
 
-    // The board's report of restarts, and the checks for its owner.
     for row in [
         "| restarts during the comparison | 0 |",
         "| restarts during this verification | 0 |",
@@ -75,7 +68,6 @@ fn a_board_with_the_hosts_bits_is_verified_and_reported() {
         assert!(markdown.contains(row), "no {row:?} in {markdown}");
     }
 
-    // All methods in both motions and all scenes agree with the host.
     let agree = |columns: usize| {
         let is_row = |line: &&str| {
             line.matches('|').count() == columns + 1 && line.contains("| identical |")
@@ -89,7 +81,6 @@ fn a_board_with_the_hosts_bits_is_verified_and_reported() {
     );
 }
 
-/// A report that cannot be written is refused before the port is opened.
 #[test]
 fn a_report_that_cannot_be_written_is_refused_at_the_start() {
     let mut command = program("verify-board");
@@ -100,7 +91,6 @@ fn a_report_that_cannot_be_written_is_refused_at_the_start() {
     assert!(output.stderr.starts_with(error), "{output:?}");
 }
 
-/// Missing tools are refused before the board has computed anything.
 #[test]
 fn missing_tools_are_refused_before_the_measurements() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -122,7 +112,6 @@ fn missing_tools_are_refused_before_the_measurements() {
     assert_eq!(samples, 0, "{output:?}");
 }
 
-/// A board answers, but sends no frames of a scene: after 20 s that is an error.
 #[test]
 fn a_board_that_only_answers_is_an_error() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -147,8 +136,6 @@ fn a_board_that_only_answers_is_an_error() {
     assert!(output.stderr.trim_end().ends_with(error), "{output:?}");
 }
 
-/// A board sends nothing: each line on stderr is there only once, the likely reason and, after
-/// 20 s, the error.
 #[test]
 fn a_silent_board_is_reported_once() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -170,11 +157,9 @@ fn a_silent_board_is_reported_once() {
     );
 }
 
-/// The time after which a button without an effect is released.
 const PATIENCE: Duration = Duration::from_secs(10);
 
-/// Returns the person's reaction to a question: the button to tap, and the line to enter; `None`
-/// ends the input.
+/// Returns the button to tap and the line to enter; `None` ends the input.
 fn person(question: &str) -> Option<(Option<Key>, Option<&'static str>)> {
     if question.contains("the panel shows a swinging pendulum") {
         return Some((None, Some("n\n")));
@@ -191,11 +176,9 @@ fn person(question: &str) -> Option<(Option<Key>, Option<&'static str>)> {
     })
 }
 
-/// The cycles of a frame that ended 15 ms before it began, by a clock that is read wrongly: 86 s at
-/// 50 MHz.
+/// A frame that ended 15 ms before it began, by a clock that is read wrongly: 86 s at 50 MHz.
 const OVERLONG: u32 = 0_u32.wrapping_sub(750_000);
 
-/// A restart that the board reports.
 const HANG: Restarted = Restarted {
     cause: Some(Cause::Hang),
     scene: SceneName::Upright,
@@ -206,17 +189,13 @@ const HANG: Restarted = Restarted {
     cfsr: 0,
 };
 
-/// Changes the messages of an emulated board into the messages of a chip with a cycle counter. No
-/// emulated board has such a counter.
-///
-/// The chip counts 100 cycles for a step of the second arithmetic, and none for the others. An
-/// arithmetic without a count is measured once, and the others until 256 steps are made. One bit is flipped in the second motion of the second arithmetic, and
-/// one in a scene. In another scene a frame takes longer than the run, and the board reports a
-/// restart after it.
+/// Changes the messages of an emulated board, which has no cycle counter, into those of a chip with
+/// one. It counts 100 cycles for a step of the second arithmetic, and none for the others. One bit
+/// is flipped in a motion of it, and one in a scene. In another scene a frame takes longer than the
+/// run, and the board reports a restart after it.
 fn counting(mut message: ToHost, measurements: &mut u32) -> Vec<u8> {
     match &mut message {
         ToHost::Answer(_, Answer::Measured { steps, cycles }) => {
-            // The second arithmetic is measured 16 times.
             let is_counted = (1..17).contains(measurements);
             *cycles = if is_counted { *steps * 100 } else { 0 };
             *measurements += 1;
@@ -238,10 +217,8 @@ fn counting(mut message: ToHost, measurements: &mut u32) -> Vec<u8> {
     wire(message)
 }
 
-/// The messages of an emulated board are changed as [`counting`] says, and the questions are
-/// answered as [`person`] says. The exit code is 1, although nobody reads stdout, and there are six
-/// problems: two flipped bits, a frame that is too long, a restart, the panel and a button. The
-/// report has the answers, and the counted cycles next to the estimate.
+/// There are six problems: two flipped bits, a frame that is too long, a restart, the panel and a
+/// button.
 #[test]
 fn the_report_has_differences_answers_of_the_person_and_counted_cycles() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -253,7 +230,6 @@ fn the_report_has_differences_answers_of_the_person_and_counted_cycles() {
         .arg(&bench.name)
         .arg("--report")
         .arg(folder.path().join("asked"));
-    // The reader of stdout has gone.
     let (_, stdout) = pipe().expect("a pipe");
     command
         .stdin(Stdio::piped())
@@ -268,7 +244,6 @@ fn the_report_has_differences_answers_of_the_person_and_counted_cycles() {
     let mut measurements = 0;
     let mut step = 0;
 
-    // Returns the current step of the motion.
     let mut carry = |bench: &mut Bench| {
         bench.carry(|message| {
             step = message.frame().map_or(step, |frame| frame.report.step);
@@ -282,14 +257,12 @@ fn the_report_has_differences_answers_of_the_person_and_counted_cycles() {
             break status;
         }
         let Ok(line) = lines.try_recv() else { continue };
-        // The person answers each question, and may press a button.
         if let Some((key, entered)) = person(&line) {
             if let Some(key) = key {
                 let before = carry(&mut bench);
                 let since = Instant::now();
                 bench.machine.set_key(key, true).expect("buttons");
 
-                // The button is held until the motion starts again.
                 while carry(&mut bench) >= before && since.elapsed() < PATIENCE {}
                 bench.machine.set_key(key, false).expect("buttons");
             }
@@ -305,7 +278,6 @@ fn the_report_has_differences_answers_of_the_person_and_counted_cycles() {
     assert_eq!(status.code(), Some(1), "{said:#?}");
     let markdown = fs::read_to_string(folder.path().join("asked.md")).expect("the report");
 
-    // The flipped bits are reported.
     let sample = format!("problem: {}, chaotic: step 160: w2 is 0x", ON_BOARDS[1]);
     assert!(
         said.iter().any(|line| line.starts_with(&sample)),
@@ -319,14 +291,12 @@ fn the_report_has_differences_answers_of_the_person_and_counted_cycles() {
         "{said:#?}"
     );
 
-    // The frame that takes too long is reported.
     let too_long = "problem: upright: a frame of 85884.35 ms in a run of ";
     assert!(
         said.iter().any(|line| line.starts_with(too_long)),
         "no {too_long:?} in {said:#?}"
     );
 
-    // The restart is reported when it happens, and is a problem.
     let restart = "the board has restarted after a hang in scene upright, step 20 (in a row: 1)";
     assert!(said.iter().any(|line| line.ends_with(restart)), "{said:#?}");
     assert!(
@@ -338,13 +308,11 @@ fn the_report_has_differences_answers_of_the_person_and_counted_cycles() {
         "{markdown}"
     );
 
-    // In addition to the panel and a button.
     assert!(
         markdown.contains("problems: 6") && markdown.contains("step 160: w2 is 0x"),
         "{markdown}"
     );
 
-    // The answers of the person.
     let panel = "the panel shows a swinging pendulum, upright and sharp".to_owned();
     let button = |key: &Key| {
         format!(
@@ -370,7 +338,6 @@ fn the_report_has_differences_answers_of_the_person_and_counted_cycles() {
         );
     }
 
-    // The counted cycles are next to the estimate.
     let counted = format!("| {} | 100.0 | ", ON_BOARDS[1]);
     let estimate: Option<f64> = markdown
         .split_once(&counted)
@@ -388,7 +355,6 @@ fn the_report_has_differences_answers_of_the_person_and_counted_cycles() {
     );
 }
 
-/// Returns the lines as they arrive.
 fn lines(source: impl BufRead + Send + 'static) -> Receiver<String> {
     let (line, lines) = channel();
     spawn(move || {

@@ -20,13 +20,10 @@ use firmware::scenes::{Report, SceneName};
 
 use crate::bench::{Plain, app, frames, messages, of, starting_with, wire};
 
-/// The largest difference of the relative energy errors of a frame by the directions in 64 bits and
-/// by the angles: some roundings of `f64`. The rounded numbers are three times as large as the
+/// In relative energy: some roundings of `f64`. The rounded numbers are three times as large as the
 /// energy above rest, and the difference is relative to that energy.
 const ENERGY_SHOWN: f64 = 1e-14;
 
-/// Runs the application to each of the clock's readings (ticks) in turn, until it has caught up
-/// with each.
 fn run(clock: impl IntoIterator<Item = u32>) -> Plain {
     let mut app = app();
     for now in clock {
@@ -35,11 +32,8 @@ fn run(clock: impl IntoIterator<Item = u32>) -> Plain {
     app
 }
 
-/// The report and the canvas after 600 ticks are equal, bit by bit, whether each tick was drawn,
-/// every third, an uneven selection, or only the ticks that a late board must draw.
 #[test]
 fn the_state_and_the_picture_after_n_ticks_are_the_same_at_any_frame_rate() {
-    // The clock advances by one tick, by three, unevenly, or by all ticks at once.
     let steady = run(1..=600);
     for (name, other) in [
         ("every third", run((1..=200).map(|n| 3 * n))),
@@ -54,15 +48,12 @@ fn the_state_and_the_picture_after_n_ticks_are_the_same_at_any_frame_rate() {
     }
 }
 
-/// Every frame in 10 s of the page is sent, numbered without a gap, with the state of the kernel's
-/// own motion by the initial method, and its energy error to within `ENERGY_SHOWN`.
 #[test]
 fn every_frame_carries_the_kernels_state_bit_identically() {
     let app = run(1..=600);
     let frames = frames(&app.link);
     assert_eq!(frames.len(), 600);
 
-    // The expected motion by the kernel alone.
     let parameters = Parameters::equal_rods(1.0, ROD, GRAVITY);
     let pendulum = Pendulum::new(&parameters).expect("good");
     let start_angle = radians(120.0);
@@ -100,8 +91,8 @@ fn every_frame_carries_the_kernels_state_bit_identically() {
             (1.0, start_angle as f32)
         );
 
-        // This is the error of the computed motion. The state in the frame, rounded to f32, has an
-        // error of some 1e-7.
+        // The state in the frame, rounded to f32, has an error of some 1e-7; this is the error of
+        // the computed motion.
         let error = (pendulum.energy(&expected.state()) - start_energy) / scale;
         assert!(
             (f64::from(energy_error) - error).abs() <= ENERGY_SHOWN,
@@ -110,15 +101,10 @@ fn every_frame_carries_the_kernels_state_bit_identically() {
     }
 }
 
-/// The application is late twice: the clock has advanced by 31 ticks, and later to tick 90. A frame
-/// is then drawn after at most [`MOST_TICKS_PER_FRAME`] ticks; every tick is computed, and each
-/// frame has the exact count of the ticks that were not drawn. The log has at most one line a
-/// second about them, so here a single one.
 #[test]
 fn dropped_pictures_are_counted_and_no_tick_is_lost() {
     let mut app = app();
     let mut events = Vec::new();
-    // The clock has advanced by more ticks than one frame may take.
     let late = MOST_TICKS_PER_FRAME * 2 + 1;
     assert!(!app.run_to(late, |event| events.push(event)));
     assert!(!app.run_to(late, |event| events.push(event)));
@@ -130,10 +116,8 @@ fn dropped_pictures_are_counted_and_no_tick_is_lost() {
     assert_eq!(events, [], "at most one line a second");
     assert!(app.run_to(late + 2, |event| events.push(event)));
 
-    // Then the clock remains at tick 90 until the scene has caught up.
     while !app.run_to(90, |event| events.push(event)) {}
 
-    // Each frame shows a later step, and counts the dropped ones.
     let frames = frames(&app.link);
     let shown: Vec<_> = frames
         .iter()
@@ -162,9 +146,6 @@ fn dropped_pictures_are_counted_and_no_tick_is_lost() {
     );
 }
 
-/// A board that draws every second tick at speed 4 halves the speed every two seconds, down to full
-/// speed; one that misses a tick in every 20 keeps it. No frame advances the scene by more than
-/// [`MOST_TICKS_PER_FRAME`] ticks, however late it is.
 #[test]
 fn a_speed_that_the_board_cannot_keep_is_lowered() {
     for (drops_every, expected) in [(1, &[2.0, 1.0][..]), (20, &[])] {
@@ -195,14 +176,11 @@ fn a_speed_that_the_board_cannot_keep_is_lowered() {
     }
 }
 
-/// One more received byte is lost in each of 120 ticks, and one message is damaged. The log has a
-/// line of each kind a second, with the growth and the total.
 #[test]
 fn losses_are_logged_once_a_second_and_sent_with_each_frame() {
     let mut app = app();
     let mut events = Vec::new();
 
-    // In each tick one more byte is lost, and a message damaged.
     for tick in 1..=2 * TICK_RATE {
         app.run_to(tick, |_| ());
         app.note_lost(tick, |event| events.push((tick, event)));
@@ -225,7 +203,6 @@ fn losses_are_logged_once_a_second_and_sent_with_each_frame() {
         .map(|event| (tick, event))
     };
     assert_eq!(events, [TICK_RATE, 2 * TICK_RATE].map(logged).concat());
-    // The frames have the count of each tick.
     let counts = frames(&app.link)
         .iter()
         .map(|frame| frame.lost)
@@ -233,8 +210,7 @@ fn losses_are_logged_once_a_second_and_sent_with_each_frame() {
     assert_eq!(counts, (0..2 * TICK_RATE).collect::<Vec<_>>());
 }
 
-/// The counts of ticks, of frames and of dropped frames begin again at 0 after 828 days, without
-/// any other effect.
+/// The counts begin again at 0 after 828 days.
 #[test]
 fn counts_wrap_unnoticed() {
     const AHEAD: u32 = 60;
@@ -252,11 +228,9 @@ fn counts_wrap_unnoticed() {
         )
     };
 
-    // The same frames, with counts that wrap in the middle of the run.
     let begin = 0_u32.wrapping_sub(AHEAD / 3);
     let plain = run(0);
     let wrapped = run(begin);
-    // Pictures and frames are equal except for the counts.
     assert_eq!((&plain.1, plain.0.len()), (&wrapped.1, wrapped.0.len()));
     for (mut plain, wrapped) in plain.0.into_iter().zip(wrapped.0) {
         plain.sequence = plain.sequence.wrapping_add(begin);
@@ -279,7 +253,7 @@ fn counts_wrap_unnoticed() {
     );
 }
 
-/// The energy error of a pendulum that hangs at rest, whose scale is zero, is 0 and not NaN.
+/// The scale of the error of a pendulum at rest is zero.
 #[test]
 fn hanging_at_rest_has_no_energy_error() {
     let mut app = starting_with(Settings::equal_rods(1.0, 0.0));
@@ -293,7 +267,6 @@ fn hanging_at_rest_has_no_energy_error() {
     );
 }
 
-/// Presses up at tick 10 and select at tick 50 for three ticks each.
 #[derive(Default)]
 struct Script(u32);
 
@@ -308,8 +281,7 @@ impl Buttons for Script {
     }
 }
 
-/// The buttons of [`Script`] start the scene twice: up at the tick at which it counts as pressed,
-/// with the next larger mass ratio; select when it is released, with the same settings.
+/// Up counts when it is pressed, select when it is released.
 #[test]
 fn buttons_restart_with_the_new_settings() {
     let mut app = of(NoDisplay, Vec::new(), Script::default());
@@ -321,7 +293,6 @@ fn buttons_restart_with_the_new_settings() {
             }
         });
     }
-    // Up changes the mass ratio at once. Select restarts when it is released.
     let heavier = Settings::equal_rods(1.25, 120.0);
     assert_eq!(
         started,
@@ -333,7 +304,6 @@ fn buttons_restart_with_the_new_settings() {
     assert_eq!((frames[53].report.step, frames[53].sequence), (1, 53));
 }
 
-/// A panel that fails in the first frame, and from the tenth to the nineteenth.
 #[derive(Default)]
 struct BrokenPanel(u32);
 
@@ -350,7 +320,6 @@ impl Display for BrokenPanel {
     }
 }
 
-/// A panel that reports its controller and the number of frames.
 #[derive(Default)]
 struct ReportingPanel(u8);
 
@@ -370,8 +339,6 @@ impl Display for ReportingPanel {
     }
 }
 
-/// The status contains the report of the panel after seven frames, and the scene that the player
-/// shows.
 #[test]
 fn status_contains_the_scene_and_the_panel_report() {
     let mut app = of(ReportingPanel::default(), Vec::new(), NoButtons);
@@ -382,11 +349,9 @@ fn status_contains_the_scene_and_the_panel_report() {
     assert_eq!((status.scene, status.panel.shown), (SceneName::Page, 7));
 }
 
-/// What [`BusyPanel`] reports as its number of frames while it is dimmed, and while it is bright.
 const DIM: u8 = 1;
 const BRIGHT: u8 = 2;
 
-/// A panel with options. Its frame waits for the bus for a number of calls.
 #[derive(Default)]
 struct BusyPanel {
     chosen: PanelOptions,
@@ -425,8 +390,6 @@ impl Display for BusyPanel {
     }
 }
 
-/// Each choice for the panel reaches it, is answered as done, and leaves the other choices. The
-/// status contains them.
 #[test]
 fn the_options_of_the_panel_are_chosen_by_commands() {
     let mut app = of(BusyPanel::default(), Vec::new(), NoButtons);
@@ -448,8 +411,7 @@ fn the_options_of_the_panel_are_chosen_by_commands() {
     assert_eq!(app.status().panel.chosen, chosen);
 }
 
-/// The panel is dimmed after ten minutes without a key, and is bright again after a command that a
-/// key sends, but not after a question.
+/// A question is not a key.
 #[test]
 fn the_panel_is_dimmed_after_ten_minutes_without_a_key() {
     let mut app = of(BusyPanel::default(), Vec::new(), NoButtons);
@@ -467,7 +429,6 @@ fn the_panel_is_dimmed_after_ten_minutes_without_a_key() {
     }
 }
 
-/// The application reports a frame that waits for the bus, until its transfer has begun.
 #[test]
 fn a_frame_waits_for_the_bus_until_it_is_free() {
     let panel = BusyPanel {
@@ -478,13 +439,10 @@ fn a_frame_waits_for_the_bus_until_it_is_free() {
     assert_eq!([(); 3].map(|()| app.catch_up()), [true, true, false]);
 }
 
-/// The stopwatch is read before the scene, after the picture, and after the frame is sent. Each
-/// frame reports the cycles of its own scene and picture, and all cycles of the frame before.
 #[test]
 fn frames_report_the_cycles_of_the_stopwatch() {
     static READINGS: AtomicU32 = AtomicU32::new(0);
     let mut app = app();
-    // Each reading is a cycle later than the one before.
     app.instruments.stopwatch = || READINGS.fetch_add(1, Ordering::Relaxed);
     for now in 1..=3 {
         app.run_to(now, |_| ());
@@ -496,7 +454,7 @@ fn frames_report_the_cycles_of_the_stopwatch() {
     assert_eq!(cycles, [(1, 0), (1, 2), (1, 2)]);
 }
 
-/// A link that fails for the writes from 5 to 9, each time after half of the bytes.
+/// Each failed write has sent half of the bytes.
 #[derive(Default)]
 struct Faulty {
     bytes: Vec<u8>,
@@ -529,9 +487,6 @@ impl Write for Faulty {
     }
 }
 
-/// Frames 1 and 10 to 19 fail on the panel, and writes 5 to 9 on the link, in the middle of a
-/// frame. Each failure is one event at its beginning. Only the five frames that were cut are
-/// missing on the link.
 #[test]
 fn a_failing_panel_or_link_is_reported_once_and_only_cut_frames_are_lost() {
     let mut app = of(BrokenPanel::default(), Faulty::default(), NoButtons);
@@ -545,8 +500,7 @@ fn a_failing_panel_or_link_is_reported_once_and_only_cut_frames_are_lost() {
         [(1, Event::Panel("bus")), link, (10, Event::Panel("bus"))]
     );
 
-    // The writes are frames 0 to 3 (1 to 4), and frames 4 to 8, which are interrupted in the middle
-    // (5 to 9). Then all is well.
+    // The writes 5 to 9 are frames 4 to 8.
     let mut inbox = Inbox::default();
     let frames = app
         .link
@@ -557,7 +511,6 @@ fn a_failing_panel_or_link_is_reported_once_and_only_cut_frames_are_lost() {
     assert_eq!(inbox.counts.damaged, 5);
 }
 
-/// Returns the directions of the rods from the reported state.
 fn directions(app: &Plain) -> RodDirections {
     let State { a1, a2, .. } = app.player.report.state;
     [a1, a2].map(|angle| angle.sin_cos().into())
@@ -571,8 +524,6 @@ fn view(app: &Plain) -> View {
     )
 }
 
-/// The pixel at the position of either bob, computed from the reported state, is white (grey 15) in
-/// every frame of 20 s of the page.
 #[test]
 fn bobs_are_drawn_where_the_state_puts_them() {
     let mut app = app();
@@ -585,14 +536,11 @@ fn bobs_are_drawn_where_the_state_puts_them() {
     }
 }
 
-/// In a minute of a motion with a light bob 2 that starts nearly straight up, neither bob comes to
-/// the boxes of the labels in the corners.
 #[test]
 fn the_motion_never_touches_the_labels() {
     let mut app = starting_with(Settings::equal_rods(0.0125, -179.0));
 
-    // The boxes of the three labels at their longest: 8 and 7 characters of 5 pixels, and a time
-    // below 1000 s.
+    // The labels at their longest.
     let boxes = [(0..40, 0..8), (0..35, 56..64), (93..128, 0..8)];
     for now in 1..=3600 {
         app.run_to(now, |_| ());
@@ -611,8 +559,6 @@ fn the_motion_never_touches_the_labels() {
     }
 }
 
-/// The scene continues after a restart, and the host receives the reason of the restart. A scene
-/// that cannot be played is dropped.
 #[test]
 fn a_restart_resumes_the_scene_if_it_can_be_played() {
     let before = Show::new(SceneName::Butterfly, &Settings::equal_rods(2.5, 90.0)).expect("good");
@@ -628,8 +574,6 @@ fn a_restart_resumes_the_scene_if_it_can_be_played() {
         scene,
         step: 5,
     };
-    // A scene that has ended the board too often, a pendulum without mass, and a speed that is no
-    // number.
     let given_up = Restarted {
         restarts: MOST_RESTARTS + 1,
         ..end
@@ -657,7 +601,6 @@ fn a_restart_resumes_the_scene_if_it_can_be_played() {
         assert_eq!(app.player.status(), if resumed { played } else { first });
         assert_eq!(messages(&app.link), [ToHost::Restarted(end)]);
 
-        // The report may not have been received, so every question is answered.
         for _ in 0..2 {
             app.receive(wire(5, Command::AskRestart), |_| ());
             let answer = ToHost::Answer(5, Answer::Restart(Some(end)));

@@ -10,26 +10,22 @@ use firmware::graphics::{Canvas, Disc, Format, Glyph, Palette, SUBPIXELS, Spot, 
 
 use crate::bench::{blank, places};
 
-/// The tolerance of a disc's centre of light, pixels. Greys are rounded down to one of 16, which
-/// shifts it by far less.
+/// In pixels. Greys are rounded down to one of 16, which shifts the light by far less.
 const CENTRE_TOLERANCE: f64 = 0.1;
 
-/// The tolerance of a grey. A ramp one pixel wide differs from the covered share of a pixel, at
-/// most by 3.3 of 15 greys, at the end of a narrow stroke.
+/// A ramp one pixel wide differs from the covered share of a pixel, at most by 3.3 of 15 greys, at
+/// the end of a narrow stroke.
 const GREY_TOLERANCE: f64 = 3.5;
 
-/// Returns the grey of a pixel, 0 to 15.
 fn grey(canvas: &Canvas, x: i32, y: i32) -> u8 {
     canvas.get(x, y).expect("inside")
 }
 
-/// Returns the sum of all greys.
 fn light(canvas: &Canvas) -> u32 {
     places().map(|(x, y)| u32::from(grey(canvas, x, y))).sum()
 }
 
-/// Ink is in the high nibble of a pixel, and the foreground in the low one. The foreground covers
-/// the ink, also with black, until it is cleared. A row knows the cells that have changed.
+/// Ink is in the high nibble of a pixel, and the foreground in the low one.
 #[test]
 fn the_foreground_covers_the_ink_until_it_is_cleared() {
     let mut canvas = blank();
@@ -56,8 +52,6 @@ fn the_foreground_covers_the_ink_until_it_is_cleared() {
     assert_eq!(canvas.changed(1), 1 << 15);
 }
 
-/// Pixels and characters outside of the canvas, however far, change nothing and do not panic. A
-/// character across an edge is clipped.
 #[test]
 fn pixels_outside_are_not_drawn() {
     let mut canvas = ink();
@@ -72,7 +66,6 @@ fn pixels_outside_are_not_drawn() {
     }
     assert_eq!(canvas, blank());
 
-    // Characters that cross an edge are clipped.
     canvas.stamp(-2, -6, u64::MAX, 9);
     canvas.stamp(width - 3, height - 1, u64::MAX, 9);
     assert_eq!(
@@ -81,8 +74,6 @@ fn pixels_outside_are_not_drawn() {
     );
 }
 
-/// Every printable ASCII character except the space and the dot, and three others, have the pixels
-/// of the 5 x 8 font of embedded-graphics.
 #[test]
 fn glyphs_equal_the_font_of_the_library() {
     for character in (' '..='~')
@@ -94,7 +85,6 @@ fn glyphs_equal_the_font_of_the_library() {
             glyph_mapping,
             ..
         } = FONT_5X8;
-        // The font is a picture of 16 characters in a row.
         let index = glyph_mapping.index(character) as i32;
         let corner = Point::new(index % 16 * 5, index / 16 * 8);
         let Glyph { width, rows } = glyph(character);
@@ -110,7 +100,6 @@ fn glyphs_equal_the_font_of_the_library() {
     }
 }
 
-/// A character without a glyph of its own is shown as a question mark.
 #[test]
 fn an_unknown_character_is_a_question_mark() {
     for unknown in ['\n', 'é', '漢'] {
@@ -118,14 +107,13 @@ fn an_unknown_character_is_a_question_mark() {
     }
 }
 
-/// Returns a blank canvas whose ink is drawn on. Unlike the foreground it has all 16 greys.
+/// Unlike the foreground, ink has all 16 greys.
 fn ink() -> Canvas<'static> {
     let mut canvas = blank();
     canvas.on_ink();
     canvas
 }
 
-/// Returns a disc at (x, y) with a radius of `pixels`, without a gap.
 fn disc(x: f32, y: f32, pixels: f32) -> Disc {
     Disc {
         centre: Spot::at(x, y, Format::OLED),
@@ -134,8 +122,6 @@ fn disc(x: f32, y: f32, pixels: f32) -> Disc {
     }
 }
 
-/// A disc of radius 0 still has a soft edge. In the middle of a pixel it has about half of the
-/// brightness, and no other pixel is lit.
 #[test]
 fn a_disc_of_radius_0_is_a_faint_pixel() {
     let mut canvas = ink();
@@ -143,7 +129,6 @@ fn a_disc_of_radius_0_is_a_faint_pixel() {
     assert_eq!((grey(&canvas, 10, 10), light(&canvas)), (8, 8));
 }
 
-/// The centre of light of 1,000 discs is at the place given, to [`CENTRE_TOLERANCE`].
 #[test]
 fn a_disc_is_where_it_was_put() {
     let mut canvas = ink();
@@ -153,7 +138,6 @@ fn a_disc_is_where_it_was_put() {
         let y = 10.0 + (number as f32 * 0.713) % 40.0;
         disc(x, y, 1.5).draw(&mut canvas, u8::MAX);
 
-        // The centre of the light.
         let mut sum = [0.0; 3];
         for (column, row) in places() {
             let grey = f64::from(grey(&canvas, column, row));
@@ -176,8 +160,6 @@ fn a_disc_is_where_it_was_put() {
     }
 }
 
-/// Strokes and discs at infinite, huge and undefined places, with the largest and smallest sizes,
-/// do not panic.
 #[test]
 fn a_stroke_of_any_numbers_is_safe() {
     let numbers = [
@@ -198,7 +180,6 @@ fn a_stroke_of_any_numbers_is_safe() {
         .flat_map(|&x| numbers.map(|y| Spot::at(x, y, Format::OLED)))
         .collect();
 
-    // Every pair of places, with the largest sizes.
     let mut canvas = ink();
     for &from in &spots {
         for &to in &spots {
@@ -224,8 +205,7 @@ fn a_stroke_of_any_numbers_is_safe() {
     }
 }
 
-/// Returns the share of a pixel's area, 0 to 1, that is within `radius` pixels of the straight line
-/// between two places, by 16 x 16 points.
+/// Returns the covered share of a pixel's area, by 16 x 16 points.
 fn covered((x, y): (i32, i32), [from, to]: [(f64, f64); 2], radius: f64) -> f64 {
     let along = (to.0 - from.0, to.1 - from.1);
     let squared = along.0 * along.0 + along.1 * along.1;
@@ -236,7 +216,6 @@ fn covered((x, y): (i32, i32), [from, to]: [(f64, f64); 2], radius: f64) -> f64 
     if is_far(x, from.0, to.0) || is_far(y, from.1, to.1) {
         return 0.0;
     }
-    // The point of the line that is next to the place.
     let is_inside = |(x, y): (f64, f64)| {
         let part = ((x - from.0) * along.0 + (y - from.1) * along.1) / squared;
         let part = if squared > 0.0 {
@@ -255,16 +234,12 @@ fn covered((x, y): (i32, i32), [from, to]: [(f64, f64); 2], radius: f64) -> f64 
     points.filter(|point| is_inside(*point)).count() as f64 / 256.0
 }
 
-/// Every pixel of 100 strokes has the grey of the share of its area that the stroke covers, to
-/// [`GREY_TOLERANCE`]. The strokes are as wide as those of scenes and wider, of any direction and
-/// length, and some cross the edges.
 #[test]
 fn a_pixel_is_as_bright_as_it_is_covered() {
     let mut rng = Rng::with_seed(7);
     let mut greatest = 0.0_f64;
 
     for _ in 0..100 {
-        // Long strokes, and short ones of some pixels.
         let mut place = || (rng.f64() * 160.0 - 16.0, rng.f64() * 80.0 - 8.0);
         let from = place();
         let mut to = place();
@@ -284,7 +259,6 @@ fn a_pixel_is_as_bright_as_it_is_covered() {
         }
         .lighten(&mut canvas, u8::MAX);
 
-        // Each pixel is compared with the covered share of its area.
         for (x, y) in places() {
             let exact =
                 15.0 * covered((x, y), [from, to], f64::from(radius) / f64::from(SUBPIXELS));
@@ -300,8 +274,6 @@ fn a_pixel_is_as_bright_as_it_is_covered() {
     println!("off by {greatest} greys at most");
 }
 
-/// On a white canvas a disc of radius 3 is surrounded by a black ring of 2 pixels. Every pixel has
-/// the grey of its covered share, to [`GREY_TOLERANCE`].
 #[test]
 fn a_gap_sets_a_disc_off() {
     let mut canvas = ink();
@@ -314,7 +286,6 @@ fn a_gap_sets_a_disc_off() {
     }
     .draw(&mut canvas, u8::MAX);
 
-    // The disc is surrounded by a ring of black.
     for (column, row) in places() {
         let share = |radius: f64| covered((column, row), [(x.into(), y.into()); 2], radius);
         let exact = 15.0 * (1.0 - share(5.0) + share(3.0));
@@ -327,8 +298,6 @@ fn a_gap_sets_a_disc_off() {
     }
 }
 
-/// A stroke of a subpixel in both directions looks like a disc: its greys differ by 1 at most from
-/// a stroke without a length.
 #[test]
 fn the_shortest_stroke_looks_like_a_disc() {
     let from = Spot::at(10.0, 10.0, Format::OLED);
@@ -353,7 +322,6 @@ fn the_shortest_stroke_looks_like_a_disc() {
     }
 }
 
-/// The total light of a stroke equals its area, to 4 %, at each of 360 degrees.
 #[test]
 fn a_line_is_as_bright_in_every_direction() {
     let length = 20.0;

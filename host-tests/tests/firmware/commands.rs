@@ -23,20 +23,17 @@ use firmware::scenes::SceneName;
 
 use crate::bench::{Plain, answers, app, blank, frames, starting_with, wire};
 
-/// Returns the answer to a command.
 fn answer(app: &mut Plain, command: Command) -> Answer {
     app.receive(wire(9, command), |_| ());
     last(app, 9)
 }
 
-/// Returns the last answer, which must be to this request.
 fn last(app: &Plain, request: u16) -> Answer {
     let (to, answer) = answers(&app.link).pop().expect("an answer");
     assert_eq!(to, request);
     answer
 }
 
-/// Returns the answer to [`Command::Ask`].
 fn status(app: &mut Plain) -> Status {
     let Answer::Status(status) = answer(app, Command::Ask) else {
         panic!("no status")
@@ -50,7 +47,6 @@ fn set(field: Field, value: f64) -> Command {
 
 #[test]
 fn every_parameter_is_set_exactly() {
-    // A field, its value, and the setting that it changes.
     for (field, value, read, expected) in [
         (
             Field::M1,
@@ -80,8 +76,6 @@ fn every_parameter_is_set_exactly() {
     }
 }
 
-/// Nine commands arrive at the same time. All are executed in order, as if the board's own buttons
-/// were pressed, and answered.
 #[test]
 fn every_command_of_a_burst_is_obeyed() {
     let mut app = app();
@@ -99,7 +93,7 @@ fn every_command_of_a_burst_is_obeyed() {
         right,
         right,
     ];
-    // The application may take only some of the bytes, so offer the rest until none are left.
+    // The application may take only some of the bytes.
     let mut bytes = commands
         .iter()
         .flat_map(|&command| wire(1, command))
@@ -108,7 +102,6 @@ fn every_command_of_a_burst_is_obeyed() {
     while !bytes.as_slice().is_empty() {
         app.receive(bytes.by_ref(), |_| ());
     }
-    // Five turns right and one left are four; heavier and lighter cancel.
     assert_eq!(
         app.player.settings,
         before.turned(1).turned(1).turned(1).turned(1)
@@ -116,9 +109,6 @@ fn every_command_of_a_burst_is_obeyed() {
     assert_eq!(answers(&app.link), [(1, Answer::Done); 9]);
 }
 
-/// `Identify` is answered with the identity, and with size and CRC of the program. `Measure` is
-/// refused before a motion is requested. Later it is answered with the cycles of the largest number
-/// of steps, and the motion has no further sample.
 #[test]
 fn a_board_reports_its_identity_and_the_cycles_of_steps() {
     let mut app = app();
@@ -139,7 +129,6 @@ fn a_board_reports_its_identity_and_the_cycles_of_steps() {
         ..Instruments::default()
     };
 
-    // The CRC is the check value of CRC-32/ISO-HDLC.
     let expected = Identity {
         image: 0xCBF4_3926,
         image_bytes: 9,
@@ -150,7 +139,6 @@ fn a_board_reports_its_identity_and_the_cycles_of_steps() {
         Answer::Identity(expected)
     );
 
-    // The steps of a motion are measured after it was requested.
     let measure = Command::Measure(u32::MAX);
     assert_eq!(
         answer(&mut app, measure),
@@ -179,14 +167,10 @@ fn a_board_reports_its_identity_and_the_cycles_of_steps() {
     assert!(!app.work(|_| ()), "and no sample follows");
 }
 
-/// Values that are not finite, out of range, or impossible for a pendulum, fields that cannot be
-/// set, and a method that scenes are not drawn by: each is refused with its field, and afterwards
-/// status and report are as before.
 #[test]
 fn a_bad_command_is_answered_with_the_field_and_changes_nothing() {
     let mut app = app();
     app.run_to(30, |_| ());
-    // Each refused command names its field.
     let before = (status(&mut app), app.player.report);
 
     for (message, field) in [
@@ -220,8 +204,8 @@ fn a_bad_command_is_answered_with_the_field_and_changes_nothing() {
     assert_eq!((status(&mut app), app.player.report), before);
 }
 
-/// A start angle beyond straight up that the program has set stays when another field is set, also
-/// the angle of the other rod. Only the angle that a command sets is checked.
+/// Only the angle that a command sets is checked, so an angle beyond straight up that the program
+/// has set stays.
 #[test]
 fn an_angle_beyond_straight_up_does_not_refuse_another_field() {
     let degrees = [200.0, -181.0];
@@ -250,15 +234,12 @@ fn an_angle_beyond_straight_up_does_not_refuse_another_field() {
     }
 }
 
-/// The error of a method that scenes are not drawn by is about the method, not about the step.
 #[test]
 fn an_error_about_the_method_names_the_method() {
     let method = Method::Rk4F64;
     assert_eq!(Field::from(Error::NotDrawn { method }), Field::Method);
 }
 
-/// The panel shows the reason in words, the frames report that the scene has stopped, and the log
-/// reports it once. Other settings start the scene again.
 #[test]
 fn a_motion_that_is_too_fast_is_stopped_and_reported() {
     let mut app = app();
@@ -274,7 +255,6 @@ fn a_motion_that_is_too_fast_is_stopped_and_reported() {
         [Event::Started(SceneName::Page, settings), Event::Stopped]
     );
 
-    // Every frame reports the stop, without a step.
     let frames = frames(&app.link);
     assert_eq!(frames.len(), 10);
     for frame in frames {
@@ -305,7 +285,6 @@ fn a_motion_that_is_too_fast_is_stopped_and_reported() {
     assert_eq!(app.player.report.step, 1);
 }
 
-/// The user's pause outlasts a stop. When the scene can be computed again, it is still paused.
 #[test]
 fn a_pause_outlasts_a_stop() {
     let mut app = app();
@@ -322,8 +301,6 @@ fn a_pause_outlasts_a_stop() {
     }
 }
 
-/// The command of the button pauses a scene that plays, and lets a paused one continue. It drops
-/// the ticks that are left of a step.
 #[test]
 fn pause_is_toggled() {
     let mut app = app();
@@ -336,7 +313,6 @@ fn pause_is_toggled() {
     }
 }
 
-/// A board whose panel has no options refuses each of them.
 #[test]
 fn options_of_the_panel_are_refused_without_such_a_panel() {
     for command in [
@@ -353,12 +329,9 @@ fn options_of_the_panel_are_refused_without_such_a_panel() {
     }
 }
 
-/// The commands have an unknown kind, too few or too many fields, an invalid scene, setting or
-/// method, or no number. Each is refused with the field `Message` and its number, or 0.
 #[test]
 fn an_intact_command_that_cannot_be_read_is_answered_too() {
     let mut app = app();
-    // The bytes of a message, and the request number of its answer.
     for (message, request) in [
         (&[0x80, 77, 0xEE][..], 77),
         (&[0x80, 77, 10], 77),
@@ -378,8 +351,6 @@ fn an_intact_command_that_cannot_be_read_is_answered_too() {
     assert!(refusal(Field::Message).ends_with("flash the board again"));
 }
 
-/// The board receives its own messages on a looped-back link, and messages of every kind but the
-/// one of commands. It neither answers nor logs them.
 #[test]
 fn a_message_that_is_no_command_is_not_answered() {
     let mut app = app();
@@ -393,7 +364,6 @@ fn a_message_that_is_no_command_is_not_answered() {
         );
     }
 
-    // A message of any kind but the one of commands (0x80) is ignored, too.
     for kind in (0..=u8::MAX).filter(|kind| *kind != 0x80) {
         app.receive(
             frame(&[kind, 7, 0, 1], &mut [0; MAX_WIRE]).iter().copied(),
@@ -403,8 +373,6 @@ fn a_message_that_is_no_command_is_not_answered() {
     assert!(app.link.is_empty());
 }
 
-/// One call takes at most as many bytes as the receive queue holds, of a million bytes that end no
-/// message.
 #[test]
 fn an_endless_message_takes_one_queue_at_most() {
     let mut taken = 0;
@@ -415,8 +383,6 @@ fn an_endless_message_takes_one_queue_at_most() {
     assert_eq!(taken, RECEIVE_QUEUE);
 }
 
-/// Each scene of the catalogue does not advance while it is paused, advances by two ticks with
-/// `Step(2)`, begins again at 0 with `Restart`, and then repeats its reports.
 #[test]
 fn every_scene_can_be_chosen_restarts_pauses_and_steps() {
     for &name in SceneName::ALL {
@@ -429,7 +395,6 @@ fn every_scene_can_be_chosen_restarts_pauses_and_steps() {
             }
             app.player.report
         };
-        // Each command is followed by some ticks. A paused scene does not advance.
         app.receive(wire(1, Command::Choose(name)), |_| ());
         assert_eq!(app.player.name, name);
         let one = run(&mut app, 1);
@@ -456,14 +421,9 @@ fn every_scene_can_be_chosen_restarts_pauses_and_steps() {
     }
 }
 
-/// The first plan of the page lasts for more than 19 s, is an event of the log, and the frames name
-/// its method. After a change to a small swing there is no plan until a cheaper one is found for
-/// the whole planned time; the motion takes it over, and its horizon grows. A scene without a
-/// motion has no plan.
 #[test]
 fn the_plan_is_found_reported_and_followed() {
     let mut app = app();
-    // The planner's state by the link.
     let plan_report = |app: &mut Plain| {
         let Answer::Planned(planned) = answer(app, Command::AskPlan) else {
             panic!("no plan")
@@ -486,7 +446,6 @@ fn the_plan_is_found_reported_and_followed() {
     assert_eq!(events, [Event::Motion(PlannerEvent::Found(Ok(plan)))]);
     assert_eq!(app.player.report.stepping, Some(plan.stepping()));
 
-    // A small swing needs a cheaper method only.
     let before = plan_report(&mut app).expect("a motion");
     app.receive(wire(1, set(Field::Angle, 20.0)), |_| ());
     assert_eq!(
@@ -515,14 +474,11 @@ fn the_plan_is_found_reported_and_followed() {
         "{report:?}"
     );
 
-    // A scene without a motion has no plan.
     app.receive(wire(1, Command::Choose(SceneName::Frequencies)), |_| ());
     assert!(!app.player.look_ahead());
     assert_eq!(plan_report(&mut app), None);
 }
 
-/// Each method that scenes are drawn by is used when it is requested. When the plan may choose
-/// again, the scene starts with its own initial method.
 #[test]
 fn a_method_can_be_forced() {
     let mut app = app();
@@ -537,20 +493,17 @@ fn a_method_can_be_forced() {
     }
 }
 
-/// A method whose steps are too expensive for a frame of a Cortex-M3, because a short rod swings
-/// fast.
+/// Too expensive for a frame of a Cortex-M3, because a short rod swings fast.
 const COSTLY: Method = Method::Rk4F32DirectionPlain;
 
-/// Returns settings with which [`COSTLY`] is too expensive for a frame.
 fn fast() -> Settings {
     let mut settings = Settings::equal_rods(1.0, 10.0);
     settings.parameters.l2 = 0.002;
     settings
 }
 
-/// With settings that are too fast for it, the requested method is not used. It is remembered in
-/// the status, refused if it is requested again, and used again with other settings. A host that
-/// replays the status has the same scene.
+/// The requested method is remembered in the status, and used again with other settings. A host
+/// that replays the status has the same scene.
 #[test]
 fn a_scene_that_cannot_use_the_requested_method_follows_its_plan() {
     let mut app = app();
@@ -563,7 +516,6 @@ fn a_scene_that_cannot_use_the_requested_method_follows_its_plan() {
     assert_eq!(answer(&mut app, Command::Method(requested)), Answer::Done);
     assert_eq!(shown(&app), requested);
 
-    // A method that is too expensive for this motion is replaced, but remembered.
     play(&mut app, fast());
     assert_ne!(shown(&app), requested, "not possible here");
     assert_eq!(status(&mut app).method, requested, "but not forgotten");
@@ -575,13 +527,11 @@ fn a_scene_that_cannot_use_the_requested_method_follows_its_plan() {
     );
     assert_eq!(status(&mut app), fallen_back, "and changes nothing");
 
-    // The host's replay of the status is the same.
     let mut replayed = self::app();
     assert_eq!(replayed.player.resume(&fallen_back), Ok(()));
     assert_eq!(replayed.player.report, app.player.report);
     assert_eq!(replayed.player.status(), fallen_back);
 
-    // A motion that the method can compute uses it again.
     play(&mut app, Settings::default());
     assert_eq!(
         shown(&app),
@@ -590,8 +540,6 @@ fn a_scene_that_cannot_use_the_requested_method_follows_its_plan() {
     );
 }
 
-/// The commands for the next and the previous scene go through the whole catalogue and back with
-/// each requested method, and none is refused.
 #[test]
 fn every_scene_is_reached_with_any_requested_method() {
     for &method in Method::DRAWN {
@@ -600,7 +548,6 @@ fn every_scene_is_reached_with_any_requested_method() {
             answer(&mut app, Command::Method(Some(method))),
             Answer::Done
         );
-        // Through the catalogue and back.
         for (command, turned) in [
             (
                 Command::NextScene,
@@ -617,8 +564,6 @@ fn every_scene_is_reached_with_any_requested_method() {
     }
 }
 
-/// The plan may replace a method that a scene has fallen back to: the last plan that is found in 30
-/// s is in use at the end.
 #[test]
 fn a_scene_that_has_fallen_back_follows_its_plan() {
     let mut app = app();
@@ -627,7 +572,6 @@ fn a_scene_that_has_fallen_back_follows_its_plan() {
     let initial = app.player.report.stepping;
     let mut found = None;
 
-    // The last plan found in these 30 s must be the one in use.
     for clock in 1..=30 * TICK_RATE {
         app.run_to(clock, |event| {
             if let Event::Motion(PlannerEvent::Found(Ok(plan))) = event {
@@ -643,9 +587,7 @@ fn a_scene_that_has_fallen_back_follows_its_plan() {
     );
 }
 
-/// With a requested method the mass ratio is raised 20 times, to 100. The method that is shown is
-/// always within the budget of a frame; the requested one is replaced where it is not. Many steps
-/// of a slow method would delay the board's frames, and the watchdog would restart it.
+/// Many steps of a slow method would delay the board's frames, and the watchdog would restart it.
 #[test]
 fn a_requested_method_that_a_frame_cannot_pay_for_is_not_used() {
     let mut app = app();
@@ -663,9 +605,7 @@ fn a_requested_method_that_a_frame_cannot_pay_for_is_not_used() {
     assert_eq!(app.player.settings.mass_ratio(), 100.0);
 }
 
-/// All settings are sent at once, because some of them alone may be impossible. The status then has
-/// the scene and all of them. Impossible settings, and unequal rods for `figure-7`, are refused
-/// with their field, and the scene goes on unchanged.
+/// All settings are sent at once, because some of them alone may be impossible.
 #[test]
 fn a_scene_is_played_with_settings_of_the_user() {
     let mut app = app();
@@ -698,7 +638,6 @@ fn a_scene_is_played_with_settings_of_the_user() {
         settings
     };
 
-    // Each impossible setting is refused with its field, and the scene continues.
     for (scene, settings, field) in [
         (
             SceneName::Page,
@@ -746,8 +685,6 @@ fn a_scene_is_played_with_settings_of_the_user() {
     }
 }
 
-/// The scene advances by exactly the speed times 600 ticks in 600 ticks of the clock, at the
-/// smallest, the largest and some speeds between.
 #[test]
 fn speed_is_exact_in_the_long_run() {
     for (speed, ticks) in [
@@ -760,7 +697,6 @@ fn speed_is_exact_in_the_long_run() {
     ] {
         let mut app = app();
         app.receive(wire(1, set(Field::Speed, speed)), |_| ());
-        // No tick of the clock is late at any speed.
         (1..=600).for_each(|clock| assert!(app.run_to(clock, |_| ())));
         assert_eq!(
             app.player.report.time,
@@ -773,9 +709,8 @@ fn speed_is_exact_in_the_long_run() {
 /// The largest number of bytes that arrive in a tick, at 460,800 bits per second.
 const BYTES_PER_TICK: usize = 768;
 
-/// Feeds `bytes` as fast as the link can deliver them, one frame per tick. Checks that every tick
-/// has its intact frame and that the log has at most one line a second, not counting lines about
-/// executed commands. Returns the application.
+/// Feeds `bytes` as fast as the link can deliver them. Every tick has its intact frame, and the log
+/// at most one line a second, without those about executed commands.
 fn flood(mut bytes: impl Iterator<Item = u8>, seconds: u32) -> Plain {
     let mut app = app();
     let mut lines = 0;
@@ -783,7 +718,6 @@ fn flood(mut bytes: impl Iterator<Item = u8>, seconds: u32) -> Plain {
     for clock in 1..=seconds * TICK_RATE {
         assert!(app.run_to(clock, |event| lines +=
             u32::from(!matches!(event, Event::Motion(_)))));
-        // The queue of the boards is as long.
         waiting.extend(bytes.by_ref().take(BYTES_PER_TICK));
         waiting.truncate(RECEIVE_QUEUE); // the queue of the boards
         let is_requested = |event: &Event<_, _>| {
@@ -793,7 +727,6 @@ fn flood(mut bytes: impl Iterator<Item = u8>, seconds: u32) -> Plain {
         app.receive(std::iter::from_fn(|| waiting.pop_front()), &mut counted);
     }
 
-    // Every tick has its frame, and no line of the log was written more than once a second.
     let frames = frames(&app.link);
     assert_eq!(frames.len(), (seconds * TICK_RATE) as usize);
     assert!(
@@ -805,9 +738,6 @@ fn flood(mut bytes: impl Iterator<Item = u8>, seconds: u32) -> Plain {
     app
 }
 
-/// A minute of random bytes, zeros, a message without an end, and halves of a command: no frame is
-/// late or damaged, no command is executed, and the motion equals the motion of an undisturbed
-/// board. Of a flood of restarts at least half of the number that may be executed is answered.
 #[test]
 fn noise_half_commands_and_floods_do_not_disturb_the_stream() {
     let mut rng = Rng::with_seed(5);
@@ -833,7 +763,7 @@ fn noise_half_commands_and_floods_do_not_disturb_the_stream() {
     );
     assert_eq!(answers(&halves.link), []);
 
-    // A flood of valid commands is executed as far as the queue and the ticks allow.
+    // The queue and the ticks limit the number of commands that are executed.
     let restarts = flood(wire(6, Command::Restart).into_iter().cycle(), 10);
     let answered = answers(&restarts.link).len();
     let most = MOST_MESSAGES_PER_TICK * (10 * TICK_RATE) as usize;

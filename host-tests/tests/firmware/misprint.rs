@@ -10,42 +10,35 @@ use firmware::motion::{Energy, Misprinted, Settings};
 use firmware::scenes::SceneName;
 use host_tests::oracle::{textbook, tolerances};
 
-/// The largest distance of the mean energy of the misprinted form at figure 7 from -18.7 J, in J.
-/// The mean is over all 100 s of 32 chaotic runs, whose spread the tolerance covers (measured
-/// -18.3, without the first 5 s -18.9, and falling further in longer runs).
+/// In J, of the mean of 32 chaotic runs, whose spread the tolerance covers (measured -18.3, without
+/// the first 5 s -18.9, and falling further in longer runs).
 const MISPRINT_ENERGY: f64 = 2.0;
 
-/// The largest share, of 1, of the time of the same runs ([`MISPRINT_ENERGY`]) that bob 2 of the
-/// misprinted form may be above the pivot (measured 8.4 %).
+/// The share of the time that bob 2 of the misprinted form may be above the pivot in these runs
+/// (measured 8.4 %).
 const MISPRINT_ABOVE: f64 = 0.12;
 
-/// The error, J, of the displayed energy of the misprinted form at figure 7 in the first 5 s,
-/// compared with the same equations in `f64` and finer steps (measured 0.15, where rod 2 is
-/// fastest).
+/// In J, for the displayed energy in the first 5 s (measured 0.15, where rod 2 is fastest).
 const MISPRINT_SHOWN: f64 = 0.3;
 
-/// Half of the last digit of the energy 62.9 J, in J.
 const LAST_DIGIT_OF_62_9: f64 = 0.05;
 
-/// The largest distance from 0.507 of the share, of 1, of the time that bob 2 of the right form is
-/// above the pivot in these runs ([`FIGURE_7_ENERGY`]), which are chaotic and whose spread it
-/// covers (measured 52.0 %).
+/// The distance from 0.507 of the share of the time that bob 2 of the right form is above the
+/// pivot. It covers the spread of the chaotic runs (measured 52.0 %).
 const FIGURE_7_ABOVE: f64 = 0.03;
 
-/// The error of the displayed energy of a misprinted motion in its first second or until it has
-/// diverged, compared with the same equations in `f64` and finer steps, relative to twice the
-/// largest potential energy. At large mass ratios this motion is wilder than any true motion, and
-/// roundings are visible within a second.
+/// Of the displayed energy of a misprinted motion, relative to twice the largest potential energy.
+/// At large mass ratios this motion is wilder than any true motion, and roundings are visible
+/// within a second.
 const MISPRINT_ENERGY_SHOWN: f64 = 0.1;
 
 const MU: f64 = 2.75;
 const STEPS_PER_SECOND: usize = 512;
 const SECONDS: usize = 100;
-/// The number of runs. Both systems are chaotic, so one run is not meaningful. The starts of the
-/// runs differ by millionths of a radian.
+/// Both systems are chaotic, so one run is not meaningful. The starts differ by millionths of a
+/// radian.
 const RUNS: usize = 32;
 
-/// Returns the pendulum of figure 7 and its start, in `f64`.
 fn figure_7() -> (Pendulum<f64>, State<f64>) {
     let pendulum = Pendulum::new(&Parameters::equal_rods(MU, 1.0, 9.8))
         .expect("figure 7's parameters are valid");
@@ -55,15 +48,14 @@ fn figure_7() -> (Pendulum<f64>, State<f64>) {
     )
 }
 
-/// Returns the mean energy of all runs and its largest error, J, and bob 2's share of the time
-/// above the pivot.
+/// Returns the mean energy of all runs and its largest error, and bob 2's share of the time above
+/// the pivot.
 fn run(rhs: impl Fn(&[f64; 4]) -> [f64; 4]) -> [f64; 3] {
     let (pendulum, figure_7) = figure_7();
     let mut energy = 0.0;
     let mut error = 0.0_f64;
     let mut above = 0.0;
     for run in 0..RUNS {
-        // Each run starts at a slightly larger distance from the first.
         let angle = figure_7.a1 + 1e-6 * run as f64;
         let start = State::at_rest(angle, angle);
         let start_energy = pendulum.energy(&start);
@@ -78,13 +70,10 @@ fn run(rhs: impl Fn(&[f64; 4]) -> [f64; 4]) -> [f64; 3] {
         }
     }
 
-    // Means over all samples of all runs.
     let samples = (RUNS * SECONDS * STEPS_PER_SECOND) as f64;
     [energy / samples, error, above / samples]
 }
 
-/// The mean energy over all runs by the misprinted equations is -18.7 J, although the start has
-/// 62.9 J, and bob 2 is rarely above the pivot. The allowances are in `tolerances`.
 #[test]
 fn printed_form_does_not_keep_the_energy_and_hangs_below_the_pivot_on_average() {
     let [energy, _, above] = run(|z| textbook::misprinted_equal_rods(MU, 1.0, 9.8, z));
@@ -95,8 +84,6 @@ fn printed_form_does_not_keep_the_energy_and_hangs_below_the_pivot_on_average() 
     assert!(above < MISPRINT_ABOVE, "{above} above the pivot");
 }
 
-/// The energy of every run by the kernel's equations stays at 62.9 J, and bob 2 is above the pivot
-/// for 50.7 % of the time, to the allowances in `tolerances`.
 #[test]
 fn right_form_keeps_the_energy_and_spends_half_its_time_above_the_pivot() {
     let (pendulum, start) = figure_7();
@@ -112,8 +99,6 @@ fn right_form_keeps_the_energy_and_spends_half_its_time_above_the_pivot() {
     );
 }
 
-/// Equal rods of 1 m with masses of 1 kg, at a gravity of 9.81 m/s^2, have an energy of -29.43 J at
-/// rest and of 29.43 J straight up. A relative error is a share of the start's energy above rest.
 #[test]
 fn the_energy_of_a_relative_error_is_counted_from_rest() {
     const AT_REST: f32 = -3.0 * 9.81;
@@ -130,8 +115,6 @@ fn the_energy_of_a_relative_error_is_counted_from_rest() {
     }
 }
 
-/// The misprinted equations equal the kernel's derivatives at one state at mass ratio 1, to
-/// rounding.
 #[test]
 fn with_equal_masses_the_printed_form_is_right() {
     let pendulum = Pendulum::new(&Parameters::equal_rods(1.0, 0.5, 9.8)).expect("valid parameters");
@@ -146,9 +129,6 @@ fn with_equal_masses_the_printed_form_is_right() {
     }
 }
 
-/// At any mass ratio and start, the directions keep their lengths and the energy is close to that
-/// of finer steps in `f64`, until the motion is lost. A lost motion does not move any more. Some
-/// are lost within a second, but only at larger mass ratios than that of figure 7.
 #[test]
 fn printed_form_is_shown_only_while_it_is_resolved() {
     const STEPS_PER_TICK: usize = 128;
@@ -165,7 +145,6 @@ fn printed_form_is_shown_only_while_it_is_resolved() {
                 .first_settings()
                 .with_mass_ratio(mass_ratio)
         };
-        // The scene's own motion, and the same equations in `f64` with finer steps.
         let (_, start) = settings.start().expect("good settings");
         let mut shown = Misprinted::new(&settings.parameters.cast(), &start);
         let parameters = settings.parameters.cast::<f64>();
@@ -181,7 +160,6 @@ fn printed_form_is_shown_only_while_it_is_resolved() {
                 z = rk4::step(rhs, &z, 1.0 / (TICK_RATE as usize * STEPS_PER_TICK) as f64);
             }
             let case = format!("{mass_ratio}, {degrees} degrees, tick {tick}");
-            // A motion that has ended does not move any more.
             if shown.is_lost() {
                 let directions = shown.directions();
                 shown.tick();
@@ -193,7 +171,6 @@ fn printed_form_is_shown_only_while_it_is_resolved() {
                 assert!((sin.hypot(cos) - 1.0).abs() < 1e-3, "{case}: {sin} {cos}");
             }
 
-            // Until then its energy is close to the exact one.
             let off = (f64::from(shown.energy()) - pendulum.energy(&State::from(z))).abs();
             assert!(
                 off <= MISPRINT_ENERGY_SHOWN * span,
@@ -206,9 +183,6 @@ fn printed_form_is_shown_only_while_it_is_resolved() {
     assert!(lost.len() > 10 && least > MU, "{lost:?}");
 }
 
-/// A motion without gravity whose rods turn together is lost in the first tick if they turn by more
-/// than 0.5 rad in the shortest step, 1/480 s, in either direction, and only then. At mass ratio 24
-/// a motion in which only rod 2 turns is lost beyond 1/sqrt(1 + 24) = 0.2 rad.
 #[test]
 fn a_motion_is_lost_when_its_rods_turn_too_far_in_the_shortest_step() {
     const STEPS: f32 = 480.0;
@@ -236,9 +210,7 @@ fn a_motion_is_lost_when_its_rods_turn_too_far_in_the_shortest_step() {
     }
 }
 
-/// A step must resolve the motion at both of its ends. In these motions without gravity the
-/// shortest step does so at its start only, so that they are lost in the first tick and do not
-/// move.
+/// In these motions without gravity the shortest step resolves the motion at its start only.
 #[test]
 fn a_step_that_is_resolved_only_at_its_start_is_not_taken() {
     for [a1, a2, p1, p2] in [[3.0, 2.3, 52.0, 135.0], [2.2, 1.5, 72.0, 147.0]] {
@@ -251,8 +223,8 @@ fn a_step_that_is_resolved_only_at_its_start_is_not_taken() {
     }
 }
 
-/// A lost motion stays at its last step, also if a longer step from there would seem resolved. Of
-/// 9 million lost motions from random starts these are the only ones of this kind.
+/// A longer step from the last one would seem resolved. Of 9 million lost motions from random
+/// starts these are the only ones of this kind.
 #[test]
 fn a_lost_motion_tries_no_other_step() {
     for (mass_ratio, [a1, a2, p1, p2]) in [
@@ -275,7 +247,6 @@ fn a_lost_motion_tries_no_other_step() {
     }
 }
 
-/// The misprinted motion from the default start of the scene is never lost in ten minutes.
 #[test]
 fn figure_7_shows_the_printed_form_for_ten_minutes() {
     let settings = SceneName::Figure7.first_settings();
@@ -287,13 +258,11 @@ fn figure_7_shows_the_printed_form_for_ten_minutes() {
     }
 }
 
-/// A rod of a diverged motion is not drawn, and words replace its energy.
 #[test]
 fn a_diverged_motion_is_not_drawn() {
     let settings = SceneName::Figure7.first_settings().with_mass_ratio(100.0);
     let mut show = Show::new(SceneName::Figure7, &settings).expect("good settings");
     (0..TICK_RATE).for_each(|_| show.tick());
-    // The words at their place, over the rest of the frame.
     let mut expected = blank();
     let label = "book too fast";
     text::write(&mut expected, label, Anchor::Right(0));
@@ -303,13 +272,10 @@ fn a_diverged_motion_is_not_drawn() {
         assert_eq!(frame.get(x, y), expected.get(x, y), "{x}, {y}");
     }
 
-    // The pivot of the right pendulum is drawn with its rods.
     let (x, y) = Place::halves(Format::OLED)[1].pivot;
     assert_eq!(frame.get(x as i32, y as i32), Some(0));
 }
 
-/// The misprinted motion of figure 7 in plain `f32` is compared with the same equations in `f64`
-/// and finer steps: both bobs to half a pixel for 10 s, and the energy for 5 s.
 #[test]
 fn the_printed_form_is_shown_right_to_half_a_pixel_for_10_s() {
     const STEPS_PER_TICK: usize = 64;
@@ -324,7 +290,6 @@ fn the_printed_form_is_shown_right_to_half_a_pixel_for_10_s() {
 
     for tick in 1..=10 * TICK_RATE {
         shown.tick();
-        // The same equations in finer steps.
         for _ in 0..STEPS_PER_TICK {
             let rhs = |z: &[f64; 4]| textbook::misprinted_equal_rods(MU, 1.0, 9.8, z);
             z = rk4::step(rhs, &z, 1.0 / (TICK_RATE as usize * STEPS_PER_TICK) as f64);

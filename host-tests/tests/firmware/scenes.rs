@@ -21,8 +21,7 @@ use host_tests::oracle::snapshot;
 
 use crate::bench::{app, blank, places, wire};
 
-/// The relative error of the height, pixels, for which a scene of beats is planned. The expected
-/// height follows from the length of its largest swing, 21.5 pixels, a number of three digits.
+/// In pixels, for a height of three digits.
 const SHOWN_HEIGHT: f32 = 1e-3;
 
 const LINE: i32 = Format::OLED.line();
@@ -30,44 +29,37 @@ const LOWEST: i32 = Format::OLED.lowest();
 const WIDTH: i32 = Format::OLED.right();
 const HEIGHT: i32 = Format::OLED.bottom();
 
-/// The resources of a board without a floating-point unit.
 const RESOURCES: Resources = Resources {
     processor: PROCESSOR,
     method: None,
     format: Format::OLED,
 };
 
-/// The ticks after which a picture of each scene is taken: one second, when everything is visible,
-/// and four.
+/// When everything is visible, and later.
 const PICTURED: [u32; 2] = [60, 240];
 
-/// Returns the scene at its start with its own initial settings.
 fn scene(name: SceneName) -> Show {
     Show::new(name, &name.first_settings())
         .unwrap_or_else(|error| panic!("{}: {error}", name.name()))
 }
 
-/// Returns the scene after some ticks.
 fn after(name: SceneName, ticks: u32) -> Show {
     let mut scene = scene(name);
     (0..ticks).for_each(|_| scene.tick());
     scene
 }
 
-/// Returns the picture as text.
 fn picture(screenshot: &Screenshot) -> String {
     snapshot::text(&screenshot.greys, WIDTH as usize)
 }
 
-/// Returns true if the frame has each pixel of this text.
 fn has_text(frame: &Screenshot, words: &str, anchor: Anchor) -> bool {
     let mut canvas = blank();
     text::write(&mut canvas, words, anchor);
     places().all(|(x, y)| canvas.get(x, y) == Some(0) || canvas.get(x, y) == frame.get(x, y))
 }
 
-/// After one and after four seconds, every pixel of each scene equals the stored picture. Each is
-/// drawn over the frame of another scene, and nothing of that frame may remain.
+/// Each scene is drawn over the frame of another one, of which nothing may remain.
 #[test]
 fn every_scene_equals_its_snapshot() {
     let check = |name: SceneName, ticks| {
@@ -87,8 +79,7 @@ fn every_scene_equals_its_snapshot() {
     assert!(differences.is_empty(), "{}", differences.join("\n"));
 }
 
-/// The page's trail is the path of bob 2 by the reported states. Its brightness depends on its age
-/// where it has not been visited since, and there is no other trail.
+/// The brightness depends on the age where the path has not been visited since.
 #[test]
 fn the_trail_is_the_path_and_fades_with_age() {
     const FRESH: f64 = 11.0; // of 15 greys: 184/17 rounded
@@ -110,7 +101,6 @@ fn the_trail_is_the_path_and_fades_with_age() {
         ));
     }
 
-    // The path from the newest place to the oldest.
     path.reverse();
     let distance = |at: (f32, f32), [from, to]: [(f32, f32); 2]| {
         let along = (to.0 - from.0, to.1 - from.1);
@@ -129,7 +119,6 @@ fn the_trail_is_the_path_and_fades_with_age() {
             .windows(2)
             .map(|piece| distance(middle, [piece[0], piece[1]]))
             .collect();
-        // A pixel that the trail covers completely, and a pixel that it touches.
         let covers = |far: &f32| *far < TRAIL_HALF_WIDTH - 0.5;
         let touches = |far: &f32| *far < TRAIL_HALF_WIDTH + 0.6;
         let youngest = far.iter().position(touches);
@@ -137,7 +126,6 @@ fn the_trail_is_the_path_and_fades_with_age() {
         if youngest.is_none() {
             assert_eq!(grey, 0.0, "no bob was ever at {x}, {y}");
         }
-        // Only pixels that were not visited again have the brightness of their age.
         if let (Some(touched), Some(age)) = (youngest, far.iter().position(covers))
             && age < touched + 5
         {
@@ -153,7 +141,6 @@ fn the_trail_is_the_path_and_fades_with_age() {
     assert!(compared > 50, "{compared} pixels compared");
 }
 
-/// Two bars below the top right corner mark a pause. They appear only then.
 #[test]
 fn a_pause_is_marked_and_only_a_pause() -> Result<(), String> {
     let mut app = app();
@@ -162,7 +149,6 @@ fn a_pause_is_marked_and_only_a_pause() -> Result<(), String> {
         app.run_to(clock, |_| ());
         Screenshot::from(&app.player.canvas)
     };
-    // The expected picture without a mark is of a scene that was never paused.
     let plain = |ticks| after(SceneName::Page, ticks).frame();
     assert!(pause(false, 1) == plain(1), "a moving scene has no mark");
     snapshot::check("page-paused", &picture(&pause(true, 2)))?;
@@ -173,10 +159,9 @@ fn a_pause_is_marked_and_only_a_pause() -> Result<(), String> {
     Ok(())
 }
 
-/// The scenes `beats` follow a plan in the scale of their picture: either rod of the planned
-/// pendulum is as long as a radian on the frame. As the figure shows angle 1 larger by sqrt((1 +
-/// mu)/mu), that is times the root of the mean square of this factor and 1. The scene `frequencies`
-/// has no height.
+/// Either rod of the planned pendulum is as long as a radian on the frame. As the figure shows
+/// angle 1 larger by sqrt((1 + mu)/mu), that is times the root of the mean square of this factor
+/// and 1.
 #[test]
 fn the_planned_height_is_that_of_the_shown_figure() {
     let start = |scene: &mut AnyScene, name: SceneName| {
@@ -186,7 +171,6 @@ fn the_planned_height_is_that_of_the_shown_figure() {
     };
     let mut scene = AnyScene::empty();
 
-    // The scenes of two modes.
     for name in [
         SceneName::Beats3To2,
         SceneName::Beats2To1,
@@ -200,7 +184,6 @@ fn the_planned_height_is_that_of_the_shown_figure() {
             name.name()
         );
 
-        // Its largest swing, 12 degrees, is 21.5 pixels long.
         let mass_ratio = name.first_settings().mass_ratio();
         let gain = (0.5 * (1.0 + (1.0 + mass_ratio) / mass_ratio)).sqrt();
         let expected = 4.0 * 21.5 / 12.0_f32.to_radians() * gain;
@@ -214,9 +197,6 @@ fn the_planned_height_is_that_of_the_shown_figure() {
     assert_eq!(start(&mut scene, SceneName::Frequencies), None);
 }
 
-/// The map as each class of processors computes it, on any host: in `f32` if the processor has a
-/// unit for it. The map is complete within 5 s on the chip of 168 MHz, and within a minute on the
-/// other classes.
 #[test]
 fn the_map_of_flips_is_computed_as_on_the_boards_processor_and_in_time() {
     let settings = Settings::default();
@@ -229,7 +209,6 @@ fn the_map_of_flips_is_computed_as_on_the_boards_processor_and_in_time() {
         (Screenshot::from(&canvas), map.is_done())
     };
 
-    // The two arithmetics give different maps.
     assert!(
         map(STM32F405, false, 60) != map(STM32F405, true, 60),
         "they differ"
@@ -241,7 +220,6 @@ fn the_map_of_flips_is_computed_as_on_the_boards_processor_and_in_time() {
         (CORTEX_M0PLUS, false, 60),
     ];
 
-    // The frame after a second, and the time of the complete map.
     for (processor, in_float, seconds) in processors {
         let mut show = Show::on(processor, SceneName::Flips, &settings).expect("a map");
         (0..60).for_each(|_| show.tick());
@@ -256,7 +234,6 @@ fn the_map_of_flips_is_computed_as_on_the_boards_processor_and_in_time() {
     }
 }
 
-/// A scene without a motion continues when the start angle is turned; every other one restarts.
 #[test]
 fn only_scenes_with_angles_restart_when_an_angle_is_turned() {
     for &name in SceneName::ALL {
@@ -269,7 +246,6 @@ fn only_scenes_with_angles_restart_when_an_angle_is_turned() {
     }
 }
 
-/// Two scenes of the catalogue are figures without start angles, and three show the linear motion.
 #[test]
 fn the_catalogue_has_two_figures_and_three_linear_motions() {
     let select = |is: fn(SceneName) -> bool| -> Vec<_> {
@@ -290,7 +266,6 @@ fn the_catalogue_has_two_figures_and_three_linear_motions() {
     );
 }
 
-/// The next and the previous scene are the neighbours in the catalogue, which is cyclic.
 #[test]
 fn next_and_previous_scene_are_neighbours_in_the_catalogue() {
     let all = SceneName::ALL;
@@ -300,7 +275,6 @@ fn next_and_previous_scene_are_neighbours_in_the_catalogue() {
     }
 }
 
-/// A motion that is too fast for every method stops its scene from the start.
 #[test]
 fn scenes_of_a_motion_that_is_too_fast_do_not_move() {
     for name in [
@@ -319,7 +293,6 @@ fn scenes_of_a_motion_that_is_too_fast_do_not_move() {
     }
 }
 
-/// Two different start angles of the page are written in two lines.
 #[test]
 fn the_page_has_a_label_for_each_angle() {
     let settings = Settings {
@@ -333,7 +306,6 @@ fn the_page_has_a_label_for_each_angle() {
     assert!(has_text(&frame, "α₂ -45°", Anchor::Left(LOWEST)));
 }
 
-/// A pendulum that hangs at rest has the amplitude 0.
 #[test]
 fn a_pendulum_at_rest_has_no_amplitude() {
     let first_row = 10; // of the label at the upper scale bar of `small-1`
@@ -354,22 +326,19 @@ fn a_pendulum_at_rest_has_no_amplitude() {
     }
 }
 
-/// The mass ratio 6 widens the plot of frequencies to 7.5. Its scale then has steps of 2: lines at
-/// 0, 2 and 4, the last one in the topmost row of the plot.
+/// The mass ratio 6 widens the plot to 7.5, whose scale has steps of 2.
 #[test]
 fn the_scale_of_frequencies_has_a_line_at_each_step() {
     let frame = Show::new(SceneName::Frequencies, &Settings::equal_rods(6.0, 0.0))
         .expect("a figure")
         .frame();
-    // A column in which each dotted line has a dot.
     let lines: Vec<_> = (10..54)
         .filter(|&row| frame.get(18, row) == Some(plot::AXIS_GREY))
         .collect();
     assert_eq!(lines, [10, 31, 53]);
 }
 
-/// Returns the first and the last row with ink in the newest column, for the plots of angle 1 and
-/// angle 2 of small oscillations. A plot without ink gives the row of its axis.
+/// A plot without ink gives the row of its axis.
 fn newest_rows(frame: &Screenshot) -> [(i32, i32); 2] {
     [(9..32, 20), (32..55, 43)].map(|(rows, axis)| {
         let is_ink = |y: &i32| frame.get(WIDTH - 1, *y) != Some(0);
@@ -379,8 +348,7 @@ fn newest_rows(frame: &Screenshot) -> [(i32, i32); 2] {
     })
 }
 
-/// In the newest column of small oscillations the ink reaches as far above the axis as below it, to
-/// 2 pixels, also if the pendulum starts in motion. A curve outside its envelope would break this.
+/// A curve outside its envelope would break the symmetry.
 #[test]
 fn curves_of_small_oscillations_stay_within_their_envelopes() {
     let settings = Settings {
@@ -399,8 +367,6 @@ fn curves_of_small_oscillations_stay_within_their_envelopes() {
     }
 }
 
-/// The envelopes of small oscillations have the same heights, to a pixel, after ten million
-/// exchanges of energy, 107 days.
 #[test]
 fn envelopes_of_small_oscillations_are_accurate_for_months() {
     let name = SceneName::SmallEqual;
@@ -413,7 +379,6 @@ fn envelopes_of_small_oscillations_are_accurate_for_months() {
         scene
             .start(name, &name.first_settings(), &RESOURCES)
             .expect("a scene");
-        // The curve in the newest column begins where the column before it ended.
         let last = (exchanges * exchange).round() as u64;
         scene.tick(last - 1, &mut ink);
         scene.tick(last, &mut ink);
@@ -429,8 +394,6 @@ fn envelopes_of_small_oscillations_are_accurate_for_months() {
     }
 }
 
-/// Where an angle of the exact motion passes straight up, the figure of two modes has no line from
-/// one edge to the other: in each tick its ink grows only near the end of the curve.
 #[test]
 fn beats_have_no_line_across_the_figure() {
     let settings = Settings {
@@ -450,7 +413,6 @@ fn beats_have_no_line_across_the_figure() {
         let a2_before = scene.report(ticks).state.a2;
         scene.tick(ticks, &mut ink);
         has_passed_upright |= a2_before > 2.0 && scene.report(ticks).state.a2 < -2.0;
-        // The figure of the exact motion is in the right half.
         let new: Vec<_> = places()
             .filter(|&(x, y)| x >= WIDTH / 2 && ink.get(x, y) > before.get(x, y))
             .collect();
@@ -464,8 +426,7 @@ fn beats_have_no_line_across_the_figure() {
     assert!(has_passed_upright);
 }
 
-/// The separation of the two pendulums is at most 15.3 e-foldings, because whole turns are not
-/// counted. The curve of the first 15 s therefore has no pixel above row 12.
+/// Whole turns are not counted, so that the separation is at most 15.3 e-foldings.
 #[test]
 fn the_separation_of_the_butterfly_does_not_count_whole_turns() {
     let frame = after(SceneName::Butterfly, 15 * TICK_RATE).frame();
@@ -475,7 +436,6 @@ fn the_separation_of_the_butterfly_does_not_count_whole_turns() {
     assert_eq!(above, []);
 }
 
-/// Text in each corner leaves the outermost pixels of the frame black.
 #[test]
 fn text_keeps_off_the_edges() {
     for anchor in [
@@ -491,10 +451,7 @@ fn text_keeps_off_the_edges() {
             "compensated",
             "ω₂ 0.765",
         ] {
-            let near = |&(x, y): &(i32, i32)| {
-                x < 1 || y < 1 || x > WIDTH - 2 || y > HEIGHT - 2
-                // One pixel at each edge stays free.
-            };
+            let near = |&(x, y): &(i32, i32)| x < 1 || y < 1 || x > WIDTH - 2 || y > HEIGHT - 2;
             let mut canvas = blank();
             text::write(&mut canvas, text, anchor);
             let ink: Vec<_> = places()
@@ -508,7 +465,6 @@ fn text_keeps_off_the_edges() {
     }
 }
 
-/// The figure of a player that has not played anything: axes without a curve.
 #[test]
 fn the_empty_figure_can_be_drawn() {
     let scene = AnyScene::empty();
@@ -517,21 +473,16 @@ fn the_empty_figure_can_be_drawn() {
     assert_ne!(canvas, blank());
 }
 
-/// The step of a scale is the next larger one of 1, 2 and 5 times a power of ten, within 0.01 and
-/// 100.
 #[test]
 fn scales_have_round_steps() {
     let steps = [0.001, 0.3, 1.0, 1.1, 3.9, 30.0, 1e9].map(plot::scale_step);
     assert_eq!(steps, [0.01, 0.5, 1.0, 2.0, 5.0, 50.0, 100.0]);
 }
 
-/// A motion that no plan can change is verified while it is played: within a minute a plan is
-/// found, for the method that is shown.
 #[test]
 fn the_butterfly_is_planned_while_it_is_played() {
     let mut show = Show::new(SceneName::Butterfly, &Settings::equal_rods(1.0, 20.0))
         .expect("a scene of the catalogue");
-    // The first plan that is found within a minute.
     let found = (0..60 * TICK_RATE).find_map(|_| {
         show.tick();
         show.news.iter().find_map(|(_, news)| {
@@ -548,7 +499,6 @@ fn the_butterfly_is_planned_while_it_is_played() {
     );
 }
 
-/// The picture of each scene on each colour panel, after four seconds, has the stored hash.
 #[test]
 fn every_scene_has_the_golden_colours_on_every_panel() -> Result<(), String> {
     let mut lines = String::from("panel,scene,picture\n");
@@ -570,7 +520,7 @@ fn every_scene_has_the_golden_colours_on_every_panel() -> Result<(), String> {
     snapshot::check_lines("host-tests/golden/colours.csv", &lines)
 }
 
-/// Writes a sheet of all scenes for each format into the target folder, to be looked at.
+/// Writes a sheet of all scenes for each format, to be looked at.
 #[test]
 #[ignore = "writes pictures"]
 fn sheets_of_all_formats() {

@@ -12,17 +12,14 @@ use firmware::scenes::SceneName;
 use rayon::prelude::*;
 use reference::taylor::Reference;
 
-/// The duration of each scene, ticks.
 const TICKS: u32 = 20 * TICK_RATE;
 
-/// The largest relative energy error of a frame. A motion in steps that do not resolve it gains or
-/// loses several percent within seconds.
+/// Relative. A motion in steps that do not resolve it gains or loses several percent within
+/// seconds.
 const ENERGY: f32 = 1e-2;
 
-/// The number of settings between two lines of progress. The long tests run for an hour.
 const CHUNK: usize = 500;
 
-/// A scene, with a setting that keys reach from its start.
 #[derive(Clone, Copy, Debug)]
 struct Case {
     name: SceneName,
@@ -30,8 +27,6 @@ struct Case {
 }
 
 impl Case {
-    /// Returns the scene with this mass ratio, and with both rods turned so that rod 2 starts at
-    /// `degrees`.
     fn new(name: SceneName, mass_ratio: f64, degrees: f64) -> Self {
         let first = name.first_settings();
         let turn = degrees - first.degrees[1];
@@ -45,16 +40,13 @@ impl Case {
     }
 }
 
-/// The numbers of the scene on a class of processors.
 struct Shown {
     processor: Processor,
-    /// The angles in each frame.
     angles: Vec<[f64; 2]>,
-    /// The latest time, s, until which any frame claimed to be accurate.
+    /// The latest time that any frame claimed to be accurate, s.
     claimed: f64,
-    /// The number of frames that claimed nothing, because planning had not verified them yet.
+    /// The frames before planning had verified anything.
     undecided: u32,
-    /// The relative energy error of each frame.
     energy_errors: Vec<f32>,
     states: Vec<PlayState>,
 }
@@ -77,7 +69,6 @@ impl Shown {
             let report = show.report();
             shown.states.push(show.player.state());
             shown.angles.push(report.state.angles().map(f64::from));
-            // The largest claims and errors of all frames.
             shown.claimed = shown.claimed.max(report.horizon.verified().into());
             shown.energy_errors.push(report.energy_error.abs());
             match report.horizon {
@@ -98,12 +89,10 @@ impl Shown {
         self.states.contains(&PlayState::Stopped)
     }
 
-    /// Returns true if the energy of a frame has changed too much.
     fn has_lost_energy(&self) -> bool {
         self.energy_errors.iter().any(|error| *error > ENERGY)
     }
 
-    /// Returns the number of frames that claimed to be accurate.
     fn claimed_frames(&self) -> usize {
         if self.is_too_fast() {
             return 0;
@@ -113,10 +102,8 @@ impl Shown {
     }
 }
 
-/// Returns the distance between the drawn and the exact picture, pixels.
 fn distance(case: &Case, exact: [f64; 2], shown: [f64; 2]) -> f64 {
     let parameters = case.settings.parameters.cast::<f64>();
-    // The errors of the angles, without whole turns.
     let off = [0, 1].map(|rod| {
         let off = shown[rod] - exact[rod];
         off - std::f64::consts::TAU * (off / std::f64::consts::TAU).round()
@@ -136,7 +123,6 @@ fn distance(case: &Case, exact: [f64; 2], shown: [f64; 2]) -> f64 {
             let [across, up] = in_modes(&parameters, off);
             figure_scale(&case.settings) * across.hypot(up)
         }
-        // The other scenes draw the bobs.
         name => {
             let reach = match name {
                 SceneName::Page => REACH,
@@ -151,7 +137,6 @@ fn distance(case: &Case, exact: [f64; 2], shown: [f64; 2]) -> f64 {
     }
 }
 
-/// Returns the shares of the slow mode and of the fast mode in angle 2.
 fn in_modes(parameters: &Parameters<f64>, [a1, a2]: [f64; 2]) -> [f64; 2] {
     let modes = Modes::new(parameters).expect("good settings");
     let fast = modes.fast.shape;
@@ -160,8 +145,7 @@ fn in_modes(parameters: &Parameters<f64>, [a1, a2]: [f64; 2]) -> [f64; 2] {
     [across, a2 - across]
 }
 
-/// Returns the pixels per radian of the curves of small oscillations: the largest angle that the
-/// amplitudes of both modes allow is drawn 10.5 pixels high.
+/// The largest angle that the amplitudes of both modes allow is drawn 10.5 pixels high.
 fn curve_scale(settings: &Settings) -> f64 {
     let modes = Modes::new(&settings.parameters.cast()).expect("good settings");
     let motion = SmallOscillations::<f32>::new(modes, &settings.motion().cast());
@@ -170,8 +154,7 @@ fn curve_scale(settings: &Settings) -> f64 {
     10.5 / greatest
 }
 
-/// Returns the pixels of a radian in the figures of `beats`. The mode with the larger swing is 21.5
-/// pixels large.
+/// The mode with the larger swing is 21.5 pixels large.
 fn figure_scale(settings: &Settings) -> f64 {
     let modes = Modes::new(&settings.parameters.cast()).expect("good settings");
     let linear = SmallOscillations::<f64>::new(modes, &settings.motion().cast());
@@ -181,33 +164,27 @@ fn figure_scale(settings: &Settings) -> f64 {
     21.5 / fast.max(slow)
 }
 
-/// A fault of a scene on a class of processors.
 #[derive(Debug)]
 #[expect(dead_code, reason = "the numbers are printed")]
 enum Fault {
-    /// The scene stopped.
     Stopped,
     Energy,
-    /// A frame at this time, s, has an error of more than half a pixel, but a later horizon was
-    /// claimed.
+    /// A frame at this time is off by more than half a pixel, but a later horizon was claimed.
     Violation {
         wrong: f64,
         claimed: f64,
     },
 }
 
-/// Plays a scene on all classes of processors and returns its faults.
 fn faults(case: &Case) -> Vec<(Case, u8, Fault)> {
     let shown: Vec<_> = PROCESSORS
         .iter()
         .map(|&processor| Shown::new(case, processor))
         .collect();
 
-    // The exact motion, as long as any processor claims accurate frames.
     let frames = shown.iter().map(Shown::claimed_frames).max().unwrap_or(0);
     let mut start = case.settings.motion();
     if case.name == SceneName::Upright {
-        // The scene shows `f32`.
         [start.a1, start.a2] = start.angles().map(|angle| f64::from(angle as f32));
     }
     let mut reference = Reference::new(&case.settings.parameters, &start);
@@ -241,7 +218,6 @@ fn faults(case: &Case) -> Vec<(Case, u8, Fault)> {
             distance(case, *exact, *angles) > f64::from(HALF_PIXEL)
         };
 
-        // The first claimed frame that is wrong.
         let claimed = shown.claimed_frames();
         let wrong = exact
             .iter()
@@ -259,7 +235,6 @@ fn faults(case: &Case) -> Vec<(Case, u8, Fault)> {
     faults
 }
 
-/// Plays all `cases`. None may have a fault.
 fn sweep(cases: &[Case]) {
     let mut found = Vec::new();
     for (chunk, some) in cases.chunks(CHUNK).enumerate() {
@@ -274,7 +249,6 @@ fn sweep(cases: &[Case]) {
     assert!(found.is_empty());
 }
 
-/// The scenes, other than the page, that show a motion from two angles.
 const OTHERS: [SceneName; 10] = [
     SceneName::Figure7,
     SceneName::Butterfly,
@@ -288,12 +262,8 @@ const OTHERS: [SceneName; 10] = [
     SceneName::SmallHeavy,
 ];
 
-/// A selection of the settings: regular and chaotic, light and heavy, near straight up, and for the
-/// other scenes their initial settings and those at their limits, for 20 s on every class of
-/// processors.
-///
-/// No scene may stop, except `upright` at once. No frame may be off by more than half a pixel
-/// before the horizon that was claimed, and no energy by more than 1 %, except that of `upright`.
+/// A selection of the settings: regular and chaotic, light and heavy, near straight up, and at the
+/// limits of the other scenes.
 #[test]
 fn settings_of_all_kinds_are_shown_as_claimed() {
     let mut cases = Vec::new();
@@ -308,7 +278,6 @@ fn settings_of_all_kinds_are_shown_as_claimed() {
             name,
             settings: first,
         });
-        // Combinations that are at the limits of the scene.
         for (ratio, degrees) in [(0.01, 120.0), (100.0, -15.0), (100.0, 179.0)] {
             cases.push(Case::new(name, ratio, degrees));
         }
@@ -334,14 +303,12 @@ fn settings_of_all_kinds_are_shown_as_claimed() {
     sweep(&cases);
 }
 
-/// Returns every 15th degree, and the neighbours of 0 and 180.
 fn some_degrees() -> Vec<f64> {
     let every_15th = (-12..=12).map(|turn| 15.0 * f64::from(turn));
     every_15th.chain([-179.0, -1.0, 1.0, 179.0]).collect()
 }
 
-/// Has the conditions of `settings_of_all_kinds_are_shown_as_claimed`, for every scene with a
-/// motion, all mass ratios of the buttons and every 15th degree.
+/// Every scene with a motion.
 #[test]
 #[ignore = "an hour"]
 fn all_mass_ratios_and_every_15th_degree_are_shown_as_claimed() {
@@ -361,8 +328,7 @@ fn all_mass_ratios_and_every_15th_degree_are_shown_as_claimed() {
     sweep(&cases);
 }
 
-/// Has the conditions of `all_mass_ratios_and_every_15th_degree_are_shown_as_claimed`, for the page
-/// alone, all mass ratios of the buttons and every degree.
+/// The page alone.
 #[test]
 #[ignore = "an hour"]
 fn all_mass_ratios_and_degrees_of_the_page_are_shown_as_claimed() {
@@ -375,8 +341,6 @@ fn all_mass_ratios_and_degrees_of_the_page_are_shown_as_claimed() {
     sweep(&cases);
 }
 
-/// The scenes without a motion accept every mass ratio of the buttons, and play for half a second
-/// without stopping, on every class of processors.
 #[test]
 fn maps_and_frequencies_take_every_mass_ratio() {
     for name in [SceneName::Frequencies, SceneName::Flips] {

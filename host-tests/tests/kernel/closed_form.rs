@@ -10,54 +10,42 @@ use firmware::scenes::SceneName;
 use host_tests::oracle::tolerances::CLOSED_FORM;
 use reference::taylor::Reference;
 
-/// The error of the angles of the linear motion in a scene of beats after the period in which its
-/// figure closes, relative to their amplitude: 3.7e-5. It is computed for five periods of the fast
-/// mode, the most in any of these scenes.
+/// The error of the angles after the period in which a figure closes, relative to their amplitude:
+/// 3.7e-5. It is computed for five periods of the fast mode, the most in any of these scenes.
 const CLOSED: f64 = 5.0 * f32::EPSILON as f64 * 2.0 * 5.0 * std::f64::consts::TAU;
 
-/// The smallest distance of the figure of the exact motion from its start after the period of
-/// [`CLOSED`], pixels: more than the width of a line.
+/// In pixels: more than the width of a line.
 const NOT_CLOSED: f64 = 1.0;
 
-/// The scenes of figures 3 to 5, with their mass ratios.
 const SMALL: [(SceneName, f64); 3] = [
     (SceneName::SmallLight, 0.2),
     (SceneName::SmallEqual, 1.0),
     (SceneName::SmallHeavy, 5.0),
 ];
-/// The scenes of closed figures, with the mass ratio and the number of periods of the fast mode
-/// until the figure closes. It is a whole number of periods of the slow mode, too.
+/// The mass ratio and the number of periods of the fast mode until the figure closes.
 const BEATS: [(SceneName, f64, f64); 4] = [
     (SceneName::Beats3To2, 25.0 / 144.0, 3.0),
     (SceneName::Beats2To1, 9.0 / 16.0, 2.0),
     (SceneName::Beats5To2, 441.0 / 400.0, 5.0),
     (SceneName::Beats3To1, 16.0 / 9.0, 3.0),
 ];
-/// The amplitude of angle 2 in each mode of these scenes, rad.
 const AMPLITUDE: f64 = 12.0 / 180.0 * PI;
-/// The distance that the figures reach for this amplitude, pixels.
 const REACH: f64 = 21.5;
-/// The centres of the linear and of the exact figure, pixels.
 const MIDDLES: [[f64; 2]; 2] = [[23.5, 32.5], [104.5, 32.5]];
 
-/// The time that the small oscillations are compared for, s.
 const FOLLOWED: u32 = 3600;
 
-/// Returns a scene with its first settings.
 fn show(name: SceneName) -> Show {
     Show::new(name, &name.first_settings()).expect("a scene of the catalogue")
 }
 
-/// Returns the fast and the slow frequency of equal rods, rad/s: w = sqrt(g/l (1 + mu +- sqrt(mu (1
-/// + mu)))).
+/// Equal rods have w = sqrt(g/l (1 + mu +- sqrt(mu (1 + mu)))).
 fn frequencies(mass_ratio: f64, gravity: f64, rod: f64) -> [f64; 2] {
     let root = (mass_ratio * (1.0 + mass_ratio)).sqrt();
     [root, -root].map(|root| (gravity / rod * (1.0 + mass_ratio + root)).sqrt())
 }
 
-/// The angles of the three scenes of figures 3 to 5 follow a1 = (pi/12) sqrt(mu/(1 + mu))
-/// (cos w2 t - cos w1 t) and a2 = (pi/12)(cos w1 t + cos w2 t) for an hour, at every tick to 3.1e-7
-/// rad.
+/// a1 = (pi/12) sqrt(mu/(1 + mu)) (cos w2 t - cos w1 t) and a2 = (pi/12)(cos w1 t + cos w2 t).
 #[test]
 fn small_oscillation_scenes_follow_the_formulas_for_an_hour() {
     for (name, mass_ratio) in SMALL {
@@ -71,7 +59,6 @@ fn small_oscillation_scenes_follow_the_formulas_for_an_hour() {
             let slow = (w2 * t).cos();
             let fast = (w1 * t).cos();
 
-            // Compare both angles with the formulas; the larger difference counts.
             let a1 = FRAC_PI_6 / 2.0 * (mass_ratio / (1.0 + mass_ratio)).sqrt() * (slow - fast);
             let a2 = FRAC_PI_6 / 2.0 * (fast + slow);
             let error = (f64::from(report.state.a1) - a1)
@@ -86,7 +73,6 @@ fn small_oscillation_scenes_follow_the_formulas_for_an_hour() {
     }
 }
 
-/// Returns the position of a figure with the centre (x, y) at angles (a1, a2), pixels.
 fn place([x, y]: [f64; 2], mass_ratio: f64, [a1, a2]: [f64; 2]) -> [f64; 2] {
     // The ratio a2/a1 is -shape in the fast mode and +shape in the slow one.
     let shape = ((1.0 + mass_ratio) / mass_ratio).sqrt();
@@ -95,11 +81,8 @@ fn place([x, y]: [f64; 2], mass_ratio: f64, [a1, a2]: [f64; 2]) -> [f64; 2] {
     [x + REACH / AMPLITUDE * slow, y - REACH / AMPLITUDE * fast]
 }
 
-/// The spots of both figures of the four scenes of beats are drawn at the right pixel in every
-/// frame of a period. The left one follows cos w2 t and sin w1 t, the right one the high-precision
-/// motion. After the period of the frequencies the angles of the linear motion are at their start
-/// again, within 4e-5 of its amplitude ([`CLOSED`]). The exact motion misses its start by more than
-/// a pixel ([`NOT_CLOSED`]).
+/// The left spot follows cos w2 t and sin w1 t, the right one the high-precision motion. After the
+/// period the linear motion is at its start again; the exact motion misses it.
 #[test]
 fn beats_follow_the_formulas_and_only_the_linear_figure_closes() {
     for (name, mass_ratio, periods) in BEATS {
@@ -132,7 +115,6 @@ fn beats_follow_the_formulas_and_only_the_linear_figure_closes() {
             }
         }
 
-        // The linear motion is at its start again, the exact motion is not.
         let modes = Modes::new(&settings.parameters.cast()).expect("a pendulum");
         let linear = SmallOscillations::<f32>::new(modes, &settings.motion().cast());
         let [first, last] = [0.0, period].map(|t| linear.at(t));
@@ -157,15 +139,13 @@ fn beats_follow_the_formulas_and_only_the_linear_figure_closes() {
     }
 }
 
-/// The numbers in the documentation of [`SmallOscillations`]: equal rods of 0.25 m and equal
-/// masses, released at rest with only rod 2 turned.
+/// The numbers in the documentation of [`SmallOscillations`].
 #[test]
 fn the_linear_motion_is_near_the_exact_one_as_documented() {
     let pendulum = Pendulum::new(&Parameters::equal_rods(1.0, 0.25, 9.81)).expect("good numbers");
     let parameters = pendulum.parameters();
     let modes = Modes::new(parameters).expect("it hangs stably");
 
-    // Returns the largest distances until a time: of the angles, rad, and of bob 2, m.
     let farthest = |degrees: f64, seconds: f64| {
         let start = Motion::at_rest(0.0, degrees.to_radians());
         let linear = SmallOscillations::<f64>::new(modes, &start);

@@ -18,8 +18,7 @@ const FIXED_32_FLOOR: f64 = 5e-9;
 /// motions.
 const FIXED_32_ORDER_MEASURABLE: f64 = 5e-6;
 
-/// The largest ratio of the errors of 64-bit fixed point and of `f64` by extrapolation of order 12,
-/// in the same steps, in 5 s of the chaotic scene. The error of `f64` counts as at least half of
+/// In the same steps, in 5 s of the chaotic scene. The error of `f64` counts as at least half of
 /// [`FIXED_64_FLOOR`].
 const FIXED_64_AGAINST_DOUBLE: f64 = 2.0;
 
@@ -28,8 +27,7 @@ const FIXED_64_AGAINST_DOUBLE: f64 = 2.0;
 /// in 5 s.
 const FIXED_64_FLOOR: f64 = 1e-12;
 
-/// The largest difference of an angle, rad, between 64-bit fixed point and `f64` after three steps,
-/// which are at least half as long as the longest accepted ones.
+/// In rad, after three steps that are at least half as long as the longest accepted ones.
 const FIXED_64_AND_DOUBLE: f64 = 1e-9;
 
 const TRIALS: u32 = 3000;

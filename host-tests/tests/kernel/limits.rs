@@ -13,56 +13,44 @@ use reference::taylor::Reference;
 
 use super::hard_cases::HALVINGS;
 
-/// The error of the time when rod 1 of a pendulum that stood upright has fallen by a radian, s,
-/// compared with the reference: one sampling interval, 1/64 s, and RK4's error of the growth rate
-/// in steps of 2^-6 s.
+/// In s: one sampling interval, 1/64 s, and RK4's error of the growth rate in steps of 2^-6 s.
 const FALL: f64 = 1.5 / 64.0;
 
-/// The error of the time for which plain sums of angles keep a pendulum upright, relative to the
-/// predicted time. The fall begins at a whole step, and the angular velocity is rounded.
+/// Relative. The fall begins at a whole step, and the angular velocity is rounded.
 const STAYS: f64 = 0.05;
 
-/// Two limits of the largest angle of a swing from 1e-5 rad in steps 101 to 200, rad. It must be
-/// below the first in steps 2 % below the limit of stability, and above the second in steps 2 %
-/// above it: decayed and grown at least ten times (measured: to 6e-12 at most, to 7e-4 at least).
+/// The largest angle, rad, of a swing from 1e-5 rad in steps 101 to 200: below the first in steps 2
+/// % below the limit of stability, above the second in steps 2 % above it (measured: to 6e-12 at
+/// most, to 7e-4 at least).
 const STABILITY_EDGE: [f64; 2] = [1e-6, 1e-4];
 
-/// The change of each angle, rad, and of each momentum, kg m^2/s, of a pendulum at rest in 10,000
-/// steps of 64-bit fixed point, in which numbers are rounded (measured 2.6e-13).
+/// 64-bit fixed point rounds each of 10,000 steps (measured 2.6e-13).
 const REST_OF_FIXED_64: f64 = 1e-12;
 
-/// Straight rods that turn evenly without gravity for 20 s: the error of the angles, rad, and that
-/// of the sum of the momenta, relative. In f32 the error comes from some 5000 steps of plain sums,
+/// Straight rods that turn for 20 s. In f32 the error comes from some 5000 steps of plain sums,
 /// each rounded. In f64 it is the direction form's own error, 6e-11 rad a second at 2 rad/s.
 const STRAIGHT: tolerances::PerPrecision = tolerances::PerPrecision {
     single: 1e-3,
     double: 2e-9,
 };
 
-/// The error of a tiny swing in the slow mode compared with the cosine, relative to the amplitude,
-/// in 10 s of steps of 1/256 s, in floating point: the roundings of 2560 plain sums. RK4's own
-/// error is 1e-9.
+/// Relative to the amplitude: the roundings of 2560 plain sums. RK4's own error is 1e-9.
 const TINY: tolerances::PerPrecision = tolerances::PerPrecision {
     single: 1e-3,
     double: 1e-8,
 };
 
-/// Returns the parameters of rods of 1 m and bobs of 1 kg.
 fn even(gravity: f64) -> Parameters<f64> {
     Parameters::equal_rods(1.0, 1.0, gravity)
 }
 
-/// Returns the first time when rod 1 is a radian away from its start, s, in units of 1/64 s.
+/// Returns the first time when rod 1 is a radian away from its start, s.
 fn fall(mut angle: impl FnMut() -> f64) -> f64 {
     let start = angle();
     let looks = (1..=16 * 64).find(|_| (angle() - start).abs() > 1.0);
     looks.map_or(f64::INFINITY, |looks| f64::from(looks) / 64.0)
 }
 
-/// A pendulum starts upright, but for a digit of an angle. In the direction form in floating
-/// point it falls by a radian when the exact motion from this start does, to 1.5/64 s
-/// ([`FALL`]), in steps from 2^-6 to 2^-13 s.
-///
 /// In angles small increments are lost by rounding, which the next test covers. In fixed point a
 /// sine has too few digits.
 #[test]
@@ -70,7 +58,6 @@ fn upright_pendulum_falls_with_the_exact_motion_in_direction_form() -> Result<()
     let is_meant =
         |method: &&Method| method.equations() == Equations::Directions && !method.is_fixed_point();
     for &method in Method::ALL.iter().filter(is_meant) {
-        // The angle of a method in `f32` is the nearest `f32` to pi.
         let single = f64::from(std::f32::consts::PI);
         let up = if method.is_single() {
             single
@@ -87,7 +74,6 @@ fn upright_pendulum_falls_with_the_exact_motion_in_direction_form() -> Result<()
         });
 
         assert!(exact.is_finite());
-        // Finer steps fall at the same time.
         for halvings in HALVINGS.skip(2) {
             let mut motion = run(
                 method,
@@ -114,12 +100,8 @@ fn upright_pendulum_falls_with_the_exact_motion_in_direction_form() -> Result<()
     Ok(())
 }
 
-/// The angle stays constant in plain sums of angles, until an increment reaches half a unit of its
-/// last place.
-///
-/// The momentum grows by the torque. The angle therefore stays for (ulp/2)/(g error dt), where the
-/// error is that of pi. Then the pendulum falls. The time until the angle's first change must be
-/// that one to 5 %, in `f32` and `f64`, in steps of 1/64 and 1/256 s.
+/// The momentum grows by the torque, but the angle stays constant until an increment reaches half a
+/// unit of its last place, for (ulp/2)/(g error dt), where the error is that of pi.
 #[test]
 fn upright_pendulum_stays_for_the_predicted_time_in_plain_sums() -> Result<(), Error> {
     let single = f64::from(std::f32::consts::PI);
@@ -141,7 +123,6 @@ fn upright_pendulum_stays_for_the_predicted_time_in_plain_sums() -> Result<(), E
             let dt = 1.0 / f64::from(steps_per_second);
             let stays = 0.5 * ulp / (9.81 * error * dt);
             let mut motion = run(method, &even(9.81), &State::at_rest(up, up), dt)?;
-            // The time until the first change of the angle.
             let mut steps = 0_u32;
             while motion.state().a1 == up && steps < 100 * steps_per_second {
                 motion.advance(1)?;
@@ -158,9 +139,7 @@ fn upright_pendulum_stays_for_the_predicted_time_in_plain_sums() -> Result<(), E
     Ok(())
 }
 
-/// A straight pendulum turns uniformly without gravity: a = a(0) + w t for 20 s, with whole turns.
-/// By each of the [`exact_methods`] the angles, rad, and the sum of the momenta, relative, may be
-/// wrong by 1e-3 in 32 bits and 2e-9 in 64 bits ([`STRAIGHT`]).
+/// a = a(0) + w t, with whole turns.
 #[test]
 fn straight_rods_turn_uniformly_without_gravity() -> Result<(), Error> {
     let parameters = Parameters {
@@ -178,7 +157,6 @@ fn straight_rods_turn_uniformly_without_gravity() -> Result<(), Error> {
         let mut motion = run(method, &parameters, &start, 1.0 / 256.0)?;
         for seconds in 1..=20 {
             motion.advance(256)?;
-            // The error of the angles, and of the conserved momentum.
             let State { a1, a2, p1, p2 } = motion.state();
             let [miss1, miss2] =
                 [a1, a2].map(|angle| (angle - 1.0 - 2.0 * f64::from(seconds)).abs());
@@ -194,10 +172,6 @@ fn straight_rods_turn_uniformly_without_gravity() -> Result<(), Error> {
     Ok(())
 }
 
-/// A pendulum at rest stays at rest for 10,000 steps by every method: hanging, and without gravity
-/// at angles of 3 and -2 rad. The momenta must stay 0, and the angles within an epsilon, rad: that
-/// of `f32` by methods in `f32`, and that of `f64` by others. In 64-bit fixed point both must stay
-/// within 1e-12.
 #[test]
 fn pendulum_at_rest_stays_at_rest() -> Result<(), Error> {
     for &method in Method::ALL {
@@ -210,7 +184,6 @@ fn pendulum_at_rest_stays_at_rest() -> Result<(), Error> {
             motion.advance(10_000)?;
             let now = motion.state();
             let moved = (now.a1 - start.a1).abs().max((now.a2 - start.a2).abs());
-            // Fixed point in 64 bits rounds the momenta in each step.
             let [angle, momentum] = match method.numbers() {
                 Numbers::Fixed64 => [REST_OF_FIXED_64; 2],
                 _ if method.is_single() => [f32::EPSILON.into(), 0.0],
@@ -228,16 +201,14 @@ fn pendulum_at_rest_stays_at_rest() -> Result<(), Error> {
     Ok(())
 }
 
-/// An oscillation whose squares all underflow is the linear one for 10 s, in floating point, to
-/// 1e-3 of its amplitude in `f32` and 1e-8 in `f64` ([`TINY`]). An oscillation in
-/// subnormal numbers grows by no more than a factor of 1000 in 10,000 steps.
+/// An oscillation whose squares all underflow is the linear one. In subnormal numbers it must not
+/// grow much.
 #[test]
 fn tiny_oscillations_are_linear_and_subnormal_ones_stay_small() -> Result<(), Error> {
     let parameters = even(9.81);
     let slow = Modes::new(&parameters)?.slow;
     for method in exact_methods().filter(|method| !method.is_fixed_point()) {
-        // The first number is far above the smallest normal number, and the second is a few units
-        // of the smallest subnormal number.
+        // Far above the smallest normal number, and a few units of the smallest subnormal number.
         let [tiny, subnormal] = if method.is_single() {
             [-80, -146]
         } else {
@@ -252,7 +223,6 @@ fn tiny_oscillations_are_linear_and_subnormal_ones_stay_small() -> Result<(), Er
             1.0 / 256.0,
         )?;
 
-        // The tiny oscillation is a cosine.
         for step in 1..=10 * 64 {
             motion.advance(4)?;
             let expected = (slow.frequency * f64::from(step) / 64.0).cos();
@@ -260,7 +230,6 @@ fn tiny_oscillations_are_linear_and_subnormal_ones_stay_small() -> Result<(), Er
             assert!(miss <= TINY.by(method), "{method}: {miss:e} at step {step}");
         }
 
-        // The subnormal one loses all its digits, but does not grow.
         let mut motion = run(
             method,
             &parameters,
@@ -279,13 +248,8 @@ fn tiny_oscillations_are_linear_and_subnormal_ones_stay_small() -> Result<(), Er
     Ok(())
 }
 
-/// The fast mode, from 1e-5 rad, decays in steps 2 % below the limit of RK4, by every RK4 method in
-/// floating point, and grows in steps 2 % above it, by `Pendulum::step`. The amplitude after 100 to
-/// 200 steps must be below 1e-6 rad and above 1e-4 rad ([`STABILITY_EDGE`]).
-///
-/// It grows by 15 % per step until its amplitude changes its frequency, which may be at less than
-/// 0.001 rad. Runs refuse such steps. `Modes::check_step` must accept the limit itself, and refuse
-/// a step 1 % longer, 0 and NaN.
+/// Beyond the limit of RK4 the amplitude grows by 15 % per step, until it changes the frequency,
+/// which may be at less than 0.001 rad.
 #[test]
 fn fast_mode_decays_below_the_step_limit_and_grows_above() -> Result<(), Error> {
     const SMALL: f64 = 1e-5;
@@ -351,13 +315,11 @@ fn fast_mode_decays_below_the_step_limit_and_grows_above() -> Result<(), Error> 
     Ok(())
 }
 
-/// Returns the larger magnitude of both angles, rad.
 fn largest_angle(state: &State<f64>) -> f64 {
     state.a1.abs().max(state.a2.abs())
 }
 
-/// From exactly 180 degrees nothing moves, by every method that the boards draw and by every method
-/// in 64 bits. The angle of `rk4-f32` is the nearest `f32`, from which the pendulum falls.
+/// The angle of `rk4-f32` is the nearest `f32` to pi, from which the pendulum falls.
 #[test]
 fn pendulum_that_stands_upright_never_falls() -> Result<(), Error> {
     let start = State::at_rest(radians(180.0), radians(-180.0));

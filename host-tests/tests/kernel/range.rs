@@ -10,7 +10,6 @@ use double_pendulum::{
 use fastrand::Rng;
 use host_tests::oracle::random::{log_uniform, symmetric};
 
-/// Returns a number of any magnitude, or one near 1, or one in the range of the kernel.
 fn magnitude(rng: &mut Rng) -> f64 {
     match rng.u8(..8) {
         0 => log_uniform(rng, 1e-300, 1e300),
@@ -20,7 +19,6 @@ fn magnitude(rng: &mut Rng) -> f64 {
     }
 }
 
-/// Returns a velocity or an angle of any magnitude, often 0 or near 1, of either sign.
 fn of_either_sign(rng: &mut Rng) -> f64 {
     match rng.u8(..4) {
         0 => 0.0,
@@ -43,11 +41,8 @@ fn parameters(rng: &mut Rng) -> Parameters<f64> {
 /// The relative error of a bound in `f32`: its numbers are rounded once before and once after.
 const SINGLE: f64 = 2e-6;
 
-/// The velocity, rad/s, below which a bound may be 0.
 const STILL: f64 = 1e-140;
 
-/// Asserts that the bounds and the step in `f32` are those in `f64`, and that no bound is below what
-/// the state itself has.
 fn bounds_are_right(parameters: &Parameters<f64>, motion: &Motion<f64>) -> Result<(), Error> {
     let pendulum = Pendulum::new(parameters)?;
     let state = pendulum.to_state(motion);
@@ -70,7 +65,6 @@ fn bounds_are_right(parameters: &Parameters<f64>, motion: &Motion<f64>) -> Resul
         assert!(reached <= allowed, "{reached:e} {bound:e}: {}", case());
     }
 
-    // In single precision.
     let Ok(single) = Pendulum::<f32>::new(&parameters.cast()) else {
         return Ok(());
     };
@@ -103,8 +97,6 @@ fn bounds_are_right(parameters: &Parameters<f64>, motion: &Motion<f64>) -> Resul
     Ok(())
 }
 
-/// Asserts that a motion by the method `F` is refused, diverges, or keeps its rods at their length,
-/// if the step resolves it.
 fn run<F: Form>(pendulum: &Pendulum<f64>, start: &State<f64>, dt: f64) -> Result<(), Error> {
     let is_resolved = dt <= pendulum.admissible_step(start)?;
     let mut run = pendulum.run::<F>(start, dt)?;
@@ -129,7 +121,6 @@ fn run<F: Form>(pendulum: &Pendulum<f64>, start: &State<f64>, dt: f64) -> Result
     Ok(())
 }
 
-/// The errors that pendulums and starts may be refused by.
 fn is_typed(error: Error) -> bool {
     matches!(
         error,
@@ -250,8 +241,6 @@ fn motion_is_that_of_a_similar_pendulum() -> Result<(), Error> {
     are_alike::<Fixed64<10>>(1e-12)
 }
 
-/// Squares of these numbers underflow or overflow in `f32`. The pendulums outside of 1e-9 to 1e9
-/// are refused, and so are their rods by [`periodic_mass_ratio`].
 #[test]
 fn magnitudes_out_of_range_are_refused_by_name() {
     let with = |m2, l1| {

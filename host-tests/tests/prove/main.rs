@@ -12,11 +12,10 @@ use host_tests::oracle::known_answers::table;
 use host_tests::oracle::random::symmetric;
 use reference::enclosure::{Enclosure, Fineness, Fixed, Start, sin_cos};
 
-/// The frames per second. The times of frames are exact in `f64`.
+/// The times of frames are exact in `f64`.
 const RATE: u16 = 64;
 
-/// Returns an enclosure of equal rods of 1 m that are let go at 2 rad, with P1 equal to `p1`. `g`
-/// is the gravity, m/s^2, and `rate` the number of frames per second.
+/// Equal rods of 1 m that are let go at 2 rad, with P1 equal to `p1`.
 fn equal_rods(g: f64, rate: u16, p1: Fixed, fineness: Fineness) -> Enclosure {
     let parameters = Parameters {
         m1: 1.0,
@@ -31,22 +30,18 @@ fn equal_rods(g: f64, rate: u16, p1: Fixed, fineness: Fineness) -> Enclosure {
     Enclosure::new(set.equations, set.frame, start, fineness)
 }
 
-/// Advances by this number of frames.
 fn after(frames: u32, mut set: Enclosure) -> Enclosure {
     (0..frames).for_each(|_| set.advance().expect("it can be followed"));
     set
 }
 
-/// Returns true if two boxes, given by their intervals, may have a common point, or points that are
-/// at most `more` apart in each coordinate.
+/// Returns true if two boxes may have points that are at most `more` apart in each coordinate.
 fn meet(one: &[Fixed], other: &[Fixed], more: f64) -> bool {
     one.iter()
         .zip(other)
         .all(|(one, other)| (*one - *other).wider(more).is_positive().is_none())
 }
 
-/// The heading and the line of figure 7, as `prove` computes them now, must be lines of the README
-/// of `host-tests`.
 #[test]
 fn the_readme_has_the_table_that_the_command_makes() {
     let line = horizons(SceneName::Figure7).expect("it can be proved");
@@ -60,8 +55,6 @@ fn the_readme_has_the_table_that_the_command_makes() {
     );
 }
 
-/// The lines of scene S11, proved again, must equal those of `known_answers.csv` in every
-/// character.
 #[test]
 fn the_known_answers_are_those_that_the_command_makes() {
     let scene: Vec<_> = table()
@@ -78,13 +71,9 @@ fn the_known_answers_are_those_that_the_command_makes() {
     );
 }
 
-/// Expressions of random numbers that are exactly zero must contain zero, and be narrower than
-/// 1e-30. A third times three must contain one, while its middle times three is not one. Decimals
-/// must have exactly the digits that are certain.
 #[test]
 fn roundings_are_inside_the_enclosure() {
     let mut rng = Rng::with_seed(1);
-    // Each expression is zero without roundings.
     for _ in 0..1000 {
         let [a, b] = [(); 2].map(|()| symmetric(&mut rng) * 8.0);
         let [x, y] = [a, b].map(Fixed::of);
@@ -127,14 +116,10 @@ fn roundings_are_inside_the_enclosure() {
     assert_eq!(third.wider(9e-5).decimal(33.0), "0.3333");
 }
 
-/// The sine of a large angle must begin with the expected digits, which were computed with 90
-/// digits, and be as narrow as required. A start at an angle in degrees must be bit-identical to
-/// the start less whole circles. A large angle must give the same box by a fraction and by an equal
-/// `f64`.
+/// The digits were computed with 90 digits.
 #[test]
 fn whole_turns_are_removed_exactly() {
     let [zero, one] = [(0, 1), (1, 1)];
-    // The starts by fractions, and by the nearest `f64`.
     let hull = |angles: [(i64, u64); 2], degrees: bool| {
         let [a1, a2] = angles.map(|(above, below)| above as f64 / below as f64);
         let [a1, a2] = [a1, a2].map(|a| if degrees { a.to_radians() } else { a });
@@ -179,13 +164,10 @@ fn whole_turns_are_removed_exactly() {
         assert_eq!(large, small, "{angle:?} degrees");
     }
 
-    // A large angle in `f64` is exact.
     let (exact, double) = hull([(1000, 1), (-700, 1)], false);
     assert_eq!(exact, double);
 }
 
-/// Sums and products beyond the range of the numbers, and quotients by an interval that contains
-/// zero or by a number that is too small, must have an infinite size.
 #[test]
 fn numbers_out_of_range_and_quotients_by_zero_have_no_bound() {
     let large = Fixed::of(200.0);
@@ -218,9 +200,8 @@ fn is_left(reach: f64, fineness: Fineness) -> bool {
 }
 
 /// The errors of the derivatives are the remainder of their series, the curvature of the motion,
-/// and the error of a difference quotient. Each is made large in turn. The set of a segment must
-/// then contain the motion of its end for a second, and must lose it without the allowance for
-/// these errors.
+/// and the error of a difference quotient. Each is made large in turn; the set must lose the motion
+/// without the allowance for it.
 #[test]
 fn errors_of_the_derivatives_are_inside_the_enclosure() {
     let fine = Fineness::default();
@@ -255,8 +236,7 @@ fn errors_of_the_derivatives_are_inside_the_enclosure() {
     }
 }
 
-/// The differences are so small that their roundings are visible. The set of a segment must contain
-/// the motion of its end for a second, and must lose it without the allowance for these roundings.
+/// The differences are so small that their roundings are visible.
 #[test]
 fn roundings_of_the_segments_are_counted() {
     let fineness = Fineness {
@@ -270,8 +250,6 @@ fn roundings_of_the_segments_are_counted() {
     assert!(!is_left(1e-10, fineness) && is_left(1e-10, without));
 }
 
-/// With 8 terms instead of 48 the set after ten frames must still meet the finest one, and must not
-/// without the allowance for the remainder of the series.
 #[test]
 fn the_series_of_the_midpoint_is_bounded_to_its_last_term() {
     let coarse = Fineness {
@@ -283,15 +261,13 @@ fn the_series_of_the_midpoint_is_bounded_to_its_last_term() {
         ..coarse
     };
 
-    // The coarse set is wider but valid; without the allowance it misses the exact motion.
     let hull = |fineness| after(10, equal_rods(9.81, RATE, Fixed::ZERO, fineness)).hull();
     let exact = hull(Fineness::default());
     assert!(meet(&exact, &hull(coarse), 0.0) && !meet(&exact, &hull(without), 0.0));
 }
 
-/// The midpoint is advanced in steps of two lengths, which have different roundings. A second later
-/// the two sets must meet, and must not without the allowance for roundings. (The remainder of the
-/// series, which would hide that, is smaller than one rounding.)
+/// The steps of two lengths have different roundings. The remainder of the series, which would hide
+/// that, is smaller than one rounding.
 #[test]
 fn roundings_of_the_midpoint_are_counted() {
     let hull = |rate: u16, rounding: f64| {

@@ -11,12 +11,10 @@ use reference::taylor::Reference;
 
 use crate::{RATE, after, equal_rods, meet};
 
-/// The radius of the enclosure of a sine or cosine, which has no unit, divided by the growth
-/// (measured: 2.3e-28 at most).
+/// The radius divided by the growth (measured: 2.3e-28 at most).
 const ENCLOSURE: f64 = 1e-27;
 
-/// Returns a random pendulum and its motion: ratios of masses and of rods over three decades each,
-/// angles up to 3 rad, half of them with velocities.
+/// Returns a random pendulum and its motion. Half of the motions have velocities.
 fn random(rng: &mut Rng) -> (Parameters<f64>, Motion<f64>) {
     let [m1, m2, l1, l2] =
         [(); 4].map(|()| log_uniform(rng, 10_f64.powf(-0.75), 10_f64.powf(0.75)));
@@ -34,9 +32,8 @@ fn random(rng: &mut Rng) -> (Parameters<f64>, Motion<f64>) {
     )
 }
 
-/// Checks every five frames that the box contains the reference, within the reference's own error,
-/// that it contains the energy of the start, and that no direction is wider than
-/// [`ENCLOSURE`] times the growth of a small error.
+/// Checks that the box contains the reference and the energy of the start, and that no direction is
+/// wider than [`ENCLOSURE`] times the growth of a small error.
 fn is_inside(parameters: &Parameters<f64>, motion: &Motion<f64>, frames: u32) {
     let mut reference = Reference::new(parameters, motion);
     let mut set = Start::of(parameters, motion).enclose(RATE);
@@ -57,7 +54,6 @@ fn is_inside(parameters: &Parameters<f64>, motion: &Motion<f64>, frames: u32) {
             tolerances::REFERENCE * set.growth() * farthest,
         );
 
-        // The width, relative to the growth of a small error.
         let width = set
             .directions()
             .as_flattened()
@@ -77,7 +73,6 @@ fn is_inside(parameters: &Parameters<f64>, motion: &Motion<f64>, frames: u32) {
     }
 }
 
-/// Checks random motions for `frames` frames ([`is_inside`]).
 fn random_motions_are_inside(count: usize, frames: u32) {
     let mut rng = Rng::with_seed(28);
     for (parameters, motion) in std::iter::repeat_with(|| random(&mut rng)).take(count) {
@@ -85,24 +80,17 @@ fn random_motions_are_inside(count: usize, frames: u32) {
     }
 }
 
-/// The box contains the reference and the energy of the start, and is not wider than its tolerance
-/// ([`is_inside`]), for 100 random motions over 30 frames of 1/64 s.
 #[test]
 fn random_motions_are_inside_for_half_a_second() {
     random_motions_are_inside(100, 30);
 }
 
-/// The box contains the reference and the energy of the start, and is not wider than its tolerance
-/// ([`is_inside`]), for 200 random motions over 300 frames, 4.7 s.
 #[test]
 #[ignore = "minutes"]
 fn random_motions_are_inside_for_long() {
     random_motions_are_inside(200, 300);
 }
 
-/// The box contains the reference and the energy of the start, and is not wider than its tolerance
-/// ([`is_inside`]), for all motions with the reference as their standard: the hard cases, a
-/// pendulum at rest without gravity, and the first five seconds of the moving scenes.
 #[test]
 fn the_reference_is_inside_where_it_is_used() {
     for case in hard_cases() {
@@ -134,7 +122,6 @@ fn the_reference_is_inside_where_it_is_used() {
         60,
     );
 
-    // The scenes start from the boards' settings, converted to `f64`.
     for name in moving() {
         let settings = name.first_settings();
         is_inside(
@@ -145,8 +132,6 @@ fn the_reference_is_inside_where_it_is_used() {
     }
 }
 
-/// The boxes of two motions that differ only in one bit of g must have no common point after 60
-/// frames, about a second.
 #[test]
 fn one_bit_of_g_makes_a_difference() {
     let hull = |g: f64| after(60, equal_rods(g, RATE, Fixed::ZERO, Fineness::default())).hull();

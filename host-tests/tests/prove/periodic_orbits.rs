@@ -16,17 +16,13 @@ use reference::enclosure::{Enclosure, Fineness, Fixed, Start};
 
 use crate::RATE;
 
-/// An orbit as its source gives it: decimals, each with their power of ten.
 struct Orbit {
-    /// Twice the energy, J.
     twice_energy: u32,
-    /// The bounds of p2, kg m^2/s, in units of 1e-16.
+    /// In kg m^2/s and units of 1e-16, as the time in s.
     p2: [i64; 2],
-    /// The bounds of the time of the return, s, in units of 1e-16.
     time: [i64; 2],
 }
 
-/// The orbits of energy 0 and 1/2 J.
 const ORBITS: [Orbit; 2] = [
     Orbit {
         twice_energy: 0,
@@ -40,16 +36,12 @@ const ORBITS: [Orbit; 2] = [
     },
 ];
 
-/// The unit of the decimals.
 const UNIT: u64 = 10_u64.pow(16);
 
-/// The distance from the middle of the momenta's intervals to their ends, kg m^2/s, at least.
-///
-/// It is 4.4e-13 for p2. The slope of p1 in p2 is at most 1.8.
+/// The distance from the middle of the momenta's intervals to their ends. It is 4.4e-13 for p2, and
+/// the slope of p1 in p2 is at most 1.8.
 const MOMENTA: f64 = 1e-12;
 
-/// The largest difference between the momenta, or S, at the start and at the return.
-///
 /// The starting box of 1e-12 grows by less than 10. Interpolation between the ends of the interval
 /// of 6e-9 s adds 1e-16.
 const RETURN: f64 = 1e-11;
@@ -57,8 +49,6 @@ const RETURN: f64 = 1e-11;
 /// The finest bit of a time, s: 2^-50, so that times are rounded by a millionth of their interval.
 const FINEST: u32 = 50;
 
-/// Returns the set of starts: (sin a1, cos a1, S, C, P1, P2) within [`MOMENTA`] of the middle of p1
-/// and p2.
 fn start(orbit: &Orbit) -> Enclosure {
     let energy = f64::from(orbit.twice_energy) / 2.0;
     let p2 = orbit.p2[0] + (orbit.p2[1] - orbit.p2[0]) / 2;
@@ -82,7 +72,6 @@ fn start(orbit: &Orbit) -> Enclosure {
         w1: w1_about,
         w2: w2 as f64 / UNIT as f64,
     };
-    // The start in exact fractions; masses, rods and gravity are 1.
     let one = (1, 1);
     let point = Start {
         about: (parameters, motion),
@@ -101,7 +90,6 @@ fn start(orbit: &Orbit) -> Enclosure {
     }
     .enclose(RATE);
 
-    // The momenta may be anywhere in their intervals.
     let mut box_of_starts = point.hull();
     for momentum in &mut box_of_starts[4..] {
         *momentum = momentum.wider(MOMENTA * f64::from(-point.frame.0).exp2());
@@ -114,7 +102,6 @@ fn start(orbit: &Orbit) -> Enclosure {
     )
 }
 
-/// Checks that the box contains all starts of the source and that their energy is the orbit's.
 fn check_start(orbit: &Orbit, set: &Enclosure) {
     let [_, _, _, _, p1, p2] = set.hull();
     let exponent = -set.frame.0;
@@ -145,7 +132,6 @@ fn check_start(orbit: &Orbit, set: &Enclosure) {
     );
 }
 
-/// Advances a set by `time` s, in units of 2^-[`FINEST`]; returns it.
 fn advanced(mut set: Enclosure, time: u64) -> Enclosure {
     let frame @ (unit, _) = set.frame;
     for bit in 0..=FINEST {
@@ -159,10 +145,8 @@ fn advanced(mut set: Enclosure, time: u64) -> Enclosure {
     set
 }
 
-/// For each orbit the box must contain all starts of the source, with the orbit's energy. Every
-/// motion of the box must pass a1 = 0 upwards within the source's interval of time, when rod 2 has
-/// made one turn backwards and rod 1 none. S and the momenta must then equal those at the start
-/// within [`RETURN`].
+/// Every motion of the box must pass a1 = 0 upwards within the source's interval of time, with the
+/// momenta of the start.
 #[test]
 fn periodic_orbits_return_when_and_where_another_proof_says() {
     for orbit in ORBITS {
@@ -170,7 +154,6 @@ fn periodic_orbits_return_when_and_where_another_proof_says() {
         check_start(&orbit, &set);
         let first = set.hull();
 
-        // Follow both angles until the last frame before the return.
         let [early, late] = orbit.time.map(|time| time as f64 / UNIT as f64);
         let frames = (early * f64::from(RATE)) as u32;
         let mut moving = set;
@@ -193,7 +176,6 @@ fn periodic_orbits_return_when_and_where_another_proof_says() {
         let at_early = advanced(moving, early - shown);
         let at_late = advanced(at_early.clone(), late - early);
 
-        // The last piece of both angles.
         let now = at_late
             .directions()
             .map(|[sin, cos]| sin.about().atan2(cos.about()));
@@ -205,7 +187,6 @@ fn periodic_orbits_return_when_and_where_another_proof_says() {
             "rod 2 has made one turn backwards, rod 1 none: {angles:?}"
         );
 
-        // Every motion of the box passes a1 = 0 upwards within the interval.
         let [before, after] = [at_early.hull(), at_late.hull()];
         let sides = [before[0], after[0]].map(Fixed::is_positive);
         assert_eq!(
@@ -215,7 +196,6 @@ fn periodic_orbits_return_when_and_where_another_proof_says() {
             orbit.twice_energy
         );
 
-        // At that moment S and the momenta equal those at the start, within the width of the box.
         let [sin_before, sin_after] = [before[0], after[0]].map(Fixed::about);
         let share = -sin_before / (sin_after - sin_before);
         for i in [2, 4, 5] {

@@ -16,8 +16,7 @@ use object::{Object, ObjectSection};
 
 use crate::support::code::Code;
 
-/// The code that may contain a panic, by the beginning of its name, with the reason why the panic
-/// never happens.
+/// The code that may contain a panic, with the reason why it never happens.
 const PERMITTED: [(&str, &str); 16] = [
     (
         "lm3s6965evb::__cortex_m_rt_main",
@@ -69,11 +68,9 @@ const PERMITTED: [(&str, &str); 16] = [
     ),
 ];
 
-/// A place where a panic may begin: functions and lines, the innermost first. The last is the
-/// function that contains the place.
+/// Functions and lines, the innermost first.
 type Frames = Vec<(String, String)>;
 
-/// Returns the innermost function that is not of the core library.
 fn owner(frames: &Frames) -> &str {
     let is_core = |name: &&str| {
         name.starts_with("core::") || name.contains(" core::") || name.starts_with("<core::")
@@ -86,13 +83,11 @@ fn owner(frames: &Frames) -> &str {
         .unwrap_or_default()
 }
 
-/// Returns true for a helper function of the core library that panics.
 fn is_helper(name: &str) -> bool {
     name.starts_with("core::")
         && (name.contains("panic") || name.ends_with("_fail") || name.ends_with("_failed"))
 }
 
-/// Returns the places outside of the core library's helpers where a panic begins, by address.
 fn places(elf: &Path) -> BTreeMap<u32, Frames> {
     let code = Code::read(elf).unwrap_or_else(|error| panic!("{}: {error}", elf.display()));
     let lines = lines(elf).unwrap_or_else(|error| panic!("{}: {error}", elf.display()));
@@ -109,13 +104,11 @@ fn places(elf: &Path) -> BTreeMap<u32, Frames> {
         seen += 1;
         for address in code.names_of(function) {
             match code.function_at(address) {
-                // A helper is searched in turn.
                 Some((helper, name)) if is_helper(name) => {
                     if !panicking.contains(&helper) {
                         panicking.push(helper);
                     }
                 }
-                // Any other code is a place where a panic begins.
                 caller => {
                     let mut frames = frames(&lines, address);
                     frames.extend(caller.map(|(_, name)| (name.to_owned(), String::new())));
@@ -164,7 +157,6 @@ fn frames(lines: &Lines, address: u32) -> Frames {
     frames
 }
 
-/// Returns the images of all boards, and the image with every arithmetic.
 fn images() -> BTreeSet<PathBuf> {
     let toolchain = crate::support::toolchain();
     let build = |(binary, target)| {
@@ -178,8 +170,6 @@ fn images() -> BTreeSet<PathBuf> {
         .collect()
 }
 
-/// Each place in the images of the boards that could panic has a row in `PERMITTED`, and each row
-/// has a place.
 #[test]
 fn only_permitted_code_can_panic() {
     let mut used = BTreeSet::new();
@@ -188,7 +178,6 @@ fn only_permitted_code_can_panic() {
     for elf in images() {
         for (address, frames) in places(&elf) {
             let owner = owner(&frames);
-            // Each place has a row that permits it, or is refused.
             match PERMITTED
                 .iter()
                 .position(|(name, _)| owner.trim_start_matches('<').starts_with(name))
@@ -208,7 +197,6 @@ fn only_permitted_code_can_panic() {
         refused.join("\n")
     );
 
-    // A row without any place is out of date.
     for (row, (name, _)) in PERMITTED.iter().enumerate() {
         assert!(
             used.contains(&row),
@@ -217,8 +205,6 @@ fn only_permitted_code_can_panic() {
     }
 }
 
-/// The search finds a panic in the program `inject-panic`, which contains one, and names its
-/// function as the owner.
 #[test]
 fn an_injected_panic_is_found() {
     let toolchain = crate::support::toolchain();
