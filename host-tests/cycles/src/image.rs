@@ -10,14 +10,12 @@ use object::{
 
 use crate::instruction::{Instruction, is_long};
 
-/// A program for an ARM processor, read from its ELF file. Addresses are those at which it uses its
-/// code and data, also if these are stored elsewhere and copied at the start.
+/// Addresses are those at which the program uses its code and data, also if these are copied at the
+/// start.
 #[derive(Debug)]
 pub struct Image {
     path: PathBuf,
-    /// The start address and bytes of everything that is loaded.
     loaded: Vec<(u32, Vec<u8>)>,
-    /// The start address and bytes of every section with code.
     code: Vec<(u32, Vec<u8>)>,
     functions: Vec<Function>,
     /// The beginnings of code (`true`) and of data between code (`false`): the mapping symbols `$t`
@@ -53,7 +51,6 @@ impl Image {
             "no program for ARM but for {architecture:?}"
         );
 
-        // The loaded segments, and the sections with code.
         let loaded = file
             .segments()
             .map(|segment| Ok((segment.address() as u32, segment.data()?.to_vec())));
@@ -62,7 +59,6 @@ impl Image {
             .filter(|section| section.kind() == SectionKind::Text);
         let code = sections.map(|section| Ok((section.address() as u32, section.data()?.to_vec())));
 
-        // The symbols: functions, labels in code, and marks of code and data.
         let is_in_code = |symbol: &object::Symbol| {
             let section = symbol
                 .section_index()
@@ -80,7 +76,6 @@ impl Image {
                 _ if !is_function && !is_in_code(&symbol) => {}
                 Some(mark @ ("$t" | "$d")) => drop(marks.insert(address, mark == "$t")),
                 _ => functions.push(Function {
-                    // Bit 0 only marks the code as Thumb.
                     address: address & !1,
                     size: symbol.size() as u32,
                     name: format!("{:#}", rustc_demangle::demangle(name)),
@@ -101,7 +96,6 @@ impl Image {
         })
     }
 
-    /// Returns all functions and labels whose demangled names contain `part`.
     pub fn functions_named(&self, part: &str) -> impl Iterator<Item = &Function> {
         self.functions
             .iter()
@@ -130,7 +124,6 @@ impl Image {
         }
     }
 
-    /// Returns the little-endian word at an address.
     pub fn word(&self, address: u32) -> Option<u32> {
         self.loaded.iter().find_map(|(start, bytes)| {
             let at = address.checked_sub(*start)? as usize;
@@ -139,12 +132,11 @@ impl Image {
         })
     }
 
-    /// Returns the error that the program has no such function.
     pub fn lacks(&self, function: &str) -> anyhow::Error {
         anyhow!("{}: no function {function}", self.path.display())
     }
 
-    /// Returns the function that contains this address. Of several, it is the one that begins last.
+    /// Of several, the one that begins last.
     pub fn function_at(&self, address: u32) -> Option<&Function> {
         let before = self
             .functions
@@ -155,7 +147,6 @@ impl Image {
             .rfind(|function| address - function.address < function.size)
     }
 
-    /// Returns the address and the halfwords of every instruction.
     pub fn words(&self) -> Vec<(u32, u16, Option<u16>)> {
         let mut words = Vec::new();
         for (start, bytes) in &self.code {
@@ -184,7 +175,6 @@ impl Image {
         words
     }
 
-    /// Returns the instruction at this address.
     pub fn instruction_at(&self, address: u32) -> Result<Instruction> {
         let halfword = |address: u32| {
             self.loaded.iter().find_map(|(start, bytes)| {
@@ -193,7 +183,6 @@ impl Image {
             })
         };
 
-        // An instruction at the very end has no second halfword.
         let first = halfword(address).with_context(|| format!("no code at {address:#x}"))?;
         let second = halfword(address + 2).unwrap_or_default();
         Instruction::decode(first, second).with_context(|| {

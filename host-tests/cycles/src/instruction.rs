@@ -7,13 +7,11 @@ use crate::row::{Class, Field, Float, Row};
 use crate::stream::Registers;
 use crate::timing::TIMINGS;
 
-/// Returns true if this halfword begins an instruction of 32 bits.
 pub fn is_long(first: u16) -> bool {
     first >= 0xe800
 }
 
-/// The rows that can match an instruction, by its first byte. This index is needed for speed:
-/// millions of instructions are looked up.
+/// The rows by their first byte, for speed: millions of instructions are looked up.
 static ROWS: LazyLock<Vec<Vec<&Row>>> = LazyLock::new(|| {
     let begin = |byte: u32| {
         TIMINGS
@@ -23,17 +21,14 @@ static ROWS: LazyLock<Vec<Vec<&Row>>> = LazyLock::new(|| {
     (0..=0xff).map(|byte| begin(byte).collect()).collect()
 });
 
-/// An instruction with its row of the timing table.
 #[derive(Clone, Copy, Debug)]
 pub struct Instruction {
     /// The first halfword in the upper half, the second one or 0 in the lower half.
     word: u32,
-    /// The row with its name and timing.
     pub row: &'static Row,
 }
 
 impl Instruction {
-    /// Returns the instruction of these halfwords, if the table has a row for it.
     pub fn decode(first: u16, second: u16) -> Option<Self> {
         let word = u32::from(first) << 16 | if is_long(first) { u32::from(second) } else { 0 };
         let row = ROWS[(word >> 24) as usize]
@@ -50,9 +45,8 @@ impl Instruction {
         }
     }
 
-    /// Returns the cycles of the instruction alone, without a refill after a branch and without the
-    /// effects of its neighbours ([`Pipeline`](crate::Pipeline)). They depend on the registers for
-    /// a division only.
+    /// Returns the cycles of the instruction alone, without the effects of its neighbours
+    /// ([`Pipeline`](crate::Pipeline)).
     pub fn cycles(&self, core: Core, registers: &Registers) -> u64 {
         let more = match self.row.class {
             Class::LoadList | Class::StoreList => {
@@ -74,18 +68,15 @@ impl Instruction {
         }
     }
 
-    /// Returns true if it uses the floating-point unit, for a move, too.
     pub fn is_float(&self) -> bool {
         self.word >> 26 == 0b11_1011
     }
 
-    /// Returns true if the core does not have this instruction. Rows that several instructions
-    /// share are not told apart.
+    /// Rows that several instructions share are not told apart.
     pub fn is_missing_on(&self, core: Core) -> bool {
         self.row.cycles(core) == 0 && (self.row.class != Class::Divide || core == Core::M0Plus)
     }
 
-    /// Returns true if its address depends on a core register that the instruction `before` writes.
     pub fn is_addressed_by(&self, before: &Self) -> bool {
         let registers =
             |fields: &'static [Field], word| fields.iter().map(move |field| field.register(word));
@@ -97,15 +88,13 @@ impl Instruction {
         registers(self.row.address, self.word).any(written)
     }
 
-    /// Returns the floating-point register with a late result: the destination of arithmetic, a
-    /// quotient or a root. It stalls an instruction that consumes it too early.
+    /// Returns the register of arithmetic, a quotient or a root, which is late.
     pub fn late_result(&self) -> Option<u32> {
         matches!(self.row.class, Class::Arithmetic(_) | Class::Aside(_))
             .then(|| Float::D.register(self.word))
     }
 
-    /// Returns true if the instruction needs the floating-point register `s` at its start. An
-    /// addend is needed later.
+    /// An addend is needed later.
     pub fn consumes(&self, s: u32) -> bool {
         match self.row.class {
             Class::Arithmetic(reads) | Class::Aside(reads) | Class::Move(reads) => {
@@ -145,8 +134,7 @@ impl Instruction {
         }
     }
 
-    /// Returns the bits that each represent one register. push and pop have one more than stm and
-    /// ldm.
+    /// push and pop have one register more than stm and ldm.
     fn register_list(&self) -> u32 {
         match self.word >> 28 {
             0xb => 0x01ff_0000,

@@ -68,7 +68,7 @@ pub struct Cost {
     /// An instruction whose condition fails counts as well.
     pub instructions: u64,
     pub cycles: u64,
-    /// The part of the cycles that waits for the floating-point unit or its results.
+    /// The cycles that wait for the floating-point unit or its results.
     pub stalls: u64,
 }
 
@@ -80,15 +80,12 @@ impl AddAssign for Cost {
     }
 }
 
-/// A model of the processor, which executes one instruction after the other.
 #[derive(Clone, Copy, Debug)]
 pub struct Pipeline {
     core: Core,
     previous: Option<Instruction>,
-    /// True if a branch led to the next instruction.
     branched: bool,
     now: u64,
-    /// The first cycle in which the floating-point unit is free.
     unit_free: u64,
     /// The register with the last floating-point result, and the first cycle that can consume it.
     result: Option<(u32, u64)>,
@@ -106,8 +103,8 @@ impl Pipeline {
         }
     }
 
-    /// Executes the next instruction and returns its cost. `registers` are their contents before
-    /// it. `branches` is true if the instruction executed after it is not the next one in memory.
+    /// Executes the next instruction. `branches` is true if the instruction after it is not the
+    /// next one in memory.
     pub fn execute(
         &mut self,
         instruction: Instruction,
@@ -131,7 +128,6 @@ impl Pipeline {
             _ => INDIRECT_REFILL,
         };
 
-        // The delays by the fetch of a branch target, and by the neighbours.
         let is_split = instruction.size() == 4 && registers.pc() % 4 == 2;
         let fetch = if self.branched && is_split && self.core != Core::M0Plus {
             UNALIGNED_TARGET
@@ -157,7 +153,6 @@ impl Pipeline {
         }
     }
 
-    /// Returns the first cycle in which the floating-point unit and the operands are ready.
     fn start_of_float(&self, instruction: &Instruction) -> u64 {
         let unit = if instruction.is_float() {
             self.unit_free
@@ -179,13 +174,11 @@ impl Pipeline {
         }
         let depends = instruction.is_addressed_by(previous);
         match (previous.row.class, instruction.row.class) {
-            // A load or store right after a load is pipelined with it.
             (Class::Load, Class::Load | Class::Store) if !depends => {
                 let blocked = self.core == Core::M3 && instruction.row.updates_base();
                 (0, u64::from(!blocked))
             }
             (Class::Load, _) => (0, 0),
-            // A load waits for a store that took a single cycle.
             (Class::Store, _) => {
                 let is_fast = previous.row.cycles(self.core) == 1;
                 (

@@ -2,15 +2,12 @@
 
 use crate::Core;
 
-/// The effect on the time of an instruction in addition to the cycles of its [`Row`]. A load or
-/// store is pipelined with the load before it if their cycles overlap: if its address does not
-/// depend on that load.
+/// The effect on the time of an instruction in addition to its cycles. A load or store is pipelined
+/// with the load before it if its address does not depend on that load.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Class {
-    /// No effect of its own.
     Fixed,
-    /// A branch to an address in the instruction. It refills the pipeline sooner than one to an
-    /// address in a register.
+    /// It refills the pipeline sooner than a branch to an address in a register.
     Branch,
     /// It takes no time after a 16-bit instruction.
     IfThen,
@@ -23,11 +20,10 @@ pub enum Class {
     /// 1 cycle more for each core register in the list.
     LoadList,
     StoreList,
-    /// 1 cycle more for each word.
     FloatList,
     /// The next instruction may have to wait for the result.
     Arithmetic(Reads),
-    /// A quotient or root: the unit is busy, and the core continues after 1 cycle.
+    /// The unit is busy, and the core continues after 1 cycle.
     Aside(Reads),
     /// Consumes results; its own result is not late.
     Move(Reads),
@@ -39,19 +35,15 @@ pub enum Class {
 /// the addend.
 pub type Reads = &'static [Float];
 
-/// The position of a single-precision register in an encoding.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Float {
-    /// The destination, and in some instructions an operand.
     D,
     N,
-    /// The half of a double register, in a move between it and a core register.
     Half,
     M,
 }
 
 impl Float {
-    /// Returns the number of the floating-point register, 0 to 31.
     pub fn register(self, word: u32) -> u32 {
         match self {
             Self::D => (word >> 12 & 0xf) << 1 | word >> 22 & 1,
@@ -62,18 +54,16 @@ impl Float {
     }
 }
 
-/// The position of a core register in the word of an instruction ([`Row`]). `Low0` to `Low8` are
-/// three bits of its first halfword, from that bit on. `Wide0` to `Wide16` are four bits of the
-/// word, from that bit on.
+/// The position of a core register. `Low0` to `Low8` are three bits of the first halfword, `Wide0`
+/// to `Wide16` four bits of the word, from that bit on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Field {
     Low0,
     Low3,
     Low6,
     Low8,
-    /// A register of r0 to r15: bits 0 to 2 of the first halfword, and bit 7 above them.
+    /// Bits 0 to 2 of the first halfword, and bit 7 above them.
     Any,
-    /// The stack pointer, which has no bits in the encoding.
     Sp,
     Wide0,
     Wide8,
@@ -82,7 +72,6 @@ pub enum Field {
 }
 
 impl Field {
-    /// Returns the number of the core register.
     pub fn register(self, word: u32) -> u32 {
         match self {
             Self::Low0 => word >> 16 & 7,
@@ -108,13 +97,13 @@ pub struct Row {
     pub name: &'static str,
     pub(super) mask: u32,
     pub(super) value: u32,
-    /// On the M3, the M4F and the M0+; 0 if the core does not have the instruction, and for a
-    /// division.
+    /// On the M3, the M4F and the M0+; 0 for a division, or if the core does not have the
+    /// instruction.
     pub(super) cycles: [u64; 3],
     pub class: Class,
-    /// The core registers that it writes. Lists and pairs are left out.
+    /// Lists and pairs are left out.
     pub(super) writes: &'static [Field],
-    /// The registers that form the address of a load, a store or a table branch. 15 does not count.
+    /// For a load, a store or a table branch. 15 does not count.
     pub(super) address: &'static [Field],
 }
 

@@ -16,7 +16,6 @@ use crate::image::Image;
 use crate::instruction::Instruction;
 use crate::pipeline::{Cost, Pipeline};
 
-/// The contents of the core registers before an instruction.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Registers {
     pub general: [u32; 16],
@@ -27,7 +26,7 @@ impl Registers {
         self.general[13]
     }
 
-    /// Returns the link register: before the first instruction of a function its return address.
+    /// Before the first instruction of a function it is the return address.
     pub fn lr(&self) -> u32 {
         self.general[14]
     }
@@ -36,7 +35,6 @@ impl Registers {
         self.general[15]
     }
 
-    /// Reads the registers from an instruction's lines in the log.
     fn read(first: &[u8], rest: &[u8]) -> Self {
         let mut words = first.chunks_exact(WORD).chain(rest.chunks_exact(WORD));
         Self {
@@ -45,12 +43,9 @@ impl Registers {
     }
 }
 
-/// The size of a word such as `R01=00000002` with its separator. The log has four lines of four
-/// words for each instruction.
 const WORD: usize = 13;
 
-/// Returns the value of a word's eight digits. They are computed together for speed, because
-/// millions of words are read.
+/// The eight digits are computed together for speed, because millions of words are read.
 fn hexadecimal(word: &[u8]) -> u32 {
     let digits = word[4..]
         .first_chunk()
@@ -80,8 +75,6 @@ impl Read for Pieces<'_> {
     }
 }
 
-/// Calls `each` with the registers before every instruction of a log, until the log ends or `each`
-/// returns an error. It waits for a pipe until all its writers have closed it.
 pub fn for_each_instruction(
     log: &mut dyn Read,
     each: &mut dyn FnMut(Registers) -> Result<()>,
@@ -98,20 +91,16 @@ pub fn for_each_instruction(
     Ok(())
 }
 
-/// The calls of the functions that begin at some addresses, each with all that it calls and all
-/// interrupts in this time. A call within a counted call is a part of it.
 #[derive(Debug)]
 pub struct Calls<'a> {
     image: &'a Image,
     core: Core,
     entries: BTreeSet<u32>,
-    /// The running call: the registers at its entry, its stream since then, and its cost so far.
+    /// The registers at its entry, its stream since then, and its cost so far.
     pub running: Option<(Registers, Stream<'a>, Cost)>,
     /// In the order of the returns.
     pub ended: Vec<Cost>,
-    /// The total cost of the executions of each instruction in calls.
     pub spots: BTreeMap<u32, (Instruction, Cost)>,
-    /// The largest distance of the stack pointer below its value at the entry of a call.
     pub stack_bytes: u32,
 }
 
@@ -133,8 +122,6 @@ impl<'a> Stream<'a> {
         }
     }
 
-    /// Takes the registers before the next instruction. Returns the address, the instruction and
-    /// the cost of the previous one. A previous instruction without a known timing is an error.
     pub fn see(&mut self, next: Registers) -> Result<Option<(u32, Instruction, Cost)>> {
         let Some(before) = self.before.replace(next) else {
             return Ok(None);
@@ -171,8 +158,7 @@ impl<'a> Calls<'a> {
         }
     }
 
-    /// Takes the registers before the next instruction. A call ends at the caller's return address,
-    /// if the stack pointer is as at the entry.
+    /// A call ends at the caller's return address, if the stack pointer is as at the entry.
     pub fn see(&mut self, registers: Registers) -> Result<()> {
         if self.running.is_none() && self.entries.contains(&registers.pc()) {
             self.running = Some((
@@ -210,7 +196,6 @@ impl<'a> Calls<'a> {
         all
     }
 
-    /// Returns the size of all instructions executed in calls, each address once, bytes.
     pub fn hot_bytes(&self) -> u32 {
         self.spots
             .values()
@@ -218,7 +203,6 @@ impl<'a> Calls<'a> {
             .sum()
     }
 
-    /// Returns the size of all functions in which an instruction of a call was executed, bytes.
     pub fn code_bytes(&self) -> u32 {
         let functions: BTreeSet<_> = self
             .spots

@@ -4,35 +4,25 @@ use cycles::Core;
 use firmware::config::{self, Processor};
 use firmware::display::PanelName;
 
-/// A board that the firmware is built for, and its emulation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Board {
     /// The name on the command line and in tables.
     pub name: &'static str,
-    /// QEMU's `-machine`.
     pub machine: &'static str,
-    /// QEMU's `-cpu`.
     pub cpu: &'static str,
     /// The compiler's target, one of [`TARGETS`](crate::toolchain::TARGETS).
     pub target: &'static str,
-    /// The binary of the firmware that is its application. Boards with the same binary differ in
-    /// their target.
+    /// Boards with the same binary differ in their target.
     pub binary: &'static str,
-    /// The feature of the package `firmware` that this binary needs; empty if none.
     pub feature: &'static str,
-    /// The number of QEMU's serial port that is the link, counted from 0.
     pub serial_port: usize,
-    /// The frequency of the clock that measures the emulated board's time, Hz: the unit of the
-    /// `scene_cycles` and `busy_cycles` of its frames.
+    /// The clock in the emulator, whose cycles the frames report.
     pub hertz: u32,
-    /// True if the emulated board has the OLED panel and the five buttons.
     pub has_panel: bool,
-    /// The panel that the firmware is built for.
     pub panel: PanelName,
 }
 
 impl Board {
-    /// Returns the name on the command line, and older names of the board or its chip.
     pub fn names(&self) -> Vec<&'static str> {
         let aliases: &[_] = match self.processor() {
             config::CORTEX_M3 => &["m3"],
@@ -43,9 +33,8 @@ impl Board {
         [&[self.name], aliases].concat()
     }
 
-    /// Returns the clock frequency of the processor that the board represents, Hz. It is `hertz`,
-    /// except for QEMU's machine with a Cortex-M0+: that represents a Raspberry Pi Pico at 125 MHz,
-    /// and `hertz` is its clock in QEMU.
+    /// The clock of the processor that the board represents. QEMU's machine with a Cortex-M0+
+    /// represents a Raspberry Pi Pico at 125 MHz.
     pub fn processor_hertz(&self) -> u32 {
         if self.core() == Core::M0Plus {
             125_000_000
@@ -54,12 +43,9 @@ impl Board {
         }
     }
 
-    /// Returns the duration of an instruction when QEMU's clock counts instructions, as the
-    /// exponent of a power of two in nanoseconds; QEMU allows no other durations. It has no meaning
-    /// for the Pico.
-    ///
-    /// It is 3 on the STM32F405 (8 ns, 1.3 of its cycles), 4 on the Cortex-M0+ (16 ns, 2 cycles of
-    /// 125 MHz), and 5 on the others (32 ns, 1.6 cycles of 50 MHz).
+    /// The duration of an instruction, as the exponent of a power of two in nanoseconds; QEMU
+    /// allows no other durations. It is 1.3 cycles of the STM32F405, 2 of the Pico, and 1.6 of the
+    /// others.
     pub fn instruction_shift(&self) -> u32 {
         match self.processor_hertz() {
             ..=50_000_000 => 5,
@@ -68,14 +54,11 @@ impl Board {
         }
     }
 
-    /// Returns the duration of an instruction, s, when QEMU's clock counts instructions: 2 to the
-    /// power of [`Self::instruction_shift`] ns. It has no meaning for the Pico.
+    /// In s, when QEMU's clock counts instructions.
     pub fn instruction(&self) -> f64 {
         f64::from(1 << self.instruction_shift()) * 1e-9
     }
 
-    /// Returns the class of the processor, with its price list and budgets. The STM32F405 has its
-    /// own; the others follow from [`Self::core`].
     pub fn processor(&self) -> Processor {
         match (self.binary, self.core()) {
             ("stm32f405", _) => config::STM32F405,
@@ -85,13 +68,10 @@ impl Board {
         }
     }
 
-    /// Returns true if the processor reports the cause of a fault. Only a Cortex-M0+ does not.
     pub fn reports_causes(&self) -> bool {
         self.core() != Core::M0Plus
     }
 
-    /// Returns the first address of the flash of a board in QEMU, where the processor reads its
-    /// vectors. It is 0 for the Pico, which is not its address of the flash.
     pub fn flash(&self) -> u32 {
         match self.machine {
             "netduinoplus2" => 0x0800_0000,
@@ -99,9 +79,6 @@ impl Board {
         }
     }
 
-    /// Returns the kind of core, which determines the timings of instructions. It is chosen by
-    /// `cpu`: the `cortex-m0` counts as a Cortex-M0+, and any name but that and `cortex-m3` as a
-    /// Cortex-M4F.
     pub fn core(&self) -> Core {
         match self.cpu {
             "cortex-m3" => Core::M3,
@@ -111,8 +88,7 @@ impl Board {
     }
 }
 
-/// The board with an OLED panel and buttons in QEMU, here with the Cortex-M3 of the real one at 50
-/// MHz. QEMU can give it other processors.
+/// QEMU can give this board other processors than its real Cortex-M3.
 pub const LM3S6965EVB: Board = Board {
     name: "lm3s6965evb",
     machine: "lm3s6965evb",
@@ -126,8 +102,7 @@ pub const LM3S6965EVB: Board = Board {
     panel: PanelName::Oled,
 };
 
-/// The boards of QEMU: the LM3S6965 with a Cortex-M3 (`lm3s6965evb`), then with a Cortex-M4F
-/// (`lm3s6965evb-m4`), [`STM32F405`], and the LM3S6965 with a Cortex-M0+ (`lm3s6965evb-m0`). The first one is the default of most commands.
+/// The boards of QEMU. The first one is the default of most commands.
 pub const BOARDS: [Board; 4] = [
     LM3S6965EVB,
     Board {
@@ -145,8 +120,7 @@ pub const BOARDS: [Board; 4] = [
     },
 ];
 
-/// The board with a Cortex-M4F at 168 MHz that exists as hardware: the same ELF file is flashed and
-/// emulated. QEMU does not emulate its panel, button and I2C, so `has_panel` is false.
+/// The same ELF file is flashed and emulated. QEMU does not emulate its panel, button and I2C.
 pub const STM32F405: Board = Board {
     name: "stm32f405",
     machine: "netduinoplus2",
@@ -160,9 +134,7 @@ pub const STM32F405: Board = Board {
     panel: PanelName::Oled,
 };
 
-/// The Raspberry Pi Pico with a Cortex-M0+ at 125 MHz, a panel and buttons. It is emulated by
-/// rp2040js instead of QEMU, which does not know its `machine` and ends at once. Its `serial_port`
-/// has no meaning, and its `cpu` is for [`Board::core`].
+/// Emulated by rp2040js, so that the fields for QEMU have no meaning.
 pub const PICO: Board = Board {
     name: "pico",
     machine: "rp2040js",
@@ -174,13 +146,10 @@ pub const PICO: Board = Board {
     ..LM3S6965EVB
 };
 
-/// Returns the Pico with this panel.
 pub const fn pico_with(panel: PanelName) -> Board {
     Board { panel, ..PICO }
 }
 
-/// Returns every board that the firmware is built for: the [`BOARDS`] of QEMU in their order, then
-/// the [`PICO`].
 pub fn every_board() -> impl Iterator<Item = &'static Board> + Clone {
     BOARDS.iter().chain([&PICO])
 }

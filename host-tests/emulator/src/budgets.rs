@@ -1,43 +1,31 @@
 //! The table of budgets: the limits of time and memory for each board, and their reasons.
 
-/// The largest part, 0 to 1, of a frame of 1/60 s that a scene may take to advance and to be drawn.
-/// This value itself is allowed.
-///
-/// It applies to every scene on a Cortex-M3 at 50 MHz and on a Cortex-M0+ at 125 MHz, in QEMU and
-/// after the first 6 frames. It is meant for the tick that prepares a motion on the former, and for
-/// the map of flips on the latter. The rest is for the panel's bus, the serial link, commands, and
-/// requested motions.
+/// The largest part of a frame that a scene may take to advance and to be drawn, after the first 6
+/// frames, on a Cortex-M3 and a Cortex-M0+. It is meant for the tick that prepares a motion on the
+/// former, and for the map of flips on the latter. The rest is for the panel's bus, the serial
+/// link, commands, and requested motions.
 pub const SCENE: f64 = 0.55;
-/// The largest part of a frame, as [`SCENE`], that the page may take on a Cortex-M3 at 50 MHz.
 pub const PAGE: f64 = 0.15;
-/// The largest cost of drawing and sending a frame of any scene on a Cortex-M3, cycles, without the
-/// computation of its motion. It is 13 % of 1/60 s at 50 MHz. The most expensive scene, figure 7,
-/// takes 106,000. The value itself is allowed.
+/// The largest cost of drawing and sending a frame on a Cortex-M3, cycles. The most expensive
+/// scene, figure 7, takes 106,000.
 pub const SHOWING: u64 = 110_000;
-/// The smallest part, 0 to 1, of a frame of 1/60 s that must remain after the frame is on the panel
-/// and sent. The value itself is allowed. It applies to every scene on every board, after the first
-/// 6 frames and in addition to [`SCENE`]; a scene within that limit may leave less than this.
-///
-/// It is enough for a command in each frame, for a log line, and to compute requested motions in
-/// reasonable time. QEMU's buses take no time; the README has the times of a real board's buses.
+/// The smallest part of a frame that must remain, on every board. It is enough for a command in
+/// each frame, for a log line, and to compute requested motions in reasonable time. A scene within
+/// [`SCENE`] may leave less. QEMU's buses take no time; the README has the times of a real board's
+/// buses.
 pub const IDLE: f64 = 0.4;
 
-/// The memory that the program of a board takes, or its limits, bytes.
+/// In bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Memory {
-    /// The program and constants, in flash, without `data`.
     pub text: u32,
-    /// The statics with initial values, in flash and in memory.
+    /// In flash and in memory.
     pub data: u32,
-    /// The statics that start as zeros or are not initialised.
     pub bss: u32,
-    /// The largest depth of the stack in memory.
     pub stack: u32,
 }
 
-/// The largest memory that each application may take, bytes, with the name of its board. The values
-/// themselves are allowed. The rows are in the order of
-/// [`every_board`](crate::boards::every_board).
+/// The largest memory that each application may take, by the name of its board.
 ///
 /// - Text: the smallest chip has 256 KiB of flash. A sixteenth of it stays free; with a Cortex-M0+,
 ///   whose code is longer, 12 KiB. The F405 has 1 MiB, and three quarters of it stay free for
@@ -101,5 +89,4 @@ pub const MEMORY: [(&str, Memory); 5] = [
     ),
 ];
 
-/// The number of bytes in a KiB.
 const KIB: u32 = 1024;

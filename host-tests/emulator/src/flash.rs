@@ -10,34 +10,22 @@ use object::Endianness;
 use object::elf::{FileHeader32, PT_LOAD};
 use object::read::elf::{FileHeader, ProgramHeader};
 
-/// The family ID of the RP2040.
 const RP2040: u32 = 0xe48b_ff56;
-/// The flag of a block that contains a family ID.
 const HAS_FAMILY: u32 = 0x2000;
-/// The marks at the start of a block.
 const MAGIC: [u32; 2] = [0x0a32_4655, 0x9e5d_5157];
-/// The mark at its end.
 const MAGIC_END: u32 = 0x0ab1_6f30;
-/// The number of data bytes that a block carries, out of the `ROOM` bytes it has for them.
 const BROUGHT: usize = 256;
 const ROOM: usize = 476;
-/// The value of a byte in erased flash.
 pub const ERASED: u8 = 0xff;
-/// The largest image, in bytes; no chip here has more flash. A longer gap between segments is an
-/// error.
+/// No chip here has more flash.
 const MOST: usize = 1 << 21;
 
-/// Returns the program as it is stored in flash: its first address and its bytes from there, with
-/// 0xff between its parts. Errors are as in [`flash_image_over`].
 pub fn flash_image(elf: &[u8]) -> Result<(u32, Vec<u8>)> {
     flash_image_over(elf, ERASED)
 }
 
-/// Returns the program as it is stored in flash, with `unused` between its parts: erased flash, or
-/// zeros as QEMU's loader leaves. The first element is the address of the first byte. Each part is
-/// at its load address (`p_paddr`); parts without bytes are left out. Of parts that overlap, the
-/// last one in the file counts. An error means that the file is no 32-bit ELF file, is cut short,
-/// has nothing to load, or would fill more than 2 MiB. Not checked: the processor.
+/// Returns the program as it is stored in flash, from the address of its first byte on, with
+/// `unused` between its parts: erased flash, or zeros as QEMU's loader leaves.
 pub fn flash_image_over(elf: &[u8], unused: u8) -> Result<(u32, Vec<u8>)> {
     let header = FileHeader32::<Endianness>::parse(elf)?;
     let endian = header.endian()?;
@@ -53,7 +41,6 @@ pub fn flash_image_over(elf: &[u8], unused: u8) -> Result<(u32, Vec<u8>)> {
         }
     }
 
-    // The image starts at the lowest address.
     let start = parts
         .iter()
         .map(|(address, _)| *address)
@@ -61,7 +48,6 @@ pub fn flash_image_over(elf: &[u8], unused: u8) -> Result<(u32, Vec<u8>)> {
         .context("nothing to load")?;
 
     let mut image = Vec::new();
-    // The gaps between the parts are filled.
     for (address, data) in parts {
         let from = (address - start) as usize;
         ensure!(
@@ -77,15 +63,11 @@ pub fn flash_image_over(elf: &[u8], unused: u8) -> Result<(u32, Vec<u8>)> {
     Ok((start, image))
 }
 
-/// Returns the UF2 file that writes `image` to an RP2040's flash at the address `start`. Each block
-/// of 512 bytes writes 256 bytes; in the last one, zeros follow the image. An empty image gives an
-/// empty file. Not checked: that the image is in flash and `start` a multiple of 256.
 pub fn uf2(start: u32, image: &[u8]) -> Vec<u8> {
     let parts = image.chunks(BROUGHT);
     let count = parts.len() as u32;
     let blocks = (0..).zip(parts).flat_map(|(number, part)| {
         let place = start + number * BROUGHT as u32;
-        // The head of a block, in the order of the format.
         let head = [
             MAGIC[0],
             MAGIC[1],
@@ -98,7 +80,6 @@ pub fn uf2(start: u32, image: &[u8]) -> Vec<u8> {
         ];
         let mut block: Vec<u8> = head.into_iter().flat_map(u32::to_le_bytes).collect();
         let end = block.len() + ROOM;
-        // The data, padding, and the mark at the end.
         block.extend(part);
         block.resize(end, 0);
         block.extend(MAGIC_END.to_le_bytes());

@@ -28,8 +28,7 @@ impl Show {
         Self::in_format(Format::OLED, processor, name, settings)
     }
 
-    /// Starts a scene as on a board with this panel and `processor`. The memory of its canvas is
-    /// never freed.
+    /// The memory of the canvas is never freed.
     pub fn in_format(
         format: Format,
         processor: Processor,
@@ -44,7 +43,6 @@ impl Show {
         })
     }
 
-    /// Advances the player by one tick of the clock.
     pub fn tick(&mut self) {
         let Self { player, news } = self;
         let step = player.report.step + 1;
@@ -53,14 +51,13 @@ impl Show {
         let _ = player.check();
     }
 
-    /// Returns the picture of the current state.
     pub fn frame(&mut self) -> Screenshot {
         self.player.draw();
         Screenshot::from(&self.player.canvas)
     }
 
-    /// Advances to the tick of a board's `frame` and returns the frame that the board should have
-    /// sent. The fields that only the board can know are copied from `frame`.
+    /// Returns the frame that the board should have sent. The fields that only the board can know
+    /// are copied.
     pub fn expected(&mut self, frame: &Frame) -> Frame {
         while self.report().step < frame.report.step {
             self.tick();

@@ -24,8 +24,6 @@ pub mod toolchain;
 use {anyhow::bail, firmware::protocol::ToHost};
 
 #[cfg(feature = "boards")]
-/// Returns all messages from `next` up to the first call whose messages contain a frame. Returns an
-/// error if `often` calls bring no frame.
 fn up_to_frame(
     often: u32,
     mut next: impl FnMut() -> anyhow::Result<Vec<ToHost>>,

@@ -21,7 +21,6 @@ use console::cli::{Refused, unwritable};
 /// to the same name is refused. A part that a killed process left is used again.
 #[derive(Debug)]
 pub struct OutFile {
-    /// The option in errors.
     option: &'static str,
     path: PathBuf,
     content: Content,
@@ -36,8 +35,7 @@ enum Content {
 }
 
 impl OutFile {
-    /// Begins the file that `option` names, such as `--out`. A file that cannot be written is
-    /// refused, so a command calls this before its work. From now on an interrupt ends the process.
+    /// A file that cannot be written is refused, so a command calls this before its work.
     pub fn create(option: &'static str, path: &Path) -> Result<Self, Refused> {
         let content = create(path).map_err(|error| unwritable(option, path, &error))?;
         Ok(Self {
@@ -47,7 +45,7 @@ impl OutFile {
         })
     }
 
-    /// Gives the file its name. A symbolic link stays one, and its target is replaced.
+    /// A symbolic link stays one, and its target is replaced.
     pub fn finish(self) -> anyhow::Result<()> {
         let Content::Part(part, _lock) = self.content else {
             return Ok(());
@@ -58,19 +56,16 @@ impl OutFile {
         })
     }
 
-    /// Writes the rest of the file and finishes it.
     pub fn write_whole(mut self, bytes: &[u8]) -> anyhow::Result<()> {
         self.write_all(bytes).map_err(|error| self.failed(&error))?;
         self.finish()
     }
 
-    /// Returns the error of a command whose file could not be written to the end. It has the words
-    /// of a refusal, but is none: its exit code is 1.
+    /// The error has the words of a refusal, but the exit code 1.
     pub fn failed(&self, error: &io::Error) -> anyhow::Error {
         anyhow!(unwritable(self.option, &self.path, error).to_string())
     }
 
-    /// Returns the name of the file.
     pub fn path(&self) -> &Path {
         &self.path
     }
@@ -92,19 +87,16 @@ impl Write for OutFile {
     }
 }
 
-/// Writes a complete file, and creates its folder.
 pub fn write(option: &'static str, path: &Path, bytes: impl AsRef<[u8]>) -> anyhow::Result<()> {
     let made = path.parent().map_or(Ok(()), fs::create_dir_all);
     made.map_err(|error| unwritable(option, path, &error))?;
     OutFile::create(option, path)?.write_whole(bytes.as_ref())
 }
 
-/// Returns the file that a link leads to, or the path itself.
 fn target(path: &Path) -> PathBuf {
     path.canonicalize().unwrap_or_else(|_| path.to_owned())
 }
 
-/// Opens a device, or creates and locks the part of a file.
 fn create(path: &Path) -> io::Result<Content> {
     let mut rights = None;
     match fs::metadata(path) {

@@ -25,8 +25,8 @@ use crate::up_to_frame;
 const SLICE: Duration = Duration::from_millis(1);
 const PATIENCE: u32 = 5000;
 
-/// An emulated Pico. Its time advances only while the emulator processes a command such as that of
-/// [`Self::run`], so its results are bit-identical in every run. Dropping it ends the emulator.
+/// An emulated Pico. Its time advances only while the emulator processes a command, so its results
+/// are bit-identical in every run.
 pub struct PicoMachine {
     input: ChildStdin,
     output: BufReader<ChildStdout>,
@@ -43,8 +43,6 @@ pub struct PicoMachine {
 }
 
 impl PicoMachine {
-    /// Starts a board with this firmware in its flash, exactly as `cargo pico` copies it. `limit`
-    /// is a time of the host, after which the emulator is killed.
     pub fn start(
         node: &Path,
         elf: &Path,
@@ -55,8 +53,7 @@ impl PicoMachine {
         Self::flashed(node, &uf2(start, &image), elf, panel, limit)
     }
 
-    /// Starts a board whose flash has been written by this UF2 file. The ELF file is used to decode
-    /// the log.
+    /// The ELF file is used to decode the log.
     pub fn flashed(
         node: &Path,
         blocks: &[u8],
@@ -104,20 +101,16 @@ impl PicoMachine {
         })
     }
 
-    /// Advances the board's time, and returns the messages that it has sent over USB since they
-    /// were last fetched.
+    /// Advances the board's time.
     pub fn run(&mut self, time: Duration) -> anyhow::Result<Vec<ToHost>> {
         self.tell(&format!("run {}", time.as_micros()))?;
         Ok(std::mem::take(&mut self.heard_by_usb))
     }
 
-    /// Runs to the end of the millisecond in which the next frame arrives over USB, and returns all
-    /// messages. It is an error if 5 s of the board bring no frame.
     pub fn run_to_frame(&mut self) -> anyhow::Result<Vec<ToHost>> {
         up_to_frame(PATIENCE, || self.run(SLICE))
     }
 
-    /// Runs as [`Self::run_to_frame`] does and returns the last frame.
     pub fn next_frame(&mut self) -> anyhow::Result<Frame> {
         self.run_to_frame()?
             .into_iter()
@@ -126,7 +119,7 @@ impl PicoMachine {
             .context("it ends with one")
     }
 
-    /// Sends bytes over USB. Bytes that are sent while the board is not on USB are lost.
+    /// Bytes that are sent while the board is not on USB are lost.
     pub fn send_bytes(&mut self, bytes: &[u8]) -> anyhow::Result<()> {
         self.tell(&format!("usb {}", digits(bytes))).map(drop)
     }
@@ -135,8 +128,7 @@ impl PicoMachine {
         self.send_bytes(encode_command(request, command, &mut [0; MAX_WIRE]))
     }
 
-    /// Sends a command to the UART. Its bytes arrive at once, in a queue of 32. Bytes that do not
-    /// fit are lost.
+    /// The bytes arrive at once, in a queue of 32.
     pub fn send_through_uart(
         &mut self,
         request: u16,
@@ -149,9 +141,7 @@ impl PicoMachine {
         .map(drop)
     }
 
-    /// Opens the USB serial port at this speed, bits per second, or closes it if `baud` is 0.
-    /// Opened at [`BAUD_OF_BOOT_LOADER`](crate::link::BAUD_OF_BOOT_LOADER) and then closed, the
-    /// board restarts in its boot loader.
+    /// Opens the USB serial port at this speed, or closes it if `baud` is 0.
     pub fn set_port(&mut self, baud: u32) -> anyhow::Result<()> {
         self.tell(&format!("port {baud}")).map(drop)
     }
@@ -160,7 +150,6 @@ impl PicoMachine {
         self.is_in_boot_loader
     }
 
-    /// Returns the messages that the board has sent by the UART since the last call.
     pub fn heard_by_uart(&mut self) -> Vec<ToHost> {
         std::mem::take(&mut self.heard_by_uart)
     }
@@ -169,12 +158,10 @@ impl PicoMachine {
         std::mem::take(&mut self.lines)
     }
 
-    /// Returns the counts of the USB link and of the UART.
     pub fn counts(&self) -> [Counts; 2] {
         [self.usb.counts, self.uart.counts]
     }
 
-    /// Returns the picture in the memory of the panel; it is black while the panel is off.
     pub fn screenshot(&mut self) -> anyhow::Result<Screenshot> {
         let bytes = self.tell("panel")?;
         Ok(match self.panel {
@@ -183,7 +170,6 @@ impl PicoMachine {
         })
     }
 
-    /// Presses (`down`) or releases a button.
     pub fn set_key(&mut self, key: Key, down: bool) -> anyhow::Result<()> {
         let pin = match key {
             Key::Up => 10,
@@ -196,7 +182,7 @@ impl PicoMachine {
             .map(drop)
     }
 
-    /// Sends a command to the emulator: a line of `main.js`. Returns the bytes that it requests.
+    /// Sends a line of `main.js`.
     pub fn tell(&mut self, command: &str) -> anyhow::Result<Vec<u8>> {
         const GONE: &str = "the emulator of the Pico no longer answers";
         writeln!(self.input, "{command}")

@@ -40,8 +40,8 @@ pub struct Running {
     limit: Duration,
 }
 
-/// Starts `command` in its own process group, with a warden run by `sh`. The group is killed after
-/// `limit` at the latest. A child in the background must not read the terminal.
+/// Starts `command` in its own process group, with a warden run by `sh`. A child in the background
+/// must not read the terminal.
 pub fn spawn(command: &mut Command, limit: Duration) -> io::Result<Running> {
     let program = command.get_program().to_string_lossy().into_owned();
     let failed = |error: io::Error| io::Error::other(format!("cannot run {program}: {error}"));
@@ -68,8 +68,8 @@ pub fn spawn(command: &mut Command, limit: Duration) -> io::Result<Running> {
 }
 
 impl Running {
-    /// Waits until the child ends, and kills the rest of its group. An error of kind `TimedOut`
-    /// means that it was killed at its time limit.
+    /// Waits until the child ends, and kills the rest of its group. `TimedOut` means that it was
+    /// killed at its time limit.
     pub fn wait(&mut self) -> io::Result<ExitStatus> {
         let status = self.child.wait()?;
         let _ = self.warden.wait();
@@ -86,14 +86,11 @@ impl Running {
         }
     }
 
-    /// Returns the child's exit status if it has ended, without waiting, and kills the rest of its
-    /// group then.
     pub fn try_wait(&mut self) -> io::Result<Option<ExitStatus>> {
         self.child.try_wait()?.map(|_| self.wait()).transpose()
     }
 
-    /// Returns the child's exit status if it has ended. If none of these [`streams`](Self::streams)
-    /// is open, the child is about to end, and this waits for it.
+    /// If no stream is open, the child is about to end, and this waits for it.
     pub fn ended(&mut self, streams: &[Stream]) -> io::Result<Option<ExitStatus>> {
         if streams.iter().any(|stream| stream.is_open) {
             self.try_wait()
@@ -102,7 +99,6 @@ impl Running {
         }
     }
 
-    /// Takes the standard output and the standard error of the child, which must be pipes.
     pub fn streams(&mut self) -> io::Result<[Stream; 2]> {
         let pipes = self.child.stdout.take().zip(self.child.stderr.take());
         let (stdout, stderr) = pipes.ok_or_else(|| io::Error::other("a child without pipes"))?;
@@ -120,7 +116,6 @@ impl Drop for Running {
     }
 }
 
-/// Returns a child's exit status as an exit code; 1 if a signal ended it.
 pub fn exit_code(status: ExitStatus) -> ExitCode {
     status
         .code()
@@ -135,13 +130,12 @@ pub struct Output {
     pub stderr: String,
 }
 
-/// Runs `command` to its end without input and captures its output.
 pub fn run(command: &mut Command, limit: Duration) -> io::Result<Output> {
     run_watched(command, limit, |_| {})
 }
 
-/// Runs a command like [`run`], and passes the last line of new output to `watch`. While no output
-/// arrives, `watch` is called with `None` about ten times a second.
+/// Passes the last line of new output to `watch`, or `None` about ten times a second while nothing
+/// arrives.
 pub fn run_watched(
     command: &mut Command,
     limit: Duration,
@@ -183,22 +177,15 @@ pub fn run_watched(
     }
 }
 
-/// The signals that interrupt a command: Ctrl-C, Ctrl-\, a request to end, a terminal that is
-/// closed.
 const INTERRUPTS: [i32; 4] = [SIGINT, SIGQUIT, SIGTERM, SIGHUP];
 
-/// Returns the shell's exit code for a command ended by this signal, such as 130 after Ctrl-C.
-/// Returns success for 0, which means no signal. Not checked: that the number is below 128; a
-/// larger one gives a wrong code or a panic.
+/// Returns the shell's exit code for a command ended by this signal.
 pub fn interrupted_by(signal: usize) -> ExitCode {
     ExitCode::from(if signal == 0 { 0 } else { 128 + signal as u8 })
 }
 
-/// Returns a variable for the number of the signal that interrupts this process (Ctrl-C, Ctrl-\,
-/// SIGTERM, SIGHUP), the last one if there are several; it is 0 until then. The process then
-/// continues instead of ending, unless [`on_interrupt`] is called, too, before or after. This lasts
-/// until the process ends. Every call returns another variable for the same signals. An error means
-/// that the system refuses the handlers.
+/// Returns a variable for the number of the signal that interrupts this process. The process then
+/// continues instead of ending, unless [`on_interrupt`] is called, too.
 pub fn interrupted() -> io::Result<Arc<AtomicUsize>> {
     let signal = Arc::default();
     for each in INTERRUPTS {
@@ -207,12 +194,8 @@ pub fn interrupted() -> io::Result<Arc<AtomicUsize>> {
     Ok(signal)
 }
 
-/// Runs `hook` when this process is interrupted (Ctrl-C, Ctrl-\, SIGTERM, SIGHUP), before it exits.
-/// It is for things that must be restored, such as the terminal's mode. The exit code is 128 plus
-/// the number of the signal. Hooks run in a thread of their own, in the order in which they were
-/// added, and are never removed. A hook must not block, panic or add a hook: the process would
-/// not exit, and further signals would have no effect. If the system refuses the handlers, no hook
-/// runs.
+/// Runs `hook` when this process is interrupted, before it exits, to restore things such as the
+/// terminal's mode. A hook must not block, panic or add a hook: the process would not exit.
 pub fn on_interrupt(hook: impl FnOnce() + Send + 'static) {
     type Hook = Box<dyn FnOnce() + Send>;
     static HOOKS: Mutex<Vec<Hook>> = Mutex::new(Vec::new());
@@ -221,7 +204,6 @@ pub fn on_interrupt(hook: impl FnOnce() + Send + 'static) {
     // A panic elsewhere must not prevent a hook from running, so a poisoned lock is accepted.
     let hooks = || HOOKS.lock().unwrap_or_else(PoisonError::into_inner);
     HANDLER.call_once(|| {
-        // This fails only for signals that no program may handle.
         let Ok(mut signals) = Signals::new(INTERRUPTS) else {
             return;
         };
@@ -236,25 +218,20 @@ pub fn on_interrupt(hook: impl FnOnce() + Send + 'static) {
     hooks().push(Box::new(hook));
 }
 
-/// Removes this file or folder, with its contents, when this process is interrupted, because values
-/// are not dropped then. It may be gone already; a failure is ignored. Whatever has this path then
-/// is removed, also if it was made later. It is a hook of [`on_interrupt`], which ends the process.
+/// Removes this file or folder when this process is interrupted, because values are not dropped
+/// then.
 pub fn remove_on_interrupt(path: &Path) {
     let path = path.to_owned();
 
-    // The path may be gone already.
     on_interrupt(move || {
         drop(std::fs::remove_file(&path).or_else(|_| std::fs::remove_dir_all(path)))
     });
 }
 
-/// Stops this process and those that the shell started with it, as Ctrl-Z does. Returns when they
-/// are continued.
 pub fn suspend() -> io::Result<()> {
     Ok(kill(Pid::from_raw(0), Signal::SIGTSTP)?)
 }
 
-/// Returns a variable that becomes true whenever this process is continued after it was stopped.
 pub fn continued() -> io::Result<Arc<AtomicBool>> {
     let continued = Arc::default();
     register(SIGCONT, Arc::clone(&continued))?;

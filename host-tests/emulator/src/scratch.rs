@@ -15,8 +15,7 @@ const PREFIX: &str = "double-pendulum-run-";
 /// By this age a folder has been locked by its owner.
 const LOCKED_BY_THEN: Duration = Duration::from_secs(60);
 
-/// A temporary folder of this process. It is removed when this is dropped and when the process is
-/// interrupted. A folder that a killed process has left is removed by the next one.
+/// A temporary folder of this process.
 #[derive(Debug)]
 pub struct Scratch {
     folder: TempDir,
@@ -25,7 +24,6 @@ pub struct Scratch {
 }
 
 impl Scratch {
-    /// Makes a folder, and removes old folders of killed processes.
     pub fn new() -> io::Result<Self> {
         let folder = tempfile::Builder::new().prefix(PREFIX).tempdir()?;
         remove_on_interrupt(folder.path());
@@ -34,7 +32,6 @@ impl Scratch {
         let lock = Flock::lock(opened, FlockArg::LockExclusiveNonblock);
         let lock = lock.map_err(|(_, error)| error)?;
 
-        // Folders without an owner remain after a command was killed.
         for abandoned in abandoned(folder.path().parent()) {
             let _ = fs::remove_dir_all(abandoned);
         }

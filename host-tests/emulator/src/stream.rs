@@ -11,10 +11,8 @@ use nix::poll::{PollFd, PollFlags, poll};
 use nix::sys::stat::Mode;
 use nix::unistd::mkfifo;
 
-/// The longest wait for input, ms.
 const TICK: u8 = 100;
 
-/// The host's end of a pipe from a child. It is read without waiting.
 #[derive(Debug)]
 pub struct Stream {
     pipe: File,
@@ -23,7 +21,6 @@ pub struct Stream {
 }
 
 impl Stream {
-    /// Takes the end of a pipe, and sets it to reads that do not wait.
     pub fn of(pipe: impl Into<OwnedFd>) -> io::Result<Self> {
         let pipe = File::from(pipe.into());
         fcntl(&pipe, FcntlArg::F_SETFL(OFlag::O_NONBLOCK))?;
@@ -34,7 +31,6 @@ impl Stream {
         })
     }
 
-    /// Reads everything that is available, without waiting, and returns the new bytes.
     pub fn take_in(&mut self) -> &[u8] {
         let before = self.bytes.len();
         let read = self.pipe.read_to_end(&mut self.bytes);
@@ -42,8 +38,6 @@ impl Stream {
         &self.bytes[before..]
     }
 
-    /// Removes the next complete line from `bytes`. Once `is_open` is false, the last line need not
-    /// be complete.
     pub fn line(&mut self) -> Option<String> {
         // The end of a stream also ends its last line.
         let last = (!self.is_open && !self.bytes.is_empty()).then_some(self.bytes.len());
@@ -58,7 +52,6 @@ impl Stream {
     }
 }
 
-/// Waits until an open stream has new bytes or ends, for at most 100 ms.
 pub fn wait<'a>(streams: impl Iterator<Item = &'a Stream>) {
     let open = streams.filter(|stream| stream.is_open);
     let mut polled: Vec<_> = open
@@ -82,8 +75,6 @@ pub struct Channel {
 }
 
 impl Channel {
-    /// Makes the pipes for QEMU's `-chardev pipe` with this path: QEMU reads `path.in` and writes
-    /// `path.out`.
     pub fn make(path: &Path) -> io::Result<Self> {
         let pipe = |end| {
             let path = path.with_extension(end);

@@ -35,7 +35,6 @@ pub const WASM: &str = "wasm32-unknown-unknown";
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Toolchain {
-    /// The emulator of the core; empty after [`set_up_web`].
     pub qemu: PathBuf,
 }
 
@@ -81,8 +80,6 @@ fn check_temporary_folder() -> Result<(), Refused> {
     tempfile::tempdir().map_err(refused).map(drop)
 }
 
-/// Returns the tools for another target: QEMU's emulation of Linux, Node.js for WebAssembly, or
-/// QEMU's boards.
 pub fn set_up_for(target: &str) -> Result<Toolchain, Refused> {
     let emulator = match target.split('-').next() {
         Some("wasm32") => NODE,
@@ -130,18 +127,14 @@ impl fmt::Display for Toolchain {
     }
 }
 
-/// The files that identify the workspace. No folder above or next to it has all of them.
 const MARKS: [&str; 3] = [
     "kernel/Cargo.toml",
     "firmware/Cargo.toml",
     "host-tests/Cargo.toml",
 ];
 
-/// Returns the project's folder, which contains `kernel`, `firmware` and `host-tests`.
-///
 /// The folder is searched at run time, because a checkout may be moved or copied with its programs
-/// already built: from the package that cargo runs, then from the current folder, then from this
-/// program, upwards.
+/// already built: from the package that cargo runs, the current folder, and this program, upwards.
 pub fn workspace() -> &'static Path {
     static FOUND: OnceLock<PathBuf> = OnceLock::new();
     FOUND.get_or_init(|| {
@@ -170,7 +163,6 @@ fn above(start: &Path) -> Option<PathBuf> {
     start.ancestors().find(is_it).map(Path::to_owned)
 }
 
-/// Returns the folder of everything built, as cargo chooses it.
 pub fn target() -> PathBuf {
     let chosen = env::var_os("CARGO_TARGET_DIR").filter(|folder| !folder.is_empty());
     chosen

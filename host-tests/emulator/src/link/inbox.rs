@@ -2,7 +2,6 @@
 
 use firmware::protocol::{Decoder, Field, Frame, LinkError, ToHost, read};
 
-/// The counts of a link since its [`Inbox`] was made.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counts {
     pub messages: u64,
@@ -10,11 +9,9 @@ pub struct Counts {
     pub damaged: u64,
     /// The frames that are missing in the sequence numbers.
     pub lost: u64,
-    /// A message [`ToHost::Restarted`] and the frames from 0 after it count once.
     pub restarts: u64,
 }
 
-/// Returns the name of a [`Field`] of the protocol that a board refuses, in words.
 pub fn refusal(field: Field) -> &'static str {
     match field {
         // A board of this version can read every message of this host, unless the two have
@@ -25,24 +22,19 @@ pub fn refusal(field: Field) -> &'static str {
     }
 }
 
-/// A decoder of received bytes into messages.
 #[derive(Debug, Default)]
 pub struct Inbox {
     /// A new decoder in its place drops the incomplete message.
     pub decoder: Decoder,
     pub counts: Counts,
     expected: Option<u32>,
-    /// True if the next frame is the first of a connection: frames before it are not lost.
     is_joining: bool,
-    /// The last damage since the connection began.
     pub damage: Option<LinkError>,
-    /// True if the next bytes may begin in the middle of a message.
     joins: bool,
 }
 
 impl Inbox {
-    /// Takes a byte and returns the message that it completes. Damage is stored and counted. A
-    /// damaged first message after [`Self::join`] is not counted, because the connection may have
+    /// A damaged first message after [`Self::join`] is not counted, because the connection may have
     /// begun within it.
     pub fn take(&mut self, byte: u8) -> Option<ToHost> {
         let message = match self
@@ -85,9 +77,8 @@ impl Inbox {
         Some(message)
     }
 
-    /// Begins a connection to a board that may be in the middle of a message and of its count of
-    /// frames. The expected sequence number of the previous connection is kept: a smaller number
-    /// shows that the board has restarted in between.
+    /// Begins a connection. The expected sequence number of the previous one is kept: a smaller
+    /// number shows that the board has restarted in between.
     pub fn join(&mut self) {
         self.decoder = Decoder::default();
         self.damage = None;

@@ -15,16 +15,12 @@ pub use port::{BAUD_OF_BOOT_LOADER, Port, touch};
 /// The name that selects the board with its own USB port, or else the only serial port over USB.
 const AUTO: &str = "auto";
 
-/// The names in the USB descriptor of a board with its own USB port (`board/pico/usb.rs`).
 const MANUFACTURER: &str = "double-pendulum";
 const PRODUCT: &str = "Double pendulum";
 
-/// Returns the name of the port of the only board that runs this firmware and has its own USB port,
-/// without an adapter.
-///
-/// The board is recognised by its manufacturer and product, which must be exactly the firmware's,
-/// because its USB ids are shared with every device that distinguishes itself by names (rule 7 of
-/// V-USB's `USB-IDs-for-free.txt`). Returns `None` if no port has these names, or more than one.
+/// Returns the port of the only board that runs this firmware and has its own USB port. It is
+/// recognised by its manufacturer and product, because its USB ids are shared with every device
+/// that distinguishes itself by names (rule 7 of V-USB's `USB-IDs-for-free.txt`).
 pub fn running_board(ports: &[SerialPortInfo]) -> Option<&str> {
     let is_it = |port: &&SerialPortInfo| {
         usb(port).is_some_and(|usb| {
@@ -38,7 +34,6 @@ pub fn running_board(ports: &[SerialPortInfo]) -> Option<&str> {
     }
 }
 
-/// Returns the USB description of a port, if it has one.
 fn usb(port: &SerialPortInfo) -> Option<&UsbPortInfo> {
     match &port.port_type {
         SerialPortType::UsbPort(usb) => Some(usb),
@@ -46,8 +41,6 @@ fn usb(port: &SerialPortInfo) -> Option<&UsbPortInfo> {
     }
 }
 
-/// Returns the name of our board's port, or else of the only port over USB. The error is the reason
-/// in one line.
 fn choose(ports: &[SerialPortInfo]) -> Result<String, String> {
     if let Some(name) = running_board(ports) {
         return Ok(name.to_owned());
@@ -82,7 +75,6 @@ fn choose(ports: &[SerialPortInfo]) -> Result<String, String> {
     }
 }
 
-/// Returns a restart in one line: its cause, place and number.
 pub fn describe_restart(end: &Restarted) -> String {
     let place = match end.pc {
         0 => String::new(),

@@ -3,10 +3,7 @@
 use firmware::config::TICK_RATE;
 use firmware::display::{BusFault, Controller, Found, PanelReport, PanelState};
 
-/// Returns the panel's state in one line without a newline: that it is not found yet or absent, or
-/// its controller and its frames per second, or that these are not known yet (0). A panel that is
-/// absent has the remedy. Returns `None` if the board has no panel
-/// that reports its state.
+/// Returns the panel's state, or `None` if the board does not report it.
 pub fn panel(report: &PanelReport) -> Option<String> {
     let line = match report.state {
         PanelState::Unknown => return None,
@@ -17,7 +14,6 @@ pub fn panel(report: &PanelReport) -> Option<String> {
     Some(line)
 }
 
-/// Returns the controller's name, the way it was identified, and its status byte.
 fn identified(found: &Found) -> String {
     let Found {
         controller,
@@ -33,7 +29,6 @@ fn identified(found: &Found) -> String {
     format!("{} {}{status}{tried}", controller.name(), by.name())
 }
 
-/// Returns the number of frames shown in the last second.
 fn frames(report: &PanelReport) -> String {
     let shown = report.shown;
     match u32::from(shown) {
@@ -46,7 +41,6 @@ fn frames(report: &PanelReport) -> String {
     }
 }
 
-/// Returns the remedy for a panel that is absent.
 fn remedy(fault: BusFault) -> &'static str {
     match fault {
         BusFault::NoAnswer => {
@@ -59,7 +53,7 @@ fn remedy(fault: BusFault) -> &'static str {
     }
 }
 
-/// Returns true if the panel shows frames, or does not report its state.
+/// A panel that does not report its state counts as well.
 pub fn is_well(report: &PanelReport) -> bool {
     matches!(report.state, PanelState::Unknown | PanelState::Shown(_))
 }
@@ -79,8 +73,6 @@ mod tests {
         panel(&report).unwrap_or_default()
     }
 
-    /// An absent panel is reported with its fault and the remedy, a found one with its controller,
-    /// status and frame rate. A panel that reports nothing has no line.
     #[test]
     fn panel_is_reported_with_its_remedy() {
         assert_eq!(line(PanelState::Unknown, 0), "");

@@ -1,9 +1,7 @@
-//! A board under a debugger. The machine can be stopped after each frame, when its panel shows
-//! exactly the frame just received, or at any place in its program.
-//!
-//! The machine is stopped through QEMU's debugger port when the firmware has done its work and goes
-//! to sleep. A frame is then on the panel and sent, and the next one has not started. The firmware
-//! is not involved. Its clock counts instructions, so the duration of a stop affects no result.
+//! A board under a debugger. The machine is stopped through QEMU's debugger port when the firmware
+//! has done its work and goes to sleep. A frame is then on the panel and sent, and the next one has
+//! not started. The firmware is not involved. Its clock counts instructions, so the duration of a
+//! stop affects no result.
 //!
 //! This module implements the few packets of GDB's remote protocol that it needs. Source: GDB
 //! manual, appendix E (Remote Serial Protocol): `$text#checksum`, each acknowledged with `+`.
@@ -22,7 +20,6 @@ use nix::unistd::mkfifo;
 use super::machine::{Clock, Machine, Settings};
 use crate::up_to_frame;
 
-/// The instruction `wfi`, which sleeps until an interrupt, and its size in bytes.
 const WFI: u16 = 0xBF30;
 const SIZE: u32 = 2;
 /// A board that sleeps this many times without a frame is silent.
@@ -46,7 +43,6 @@ pub(super) struct Places {
 }
 
 impl Machine {
-    /// Starts a board that is stopped at its first instruction. Its clock counts instructions.
     pub fn halted(settings: &Settings) -> anyhow::Result<Self> {
         let mut machine = Self::boot(&Settings {
             clock: Clock::Counted,
@@ -60,9 +56,7 @@ impl Machine {
         Ok(machine)
     }
 
-    /// Runs to the first sleep of the board after which a frame has arrived, and returns all
-    /// messages. The machine is then stopped with that frame on the panel. A board that is late
-    /// does not sleep, and runs on until it has caught up.
+    /// A board that is late does not sleep, and runs on until it has caught up.
     pub fn run_to_frame(&mut self) -> anyhow::Result<Vec<ToHost>> {
         let sleeps = self.places.sleeps.clone();
         up_to_frame(PATIENCE, || {
@@ -71,9 +65,8 @@ impl Machine {
         })
     }
 
-    /// Runs to the next frame while `read` reads QEMU's log, which contains the processor's
-    /// registers before every instruction. The log ends before the instruction at `end`, or with
-    /// the frame. `read` must read to the end, because QEMU waits while nobody does.
+    /// Runs to the next frame while `read` reads QEMU's log, which ends before the instruction at
+    /// `end`, or with the frame. `read` must read to the end, because QEMU waits while nobody does.
     pub fn next_frame_logged<T: Send>(
         &mut self,
         end: u32,
@@ -102,8 +95,6 @@ impl Machine {
         Ok(self.get(Register::Lr)? & !1)
     }
 
-    /// Runs to the next call of this function and to its return, while `read` reads QEMU's log of
-    /// the call.
     pub fn next_call_logged<T: Send>(
         &mut self,
         function: u32,
@@ -113,15 +104,12 @@ impl Machine {
         let call = |machine: &mut Self, log: &Path| {
             machine.start_log(log)?;
             machine.run_to(return_address)?;
-            // The instruction there is logged when it is executed.
             machine.places.here = None;
             machine.expect("s", "T05")
         };
         self.logged(call, read)
     }
 
-    /// Runs the machine as `run` does while `read` reads QEMU's log. `run` is called with the path
-    /// of the log and starts it.
     fn logged<T: Send>(
         &mut self,
         run: impl FnOnce(&mut Self, &Path) -> anyhow::Result<()>,
@@ -132,7 +120,7 @@ impl Machine {
         mkfifo(&path, Mode::S_IRUSR | Mode::S_IWUSR)?;
 
         // The pipe is opened for both directions first, so that neither of the two opens waits for
-        // QEMU. The log ends when QEMU and `writer` have closed it.
+        // QEMU.
         let both = File::options().read(true).write(true).open(&path)?;
         let pipe = File::open(&path)?;
         let writer = File::options().write(true).open(&path)?;
@@ -165,8 +153,6 @@ impl Machine {
         self.single_step(single_step)
     }
 
-    /// Runs until the instruction at this address is about to be executed. If a run has stopped the
-    /// machine there, runs until the next time.
     pub fn run_to(&mut self, address: u32) -> anyhow::Result<()> {
         self.run_until(&[address])
     }
@@ -178,7 +164,6 @@ impl Machine {
         self.say("c").map(|()| self)
     }
 
-    /// Stops the running machine at any place.
     pub fn stop(&mut self) -> anyhow::Result<()> {
         self.debugger.sender.write_all(b"\x03")?;
         let reply = self.hear()?;
@@ -189,7 +174,6 @@ impl Machine {
         }
     }
 
-    /// Sets some registers, which may include the program counter, of a stopped machine.
     pub fn divert(&mut self, registers: &[(Register, u32)]) -> anyhow::Result<()> {
         self.places.here = None;
         registers
@@ -197,7 +181,6 @@ impl Machine {
             .try_for_each(|(register, value)| self.set(*register, *value))
     }
 
-    /// Writes bytes to memory, also to flash, of a stopped machine.
     pub fn write(&mut self, address: u32, bytes: &[u8]) -> anyhow::Result<()> {
         for (start, piece) in (address..)
             .step_by(PIECE as usize)
@@ -261,7 +244,6 @@ impl Machine {
         }
     }
 
-    /// Sends a packet, waits for the reply and returns its text, which may be a refusal.
     pub(super) fn ask(&mut self, packet: &str) -> anyhow::Result<String> {
         self.say(packet)?;
         self.hear()
@@ -278,16 +260,14 @@ impl Machine {
     }
 }
 
-/// Sends a packet of GDB's protocol with its checksum, and does not wait for the acknowledgement.
+/// Does not wait for the acknowledgement.
 pub fn send_packet(sender: &mut File, packet: &str) -> io::Result<()> {
     let checksum = packet.bytes().fold(0, u8::wrapping_add);
     write!(sender, "${packet}#{checksum:02x}")
 }
 
-/// Removes the first packet of GDB's protocol, and everything before it, from the bytes that have
-/// arrived, and returns its text.
+/// Removes the first packet, and everything before it, and returns its text.
 pub fn take_reply(bytes: &mut Vec<u8>) -> Option<String> {
-    // A packet is complete if its checksum of two digits has arrived.
     let start = 1 + bytes.iter().position(|byte| *byte == b'$')?;
     let length = bytes[start..].iter().position(|byte| *byte == b'#')?;
     let end = start + length;

@@ -9,8 +9,7 @@ use defmt_decoder::{DecodeError, Frame, Locations, StreamDecoder, Table};
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct LogLine {
-    /// The defmt level in lower case; `None` for plain text, which comes from QEMU or from a crash
-    /// report.
+    /// `None` for plain text, which comes from QEMU or from a crash report.
     pub level: Option<String>,
     pub text: String,
     /// ` [file:line]` of the statement.
@@ -26,7 +25,6 @@ impl LogLine {
         }
     }
 
-    /// Returns true if the line reports a problem: a defmt error, or any plain text.
     pub fn is_bad(&self) -> bool {
         self.level.as_deref().is_none_or(|level| level == "error")
     }
@@ -50,7 +48,6 @@ pub struct LogDecoder {
 }
 
 impl LogDecoder {
-    /// Makes a decoder for the firmware in the file `elf`. A program without a log has no lines.
     pub fn new(elf: &Path) -> anyhow::Result<Self> {
         let program = std::fs::read(elf).with_context(|| elf.display().to_string())?;
         let Some(table) = Table::parse(&program)?.map(Box::new) else {
@@ -70,8 +67,6 @@ impl LogDecoder {
         })
     }
 
-    /// Takes the next bytes and returns the lines that they complete. A line of plain text reports
-    /// damage.
     pub fn take(&mut self, bytes: &[u8]) -> Vec<LogLine> {
         let mut lines = Vec::new();
         let Some(stream) = &mut self.stream else {

@@ -20,17 +20,14 @@ use crate::stream::{self, Channel, Stream};
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Clock {
-    /// The host's clock. The board is as fast as a real one if the host can keep up. Its watchdog
-    /// does not restart it, because the host may delay QEMU for seconds.
+    /// The host's clock. The watchdog does not restart the board, because the host may delay QEMU
+    /// for seconds.
     Real,
-    /// The count of executed instructions. Every instruction takes the [same
-    /// time](Board::instruction), and no time passes on the host while the board sleeps. The
-    /// results are bit-identical on any host under any load, and the board is several times as fast
-    /// as a real one. Its watchdog acts on a hang, if QEMU emulates it.
+    /// The count of executed instructions. The results are bit-identical on any host under any
+    /// load, and the board is several times as fast as a real one.
     Counted,
 }
 
-/// Everything that a machine needs at its start.
 #[derive(Clone, Copy, Debug)]
 pub struct Settings<'a> {
     /// An absolute path, or a name that is found by `PATH`, because QEMU runs in another folder.
@@ -38,24 +35,19 @@ pub struct Settings<'a> {
     pub board: &'a Board,
     pub elf: &'a Path,
     pub clock: Clock,
-    /// True if the firmware sees a debugger: it receives the log, and a crash ends QEMU. If false,
-    /// a crash restarts the board.
+    /// With a debugger the firmware sends its log, and a crash ends QEMU. Without one, a crash
+    /// restarts the board.
     pub debugger: bool,
-    /// QEMU is ended after this time at the latest.
     pub limit: Duration,
 }
 
 /// Messages that QEMU prints at every start of this machine and that do not matter.
 const CHATTER: [&str; 2] = ["Timer with period zero, disabling", "has no peer"];
 
-/// An emulated board. Dropping the machine ends QEMU.
-///
-/// Every method that waits also reads all output of the board, because QEMU stops while its output
-/// is not read. It returns an error if QEMU ends first, with its last lines; at the time limit that
-/// is an [`io::Error`](std::io::Error) of kind `TimedOut`.
+/// An emulated board. Every method that waits also reads all output of the board, because QEMU
+/// stops while its output is not read.
 pub struct Machine {
-    /// True, as at the start, if the link is read. If not, the board's output fills the pipe and
-    /// then its serial port.
+    /// If the link is not read, the board's output fills the pipe and then its serial port.
     pub listens: bool,
     pub(super) monitor: Channel,
     pub(super) debugger: Channel,
@@ -63,25 +55,20 @@ pub struct Machine {
     log: [Stream; 2],
     decoder: LogDecoder,
     inbox: Inbox,
-    /// Not yet fetched, oldest first.
     messages: VecDeque<ToHost>,
     lines: Vec<LogLine>,
     pub(super) places: Places,
     process: Running,
-    /// The folder is removed after QEMU has ended.
     pub(super) folder: Scratch,
 }
 
 impl Machine {
-    /// Starts a board and lets it run. The host is attached before the first instruction is
-    /// executed.
     pub fn start(settings: &Settings) -> anyhow::Result<Self> {
         let mut machine = Self::boot(settings)?;
         machine.run()?;
         Ok(machine)
     }
 
-    /// Starts a board that is stopped at its first instruction.
     pub(super) fn boot(settings: &Settings) -> anyhow::Result<Self> {
         let elf = settings
             .elf
@@ -160,8 +147,6 @@ impl Machine {
         Ok(machine)
     }
 
-    /// Reads everything that has arrived. Returns an error with QEMU's exit status and last lines
-    /// if QEMU has ended.
     fn take_in(&mut self) -> anyhow::Result<()> {
         // If QEMU has ended, all its output is available now, so this is checked before reading.
         let ended = self.process.ended(&self.log)?;
@@ -209,7 +194,6 @@ impl Machine {
             }))
     }
 
-    /// Waits until `found` returns a value from the output.
     pub(super) fn wait_until<T>(
         &mut self,
         mut found: impl FnMut(&mut Self) -> Option<T>,
@@ -228,30 +212,25 @@ impl Machine {
         }
     }
 
-    /// Waits for the next message.
     pub fn receive(&mut self) -> anyhow::Result<ToHost> {
         self.wait_until(|machine| machine.messages.pop_front())
     }
 
-    /// Waits for the next message for which `kind` returns `Some`. The messages before it are
-    /// dropped.
+    /// The messages before it are dropped.
     pub fn wait_for<M>(&mut self, kind: impl Fn(ToHost) -> Option<M>) -> anyhow::Result<M> {
         self.wait_until(|machine| {
             std::iter::from_fn(|| machine.messages.pop_front()).find_map(&kind)
         })
     }
 
-    /// Waits for the next frame.
     pub fn next_frame(&mut self) -> anyhow::Result<Frame> {
         self.wait_for(ToHost::frame)
     }
 
-    /// Waits for the next answer, and returns it with the number of its request.
     pub fn next_answer(&mut self) -> anyhow::Result<(u16, Answer)> {
         self.wait_for(ToHost::answer)
     }
 
-    /// Returns the messages that have arrived, without waiting.
     pub fn messages(&mut self) -> anyhow::Result<Vec<ToHost>> {
         self.take_in()?;
         Ok(self.messages.drain(..).collect())
@@ -261,7 +240,6 @@ impl Machine {
         self.send_bytes(encode_command(request, command, &mut [0; MAX_WIRE]))
     }
 
-    /// Sends all bytes. Blocks until everything is written to the pipe to QEMU.
     pub fn send_bytes(&mut self, mut bytes: &[u8]) -> anyhow::Result<()> {
         self.wait_until(|machine| {
             bytes = &bytes[machine.serial.sender.write(bytes).unwrap_or(0)..];
@@ -269,18 +247,15 @@ impl Machine {
         })
     }
 
-    /// Returns the counts of messages, damage and restarts on the link since the start.
     pub fn counts(&self) -> Counts {
         self.inbox.counts
     }
 
-    /// Returns the lines of the log that have arrived since the last call, without waiting.
     pub fn lines(&mut self) -> Vec<LogLine> {
         let _ = self.take_in();
         std::mem::take(&mut self.lines)
     }
 
-    /// Returns the same lines as [`Self::lines`] as one text.
     pub fn log_text(&mut self) -> String {
         self.lines()
             .iter()
@@ -292,7 +267,6 @@ impl Machine {
         self.process.child.id()
     }
 
-    /// Waits until QEMU ends, passes every log line to `each`, and returns the exit status.
     pub fn wait(&mut self, mut each: impl FnMut(LogLine)) -> anyhow::Result<ExitStatus> {
         let _: anyhow::Result<()> = self.wait_until(|machine| {
             machine.lines.drain(..).for_each(&mut each);

@@ -13,17 +13,15 @@ use serde_json::{Value, json};
 
 use super::{Machine, Screenshot};
 
-/// QEMU's names for one instruction per translation block: since version 8.1, and before.
 const SINGLE_STEP: [&str; 2] = ["one-insn-per-tb", "singlestep"];
 
 impl Machine {
-    /// Returns the panel's picture. While the board runs, it may be a mixture of two frames.
+    /// While the board runs, it may be a mixture of two frames.
     pub fn screenshot(&mut self) -> anyhow::Result<Screenshot> {
         self.execute("screendump", json!({ "filename": "panel.ppm" }))?;
         Screenshot::from_ppm(&std::fs::read(self.folder.path().join("panel.ppm"))?)
     }
 
-    /// Returns the bytes of memory or registers at these addresses, as the processor sees them.
     pub fn read(&mut self, addresses: Range<u32>) -> anyhow::Result<Vec<u8>> {
         let range =
             json!({ "val": addresses.start, "size": addresses.len(), "filename": "memory" });
@@ -31,7 +29,7 @@ impl Machine {
         Ok(std::fs::read(self.folder.path().join("memory"))?)
     }
 
-    /// Presses (`down`) or releases a button. [`Self::wake_keys`] must have been called once.
+    /// [`Self::wake_keys`] must have been called once.
     pub fn set_key(&mut self, key: Key, down: bool) -> anyhow::Result<()> {
         // QEMU knows the board's select as the left control key.
         let code = if key == Key::Select {
@@ -45,9 +43,8 @@ impl Machine {
             .map(drop)
     }
 
-    /// Presses and releases every button once, so quickly that the firmware, which debounces them,
-    /// sees no command. The emulated hardware of the LM3S6965 distinguishes a released button from
-    /// a pressed one only after that.
+    /// Presses and releases every button, too quickly for the firmware to see a command. The
+    /// emulated hardware distinguishes a released button from a pressed one only after that.
     pub fn wake_keys(&mut self) -> anyhow::Result<()> {
         Key::ALL.iter().try_for_each(|&key| {
             [true, false]
@@ -56,14 +53,13 @@ impl Machine {
         })
     }
 
-    /// Switches QEMU's mode of one instruction per translation block.
     pub(super) fn single_step(&mut self, switch: &str) -> anyhow::Result<()> {
         let [name, name_before] = SINGLE_STEP.map(|name| format!("{name} {switch}"));
         // An old QEMU refuses the new name.
         self.console(&name).or_else(|_| self.console(&name_before))
     }
 
-    /// Sends a line to QEMU's own console. Any text that it replies is an error.
+    /// Any text that the console replies is an error.
     pub(super) fn console(&mut self, line: &str) -> anyhow::Result<()> {
         let said = self.execute("human-monitor-command", json!({ "command-line": line }))?;
         let reason = said.as_str().unwrap_or_default().trim();
@@ -74,14 +70,12 @@ impl Machine {
         }
     }
 
-    /// Executes a command of QMP and returns its result.
     pub(super) fn execute(&mut self, command: &str, arguments: Value) -> anyhow::Result<Value> {
         writeln!(
             self.monitor.sender,
             "{}",
             json!({ "execute": command, "arguments": arguments })
         )?;
-        // Lines that are neither a result nor an error are events.
         loop {
             let line = self.wait_until(|machine| machine.monitor.stream.line())?;
             let mut answer: Value = serde_json::from_str(&line)?;

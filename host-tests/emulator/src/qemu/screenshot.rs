@@ -3,26 +3,20 @@
 use anyhow::{Context, ensure};
 use firmware::graphics::{Canvas, Format, rgb};
 
-/// The size of an OLED, pixels.
 pub const WIDTH: usize = Format::OLED.width as usize;
 pub const HEIGHT: usize = Format::OLED.height as usize;
 
-/// The width and height, in pixels of the dump, of the square that shows one pixel of the panel.
 const MAGNIFIED: usize = 4;
 /// The beginning of the dump: colour, the magnified size, 255 levels.
 const HEADER: &[u8] = b"P6\n512 256\n255\n";
-/// The factor of greys: QEMU shows grey g of 0 to 15 as 17 g of 255.
+/// QEMU shows grey g of 0 to 15 as 17 g of 255.
 const GREY_UNIT: u8 = 17;
 
-/// The picture on a panel, row by row from the top left.
 #[derive(Clone, PartialEq, Eq)]
 pub struct Screenshot {
-    /// The size of the panel.
     pub format: Format,
-    /// The grey of each pixel: 0 is black, 15 is white.
     pub greys: Vec<u8>,
-    /// The colour of each pixel on a colour panel, five bits of red, six of green, five of blue;
-    /// `None` on an OLED.
+    /// On a colour panel: five bits of red, six of green, five of blue.
     pub colours: Option<Vec<u16>>,
 }
 
@@ -40,13 +34,10 @@ impl std::fmt::Debug for Screenshot {
 }
 
 impl Screenshot {
-    /// Returns the screenshot of a black OLED.
     pub fn black() -> Self {
         Self::drawn(|_, _| 0)
     }
 
-    /// Makes a screenshot of an OLED from the grey of each pixel, `x` from the left and `y` from
-    /// the top.
     fn drawn(grey: impl Fn(usize, usize) -> u8) -> Self {
         Self {
             format: Format::OLED,
@@ -57,8 +48,7 @@ impl Screenshot {
         }
     }
 
-    /// Makes a screenshot from the colours of a panel, two bytes each, the low one first. Pixels
-    /// without a colour are black. Greys are the brightness.
+    /// The colours have two bytes each, the low one first. Pixels without a colour are black.
     pub fn from_colours(format: Format, bytes: &[u8]) -> Self {
         let mut colours: Vec<_> = bytes
             .chunks_exact(2)
@@ -76,14 +66,13 @@ impl Screenshot {
         }
     }
 
-    /// Returns the grey of a pixel, 0 to 15; `None` outside the panel.
     pub fn get(&self, x: i32, y: i32) -> Option<u8> {
         let is_inside = (0..self.format.right()).contains(&x) && y >= 0;
         let place = y as usize * usize::from(self.format.width) + x as usize;
         self.greys.get(place).filter(|_| is_inside).copied()
     }
 
-    /// Returns the red, green and blue of each pixel, 0 to 255. `of_grey` are those of an OLED.
+    /// `of_grey` are the colours of an OLED.
     pub fn rgb(&self, of_grey: impl Fn(u8) -> [u8; 3]) -> Vec<[u8; 3]> {
         match &self.colours {
             Some(colours) => colours.iter().map(|colour| rgb(*colour)).collect(),
@@ -91,12 +80,10 @@ impl Screenshot {
         }
     }
 
-    /// Reads QEMU's dump. It is an error if the dump has another size or is cut short.
     pub(super) fn from_ppm(file: &[u8]) -> anyhow::Result<Self> {
         let pixels = file
             .strip_prefix(HEADER)
             .context("the panel's screenshot is no PPM file of 512 x 256 pixels")?;
-        // The middle of the square that shows a pixel of the panel.
         let index =
             |x: usize, y: usize| 3 * ((MAGNIFIED * y + 1) * MAGNIFIED * WIDTH + MAGNIFIED * x + 1);
         ensure!(
@@ -106,10 +93,8 @@ impl Screenshot {
         Ok(Self::drawn(|x, y| pixels[index(x, y)] / GREY_UNIT))
     }
 
-    /// Makes a screenshot from the memory of a one-colour panel. The memory contains eight pages of
-    /// eight rows from the top, with a byte for each of the 128 columns from the left. The top row
-    /// of a page is bit 0; a set bit is white (15). Pixels beyond the memory are black, and bytes
-    /// beyond the eight pages are ignored.
+    /// The memory of a one-colour panel has eight pages of eight rows, with a byte for each column.
+    /// The top row of a page is bit 0.
     pub fn from_pages(memory: &[u8]) -> Self {
         let is_lit = |x: usize, y: usize| {
             memory
@@ -120,7 +105,6 @@ impl Screenshot {
     }
 }
 
-/// The picture that the panel would show of a canvas.
 impl From<&Canvas<'_>> for Screenshot {
     fn from(canvas: &Canvas<'_>) -> Self {
         let format = canvas.format;
@@ -137,8 +121,6 @@ impl From<&Canvas<'_>> for Screenshot {
     }
 }
 
-/// A white dump of the right size has white pixels only. A dump without the last row of the panel,
-/// or with another size in its header, is an error.
 #[test]
 fn a_dump_of_another_size_or_cut_short_is_refused() {
     let whole = [HEADER, &[0xFF; 3 * 512 * 256]].concat();

@@ -108,8 +108,7 @@ impl Toolchain {
         Ok(image)
     }
 
-    /// Builds a binary of the firmware with all optimisations and, if it is the application of a
-    /// board, that board's feature. It is built once per process.
+    /// Built once per process.
     pub fn build(&self, binary: &str, target: &str) -> anyhow::Result<PathBuf> {
         let elf = Self::folder().join(target).join("release").join(binary);
         let this = (binary.to_owned(), target.to_owned());
@@ -128,7 +127,6 @@ impl Toolchain {
         Ok(elf)
     }
 
-    /// Builds the image of the golden bits for a target: an ELF file or, for WebAssembly, a module.
     pub fn build_cores(&self, target: &str, double: Option<&str>) -> anyhow::Result<PathBuf> {
         // Cargo gives both kinds of image the same name. Each is copied before the next build
         // replaces it.
@@ -187,10 +185,8 @@ impl Toolchain {
             .try_for_each(|(target, double)| self.build_core_images(&[target], double))
     }
 
-    /// Builds the programs of `kernel/minimal` for a target, as a user of the kernel would.
-    ///
-    /// Cargo runs in an empty folder, so that the settings of this repository do not apply. The
-    /// package's own `.cargo/config.toml` is passed to it.
+    /// Builds the programs of `kernel/minimal` as a user of the kernel would: in an empty folder,
+    /// so that the settings of this repository do not apply.
     pub fn build_minimal(&self, target: &str) -> anyhow::Result<PathBuf> {
         let nowhere = tempfile::tempdir()?;
         let package = workspace().join("kernel/minimal");
@@ -224,7 +220,6 @@ impl Toolchain {
         Ok(folder.join(target).join("release"))
     }
 
-    /// Builds the application as a WebAssembly module, without names and debug information.
     pub fn build_web(&self) -> anyhow::Result<PathBuf> {
         let mut command = self.for_targets("build", &[WASM])?;
         command
@@ -235,7 +230,6 @@ impl Toolchain {
         Ok(Self::folder().join(WASM).join("release/web.wasm"))
     }
 
-    /// Builds the binaries that run on every target, for all [`TARGETS`] at once.
     pub fn build_ahead(&self) -> anyhow::Result<()> {
         let mut command = self.for_targets("build", &TARGETS)?;
         command.args(AHEAD.iter().flat_map(|binary| ["--bin", binary]));
@@ -246,14 +240,12 @@ impl Toolchain {
         every_board().try_for_each(|board| self.build_for(board).map(drop))
     }
 
-    /// Builds the programs of [`Self::build_minimal`] for all [`TARGETS`].
     pub fn build_minimal_ahead(&self) -> anyhow::Result<()> {
         TARGETS
             .iter()
             .try_for_each(|target| self.build_minimal(target).map(drop))
     }
 
-    /// Checks the firmware's binaries for microcontrollers with Clippy. A warning is an error.
     pub fn check(&self) -> anyhow::Result<()> {
         for target in TARGETS {
             // All boards of a target are checked at once, with the features of all.

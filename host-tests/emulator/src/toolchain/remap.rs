@@ -58,8 +58,7 @@ fn cargo_home() -> Option<PathBuf> {
         .or_else(|| Some(Path::new(&env::var_os("HOME")?).join(".cargo")))
 }
 
-/// Returns the folder for the sources of the core library, and the name that the ready-made core
-/// library has for it.
+/// Returns the folder of the core library's sources, and its name in the ready-made core library.
 fn core_library() -> Result<(PathBuf, String), String> {
     let output = |arguments: &[&str]| {
         let mut command = Command::new("rustc");

@@ -7,21 +7,17 @@ use std::time::Duration;
 use crate::process::{Output, run, run_watched};
 use console::progress::Progress;
 
-/// The time limit of a program that only prints information.
 pub const QUICK: Duration = Duration::from_secs(20);
 
-/// Runs a command to its end and shows progress on stderr, with `doing` as its name.
 pub(super) fn attempt(command: &mut Command, limit: Duration, doing: &str) -> Result<(), String> {
     output_or_reason(command, |command| run_shown(command, limit, doing)).map(drop)
 }
 
-/// Runs a command as [`run_watched`] does, and shows progress on stderr meanwhile.
 pub(super) fn run_shown(command: &mut Command, limit: Duration, doing: &str) -> io::Result<Output> {
     let progress = Progress::start(doing);
     run_watched(command, limit, |line| progress.alive(line))
 }
 
-/// Returns the standard output of a quick command.
 pub(super) fn quick_output(command: &mut Command) -> Result<String, String> {
     output_or_reason(command, |command| run(command, QUICK))
 }

@@ -14,15 +14,11 @@ use console::cli::{Refused, complain};
 
 /// A program that may be the system's or unpacked.
 pub(super) struct Program {
-    /// Its names. The package has the first one; any will do on the system.
+    /// The package has the first name; any will do on the system.
     names: &'static [&'static str],
-    /// The oldest major version that is used.
     least: u32,
-    /// The folder in the target folder into which the packages are unpacked.
     folder: &'static str,
-    /// Debian's packages.
     packages: &'static [&'static str],
-    /// The programs of these packages that are run.
     programs: &'static [&'static str],
     /// What to install on a system without Debian's packages.
     install: &'static str,
@@ -38,13 +34,11 @@ pub(super) const QEMU: Program = Program {
     install: "qemu-system-arm (Homebrew: qemu), version 6 or newer",
 };
 
-/// The emulator of Linux on RISC-V.
 pub(super) const QEMU_RISCV: Program = Program {
     names: &["qemu-riscv32"],
     ..QEMU_AARCH64
 };
 
-/// The emulator of Linux on aarch64.
 pub(super) const QEMU_AARCH64: Program = Program {
     names: &["qemu-aarch64"],
     least: 6,
@@ -54,7 +48,6 @@ pub(super) const QEMU_AARCH64: Program = Program {
     install: "qemu-user, version 6 or newer",
 };
 
-/// The program that runs the emulator of the Pico, and WebAssembly modules.
 pub(super) const NODE: Program = Program {
     names: &["node"],
     least: 18,
@@ -64,14 +57,12 @@ pub(super) const NODE: Program = Program {
     install: "nodejs and npm, version 18 of Node.js or newer",
 };
 
-/// The program that fetches packages of Node.js.
 const NPM: Program = Program {
     names: &["npm"],
     least: 1,
     ..NODE
 };
 
-/// A browser without windows.
 pub(super) const CHROMIUM: Program = Program {
     names: &["chromium-headless-shell", "chromium", "google-chrome"],
     least: 1,
@@ -102,13 +93,11 @@ impl Program {
         Err(why)
     }
 
-    /// Returns the path of the program, or a line with what to install.
     pub(super) fn ready(&self) -> Result<PathBuf, Refused> {
         self.find()
             .map_err(|why| self.missing(&why, "run cargo setup, or "))
     }
 
-    /// Returns the path of the program, and unpacks it if it is missing.
     pub(super) fn set_up(&self) -> Result<PathBuf, Refused> {
         let Err(why) = self.find() else {
             return self.ready();
@@ -129,7 +118,6 @@ impl Program {
     /// Unpacks Debian's packages, which changes nothing on the system.
     fn unpack(&self) -> Result<(), String> {
         const SCRIPT: &str = "host-tests/emulator/src/toolchain/unpack.sh";
-        /// The time limit to fetch and unpack at most 400 MB.
         const LIMIT: Duration = Duration::from_secs(1200);
 
         if find("apt-get").is_none() {
@@ -151,7 +139,6 @@ impl Program {
     }
 }
 
-/// Returns the first number of the version that a program prints.
 fn major_version(path: &Path) -> Result<u32, String> {
     let output = quick_output(Command::new(path).arg("--version"))?;
     let number = |word: &str| {
@@ -171,14 +158,12 @@ pub fn find(program: &str) -> Option<PathBuf> {
         .find_map(|folder| executable(absolute(folder.join(program)).ok()?))
 }
 
-/// Returns the path if it is a file that may be executed.
 fn executable(path: PathBuf) -> Option<PathBuf> {
     fs::metadata(&path)
         .is_ok_and(|file| file.is_file() && file.permissions().mode() & 0o111 != 0)
         .then_some(path)
 }
 
-/// Finds the core library of the compiler in use for all of these targets.
 fn find_core(targets: &[&str]) -> Result<(), String> {
     let mut rustc = Command::new("rustc");
     rustc.args(["--print", "sysroot"]).current_dir(workspace());
@@ -195,9 +180,7 @@ fn find_core(targets: &[&str]) -> Result<(), String> {
     }
 }
 
-/// Finds the core library for these targets or, if `installs`, lets rustup add it.
 pub(super) fn core(installs: bool, targets: &[&str]) -> Result<(), Refused> {
-    /// The time limit to load 40 MB.
     const LIMIT: Duration = Duration::from_secs(60);
 
     let all = targets.join(" ");
@@ -224,14 +207,11 @@ pub(super) fn core(installs: bool, targets: &[&str]) -> Result<(), Refused> {
         .map_err(missing)
 }
 
-/// A script that fails unless the required version of rp2040js is there.
 const IS_FETCHED: &str = "const [{ dependencies }, { version }] = ['.', './node_modules/rp2040js']
     .map((folder) => require(folder + '/package.json'));
     if (version !== dependencies.rp2040js) throw 'another version'";
 
-/// Finds the emulator of the Raspberry Pi Pico, a package of Node.js, or lets npm fetch it.
 pub(super) fn rp2040js(installs: bool, node: &Path) -> Result<(), Refused> {
-    /// The time limit to load 1 MB.
     const LIMIT: Duration = Duration::from_secs(120);
 
     let folder = workspace().join("host-tests/emulator/rp2040");

@@ -21,15 +21,10 @@ use super::Fixed;
 /// [`Start::enclose`](super::Start::enclose) chooses T and e.
 #[derive(Clone, Copy, Debug)]
 pub struct Equations {
-    /// k.
     pub(super) upper: Fixed,
-    /// l.
     pub(super) lower: Fixed,
-    /// n.
     pub(super) rods: Fixed,
-    /// c.
     pub(super) coupling: Fixed,
-    /// G1, G2.
     pub(super) gravity: [Fixed; 2],
 }
 
@@ -80,8 +75,7 @@ impl Equations {
         z
     }
 
-    /// Returns the energy of the six numbers `z`, divided by M l1^2/T^2. The potential energy is 0
-    /// where both bobs are level with the pivot.
+    /// Divided by M l1^2/T^2. The potential energy is 0 where both bobs are level with the pivot.
     pub fn energy(&self, &[sin1, cos1, s, c, p1, p2]: &[Fixed; 6]) -> Fixed {
         let &Self {
             upper,

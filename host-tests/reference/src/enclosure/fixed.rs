@@ -2,7 +2,6 @@
 //! distance of the true number from it. They are also discs of the complex plane about a real
 //! number: every bound here holds for both.
 
-/// The number of bits after the point.
 const FRACTION: u32 = 116;
 /// The limit of midpoints. Smaller ones cannot overflow a sum of [`MOST_TERMS`] products.
 const LIMIT: i128 = 1 << 124;
@@ -40,7 +39,6 @@ impl Fixed {
         middle: 1 << FRACTION,
         radius: 0.0,
     };
-    /// Pi, cut after 116 bits.
     pub const PI: Self = Self {
         middle: 0x32_43F6_A888_5A30_8D31_3198_A2E0_3707,
         radius: 1.0,
@@ -62,7 +60,6 @@ impl Fixed {
         }
     }
 
-    /// Makes a ball of an `f64` number.
     pub fn of(number: f64) -> Self {
         let scaled = number / ULP;
         let middle = if scaled.abs() < LIMIT as f64 {
@@ -73,7 +70,6 @@ impl Fixed {
         Self::new(middle, if scaled.fract() == 0.0 { 0.0 } else { 1.0 })
     }
 
-    /// Makes a ball of a fraction times 2^`exponent`.
     pub fn fraction(numerator: i64, denominator: u64, exponent: i32) -> Self {
         let above = u128::from(numerator.unsigned_abs());
         let below = u128::from(denominator);
@@ -94,7 +90,6 @@ impl Fixed {
         )
     }
 
-    /// Returns the midpoint without a radius.
     pub fn middle(self) -> Self {
         Self {
             radius: 0.0,
@@ -102,7 +97,6 @@ impl Fixed {
         }
     }
 
-    /// Returns the `f64` nearest to the midpoint.
     pub fn about(self) -> f64 {
         self.middle as f64 * ULP
     }
@@ -117,7 +111,6 @@ impl Fixed {
         up(self.about().abs() + self.radius())
     }
 
-    /// Returns the ball with its radius increased.
     pub fn wider(self, radius: f64) -> Self {
         Self::new(self.middle, self.radius + up(radius / ULP))
     }

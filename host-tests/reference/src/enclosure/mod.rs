@@ -26,15 +26,11 @@ const STEPS: u32 = 64;
 /// The largest number of segments. Beyond it, a box replaces all segments except the six of the
 /// start.
 const SEGMENTS: usize = 6 * 2048;
-/// The binary logarithm of the largest number of steps in a frame.
 const MOST_HALVINGS: i32 = 24;
 
-/// The precision of the arithmetic.
 #[derive(Clone, Copy, Debug)]
 pub struct Fineness {
-    /// The largest number of terms of the midpoint's power series, at most 48.
     pub terms: usize,
-    /// The highest power of the derivatives' power series.
     pub tangents: usize,
     /// The distance from the midpoint for a difference quotient in place of a derivative, relative
     /// to the radius of the disc.
@@ -63,8 +59,6 @@ impl Default for Fineness {
 #[derive(Clone, Debug)]
 pub struct Enclosure {
     pub equations: Equations,
-    /// The number of units of time in a second, as the exponent of a power of two, and the number
-    /// of frames in a second.
     pub frame: (i32, u16),
     middle: [Fixed; 6],
     /// The first six belong to the start.
@@ -76,8 +70,6 @@ pub struct Enclosure {
 }
 
 impl Enclosure {
-    /// Makes an enclosure of all motions that begin in `start`, in the unit of time of the
-    /// equations.
     pub fn new(
         equations: Equations,
         frame: (i32, u16),
@@ -102,14 +94,11 @@ impl Enclosure {
         set
     }
 
-    /// Returns the smallest box that contains the set.
     pub fn hull(&self) -> [Fixed; 6] {
         let extent = self.extent(0);
         from_fn(|i| self.middle[i].wider(extent[i]))
     }
 
-    /// Returns the largest distance of each number from its middle, without the first `left_out`
-    /// segments.
     fn extent(&self, left_out: usize) -> [f64; 6] {
         let add = |sum: [f64; 6], segment: &[f64; 6]| from_fn(|i| sum[i] + segment[i].abs());
         self.segments[left_out..]
@@ -118,8 +107,7 @@ impl Enclosure {
             .map(up)
     }
 
-    /// Returns about the factor by which a small error of the start has grown, for information
-    /// only.
+    /// About the factor by which a small error of the start has grown, for information only.
     pub fn growth(&self) -> f64 {
         let of = |i: usize| {
             self.segments
@@ -131,7 +119,6 @@ impl Enclosure {
         (0..6).map(of).fold(0.0, f64::max)
     }
 
-    /// Returns the directions of the rods: `[[sin a1, cos a1], [sin a2, cos a2]]`.
     pub fn directions(&self) -> [[Fixed; 2]; 2] {
         let [sin1, cos1, s, c, ..] = self.hull();
         [[sin1, cos1], [sin1 * c - cos1 * s, cos1 * c + sin1 * s]]
@@ -143,7 +130,6 @@ impl Enclosure {
         self.advance_unless(&AtomicUsize::new(0))
     }
 
-    /// Advances like [`advance`](Self::advance), and stops with `None` if `stopped` is not zero.
     pub fn advance_unless(&mut self, stopped: &AtomicUsize) -> Option<()> {
         let mut left = vec![0];
         while let Some(halvings) = left.pop() {
@@ -227,7 +213,6 @@ impl Enclosure {
             .all(|radius| radius.is_finite())
             .then_some(())?;
 
-        // The segments are turned and stretched by the derivatives.
         for segment in &mut self.segments {
             *segment = v.map(|row| row.iter().zip(*segment).map(|(x, y)| x * y).sum());
         }

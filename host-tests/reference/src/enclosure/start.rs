@@ -8,8 +8,7 @@ use super::equations::Equations;
 use super::fixed::Fixed;
 use super::{Enclosure, Fineness};
 
-/// Returns the fastest rate in a motion, rad/s: the fast normal frequency or the largest angular
-/// velocity that its energy allows.
+/// The fast normal frequency, or the largest angular velocity that the energy allows.
 pub fn fastest_rate(parameters: &Parameters<f64>, motion: &Motion<f64>) -> f64 {
     Pendulum::new(parameters).map_or(1.0, |pendulum| {
         let Bounds { w1, w2, .. } = pendulum.bounds(&pendulum.to_state(motion));
@@ -21,10 +20,9 @@ pub fn fastest_rate(parameters: &Parameters<f64>, motion: &Motion<f64>) -> f64 {
     })
 }
 
-/// A pendulum and the start of its motion.
 #[derive(Clone, Copy, Debug)]
 pub struct Start {
-    /// The numbers in SI units (angles in rad, velocities in rad/s), rounded to `f64`.
+    /// Rounded to `f64`.
     pub about: (Parameters<f64>, Motion<f64>),
     /// The exact numbers, if they were not given in `f64`: numerators and denominators of a1, a2;
     /// w1, w2; m1, m2; l1, l2; g.
@@ -34,7 +32,6 @@ pub struct Start {
 }
 
 impl Start {
-    /// Makes a start whose numbers are exactly these `f64`, in SI units.
     pub fn of(parameters: &Parameters<f64>, motion: &Motion<f64>) -> Self {
         Self {
             about: (*parameters, *motion),
@@ -43,8 +40,7 @@ impl Start {
         }
     }
 
-    /// Returns true if the given numbers are exactly those of a pendulum that hangs or stands
-    /// straight up at rest, and so never moves. An angle in rad is never straight up.
+    /// An angle in rad is never straight up.
     pub fn rests(&self) -> bool {
         let (_, Motion { a1, a2, w1, w2 }) = self.about;
         let is_vertical = |(numerator, denominator): (i64, u64)| {
@@ -73,7 +69,6 @@ impl Start {
         let e = (0.5 * (1.0 + m2 / m1).log2()).clamp(0.0, 7.0).round() as i32;
         let [by, by1, by2] = [m1.max(m2), l1, l2].map(|x| x.log2() as i32);
 
-        // The given numbers, exact if possible, with angles less than a whole circle.
         let about = [a1, a2, w1, w2, m1, m2, l1, l2, g];
         let fractions = self.fractions.map(|mut fractions| {
             if self.degrees[0] {
@@ -84,7 +79,6 @@ impl Start {
             fractions
         });
 
-        // Each is multiplied by a power of two.
         let [a1, a2, w1, w2, m1, m2, l1, l2, g] = from_fn(|i| {
             move |exponent: i32| match fractions {
                 Some(fractions) => Fixed::fraction(fractions[i].0, fractions[i].1, exponent),
@@ -92,7 +86,6 @@ impl Start {
             }
         });
 
-        // The constants of the equations.
         let total = (m1(-by) + m2(-by)).inverse();
         let upper = m1(e - by) * total;
         let lower = m2(e - by) * total;
@@ -105,7 +98,6 @@ impl Start {
             g(-2 * unit - by2) * over_l2,
         ];
 
-        // The start in the six numbers of the direction form.
         let radians = |x: Fixed, degrees: bool| if degrees { x.over(180) * Fixed::PI } else { x };
         let [a1, a2] = if self.degrees[0] {
             [a1(0), a2(0)].map(|a| radians(a, true))
@@ -138,9 +130,7 @@ impl Start {
     }
 }
 
-/// Returns an angle in degrees without whole circles, exactly.
 fn without_whole_circles((numerator, denominator): (i64, u64)) -> (i64, u64) {
-    // The nearest multiple of a circle is removed.
     let circle = 360 * i128::from(denominator);
     let rest = i128::from(numerator).rem_euclid(circle);
     let nearest = if 2 * rest > circle {
