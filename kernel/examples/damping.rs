@@ -8,8 +8,7 @@ const FRICTION: f64 = 1.0;
 
 fn main() -> Result<(), Error> {
     let pendulum = Pendulum::new(&Parameters::equal_rods(1.0, 1.0, 9.81))?;
-    // Joint 1 turns at w1. Joint 2, the elbow, turns at w2 - w1. The friction of each is
-    // proportional to its own rate.
+    // Joint 2, the elbow, turns at w2 - w1.
     let damped = |z: &[f64; 4]| {
         let [w1, w2, torque1, torque2] = pendulum.derivatives(z);
         let elbow = FRICTION * (w2 - w1);

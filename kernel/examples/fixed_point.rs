@@ -23,7 +23,6 @@ fn main() -> Result<(), Error> {
     Ok(())
 }
 
-/// Returns a part of a direction in pixels.
 fn pixels(part: i32) -> i32 {
     ((i64::from(part) * i64::from(ROD)) >> 30) as i32
 }

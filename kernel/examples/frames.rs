@@ -2,7 +2,6 @@
 
 use double_pendulum::{DirectionF32, Error, Parameters, Pendulum, State};
 
-/// The frames per second, and the steps per frame.
 const RATE: u32 = 60;
 const STEPS: u32 = 4;
 
@@ -11,7 +10,6 @@ fn main() -> Result<(), Error> {
     let mut run =
         pendulum.run::<DirectionF32>(&State::at_rest(2.0, 2.0), 1.0 / f64::from(RATE * STEPS))?;
 
-    // Ten seconds of frames.
     for _frame in 0..10 * RATE {
         run.advance(STEPS)?; // a motion that diverges is an error
         let [[sin1, cos1], [sin2, cos2]] = run.directions();

@@ -22,14 +22,12 @@ fn main() -> Result<(), Box<dyn Error>> {
         planning: 1e9,
     };
 
-    // Search the plan.
     let plan = Plan::search(&scene, &costs, &budget)?;
     println!(
         "{}, {} steps per frame: accurate for {:.1} s",
         plan.method, plan.steps, plan.horizon
     );
 
-    // Run it until its horizon.
     let mut run = plan.run(&scene)?;
     while run.time() < plan.horizon {
         run.advance(1)?;

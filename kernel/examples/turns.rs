@@ -27,7 +27,6 @@ fn main() -> Result<(), Error> {
         most = most.max(a1.abs()).max(a2.abs());
     }
 
-    // A rod has turned over, and the energy has not changed.
     assert!(most > core::f64::consts::TAU, "a rod has turned over");
     assert!((run.energy() - pendulum.energy(&start)).abs() < 1e-9);
     Ok(())

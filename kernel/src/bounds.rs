@@ -7,10 +7,9 @@ use crate::small::Modes;
 
 /// The largest magnitudes that a motion of a given energy can reach.
 ///
-/// Each is reached by some motion of that energy. K is the energy above hanging at rest, J; w1 and
-/// w2 are the angular velocities of the rods, and p1 and p2 the canonical momenta. The bounds
-/// follow from T <= K, T >= m1 v1^2/2 and T >= m2 v2^2/2, and from completing squares in T for each
-/// w and p alone. They are exact up to the rounding of K.
+/// Each is reached by some motion of that energy. K is the energy above hanging at rest, J. The
+/// bounds follow from T <= K, T >= m1 v1^2/2 and T >= m2 v2^2/2, and from completing squares in T
+/// for each w and p alone. They are exact up to the rounding of K.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bounds<R> {
     /// |w1| <= sqrt(2 K/m1)/l1, rad/s.
@@ -31,13 +30,11 @@ pub struct Bounds<R> {
 }
 
 impl<R: Real> Bounds<R> {
-    /// Returns the bounds for K = `energy_above_rest`, J, of a pendulum with valid `parameters`.
-    /// Neither is checked. A negative or NaN energy gives NaN, an infinite one infinity or NaN.
+    /// Returns the bounds for K = `energy_above_rest`, J.
     pub(crate) fn new(parameters: &Parameters<R>, energy_above_rest: R) -> Self {
         let &Parameters { m1, m2, l1, l2, .. } = parameters;
         let twice = R::TWO * energy_above_rest;
 
-        // A bob is fastest if it has the whole energy as kinetic energy.
         let v1 = (twice / m1).sqrt();
         let v2 = (twice / m2).sqrt();
         Self {
@@ -53,23 +50,17 @@ impl<R: Real> Bounds<R> {
 }
 
 impl<R: Real> Modes<R> {
-    /// Returns the longest stable step of RK4 on the fast mode, s: 2 sqrt(2)/w1. It is finite and
-    /// more than 0.
-    ///
-    /// This is a limit, not advice: much shorter steps already give a wrong phase. Source:
-    /// `[Hairer II]`, section IV.2.
+    /// Returns the longest stable step of RK4 on the fast mode, s: 2 sqrt(2)/w1 (`[Hairer II]`,
+    /// section IV.2). Much shorter steps already give a wrong phase.
     #[must_use]
     pub fn step_limit(&self) -> R {
         R::from_f64(8.0).sqrt() / self.fast.frequency
     }
 
-    /// Refuses a step `dt` (s) that is NaN, infinite, zero, negative, out of the range of `R`, or
-    /// longer than [`step_limit`](Self::step_limit).
-    ///
-    /// The errors are, in this order, [`Error::NotFinite`], [`Error::NotPositive`],
-    /// [`Error::OutOfRange`] for a step that is zero, subnormal or infinite in `R`, and
-    /// [`Error::TooLarge`] with the limit, s, which `dt` may equal. For a step backwards, check its
-    /// magnitude.
+    /// Refuses a step `dt` (s) that is NaN or infinite ([`Error::NotFinite`]), zero or negative
+    /// ([`Error::NotPositive`]), zero, subnormal or infinite in `R` ([`Error::OutOfRange`]), or
+    /// longer than [`step_limit`](Self::step_limit) ([`Error::TooLarge`]). For a step backwards,
+    /// check its magnitude.
     pub fn check_step(&self, dt: f64) -> Result<(), Error> {
         check_forward::<R>(dt)?;
         let limit = self.step_limit().to_f64();
@@ -85,10 +76,9 @@ impl<R: Real> Modes<R> {
 }
 
 impl<R: Real> Pendulum<R> {
-    /// Returns the bounds of the motion through `state`, forwards and backwards in time. They are 0
-    /// if K is 0: hanging at rest, or at rest without gravity. Velocities below 1e-140 rad/s count
-    /// as 0. A state that is not finite, or whose energy overflows in `f64`, gives bounds that are
-    /// NaN or infinite.
+    /// Returns the bounds of the motion through `state`, forwards and backwards in time. Velocities
+    /// below 1e-140 rad/s count as 0. A state that is not finite, or whose energy overflows in
+    /// `f64`, gives bounds that are NaN or infinite.
     #[must_use]
     pub fn bounds(&self, state: &State<R>) -> Bounds<R> {
         let Bounds {
@@ -118,14 +108,12 @@ impl<R: Real> Pendulum<R> {
         Bounds::new(&parameters, pendulum.energy_above_rest(&state.cast()))
     }
 
-    /// Returns the least energy above rest that allows a rod to turn over, J:
-    /// 2 g min((m1 + m2) l1, m2 l2).
+    /// Returns the least energy above rest that allows a rod to turn over, J: 2 g min((m1 + m2) l1,
+    /// m2 l2).
     ///
-    /// It is the height of the lower of the two saddles V(pi, 0) and V(0, pi) above min V. Without
-    /// gravity it is 0. It is infinite if it overflows.
+    /// It is the height of the lower of the two saddles V(pi, 0) and V(0, pi) above min V.
     #[must_use]
     pub fn turnover_energy(&self) -> R {
-        // A torque of gravity is the weight on a rod times its length.
         let [torque1, torque2] = self.torque;
         R::TWO * if torque1 < torque2 { torque1 } else { torque2 }
     }
@@ -133,29 +121,21 @@ impl<R: Real> Pendulum<R> {
     /// Returns true if neither rod can ever turn over: if K is below
     /// [`turnover_energy`](Self::turnover_energy).
     ///
-    /// `false` means that a rod may turn over or not. The result is also `false` for energies less
-    /// than a share of 16 epsilons of `R` below the limit (2e-6 in `f32`), without gravity, and for
-    /// a state that is not finite or whose energy overflows. Whole turns in the angles do not
-    /// matter.
+    /// `false` means that a rod may turn over or not; it is also the result within 16 epsilons of
+    /// `R` below the limit, and for a state that is not finite.
     ///
     /// `true` is certain for a state at rest. With momenta and a heavy bob 2, terms of the kinetic
-    /// energy can cancel, and the computed K is then off by up to about epsilon sqrt(1 + m2/m1) K.
-    /// The result can therefore be `true` for a K that exceeds the limit by that share: with
-    /// m2/m1 = 10,000 by 1e-5 in `f32`.
+    /// energy can cancel: the result can be `true` for a K that exceeds the limit by the share
+    /// epsilon sqrt(1 + m2/m1), for m2/m1 = 10,000 by 1e-5 in `f32`.
     #[must_use]
     pub fn cannot_turn_over(&self, state: &State<R>) -> bool {
         let margin = R::ONE + R::from_f64(ROUNDING_MARGIN) * R::EPSILON;
         self.energy_above_rest(state) * margin < self.turnover_energy()
     }
 
-    /// Refuses the steps `dt` (s) that [`Modes::check_step`] refuses: a step that is NaN or
-    /// infinite, by [`Error::NotFinite`], zero or negative, by [`Error::NotPositive`], subnormal,
-    /// zero or infinite in `R`, by [`Error::OutOfRange`], or longer than [`Modes::step_limit`], by
-    /// [`Error::TooLarge`] with the limit, s, which `dt` may equal.
-    ///
-    /// Without gravity, where no modes exist, there is no longest step. With gravity, parameters
-    /// whose modes are out of range are refused first ([`Error::OutOfRange`]). For a step
-    /// backwards, check its magnitude.
+    /// Refuses the steps `dt` (s) that [`Modes::check_step`] refuses. Without gravity, where no
+    /// modes exist, there is no longest step. With gravity, parameters whose modes are out of range
+    /// are refused first ([`Error::OutOfRange`]).
     pub fn check_step(&self, dt: f64) -> Result<(), Error> {
         if self.parameters().g == R::ZERO {
             check_forward::<R>(dt)
@@ -164,15 +144,12 @@ impl<R: Real> Pendulum<R> {
         }
     }
 
-    /// Returns the fastest rate of change W, 1/s, of any quantity in a motion with the energy of
-    /// `state`: W = sqrt(w1^2 + (1 + m2/m1) d^2). Here w1 is the fast normal frequency (0 without
-    /// gravity) and d is [`Bounds::elbow`].
+    /// Returns the rate W of [`admissible_step`](Self::admissible_step), 1/s.
     ///
-    /// The forces between the rods contain 1/(m1 + m2 sin^2 D), which doubles within
-    /// sin D = sqrt(m1/m2). An elbow with the rate d passes this peak in sqrt(m1/m2)/d.
+    /// The forces between the rods contain 1/(m1 + m2 sin^2 D), which doubles within sin D =
+    /// sqrt(m1/m2). An elbow with the rate d passes this peak in sqrt(m1/m2)/d.
     fn fastest_rate(&self, state: &State<R>) -> Result<f64, Error> {
         let parameters = self.parameters().cast::<f64>();
-        // The frequency that gravity causes, and the rate that the motion causes.
         let normal = if parameters.g == 0.0 {
             0.0
         } else {
@@ -191,13 +168,11 @@ impl<R: Real> Pendulum<R> {
     /// [`Bounds::elbow`].
     ///
     /// One such step has an error of at most 7.5e-6 rad in each angle and 7.5e-6 W in each
-    /// velocity, for any masses and lengths; in the direction form 2e-5 rad and 2e-5 W. The error
-    /// of a step is proportional to dt^5: at most 0.0075 (W dt)^5 rad in each angle. Half the step
-    /// therefore has a 16 times smaller error in the same time.
+    /// velocity, for any masses and lengths; in the direction form 2e-5 rad and 2e-5 W. Each error
+    /// is proportional to dt^5.
     ///
-    /// The step is the longest for the fastest motion of that energy. Much longer steps, up to
-    /// [`Modes::step_limit`], can be sufficient for regular motions, and for a light bob 2 that
-    /// never has all the energy.
+    /// Much longer steps, up to [`Modes::step_limit`], can be sufficient for regular motions, and
+    /// for a light bob 2 that never has all the energy.
     ///
     /// ```
     /// use double_pendulum::{Parameters, Pendulum, State};
@@ -226,15 +201,12 @@ const RESOLVED: f64 = 0.25;
 /// The largest stable phase w1 dt of RK4 on the fast mode, rad: 2 sqrt(2).
 pub(crate) const RK4_STABLE: f64 = 2.828_427_124_746_190_3;
 
-/// Returns the longest step, s, whose phase of the fast mode is at most `phase` rad.
-///
-/// It is infinite if a pendulum has no modes: without gravity, out of the range of `f64`, or with
-/// parameters that are not valid.
+/// Returns the longest step, s, whose phase of the fast mode is at most `phase` rad; infinite if
+/// the pendulum has no modes.
 pub(crate) fn stable_step(parameters: &Parameters<f64>, phase: f64) -> f64 {
     Modes::new(parameters).map_or(f64::INFINITY, |modes| phase / modes.fast.frequency)
 }
 
-/// Refuses the steps of `dt` s that [`check_step`] refuses, and steps backwards.
 fn check_forward<R: Real>(dt: f64) -> Result<(), Error> {
     if dt.is_finite() && dt <= 0.0 {
         return Err(Error::NotPositive {
@@ -245,8 +217,7 @@ fn check_forward<R: Real>(dt: f64) -> Result<(), Error> {
     check_step::<R>(dt)
 }
 
-/// Refuses a step of `dt` s that is NaN or infinite, by [`Error::NotFinite`], or zero, subnormal or
-/// infinite in `R`, by [`Error::OutOfRange`]. A negative `dt` is accepted.
+/// Refuses a step of `dt` s, forwards or backwards, that the numbers `R` cannot hold.
 pub(crate) fn check_step<R: Real>(dt: f64) -> Result<(), Error> {
     let parameter = Parameter::Dt;
     let value = dt;
@@ -259,6 +230,6 @@ pub(crate) fn check_step<R: Real>(dt: f64) -> Result<(), Error> {
     }
 }
 
-/// The number of roundings of K within which `cannot_turn_over` gives no certificate. It is more
-/// than the rounding error of K when no kinetic term cancels, as for a state at rest.
+/// The number of roundings of K within which `cannot_turn_over` gives no certificate. It exceeds
+/// the rounding error of K if no kinetic term cancels, as for a state at rest.
 const ROUNDING_MARGIN: f64 = 16.0;

@@ -53,12 +53,11 @@ pub enum Parameter {
     /// Cost of a step, of a frame by the closed form, or of preparing a motion, in the unit of the
     /// price list.
     Cost,
-    /// Price of a step by this method, or of a frame by the closed form, in the unit of the price
-    /// list.
+    /// Price of a step by this method, or of a frame by the closed form.
     Price(Method),
-    /// Largest allowed cost of computing a frame, in the unit of the price list.
+    /// Largest allowed cost of computing a frame.
     FrameBudget,
-    /// Largest allowed cost of planning, in the unit of the price list.
+    /// Largest allowed cost of planning.
     PlanningBudget,
 }
 
@@ -140,7 +139,7 @@ pub enum Error {
     /// method. A step was too long for it or, by the closed form, the time since the start.
     Diverged {
         /// The first quantity that is out of range. `A1` and `A2` also represent the direction of
-        /// their rod. In fixed point it is always `A1`.
+        /// their rod. In fixed point always `A1`.
         parameter: Parameter,
         /// A number that is out of range: NaN or infinite, the length of a direction, or an energy,
         /// J. NaN in fixed point.
@@ -150,23 +149,17 @@ pub enum Error {
     /// arithmetic.
     ///
     /// Also the error for a step that is zero, subnormal or infinite in the numbers of the method,
-    /// or that alone takes a constant out of their range, for an order that is not 2, 4 .. 16, and
-    /// for a start of 2^31 - 1 turns or more. Only
+    /// for an order that is not 2, 4 .. 16, and for a start of 2^31 - 1 turns or more. Only
     /// [`Pendulum::check_step`](crate::Pendulum::check_step) and
-    /// [`Modes::check_step`](crate::Modes::check_step), which refuse steps backwards, refuse a zero
-    /// step by `NotPositive`.
+    /// [`Modes::check_step`](crate::Modes::check_step) refuse a zero step by `NotPositive`.
     OutOfRange {
         /// The refused parameter. If a product is out of range, the mass, length or gravity whose
-        /// value is farthest from 1 as a factor. For a start that the closed form cannot compute,
-        /// the angle or angular velocity that leads to the largest angle: a velocity w leads to w
-        /// over the frequency of the slow mode. For a start of infinite energy in fixed point, the
-        /// momentum of larger magnitude.
+        /// value is farthest from 1 as a factor.
         parameter: Parameter,
         /// The refused value.
         value: f64,
     },
-    /// The misprinted equations of `[math24]`, which the repository's application shows beside the
-    /// correct ones, are for equal rods, but these rods differ.
+    /// The misprinted equations of `[math24]` are for equal rods, but these rods differ.
     UnequalRods {
         /// Length of rod 1, m.
         l1: f64,
@@ -256,8 +249,7 @@ impl fmt::Display for Error {
 }
 
 impl Error {
-    /// Returns the error for a computed value instead of an input: [`Error::NotFinite`] becomes
-    /// [`Error::Diverged`]. Other errors are unchanged.
+    /// Turns the refusal of a computed value into [`Error::Diverged`].
     pub(crate) fn diverged(self) -> Self {
         match self {
             Error::NotFinite { parameter, value } => Error::Diverged { parameter, value },
@@ -268,8 +260,7 @@ impl Error {
 
 impl core::error::Error for Error {}
 
-/// Refuses the first of `values` that is NaN or infinite, by [`Error::NotFinite`]. Accepts an empty
-/// sequence.
+/// Refuses the first of `values` that is NaN or infinite, by [`Error::NotFinite`].
 pub(crate) fn check_finite<R: Real>(
     values: impl IntoIterator<Item = (Parameter, R)>,
 ) -> Result<(), Error> {

@@ -47,20 +47,15 @@
 //! | all methods | [`Method::visit`], [`Pendulum::run`] | host: `known_answers`, `hard_cases` |
 //! | the cheapest accurate method | [`plan`](mod@plan) | host: `plan`, `plan_study` |
 //!
-//! Accuracy figures in this documentation are asserted by the tests of the repository.
-//!
 //! # Glossary
 //!
 //! Physics:
 //!
-//! - **bob, rod**: the masses m1, m2 and the lengths l1, l2 of the [`Parameters`].
-//! - **mass ratio**: mu = m2/m1.
 //! - **canonical momentum**: p1, p2, conjugate to the angles a1, a2; the numbers of a [`State`].
 //! - **motion**: angles and angular velocities ([`Motion`]), or the course of a pendulum in time.
 //! - **energy above rest**: the energy H above that of hanging at rest, K = H - min V.
 //! - **normal mode**: an oscillation with a fixed ratio of the angles; there are two ([`Modes`]).
 //! - **flip**: a rod turns over, when its angle passes plus or minus pi.
-//! - **turn**: a whole revolution of a rod, 2 pi; angles beyond plus or minus pi include turns.
 //! - **elbow**: the joint between the rods; its angle is D = a1 - a2.
 //! - **den**: m1 + m2 sin^2 D, the denominator of the equations.
 //! - **regular, chaotic**: a motion whose errors grow slowly, or exponentially.
@@ -73,16 +68,10 @@
 //! - **direction form**: Hamilton's equations with directions instead of angles.
 //! - **closed form**: the solution of the linear equations at any time, without steps.
 //! - **compensated**: the rounding error of each sum is carried into the next.
-//! - **fixed point**: numbers that are integers times a power of two.
 //! - **unit of time**: a method's own unit, chosen so that its numbers are in range.
-//! - **stage**: one evaluation of the equations within a step.
-//! - **order**: the power of the step size that the error is proportional to.
 //! - **admissible step**: the longest step that resolves every motion of an energy.
 //! - **diverged, lost**: a motion that has left the finite numbers or the range of its method.
-//! - **sincos**: sine and cosine of one angle, computed together, as a measure of cost.
-//! - **ulp**: unit in the last place of a floating-point number.
-//! - **bit-identical**: all bits of all numbers are equal.
-//! - **golden bits**: the bits of a method that are stored in a file.
+//! - **golden bits**: the bits of every method, stored in `golden/bits.csv`.
 //!
 //! Plans:
 //!
@@ -102,13 +91,11 @@
 //! minor versions, as is a higher least Rust version (1.85 now). Items that are hidden from the
 //! documentation may change at any time.
 //!
-//! A change of any bit of a step is a major version. The file `golden/bits.csv` of the package
-//! stores the bits of every method. A test compares them, and another test requires an entry in the
-//! change log for every new version of the file. Steps use only IEEE 754 arithmetic, and the
-//! correctly rounded `sqrt` and `rint`, for angles up to 1,647,098 rad. The sines of larger angles,
-//! the `atan2` in [`Run::state`], and the `log2` that chooses the units of fixed point at the start
-//! are computed by the `libm` crate in your lock file (0.2.16 or later). To compare machines, build
-//! for both with the same `libm`.
+//! A change of any bit of a step is a major version; a test compares them with `golden/bits.csv`.
+//! Steps use only IEEE 754 arithmetic, and the correctly rounded `sqrt` and `rint`, for angles up
+//! to 1,647,098 rad. The sines of larger angles, the `atan2` in [`Run::state`], and the `log2` that
+//! chooses the units of fixed point are computed by the `libm` crate in your lock file (0.2.16 or
+//! later).
 //!
 //! # References
 //!

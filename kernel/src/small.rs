@@ -24,7 +24,7 @@ pub struct Mode<R> {
 /// Here and in the methods, w1 > w2 > 0 are the angular frequencies of the fast and the slow mode,
 /// rad/s, not the angular velocities of the rods.
 ///
-/// All numbers are finite and not 0, and so are the results of the methods.
+/// All numbers are finite and not 0.
 ///
 /// The same two numbers are the growth rates about the inverted position (pi, pi), because K
 /// changes its sign there.
@@ -55,18 +55,12 @@ impl<R: Real> Modes<R> {
     ///
     /// # Errors
     ///
-    /// Refuses:
-    ///
-    /// - the first mass, length or gravity, in the order m1, m2, l1, l2, g, that is NaN or infinite
-    ///   ([`Error::NotFinite`]), a mass or length that is zero or negative
-    ///   ([`Error::NotPositive`]), or a negative gravity ([`Error::TooSmall`]);
-    /// - zero gravity, by [`Error::NotPositive`];
-    /// - by [`Error::OutOfRange`], parameters whose frequencies, shapes or exchange frequency
-    ///   overflow, underflow or are subnormal in `R`.
+    /// Refuses the parameters that [`Pendulum::new`] refuses, zero gravity by
+    /// [`Error::NotPositive`], and, by [`Error::OutOfRange`], parameters whose modes are out of the
+    /// range of `R` or subnormal.
     pub fn new(parameters: &Parameters<R>) -> Result<Self, Error> {
         parameters.check()?;
         let &Parameters { m1, m2, l1, l2, g } = parameters;
-        // Without gravity nothing oscillates.
         if g == R::ZERO {
             return Err(Error::NotPositive {
                 parameter: Parameter::G,
@@ -74,13 +68,11 @@ impl<R: Real> Modes<R> {
             });
         }
 
-        // The root c.
         let total = m1 + m2;
         let sum = l1 + l2;
         let difference = l1 - l2;
         let root = ((m1 * difference * difference + m2 * sum * sum) / total).sqrt();
 
-        // The frequencies, and the shapes without the cancelling sum.
         let fast = (g * total * (sum + root) / (R::TWO * m1 * l1 * l2)).sqrt();
         let slow = (R::TWO * g / (sum + root)).sqrt();
         let reach = root + difference.abs();
@@ -119,15 +111,15 @@ impl<R: Real> Modes<R> {
         R::HALF * (self.fast.frequency + self.slow.frequency)
     }
 
-    /// Returns the modulation frequency (w1 - w2)/2 > 0, rad/s, of the slow cosine of each
-    /// amplitude. `[math24]` calls it "beat frequency".
+    /// Returns the modulation frequency (w1 - w2)/2, rad/s, of the slow cosine of each amplitude.
+    /// `[math24]` calls it "beat frequency".
     #[must_use]
     pub fn modulation(&self) -> R {
         R::HALF * self.exchange
     }
 
-    /// Returns the exchange frequency w1 - w2, rad/s. The envelope, which has no sign, repeats at
-    /// this rate: the energy moves from rod to rod and back.
+    /// Returns the exchange frequency w1 - w2, rad/s, at which the energy moves from rod to rod and
+    /// back.
     #[must_use]
     pub fn exchange(&self) -> R {
         self.exchange
@@ -135,8 +127,8 @@ impl<R: Real> Modes<R> {
 }
 
 impl<R: Real> Pendulum<R> {
-    /// Returns the stiffness matrix K of small oscillations, N m/rad, row by row:
-    /// diag((m1 + m2) g l1, m2 g l2). It is zero without gravity.
+    /// Returns the stiffness matrix K of small oscillations, N m/rad, row by row: diag((m1 + m2) g
+    /// l1, m2 g l2).
     #[must_use]
     pub fn stiffness(&self) -> [[R; 2]; 2] {
         let [k1, k2] = self.torque;
@@ -157,27 +149,18 @@ impl<R: Real> Pendulum<R> {
 ///
 /// mu = (p^2 l1 - q^2 l2)(p^2 l2 - q^2 l1) / (p q (l1 + l2))^2,
 ///
-/// which follows from (w1/w2 + w2/w1)^2 = (1 + mu)(l1 + l2)^2/(l1 l2). For equal rods it is
-/// mu = ((r^2 - 1)/(2r))^2 with r = p/q. A common period is 2 pi p/w1 = 2 pi q/w2, s, and the
-/// shortest one if p and q have no common factor. Close to the least possible ratio p/q a factor
-/// cancels, and mu has fewer correct digits.
+/// which follows from (w1/w2 + w2/w1)^2 = (1 + mu)(l1 + l2)^2/(l1 l2). For equal rods it is mu =
+/// ((r^2 - 1)/(2r))^2 with r = p/q. A common period is 2 pi p/w1 = 2 pi q/w2, s. Close to the least
+/// possible ratio p/q a factor cancels, and mu has fewer correct digits.
 ///
 /// # Errors
 ///
-/// Refuses, in this order:
-///
-/// - lengths that are NaN or infinite, by [`Error::NotFinite`], or zero or negative, by
-///   [`Error::NotPositive`];
-/// - a `slow` of 0, by [`Error::NotFinite`];
-/// - lengths whose terms in the numerator of the formula overflow in `R`, by [`Error::OutOfRange`];
-/// - a ratio p/q that no masses can give, such as 0, by [`Error::TooSmall`]: it must exceed the
-///   square root of the longer rod over the shorter rod;
-/// - lengths for which the numerator or denominator overflows or becomes 0, or mu is subnormal in
-///   `R`, by [`Error::OutOfRange`].
-///
-/// A subnormal numerator or denominator is accepted, but mu then has fewer correct digits.
+/// Refuses lengths that are NaN or infinite ([`Error::NotFinite`]), zero or negative
+/// ([`Error::NotPositive`]); a `slow` of 0 ([`Error::NotFinite`]); a ratio p/q that no masses can
+/// give, because it does not exceed the square root of the longer rod over the shorter
+/// ([`Error::TooSmall`]); and lengths for which the formula overflows or underflows in `R`
+/// ([`Error::OutOfRange`]).
 pub fn periodic_mass_ratio<R: Real>(fast: u16, slow: u16, lengths: [R; 2]) -> Result<R, Error> {
-    // Only the lengths can be wrong here.
     let [l1, l2] = lengths;
     let parameters = Parameters {
         m1: R::ONE,
@@ -194,14 +177,12 @@ pub fn periodic_mass_ratio<R: Real>(fast: u16, slow: u16, lengths: [R; 2]) -> Re
         });
     }
 
-    // The formula above.
     let p = R::from_f64(f64::from(fast));
     let q = R::from_f64(f64::from(slow));
     let numerator1 = p * p * l1 - q * q * l2;
     let numerator2 = p * p * l2 - q * q * l1;
     let denominator = p * q * (l1 + l2);
 
-    // With lengths near the largest number a term may overflow.
     if !(numerator1.is_finite() && numerator2.is_finite()) {
         return Err(parameters.out_of_range());
     }

@@ -40,11 +40,11 @@ impl fmt::Display for Equations {
 pub enum Numbers {
     /// Single precision.
     F32,
-    /// Single precision. The rounding error of each sum is carried into the next.
+    /// Single precision with [compensated](crate#glossary) sums.
     CompensatedF32,
     /// Double precision.
     F64,
-    /// Double precision. The rounding error of each sum is carried into the next.
+    /// Double precision with compensated sums.
     CompensatedF64,
     /// Fixed point of 32 bits. Each number of the state has 64 bits.
     Fixed32,
@@ -91,8 +91,7 @@ pub trait FormVisitor {
     /// The result of the call.
     type Output;
 
-    /// Runs the code for the method that the type `F` computes. [`Method::visit`] calls it once, or
-    /// not at all for a method whose type is not in this crate.
+    /// Runs the code for the method that the type `F` computes.
     fn visit<F: Form>(self) -> Self::Output;
 }
 
@@ -119,11 +118,9 @@ macro_rules! methods {
         )*
         ///
         /// The order of the closed form, which has no steps, is 0. `rk4-f32-micromath` is `rk4-f32`
-        /// with the sines of the `micromath` crate. Scenes are drawn by those of
-        /// [`Method::DRAWN`].
-        ///
-        /// Binary formats of `serde` store the number of the line. Text formats store the name of
-        /// the variant, such as `Rk4F64`, not that of the table.
+        /// with the sines of the `micromath` crate. Scenes are drawn by those of [`Method::DRAWN`].
+        /// Binary formats of `serde` store the number of the line, text formats the name of the
+        /// variant.
         #[derive(Clone, Copy, Debug, PartialEq, Eq)]
         #[cfg_attr(feature = "defmt", derive(defmt::Format))]
         #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -181,10 +178,9 @@ macro_rules! methods {
                 }
             }
 
-        /// Calls `visitor` with the type that computes this method, and returns its result.
-        ///
-        /// Returns `None`, without a call, for `rk4-f32-micromath` and `textbook-f32`. They are listed
-        /// for comparison, and their types are not in this crate.
+        /// Calls `visitor` with the type that computes this method, and returns its result; `None`,
+        /// without a call, for `rk4-f32-micromath` and `textbook-f32`, whose types are not in this
+        /// crate.
         ///
         /// This links every method. To link one method only, pass its type to
         /// [`Pendulum::run`](crate::Pendulum::run).
@@ -245,8 +241,7 @@ methods! {
 }
 
 impl Method {
-    /// Returns the method of exactly this [`name`](Self::name), in lower case; `None` if there is
-    /// no such method.
+    /// Returns the method of exactly this [`name`](Self::name), in lower case.
     #[must_use]
     pub fn from_name(name: &str) -> Option<Self> {
         Self::ALL
@@ -280,7 +275,6 @@ mod tests {
 
     use super::*;
 
-    /// Equations, numbers and integrators are displayed as their documentation says.
     #[test]
     fn properties_are_displayed_by_their_names() {
         let properties = |method: Method| {
@@ -322,7 +316,6 @@ mod tests {
         }
     }
 
-    /// Each name of the table must lead back to its method by `Method::from_name`.
     #[test]
     fn method_names_are_unique() {
         for method in Method::ALL {

@@ -1,10 +1,8 @@
-//! The loop of all programs of this crate: a motion by a method of the kernel is advanced and
-//! drawn.
-//!
-//! `cargo count --minimal` counts the calls of [`advance`], and the bytes of each program.
+//! The loop of all programs of this crate: a motion is advanced and drawn. `cargo count --minimal`
+//! counts the calls of [`advance`], and the bytes of each program.
 #![no_std]
 
-// A Cortex-M0+ has no long product. That of this file takes half the time of the compiler's own.
+// A Cortex-M0+ has no long product. This one takes half the time of the compiler's own.
 #[cfg(armv6m)]
 #[path = "../../../firmware/src/board/cortex_m/long_product.rs"]
 mod long_product;
@@ -20,12 +18,10 @@ pub fn start<F: Form>() -> Result<Run<F>, Error> {
     pendulum.run(&State::at_rest(0.5, 0.5), 1.0 / 256.0)
 }
 
-/// The number of counted steps in `f32`. Without a floating-point unit a step takes 40 to 140 times
-/// as many cycles, so fewer are counted.
+/// Without a floating-point unit a step takes 40 to 140 times as many cycles.
 pub const STEPS_IN_F32: u32 = if cfg!(target_abi = "eabihf") { 32 } else { 8 };
 
-/// Computes motions from `start`: of no step, of one step, and of `steps` more than one. Then it
-/// ends the emulation. `draw` reads the motion.
+/// Computes motions from `start` of no step, of one step, and of `steps` more than one.
 pub fn swing<F: Form, const TURNS: bool>(
     start: Result<Run<F, TURNS>, Error>,
     steps: u32,
@@ -42,7 +38,6 @@ pub fn swing<F: Form, const TURNS: bool>(
     end(start.and_then(frames).map_err(drop))
 }
 
-/// Ends the emulation.
 pub fn end(outcome: Result<(), ()>) -> ! {
     debug::exit(outcome);
     loop {}
@@ -54,7 +49,6 @@ fn advance<F: Form, const TURNS: bool>(run: &mut Run<F, TURNS>, steps: u32) -> R
     run.advance(steps)
 }
 
-/// Reads the directions of both rods. A picture needs no other data.
 pub fn draw<F: Form, const TURNS: bool>(run: &Run<F, TURNS>) {
     black_box(run.directions());
 }

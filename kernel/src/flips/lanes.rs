@@ -15,7 +15,6 @@ use crate::methods::DirectionF32Plain;
 use crate::methods::direction::{Coefficients, changes, missing, rates};
 use crate::numbers::Lanes;
 
-/// A number for each of `N` motions.
 pub(super) type Numbers<const N: usize> = Lanes<f32, N>;
 
 /// The six quantities sin a1, cos a1, S, C, P1 and P2 of `N` motions, and r = 1/(m + S^2).
@@ -25,7 +24,6 @@ struct Point<const N: usize> {
     inverse: Numbers<N>,
 }
 
-/// The constants of the equations, the same in all lanes.
 type Constants<const N: usize> = Coefficients<Numbers<N>>;
 
 /// A step in progress: the point of the next stage, and the weighted sum of the earlier stages.
@@ -40,7 +38,7 @@ struct Stage<const N: usize> {
 /// Each stage is computed for all rows before the next stage of any row. A stage must wait for the
 /// one before it, and meanwhile the processor computes the other rows.
 ///
-/// After every 32 steps since the start of a motion, the caller restores the lengths.
+/// The caller restores the lengths after every block of steps.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct DirectionLanes<const N: usize, const ROWS: usize> {
     constants: Constants<N>,
@@ -64,9 +62,8 @@ impl<const N: usize, const ROWS: usize> DirectionLanes<N, ROWS> {
         Self { constants, rows }
     }
 
-    /// Puts another motion of the same pendulum and step into a lane, counted through all rows.
-    /// Called before the first step or after the lengths are restored, because they are restored in
-    /// all lanes at once.
+    /// Puts another motion of the same pendulum and step into a lane. The lengths of all lanes are
+    /// restored at once, so that it must begin when a block does.
     pub fn put(&mut self, lane: usize, motion: &DirectionF32Plain) {
         let (_, z, inverse) = motion.parts();
         let numbers = z.into_iter().chain([inverse]);
@@ -75,8 +72,8 @@ impl<const N: usize, const ROWS: usize> DirectionLanes<N, ROWS> {
         }
     }
 
-    /// Resets a lane to its motion in `before`, to leave out the last step before the lengths are
-    /// restored, as a single motion would.
+    /// Resets a lane to its motion in `before`, to leave out the last step of a block, as a single
+    /// motion would.
     pub fn keep(&mut self, lane: usize, before: &mut Self) {
         for (place, number) in self.lane(lane).zip(before.lane(lane)) {
             *place = *number;
@@ -85,7 +82,6 @@ impl<const N: usize, const ROWS: usize> DirectionLanes<N, ROWS> {
 
     #[inline(always)]
     pub fn step(&mut self) {
-        // All rows finish a stage before the next stage begins.
         let constants = &self.constants;
         for (start, stage) in &mut self.rows {
             *stage = constants.first_stage(start);
@@ -101,15 +97,13 @@ impl<const N: usize, const ROWS: usize> DirectionLanes<N, ROWS> {
         }
     }
 
-    /// Restores the lengths of all directions, to first order in their errors.
     pub fn restore_lengths(&mut self) {
         for (start, _) in &mut self.rows {
             self.constants.restore_lengths(start);
         }
     }
 
-    /// Returns (sin, cos) of both rods in the lanes of a row; those of rod 2 are nu = l1/l2 times
-    /// as long.
+    /// Returns (sin, cos) of both rods in the lanes of a row; (S, C) for rod 2.
     pub fn rods(&self, row: usize) -> [[Numbers<N>; 2]; 2] {
         let [sin1, cos1, s, c, ..] = self.rows[row].0.z;
         [[sin1, cos1], [sin1 * c - cos1 * s, cos1 * c + sin1 * s]]
@@ -139,7 +133,6 @@ impl<const N: usize> Constants<N> {
     #[inline(always)]
     fn second_stage(&self, start: &Point<N>, stage: &mut Stage<N>) {
         let k2 = changes(&stage.at.z, self.rates(&stage.at));
-        // The middle stages count twice.
         for (sum, k2) in stage.sum.iter_mut().zip(&k2) {
             *sum = *sum + k2.twice();
         }
@@ -165,8 +158,7 @@ impl<const N: usize> Constants<N> {
             *z = *z + (*sum + *k4) * third;
         }
 
-        // The reciprocal is corrected by one step of Newton's method, from its value in the last
-        // stage.
+        // One step of Newton's method from its value in the last stage.
         let one = Lanes::splat(1.0);
         let s = start.z[2];
         let r4 = stage.at.inverse;
@@ -178,11 +170,9 @@ impl<const N: usize> Constants<N> {
         rates(self.gravity, Lanes::splat(1.0), &at.z, at.inverse)
     }
 
-    /// Restores the length 1 of direction 1 and the length nu of (S, C), to first order.
     fn restore_lengths(&self, point: &mut Point<N>) {
         let one = Lanes::splat(1.0);
         let half = Lanes::splat(0.5);
-        // Direction 1 has the length 1, and (S, C) has the length `norm`.
         for (i, length, gain) in [(0, one, half), (2, self.norm, self.half_inverse_square)] {
             let [s, c] = [point.z[i], point.z[i + 1]];
             let missing = missing([s, c], length, gain, Lanes::splat(0.0));
@@ -193,15 +183,12 @@ impl<const N: usize> Constants<N> {
 }
 
 impl<const N: usize> Point<N> {
-    /// Returns the point that is further than this one by `k`, the change that was computed at
-    /// `from`. Its reciprocal is linear in the change.
     #[inline(always)]
     fn ahead(&self, k: &[Numbers<N>; 6], from: &Self) -> Self {
         let mut z = self.z;
         for i in 0..6 {
             z[i] = z[i] + k[i];
         }
-        // The change of a reciprocal follows from its derivative.
         let fall = k[2].twice() * (from.z[2] * from.inverse) * from.inverse;
         Self {
             z,

@@ -41,11 +41,9 @@ pub enum Flip<R> {
 
 /// A pendulum, a step size and a number of steps, for any number of starts.
 ///
-/// A flip is detected by the signs of sine and cosine after each step. Its time is interpolated
-/// between two steps, linearly in the sine. This costs about 15 arithmetic operations per step.
-/// Whole turns of a start do not matter. A rod that starts straight up has not flipped yet. If the
-/// energy is too low for any flip, the result is [`Flip::Never`]; if no rod flips within the steps,
-/// it is [`Flip::Later`].
+/// A flip is detected by the signs of sine and cosine after each step, and its time interpolated
+/// linearly in the sine. Whole turns of a start do not matter. A rod that starts straight up has
+/// not flipped yet.
 ///
 /// In maps of equal rods and bobs up to 10 sqrt(l/g), in steps of [`step_size`], 99.9 % of the
 /// starts that may turn over have their flip within one of 14 grey levels of that in far finer
@@ -65,17 +63,13 @@ pub struct Flips<F: Form> {
 /// Returns the longest step, s, that is short enough for a map of flips.
 ///
 /// It is twice the [admissible step](Pendulum::admissible_step) from straight up, which is accurate
-/// enough to find flips. If the elbow could bend by more than 0.36 rad in that step, as with a
-/// light bob 2, the step is so short that it cannot; [`Fixed32`] then accepts it. Without gravity,
-/// where nothing moves, it is infinite; it is 0 if the energy overflows in `R`. [`Flips::new`]
-/// refuses both.
+/// enough to find flips, or shorter for a light bob 2, whose elbow must not bend by more than 0.36
+/// rad in a step. Without gravity it is infinite, which [`Flips::new`] refuses.
 ///
 /// # Errors
 ///
 /// Refuses the parameters that [`Pendulum::new`] refuses, and those whose normal modes are out of
 /// the range of `R`, by [`Error::OutOfRange`].
-///
-/// [`Fixed32`]: crate::Fixed32
 pub fn step_size<R: Real>(parameters: &Parameters<R>) -> Result<f64, Error> {
     /// The largest bend of the elbow in a step, rad. Half a turn takes nine steps.
     const BEND: f64 = 0.36;
@@ -88,20 +82,15 @@ pub fn step_size<R: Real>(parameters: &Parameters<R>) -> Result<f64, Error> {
 }
 
 impl<F: Form> Flips<F> {
-    /// Creates a map with steps of `dt` s and at most `steps` steps for each start. A negative `dt`
-    /// runs backwards. If `steps` is 0, each start has the result [`Flip::Never`] or
-    /// [`Flip::Later`]. Without gravity, which the closed form refuses, each has [`Flip::Later`].
+    /// Creates a map with steps of `dt` s, backwards if negative, and at most `steps` steps for
+    /// each start.
     ///
     /// # Errors
     ///
     /// Refuses the parameters that [`Pendulum::new`] refuses, and the parameters and steps that the
-    /// method `F` refuses. Among them are a step that is NaN or infinite ([`Error::NotFinite`]),
-    /// one that is zero, subnormal or infinite in the numbers of the method ([`Error::OutOfRange`];
-    /// fixed point checks it as an `f64`) and, in fixed point, one that is too long for the energy
-    /// of the highest start ([`Error::TooLarge`] contains the longest, s). Other methods accept a
-    /// step beyond the limit of stability.
+    /// method `F` refuses: those of [`Pendulum::run`], except that methods in floating point accept
+    /// a step beyond the limit of stability.
     pub fn new(parameters: &Parameters<F::Real>, dt: f64, steps: u32) -> Result<Self, Error> {
-        // The units must fit the start with the most energy: both rods upright.
         let highest = F::new(
             &parameters.cast(),
             &State::at_rest(F::Real::PI, F::Real::PI).cast(),
@@ -116,7 +105,6 @@ impl<F: Form> Flips<F> {
     }
 
     /// Returns the first flip of the motion that is released at rest at the angles `a1`, `a2`, rad.
-    /// It computes steps until the flip, or all steps of the map.
     ///
     /// # Errors
     ///
@@ -129,10 +117,7 @@ impl<F: Form> Flips<F> {
         Ok(falling.advance(self, u32::MAX).unwrap_or(Flip::Later))
     }
 
-    /// Returns the time of the passage. The sides are `before` after `steps` steps, and `after` one
-    /// step later.
     fn passage(&self, steps: u32, before: [[i32; 2]; 2], after: [[i32; 2]; 2]) -> Flip<F::Real> {
-        // The share of the step until a rod passes, by linear interpolation of its sine.
         let share = |rod: usize| {
             let [from, _] = before[rod];
             let [to, cos] = after[rod];
@@ -143,7 +128,6 @@ impl<F: Form> Flips<F> {
                 F::Real::ONE
             }
         };
-        // The earlier of the two rods decides.
         let upper = share(0);
         let lower = share(1);
         let share = if lower < upper { lower } else { upper };
@@ -151,10 +135,9 @@ impl<F: Form> Flips<F> {
     }
 }
 
-/// Returns a negative number if a rod has passed straight up between the sides `before` and
-/// `after`, (sin, cos) of each rod.
+/// Returns a negative number if a rod has passed straight up: if its sine has changed its sign
+/// while its cosine is negative.
 fn passes(before: &[[i32; 2]; 2], after: &[[i32; 2]; 2]) -> i32 {
-    // A rod passes straight up if its sine changes its sign while its cosine is negative.
     let [[upper_before, _], [lower_before, _]] = *before;
     let [[upper_after, upper_cos], [lower_after, lower_cos]] = *after;
     turns_over([upper_before, upper_after, upper_cos])
@@ -166,8 +149,6 @@ mod tests {
     use super::*;
     use crate::table::{FormVisitor, Method};
 
-    /// Computes the time of the first flip of equal rods and bobs from rest at 2 and 2.5 rad, in
-    /// steps of 1/256 s.
     struct FirstFlip;
 
     impl FormVisitor for FirstFlip {
@@ -184,8 +165,6 @@ mod tests {
         }
     }
 
-    /// A passage is reported if one rod or both have passed straight up: if the sine has changed
-    /// its sign and the new cosine is negative.
     #[test]
     fn passage_of_one_rod_or_both_is_reported() {
         let [before, after] = [[1, -1], [-1, -1]];

@@ -12,9 +12,7 @@ use crate::methods::{Advance, DirectionF32Plain};
 use crate::numbers::RealOperations;
 use crate::pendulum::{Direction, State};
 
-/// Three rows of `N` motions.
 type Motions<const N: usize> = DirectionLanes<N, ROWS>;
-/// (sin, cos) of both rods in the lanes of a row.
 type LaneDirections<const N: usize> = [Direction<Numbers<N>>; 2];
 
 /// The number of rows of lanes. Three keep a processor busy; with more, the compiler no longer uses
@@ -25,7 +23,6 @@ const ROWS: usize = 3;
 #[derive(Clone, Copy)]
 struct Lane {
     start: usize,
-    /// The number of steps until the flip counts as later.
     left: u32,
 }
 
@@ -33,17 +30,14 @@ impl Flips<DirectionF32Plain> {
     /// Computes the first flip of each of `starts`, the angles a1 and a2, rad, at rest, and passes
     /// it to `give` with the index of the start, counted from 0.
     ///
-    /// Each start has exactly one result, in any order. The results are bit-identical to those of
-    /// [`of`](Self::of). Three times `N` starts are computed at a time; a lane whose motion has
-    /// flipped takes the next start. 8 lanes suit processors with vectors of 4 and of 8; 0 lanes
-    /// give no result. The function is inlined into its caller, so that it is compiled for the
-    /// processor that the caller is compiled for.
+    /// Each start has exactly one result, in any order, bit-identical to that of [`of`](Self::of).
+    /// Three times `N` starts are computed at a time; 8 lanes suit processors with vectors of 4 and
+    /// of 8. The function is inlined, so that it is compiled for the processor of its caller.
     ///
     /// # Errors
     ///
-    /// Refuses the first start whose angles are not finite, by [`Error::NotFinite`], when it is
-    /// taken. Some of the starts before it may then lack their results, and the later ones have
-    /// none.
+    /// Refuses the first start whose angles are not finite, by [`Error::NotFinite`]. Some starts
+    /// then lack their results.
     #[inline(always)]
     #[doc(hidden)] // For hosts with vectors only.
     pub fn of_each<const N: usize>(
@@ -57,11 +51,9 @@ impl Flips<DirectionF32Plain> {
         let mut lanes: [[Option<Lane>; N]; ROWS] = [[None; N]; ROWS];
         loop {
             for (place, lane) in lanes.as_flattened_mut().iter_mut().enumerate() {
-                // The lane's steps are used up.
                 if let Some(Lane { start, .. }) = lane.take_if(|lane| lane.left == 0) {
                     give(start, Flip::Later);
                 }
-                // The lane takes the next start.
                 if lane.is_none() {
                     let next = self.next(&mut starts, &mut give)?;
                     motions.put(place, next.as_ref().map_or(&hanging, |(_, motion)| motion));
@@ -78,8 +70,6 @@ impl Flips<DirectionF32Plain> {
         }
     }
 
-    /// Returns the next start that may flip, with its motion, and passes the starts before it to
-    /// `give`.
     fn next(
         &self,
         starts: &mut impl Iterator<Item = (usize, [f32; 2])>,
@@ -94,8 +84,7 @@ impl Flips<DirectionF32Plain> {
         Ok(None)
     }
 
-    /// Computes a block of steps and restores the lengths. A lane may leave out the last step of a
-    /// block.
+    /// Computes a block of steps and restores the lengths.
     #[inline(always)]
     fn follow<const N: usize>(
         &self,
@@ -105,7 +94,6 @@ impl Flips<DirectionF32Plain> {
     ) {
         let mut before: [LaneDirections<N>; ROWS] = from_fn(|row| motions.rods(row));
         for step in 0..BLOCK {
-            // Keep the state before the last step for the lanes that leave it out.
             let kept = (step + 1 == BLOCK).then_some(*motions);
             motions.step();
             if let Some(mut kept) = kept {
@@ -125,7 +113,6 @@ impl Flips<DirectionF32Plain> {
 
             for (row, before) in before.iter_mut().enumerate() {
                 let rods = motions.rods(row);
-                // A flip is rare, so the lanes are examined only if any has one.
                 if any_turns_over(before, &rods) {
                     for (place, lane) in lanes[row].iter_mut().enumerate() {
                         let at = |rods: &LaneDirections<N>| {
@@ -152,8 +139,6 @@ impl Flips<DirectionF32Plain> {
     }
 }
 
-/// Returns true if a rod in any lane has passed straight up between `before` and `after`.
-///
 /// The loop over the lanes is the inner one, so that the compiler uses vectors.
 #[inline(always)]
 fn any_turns_over<const N: usize>(before: &LaneDirections<N>, after: &LaneDirections<N>) -> bool {
@@ -176,11 +161,10 @@ mod tests {
     use crate::pendulum::Parameters;
     use std::vec::Vec;
 
-    /// Within 30 s, chaotic motions flip late. After 5 s, some motions flip in every remaining step
-    /// of the last block, which must not count.
+    /// At 30 s chaotic motions flip late. At 5 s some flip in each of the steps that the last block
+    /// must not count.
     const LIMITS: [f64; 2] = [30.0, 5.0];
-    /// The side of the square of starts: enough for flips in the step after which lengths are
-    /// restored.
+    /// Enough starts for flips in the step after which lengths are restored.
     const SIDE: usize = 91;
 
     fn starts(side: usize) -> impl Iterator<Item = [f32; 2]> + Clone {
@@ -188,13 +172,11 @@ mod tests {
         (0..side * side).map(move |i| [angle(i % side), angle(i / side)])
     }
 
-    /// Returns a map over `limit` seconds, whose number of steps is no multiple of a block.
     fn flips(parameters: &Parameters<f32>, limit: f64) -> Result<Flips<DirectionF32Plain>, Error> {
         let dt = step_size(parameters)?;
         Flips::new(parameters, dt, (limit / dt) as u32 | 1)
     }
 
-    /// Returns the flips of all starts, in the widest vectors of this processor.
     #[multiversion::multiversion(targets("x86_64+avx2+fma"))]
     fn all(flips: &Flips<DirectionF32Plain>) -> Result<Vec<Option<Flip<f32>>>, Error> {
         any(flips)
@@ -208,8 +190,7 @@ mod tests {
         Ok(found)
     }
 
-    /// The number of starts is no multiple of the lanes. A hundredth of the steps is left out, so
-    /// that lanes leave out steps at different times.
+    /// Neither starts nor steps fill the lanes, so that lanes leave out steps at different times.
     #[test]
     fn lanes_equal_single_motions() -> Result<(), Error> {
         let equal = Parameters::equal_rods(1.0, 1.0, 1.0);
@@ -258,7 +239,7 @@ mod tests {
             let float = Flips::<DirectionF32Plain>::new(&parameters, dt, steps)?;
             let fixed = Flips::<Fixed32>::new(&parameters, dt, steps)?;
 
-            // Most starts agree. In chaos the arithmetics differ.
+            // In chaos the arithmetics differ.
             let mut other = 0;
             for [a1, a2] in starts(20) {
                 let float = float.of(a1, a2)?;

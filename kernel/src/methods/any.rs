@@ -6,11 +6,8 @@ use crate::pendulum::{Parameters, State};
 use crate::table::Method;
 
 /// Defines an enum of motions, with a variant for each of some methods, one of which is chosen at
-/// run time. It implements [`Advance`](crate::parts::Advance), and links only these methods.
-///
-/// `METHODS` are its methods, in the order of the variants. `new` creates the motion of a pendulum
-/// by a method from its start, in steps of `dt` seconds, as [`Form`](crate::Form) does. It refuses
-/// other methods by [`Error::NotDrawn`](crate::Error::NotDrawn).
+/// run time. It implements [`Advance`](crate::parts::Advance), and links only these methods. `new`
+/// refuses others by [`Error::NotDrawn`](crate::Error::NotDrawn).
 #[doc(hidden)] // For the firmware.
 #[macro_export]
 macro_rules! motions {
@@ -33,8 +30,6 @@ macro_rules! motions {
             /// The methods, in the order of the variants.
             $visibility const METHODS: &[$crate::Method] = &[$($crate::Method::$method),*];
 
-            /// Creates the motion of a pendulum by `method` from its start, in steps of `dt`
-            /// seconds. A negative `dt` runs backwards.
             #[inline(never)] // Inlined, the motions of all kinds would share a stack frame.
             $visibility fn new(
                 method: $crate::Method,
@@ -112,7 +107,7 @@ macro_rules! motions {
     };
 }
 
-/// Creates the motion of a pendulum from its start, in steps of `dt` seconds, for [`motions!`].
+/// Creates a motion, for [`motions!`].
 #[inline(never)] // Inlined, each enum would have a copy.
 pub fn start<F: Form>(
     parameters: &Parameters<f64>,
@@ -122,7 +117,7 @@ pub fn start<F: Form>(
     F::new(parameters, start, dt)
 }
 
-/// Advances a motion by `steps` steps, for [`motions!`].
+/// Advances a motion, for [`motions!`].
 #[inline(never)] // Inlined, each enum would have a copy.
 pub fn advance<F: Form>(motion: &mut F, steps: u32) {
     motion.advance(steps);
@@ -144,7 +139,7 @@ motions! {
 }
 
 motions! {
-    /// A motion by a method of [`Method::DRAWN`] in 32 bits. It takes a third of the memory of a
+    /// A motion by a method of [`Method::DRAWN`] in 32 bits: a third of the memory of a
     /// [`DrawnMotion`].
     pub(crate) enum Motion32 {
         Rk4F32Direction(DirectionF32),

@@ -9,16 +9,13 @@ use crate::error::Error;
 use crate::numbers::Real;
 use crate::pendulum::{Direction, Parameters, Pendulum, State};
 
-/// The equations of motion of a pendulum.
-///
-/// Any crate may implement this trait. [`Canonical`] with these equations is a
-/// [`Form`](super::Form), which [`Pendulum::run`] accepts.
+/// The equations of motion of a pendulum. Any crate may implement this trait; [`Canonical`] with
+/// these equations is a [`Form`](super::Form), which [`Pendulum::run`] accepts.
 pub trait Derivatives<R: Real>: Copy + Debug + PartialEq + 'static {
-    /// Prepares the equations. `Hamilton` refuses the parameters that [`Pendulum::new`] refuses;
-    /// other equations may accept any, because [`Pendulum::run`] has a checked pendulum.
+    /// Prepares the equations; refuses the parameters that they do not accept.
     fn prepare(parameters: &Parameters<R>) -> Result<Self, Error>;
     /// Returns the time derivatives of z = (a1, a2, p1, p2), in rad/s and N m, where z is in rad
-    /// and kg m^2/s. `z` is not checked: one that is not finite gives NaN or infinity.
+    /// and kg m^2/s.
     fn derivatives(&self, z: &[R; 4]) -> [R; 4];
 }
 
@@ -37,8 +34,7 @@ impl<R: Real> Derivatives<R> for Hamilton<R> {
 
 /// An explicit Runge-Kutta method, for any system of first-order equations.
 ///
-/// To add an integrator, implement this trait in a file of its own, as [`Rk4`] does. The unit test
-/// `every_integrator_meets_its_order_conditions` names a weight that is wrong.
+/// To add an integrator, implement this trait in a file of its own, as [`Rk4`] does.
 pub trait RungeKutta: Copy + Debug + PartialEq + 'static {
     /// The order p: the error of a step is proportional to dt^(p + 1).
     const ORDER: u32;
@@ -48,12 +44,11 @@ pub trait RungeKutta: Copy + Debug + PartialEq + 'static {
     const STABLE: f64;
 
     /// Computes one step for z' = f(z): returns the state a time `dt` after `z`, in the unit of
-    /// time of f. A negative `dt` steps backwards. The inputs are not checked; NaN gives NaN.
+    /// time of f.
     fn step<R: Real, const N: usize>(f: impl Fn(&[R; N]) -> [R; N], z: &[R; N], dt: R) -> [R; N];
 }
 
-/// The classical Runge-Kutta method ([`rk4::step`]), as the integrator of [`Canonical`]. Its order
-/// is 4 and its largest stable phase 2 sqrt(2) rad.
+/// The classical Runge-Kutta method ([`rk4::step`]), as the integrator of [`Canonical`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rk4;
 
@@ -66,8 +61,8 @@ impl RungeKutta for Rk4 {
     }
 }
 
-/// A motion on the equations `E` by the integrator `I`. It carries the state (a1, a2, p1, p2) only,
-/// in SI units. Its angles include whole turns. A step is dt rounded to `R`.
+/// A motion on the equations `E` by the integrator `I`. Its angles include whole turns. A step is
+/// dt rounded to `R`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Canonical<R, E = Hamilton<R>, I = Rk4> {
     equations: E,

@@ -9,27 +9,20 @@ use crate::pendulum::{Direction, Motion, Parameters, Pendulum, State};
 use crate::small::{Mode, Modes};
 
 /// The share of one normal mode in the angle of rod 1: C cos wt + S sin wt. Its share in the angle
-/// of rod 2 is this times the shape of the mode ([`Mode::shape`], a2/a1).
+/// of rod 2 is this times the shape of the mode.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Oscillation<R> {
-    /// C, rad.
     cosine: R,
-    /// S, rad.
     sine: R,
 }
 
 impl<R: Real> Oscillation<R> {
-    /// Returns the amplitude of rod 1, sqrt(C^2 + S^2), rad. It is infinite if a square overflows,
-    /// and inexact or 0 if the squares underflow. NaN gives NaN.
-    ///
-    /// The amplitude of rod 2 is the magnitude of the mode's shape times this.
+    /// Returns the amplitude of rod 1, rad.
     pub fn amplitude(&self) -> R {
         (self.cosine * self.cosine + self.sine * self.sine).sqrt()
     }
 
-    /// Returns the phase, rad, in [-pi, pi]: C cos wt + S sin wt = amplitude cos(wt + phase). It is
-    /// 0 or plus or minus pi if C and S are 0, and a multiple of pi/4 if one is infinite. NaN gives
-    /// NaN.
+    /// Returns the phase, rad: C cos wt + S sin wt = amplitude cos(wt + phase).
     pub fn phase(&self) -> R {
         (-self.sine).atan2(self.cosine)
     }
@@ -43,8 +36,7 @@ impl<R: Real> Oscillation<R> {
 /// - a2(t) = r1 (C1 cos w1 t + S1 sin w1 t) + r2 (C2 cos w2 t + S2 sin w2 t)
 ///
 /// Here w1 and w2 are angular frequencies, rad/s, not the angular velocities of a [`Motion`]. C1,
-/// S1, C2 and S2 are constants of the motion, rad, not the S and C of the direction form. A shape
-/// is the ratio a2/a1 of the angles in its mode.
+/// S1, C2 and S2 are constants of the motion, rad, not the S and C of the direction form.
 ///
 /// It is the limit of the exact motion for small angles. With equal rods of 0.25 m, equal masses,
 /// and a start at rest with only rod 2 at 30 degrees, the two are 1 degree apart after 0.07 s. With
@@ -52,15 +44,12 @@ impl<R: Real> Oscillation<R> {
 /// `closed_form`).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SmallOscillations<R> {
-    /// The frequencies in turns per second. They are `f64`, because in `f32` the phase would be
-    /// arbitrary after a day.
+    /// The frequencies in turns per second; in `f32` the phase would be arbitrary after a day.
     turns: [f64; 2],
     modes: [Mode<R>; 2],
-    /// The share of the fast mode: C1 and S1.
     pub(crate) fast: Oscillation<R>,
-    /// The share of the slow mode: C2 and S2.
     pub(crate) slow: Oscillation<R>,
-    /// True if an angle may exceed 0.6 rad ([`SMALL`]), or is NaN.
+    /// True if an angle may exceed [`SMALL`].
     is_wide: bool,
 }
 
@@ -73,9 +62,8 @@ impl<R: Real> SmallOscillations<R> {
     /// C1 = (r2 a1 - a2)/(r2 - r1) and C2 = (a2 - r1 a1)/(r2 - r1). w1 S1 and w2 S2 follow in the
     /// same way from the angular velocities.
     ///
-    /// `modes` must be those of the pendulum; without gravity there are none. Nothing is checked. A
-    /// start that is not finite gives angles that are NaN or infinite. Modes that are wrong, or out
-    /// of the range of `R`, give a meaningless motion.
+    /// `modes` must be those of the pendulum, which is not checked. A start that is not finite
+    /// gives angles that are NaN or infinite.
     #[must_use]
     pub fn new(modes: Modes<f64>, start: &Motion<R>) -> Self {
         let turns = [modes.fast, modes.slow].map(|mode| mode.frequency / core::f64::consts::TAU);
@@ -94,7 +82,6 @@ impl<R: Real> SmallOscillations<R> {
             },
         ] = modes;
 
-        // Split the start into the two modes.
         let split = |x1: R, x2: R| [(r2 * x1 - x2) / (r2 - r1), (x2 - r1 * x1) / (r2 - r1)];
         let [c1, c2] = split(start.a1, start.a2);
         let [v1, v2] = split(start.w1, start.w2);
@@ -120,21 +107,14 @@ impl<R: Real> SmallOscillations<R> {
     }
 
     /// Returns the amplitudes of rod 1 in the fast and in the slow mode, rad: sqrt(C1^2 + S1^2) and
-    /// sqrt(C2^2 + S2^2).
-    ///
-    /// The amplitudes of rod 2 are these times the magnitudes of the shapes r of the modes. An
-    /// amplitude is infinite if a square overflows. If the start was not finite, each is infinite
-    /// or NaN.
+    /// sqrt(C2^2 + S2^2). Those of rod 2 are these times the magnitudes of the shapes of the modes.
     #[must_use]
     pub fn amplitudes(&self) -> [R; 2] {
         [self.fast, self.slow].map(|mode| mode.amplitude())
     }
 
-    /// Returns the phases of the fast and of the slow mode at the start, rad, in [-pi, pi].
-    ///
-    /// For each mode, C cos wt + S sin wt = A cos(wt + phase), where A is the
-    /// [amplitude](Self::amplitudes). The phase of a mode with C = S = 0 is 0, or plus or minus pi.
-    /// If the start was not finite, the phases are meaningless or NaN.
+    /// Returns the phases of the fast and of the slow mode at the start, rad, in [-pi, pi]: C cos
+    /// wt + S sin wt = A cos(wt + phase), where A is the [amplitude](Self::amplitudes).
     #[must_use]
     pub fn phases(&self) -> [R; 2] {
         [self.fast, self.slow].map(|mode| mode.phase())
@@ -147,22 +127,17 @@ impl<R: Real> SmallOscillations<R> {
         [fast + slow, of_fast * fast + of_slow * slow]
     }
 
-    /// Returns the angles, rad, and angular velocities, rad/s, of both rods at a time `t`, s, after
-    /// the start.
-    ///
-    /// The angles include whole turns. `t` may be negative. All numbers are NaN if `t` is not
-    /// finite or w t overflows, and NaN or infinite if the start was not finite.
+    /// Returns the angles, rad, with whole turns, and angular velocities, rad/s, of both rods at a
+    /// time `t`, s, after the start, or before it if `t` is negative.
     ///
     /// The phase w t is reduced to a turn in `f64`. Its error is below 3e-16 of w t: 1e-9 rad in a
-    /// day at w = 38 rad/s. It is arbitrary where w t has no digits left, beyond 1e16 rad. The rest
-    /// is computed in `R`.
+    /// day at w = 38 rad/s. All numbers are NaN if `t` is not finite or w t overflows.
     #[must_use]
     pub fn at(&self, t: f64) -> Motion<R> {
         let phases = self.sincos(t);
         let [a1, a2] = self.angles(phases);
         let ([fast, slow], [(sin_fast, cos_fast), (sin_slow, cos_slow)]) = (&self.modes, phases);
 
-        // The derivatives of the two modes add up to the angular velocities.
         let w_fast = fast.frequency * (self.fast.sine * cos_fast - self.fast.cosine * sin_fast);
         let w_slow = slow.frequency * (self.slow.sine * cos_slow - self.slow.cosine * sin_slow);
         Motion {
@@ -174,15 +149,11 @@ impl<R: Real> SmallOscillations<R> {
     }
 
     /// Returns the directions of rod 1 and rod 2, (sin, cos) each, a time `t`, s, after the start.
-    /// `t` may be negative. All numbers are NaN if `t` or the start was not finite, or if w t
-    /// overflows.
     ///
-    /// If neither angle can exceed 0.6 rad, because the sums of the amplitudes of both rods are at
-    /// most that, the first terms of the series are used: sin a = a - a^3/6 and cos a = 1 - a^2/2 +
-    /// a^4/24. The error is a^5/120, at most 7e-4. The length is 1 to within 4e-4. Both errors are
-    /// far less than the error of the linear motion. This costs two sincos and no division.
-    ///
-    /// Otherwise the sines and cosines of both angles are computed, which costs two more sincos.
+    /// If neither angle can exceed 0.6 rad, the first terms of the series are used: sin a = a -
+    /// a^3/6 and cos a = 1 - a^2/2 + a^4/24. The error is at most 7e-4, and the length 1 to within
+    /// 4e-4: far less than the error of the linear motion. This costs two sincos and no division;
+    /// otherwise two more sincos.
     #[must_use]
     pub fn directions(&self, t: f64) -> [Direction<R>; 2] {
         let angles = self.angles(self.sincos(t));
@@ -190,7 +161,6 @@ impl<R: Real> SmallOscillations<R> {
             return angles.map(|a| a.own_sin_cos().into());
         }
 
-        // Small angles need only the first terms of the series of sine and cosine.
         angles.map(|a| {
             let square = a * a;
             let [sixth, twelfth] = [R::from_f64(1.0 / 6.0), R::from_f64(1.0 / 12.0)];
@@ -201,7 +171,6 @@ impl<R: Real> SmallOscillations<R> {
         })
     }
 
-    /// Returns (sin wt, cos wt) of the fast and the slow mode.
     #[inline] // One function with the directions, which boards run in memory.
     fn sincos(&self, t: f64) -> [(R, R); 2] {
         let phase = |turns: f64| {
@@ -212,7 +181,6 @@ impl<R: Real> SmallOscillations<R> {
         [phase(self.turns[0]), phase(self.turns[1])]
     }
 
-    /// Returns a1 and a2 at these phases.
     fn angles(&self, [(sin_fast, cos_fast), (sin_slow, cos_slow)]: [(R, R); 2]) -> [R; 2] {
         let a_fast = self.fast.cosine * cos_fast + self.fast.sine * sin_fast;
         let a_slow = self.slow.cosine * cos_slow + self.slow.sine * sin_slow;
@@ -224,28 +192,22 @@ impl<R: Real> SmallOscillations<R> {
 /// A motion by the closed form: the [`SmallOscillations`] of a pendulum, computed at the time of
 /// each step.
 ///
-/// [`Pendulum::run`] refuses for it a pendulum without gravity, and a start from which an angle may
-/// exceed 2^31 - 1 turns. There is no longest step, but a time at which w t overflows counts as
-/// diverged. The angles of the state include whole turns. Its momenta follow from the linear angles
-/// and angular velocities by [`Pendulum::to_state`], so that its energy H, unlike the energy of the
-/// linear equations, is not constant.
+/// There is no longest step, but a time at which w t overflows counts as diverged. The angles of
+/// the state include whole turns. Its momenta follow from the linear angles and angular velocities
+/// by [`Pendulum::to_state`], so that its energy H, unlike the energy of the linear equations, is
+/// not constant.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ClosedForm<R> {
     parameters: Parameters<f64>,
-    /// The number of steps per second, negative if the motion runs backwards. If it is whole, the
-    /// times of whole seconds are exact; other times are exact to two roundings.
+    /// The number of steps per second. If it is whole, the times of whole seconds are exact.
     rate: f64,
     pendulum: Pendulum<R>,
-    /// The linear motion in the numbers `R`.
     pub(crate) oscillations: SmallOscillations<R>,
-    /// The directions of both rods at the present time.
     directions: [Direction<R>; 2],
-    /// The number of steps since the start.
     steps: u64,
 }
 
 impl<R: Real> ClosedForm<R> {
-    /// Returns the time since the start, s.
     fn time(&self) -> f64 {
         self.steps as f64 / self.rate
     }
@@ -268,15 +230,13 @@ impl<R: Real> Advance for ClosedForm<R> {
             ..*self
         };
 
-        // The angles must stay below 2^31 - 1 turns in the whole motion.
         let most_turns = R::from_f64(f64::from(i32::MAX) * core::f64::consts::TAU);
         let has_turns = oscillations.reach().map(|most| most <= most_turns) == [true; 2];
         if has_turns && started.check().is_ok() {
             return Ok(started);
         }
 
-        // Name a number that is infinite in `R`, otherwise the one that leads to the largest angle,
-        // the first of equals.
+        // Name a number that is infinite in `R`, otherwise the one that leads to the largest angle.
         start.cast::<R>().check()?;
         let slow = modes.slow.frequency;
         let mut worst = (Parameter::A1, motion.a1, 1.0);
@@ -345,11 +305,9 @@ impl<R: Real> FormOperations for ClosedForm<R> {
         check_step::<f64>(dt)?;
         let oscillations = SmallOscillations::new(Modes::new(parameters)?, &Motion::default());
 
-        // If the rate is a whole number, the times of whole seconds are exact.
         let whole = libm::rint(1.0 / dt);
         let rate = if 1.0 / whole == dt { whole } else { 1.0 / dt };
 
-        // `started` replaces the parts that depend on the start.
         let pendulum = Pendulum::new(&parameters.cast())?;
         let directions = oscillations.directions(0.0);
         Self {

@@ -22,17 +22,8 @@
 //! [`rates`] and [`changes`]. The unit test `every_form_is_that_of_hamiltons_equations` compares
 //! them with Hamilton's equations.
 //!
-//! # Contents of this file
-//!
-//! - the conversion between these six quantities and a [`State`]: [`quantities`], [`state_of`];
-//! - the equations in floating point: [`rates`], [`changes`];
-//! - their constants: [`Coefficients`], [`prepare`];
-//! - the units: [`Scale`].
-//!
-//! # What the other files contain
-//!
-//! - [`sums`]: the six quantities as sums that may carry their rounding errors.
-//! - [`lead`]: the excess of a step over dt, because its constants are rounded.
+//! The file [`sums`] adds up the six quantities, with their rounding errors if wanted; [`lead`]
+//! counts the excess of a step over dt, because its constants are rounded.
 
 mod lead;
 mod sums;
@@ -47,10 +38,8 @@ use crate::pendulum::{Direction, Parameters, State};
 pub(crate) use lead::{BLOCK, Lead};
 pub(crate) use sums::Sums;
 
-/// Returns sin a1, cos a1, S, C, P1 and P2 of a state.
-///
-/// nu is `norm`. The two units, s/(kg m^2), convert the momenta: P1 = p1 `unit1`, P2 = p2 `unit2`.
-/// A state that is not finite gives NaN or infinity.
+/// Returns sin a1, cos a1, S, C, P1 and P2 of a state, where nu is `norm`, and the units are P1/p1
+/// and P2/p2.
 pub(crate) fn quantities(state: &State<f64>, norm: f64, [unit1, unit2]: [f64; 2]) -> [f64; 6] {
     let (sin1, cos1) = state.a1.own_sin_cos();
     let (sin_d, cos_d) = (state.a1 - state.a2).own_sin_cos();
@@ -64,11 +53,8 @@ pub(crate) fn quantities(state: &State<f64>, norm: f64, [unit1, unit2]: [f64; 2]
     ]
 }
 
-/// Returns the state of the six quantities, with angles in [-pi, pi].
-///
-/// The inverse of [`quantities`], except for whole turns. The lengths of the directions do not
-/// matter, unless one is 0, which gives an arbitrary angle. The units, s/(kg m^2), must not be 0;
-/// this is not checked. NaN in `z` gives NaN in the numbers that depend on it.
+/// Returns the state of the six quantities, with angles in [-pi, pi]. The lengths of the directions
+/// do not matter.
 pub(crate) fn state_of(z: [f64; 6], [unit1, unit2]: [f64; 2]) -> State<f64> {
     let [sin1, cos1, s, c, p1, p2] = z;
     let sin2 = sin1 * c - cos1 * s;
@@ -81,8 +67,6 @@ pub(crate) fn state_of(z: [f64; 6], [unit1, unit2]: [f64; 2]) -> State<f64> {
     }
 }
 
-/// Returns the directions of both rods for the six quantities `z`, where nu is `norm`. Each has
-/// length 1 except for the errors of `z`; it is not restored.
 pub(crate) fn directions<R: Real>(z: &[R; 6], norm: R) -> [Direction<R>; 2] {
     let [sin1, cos1, s, c, ..] = *z;
     let inverse = R::ONE / norm;
@@ -91,7 +75,6 @@ pub(crate) fn directions<R: Real>(z: &[R; 6], norm: R) -> [Direction<R>; 2] {
     [[sin1, cos1], [sin2 * inverse, cos2 * inverse]]
 }
 
-/// The numbers of the equations: one number, or one in each lane.
 pub(crate) trait Number:
     Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Neg<Output = Self>
 {
@@ -102,8 +85,8 @@ impl<N> Number for N where
 {
 }
 
-/// Returns u = a1', v = a2', P1' and P2' at `z`, where `r` is 1/(m + S^2). They are changes over
-/// `share` of the unit of time, and `gravity` is G1 and G2 times that.
+/// Returns u = a1', v = a2', P1' and P2' at `z`, where `r` is 1/(m + S^2), times `share`, which
+/// `gravity` already contains.
 #[inline(always)] // 2 % fewer cycles on an M3; lanes need it (`flips/lanes.rs`).
 pub(crate) fn rates<N: Number>([gravity1, gravity2]: [N; 2], share: N, z: &[N; 6], r: N) -> [N; 4] {
     let [sin1, cos1, s, c, p1, p2] = *z;
@@ -135,52 +118,36 @@ pub(crate) fn missing<N: Number>([s, c]: [N; 2], length: N, gain: N, lost: N) ->
     gain * (((length - c) * (length + c) - s * s) - (lost + lost))
 }
 
-/// The constants of the equations of this module, which have no dimension.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Coefficients<R> {
-    /// nu.
     pub norm: R,
-    /// m.
     pub inertia: R,
-    /// G1 and G2.
     pub gravity: [R; 2],
-    /// 1/(2 nu^2).
     pub half_inverse_square: R,
 }
 
 impl<R: Real> Coefficients<R> {
-    /// Returns r = 1/(m + S^2) where S is `s`.
     pub fn inverse_at(&self, s: R) -> R {
         R::ONE / (self.inertia + s * s)
     }
 }
 
-/// The units of a motion in floating point, in SI units. Used at input and output only.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Scale {
-    /// P1/p1 and P2/p2, s/(kg m^2). Negative if time runs backwards.
+    /// P1/p1 and P2/p2, s/(kg m^2).
     pub momentum: f64,
-    /// The length of a step in the unit of time tau.
     step: f64,
-    /// The excess of a step over dt.
     pub lead: Lead,
 }
 
 /// Returns the constants for steps of about `dt` seconds that are `step` units of time long.
 ///
-/// A negative `dt` runs backwards. The unit of time is chosen so that the products of the rounded
-/// constants are as exact as possible. It is up to 2e-6 (`f32`) or 4e-15 (`f64`) of itself longer
-/// than `dt` divided by `step` rounded to a whole number, which must not be 0; this is not checked.
+/// The unit of time follows from G2 as it is rounded, so that the rounding of g to `f32` does not
+/// show in the motion. It is up to 2e-6 (`f32`) or 4e-15 (`f64`) of itself too long;
 /// [`Scale::lead`] is the excess of `step` units of time over `dt`.
 ///
-/// # Errors
-///
-/// Refuses the parameters and steps that [`Parameters::check`] and [`check_step`] refuse, and, by
-/// [`Error::OutOfRange`], parameters whose constants or their reciprocals leave the range of `R`.
-/// The error names the step if that alone takes G1 or G2 out of range.
-///
-/// The constants follow from `f64` numbers, and the unit of time from G2 as it is rounded, so that
-/// the rounding of g to `f32` does not show in the motion of a method in `f32`.
+/// Refuses, besides parameters and steps, constants that leave the range of `R`, by
+/// [`Error::OutOfRange`], which names the step if that alone is at fault.
 pub(crate) fn prepare<R: Real>(
     parameters: &Parameters<f64>,
     dt: f64,
@@ -192,7 +159,6 @@ pub(crate) fn prepare<R: Real>(
     let norm = l1 / l2;
     let [inertia, total] = [m1, m1 + m2].map(|mass| mass / m2 * norm * norm);
 
-    // The unit of time follows from G2 as it is rounded.
     let unit = dt / libm::rint(step);
     let wanted = unit * unit * g / l1;
     let gravity2 = factor_above::<R>(wanted, total);
@@ -222,7 +188,6 @@ pub(crate) fn prepare<R: Real>(
         return Err(parameters.out_of_range());
     }
 
-    // If the torques are in range with a unit of 1 s, the step is at fault.
     if g == 0.0 || coefficients.gravity.into_iter().all(R::is_normal) {
         Ok((coefficients, scale))
     } else if [g / l1, total * (g / l1)]
@@ -245,13 +210,11 @@ pub(crate) fn prepare<R: Real>(
 /// ratio G1/G2 must be exact: where bob 1 is light, the frequency of the fast oscillation depends
 /// on the small difference G1 - nu^2 G2.
 fn factor_above<R: Real>(value: f64, factor: f64) -> R {
-    // The rounding error of the product of a candidate and the factor.
     let lost = |candidate: R| {
         let exact = candidate.to_f64() * factor;
         (R::from_f64(exact).to_f64() - exact).abs()
     };
 
-    // The first candidate is `value`, rounded up.
     let nearest = R::from_f64(value);
     let ulp = nearest * R::EPSILON;
     let least = if nearest.to_f64() < value {
@@ -260,7 +223,6 @@ fn factor_above<R: Real>(value: f64, factor: f64) -> R {
         nearest
     };
 
-    // Of candidates that lose equally little, the smallest is taken.
     let mut best = least;
     let mut least_lost = f64::INFINITY;
     for i in 0..32_i32 {
@@ -274,9 +236,7 @@ fn factor_above<R: Real>(value: f64, factor: f64) -> R {
 }
 
 impl Scale {
-    /// Refuses the scaled momenta P1 and P2, which have no dimension, if one is not finite when it
-    /// is rounded to `R`. [`Error::OutOfRange`] names the first such momentum, p1 or p2, with its
-    /// value in kg m^2/s.
+    /// Refuses scaled momenta of which one is not finite in `R`, by its value in SI units.
     pub fn check<R: Real>(&self, momenta: [f64; 2]) -> Result<(), Error> {
         for (parameter, p) in [Parameter::P1, Parameter::P2].into_iter().zip(momenta) {
             if !R::from_f64(p).is_finite() {
@@ -289,16 +249,14 @@ impl Scale {
         Ok(())
     }
 
-    /// Returns the state at the time of `count` steps of dt, in SI units, with angles in [-pi, pi].
+    /// Returns the state at the time of `count` steps of dt.
     ///
-    /// The motion is at `z` plus `lost`, which is the last rounding error of `z`. `rates` returns
-    /// the rates of change at a point, per unit of time tau. All three are in the order of
-    /// [`quantities`].
+    /// The motion is at `z` plus `lost`, the last rounding error of `z`. `rates` returns the rates
+    /// of change at a point, per unit of time.
     ///
     /// The motion can be ahead of that time, or behind it, by half a step and a little more
     /// ([`Lead::ahead`]). Four stages take it back, each from the slope of the one before: of order
-    /// 4 in small oscillations and of order 2 in others. If they leave the finite numbers, the
-    /// motion is not taken back. NaN in `z` or `lost` gives NaN in the numbers that depend on it.
+    /// 4 in small oscillations and of order 2 in others.
     #[must_use]
     pub fn state<R: Real>(
         &self,
@@ -329,7 +287,6 @@ impl Scale {
 mod tests {
     use super::*;
 
-    /// A number that `f32` rounds down is replaced by the next one above it.
     #[test]
     fn rounded_constant_is_never_below_its_value() {
         let between = 1.0 + f64::from(f32::EPSILON) / 4.0;
@@ -337,9 +294,8 @@ mod tests {
         assert_eq!(factor_above::<f32>(1.0, 1.0), 1.0);
     }
 
-    /// A motion that is a fifth of a step ahead is taken back. Rod 1 turns at a rate of 1, rod 2 is
-    /// at rest, and p1 grows exponentially. The error is that of order 4 over the lead: at most 1.5
-    /// lead^5/120, for p1. The allowance is a third larger.
+    /// Rod 1 turns at a rate of 1, rod 2 is at rest, and p1 grows exponentially. The error is that
+    /// of order 4 over the lead: at most 1.5 lead^5/120, for p1. The allowance is a third larger.
     #[test]
     fn state_is_taken_back_by_the_lead() {
         let scale = Scale {

@@ -18,9 +18,6 @@
 //!
 //! therefore has an error of order 2 K only. A step costs K^2 + 1 evaluations of f. Source: Gragg
 //! 1965, without his smoothing step; `[Hairer I]`, II.9.
-//!
-//! The methods [`ExtrapolationF64`](crate::ExtrapolationF64) and [`Fixed64`](crate::Fixed64) take
-//! their weights from here and have loops of their own.
 
 use crate::error::{Error, Parameter};
 use crate::numbers::Real;
@@ -28,7 +25,6 @@ use crate::numbers::Real;
 /// The largest number of rows, which is that of order 16.
 pub const ROWS: usize = 8;
 
-/// Returns true if a step can be of this order: 2, 4 .. 16.
 pub(crate) const fn is_order(order: u32) -> bool {
     order % 2 == 0 && order >= 2 && order <= 2 * ROWS as u32
 }
@@ -37,7 +33,7 @@ pub(crate) const fn is_order(order: u32) -> bool {
 const STABLE: [f64; ROWS] = [0.95, 2.86, 2.51, 3.67, 5.28, 4.77, 6.37, 7.35];
 
 /// Returns the largest phase w dt, rad, of a step of this order that lets an oscillation of
-/// frequency w grow by less than a tenth. It is infinite for an order that is not 2, 4 .. 16.
+/// frequency w grow by less than a tenth.
 ///
 /// The orders 2, 6, 10 and 14 are stable in no step at all, but only just: an oscillation grows by
 /// less than 1e-4 in a step of up to 0.16, 0.94, 2.14 and 6.3 rad.
@@ -49,23 +45,17 @@ pub(crate) const fn stable(order: u32) -> f64 {
     }
 }
 
-/// Extrapolation of an even order, for any system of equations in the numbers `R`.
-///
-/// The order is 2, 4 .. 16 ([`new`](Self::new) refuses others). The unit tests check the stability
-/// of all orders. The tests of the repository measure the orders 6, 8, 12 and 16 in this type, and
-/// order 10 in [`Fixed64`](crate::Fixed64).
+/// Extrapolation of an order 2, 4 .. 16, for any system of equations in the numbers `R`. The unit
+/// tests check the stability of all orders.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Extrapolation<R> {
-    /// The number of rows, K.
     rows: usize,
-    /// 2/n for each row of n substeps: the share of the step from a midpoint to the next but one.
+    /// 2/n for each row of n substeps.
     shares: [R; ROWS],
-    /// The weight w(n) of each row.
     weights: [R; ROWS],
 }
 
-/// Returns the number of rows of a method of `order` 2, 4 .. 16. Refuses any other order, by
-/// [`Error::OutOfRange`].
+/// Returns the number of rows. Refuses an order that is not 2, 4 .. 16, by [`Error::OutOfRange`].
 pub(super) fn rows(order: u32) -> Result<usize, Error> {
     if is_order(order) {
         Ok(order as usize / 2)
@@ -77,14 +67,11 @@ pub(super) fn rows(order: u32) -> Result<usize, Error> {
     }
 }
 
-/// Returns n/2 of a row, where n is its number of substeps: `row` + 1, because rows are counted
-/// from 0.
+/// Returns n/2 of a row, which is counted from 0.
 pub(super) fn half_substeps(row: usize) -> f64 {
     (row + 1) as f64
 }
 
-/// Returns the weight w(n) of the row `row`, counted from 0, of `rows` rows. `row` must be less
-/// than `rows`; this is not checked.
 pub(super) fn weight(row: usize, rows: usize) -> f64 {
     let square = half_substeps(row) * half_substeps(row);
     let mut weight = 1.0;
@@ -113,9 +100,7 @@ impl<R: Real> Extrapolation<R> {
     ///
     /// The unit of time is that of f. A negative `dt` steps backwards. A step that is too long for
     /// f gives a meaningless state; [`Pendulum::run`](crate::Pendulum::run) lists the limits for an
-    /// oscillation. The inputs are not checked: a component of `z` that is NaN or infinite stays
-    /// so, as may those that depend on it, and a `dt` that is NaN or infinite makes all components
-    /// so.
+    /// oscillation. NaN or infinity in `z` or `dt` gives NaN or infinity.
     ///
     /// ```
     /// use double_pendulum::Extrapolation;
@@ -127,8 +112,7 @@ impl<R: Real> Extrapolation<R> {
     /// # Ok::<(), double_pendulum::Error>(())
     /// ```
     pub fn step<const N: usize>(&self, f: impl Fn(&[R; N]) -> [R; N], z: &[R; N], dt: R) -> [R; N] {
-        // The change over 2 h at the point that is `change` away from z. All sums are sums of
-        // changes, which round less than sums of states.
+        // All sums are sums of changes, which round less than sums of states.
         let slope = |change: &[R; N], row: usize| {
             let at = core::array::from_fn(|i| z[i] + change[i]);
             let span = self.shares[row % ROWS] * dt;
@@ -139,7 +123,6 @@ impl<R: Real> Extrapolation<R> {
         let mut sum = [R::ZERO; N];
         let mut reference = sum;
         for row in (0..self.rows).rev() {
-            // The midpoints of the row: the one before the last, and the last.
             let share = self.shares[row % ROWS];
             let mut before = [R::ZERO; N];
             let mut last = first.map(|first| R::HALF * (first * share));
@@ -163,8 +146,7 @@ impl<R: Real> Extrapolation<R> {
         core::array::from_fn(|i| z[i] + sum[i])
     }
 
-    /// Returns the shares 2/n and the weights of all rows, n = 2 first, and the number of rows.
-    /// Beyond that number the weights are 0, and the shares continue.
+    /// Returns the shares and the weights of all rows, n = 2 first, and the number of rows.
     pub(super) fn parts(&self) -> (&[R; ROWS], &[R; ROWS], usize) {
         (&self.shares, &self.weights, self.rows)
     }
@@ -174,16 +156,12 @@ impl<R: Real> Extrapolation<R> {
 mod tests {
     use super::*;
 
-    /// Returns the growth of an oscillation in a step of `phase` rad: its amplitude after the step,
-    /// divided by that before.
+    /// Returns the growth of an oscillation in a step of `phase` rad.
     fn growth(method: &Extrapolation<f64>, phase: f64) -> f64 {
         let [x, y] = method.step(|&[x, y]| [y, -x], &[1.0, 0.0], phase);
         libm::hypot(x, y)
     }
 
-    /// Up to the phase of [`stable`], no step lets an oscillation grow by a tenth; 0.02 rad
-    /// further, one does. By the orders 2, 6, 10 and 14 it grows, but by less than 1e-4 up to the
-    /// phases in the comment of [`stable`].
     #[test]
     fn steps_are_stable_up_to_the_phase_in_the_table() -> Result<(), Error> {
         for order in (2..=16).step_by(2) {
@@ -200,7 +178,6 @@ mod tests {
             );
         }
 
-        // These orders amplify a little even below the limit, as `stable` documents.
         for (order, phase) in [(2, 0.16), (6, 0.94), (10, 2.14), (14, 6.3)] {
             let method = Extrapolation::new(order)?;
             let most = (1..=100)
@@ -211,9 +188,8 @@ mod tests {
         Ok(())
     }
 
-    /// A constant rate is integrated in steps of 0.01 to 1. The change has a relative error of at
-    /// most 5 epsilons in the orders 2 to 10. It would be 10 epsilons if the weights multiplied the
-    /// changes of all rows instead of their differences.
+    /// The error would be 10 epsilons if the weights multiplied the changes of all rows instead of
+    /// their differences.
     #[test]
     fn change_by_a_constant_rate_is_hardly_rounded() -> Result<(), Error> {
         for order in (2..=10).step_by(2) {

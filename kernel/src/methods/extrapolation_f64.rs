@@ -1,16 +1,11 @@
 //! Extrapolation in the direction form, in `f64`: the motion to almost the last digit of an `f64`.
 //!
-//! # Equations
-//!
-//! With the quantities of the [direction form](crate::methods::direction) and a whole step as the
-//! unit of time, the slope that a row of n substeps adds is the change over 2 h = 2/n.
-//!
-//! # Order of computation
+//! The unit of time of the [direction form](crate::methods::direction) is a whole step, so that the
+//! slope that a row of n substeps adds is the change over 2 h = 2/n.
 //!
 //! The [rows](crate::methods::extrapolation) of a step do not depend on each other. Four of them
-//! are computed side by side, in the vectors of processors that have them. A lane that has finished
-//! its row takes the next one. The ends are added in the order of their completion, which is the
-//! same on every machine.
+//! are computed side by side, in the vectors of processors that have them. The ends are added in
+//! the order of their completion, which is the same on every machine.
 
 use crate::error::Error;
 use crate::methods::direction::{Coefficients, Scale, Sums, changes, directions, prepare, rates};
@@ -19,30 +14,24 @@ use crate::methods::{Advance, FormOperations};
 use crate::numbers::{Lanes, Real, RealOperations};
 use crate::pendulum::{Direction, Parameters, State};
 
-/// The number of rows that are computed side by side. Two vectors of SSE2 hide each other's
-/// latency.
+/// Two vectors of SSE2 hide each other's latency.
 const LANES: usize = 4;
 
-/// One number for each row that is computed.
 type Numbers = Lanes<f64, LANES>;
 
 /// A motion in the direction form, stepped by [`Extrapolation`] of order `ORDER`, 2, 4 .. 16, in
 /// `f64`. Another order does not compile.
 ///
-/// The sums of the state are compensated: the rounding error of each is carried into the next. The
-/// lengths of the directions are restored after every step. Angles are within [-pi, pi];
-/// [`Run`](crate::Run) counts the turns on request. [`Pendulum::run`](crate::Pendulum::run) lists
-/// the longest steps. A step is longer than dt by at most 4e-15 of it, which the state corrects;
-/// none is left out.
+/// The sums of the state are compensated, and the lengths of the directions restored after every
+/// step. Angles are within [-pi, pi]; [`Run`](crate::Run) counts the turns on request.
+/// [`Pendulum::run`](crate::Pendulum::run) lists the longest steps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ExtrapolationF64<const ORDER: u32> {
     coefficients: Coefficients<f64>,
     scale: Scale,
     method: Extrapolation<f64>,
     sums: Sums<f64, true>,
-    /// r = 1/(m + S^2).
     inverse: f64,
-    /// The number of steps since the start.
     steps: u64,
 }
 
@@ -51,13 +40,11 @@ pub struct ExtrapolationF64<const ORDER: u32> {
 enum Work {
     /// The slope at the start of the step.
     FirstSlope,
-    /// A row, counted from 0.
     Row(usize),
     Done,
 }
 
 impl Work {
-    /// Returns the number of slopes that the work takes; `usize::MAX` if all work is done.
     fn slopes(self) -> usize {
         match self {
             Work::FirstSlope => 1,
@@ -67,16 +54,13 @@ impl Work {
     }
 }
 
-/// The constants of the equations for the rows that the lanes compute, one row per lane.
+/// The constants for the rows that the lanes compute.
 struct Pace {
-    /// The share 2/n of the step in each lane.
     share: Numbers,
-    /// G1 and G2 times that share.
     gravity: [Numbers; 2],
 }
 
 impl<const ORDER: u32> ExtrapolationF64<ORDER> {
-    /// Advances the motion by one step.
     fn step(&mut self) {
         let change = self.change();
         for (i, change) in change.into_iter().enumerate() {
@@ -85,7 +69,6 @@ impl<const ORDER: u32> ExtrapolationF64<ORDER> {
         self.sums.restore_lengths(&self.coefficients);
     }
 
-    /// Returns the change of the six quantities over one step.
     fn change(&self) -> [f64; 6] {
         let (shares, weights, _) = self.method.parts();
         let mut first = [0.0; 6];
@@ -93,12 +76,10 @@ impl<const ORDER: u32> ExtrapolationF64<ORDER> {
         let mut reference = [0.0; 6];
         let mut is_first_end = true;
 
-        // Each lane's work, the number of rows that it has taken, and the slopes left in its work.
         let mut work = [Work::FirstSlope; LANES];
         let mut taken = [0; LANES];
         let mut left = [1; LANES];
 
-        // The last midpoint of each lane and the one before, as changes from the start of the step.
         let mut even = [Numbers::splat(0.0); 6];
         let mut odd = even;
         let mut before = &mut even;
@@ -106,7 +87,6 @@ impl<const ORDER: u32> ExtrapolationF64<ORDER> {
 
         let mut pace = self.pace([0; LANES]);
         while work.iter().any(|&work| work != Work::Done) {
-            // Advance all lanes until the first of them is done with its work.
             let slopes = left.iter().fold(usize::MAX, |least, &left| least.min(left));
             for _ in 0..slopes {
                 let slope = self.slope(&pace, last);
@@ -122,10 +102,8 @@ impl<const ORDER: u32> ExtrapolationF64<ORDER> {
                     continue;
                 }
 
-                // Use the result.
                 let end: [f64; 6] = core::array::from_fn(|i| last[i].0[lane]);
                 match work[lane] {
-                    // It is the same in all lanes.
                     Work::FirstSlope => first = end,
                     Work::Done => {}
                     Work::Row(_) if is_first_end => {
@@ -142,7 +120,6 @@ impl<const ORDER: u32> ExtrapolationF64<ORDER> {
                     }
                 }
 
-                // Take the next row.
                 work[lane] = self.next_work(lane, taken[lane]);
                 taken[lane] += 1;
                 left[lane] = work[lane].slopes();
@@ -161,10 +138,8 @@ impl<const ORDER: u32> ExtrapolationF64<ORDER> {
         sum
     }
 
-    /// Returns the row that `lane` computes after it has `taken` others.
-    ///
-    /// Long rows come first. The lanes take them in alternating directions, so that all end at
-    /// about the same time.
+    /// Returns the next row of a lane. Long rows come first. The lanes take them in alternating
+    /// directions, so that all end at about the same time.
     fn next_work(&self, lane: usize, taken: usize) -> Work {
         let (_, _, rows) = self.method.parts();
         let place = if taken % 2 == 0 {
@@ -178,7 +153,6 @@ impl<const ORDER: u32> ExtrapolationF64<ORDER> {
         }
     }
 
-    /// Returns the constants where the lanes compute `rows`.
     fn pace(&self, rows: [usize; LANES]) -> Pace {
         let (shares, _, _) = self.method.parts();
         let share = Lanes(rows.map(|row| shares[row % ROWS]));
@@ -191,7 +165,6 @@ impl<const ORDER: u32> ExtrapolationF64<ORDER> {
         }
     }
 
-    /// Returns the change over 2 h at the points that are `change` away from the start of the step.
     fn slope(&self, pace: &Pace, change: &[Numbers; 6]) -> [Numbers; 6] {
         let start = &self.sums.z;
         let z: [Numbers; 6] = core::array::from_fn(|i| Numbers::splat(start[i]) + change[i]);
@@ -199,7 +172,6 @@ impl<const ORDER: u32> ExtrapolationF64<ORDER> {
         changes(&z, rates(pace.gravity, pace.share, &z, r))
     }
 
-    /// Returns the rates of change at `z`, per step.
     fn rates(&self, z: &[f64; 6]) -> [f64; 6] {
         let r = self.coefficients.inverse_at(z[2]);
         changes(z, rates(self.coefficients.gravity, 1.0, z, r))
@@ -298,7 +270,6 @@ mod tests {
         p2: -1.0,
     };
 
-    /// A momentum that is finite in the unit of the method, but not in SI units, is reported.
     #[test]
     fn momentum_that_overflows_in_si_units_is_reported() -> Result<(), Error> {
         let motion = ExtrapolationF64::<4>::new(&PARAMETERS, &START, 1e-6)?;
@@ -322,7 +293,7 @@ mod tests {
         Ok(())
     }
 
-    /// The rates of a general motion are the changes in a step of 1 us, to 1e-5 of each.
+    /// The changes are those in a step of 1 us.
     #[test]
     fn rates_are_the_change_over_a_short_step() -> Result<(), Error> {
         let mut motion = ExtrapolationF64::<4>::new(&PARAMETERS, &START, 1e-6)?;

@@ -3,9 +3,8 @@
 //!
 //! # Number formats
 //!
-//! All numbers are [`Q64`]: fractions from -1/2 to below 1/2, in multiples of 2^-64. The unit of
-//! time T is chosen from the energy of the motion such that the [bounds](crate::Bounds) of that
-//! energy hold in these fractions:
+//! All numbers are [`Q64`]: fractions from -1/2 to below 1/2. The unit of time T is chosen from the
+//! energy of the motion such that its [bounds](crate::Bounds) hold in these fractions:
 //!
 //! | quantity                              | at most | stored as       |
 //! |---------------------------------------|---------|-----------------|
@@ -13,21 +12,17 @@
 //! | angular rates u, v and momenta P1, P2 | 1/8     | itself          |
 //! | torques of gravity                    | 1/256   | itself          |
 //!
-//! Products of such fractions need no shift for their point, and few shifts for their units.
-//!
 //! # Range
 //!
 //! Within a step every quantity may overshoot by a factor of 2. Each stage checks this, and given
 //! that, no sum and no product leaves its 64 bits; the reason is stated at each in
 //! [`rows`](self::rows). If a quantity ever exceeded its range, because the steps were too coarse
-//! and the energy grew, the motion is *lost*: its state is NaN and
-//! [`Run::advance`](crate::Run::advance) returns an error. Nothing is clamped.
+//! and the energy grew, the motion is *lost*.
 //!
 //! # Rounding
 //!
-//! Products round down. A bias in one direction would add up over all steps. So each result is
-//! moved to the middle of the values it may have had before rounding, and the step corrects the
-//! remaining bias ([`Rows::rounded_down`]).
+//! Products round down. So each result is moved to the middle of the values it may have had before
+//! rounding, and the step corrects the remaining bias ([`Rows::rounded_down`]).
 
 mod rows;
 
@@ -48,10 +43,9 @@ use rows::{EIGHTH, Rows, unit_of_time};
 /// fixed point.
 ///
 /// The method accepts any start of finite energy, rods with l1/l2 from 1/4096 to 4096, and masses
-/// with m1/m2 from 1/1024 to 4096. It refuses ratios far beyond these by [`Error::OutOfRange`],
-/// which names the mass, length or gravity that is farthest from 1 as a factor. It also refuses a
-/// step that is too long for the energy of the start: one in which the elbow could turn by more
-/// than 1.5 rad, or often a shorter one. [`Error::TooLarge`] contains the longest possible step, s.
+/// with m1/m2 from 1/1024 to 4096. It refuses ratios far beyond these by [`Error::OutOfRange`], and
+/// by [`Error::TooLarge`] a step in which the elbow could turn by more than 1.5 rad, or often a
+/// shorter one.
 ///
 /// Directions, angles and the energy are returned in `f32`, the state in `f64`. Angles are within
 /// [-pi, pi]; [`Run`](crate::Run) counts the turns on request.
@@ -70,13 +64,8 @@ use rows::{EIGHTH, Rows, unit_of_time};
 /// The error in 10 s of regular motion (0.5 rad, rods of 1 m) by order 12 is below 1e-12 rad with
 /// 12 steps a second. In 5 s of chaotic motion (2 rad) it is at most twice that of `f64` with the
 /// same steps, or 1e-12 rad with steps so short that only roundings are left. The tests of the
-/// repository assert both. However short the steps, the roundings in these 5 s alone amount to
-/// 2e-13 rad by order 8, 7e-13 by order 12 and 3e-12 by order 16, and to about 1e-13 in `f64`.
-///
-/// # Range
-///
-/// If a quantity leaves its range, because the steps were too long, the motion is *lost*.
-/// [`Run::advance`](crate::Run::advance) then returns an error, and the run keeps its state before.
+/// repository assert both. The roundings in these 5 s amount to 2e-13 rad by order 8, 7e-13 by
+/// order 12 and 3e-12 by order 16, and to about 1e-13 in `f64`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fixed64<const ORDER: u32>(Fixed64State);
 
@@ -84,26 +73,20 @@ pub struct Fixed64<const ORDER: u32>(Fixed64State);
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Fixed64State {
     rows: Rows,
-    /// P1/p1 and P2/p2, s/(kg m^2).
     momenta: [f64; 2],
-    /// An eighth of 1/(2 nu^2).
     half_inverse_square: Q64,
-    /// An eighth of sin a1, cos a1, S and C; P1 and P2.
+    /// Directions are stored as eighths.
     z: [Q64; 6],
-    /// True if a quantity was ever out of range.
     lost: bool,
-    /// nu and 1/nu.
     norm: f64,
     inverse_norm: f64,
-    /// The amounts that a step loses by rounding down ([`Rows::rounded_down`]).
     rounded_down: [i16; 2],
 }
 
-/// The largest angular rate, in the unit of time of the motion.
+/// In the unit of time of the motion.
 const RATE: f64 = 0.125;
-/// The largest torque of gravity, in the unit of time of the motion.
 const TORQUE: f64 = 1.0 / 256.0;
-/// The longest step, in units of time.
+/// In units of time.
 const STEP: f64 = 15.0;
 /// The longest unit of time, s, which a pendulum at rest without gravity has. Its square is finite.
 const FOREVER: f64 = 1e150;
@@ -118,9 +101,6 @@ const HALF: Q64 = Q64(1 << 60);
 const LENGTH: u64 = 1 << 50;
 
 impl Fixed64State {
-    /// Prepares the motion from `start` in steps of `dt` s by `order`, which must be 2, 4 .. 16.
-    ///
-    /// The errors are the same as for the public type [`Fixed64`].
     fn new(
         parameters: &Parameters<f64>,
         start: &State<f64>,
@@ -131,7 +111,6 @@ impl Fixed64State {
         check_step::<f64>(dt)?;
         start.check()?;
 
-        // The unit of time follows from the bounds of the energy, the longest step from the unit.
         let energy = pendulum.energy_above_rest(start);
         check_energy(parameters, start, energy)?;
         let bounds = Bounds::new(parameters, energy);
@@ -162,8 +141,6 @@ impl Fixed64State {
         Ok(motion.started(&without_least_momenta(start, energy)))
     }
 
-    /// Returns the motion of the same pendulum from `start`, which must be finite and have no more
-    /// energy than the start of [`new`](Self::new).
     fn started(&self, start: &State<f64>) -> Self {
         let [sin1, cos1, s, c, p1, p2] = quantities(start, self.norm, self.momenta);
         let [sin1, cos1, s, c] = [sin1, cos1, s, c].map(|direction| direction * EIGHTH);
@@ -174,7 +151,6 @@ impl Fixed64State {
         }
     }
 
-    /// Advances the motion by `steps` steps. A lost motion goes on, without meaning.
     fn advance(&mut self, steps: u32) {
         for _ in 0..steps {
             if !self.rests() {
@@ -183,20 +159,18 @@ impl Fixed64State {
         }
     }
 
-    /// Returns true if both rods hang or stand straight up and nothing turns. A step would push
-    /// them, because its results are the middles of what they may have been before rounding.
+    /// Returns true if both rods are vertical and nothing turns. A step would push them, because
+    /// its results are the middles of what they may have been before rounding.
     fn rests(&self) -> bool {
         let [sin1, _, s, _, p1, p2] = self.z;
         [sin1, s, p1, p2].iter().all(|z| z.0 == 0)
     }
 
-    /// Advances the motion by one step.
     fn step(&mut self) {
         let reach = Cell::new(0);
         let end = self.rows.end(&self.z, &reach);
 
-        // Give back what rounding down took. Half of the last digit is rounded up if that digit is
-        // odd, which it is as often as not.
+        // Half of the last digit is rounded up if that digit is odd, which it is as often as not.
         let corrected = |z: Q64, rounded_down: i16| {
             Q64(z.0.wrapping_add((i64::from(rounded_down) + (z.0 & 1)) >> 1))
         };
@@ -204,13 +178,11 @@ impl Fixed64State {
         let [sin1, cos1, s, c, _, p2] = end.map(|z| corrected(z, of_others));
         let p1 = corrected(end[4], of_p1);
 
-        // Restore the lengths.
         let norm = self.rows.norm();
         let ([sin1, cos1], missing1) = restored([sin1, cos1], ONE, HALF);
         let ([s, c], missing2) = restored([s, c], norm * norm, self.half_inverse_square);
         self.z = [sin1, cos1, s, c, p1, p2];
 
-        // Check the range.
         let mut reach = reach.get();
         for z in &self.z {
             reach |= z.reach(2);
@@ -220,13 +192,11 @@ impl Fixed64State {
         self.lost |= missing2.0.unsigned_abs() > LENGTH;
     }
 
-    /// Returns an eighth of (sin, cos) of rod 1, and a 64th of nu (sin, cos) of rod 2.
     fn rods(&self) -> [Direction<Q64>; 2] {
         let [sin1, cos1, s, c, ..] = self.z;
         [[sin1, cos1], [sin1 * c - cos1 * s, cos1 * c + sin1 * s]]
     }
 
-    /// Returns the state in SI units, with angles in [-pi, pi]; NaN if the motion is lost.
     fn state(&self) -> State<f64> {
         let z = if self.lost {
             [f64::NAN; 6]
@@ -238,7 +208,7 @@ impl Fixed64State {
 }
 
 /// Returns a direction with its length restored to first order in the error of its square, and that
-/// error. `gain` is half of 1/`square`.
+/// error.
 #[inline(always)] // `slope`, `times`, `restored`: +10 % cycles on an M3 without.
 fn restored([s, c]: [Q64; 2], square: Q64, gain: Q64) -> ([Q64; 2], Q64) {
     let missing = square - s * s - c * c;
@@ -318,13 +288,9 @@ impl<const ORDER: u32> FormOperations for Fixed64<ORDER> {
 mod tests {
     use super::*;
 
-    /// A momentum out of its range, or a direction of rod 1 or of the angle between the rods that
-    /// is 2 % too long, marks the motion as lost after one step. An unchanged motion is not lost. A
-    /// lost motion that is started anew is not lost any more.
     #[test]
     fn motion_out_of_range_is_lost_until_it_is_started_anew() -> Result<(), Error> {
         let parameters = Parameters::equal_rods(1.0, 1.0, 9.81);
-        // The step is so short that a wrong number does not affect the others.
         let start = State::at_rest(1.0, 2.0);
         let motion = Fixed64::<10>::new(&parameters, &start, 1e-9)?;
         let mut unchanged = motion;

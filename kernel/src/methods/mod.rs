@@ -1,8 +1,7 @@
 //! The numerical methods: a type for each row of the [table](crate::Method).
 //!
-//! [`Pendulum::run`](crate::Pendulum::run) takes the type of a method and returns a motion, or
-//! refuses inputs that the method cannot compute. [`Run::advance`] reports a motion that diverges.
-//! All inputs and results are in SI units and rad.
+//! [`Pendulum::run`](crate::Pendulum::run) takes the type of a method and returns a motion. All
+//! inputs and results are in SI units and rad.
 
 pub(crate) mod any;
 mod canonical;
@@ -36,10 +35,8 @@ use crate::numbers::Real;
 use crate::pendulum::{Direction, Parameters, Pendulum, State};
 
 /// RK4 on Hamilton's equations in angles and momenta, in `f32`: `rk4-f32`.
-///
-/// A step is dt rounded to `f32`. The motion is ahead of the time or behind it by up to 6e-8 of the
-/// time, which nothing takes back. Angles include whole turns, so that they have fewer digits after
-/// many turns.
+/// A step is dt rounded to `f32`, so that the motion is off the time by up to 6e-8 of it. Angles
+/// include whole turns, so that they have fewer digits after many turns.
 pub type HamiltonF32 = Canonical<f32>;
 /// RK4 on Hamilton's equations in angles and momenta, in `f64`: `rk4-f64`. A step is dt exactly.
 /// Angles include whole turns.
@@ -54,22 +51,20 @@ pub type DirectionF32 = Rk4Direction<f32, true>;
 /// [`DirectionF32`] with plain sums: `rk4-f32-direction-plain`. A step takes 161 cycles on a
 /// Cortex-M4F. The error in the same motion is 30 to 70 times as large, within 3e-6 rad.
 pub type DirectionF32Plain = Rk4Direction<f32, false>;
-/// RK4 in the direction form, in `f64` with compensated sums. It is not in the table of methods: it
-/// has no name, and no plan uses it.
+/// RK4 in the direction form, in `f64` with compensated sums. It is not in the table of methods.
 pub type DirectionF64 = Rk4Direction<f64, true>;
 /// [`SmallOscillations`] in closed form, in `f32`: `closed-form-f32`.
 ///
-/// Each step is computed from the start, so that its length does not matter and errors do not add
-/// up. Angles include whole turns. The pendulum must have gravity.
+/// Each step is computed from the start, so that errors do not add up. Angles include whole turns.
+/// The pendulum must have gravity.
 pub type ClosedFormF32 = ClosedForm<f32>;
 /// [`ClosedFormF32`] in `f64`: `closed-form-f64`.
 pub type ClosedFormF64 = ClosedForm<f64>;
 
 /// A method: its equations, its numbers and its integrator. A value is a motion of a pendulum.
 ///
-/// The trait is sealed: the types of the methods of this crate implement it, and no others. Pass
-/// such a type to [`Pendulum::run`](crate::Pendulum::run), which returns a motion with checks and
-/// with turns. `F::Real` is the type of its numbers, `f32` for fixed point.
+/// The trait is sealed. Pass the type of a method to [`Pendulum::run`](crate::Pendulum::run).
+/// `F::Real` is the type of its numbers, `f32` for fixed point.
 ///
 /// # Time
 ///
@@ -87,70 +82,45 @@ pub trait Form: FormOperations {}
 impl<F: FormOperations> Form for F {}
 
 /// The operations of a motion in progress, by a type of a method or by an enum of several
-/// ([`motions!`](crate::motions)). They have no checks and no turns.
+/// ([`motions!`](crate::motions)), without checks and turns.
 pub trait Advance: Copy + Debug + PartialEq + 'static {
-    /// Returns a motion of the same pendulum from another start, in the same units and steps,
-    /// counted from 0. This motion may have diverged. In fixed point the energy must not exceed
-    /// the energy of the first start, otherwise the numbers may leave their range, and a debug
-    /// build may panic; this is not checked. [`Fixed32`] has room for an eighth more.
-    ///
-    /// # Errors
-    ///
-    /// Refuses a start that is not finite, or out of the range of the method's numbers; the closed
-    /// form refuses a start from which an angle may exceed 2^31 - 1 turns.
+    /// Returns a motion of the same pendulum from another start, in the same units and steps. This
+    /// motion may have diverged. In fixed point the energy must not exceed that of the first start;
+    /// [`Fixed32`] has room for an eighth more.
     fn started(&self, start: &State<f64>) -> Result<Self, Error>;
 
-    /// Advances the motion by `steps` steps.
+    /// Advances the motion by `steps` steps. [`check`](Self::check) it afterwards.
     ///
-    /// `advance(a); advance(b)` is bit-identical to `advance(a + b)`, and 0 steps change nothing. A
-    /// motion that diverges is not reported; [`check`](Self::check) it afterwards. It goes on
-    /// without meaning, except that [`Fixed32`] stops.
+    /// `advance(a); advance(b)` is bit-identical to `advance(a + b)`.
     fn advance(&mut self, steps: u32);
 
     /// Refuses a motion that has diverged, by [`Error::Diverged`]: its numbers are not finite or,
-    /// in fixed point, were ever out of range. [`Fixed32`] tests its range after every 32 steps
-    /// since the start, [`Fixed64`] after every step. It costs a few comparisons, by the closed
-    /// form about as much as a step.
-    ///
-    /// In floating point a motion whose numbers are finite but meaningless is accepted.
+    /// in fixed point, were ever out of range. In floating point a motion whose numbers are finite
+    /// but meaningless is accepted.
     fn check(&self) -> Result<(), Error>;
 
-    /// Returns the sine and cosine of both rods as words whose highest bit is the sign.
-    ///
-    /// The order is `[[sin a1, cos a1], [sin a2, cos a2]]`, at the time of the
-    /// [`directions`](Self::directions). The signs show when a rod turns over; a zero may have
-    /// either. The other bits are in the format of the method's numbers. A diverged motion has
-    /// arbitrary words.
+    /// Returns `[[sin a1, cos a1], [sin a2, cos a2]]` at the time of the
+    /// [`directions`](Self::directions), as words whose highest bit is the sign; a zero may have
+    /// either. The signs show when a rod turns over. The other bits are in the format of the
+    /// method's numbers.
     fn sides(&self) -> [[i32; 2]; 2];
 
-    /// Returns the directions of rod 1 and rod 2, (sin, cos) each, in the numbers `Q`. In the
-    /// direction form this needs no trigonometry. Their length is 1, except for the errors of the
-    /// method, which reach 4e-4 by the closed form.
-    ///
-    /// They may be up to half a step ahead of the [`state`](Self::state) or behind it. A diverged
-    /// motion need not show it: in fixed point its directions are finite. Call
-    /// [`check`](Self::check).
+    /// Returns the directions of rod 1 and rod 2, (sin, cos) each. They may be up to half a step
+    /// ahead of the [`state`](Self::state) or behind it. In fixed point they stay finite if the
+    /// motion diverges.
     fn directions<Q: Real>(&self) -> [Direction<Q>; 2];
 
     /// Returns the momenta p1 and p2, kg m^2/s, at the time of the
-    /// [`directions`](Self::directions). They are NaN if the motion has diverged in fixed point,
-    /// can be any numbers if it has diverged in floating point, and are infinite beyond the range
-    /// of `Q`.
+    /// [`directions`](Self::directions).
     fn momenta<Q: Real>(&self) -> [Q; 2];
 
     /// Returns the canonical state in SI units at the number of steps times dt, with all digits
-    /// that the method carries. All its numbers are NaN if the motion has diverged in fixed point.
-    /// In floating point a diverged motion can have any numbers. The angles are in [-pi, pi],
-    /// unless it [has turns](Self::has_turns).
+    /// that the method carries; NaN if the motion has diverged in fixed point. The angles are in
+    /// [-pi, pi], unless it [has turns](Self::has_turns).
     fn state(&self) -> State<f64>;
 
-    /// Returns the energy above that of hanging at rest, J, with all digits that the method
-    /// carries.
-    ///
-    /// `pendulum` must be the pendulum of this motion; this is not checked. The energy follows from
-    /// the directions and momenta, which may be up to half a step ahead of the
-    /// [`state`](Self::state) or behind it. It is NaN if the motion has diverged in fixed point,
-    /// and can be any number if it has diverged in floating point.
+    /// Returns the energy above rest, J, at the time of the [`directions`](Self::directions), with
+    /// all digits that the method carries. `pendulum` is that of this motion.
     fn energy_above_rest(&self, pendulum: &Pendulum<f64>) -> f64 {
         let [upper, lower] = self.directions();
         pendulum.energy_above_rest_at([unit(upper), unit(lower)], self.momenta())
@@ -165,62 +135,49 @@ pub trait Advance: Copy + Debug + PartialEq + 'static {
 /// The operations of a [`Form`] beyond those of every motion.
 ///
 /// No other crate can name this trait, so that [`Form`] is sealed and may get new operations.
-/// Generic code can call them.
 pub trait FormOperations: Advance {
     /// The numbers that [`Run::directions`], [`Run::angles`] and [`Run::energy`] return.
     type Real: Real;
 
     /// The largest phase w1 dt, rad, of a stable step; w1 is the frequency of the fast normal mode.
-    /// [`Pendulum::run`](crate::Pendulum::run) refuses longer steps. It is infinite if the method
-    /// has no such limit, or applies it in [`new`](Self::new). The default is that of RK4, 2
-    /// sqrt(2).
+    /// [`Pendulum::run`](crate::Pendulum::run) refuses longer steps. It is infinite if
+    /// [`new`](Self::new) applies a limit, or if there is none.
     const STABLE: f64 = RK4_STABLE;
 
-    /// True if [`Run`] need not check the energy and the lengths of the directions: if
-    /// [`check`](Advance::check) refuses those that are far too large or, by the closed form, they
-    /// cannot grow. If it is false, [`Run`] checks both.
+    /// True if [`Run`] need not check the energy and the lengths of the directions, because
+    /// [`check`](Advance::check) does or, by the closed form, they cannot grow.
     const CHECKS_ENERGY: bool = false;
 
-    /// Checks the parameters and prepares the motion from `start`, in steps of `dt` seconds.
-    ///
-    /// A negative `dt` runs backwards.
+    /// Checks the parameters and prepares the motion from `start`, in steps of `dt` seconds,
+    /// backwards if negative.
     ///
     /// # Errors
     ///
-    /// Refuses the inputs that [`Pendulum::run`](crate::Pendulum::run) refuses, except:
-    ///
-    /// - a step beyond [`STABLE`](Self::STABLE);
-    /// - a start of too many turns, which only the closed form refuses;
-    /// - in the direction form in floating point, valid parameters with a product that only
-    ///   [`Pendulum::new`](crate::Pendulum::new) computes and that is out of range;
-    /// - invalid parameters that the equations of [`Canonical`] accept
-    ///   ([`Derivatives::prepare`]); those of this crate accept none.
+    /// Refuses the inputs that [`Pendulum::run`](crate::Pendulum::run) refuses, except a step
+    /// beyond [`STABLE`](Self::STABLE) and, with directions, a start of too many turns.
     fn new(parameters: &Parameters<f64>, start: &State<f64>, dt: f64) -> Result<Self, Error>;
 
-    /// Advances the motion by one step, as `advance(1)` does. A loop that reads the motion after
-    /// each step uses it.
+    /// Advances the motion by one step, for a loop that reads the motion after each.
     fn advance_one(&mut self) {
         self.advance(1);
     }
 
     /// Returns the number that a word of [`sides`](Advance::sides) represents, in a unit that may
-    /// differ between the rods. The sides of an `f64` are cut to 20 bits of its fraction.
+    /// differ between the rods.
     fn side_value(side: i32) -> Self::Real;
 
-    /// Returns the [`momenta`](Advance::momenta) with a relative error of a few units in the last
-    /// place of the method's numbers. A check of the energy needs no more.
+    /// Returns the [`momenta`](Advance::momenta) to a few units in the last place, enough for a
+    /// check of the energy.
     fn momenta_nearly(&self) -> [Self::Real; 2] {
         self.momenta()
     }
 
-    /// Passes the words that the motion carries from step to step to `feed`, one at a time and
-    /// always in the same order, to compare machines. The bits of an `f32` are the lower 32 of a
-    /// word; its upper 32 are 0.
+    /// Passes the words that the motion carries from step to step to `feed`, always in the same
+    /// order, to compare machines. The bits of an `f32` are the lower 32 of a word.
     fn bits(&self, feed: impl FnMut(u64));
 }
 
-/// Returns the same direction with length 1; NaN if its length is 0. A length whose square
-/// overflows or underflows gives a meaningless direction.
+/// Returns the same direction with length 1.
 pub(crate) fn unit([sin, cos]: Direction<f64>) -> Direction<f64> {
     let inverse = 1.0 / libm::sqrt(sin * sin + cos * cos);
     [sin * inverse, cos * inverse]

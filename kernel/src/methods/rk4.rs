@@ -14,10 +14,8 @@ use crate::pendulum::{Pendulum, State};
 /// z(t + dt) = z + (Y1 + 2 Y2 + 2 Y3 + Y4)/6
 /// ```
 ///
-/// The error is O(dt^5) after one step, and O(dt^4) after a fixed time. The unit of time is that of
-/// f. A negative `dt` steps backwards. The inputs are not checked: a component of `z` that is NaN
-/// or infinite stays so, as may those that depend on it, and a `dt` that is NaN or infinite makes
-/// all components so.
+/// The error is O(dt^5) after one step, and O(dt^4) after a fixed time. A negative `dt` steps
+/// backwards. NaN or infinity in `z` or `dt` gives NaN or infinity.
 #[must_use]
 pub fn step<R: Real, const N: usize>(f: impl Fn(&[R; N]) -> [R; N], z: &[R; N], dt: R) -> [R; N] {
     let half = dt * R::HALF;
@@ -29,7 +27,6 @@ pub fn step<R: Real, const N: usize>(f: impl Fn(&[R; N]) -> [R; N], z: &[R; N], 
     core::array::from_fn(|i| z[i] + sixth * (k1[i] + R::TWO * (k2[i] + k3[i]) + k4[i]))
 }
 
-/// Returns z + dt k.
 fn advanced<R: Real, const N: usize>(z: &[R; N], dt: R, k: &[R; N]) -> [R; N] {
     core::array::from_fn(|i| z[i] + dt * k[i])
 }
@@ -37,11 +34,10 @@ fn advanced<R: Real, const N: usize>(z: &[R; N], dt: R, k: &[R; N]) -> [R; N] {
 impl<R: Real> Pendulum<R> {
     /// Computes one step of RK4: returns the state a time `dt`, s, after `state`.
     ///
-    /// A negative `dt` steps backwards. Angles are not wrapped. The inputs are not checked. A state
-    /// or a step that is NaN gives NaN in all numbers, an infinite one NaN or infinity. A step that
-    /// is too long for the motion gives a meaningless state, which in the end is infinite or NaN.
-    /// Call [`check_step`](Self::check_step) or [`admissible_step`](Self::admissible_step) before
-    /// the first step, and [`State::finite`] after each.
+    /// A negative `dt` steps backwards. Angles are not wrapped. A step that is too long for the
+    /// motion gives a meaningless state, which in the end is infinite or NaN: call
+    /// [`check_step`](Self::check_step) or [`admissible_step`](Self::admissible_step) before the
+    /// first step, and [`State::finite`] after each.
     #[must_use]
     pub fn step(&self, state: &State<R>, dt: R) -> State<R> {
         step(|z| self.derivatives(z), &(*state).into(), dt).into()

@@ -13,10 +13,9 @@ use crate::pendulum::{Direction, Parameters, Pendulum, State};
 /// # Whole turns
 ///
 /// The methods that carry directions do not know how often a rod has turned over. Their angles are
-/// within half a turn, in [-pi, pi], unless the turns are counted: [`counting_turns`] returns a
-/// `Run<F, true>`, which observes the directions after every step. By
-/// [`DirectionF32`](crate::DirectionF32) on a Cortex-M4F this takes 180 cycles, nearly as much as
-/// the step itself. A drawing needs no turns.
+/// in [-pi, pi], unless the turns are counted: [`counting_turns`] returns a `Run<F, true>`, which
+/// observes the directions after every step. By [`DirectionF32`](crate::DirectionF32) on a
+/// Cortex-M4F this takes 180 cycles, nearly as much as the step itself. A drawing needs no turns.
 ///
 /// [`HamiltonF32`](crate::HamiltonF32), [`HamiltonF64`](crate::HamiltonF64) and the closed form
 /// carry angles, which always include whole turns.
@@ -25,7 +24,7 @@ use crate::pendulum::{Direction, Parameters, Pendulum, State};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Run<F: Form, const COUNTS_TURNS: bool = false> {
     pendulum: Pendulum<F::Real>,
-    /// The energy H, J, above which the motion counts as diverged. Unused if `F` checks its energy.
+    /// The energy H above which the motion counts as diverged. Unused if `F` checks its energy.
     most_energy: F::Real,
     motion: F,
     /// The turns at the start. If turns are counted, it is updated after every step.
@@ -46,18 +45,17 @@ impl<R: Real> Pendulum<R> {
     ///
     /// - a step that is NaN or infinite, by [`Error::NotFinite`], or, by [`Error::OutOfRange`],
     ///   zero, subnormal or too large in the method's numbers (`f64` for fixed point and the closed
-    ///   form), or so short that a torque of gravity in a step is subnormal or zero in them;
+    ///   form), or so short that a torque of gravity in a step is;
     /// - a start that is not finite, by [`Error::NotFinite`];
-    /// - a start of 2^31 - 1 turns or more, if the method carries directions, or, for the closed
-    ///   form, one from which an angle may exceed 2^31 - 1 turns, by [`Error::OutOfRange`];
-    /// - a pendulum or a start out of the range of the method's numbers, by [`Error::OutOfRange`],
-    ///   such as, in fixed point, a start of infinite energy;
+    /// - a start of 2^31 - 1 turns or more, or, for the closed form, one from which an angle may
+    ///   exceed them, by [`Error::OutOfRange`]; methods in angles accept any;
+    /// - a pendulum or a start out of the range of the method's numbers, by [`Error::OutOfRange`];
     ///   if one of its numbers becomes infinite there, by [`Error::NotFinite`], or a mass or length
-    ///   zero, by [`Error::NotPositive`]. Gravity and the numbers of the start may become zero;
+    ///   zero, by [`Error::NotPositive`];
     /// - for the closed form, a pendulum without gravity, by [`Error::NotPositive`];
-    /// - a step whose magnitude is beyond the limit of stability of the fast mode, of frequency w1,
-    ///   or beyond that of [`Fixed32`] or [`Fixed64`](crate::Fixed64): [`Error::TooLarge`] contains
-    ///   the largest magnitude, s. The closed form has no such limit.
+    /// - a step beyond the limit of stability of the fast mode, of frequency w1, or beyond that of
+    ///   [`Fixed32`] or [`Fixed64`](crate::Fixed64): [`Error::TooLarge`] contains the largest
+    ///   magnitude, s. The closed form has no such limit.
     ///
     /// The limit of RK4 is w1 dt = 2.83 ([`check_step`](Self::check_step)). Extrapolation of the
     /// orders 2, 4 .. 16 is stable, or lets the mode grow by less than a tenth in a step, up to w1
@@ -66,7 +64,6 @@ impl<R: Real> Pendulum<R> {
     /// A fast motion may need far shorter steps: [`admissible_step`](Self::admissible_step)
     /// resolves every motion of an energy.
     pub fn run<F: Form>(&self, start: &State<R>, dt: f64) -> Result<Run<F>, Error> {
-        // Prepare the motion and count the turns of its start.
         let parameters = self.parameters().cast();
         let motion: F = start_within(&parameters, &start.cast(), dt)?;
         let angles = if motion.has_turns() {
@@ -76,7 +73,6 @@ impl<R: Real> Pendulum<R> {
         };
         let turns = Turns::of(angles, motion.sides())?;
 
-        // Compute the limit on its energy.
         let pendulum = Pendulum::new(&parameters.cast())?;
         let most_energy = if F::CHECKS_ENERGY {
             F::Real::ZERO
@@ -96,7 +92,7 @@ impl<R: Real> Pendulum<R> {
 }
 
 /// Prepares the motion. Refuses a step beyond the limit of stability or of the method's numbers;
-/// the error contains the smaller of both limits.
+/// the error contains the smaller of both limits, whichever refuses the step.
 fn start_within<F: Form>(
     parameters: &Parameters<f64>,
     start: &State<f64>,
@@ -110,7 +106,6 @@ fn start_within<F: Form>(
         limit: libm::fmin(limit, stable),
     };
 
-    // The smaller of the two limits is reported, whichever refuses the step.
     match F::new(parameters, start, dt) {
         Ok(_) if is_too_long => Err(too_large(stable)),
         Err(Error::TooLarge {
@@ -128,11 +123,8 @@ fn start_within<F: Form>(
 }
 
 /// The energy H above which a motion counts as diverged, divided by the energy above rest of the
-/// start.
-///
-/// H is zero for horizontal rods at rest. The energy above rest may therefore be a hundred times as
-/// large as at the start, plus the energy that lifts both bobs from rest to the height of the
-/// pivot.
+/// start. H is zero for horizontal rods at rest, so that the energy above rest may reach a hundred
+/// times that of the start, plus the energy of lifting both bobs to the pivot.
 const ENERGY_GROWTH: f64 = 100.0;
 
 impl<F: Form> Run<F> {
@@ -141,8 +133,7 @@ impl<F: Form> Run<F> {
     ///
     /// Call it before the first step, and the turns of the start are included. Later, the count
     /// begins at angles in [-pi, pi]. A step must not turn a rod by more than a quarter turn,
-    /// otherwise whole turns are miscounted; this is not checked. The count wraps at 2^31 turns. A
-    /// method that carries angles gives the same results as before.
+    /// otherwise whole turns are miscounted; this is not checked.
     ///
     /// ```
     /// use double_pendulum::{DirectionF32, Parameters, Pendulum, State};
@@ -174,14 +165,12 @@ impl<F: Form> Run<F> {
 }
 
 impl<F: Form, const COUNTS_TURNS: bool> Run<F, COUNTS_TURNS> {
-    /// Returns true if the turns are counted here, because the method does not carry them.
     fn observes(&self) -> bool {
         COUNTS_TURNS && !self.motion.has_turns()
     }
 
-    /// Advances the motion by `steps` steps; 0 steps change nothing.
-    ///
-    /// `advance(a); advance(b)` is bit-identical to `advance(a + b)`, if no call returns an error.
+    /// Advances the motion by `steps` steps. `advance(a); advance(b)` is bit-identical to
+    /// `advance(a + b)`, if no call returns an error.
     ///
     /// # Errors
     ///
@@ -192,14 +181,12 @@ impl<F: Form, const COUNTS_TURNS: bool> Run<F, COUNTS_TURNS> {
     /// - an energy far above the initial one, because the step was too long for the motion.
     ///
     /// The limit on the energy above rest is 100 times its initial value, plus (m1 + m2) g l1 + m2
-    /// g l2. No limit applies if it is too large for the method's numbers. Energy and lengths are
-    /// checked once at the end of each call, not after every step, so that one long call may accept
-    /// a motion that several short calls refuse.
+    /// g l2. Energy and lengths are checked once at the end of each call, so that one long call may
+    /// accept a motion that several short calls refuse.
     ///
-    /// Three methods differ. The limit of [`Fixed32`] is 9/8 of the initial value, plus an
-    /// allowance for rounding, and is checked after every 32 steps since the start.
-    /// [`Fixed64`](crate::Fixed64) checks the range of its numbers instead, after every step. Both
-    /// have stricter limits of the lengths. The closed form has no limit of energy or lengths.
+    /// The limit of [`Fixed32`] is 9/8 of the initial value, plus an allowance for rounding, and is
+    /// checked after every 32 steps since the start. [`Fixed64`](crate::Fixed64) checks the range
+    /// of its numbers instead, after every step. The closed form has no such limit.
     pub fn advance(&mut self, steps: u32) -> Result<(), Error> {
         let Self {
             mut motion,
@@ -215,7 +202,6 @@ impl<F: Form, const COUNTS_TURNS: bool> Run<F, COUNTS_TURNS> {
             motion.advance(steps);
         }
 
-        // Check the result before it is stored.
         motion.check()?;
         if !F::CHECKS_ENERGY {
             self.check_energy(&motion)?;
@@ -226,7 +212,6 @@ impl<F: Form, const COUNTS_TURNS: bool> Run<F, COUNTS_TURNS> {
         Ok(())
     }
 
-    /// Refuses directions that are far too short or too long, and an energy that is far too large.
     fn check_energy(&self, motion: &F) -> Result<(), Error> {
         let directions = motion.directions();
         let [shortest, longest] = [0.25, 4.0].map(F::Real::from_f64);
@@ -253,15 +238,14 @@ impl<F: Form, const COUNTS_TURNS: bool> Run<F, COUNTS_TURNS> {
     ///
     /// Their length is 1, except for the errors of the method, which reach 4e-4 by the closed form.
     /// In the direction form in floating point they may be up to half a step ahead of the
-    /// [`state`](Self::state) or behind it. They belong to the last call of
-    /// [`advance`](Self::advance) without an error; before, to the start.
+    /// [`state`](Self::state) or behind it. After an error they are those before the call.
     #[must_use]
     pub fn directions(&self) -> [Direction<F::Real>; 2] {
         self.motion.directions()
     }
 
-    /// Returns the angles a1 and a2, rad, at the time of the [`directions`](Self::directions). The
-    /// cost is that of two arc tangents, unless the method carries angles.
+    /// Returns the angles a1 and a2, rad, at the time of the [`directions`](Self::directions), at
+    /// the cost of two arc tangents, unless the method carries angles.
     ///
     /// They are within [-pi, pi], unless [whole turns](Self#whole-turns) are counted or carried.
     #[must_use]
@@ -270,7 +254,6 @@ impl<F: Form, const COUNTS_TURNS: bool> Run<F, COUNTS_TURNS> {
             return self.state().cast().angles();
         }
 
-        // Without a count of turns the angles are within half a turn.
         let directions = self.directions();
         if self.observes() {
             let [direction1, direction2] = directions;
@@ -287,10 +270,9 @@ impl<F: Form, const COUNTS_TURNS: bool> Run<F, COUNTS_TURNS> {
     /// carried.
     ///
     /// The state is that at the number of steps times dt, even if the motion itself is ahead of
-    /// that time or behind it ([`Form`]). The difference is taken back. This changes the energy by
-    /// at most 1e-4 of the energy above rest if w1 dt is 0.2 or less, where w1 is the frequency of
-    /// the fast mode (asserted over a day of regular motion). Only
-    /// [`HamiltonF32`](crate::HamiltonF32) takes steps of dt rounded to `f32`.
+    /// that time or behind it ([`Form`]). Taking the difference back changes the energy by at most
+    /// 1e-4 of the energy above rest if w1 dt is 0.2 or less, where w1 is the frequency of the fast
+    /// mode (asserted over a day of regular motion).
     #[must_use]
     pub fn state(&self) -> State<f64> {
         let state = self.motion.state();
@@ -302,21 +284,19 @@ impl<F: Form, const COUNTS_TURNS: bool> Run<F, COUNTS_TURNS> {
     }
 
     /// Returns the energy H, J, at the time of the [`directions`](Self::directions)
-    /// ([`Pendulum::energy`]). It is 0 for horizontal rods at rest, and infinite or NaN if a
-    /// product overflows in these numbers.
+    /// ([`Pendulum::energy`]).
     #[must_use]
     pub fn energy(&self) -> F::Real {
         self.pendulum
             .energy_at(self.directions(), self.motion.momenta())
     }
 
-    /// Passes all words that the method carries from step to step to `feed`, one at a time and
-    /// always in the same order. The count of turns is not included.
+    /// Passes the words of [`bits`](crate::methods::FormOperations::bits) to `feed`, without the
+    /// count of turns.
     pub(crate) fn bits(&self, feed: impl FnMut(u64)) {
         self.motion.bits(feed);
     }
 
-    /// Returns the motion without its checks.
     #[cfg(test)]
     pub(crate) fn motion(&self) -> &F {
         &self.motion
@@ -334,10 +314,10 @@ impl<const COUNTS_TURNS: bool> Run<Fixed32, COUNTS_TURNS> {
     /// Returns the directions of rod 1 and rod 2, (sin, cos) each times 2^30.
     ///
     /// They are off from the numbers that the method carries by at most 1 unit of the result for
-    /// rod 1. For rod 2 it is at most 10 units for equal rods (1e-8), and 25 for any rods (2.4e-8),
-    /// because products are rounded down. A unit test asserts these bounds.
+    /// rod 1, and for rod 2 by 10 units for equal rods (1e-8) and 25 for any rods (a unit test
+    /// asserts this).
     ///
-    /// They are computed in integers only, as are the steps. A loop of both links no software
+    /// They are computed in integers only, as are the steps: a loop of both links no software
     /// floating point.
     #[must_use]
     pub fn directions_q30(&self) -> [Direction<i32>; 2] {
@@ -351,8 +331,6 @@ mod tests {
     use crate::methods::DirectionF32;
     use crate::pendulum::Motion;
 
-    /// A motion counts as diverged if its energy H exceeds 100 times the energy above rest of its
-    /// start, at small and at large energies.
     #[test]
     fn most_energy_is_in_proportion_to_that_of_the_start() -> Result<(), Error> {
         let pendulum = Pendulum::<f64>::new(&Parameters::equal_rods(1.0, 1.0, 9.81))?;

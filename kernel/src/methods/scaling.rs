@@ -6,7 +6,7 @@ use crate::error::{Error, Parameter};
 use crate::numbers::fixed::scaled;
 use crate::pendulum::{Parameters, State};
 
-/// The largest shift of a quantity. Scaled ratios of masses and rods above 4,000 are refused.
+/// The largest shift of a quantity.
 const MOST: i32 = 12;
 
 /// The units of a motion, and the constants of the equations in these units, which have no
@@ -25,23 +25,19 @@ const MOST: i32 = 12;
 /// For equal rods and masses all shifts are 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Scaling {
-    /// T, s; finite and not 0. Negative if time runs backwards. [`in_seconds`](Self::in_seconds)
-    /// sets it to 1 s, before a unit that keeps the limits is chosen.
+    /// T, s. Negative if time runs backwards.
     pub time: f64,
-    /// P1/p1 and P2/p2, s/(kg m^2). Negative if time runs backwards.
+    /// P1/p1 and P2/p2, s/(kg m^2).
     pub momenta: [f64; 2],
-    /// nu/sigma, above 1/2 and, up to a rounding, at most 1.
+    /// nu/sigma.
     pub norm: f64,
     /// m, in the unit of the divided (S, C) and r; from 1 to 2.
     pub inertia: f64,
-    /// G1 and G2.
     pub gravity: [f64; 2],
-    /// The differences between the units of the quantities.
     pub shifts: Shifts,
 }
 
-/// The differences between the units of the quantities, as powers of two: numbers of bits from 0 to
-/// 12.
+/// The differences between the units of the quantities, as powers of two.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Shifts {
     /// The shift to the right of C P2 in P1 - C P2.
@@ -54,8 +50,8 @@ pub(crate) struct Shifts {
     pub lower: u32,
 }
 
-/// Returns [`Error::Diverged`] if a motion `is_lost`. The error names a1 = NaN, because the
-/// quantity that left its range is not recorded.
+/// Returns [`Error::Diverged`] if a motion `is_lost`, with a1 = NaN, because the quantity that left
+/// its range is not recorded.
 pub(super) fn lost(is_lost: bool) -> Result<(), Error> {
     if is_lost {
         Err(Error::Diverged {
@@ -67,8 +63,7 @@ pub(super) fn lost(is_lost: bool) -> Result<(), Error> {
     }
 }
 
-/// Refuses a start whose `energy` above rest, J, is not finite: by [`Error::OutOfRange`] with the
-/// momentum of larger magnitude or, at rest, the parameter that is farthest from 1 as a factor.
+/// Refuses a start of infinite energy.
 pub(super) fn check_energy(
     parameters: &Parameters<f64>,
     start: &State<f64>,
@@ -89,7 +84,7 @@ pub(super) fn check_energy(
 }
 
 /// Returns the start as fixed point takes it. With less than 1e-280 J nothing moves in the age of
-/// the universe, and the unit of time that suits such momenta would be out of range.
+/// the universe, and the unit of time would be out of range.
 pub(super) fn without_least_momenta(start: &State<f64>, energy: f64) -> State<f64> {
     if energy < 1e-280 {
         State::at_rest(start.a1, start.a2)
@@ -99,8 +94,7 @@ pub(super) fn without_least_momenta(start: &State<f64>, energy: f64) -> State<f6
 }
 
 impl Scaling {
-    /// Returns the same scaling with a unit of time that is `time` times as long. A negative `time`
-    /// reverses the time. `time` must be finite and not 0; this is not checked.
+    /// Returns the same scaling with a unit of time that is `time` times as long.
     #[must_use]
     pub fn in_unit(self, time: f64) -> Self {
         Self {
@@ -111,11 +105,8 @@ impl Scaling {
         }
     }
 
-    /// Returns the scaling with T = 1 s. The parameters must be valid; this is not checked.
-    ///
-    /// Refuses ratios of masses or rods that need a shift of more than 12, by
-    /// [`Error::OutOfRange`]. It names the mass, length or gravity that is farthest from 1 as a
-    /// factor. Accepts l1/l2 from 1/4096 to 4096 with m1/m2 from 1/1024 to 4096.
+    /// Returns the scaling with T = 1 s. Refuses ratios of masses or rods that need a shift above
+    /// [`MOST`], by [`Error::OutOfRange`].
     pub fn in_seconds(parameters: &Parameters<f64>) -> Result<Self, Error> {
         let &Parameters { m1, m2, l1, l2, g } = parameters;
         let nu = l1 / l2;
@@ -152,13 +143,9 @@ impl Scaling {
         })
     }
 
-    /// Returns the longest units of time T for a motion within `bounds`: the longest that keeps
+    /// Returns the longest units of time, s, for a motion within `bounds`: the longest that keeps
     /// every rate and momentum within `rate`, and the longest that keeps every torque of gravity
-    /// within `torque`. They are in s; the two limits, which must be positive, have no dimension.
-    ///
-    /// The first is infinite if nothing can move and 0 for infinite bounds, the second is infinite
-    /// without gravity. The scaling must be the result of [`in_seconds`](Self::in_seconds), and
-    /// the bounds not NaN; nothing is checked.
+    /// within `torque`.
     pub fn longest(&self, bounds: &Bounds<f64>, [rate, torque]: [f64; 2]) -> [f64; 2] {
         let [momentum1, momentum2] = self.momenta;
         let rates = [
@@ -180,8 +167,8 @@ impl Scaling {
 }
 
 impl Shifts {
-    /// The shifts of rods and masses that are about equal, all 0: with l1/l2 above 1/2 and at most
-    /// 1, and (m1/m2) (l1/l2)^2 from 1 to below 2.
+    /// The shifts of about equal rods and masses: l1/l2 above 1/2 and at most 1, and (m1/m2)
+    /// (l1/l2)^2 from 1 to below 2.
     pub const NONE: Self = Self {
         momentum: 0,
         inverse: 0,

@@ -5,22 +5,17 @@ use core::ops::{Add, Mul, Neg, Sub};
 
 /// `N` numbers, one in each *lane*. Every operation acts on each lane alone, with the same bits as
 /// on one number.
-///
-/// On x86-64 an operation costs as much as one number for each 4 lanes of `f32` (8 with AVX2) or 2
-/// lanes of `f64` (4 with AVX2), as long as all numbers in use fit the registers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(align(32))]
 pub(crate) struct Lanes<R, const N: usize>(pub [R; N]);
 
 impl<R: Copy, const N: usize> Lanes<R, N> {
-    /// Returns the same number in every lane.
     pub fn splat(number: R) -> Self {
         Self([number; N])
     }
 }
 
 impl<R: Copy + Add<Output = R>, const N: usize> Lanes<R, N> {
-    /// Returns the sum of each number and itself. A sum beyond the largest number is infinite.
     pub fn twice(self) -> Self {
         self + self
     }

@@ -1,5 +1,4 @@
-//! The numbers that the methods compute in: floating point, fixed point, many numbers at once, and
-//! the sines.
+//! The numbers that the methods compute in, and the sines.
 
 pub(crate) mod fixed;
 mod lanes;

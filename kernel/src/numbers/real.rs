@@ -7,8 +7,8 @@ use crate::numbers::sine;
 
 /// `f32` or `f64`, and no other type: the numbers of the formulas.
 ///
-/// Every operation is IEEE 754 arithmetic or a routine in Rust that uses only such arithmetic. So a
-/// result is bit-identical on every machine, except for the bits of a NaN.
+/// Every operation is IEEE 754 arithmetic or a routine in Rust that uses only such arithmetic, so
+/// that a result is bit-identical on every machine, except for the bits of a NaN.
 pub trait Real:
     RealOperations
     + Copy
@@ -35,14 +35,12 @@ impl<R: RealOperations> Real for R {}
 /// | `f32` | 9e-8 to pi, 1e-7 to 1e4 | 13 multiplies, 12 adds | about 40 cycles (estimate) |
 /// | `f64` | 2 ulp | 19 multiplies, 21 adds | 40 calls of soft float |
 ///
-/// The errors of `f32` are absolute, for magnitudes of the angle up to pi and up to 1e4 rad. The
-/// error of `f64`, up to 1,647,098 rad, is in units in the last place of the result. The kernel's
-/// tests assert these errors; a test of all floats in [-pi, pi] runs on demand.
+/// The errors of `f32` are absolute, for magnitudes of the angle up to pi and up to 1e4 rad (test
+/// `trigonometry`). The error of `f64` is relative, up to 1,647,098 rad.
 ///
-/// From 1e4 to 12,867 rad the error of `f32` is below 1e-7, too (measured, not asserted). An `f32`
-/// beyond 12,867 is computed as an `f64` and rounded. An `f64` beyond 1,647,098, also one that was
-/// an `f32`, is computed by the `libm` crate, which is accurate but slow. For infinity and NaN both
-/// results are NaN.
+/// An `f32` beyond 12,867 is computed as an `f64` and rounded. An `f64` beyond 1,647,098 is
+/// computed by the `libm` crate, which is accurate but slow. For infinity and NaN both results are
+/// NaN.
 #[must_use]
 pub fn sin_cos<R: Real>(angle: R) -> (R, R) {
     angle.own_sin_cos()
@@ -69,11 +67,9 @@ pub trait RealOperations:
     const ONE: Self;
     const TWO: Self;
     const HALF: Self;
-    /// The number nearest to pi.
     const PI: Self;
     const EPSILON: Self;
 
-    /// Rounds to nearest.
     fn from_f64(value: f64) -> Self;
     fn to_f64(self) -> f64;
     fn from_i64(value: i64) -> Self;
@@ -83,7 +79,7 @@ pub trait RealOperations:
     #[must_use]
     fn abs(self) -> Self;
     /// Returns twice the number. If an addition is a call of a library, the exponent is increased
-    /// instead, with the same bits.
+    /// instead.
     #[must_use]
     fn twice(self) -> Self;
     /// Returns a word with the sign of the number in its highest bit. The fraction of an `f64` is
@@ -91,7 +87,6 @@ pub trait RealOperations:
     fn side(self) -> i32;
     /// Returns the number whose [`side`](Self::side) is this word.
     fn from_side(side: i32) -> Self;
-    /// Correctly rounded.
     #[must_use]
     fn sqrt(self) -> Self;
     /// The IEEE 754 format; the upper half is 0 for an `f32`.
@@ -99,14 +94,12 @@ pub trait RealOperations:
     fn is_finite(self) -> bool;
     /// Returns true if the number has its full relative precision.
     fn is_normal(self) -> bool;
-    /// Returns the angle of the point (`x`, `self`) from the positive x axis, by the `libm` crate.
     #[must_use]
     fn atan2(self, x: Self) -> Self;
     fn own_sin_cos(self) -> (Self, Self);
 }
 
-/// Defines a function that returns `x` + `x` with the same bits, computed by integers unless `x` is
-/// zero, subnormal, NaN or close to overflow.
+/// Defines a function that returns `x` + `x` with the same bits, computed by integers.
 macro_rules! twice_by_bits {
     ($name:ident, $float:ident) => {
         fn $name(x: $float) -> $float {
@@ -114,14 +107,12 @@ macro_rules! twice_by_bits {
             const LARGEST: u32 = 2 * $float::MAX_EXP as u32 - 3;
             let bits = x.to_bits();
             let exponent = (bits << 1 >> (PLACE + 1)) as u32;
-            // A separate function, because otherwise the compiler would compute the sum in any
-            // case.
+            // Not inlined, because the compiler would compute the sum in any case.
             #[cold]
             fn sum(x: $float) -> $float {
                 x + x
             }
 
-            // Add 1 to the exponent if both exponents are those of normal numbers.
             if exponent.wrapping_sub(1) < LARGEST {
                 $float::from_bits(bits + (1 << PLACE))
             } else {

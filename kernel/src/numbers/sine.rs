@@ -3,19 +3,19 @@
 //! The argument is reduced by the nearest multiple of pi/2 (Cody-Waite reduction). Then minimax
 //! polynomials are used. `host-tests/tools/sine_polynomials.py` computes the constants.
 //!
-//! No `f64` is pi. A pendulum that starts straight up would therefore fall, if the `f64` nearest to
-//! pi were taken literally. So a whole number times the `f64` nearest to pi/2 is that number of
-//! quarter turns here, and its sine and cosine are exactly 0 and 1. The change is smaller than half
-//! a unit in the last place of the angle. An `f32` is taken literally.
+//! No `f64` is pi. A pendulum that starts straight up would fall if the `f64` nearest to pi were
+//! taken literally. So a whole number times the `f64` nearest to pi/2 is that number of quarter
+//! turns here, and its sine and cosine are exact. The change is smaller than half a unit in the
+//! last place of the angle. An `f32` is taken literally.
 
 use core::ops::Neg;
 
 /// Returns an angle of `degrees`, rad, whose [`sin_cos`](crate::sin_cos) has the direction of that
-/// angle.
+/// angle, exactly at multiples of 90 degrees.
 ///
-/// The direction is exact at multiples of 90 degrees. The result is the `f64` nearest to
-/// pi/180 times `degrees`, except that one number in 10^7 is off by a unit in the last place, and
-/// that multiples of 90 degrees are multiples of the `f64` nearest to pi/2.
+/// The result is the `f64` nearest to pi/180 times `degrees`, except that one number in 10^7 is off
+/// by a unit in the last place, and that multiples of 90 degrees are multiples of the `f64` nearest
+/// to pi/2.
 ///
 /// ```
 /// use double_pendulum::{radians, sin_cos};
@@ -26,9 +26,8 @@ use core::ops::Neg;
 /// ```
 #[must_use]
 pub fn radians(degrees: f64) -> f64 {
-    /// pi/180, first the upper 26 bits and then the rest.
+    /// pi/180, first the upper 26 bits and then the rest, so that products of halves are exact.
     const DEGREE: [f64; 2] = [0.01745329238474369, 1.3519960527851425e-10];
-    /// The lower half of a fraction.
     const LOWER: u64 = (1 << 27) - 1;
 
     let quarters = degrees / 90.0;
@@ -36,7 +35,6 @@ pub fn radians(degrees: f64) -> f64 {
         return quarters * core::f64::consts::FRAC_PI_2;
     }
 
-    // The products of halves are exact.
     let upper = f64::from_bits(degrees.to_bits() & !LOWER);
     let lower = degrees - upper;
     upper * DEGREE[0] + (lower * DEGREE[0] + degrees * DEGREE[1])
@@ -44,15 +42,13 @@ pub fn radians(degrees: f64) -> f64 {
 
 use super::Real;
 
-/// Returns (sin x, cos x) of an `f32` in rad. [`sin_cos`](super::sin_cos) gives the errors.
 #[inline] // With `own_sin_cos`: 6.2 KB more flash on an M4F without.
 pub(super) fn single(x: f32) -> (f32, f32) {
     /// pi/2 in three parts. The first two have 11 bits each, so that their products with k are
     /// exact for every k up to 2^13.
     const PI_OVER_TWO: [f32; 3] = [1.5703125, 0.0004837513, 0.0000000754979];
-    /// The largest argument, rad. Its k is below 2^13.
     const LARGEST: f32 = 12_867.0;
-    /// 3 * 2^22. Adding it rounds to a whole number, which is then in the low bits of the sum.
+    /// 3 * 2^22. Adding it leaves the nearest whole number in the low bits of the sum.
     const ROUNDER: f32 = 12_582_912.0;
     /// (sin r - r)/r^3 in powers of r^2, for |r| <= pi/4. The error of the fit is 2.0e-9.
     const SINE: [f32; 3] = [-0.1666665, 0.008331901, -0.00019485931];
@@ -76,7 +72,6 @@ pub(super) fn single(x: f32) -> (f32, f32) {
     }
 }
 
-/// Returns (sin x, cos x) of an `f64` in rad.
 pub(super) fn double(x: f64) -> (f64, f64) {
     /// pi/2 in three parts. The first two have 33 bits each, so that their products with k are
     /// exact for every k up to 2^20.
@@ -85,10 +80,9 @@ pub(super) fn double(x: f64) -> (f64, f64) {
         6.077100506303966e-11,
         2.0222662487959506e-21,
     ];
-    /// The largest argument, rad. Its k is below 2^20.
     const LARGEST: f64 = 1_647_098.0;
     const ROUNDER: f64 = 6_755_399_441_055_744.0;
-    /// The same series as above. The error of the fit is 4.0e-18 of sin r.
+    /// The error of the fit is 4.0e-18 of sin r.
     const SINE: [f64; 6] = [
         -0.16666666666666627,
         0.008333333333321079,
@@ -97,7 +91,7 @@ pub(super) fn double(x: f64) -> (f64, f64) {
         -2.505069457811957e-8,
         1.589303094330697e-10,
     ];
-    /// The same series as above. The error of the fit is 5.8e-20.
+    /// The error of the fit is 5.8e-20.
     const COSINE: [f64; 6] = [
         0.04166666666666659,
         -0.0013888888888872056,
@@ -152,16 +146,13 @@ fn first_octant<R: Real, const N: usize>(r: R, sine: [R; N], cosine: [R; N]) -> 
     )
 }
 
-/// Returns the direction (sin, cos) turned by `quarters` quarter turns.
 fn by_quarters<R: Neg<Output = R>>((sine, cosine): (R, R), quarters: u32) -> (R, R) {
-    // An odd number of quarter turns exchanges sine and cosine.
     let (sine, cosine) = if quarters & 1 == 0 {
         (sine, cosine)
     } else {
         (cosine, -sine)
     };
 
-    // Two quarter turns change both signs.
     if quarters & 2 == 0 {
         (sine, cosine)
     } else {

@@ -19,8 +19,7 @@ pub struct Pendulum<R> {
     total_over_m2: R,
     /// m2 l1 l2.
     coupling: R,
-    /// The largest torques of gravity on the joints, (m1 + m2) g l1 and m2 g l2, N m. Both are 0
-    /// without gravity.
+    /// The largest torques of gravity on the joints, (m1 + m2) g l1 and m2 g l2, N m.
     pub(crate) torque: [R; 2],
 }
 
@@ -30,9 +29,8 @@ impl<R: Real> Pendulum<R> {
     /// # Errors
     ///
     /// Refuses the first parameter, in the order m1, m2, l1, l2, g, that is NaN or infinite
-    /// ([`Error::NotFinite`]), a mass or length that is zero or negative ([`Error::NotPositive`]),
-    /// and a number below 1e-9 or above 1e9 ([`Error::TooSmall`], [`Error::TooLarge`]). Zero gravity
-    /// is allowed.
+    /// ([`Error::NotFinite`]), zero or negative ([`Error::NotPositive`]), or below 1e-9 or above
+    /// 1e9 ([`Error::TooSmall`], [`Error::TooLarge`]). Zero gravity is allowed.
     pub fn new(parameters: &Parameters<R>) -> Result<Self, Error> {
         parameters.check()?;
         Ok(Self::unchecked(parameters))
@@ -77,19 +75,15 @@ impl<R: Real> Pendulum<R> {
     /// and one division.
     ///
     /// The difference from the form of `[math24]` is at most 1e-13 (`f64`) or 2e-6 (`f32`) of the
-    /// largest term. The state is not checked. If it is not finite or a product overflows, some or
-    /// all of the results are NaN or infinite.
+    /// largest term (test `hamilton`).
     #[must_use]
     pub fn derivatives(&self, z: &[R; 4]) -> [R; 4] {
         let &[a1, a2, p1, p2] = z;
         self.derivatives_at([a1.own_sin_cos().into(), a2.own_sin_cos().into()], [p1, p2])
     }
 
-    /// Returns the [`derivatives`](Self::derivatives), rad/s and N m, for known directions (sin,
-    /// cos) of both rods and momenta (p1, p2), kg m^2/s. It needs no trigonometry.
-    ///
-    /// The directions must be of length 1; this is not checked. Arguments that are not finite give
-    /// NaN or infinity.
+    /// Returns the [`derivatives`](Self::derivatives) for known directions of both rods, without
+    /// trigonometry.
     #[doc(hidden)] // For the firmware's method with other sines.
     #[must_use]
     pub fn derivatives_at(
@@ -101,18 +95,15 @@ impl<R: Real> Pendulum<R> {
         let [inverse_l1, inverse_l2] = self.inverse_length;
         let [torque1, torque2] = self.torque;
 
-        // The direction of the elbow's angle, by the addition theorems.
         let sin_d = sin1 * cos2 - cos1 * sin2;
         let cos_d = cos1 * cos2 + sin1 * sin2;
 
-        // The velocities.
         let q1 = p1 * inverse_l1;
         let q2 = p2 * inverse_l2;
         let inverse_den = R::ONE / (m1 + m2 * sin_d * sin_d);
         let w1 = (q1 - q2 * cos_d) * inverse_den * inverse_l1;
         let w2 = (q2 * self.total_over_m2 - q1 * cos_d) * inverse_den * inverse_l2;
 
-        // The force between the rods acts on both momenta with opposite signs.
         let force = self.coupling * w1 * w2 * sin_d;
         [w1, w2, -torque1 * sin1 - force, -torque2 * sin2 + force]
     }
@@ -125,7 +116,7 @@ impl<R: Real> Pendulum<R> {
     /// with q1 = p1/l1, q2 = p2/l2 and the D and den of [`derivatives`](Self::derivatives). The
     /// kinetic energy is a sum of squares, so that it cannot be negative. The exact motion
     /// conserves H; its minimum is [`least_energy`](Self::least_energy). The cost is three sincos
-    /// and two divisions. A state that is not finite, or an overflow, gives NaN or infinity.
+    /// and two divisions.
     #[must_use]
     pub fn energy(&self, state: &State<R>) -> R {
         let (_, cos1) = state.a1.own_sin_cos();
@@ -135,11 +126,7 @@ impl<R: Real> Pendulum<R> {
             - self.torque[1] * cos2
     }
 
-    /// Returns the [`energy`](Self::energy) H, J, for known directions (sin, cos) of both rods and
-    /// momenta (p1, p2), kg m^2/s. It needs no trigonometry.
-    ///
-    /// The directions must be of length 1; this is not checked. Arguments that are not finite, or
-    /// an overflow, give NaN or infinity.
+    /// Returns the [`energy`](Self::energy) for known directions of both rods.
     pub(crate) fn energy_at(
         &self,
         [[sin1, cos1], [sin2, cos2]]: [[R; 2]; 2],
@@ -153,9 +140,8 @@ impl<R: Real> Pendulum<R> {
     ///
     /// K = T + (m1 + m2) g l1 (1 - cos a1) + m2 g l2 (1 - cos a2)
     ///
-    /// No term is negative, so that K keeps its relative precision for the smallest motions. There
-    /// H and min V nearly cancel. A state that is not finite, or an overflow, gives NaN or
-    /// infinity.
+    /// No term is negative, so that K keeps its relative precision for the smallest motions, where
+    /// H and min V nearly cancel.
     #[must_use]
     pub fn energy_above_rest(&self, state: &State<R>) -> R {
         let height1 = one_minus_cos(state.a1.own_sin_cos());
@@ -165,11 +151,7 @@ impl<R: Real> Pendulum<R> {
             + self.torque[1] * height2
     }
 
-    /// Returns the [energy above rest](Self::energy_above_rest), J, for known directions (sin, cos)
-    /// of both rods and momenta (p1, p2), kg m^2/s. It needs no trigonometry.
-    ///
-    /// The directions must be of length 1; this is not checked. Arguments that are not finite, or
-    /// an overflow, give NaN or infinity.
+    /// Returns the [energy above rest](Self::energy_above_rest) for known directions of both rods.
     pub(crate) fn energy_above_rest_at(
         &self,
         [[sin1, cos1], [sin2, cos2]]: [[R; 2]; 2],
@@ -181,15 +163,13 @@ impl<R: Real> Pendulum<R> {
             + self.torque[1] * one_minus_cos((sin2, cos2))
     }
 
-    /// Returns the least possible energy, J, which is the energy of hanging at rest:
-    /// min V = -(m1 + m2) g l1 - m2 g l2. It is zero without gravity, and -infinity if the sum
-    /// overflows.
+    /// Returns the least possible energy, J, that of hanging at rest: min V = -(m1 + m2) g l1 - m2
+    /// g l2.
     #[must_use]
     pub fn least_energy(&self) -> R {
         -(self.torque[0] + self.torque[1])
     }
 
-    /// Returns the kinetic energy T, J, from (sin D, cos D) and the momenta, kg m^2/s.
     fn kinetic_energy_of(&self, (sin_d, cos_d): (R, R), [p1, p2]: [R; 2]) -> R {
         let Parameters { m1, m2, .. } = self.parameters;
         let q1 = p1 * self.inverse_length[0];

@@ -3,9 +3,6 @@
 //!
 //! Except for the transformation, they share no formula with
 //! [Hamilton's equations](crate::Pendulum::derivatives), so that each form is a check of the other.
-//!
-//! No function checks its arguments. Numbers that are not finite, or that overflow, give NaN or
-//! infinity.
 
 use crate::numbers::Real;
 use crate::pendulum::{Motion, Parameters, Pendulum, State};
@@ -21,7 +18,6 @@ pub struct Vector<R> {
 }
 
 impl<R: Real> Vector<R> {
-    /// Returns the sum of two vectors.
     fn plus(self, other: Self) -> Self {
         Self {
             x: self.x + other.x,
@@ -47,8 +43,7 @@ impl<R: Real> Pendulum<R> {
         [bob1, bob1.plus(rod(self.parameters().l2, a2))]
     }
 
-    /// Returns the velocities of bob 1 and bob 2, m/s: the time derivatives of
-    /// [`positions`](Self::positions).
+    /// Returns the velocities of bob 1 and bob 2, m/s.
     ///
     /// x1' = l1 w1 cos a1, y1' = l1 w1 sin a1, x2' = x1' + l2 w2 cos a2, y2' = y1' + l2 w2 sin a2
     /// (`[math24]`)
@@ -95,8 +90,7 @@ impl<R: Real> Pendulum<R> {
         -(m1 + m2) * g * l1 * cos1 - m2 * g * l2 * cos2
     }
 
-    /// Returns the Lagrangian L = T - V, J: [`kinetic_energy`](Self::kinetic_energy) less
-    /// [`potential_energy`](Self::potential_energy).
+    /// Returns the Lagrangian L = T - V, J.
     #[must_use]
     pub fn lagrangian(&self, motion: &Motion<R>) -> R {
         self.kinetic_energy(motion) - self.potential_energy(motion.angles())
@@ -119,7 +113,6 @@ impl<R: Real> Pendulum<R> {
         let (sin2, _) = a2.own_sin_cos();
         let (sin_d, cos_d) = elbow(motion);
 
-        // The right-hand sides of the equations, which are solved by determinants.
         let f1 = -m2 * l2 * w2 * w2 * sin_d - total * g * sin1;
         let f2 = l1 * w1 * w1 * sin_d - g * sin2;
         let den = m1 + m2 * sin_d * sin_d;
@@ -173,7 +166,6 @@ impl<R: Real> Pendulum<R> {
     }
 }
 
-/// Returns (sin, cos) of the elbow's angle D.
 fn elbow<R: Real>(motion: &Motion<R>) -> (R, R) {
     (motion.a1 - motion.a2).own_sin_cos()
 }

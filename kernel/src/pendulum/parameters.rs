@@ -10,8 +10,8 @@ const GREATEST: f64 = 1e9;
 /// The five constants of a double pendulum, in SI units, chosen by the caller.
 ///
 /// Masses and lengths are from 1e-9 to 1e9 kg and m. Gravity is 0, or from 1e-9 to 1e9 m/s^2. In
-/// this range no product of the equations overflows or underflows, also in `f32`.
-/// [`Pendulum::new`](crate::Pendulum::new) and [`Modes::new`](crate::Modes::new) check it.
+/// this range, which [`Pendulum::new`](crate::Pendulum::new) checks, no product of the equations
+/// overflows or underflows, also in `f32`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -33,10 +33,8 @@ impl<R: Real> Parameters<R> {
     /// The gravitational acceleration is `g`, m/s^2.
     ///
     /// With `l` = `g` = 1 the equations are the dimensionless equations of `[math24]` for equal
-    /// rods. For a real pendulum with m1, l and g, the unit of time is then sqrt(l/g), that of
-    /// momenta m1 l^2 sqrt(g/l), and that of energy m1 g l.
-    ///
-    /// The numbers are not checked; [`Pendulum::new`](crate::Pendulum::new) checks them.
+    /// rods: the unit of time is then sqrt(l/g) of the real pendulum, that of momenta m1 l^2
+    /// sqrt(g/l), and that of energy m1 g l.
     #[must_use]
     pub fn equal_rods(mu: R, l: R, g: R) -> Self {
         Self {
@@ -48,17 +46,14 @@ impl<R: Real> Parameters<R> {
         }
     }
 
-    /// Returns the mass ratio mu = m2/m1. The masses are not checked: an `m1` of 0 gives infinity
-    /// or NaN. A ratio out of the range of `R` is infinite or 0.
+    /// Returns the mass ratio mu = m2/m1, unchecked.
     #[must_use]
     pub fn mass_ratio(&self) -> R {
         self.m2 / self.m1
     }
 
-    /// Returns the same numbers in the arithmetic `S`, each rounded once. From `f32` to `f64` the
-    /// numbers are exact.
-    ///
-    /// The result is not checked: a large number in `f64` can be infinite in `f32`, a small one 0.
+    /// Returns the same numbers in the arithmetic `S`, each rounded once. A large number in `f64`
+    /// can be infinite in `f32`, a small one 0.
     #[must_use]
     pub fn cast<S: Real>(self) -> Parameters<S> {
         let Self { m1, m2, l1, l2, g } = self;
@@ -66,10 +61,6 @@ impl<R: Real> Parameters<R> {
         Parameters { m1, m2, l1, l2, g }
     }
 
-    /// Refuses the first number, in the order m1, m2, l1, l2, g, that is NaN or infinite
-    /// ([`Error::NotFinite`]), a mass or length that is zero or negative ([`Error::NotPositive`]),
-    /// and numbers below 1e-9 or above 1e9 ([`Error::TooSmall`], [`Error::TooLarge`]). Accepts zero
-    /// gravity.
     pub(crate) fn check(&self) -> Result<(), Error> {
         for (parameter, value) in self.named() {
             let is_gravity = parameter == Parameter::G;
@@ -103,13 +94,10 @@ impl<R: Real> Parameters<R> {
     }
 
     /// Returns [`Error::OutOfRange`] for parameters whose products overflow or underflow. It names
-    /// the value that is farthest from 1 as a factor, the first of equals; never a gravity of 0.
-    /// The parameters are not checked.
+    /// the value that is farthest from 1 as a factor.
     pub(crate) fn out_of_range(&self) -> Error {
-        // Factors above and below 1 count alike.
         let distance = |value: f64| if value < 1.0 { 1.0 / value } else { value };
         let [first, rest @ ..] = self.named();
-        // Gravity may be zero, which is not the reason.
         let (parameter, value) =
             rest.into_iter()
                 .filter(|(_, value)| *value != 0.0)
@@ -123,7 +111,6 @@ impl<R: Real> Parameters<R> {
         Error::OutOfRange { parameter, value }
     }
 
-    /// Returns the five numbers with their names.
     fn named(&self) -> [(Parameter, f64); 5] {
         [
             (Parameter::M1, self.m1.to_f64()),

@@ -6,8 +6,7 @@ use crate::numbers::Real;
 /// Angles and canonical momenta: a point of the phase space.
 ///
 /// Angles are measured from the downward vertical, positive counter-clockwise, and are not wrapped.
-/// [`Pendulum::to_motion`](crate::Pendulum::to_motion) converts to angular velocities. The default,
-/// all zero, hangs at rest. Any number is accepted here; [`finite`](Self::finite) and
+/// The default, all zero, hangs at rest. Any number is accepted here; [`finite`](Self::finite) and
 /// [`Pendulum::run`](crate::Pendulum::run) refuse NaN and infinity.
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -41,20 +40,18 @@ impl<R: Real> State<R> {
         [self.a1, self.a2]
     }
 
-    /// Returns the same numbers in the arithmetic `S`, each rounded once. From `f32` to `f64` the
-    /// numbers are exact. A number out of the range of `S` becomes infinite or zero.
+    /// Returns the same numbers in the arithmetic `S`, each rounded once; infinite or zero out of
+    /// its range.
     #[must_use]
     pub fn cast<S: Real>(self) -> State<S> {
         <[R; 4]>::from(self).map(R::cast).into()
     }
 
-    /// Returns the state if all its numbers are finite. Otherwise returns [`Error::Diverged`] with
-    /// the name and value of the first of a1, a2, p1 and p2 that is NaN or infinite.
+    /// Returns the state if all its numbers are finite, otherwise [`Error::Diverged`] with the
+    /// first that is not.
     ///
-    /// A step that resolves the motion leads from a finite state to a finite state. A longer step
-    /// can have any result ([`Modes::step_limit`](crate::Modes::step_limit) is valid for small
-    /// motions only). After a number is not finite, no number becomes finite again, so that a check
-    /// before the state is used is sufficient.
+    /// After a number is not finite, no number becomes finite again, so that a check before the
+    /// state is used is sufficient.
     ///
     /// ```
     /// use double_pendulum::{Error, Parameters, Pendulum, State};
@@ -74,8 +71,6 @@ impl<R: Real> State<R> {
         self.check().map(|()| self).map_err(Error::diverged)
     }
 
-    /// Refuses NaN and infinite values: [`Error::NotFinite`] names the first of them, in the order
-    /// a1, a2, p1, p2.
     #[doc(hidden)] // For settings; `Pendulum::run` checks its start.
     pub fn check(&self) -> Result<(), Error> {
         check_finite([
@@ -103,9 +98,8 @@ impl<R> From<State<R>> for [R; 4] {
 
 /// Angles and angular velocities: the variables of the Lagrangian, with w = da/dt.
 ///
-/// Angles are as in [`State`]: from the downward vertical, positive counter-clockwise, and not
-/// wrapped. [`Pendulum::to_state`](crate::Pendulum::to_state) converts to canonical momenta. The
-/// default, all zero, hangs at rest. Any number is accepted here, also NaN and infinity.
+/// Angles are as in [`State`]. [`Pendulum::to_state`](crate::Pendulum::to_state) converts to
+/// canonical momenta, and [`Pendulum::to_motion`](crate::Pendulum::to_motion) back.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Motion<R> {
     /// Angle of rod 1, rad.
@@ -136,15 +130,13 @@ impl<R: Real> Motion<R> {
         [self.a1, self.a2]
     }
 
-    /// Returns the same numbers in the arithmetic `S`, each rounded once. From `f32` to `f64` the
-    /// numbers are exact. A number out of the range of `S` becomes infinite or zero.
+    /// Returns the same numbers in the arithmetic `S`, each rounded once; infinite or zero out of
+    /// its range.
     #[must_use]
     pub fn cast<S: Real>(self) -> Motion<S> {
         <[R; 4]>::from(self).map(R::cast).into()
     }
 
-    /// Refuses NaN and infinite values: [`Error::NotFinite`] names the first of them, in the order
-    /// a1, a2, w1, w2.
     #[doc(hidden)] // For settings; `Pendulum::run` checks its start.
     pub fn check(&self) -> Result<(), Error> {
         check_finite([

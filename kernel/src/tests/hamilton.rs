@@ -1,6 +1,3 @@
-//! Hamilton's equations at random states, compared with the printed equations and with the gradient
-//! of H.
-
 use core::f64::consts::PI;
 
 use double_pendulum::{Parameters, Pendulum, Real, State};
@@ -9,10 +6,7 @@ use super::{EQUATIONS, assert_near, random, tolerances};
 
 const STATES: u32 = 100_000;
 
-/// Returns the terms of the derivatives of a1, a2, p1 and p2 as Hamilton's equations are printed in
-/// the book ("Double Pendulum", math24.net), with its A1 and A2.
-///
-/// `den` is m1 + m2 sin^2 D, and the last argument is [sin D, cos D].
+/// Returns the terms of the derivatives as they are printed in the book.
 fn page_terms(
     &Parameters { m1, m2, l1, l2, g }: &Parameters<f64>,
     [a1, a2, p1, p2]: [f64; 4],
@@ -22,10 +16,8 @@ fn page_terms(
     let w1 = [p1 * l2, -p2 * l1 * cos_d, 0.0].map(|term| term / (l1 * l1 * l2 * den));
     let w2 = [p2 * (m1 + m2) * l1, -p1 * m2 * l2 * cos_d, 0.0]
         .map(|term| term / (m2 * l1 * l2 * l2 * den));
-    // The book's A1.
     let term_a1 = p1 * p2 * sin_d / (l1 * l2 * den);
 
-    // The book's A2.
     let bracket = p1 * p1 * m2 * l2 * l2 - 2.0 * p1 * p2 * m2 * l1 * l2 * cos_d
         + p2 * p2 * (m1 + m2) * l1 * l1;
     let sin_2d = 2.0 * sin_d * cos_d;
@@ -42,10 +34,7 @@ fn largest(terms: &[f64]) -> f64 {
         .fold(0.0, |largest: f64, term| largest.max(term.abs()))
 }
 
-/// Compares the derivatives with the book's terms, relative to the largest term.
-///
-/// This scale also covers cancellation within a term: in the bracket of A2, and in sin D = sin a1
-/// cos a2 - cos a1 sin a2 and the same formula of cos D.
+/// The scale also covers cancellation within a term: in the bracket of A2, and in sin D and cos D.
 fn derivatives_are_the_pages<R: Real>() {
     for (pendulum, state) in random::pendulums::<R>(1, STATES) {
         let parameters = pendulum.parameters().cast::<f64>();
@@ -84,13 +73,9 @@ fn derivatives_are_those_of_the_book_in_either_precision() {
     derivatives_are_the_pages::<f64>();
 }
 
-/// The tolerance of the gradient of H by central differences with a step of 2^-17 in the angles,
-/// relative to the energies that are subtracted.
-///
-/// The truncation error is 1e-11. The rounding error is 1e-16 / 2^-17 = 1e-11. The factor is the
-/// curvature of 1/den for masses 100 : 1.
+/// Relative to the energies that are subtracted. The truncation error is 1e-11, the rounding error
+/// 1e-16/[`STEP`] = 1e-11; the rest is the curvature of 1/den for masses 100 : 1.
 const GRADIENT: f64 = 1e-7;
-/// The step of the differences in the angles, rad.
 const STEP: f64 = 1.0 / 131_072.0;
 
 /// H is quadratic in the momenta, so that a central difference in the momenta is exact for any

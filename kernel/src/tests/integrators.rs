@@ -1,8 +1,7 @@
-//! The order conditions of every integrator (`[Hairer I]`, II.2). A failure names the condition
-//! that does not hold, and the weight that is wrong.
+//! The order conditions of every integrator (`[Hairer I]`, II.2).
 //!
-//! The weights are read off from a step: it is computed for equations whose slopes at the stages
-//! are unit vectors, so that the points and the end of the step show each weight by itself.
+//! The weights are read off from a step for equations whose slopes at the stages are unit vectors,
+//! so that the points and the end of the step show each weight by itself.
 
 use core::any::type_name;
 use core::cell::Cell;
@@ -14,14 +13,12 @@ use std::vec::Vec;
 use double_pendulum::parts::{Rk4, RungeKutta};
 use double_pendulum::{Extrapolation, Integrator, Method};
 
-/// The number of equations: more than the 65 stages of extrapolation of order 16.
+/// More than the 65 stages of extrapolation of order 16.
 const N: usize = 72;
 
-/// The length of the step that reveals the weights.
 const DT: f64 = 0.5;
 
-/// The largest rounding error of a condition. The weights of extrapolation are as large as 6, and
-/// cancel.
+/// The weights of extrapolation are as large as 6, and cancel.
 const ROUNDING: f64 = 1e-12;
 
 /// The weights of an explicit method, in the notation of the book.
@@ -33,7 +30,6 @@ struct Tableau {
     b: Vec<f64>,
 }
 
-/// A weight of a tableau. Indices begin at 1, as in the book.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Weight {
     A(usize, usize),
@@ -54,7 +50,6 @@ impl Tableau {
         };
         let end = weights(&step(&slopes, &start));
 
-        // A component that no slope changes stays as it was.
         let a = points.take();
         let stages = a.len();
         assert!(end[stages..].iter().all(|rest| *rest == 0.0));
@@ -73,17 +68,15 @@ impl Tableau {
         self.a.iter().map(row).collect()
     }
 
-    /// Returns the name, the sum and the required value of each condition up to `order`: all of
-    /// order 4 or less, and those of quadrature above.
+    /// Returns the name, the sum and the required value of each condition: all of order 4 or less,
+    /// and those of quadrature above.
     fn conditions(&self, order: u32) -> Vec<(String, f64, f64)> {
-        // The nodes c are the row sums of A.
         let one = std::vec![1.0; self.b.len()];
         let c = self.times(&one);
         let product = |x: &[f64], y: &[f64]| zip(x, y).map(|(x, y)| x * y).collect::<Vec<_>>();
         let square = product(&c, &c);
         let ac = self.times(&c);
 
-        // The other conditions of orders 3 and 4: order, name, product, and divisor of 1.
         let of_trees = [
             (3, "sum b A c", ac.clone(), 6.0),
             (4, "sum b c A c", product(&c, &ac), 8.0),
@@ -91,7 +84,6 @@ impl Tableau {
             (4, "sum b A A c", self.times(&ac), 24.0),
         ];
 
-        // The conditions of quadrature: the sum of b c^(k - 1) is 1/k.
         let of_quadrature = (1..=order).map(|order| {
             let power: Vec<_> = c.iter().map(|c| c.powi(order as i32 - 1)).collect();
             let name = format!("sum b c^{}", order - 1);
@@ -134,13 +126,11 @@ impl Tableau {
         }
     }
 
-    /// Returns the value of a weight that meets all conditions, by the method of Gauss and Newton,
-    /// from several values.
+    /// Returns the value of a weight that meets all conditions, by the method of Gauss and Newton.
     fn repaired(&self, weight: Weight, order: u32) -> Option<f64> {
         let mut trial = self.clone();
         let now = *trial.weight(weight);
 
-        // Start from the present value, then from others, until one converges.
         [now, 0.0, 0.5, 1.0, -1.0].into_iter().find_map(|start| {
             *trial.weight(weight) = start;
             for _ in 0..30 {
@@ -151,7 +141,7 @@ impl Tableau {
                     zip(trial.errors(order), &errors).map(|(next, now)| (next - now) / STEP);
                 let slopes: Vec<_> = slopes.collect();
 
-                // The step of Gauss and Newton; a weight without influence is only restored.
+                // A weight without influence is only restored.
                 let square: f64 = slopes.iter().map(|slope| slope * slope).sum();
                 let descent: f64 = zip(&slopes, &errors)
                     .map(|(slope, error)| slope * error)
@@ -162,7 +152,6 @@ impl Tableau {
         })
     }
 
-    /// Returns the condition that fails first, and each weight that would repair all of them alone.
     fn check(&self, order: u32) -> Result<(), String> {
         let mut conditions = self.conditions(order).into_iter();
         let fails = |(_, sum, value): &(String, f64, f64)| (sum - value).abs() > ROUNDING;
@@ -170,7 +159,6 @@ impl Tableau {
             return Ok(());
         };
 
-        // Look for single weights whose correction would meet all conditions.
         let mut message = format!("not of order {order}: {name} = {sum}, not {value}");
         for weight in self.weights() {
             if let Some(value) = self.repaired(weight, order) {
@@ -181,9 +169,8 @@ impl Tableau {
         Err(message)
     }
 
-    /// Returns the growth factor of an oscillation of frequency w in a step of phase w dt.
+    /// Returns the growth factor of an oscillation.
     fn growth(&self, phase: f64) -> f64 {
-        // The slopes of z' = i w z at the stages, real and imaginary parts, with z = 1.
         let mut slopes: Vec<[f64; 2]> = Vec::new();
         let advanced = |weights: &[f64], slopes: &[[f64; 2]]| {
             let sum = |part: usize| -> f64 { zip(weights, slopes).map(|(a, k)| a * k[part]).sum() };
@@ -202,7 +189,6 @@ fn tableau<I: RungeKutta>() -> Tableau {
     Tableau::of(|f, z| I::step(f, z, DT))
 }
 
-/// Up to its `STABLE` phase no oscillation grows, and at 1.01 times that phase one does.
 fn check<I: RungeKutta>(order: u32) {
     let integrator = type_name::<I>();
     assert_eq!(I::ORDER, order, "{integrator}");
@@ -259,7 +245,6 @@ fn a_single_wrong_weight_is_named() {
             let now = *wrong.weight(weight);
             let value = *right.clone().weight(weight);
 
-            // The message must end with the right value of this weight and name no other.
             let named = format!("; {weight:?} = {now} should be {value:.9}");
             assert!(
                 error

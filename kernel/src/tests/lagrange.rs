@@ -30,7 +30,6 @@ fn all<R: Real>() {
             );
         };
 
-        // T and V of two bobs, from their positions and velocities.
         let kinetic = pendulum.kinetic_energy(&motion);
         let potential = pendulum.potential_energy([a1, a2]);
         let [bob1, bob2] = pendulum.positions([a1, a2]);
@@ -72,7 +71,6 @@ fn all<R: Real>() {
         same("w1 of (p1, p2)", back.w1, w1, speed);
         same("w2 of (p1, p2)", back.w2, w2, speed * (m1 + m2) / m2);
 
-        // A pendulum at rest has no momenta.
         assert_eq!(
             pendulum.to_state(&Motion::at_rest(a1, a2)),
             State::at_rest(a1, a2)
@@ -82,7 +80,6 @@ fn all<R: Real>() {
             Motion::at_rest(a1, a2)
         );
 
-        // The energies are H = T + V = K + min V, and w.p = 2 T.
         let above = pendulum.energy_above_rest(&state);
         let least = pendulum.least_energy();
         let unlike = (m1 + m2) * (one / m1 + one / m2);
@@ -119,7 +116,6 @@ fn all<R: Real>() {
         let p2_rate = m21 * acceleration1 + m22 * acceleration2 + m12_rate * w1;
         let magnitude =
             (m11 + m12.abs()) * acceleration1.abs() + (m22 + m12.abs()) * acceleration2.abs();
-        // The scale includes all terms before they cancel.
         let square = (w1.abs() + w2.abs()) * (w1.abs() + w2.abs());
         let scale = (magnitude + (m11 + m22) * square + force1.abs() + force2.abs()) * unlike;
         same(

@@ -1,8 +1,6 @@
 //! Tests of the equations: compared with the book, with each other and with their own symmetries.
 //!
-//! A failure names the equation that is wrong, and the size of its error. The tests are not in
-//! `kernel/tests`, because cargo runs them here together with the unit tests. If a unit test fails,
-//! cargo does not run the programs of that folder.
+//! They are not in `kernel/tests`, because cargo would not run that folder if a unit test fails.
 
 mod forms;
 mod golden;
@@ -21,7 +19,6 @@ use core::fmt::{Debug, Display};
 
 use double_pendulum::Real;
 
-/// The names of the equations, in the order of [`double_pendulum::Pendulum::derivatives`].
 const EQUATIONS: [&str; 4] = ["w1", "w2", "p1'", "p2'"];
 
 #[track_caller]

@@ -1,5 +1,4 @@
-//! Random pendulums for the property tests. The seeds are fixed, so that every run uses the same
-//! pendulums.
+//! Random pendulums with fixed seeds.
 
 use double_pendulum::{Parameters, Pendulum, Real, State};
 use fastrand::Rng;
@@ -25,8 +24,7 @@ pub fn parameters(rng: &mut Rng) -> Parameters<f64> {
     Parameters { m1, m2, l1, l2, g }
 }
 
-/// Returns a random state, rounded to `f32`: angles up to 2 pi, and momenta up to the bounds of the
-/// energy of turning over.
+/// Returns angles up to 2 pi, and momenta up to the bounds of the energy of turning over, as `f32`.
 pub fn state(rng: &mut Rng, &Parameters { m1, m2, l1, l2, g }: &Parameters<f64>) -> State<f64> {
     let energy = g * ((m1 + m2) * l1 + m2 * l2);
     let [p1, p2] = [

@@ -1,5 +1,3 @@
-//! Refused inputs: the error contains the name and the value of the parameter.
-
 use std::string::ToString;
 
 use double_pendulum::Parameter::{A1, A2, Dt, FrequencyRatio, G, L1, L2, M2, P1, P2, W1, W2};
@@ -28,7 +26,6 @@ fn linear(start: Motion<f64>) -> Result<(), Error> {
         .map(drop)
 }
 
-/// Runs a motion in `f32` with this step, s.
 fn single_step(dt: f64) -> Result<(), Error> {
     Pendulum::new(&GOOD)?
         .run::<HamiltonF32>(&State::default(), dt)
@@ -126,7 +123,6 @@ fn errors_contain_the_parameter_and_its_value() {
             periods(3, 2, [8.0, 2.0]),
             too_small(FrequencyRatio, 1.5, 2.0),
         ),
-        // At the limit bob 2 would have no mass.
         (
             periods(2, 1, [8.0, 2.0]),
             too_small(FrequencyRatio, 2.0, 2.0),
@@ -160,8 +156,7 @@ fn errors_contain_the_parameter_and_its_value() {
     assert_eq!(good, [Ok(()); 4]);
 }
 
-/// A velocity is compared by the angle that it leads to in the slow mode. An angle may also be out
-/// of range later, when both modes add up.
+/// An angle may also be out of range later, when both modes add up.
 #[test]
 fn closed_form_names_the_number_that_is_out_of_range() -> Result<(), Error> {
     let rest = Motion::default();
@@ -170,7 +165,6 @@ fn closed_form_names_the_number_that_is_out_of_range() -> Result<(), Error> {
         (Motion { a2: -1e12, ..rest }, A2),
         (Motion { w1: 1e12, ..rest }, W1),
         (Motion { w2: -1e12, ..rest }, W2),
-        // The first of equal angles is named.
         (Motion::at_rest(1e12, -1e12), A1),
         // The frequency of the slow mode is about 1.2 rad/s.
         (
@@ -233,7 +227,6 @@ fn run_names_a_step_that_takes_constants_out_of_range() -> Result<(), Error> {
     }
     let out_of_range = |parameter, value| Some(Error::OutOfRange { parameter, value });
 
-    // Too long: the error reports the limit of stability.
     for m2 in [1.0, 100.0] {
         let parameters = Parameters::equal_rods(m2, 1.0, 9.81);
         for dt in [1e20, -1e20] {
@@ -334,7 +327,6 @@ fn errors_are_printed_in_one_line() {
             },
             "g = -1.0: must be at least 0.0",
         ),
-        // A frequency ratio at the limit is refused, too.
         (
             Error::TooSmall {
                 parameter: FrequencyRatio,
@@ -343,7 +335,6 @@ fn errors_are_printed_in_one_line() {
             },
             "frequency ratio = 2.0: must exceed 2.0",
         ),
-        // A shorter step does not help a motion in closed form.
         (
             Error::Diverged {
                 parameter: P2,

@@ -1,6 +1,3 @@
-//! Refusals of a run, and its turns: a step beyond the limit of stability, a motion that has
-//! diverged, and turns that are counted on request.
-
 use core::f64::consts::{PI, TAU};
 use std::vec;
 
@@ -27,7 +24,6 @@ fn is_stable_up_to<F: Form>(phase: f64) -> Result<(), Error> {
         for dt in [0.999 * longest, -0.999 * longest] {
             pendulum.run::<F>(&start, dt)?.advance(1)?;
         }
-        // The error reports the longest step.
         for dt in [1.001 * longest, -1.001 * longest, 1e6] {
             let Err(Error::TooLarge {
                 parameter: Parameter::Dt,
@@ -45,13 +41,11 @@ fn is_stable_up_to<F: Form>(phase: f64) -> Result<(), Error> {
         }
     }
 
-    // Without gravity there is no oscillation, and no limit.
     let free = Pendulum::new(&Parameters { g: 0.0, ..EVEN })?;
     free.run::<F>(&State::at_rest(1.0, 2.0), 1e6)?.advance(2)
 }
 
-/// The limits of RK4 and of extrapolation of the orders 2, 12 and 16 are phases of the fast mode,
-/// rad.
+/// Phases of the fast mode, rad.
 #[test]
 fn run_refuses_steps_beyond_the_limit_of_stability() -> Result<(), Error> {
     let rk4 = 8.0_f64.sqrt();
@@ -87,8 +81,7 @@ fn fixed_point_accepts_the_limit_that_run_reports() -> Result<(), Error> {
     Ok(())
 }
 
-/// The step of a motion at rest without gravity is limited only by its unit of time. The longest
-/// unit is 1e150 s, so that its square is a finite `f64`.
+/// The step is limited only by the unit of time, whose square must be a finite `f64`.
 #[test]
 fn fixed64_at_rest_without_gravity_stays_at_rest_or_is_refused() -> Result<(), Error> {
     let free = Pendulum::new(&Parameters { g: 0.0, ..EVEN })?;
@@ -115,8 +108,6 @@ fn fixed64_at_rest_without_gravity_stays_at_rest_or_is_refused() -> Result<(), E
     Ok(())
 }
 
-/// Before a motion is refused, its energy H is at most 100 times the energy above rest of the
-/// start.
 fn energy_stays_within_its_bound<F: Form>() -> Result<(), Error> {
     let mut rng = Rng::with_seed(5);
     let mut symmetric = |most: f64| most * (2.0 * rng.f64() - 1.0);
@@ -175,7 +166,6 @@ fn advance_refuses_an_energy_far_above_that_of_the_start() -> Result<(), Error> 
     energy_stays_within_its_bound::<ExtrapolationF64<12>>()
 }
 
-/// The unit of momentum is so small that it is subnormal in `f32`.
 #[test]
 fn unit_of_momentum_may_be_subnormal_in_single_precision() -> Result<(), Error> {
     let pendulum = Pendulum::new(&Parameters {
@@ -194,8 +184,6 @@ fn unit_of_momentum_may_be_subnormal_in_single_precision() -> Result<(), Error> 
     Ok(())
 }
 
-/// The angles with and without counted turns differ by whole turns. The others are within half a
-/// turn, or equal if the method carries angles.
 fn counts_turns_on_request<F: Form>() -> Result<(), Error> {
     let pendulum = Pendulum::new(&Parameters { m2: 2.75, ..EVEN })?;
     let mut plain = pendulum.run::<F>(&State::at_rest(3.0, 3.0 + TAU), 1.0 / 256.0)?;
@@ -209,10 +197,8 @@ fn counts_turns_on_request<F: Form>() -> Result<(), Error> {
         counting.bits(|word| words[1].push(word));
         assert_eq!(words[0], words[1]);
 
-        // A count that begins now begins within half a turn.
         assert_eq!(plain.counting_turns().angles(), plain.angles());
 
-        // The momenta for the check of the energy nearly equal the momenta of the state.
         let motion = plain.motion();
         for (nearly, exact) in motion
             .momenta_nearly()

@@ -1,5 +1,3 @@
-//! Small oscillations: the figures of the book, and the equations of modes and motions.
-
 use core::f64::consts::{FRAC_PI_6, TAU};
 
 use double_pendulum::{
@@ -10,8 +8,7 @@ use fastrand::Rng;
 use super::random::symmetric;
 use super::{random, tolerances};
 
-/// The error of a linear motion of 0.5 rad after a whole period, rad. It is the rounding error of w
-/// t, 40 rad, in both modes.
+/// The rounding error of w t, 40 rad, in both modes.
 const PERIOD: f64 = 1e-13;
 
 /// Figures 3 to 5: mu, w1, w2, the period of the envelope (s), and the largest |a1| (degrees),
@@ -22,8 +19,8 @@ const FIGURES: [[f64; 5]; 3] = [
     [5.0, 21.211017, 4.526893, 0.376597, 27.3861],
 ];
 
-/// The book's figures in all digits, and their motions in the worked example: a1 = (pi/12)
-/// sqrt(mu/(1 + mu)) (cos w2 t - cos w1 t), a2 = (pi/12)(cos w1 t + cos w2 t).
+/// The motions are a1 = (pi/12) sqrt(mu/(1 + mu)) (cos w2 t - cos w1 t), a2 = (pi/12)(cos w1 t +
+/// cos w2 t).
 #[test]
 fn figures_3_to_5_are_those_of_the_book() {
     for [mu, w1, w2, envelope, largest_a1] in FIGURES {
@@ -98,7 +95,6 @@ fn directions_are_those_of_the_angles<R: Real>(motion: &SmallOscillations<R>, t:
     {
         let [sine, cosine] = direction.map(R::to_f64);
 
-        // The series is used only for small angles.
         let small = a.abs().min(0.6);
         assert!(
             (sine - a.sin()).abs() <= small.powi(5) / 120.0 + rounding * (1.0 + a.abs()),

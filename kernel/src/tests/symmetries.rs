@@ -19,11 +19,6 @@ fn stronger<R: Real>(State { a1, a2, p1, p2 }: State<R>, by: R) -> State<R> {
     }
 }
 
-/// The scaling laws:
-///
-/// - lengths times 4: time times 2, momenta times 8;
-/// - gravity times 4: time divided by 2, momenta times 2;
-/// - masses times 2: momenta times 2.
 fn hold<R: Real>() {
     let [two, four, eight] = [2.0, 4.0, 8.0].map(R::from_f64);
     for (pendulum, start) in random::pendulums::<R>(3, 200) {

@@ -1,5 +1,3 @@
-//! Tolerances and their reasons. The tests of the host use them, too.
-
 use double_pendulum::Real;
 
 #[derive(Clone, Copy, Debug)]
@@ -18,34 +16,25 @@ impl PerPrecision {
     }
 }
 
-/// Each derivative compared with the printed equations, relative to its largest term.
-///
-/// There are about twenty rounding errors, of 6e-8 and 1.1e-16 each. In the rates of the momenta
-/// the errors of the velocities are multiplied by the momenta, if the bobs are unlike.
+/// Relative to the largest term. There are about twenty rounding errors. In the rates of the
+/// momenta the errors of the velocities are multiplied by the momenta, if the bobs are unlike.
 pub const DERIVATIVES: PerPrecision = PerPrecision {
     single: 2e-6,
     double: 1e-13,
 };
 
 /// Numbers that two formulas give for the same input, relative to the sum of the magnitudes of the
-/// terms: energies, momenta, velocities and accelerations of a state; shares of the bounds from the
-/// energy; admissible steps; the equations of the modes; angles and directions of small
-/// oscillations.
-///
-/// There are about thirty rounding errors. The kinetic energy is divided by m1 + m2
-/// sin^2(a1 - a2), which is small for a light bob 1.
+/// terms. There are about thirty rounding errors. The kinetic energy is divided by den, which is
+/// small for a light bob 1.
 pub const FORMULAS: PerPrecision = PerPrecision {
     single: 4e-6,
     double: 8e-15,
 };
 
-/// The distance from the start of a motion run forth and back in 256 or 1024 steps: rad, and
-/// momenta relative to their bounds. It covers the truncation errors of both ways, with a margin of
-/// ten and more (measured: 6e-12).
+/// The distance from the start of a motion run forth and back: rad, and momenta relative to their
+/// bounds. It covers the truncation errors of both ways (measured: 6e-12).
 pub const RETURN: f64 = 1e-10;
 
-/// Angles of the scenes in closed form, per radian of amplitude, at any time.
-///
-/// It covers half an epsilon of the phase, which is at most pi, and some rounding errors of
+/// Per radian of amplitude. It covers half an epsilon of the phase, and some rounding errors of
 /// amplitudes and sines (measured: 3e-7).
 pub const CLOSED_FORM: f64 = 5.0 * f32::EPSILON as f64;

@@ -6,16 +6,12 @@
 
 use double_pendulum::{radians, sin_cos};
 
-/// The error of the `f32` pair on [-pi, pi] (measured: 8.56e-8).
-///
-/// Half an ulp comes from the rounding of the reduced argument, half an ulp from the last addition,
-/// and a little from the terms between.
+/// On [-pi, pi]. Half an ulp comes from the rounding of the reduced argument, half an ulp from the
+/// last addition, and a little from the terms between (measured: 8.56e-8).
 const NEAR: f64 = 9e-8;
-/// The error of the `f32` pair for |x| <= 1e4. It is the same bound with a margin, because fewer
-/// floats are tested.
+/// For |x| <= 1e4, with a margin, because fewer floats are tested.
 const FAR: f64 = 1e-7;
-/// The error of the `f64` pair, ulp: one for the reduced argument, and one for the polynomial. The
-/// error of the reference, 0.6, is subtracted.
+/// One for the reduced argument, and one for the polynomial, less the error of the reference.
 const ULPS: f64 = 2.0 - 0.6;
 
 fn error(x: f32) -> f64 {
@@ -68,7 +64,6 @@ fn own_f32_is_within_its_bound_near_multiples_of_half_pi() {
     }
 }
 
-/// Returns the next number above a positive one.
 fn next(x: f64) -> f64 {
     f64::from_bits(x.to_bits() + 1)
 }
@@ -111,7 +106,6 @@ fn quarter_turns_have_exact_directions() {
     assert!(sin_cos(next(pi)).0 < 0.0);
 }
 
-/// The expected angles are pi/180 times the degrees, rounded to nearest from 60 digits.
 #[test]
 fn degrees_become_the_nearest_radians() {
     for (degrees, expected) in [

@@ -1,4 +1,4 @@
-//! The start-up of a program without a motion. Its size is part of that of all others.
+//! A program without a motion, whose size is part of that of all others.
 #![no_std]
 #![no_main]
 

@@ -1,31 +1,25 @@
 //! The excess of a step over dt.
 
-/// The number of steps of a block. After each block the lead is compared with half a step.
-///
-/// The lengths of the directions are restored at the same interval.
+/// The number of steps after which the lengths of the directions are restored, and the lead is
+/// compared with half a step.
 pub(crate) const BLOCK: u32 = 32;
 
-/// The excess of a step over dt. It exists because the constants of the equations are rounded.
+/// The excess of a step over dt, because the constants of the equations are rounded.
 ///
-/// The steps since the start are counted in blocks of [`BLOCK`] = 32. When a motion would be half a
-/// step or more ahead of the time, the last step of a block is left out. The motion is then about
-/// half a step behind.
+/// When a motion would be half a step or more ahead of the time, the last step of a block is left
+/// out. The motion is then about half a step behind.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Lead {
-    /// The lead of each step in multiples of 2^-64 of a step.
-    ///
-    /// A wrapping product with the number of steps is the lead beyond whole steps.
+    /// The lead of each step in multiples of 2^-64 of a step. A wrapping product with the number of
+    /// steps is the lead beyond whole steps.
     each: u64,
 }
 
-/// A step in the unit of [`Lead::each`].
 const STEP: f64 = (1_u128 << 64) as f64;
 
 impl Lead {
-    /// Returns the lead of steps of length `step` instead of `dt`, both in the same unit and of the
-    /// same sign.
-    ///
-    /// A step that is shorter than `dt`, as a rounding can make it, counts as exact. The lead must
+    /// Returns the lead of steps of length `step` instead of `dt`, below 1/64 of a step. A step
+    /// that is shorter than `dt`, as a rounding can make it, counts as exact.
     /// be below 1/64 of a step, and both arguments finite and not 0; this is not checked.
     pub fn new(step: f64, dt: f64) -> Self {
         Self {
@@ -33,9 +27,8 @@ impl Lead {
         }
     }
 
-    /// Returns the number of steps to compute for the next `steps` steps, after which the count of
-    /// steps since the start is `count`: `steps`, or one less. They must not go beyond the end of a
-    /// block, and `steps` must be at least 1; neither is checked.
+    /// Returns the number of steps to compute for the next `steps` steps, within a block, after
+    /// which `count` steps have passed since the start: `steps`, or one less.
     pub fn made(self, steps: u32, count: u64) -> u32 {
         if count as u32 % BLOCK == 0 {
             steps - u32::from(self.is_left_out(count))
@@ -45,17 +38,14 @@ impl Lead {
     }
 
     /// Returns true if the last step of the block that ends at `count` steps since the start is
-    /// left out, because the lead reached half a step within the block. `count` must be a multiple
-    /// of 32, which is not checked; 0 gives false.
+    /// left out.
     pub fn is_left_out(self, count: u64) -> bool {
         let after = count.wrapping_mul(self.each) as i64;
         after < i64::MIN + (self.each * u64::from(BLOCK)) as i64
     }
 
-    /// Returns the motion's lead over the exact time at `count` steps since the start, in steps of
-    /// the motion, whatever the sign of dt. It is negative if the motion is behind. Its magnitude
-    /// is at most half a step, plus the lead of one block of 32 steps, below 1e-4 of a step in
-    /// `f32`.
+    /// Returns the motion's lead over the exact time at `count` steps since the start, in steps;
+    /// negative if the motion is behind. It is at most half a step, plus the lead of one block.
     pub fn ahead(self, count: u64) -> f64 {
         let within = count % u64::from(BLOCK);
         let before = (count - within).wrapping_mul(self.each) as i64;
@@ -67,9 +57,8 @@ impl Lead {
 mod tests {
     use super::*;
 
-    /// Adds up the steps that a method computes, for steps that are too long by up to 1 %, in calls
-    /// of 1 to 7 steps. The lead must be that sum less the time, at most half a step and the lead
-    /// of one block. Steps must be left out for the three largest excesses only.
+    /// The steps are too long by up to 1 %, in calls of 1 to 7 steps. The lead must be their sum
+    /// less the time, and steps must be left out for the three largest excesses only.
     #[test]
     fn motion_is_at_most_half_a_step_ahead() {
         for longer in [-f64::EPSILON, 0.0, 1e-16, 1.9e-6, 3e-4, 0.01] {
@@ -78,12 +67,10 @@ mod tests {
             let mut count = 0_u64;
             let mut made = 0_u64;
             for call in 0..200_000_u32 {
-                // A call must not cross the end of a block.
                 let steps = (call % 7 + 1).min(BLOCK - count as u32 % BLOCK);
                 count += u64::from(steps);
                 made += u64::from(lead.made(steps, count));
 
-                // Compare the lead with its definition, in steps.
                 let ahead = (made as f64 * step - count as f64) / step;
                 assert!(
                     (ahead - lead.ahead(count)).abs() < 1e-9,
@@ -100,9 +87,8 @@ mod tests {
         }
     }
 
-    /// The last step of a block is left out when the lead reaches half a step, and not again until
-    /// it has grown by another step. Steps that are too long by 1/128 reach half a step after 64
-    /// steps, and one and a half after 192.
+    /// Steps that are too long by 1/128 reach half a step after 64 steps, and one and a half after
+    /// 192.
     #[test]
     fn one_step_is_left_out_for_each_step_of_lead() {
         let lead = Lead::new(1.0, 127.0 / 128.0);

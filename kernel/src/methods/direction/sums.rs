@@ -6,10 +6,6 @@ use crate::numbers::Real;
 use crate::pendulum::State;
 
 /// Returns the six quantities of a motion at its start, and the part that rounding to `R` loses.
-///
-/// # Errors
-///
-/// Refuses a start that is not finite, or whose scaled momenta are out of the range of `R`.
 pub(crate) fn start<R: Real>(
     coefficients: &Coefficients<R>,
     scale: &Scale,
@@ -23,24 +19,21 @@ pub(crate) fn start<R: Real>(
     Ok([exact.map(R::from_f64), lost])
 }
 
-/// The six quantities of a motion. If `COMPENSATED`, the rounding error of each addition is carried
-/// into the next.
+/// The six quantities of a motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Sums<R, const COMPENSATED: bool> {
-    /// sin a1, cos a1, S, C, P1 and P2.
     pub z: [R; 6],
-    /// The rounding errors of the last addition to `z`; zero if not `COMPENSATED`.
+    /// The rounding errors of the last addition to `z`, carried into the next; zero if not
+    /// `COMPENSATED`.
     pub lost: [R; 6],
 }
 
 impl<R: Real, const COMPENSATED: bool> Sums<R, COMPENSATED> {
-    /// The sums before there is a start.
     pub const ZERO: Self = Self {
         z: [R::ZERO; 6],
         lost: [R::ZERO; 6],
     };
 
-    /// Returns the sums at a start, which [`start`] may refuse.
     pub fn at(
         coefficients: &Coefficients<R>,
         scale: &Scale,
@@ -53,13 +46,11 @@ impl<R: Real, const COMPENSATED: bool> Sums<R, COMPENSATED> {
         })
     }
 
-    /// Refuses numbers that are not finite. `momenta` are p1 and p2 in SI units.
     pub fn check(&self, coefficients: &Coefficients<R>, momenta: [R; 2]) -> Result<(), Error> {
         let [sin1, cos1, s, c, ..] = self.z;
         let [_, [sin2, cos2]] = directions(&self.z, coefficients.norm);
         let [p1, p2] = momenta;
 
-        // An error names the coordinate that the quantity belongs to.
         let numbers = [
             (Parameter::A1, sin1),
             (Parameter::A1, cos1),
@@ -73,7 +64,6 @@ impl<R: Real, const COMPENSATED: bool> Sums<R, COMPENSATED> {
         check_finite(numbers).map_err(Error::diverged)
     }
 
-    /// Returns (sin, cos) of both rods as words whose highest bit is the sign.
     pub fn sides(&self) -> [[i32; 2]; 2] {
         let [sin1, cos1, s, c, ..] = self.z;
         let sin2 = sin1 * c - cos1 * s;
@@ -81,7 +71,6 @@ impl<R: Real, const COMPENSATED: bool> Sums<R, COMPENSATED> {
         [[sin1.side(), cos1.side()], [sin2.side(), cos2.side()]]
     }
 
-    /// Adds `increment` to quantity `i`.
     pub fn add(&mut self, i: usize, increment: R) {
         if COMPENSATED {
             let wanted = increment + self.lost[i];
@@ -93,7 +82,7 @@ impl<R: Real, const COMPENSATED: bool> Sums<R, COMPENSATED> {
         }
     }
 
-    /// Restores sin^2 a1 + cos^2 a1 = 1 and S^2 + C^2 = nu^2, to first order in the error.
+    /// Restores the lengths to first order in the error.
     pub fn restore_lengths(&mut self, coefficients: &Coefficients<R>) {
         let pairs = [
             (0, R::ONE, R::HALF),

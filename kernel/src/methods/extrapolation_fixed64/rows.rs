@@ -14,53 +14,41 @@ pub(super) const EIGHTH: f64 = 0.125;
 /// The least common multiple of all n/2: the share 2/n of the step is a whole number of parts.
 const PARTS: i64 = 840;
 
-/// The format of [`Row::share`]: the value of one unit of time.
 const SHARE: f64 = (1 << 27) as f64;
 
 /// Rows with a smaller weight than this do not compensate for the roundings of other rows.
 const LEAST: f64 = 0.01;
 
 /// Returns the longest unit of time, s, up to `longest` s, such that a step of `dt` s is a whole
-/// multiple of 840 2^-27 units: a whole number of [`PARTS`] in the format [`SHARE`]. It has the
-/// sign of `dt`.
-///
-/// `longest` must be positive and finite, and `dt` finite and not 0; this is not checked.
+/// number of [`PARTS`] in the format [`SHARE`].
 pub(super) fn unit_of_time(longest: f64, dt: f64) -> f64 {
     let unit = dt * SHARE / PARTS as f64;
     unit / libm::ceil(libm::fabs(unit) / longest)
 }
 
-/// The constants of all rows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Rows {
-    /// The number of rows.
     count: usize,
-    /// The share 2/n of the step of each row.
     shares: [Factor; ROWS],
-    /// The weight w(n) of each row.
     weights: [Factor; ROWS],
     shifts: Shifts,
-    /// An eighth of nu/sigma ([`Scaling`]).
+    /// An eighth of nu/sigma ([`Scaling::norm`]).
     norm: Q64,
     /// A 64th of m, divided by 2^[`Shifts::inverse`].
     inertia: Q64,
     rows: [Row; ROWS],
 }
 
-/// The step of one row.
-///
-/// The constants are rounded so that each row compensates for the rounding of the rows before it,
-/// and the whole step loses next to nothing. Where rates are high, gravity has few digits.
+/// The step of one row. Its constants are rounded so that each row compensates for the rounding of
+/// the rows before it. Where rates are high, gravity has few digits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Row {
     /// The share 2/n of the step, in 2^-27 units of time.
     share: i32,
-    /// G1 and G2 times that share.
     gravity: [Q64; 2],
 }
 
-/// A factor of any size, as a whole number and the rest. The weights reach 51, which no [`Q64`]
-/// holds.
+/// A factor of any size; the weights reach 51, which no [`Q64`] holds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Factor {
     whole: i32,
@@ -68,13 +56,11 @@ struct Factor {
 }
 
 impl Factor {
-    /// The factor 0.
     const ZERO: Self = Self {
         whole: 0,
         rest: Q64(0),
     };
 
-    /// Returns the factor nearest to `value`, whose magnitude must be below 2^31.
     fn new(value: f64) -> Self {
         let whole = libm::floor(value + 0.5); // The rest may be -1/2, but not 1/2.
         Self {
@@ -83,7 +69,6 @@ impl Factor {
         }
     }
 
-    /// Returns the product with `number`, rounded down. It wraps if it does not fit.
     #[inline(always)] // `slope`, `times`, `restored`: +10 % cycles on an M3 without.
     fn times(&self, number: Q64) -> Q64 {
         let product = number * self.rest;
@@ -96,13 +81,8 @@ impl Factor {
 }
 
 impl Rows {
-    /// Prepares steps of `dt` s of the order `order`. Refuses an order that is not 2, 4 .. 16, by
-    /// [`Error::OutOfRange`].
-    ///
-    /// The unit of time of `scaling` must be one that [`unit_of_time`] returned for the same `dt`:
-    /// a step is then a whole multiple of 840 2^-27 units. It must be at most 15 units, and no
-    /// torque of gravity above 1/256. `dt` must be finite and not 0, negative if time runs
-    /// backwards. None of this is checked.
+    /// Prepares steps of `dt` s of the order `order`, which it may refuse. The unit of time of
+    /// `scaling` must be one that [`unit_of_time`] returned for the same `dt`.
     pub fn new(order: u32, scaling: &Scaling, dt: f64) -> Result<Self, Error> {
         let count = rows(order)?;
         let mut shares = [Factor::ZERO; ROWS];
@@ -114,7 +94,6 @@ impl Rows {
             }
         }
 
-        // The constants of each row, the longest row first.
         let shifts = scaling.shifts;
         let [gravity1, gravity2] = scaling.gravity;
         let step = dt / scaling.time;
@@ -154,8 +133,6 @@ impl Rows {
         })
     }
 
-    /// Returns the length of (S, C) as it is stored: an eighth of nu/sigma ([`Scaling::norm`]).
-    /// Here sigma is the power of two that leaves nu/sigma above 1/2 and at most 1.
     pub fn norm(&self) -> Q64 {
         self.norm
     }
@@ -164,25 +141,21 @@ impl Rows {
     /// of each other quantity. A negative amount is a gain.
     ///
     /// Every quantity loses one half in each weighted difference of two rows. P1 also gains one
-    /// half in each torque of gravity on rod 1, times the weight of that torque in the step,
-    /// because the torque is rounded down and then subtracted. All other products are moved to the
-    /// middle of the values that they may have had.
+    /// half in each torque of gravity on rod 1, which is rounded down and then subtracted. All
+    /// other products are moved to the middle of the values that they may have had.
     pub fn rounded_down(&self) -> [i16; 2] {
         let differences = self.count as i16 - 1;
         let slopes: f64 = (0..self.count).map(|row| slopes(row, self.count)).sum();
         [differences - nearest(slopes) as i16, differences]
     }
 
-    /// Returns the end of a step from `z`. The order of both is sin a1, cos a1, S, C, P1, P2. The
-    /// first four are stored as an eighth: (sin a1, cos a1) of length 1, and (S, C) = nu/sigma
-    /// (sin D, cos D), where D = a1 - a2. P1 and P2 are whole, in the unit of the [`Scaling`].
+    /// Returns the end of a step from `z`: sin a1, cos a1, S and C as eighths, P1, P2.
     ///
     /// Makes `reach` nonzero if a quantity at `z` or within the step exceeds its largest magnitude
-    /// by a factor of 2 or more; the end is then meaningless. It clears no bits, and does not check
-    /// the end itself.
+    /// by a factor of 2 or more; the end is then meaningless.
     ///
     /// Compiled for three kinds of pendulum, because shifts by constants are cheaper: without
-    /// shifts ([`Shifts::NONE`]), with a shift of r only (a heavier bob 2), and all others.
+    /// shifts, with a shift of r only (a heavier bob 2), and all others.
     pub fn end(&self, z: &[Q64; 6], reach: &Cell<u32>) -> [Q64; 6] {
         match self.shifts {
             Shifts::NONE => self.end_in::<false, false>(z, reach),
@@ -196,8 +169,6 @@ impl Rows {
         }
     }
 
-    /// Returns the [`end`](Self::end) of a step from `origin`, for one kind of pendulum
-    /// ([`Equations`]).
     #[inline(never)] // Inlined, each order would have a copy.
     fn end_in<const UNLIKE: bool, const INVERSE: bool>(
         &self,
@@ -210,7 +181,6 @@ impl Rows {
         let mut sum = *origin;
         let mut reference = *origin;
         for row in (0..self.count).rev() {
-            // The midpoints of the row: the one before the last, and the last.
             let constants = &self.rows[row % ROWS];
             let share = &self.shares[row % ROWS];
             let mut even = *origin;
@@ -231,7 +201,7 @@ impl Rows {
             }
 
             // All weights sum to 1, so that the small differences from the first end can be
-            // weighted instead of the ends themselves.
+            // weighted.
             if row + 1 == self.count {
                 sum = *last;
                 reference = *last;
@@ -253,19 +223,16 @@ fn slopes(row: usize, rows: usize) -> f64 {
 
 /// The equations of motion.
 ///
-/// Products of fractions have other units than the quantities that they add to: directions are
-/// stored as eighths, u and v over the share of the step as quarters, r as a quarter. The
-/// [`Shifts`] of the pendulum come on top: that of r if `INVERSE`, and the others if `UNLIKE`.
-///
-/// Each product that is shifted up is checked before, so that neither the shift nor the sum that
-/// follows can overflow.
+/// Directions are stored as eighths, u and v over the share of the step as quarters, r as a
+/// quarter. The [`Shifts`] of the pendulum come on top: that of r if `INVERSE`, and the others if
+/// `UNLIKE`. Each product that is shifted up is checked before, so that neither the shift nor the
+/// sum that follows can overflow.
 struct Equations<'a, const UNLIKE: bool, const INVERSE: bool> {
     rows: &'a Rows,
     reach: &'a Cell<u32>,
 }
 
 impl<const UNLIKE: bool, const INVERSE: bool> Equations<'_, UNLIKE, INVERSE> {
-    /// Returns the changes of the six quantities at `z` over the share of the step of `row`.
     #[inline(always)] // `slope`, `times`, `restored`: +10 % cycles on an M3 without.
     fn slope(&self, row: &Row, z: &[Q64; 6]) -> [Q64; 6] {
         // Sines and cosines are below 2, momenta below 1/4.
@@ -318,7 +285,6 @@ impl<const UNLIKE: bool, const INVERSE: bool> Equations<'_, UNLIKE, INVERSE> {
         ]
     }
 
-    /// Returns r = 1/(m + S^2), where `square` is S^2.
     fn inverse(&self, square: Q64) -> Q64 {
         let shifts = &self.rows.shifts;
         let denominator = self.rows.inertia + self.down(square, shifts.momentum);
@@ -334,17 +300,14 @@ impl<const UNLIKE: bool, const INVERSE: bool> Equations<'_, UNLIKE, INVERSE> {
         }
     }
 
-    /// Records in `reach` whether the magnitude of `number` is 2^-`places` or more.
     fn guard(&self, number: Q64, places: u32) {
         self.reach.set(self.reach.get() | number.reach(places));
     }
 
-    /// Returns `number` times 2^-`by` if `UNLIKE`, otherwise `number`, because `by` is 0.
     fn down(&self, number: Q64, by: u32) -> Q64 {
         if UNLIKE { number.down(by) } else { number }
     }
 
-    /// Returns `number` times 2^`by`, and records whether that is 2^-`places` or more.
     fn up(&self, number: Q64, by: u32, places: u32) -> Q64 {
         self.guard(number, by + places);
         number.up(by)
@@ -358,8 +321,7 @@ mod tests {
     use crate::methods::Fixed64;
     use crate::pendulum::{Motion, Parameters, Pendulum};
 
-    /// Returns true if a step from `z`, in the format of [`Rows::end`], reports that a quantity
-    /// left its range. Rods and masses are equal.
+    /// Returns true if a step from `z` reports that a quantity left its range.
     fn leaves(z: [f64; 6]) -> Result<bool, Error> {
         let parameters = Parameters::equal_rods(1.0, 1.0, 9.81);
         let dt = 1.0 / 64.0;
@@ -372,8 +334,6 @@ mod tests {
         Ok(reach.get() != 0)
     }
 
-    /// A state in range is not reported. Each of the six quantities alone beyond 1/4, and u and C
-    /// P2 beyond their limits, is.
     #[test]
     fn each_quantity_out_of_range_is_reported() -> Result<(), Error> {
         assert!(!leaves([0.0, 0.125, 0.0, 0.125, 0.1, 0.1])?);
@@ -391,13 +351,12 @@ mod tests {
         }
         // Each momentum is in range, but u is not.
         assert!(leaves([0.0, 0.125, 0.0, 0.125, 0.24, -0.24])?);
-        // C P2 is out of range.
         assert!(leaves([0.0, 0.125, 0.0, 0.24, 0.24, 0.2])?);
         Ok(())
     }
 
-    /// A swing of 2 s does not diverge. The stored number of v is 32 times the rate of a2 here, so
-    /// that only its change over a step is in range.
+    /// The stored number of v is 32 times the rate of a2 here, so that only its change over a step
+    /// is in range.
     #[test]
     fn light_bob_on_long_rod_stays_in_range() -> Result<(), Error> {
         let parameters = Parameters {

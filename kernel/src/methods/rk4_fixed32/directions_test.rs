@@ -1,5 +1,3 @@
-//! A test of the integer directions, [`Fixed32::q30`].
-
 use core::f64::consts::PI;
 
 use super::{Fixed32, Units};
@@ -9,8 +7,7 @@ use crate::numbers::fixed::scaled;
 use crate::pendulum::{Parameters, Pendulum, State};
 use fastrand::Rng;
 
-/// Returns the largest errors of rod 1 and of rod 2 in [`Fixed32::q30`], in units of 2^-30, of
-/// random motions with l1/l2 from `low` to `high`.
+/// Returns the largest errors of rod 1 and of rod 2, in units of 2^-30.
 fn largest_errors(rng: &mut Rng, low: f64, high: f64) -> Result<[f64; 2], Error> {
     let mut largest: [f64; 2] = [0.0; 2];
     for _ in 0..200 {
@@ -43,8 +40,7 @@ fn largest_errors(rng: &mut Rng, low: f64, high: f64) -> Result<[f64; 2], Error>
     Ok(largest)
 }
 
-/// The bound is 1 unit for rod 1. For rod 2 it is 10 units if the rods are equal, and 25 for any
-/// rods. The errors are largest for l1/l2 slightly above 1/2.
+/// The errors are largest for l1/l2 slightly above 1/2.
 #[test]
 fn integer_directions_are_within_their_documented_bounds() -> Result<(), Error> {
     let mut rng = Rng::with_seed(6);

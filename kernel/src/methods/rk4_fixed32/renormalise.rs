@@ -6,12 +6,10 @@ use crate::numbers::fixed::product;
 
 pub(super) const RENORMALISE_EVERY: u32 = 32;
 
-/// The largest tolerated error of a squared length, with 60 fractional bits.
+/// With 60 fractional bits.
 const LENGTH_ERROR: u64 = 1 << 51;
 
 impl Fixed32 {
-    /// Corrects what 32 steps have accumulated, and marks the motion as lost if a length is far off
-    /// or if the energy exceeds [`Units::most_energy`](super::Units).
     #[inline(never)] // Maps of flips take 57 instead of 53 % of a frame on an M0+ without.
     pub(super) fn renormalise(&mut self) {
         self.restore_lengths();
@@ -19,7 +17,7 @@ impl Fixed32 {
         self.lost |= self.energy() > self.units.most_energy;
     }
 
-    /// Restores sin^2 a1 + cos^2 a1 = 1 and S^2 + C^2 = nu^2, to first order in the error.
+    /// Restores the lengths to first order in the error.
     fn restore_lengths(&mut self) {
         let units = &self.units;
         let directions = [
@@ -55,12 +53,11 @@ impl Fixed32 {
         self.z[5] -= product(missed2, nu_sin2.0) >> 28;
     }
 
-    /// Returns the energy above rest, ((P1 - C P2)^2 r + P2^2)/2 + G1 (1 - cos a1) +
-    /// G2 nu (1 - cos a2).
+    /// Returns the energy above rest, ((P1 - C P2)^2 r + P2^2)/2 + G1 (1 - cos a1) + G2 nu (1 - cos
+    /// a2).
     ///
-    /// It has 60 fractional bits, less the difference in bits between the units of momenta and
-    /// rates. With the [`Shifts`](crate::methods::scaling::Shifts) of the motion, its unit is
-    /// 2^(momentum + upper - lower - 60) m2 l2^2/T^2, J.
+    /// It has 60 fractional bits: its unit is 2^(momentum + upper - lower - 60) m2 l2^2/T^2, J,
+    /// with the [`Shifts`](crate::methods::scaling::Shifts) of the motion.
     pub(super) fn energy(&self) -> i64 {
         let z = self.words();
         let shifts = self.units.scaling.shifts;

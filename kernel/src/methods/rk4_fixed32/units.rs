@@ -3,7 +3,7 @@
 //! [`Units::new`] chooses a unit of time T from the energy of the motion, such that every quantity
 //! fits its format and, unless the steps are very short, none is needlessly small. For unlike rods
 //! or masses some quantities also get a power of two of their own
-//! ([`Shifts`](crate::methods::scaling::Shifts)); for about equal ones all these shifts are 0.
+//! ([`Shifts`](crate::methods::scaling::Shifts)).
 //!
 //! Half a step is 3 2^-n T, where n is [`Units::halvings`]. A sixth of a step is then a power of
 //! two times T, and the weights of RK4 are exact shifts.
@@ -37,41 +37,30 @@ const LONGEST_STEP_AT_ELBOW: f64 = 0.5;
 
 pub const MOST_HALVINGS: u32 = 12;
 
-/// The constants that all steps of one motion share, without dimension, in the units of
-/// [`Scaling`]: nu and m are divided by its powers of two, here in every constant.
+/// The constants that all steps of one motion share, in the units of [`Scaling`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Units {
-    /// nu, from 1/2 to 1.
     pub norm: Q30,
-    /// m, from 1 to 2.
     pub inertia: Q30,
-    /// G1 and G2.
     pub gravity: [Gravity; 2],
     /// -G1 and -G2, for the stages that run backwards in time.
     pub reversed_gravity: [Gravity; 2],
-    /// The number n such that half a step is 3 2^-n T; from 3 to 12.
     pub halvings: u32,
     /// The decrease of P1 and of P2 in 32 steps that the rounding of G1 and G2 leaves out, with 60
-    /// fractional bits: that of P1 for sin a1 = 1, that of P2 for nu sin a2 = 1. Negative if the
-    /// rounded G is too large.
+    /// fractional bits: for sin a1 = 1, and for nu sin a2 = 1.
     pub missed: [i32; 2],
     /// nu^2 with 60 fractional bits.
     pub square: i64,
     /// 1/nu^2 with 29 fractional bits.
     pub inverse_square: i64,
-    /// The energy above rest beyond which the motion is lost, in the format of `Fixed32::energy`:
-    /// 60 fractional bits, less the shifts of momenta and rates. It is 9/8 of the energy at the
-    /// start, plus an allowance for rounding.
+    /// The energy above rest beyond which the motion is lost, in the format of `Fixed32::energy`.
     pub most_energy: i64,
-    /// The units of momenta and time, and the unrounded constants.
     pub scaling: Scaling,
 }
 
 impl Units {
     /// Chooses the units for a motion with `energy` joules above rest and steps of `dt` seconds.
-    ///
-    /// T is at most 4096/6 steps long. Steps so short that the energy would allow a longer T are
-    /// accepted, too, but the numbers then lose digits.
+    /// Very short steps are accepted, too, but the numbers then lose digits.
     pub fn new(parameters: &Parameters<f64>, energy: f64, dt: f64) -> Result<Self, Error> {
         let &Parameters { m1, m2, .. } = parameters;
         let seconds = Scaling::in_seconds(parameters)?;
@@ -108,7 +97,6 @@ impl Units {
             });
         }
 
-        // In this unit of time a sixth of a step is 2^-halvings.
         let halvings = libm::fmin(fit, f64::from(MOST_HALVINGS)) as u32;
         let scaling = seconds.in_unit(scaled(sixth, halvings as i32));
         let gravity = scaling.gravity.map(Gravity::from_f64);

@@ -4,9 +4,7 @@ use core::ops::{Add, Sub};
 
 use crate::numbers::fixed::{Q30, Slope, Torque};
 
-/// One number for each of the six quantities: `D` for those of directions, `M` for momenta, in the
-/// units of the motion ([`Scaling`](crate::methods::scaling::Scaling)), which also divide nu by a
-/// power of two.
+/// One number for each of the six quantities: `D` for those of directions, `M` for momenta.
 #[derive(Clone, Copy)]
 pub struct Quantities<D, M> {
     pub sin1: D,
@@ -17,10 +15,8 @@ pub struct Quantities<D, M> {
     pub p2: M,
 }
 
-/// The state is rounded to the nearest words.
 pub type Words = Quantities<Q30, Q30>;
 
-/// The rates of change of the quantities, per unit of time T.
 pub type Rates = Quantities<Slope, Torque>;
 
 impl Words {

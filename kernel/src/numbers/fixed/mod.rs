@@ -37,20 +37,18 @@ pub(crate) use q30::watch;
 pub(crate) use q30::{Gravity, Q30, Slope, Torque, word};
 pub(crate) use q64::Q64;
 
-/// Returns `value` times 2^`exponent`.
 pub(crate) fn scaled(value: f64, exponent: i32) -> f64 {
     libm::scalbn(value, exponent)
 }
 
-/// Rounds to the nearest whole number, ties to even.
 #[inline(never)] // With `Q64::from_f64`: 3.9 KB more flash on an M4F without.
 pub(crate) fn nearest(value: f64) -> f64 {
     libm::rint(value)
 }
 
-/// True if the processor has no instruction for the 64-bit product of two words, such as the
-/// Cortex-M0 and M0+. They are recognised by the lack of atomic exchange. The function in the
-/// compiler's library takes twice as long as [`product_of_halves`].
+/// True if the processor, such as a Cortex-M0+, has no instruction for the 64-bit product of two
+/// words; recognised by the lack of atomic exchange. The function in the compiler's library takes
+/// twice as long as [`product_of_halves`].
 pub(crate) const IN_HALVES: bool = cfg!(all(
     target_arch = "arm",
     target_os = "none",
@@ -70,15 +68,12 @@ pub(crate) fn product(a: i32, b: i32) -> i64 {
     }
 }
 
-/// No intermediate sum overflows.
 fn product_of_halves(a: i32, b: i32) -> i64 {
-    // The lower half is without sign, the upper half has the sign.
     let halves = |word: i32| (word & 0xffff, word >> 16);
     let (a0, a1) = halves(a);
     let (b0, b1) = halves(b);
 
     let lowest = a0.wrapping_mul(b0) as u32;
-    // Each sum carries the upper half of the product below it.
     let (middle, carried) = halves(a1 * b0 + (lowest >> 16) as i32);
     let upper = a1 * b1 + carried;
     let middle = a0 * b1 + middle;

@@ -9,8 +9,6 @@ use super::{nearest, product};
 use crate::numbers::Real;
 
 fixed_point! {
-    /// A number from -1/2 to below 1/2, in multiples of 2^-64. A product needs no shift.
-    ///
     /// A sum that does not fit wraps. The caller checks the range with [`reach`](Self::reach).
     Q64(i64), wrapped(i128)
 }
@@ -19,7 +17,6 @@ fn wrapped(sum: i128) -> i64 {
     sum as i64
 }
 
-/// 2^64.
 const UNIT: f64 = 18_446_744_073_709_551_616.0;
 
 impl Q64 {
@@ -27,8 +24,7 @@ impl Q64 {
         self.over(1.0)
     }
 
-    /// Returns the number over `divisor` in the numbers `R`. It is rounded once if `divisor` is a
-    /// power of two.
+    /// Returns the number over `divisor`, rounded once if that is a power of two.
     pub fn over<R: Real>(self, divisor: f64) -> R {
         R::from_i64(self.0) * R::from_f64(1.0 / (UNIT * divisor))
     }
@@ -47,26 +43,24 @@ impl Q64 {
         Self(upper + (lower >> 32))
     }
 
-    /// Returns zero if the number is from -2^-`places` to below 2^-`places`, and another number
-    /// otherwise, so that the results of many checks can be joined by `|`. `places` is from 2 to
-    /// 32.
+    /// Returns zero if the number is from -2^-`places` to below 2^-`places`, so that the results of
+    /// many checks can be joined by `|`.
     pub fn reach(self, places: u32) -> u32 {
         (((self.0 >> 32) as u32).wrapping_add(1 << (32 - places))) >> (33 - places)
     }
 
     /// Returns 1/(4 d), where d = 2^6 `self` is from 1 to 8, with a relative error of at most
-    /// 2^-55. Outside of that range the result is meaningless.
+    /// 2^-55.
     ///
-    /// A quotient of words is improved by one step of Newton's method on words and one step of
-    /// third order, whose residue 1 - d r has 32 bits.
+    /// A quotient of words is improved by one step of Newton's method and one of third order.
     pub fn inverse(self) -> Self {
         let divisor = self.0 as u64;
         let upper = (divisor >> 32) as u32;
 
-        // A quotient of words with its error: 2^44/upper, and (1 - upper quotient 2^-44) 2^44.
+        // The quotient 2^44/upper, and its error (1 - upper quotient 2^-44) 2^44.
         let quotient = u32::MAX / (upper >> 12 | 1);
         let residue = upper.wrapping_mul(quotient).wrapping_neg() as i32;
-        // A step of Newton's method gives 2^88/divisor in a word.
+        // Newton's method gives 2^88/divisor in a word.
         let correction = ((i64::from(quotient as i32) * i64::from(residue)) >> 32) as i32;
         let word = ((quotient << 12) as i32).wrapping_add(correction);
 
@@ -108,12 +102,10 @@ impl Q64 {
         Self(self.0 >> 1)
     }
 
-    /// The product wraps if it does not fit.
     pub fn times(self, whole: i32) -> Self {
         Self(self.0.wrapping_mul(i64::from(whole)))
     }
 
-    /// Rounds to nearest, and a tie up.
     pub fn down(self, by: u32) -> Self {
         Self(self.0.wrapping_add(i64::from(1_u32 << by >> 1)) >> by)
     }
@@ -138,8 +130,7 @@ mod tests {
         for a in numbers.clone() {
             for b in numbers.clone() {
                 let exact = (i128::from(a) * i128::from(b)) as f64 / UNIT;
-                // Rounding down takes 1, and the lower words take 1/4. The `f64` of the test also
-                // rounds.
+                // Rounding down takes 1, and the lower words 1/4.
                 let error = (Q64(a) * Q64(b)).0 as f64 - exact;
                 assert!(
                     (-1.25..=0.25).contains(&error) || error.abs() < exact.abs() * 1e-15,
