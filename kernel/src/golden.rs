@@ -88,7 +88,6 @@ pub struct Bits {
 
 impl Golden {
     /// Computes the bits of this motion by the method `F`.
-    /// [`Run::advance`](crate::Run::advance).
     pub fn bits<F: Form>(&self) -> Result<Bits, Error> {
         let pendulum = Pendulum::<f64>::new(&self.parameters)?;
         let mut run = pendulum.run::<F>(&self.start, self.dt)?.counting_turns();

@@ -91,11 +91,9 @@
 //! minor versions, as is a higher least Rust version (1.85 now). Items that are hidden from the
 //! documentation may change at any time.
 //!
-//! A change of any bit of a step is a major version; a test compares them with `golden/bits.csv`.
-//! Steps use only IEEE 754 arithmetic, and the correctly rounded `sqrt` and `rint`, for angles up
-//! to 1,647,098 rad. The sines of larger angles, the `atan2` in [`Run::state`], and the `log2` that
-//! chooses the units of fixed point are computed by the `libm` crate in your lock file (0.2.16 or
-//! later).
+//! A change of any bit of a step is a major version. "Determinism scope" in the README says which
+//! results also depend on the version of `libm`. The steps use only IEEE 754 arithmetic, and the
+//! correctly rounded `sqrt` and `rint`.
 //!
 //! # References
 //!

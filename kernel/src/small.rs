@@ -24,8 +24,6 @@ pub struct Mode<R> {
 /// Here and in the methods, w1 > w2 > 0 are the angular frequencies of the fast and the slow mode,
 /// rad/s, not the angular velocities of the rods.
 ///
-/// All numbers are finite and not 0.
-///
 /// The same two numbers are the growth rates about the inverted position (pi, pi), because K
 /// changes its sign there.
 #[derive(Clone, Copy, Debug, PartialEq)]

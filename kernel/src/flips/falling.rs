@@ -36,7 +36,6 @@ impl<F: Form> Falling<F> {
     /// Computes at most `steps` steps, and returns the result once it is known: [`Flip::Later`] in
     /// the first call that would exceed the steps of `map`. `map` is the map of the start; do not
     /// call again after a result.
-    /// neither is checked. Nor is the motion: if it diverges, it may have any of these results.
     pub fn advance(&mut self, map: &Flips<F>, steps: u32) -> Option<Flip<F::Real>> {
         for _ in 0..steps {
             if self.steps >= map.steps {

@@ -42,13 +42,10 @@ use rows::{EIGHTH, Rows, unit_of_time};
 /// A motion in the direction form, stepped by extrapolation of order `ORDER`, 2, 4 .. 16, in 64-bit
 /// fixed point.
 ///
-/// The method accepts any start of finite energy, rods with l1/l2 from 1/4096 to 4096, and masses
-/// with m1/m2 from 1/1024 to 4096. It refuses ratios far beyond these by [`Error::OutOfRange`], and
-/// by [`Error::TooLarge`] a step in which the elbow could turn by more than 1.5 rad, or often a
-/// shorter one.
-///
-/// Directions, angles and the energy are returned in `f32`, the state in `f64`. Angles are within
-/// [-pi, pi]; [`Run`](crate::Run) counts the turns on request.
+/// The method accepts the starts, masses and rods that [`Fixed32`](crate::Fixed32) accepts. It
+/// refuses by [`Error::TooLarge`] a step in which the elbow could turn by more than 1.5 rad, or
+/// often a shorter one. Directions, angles and the energy are returned in `f32`, the state in
+/// `f64`. Angles are within [-pi, pi].
 ///
 /// An order that is not 2, 4 .. 16 does not compile:
 ///

@@ -14,8 +14,8 @@ use crate::pendulum::{Direction, Parameters, Pendulum, State};
 ///
 /// The methods that carry directions do not know how often a rod has turned over. Their angles are
 /// in [-pi, pi], unless the turns are counted: [`counting_turns`] returns a `Run<F, true>`, which
-/// observes the directions after every step. By [`DirectionF32`](crate::DirectionF32) on a
-/// Cortex-M4F this takes 180 cycles, nearly as much as the step itself. A drawing needs no turns.
+/// observes the directions after every step. On a Cortex-M4F this nearly
+/// doubles the cost of a step. A drawing needs no turns.
 ///
 /// [`HamiltonF32`](crate::HamiltonF32), [`HamiltonF64`](crate::HamiltonF64) and the closed form
 /// carry angles, which always include whole turns.

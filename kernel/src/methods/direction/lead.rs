@@ -20,7 +20,6 @@ const STEP: f64 = (1_u128 << 64) as f64;
 impl Lead {
     /// Returns the lead of steps of length `step` instead of `dt`, below 1/64 of a step. A step
     /// that is shorter than `dt`, as a rounding can make it, counts as exact.
-    /// be below 1/64 of a step, and both arguments finite and not 0; this is not checked.
     pub fn new(step: f64, dt: f64) -> Self {
         Self {
             each: ((step - dt) / step * STEP) as u64,
