@@ -126,6 +126,8 @@ impl Settings {
         motion.check()?;
         let state = pendulum.to_state(&motion);
         state.check()?;
+        // A frame reports it in `f32`.
+        state.cast::<f32>().check()?;
         Ok((pendulum, state))
     }
 
