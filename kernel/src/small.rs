@@ -73,6 +73,7 @@ impl<R: Real> Modes<R> {
 
         let fast = (g * total * (sum + root) / (R::TWO * m1 * l1 * l2)).sqrt();
         let slow = (R::TWO * g / (sum + root)).sqrt();
+        // The shapes without the sum that would cancel.
         let reach = root + difference.abs();
         let short = R::TWO * l1 / reach;
         let long = total * reach / (R::TWO * m2 * l2);

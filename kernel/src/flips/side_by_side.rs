@@ -94,6 +94,7 @@ impl Flips<DirectionF32Plain> {
     ) {
         let mut before: [LaneDirections<N>; ROWS] = from_fn(|row| motions.rods(row));
         for step in 0..BLOCK {
+            // Keep the state before the last step for the lanes that leave it out.
             let kept = (step + 1 == BLOCK).then_some(*motions);
             motions.step();
             if let Some(mut kept) = kept {
@@ -113,6 +114,7 @@ impl Flips<DirectionF32Plain> {
 
             for (row, before) in before.iter_mut().enumerate() {
                 let rods = motions.rods(row);
+                // A flip is rare, so the lanes are examined only if any has one.
                 if any_turns_over(before, &rods) {
                     for (place, lane) in lanes[row].iter_mut().enumerate() {
                         let at = |rods: &LaneDirections<N>| {

@@ -80,6 +80,7 @@ impl<const ORDER: u32> ExtrapolationF64<ORDER> {
         let mut taken = [0; LANES];
         let mut left = [1; LANES];
 
+        // The last midpoint of each lane and the one before, as changes from the start of the step.
         let mut even = [Numbers::splat(0.0); 6];
         let mut odd = even;
         let mut before = &mut even;
@@ -87,6 +88,7 @@ impl<const ORDER: u32> ExtrapolationF64<ORDER> {
 
         let mut pace = self.pace([0; LANES]);
         while work.iter().any(|&work| work != Work::Done) {
+            // Advance all lanes until the first of them is done with its work.
             let slopes = left.iter().fold(usize::MAX, |least, &left| least.min(left));
             for _ in 0..slopes {
                 let slope = self.slope(&pace, last);
@@ -102,6 +104,7 @@ impl<const ORDER: u32> ExtrapolationF64<ORDER> {
                     continue;
                 }
 
+                // Use the result, and take the next row.
                 let end: [f64; 6] = core::array::from_fn(|i| last[i].0[lane]);
                 match work[lane] {
                     Work::FirstSlope => first = end,

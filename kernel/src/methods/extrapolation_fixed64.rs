@@ -108,6 +108,7 @@ impl Fixed64State {
         check_step::<f64>(dt)?;
         start.check()?;
 
+        // The unit of time follows from the bounds of the energy, the longest step from the unit.
         let energy = pendulum.energy_above_rest(start);
         check_energy(parameters, start, energy)?;
         let bounds = Bounds::new(parameters, energy);
@@ -167,7 +168,8 @@ impl Fixed64State {
         let reach = Cell::new(0);
         let end = self.rows.end(&self.z, &reach);
 
-        // Half of the last digit is rounded up if that digit is odd, which it is as often as not.
+        // Give back what rounding down took. Half of the last digit is rounded up if that digit is
+        // odd, which it is as often as not.
         let corrected = |z: Q64, rounded_down: i16| {
             Q64(z.0.wrapping_add((i64::from(rounded_down) + (z.0 & 1)) >> 1))
         };
@@ -175,11 +177,13 @@ impl Fixed64State {
         let [sin1, cos1, s, c, _, p2] = end.map(|z| corrected(z, of_others));
         let p1 = corrected(end[4], of_p1);
 
+        // Restore the lengths.
         let norm = self.rows.norm();
         let ([sin1, cos1], missing1) = restored([sin1, cos1], ONE, HALF);
         let ([s, c], missing2) = restored([s, c], norm * norm, self.half_inverse_square);
         self.z = [sin1, cos1, s, c, p1, p2];
 
+        // Check the range.
         let mut reach = reach.get();
         for z in &self.z {
             reach |= z.reach(2);

@@ -100,6 +100,7 @@ impl Rows {
         let share = nearest(step * SHARE) as i64;
         let whole =
             [8.0 * step * gravity1, 4.0 * step * gravity2].map(|gravity| Q64::from_f64(gravity).0);
+        // The longest row first, so that the others compensate for its roundings.
         let mut rows = [Row {
             share: 0,
             gravity: [Q64(0); 2],
