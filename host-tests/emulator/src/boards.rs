@@ -102,15 +102,18 @@ pub const LM3S6965EVB: Board = Board {
     panel: PanelName::Oled,
 };
 
+/// The same with a Cortex-M4F, which exists in QEMU only.
+pub const LM3S6965EVB_M4: Board = Board {
+    name: "lm3s6965evb-m4",
+    cpu: "cortex-m4",
+    target: "thumbv7em-none-eabihf",
+    ..LM3S6965EVB
+};
+
 /// The boards of QEMU. The first one is the default of most commands.
 pub const BOARDS: [Board; 4] = [
     LM3S6965EVB,
-    Board {
-        name: "lm3s6965evb-m4",
-        cpu: "cortex-m4",
-        target: "thumbv7em-none-eabihf",
-        ..LM3S6965EVB
-    },
+    LM3S6965EVB_M4,
     STM32F405,
     Board {
         name: "lm3s6965evb-m0",

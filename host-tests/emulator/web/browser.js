@@ -96,7 +96,7 @@ async function drag(isTouch, id, places, between = '') {
   await of('run(1)');
 }
 
-const OLED = '#scene=page&processor=m3&panel=oled';
+const OLED = '#scene=page&board=lm3s6965evb&panel=oled';
 
 async function test() {
   const { targetId } = await call('Target.createTarget', { url: 'about:blank' });
@@ -106,7 +106,7 @@ async function test() {
 
   // Every scene is its picture, pixel by pixel.
   await open(OLED);
-  const { scenes, palette, panels } = await of("JSON.parse(at('facts').textContent)");
+  const { scenes, palette, panels, drawn } = await of("JSON.parse(at('facts').textContent)");
   const colours = palette.map((colour) => Buffer.from([...colour, 255]).readUInt32LE());
   for (const { key, name } of scenes) {
     await press(key);
@@ -156,9 +156,9 @@ async function test() {
     at('${id}').dispatchEvent(new Event('change')), later()`);
   await choose('method', 3);
   await see({ stepping: '^rk4-fixed32, ' });
-  await choose('processor', 2);
-  await see({ board: 'Cortex-M4F' });
-  const kept = '#scene=page&mu=80&angle=-179&method=rk4-fixed32&speed=0.5&processor=m4f&panel=oled';
+  await choose('board', 2);
+  await see({ chip: 'Cortex-M4F' });
+  const kept = '#scene=page&mu=80&angle=-179&method=rk4-fixed32&speed=0.5&board=lm3s6965evb-m4&panel=oled';
   assert.equal(await of('later().then(() => location.hash)'), kept);
 
   // Bobs: time stops while one is held, and each turns its own rod.
@@ -168,7 +168,8 @@ async function test() {
   assert.match(await of('held'), /paused.*\|0\.00 s\|90°, 45°$/);
   await see({ caption: 'playing', time: '0.02 s' });
   await drag(true, 'panel', [[78.25 / 128, 0.5], [0.5, 0.9]]);
-  await see({ caption: 'playing', 'angle-now': '^0°, 45°$', 'mu-now': '^2.5$' });
+  await see({ caption: 'playing: .* α₁ = 0 degrees, α₂ = 45 degrees, from rest$' });
+  await see({ 'angle-now': '^0°, 45°$', 'mu-now': '^2.5$' });
   const scrolls = (x, y) => of(`{
     const { left, top, width, height } = at('panel').getBoundingClientRect();
     const place = { clientX: left + ${x} * width, clientY: top + ${y} * height };
@@ -177,20 +178,109 @@ async function test() {
   }`);
   assert.deepEqual([await scrolls(0.5, 0.72), await scrolls(0.1, 0.5)], [false, true]);
 
-  // The link restores everything. What is wrong in one is reported.
-  const other = '#scene=butterfly&m1=2&m2=3&l1=0.7&g=1.62&a1=10&a2=-20.5&w2=1&processor=m3';
+  // The link restores everything, with its words in any order.
+  const other = '#scene=butterfly&m1=2&m2=3&l1=0.7&g=1.62&a1=10&a2=-20.5&w2=1&board=stm32f405';
   for (const hash of [kept, other]) {
-    await open(hash);
-    assert.equal(await of("at('link').getAttribute('href')"), hash);
+    const reversed = hash.slice(1).split('&').reverse().join('&');
+    for (const written of [hash, `#${reversed}`]) {
+      await open(written);
+      assert.equal(await of("at('words').value"), hash);
+      await see({ said: '^$' });
+    }
   }
-  await of("location.hash = '#scene=page&mu=2.5&angle=100'; later()");
-  await see({ 'mu-now': '^2.5$', 'angle-now': '^100°$' });
-  await open('#scene=nowhere&angle=500&mu=');
-  const reasons = '^scene=nowhere: use one of page, .* mu=: write a number. .* refuses this a1\\.$';
-  await see({ scene: 'page', 'angle-now': '^120°$', said: reasons });
+  await of("location.hash = '#scene=page&angle=100&mu=3&m1=2&processor=m3'; later()");
+  await see({ 'mu-now': '^3$', 'angle-now': '^100°$', board: 'Cortex-M3' });
+  await see({ caption: '^page, playing: m₁ = 2 kg, m₂ = 6 kg, l₁ = 1 m' });
+
+  // A wrong word is named with what is allowed. The address stays until a setting changes.
+  const number = 'use a number from';
+  const wrong = [
+    ['mu=0,5', 'mu=0,5: use a number with a decimal point from 0.001 to 1000.'],
+    ['mu=', `mu=: ${number} 0.001 to 1000.`],
+    ['angle=170°', `angle=170°: ${number} -180 to 180 degrees.`],
+    ['a1=400', `a1=400: ${number} -180 to 180 degrees.`],
+    ['m1=-1', `m1=-1: ${number} 0.001 to 1000 kg.`],
+    ['l1=1e-30&l2=1e30', `l1=1e-30: ${number} 0.001 to 1000 m.\nl2=1e30: ${number} 0.001 to 1000 m.`],
+    ['w2=Infinity', `w2=Infinity: ${number} -1000 to 1000 rad/s.`],
+    ['speed=5', `speed=5: ${number} 0.01 to 4.`],
+    ['method=foo', `method=foo: use one of plan, ${drawn.map(({ name }) => name).join(', ')}.`],
+    ['scene=Page', `scene=Page: use one of ${scenes.map(({ name }) => name).join(', ')}.`],
+    ['processor=m5', 'board=m5: use one of pico, lm3s6965evb, lm3s6965evb-m4, stm32f405.'],
+    ['foo=1', 'foo: no such word; use scene, m1, mu, m2, l1, l2, g, angle, a1, a2, w1, w2, speed, '
+      + 'method, board, panel.'],
+    ['g=1&g=2', 'g=2: g is given twice.'],
+    ['m2=2&mu=3', 'mu: m2 replaced it.'],
+    ['scene=flips&a1=30', 'a1: the scene flips has no start.'],
+    ['scene=figure-7&l2=0.7', 'The numbers are ignored: figure-7 needs equal rods; set both by the '
+      + 'words of the link, such as #l1=2&l2=2.'],
+    ['scene=small-1&g=0', 'The numbers are ignored: small-1 needs a gravity g above 0 m/s².'],
+  ];
+  for (const [words, reasons] of wrong) {
+    await open(`#${words}`);
+    assert.equal(await of("at('said').textContent"), reasons);
+    assert.equal(await of('later().then(() => decodeURI(location.hash))'), `#${words}`);
+  }
+  await open('#scene=nowhere&mu=2.5');
+  await see({ scene: 'page', 'mu-now': '^2.5$' });
+  await press('ArrowRight');
+  await see({ said: '^$' });
+  assert.equal(await of('later().then(() => location.hash)'), '#scene=page&mu=2.5&angle=121');
+
+  // Every scene takes the least and the most of every number, or names what it needs.
+  for (const { name } of scenes) {
+    await open(`#scene=${name}`);
+    const refused = await of(`[...document.querySelectorAll('#fields input')].flatMap((field) => {
+      const take = (value) => {
+        field.value = value;
+        field.dispatchEvent(new Event('change'));
+        return at('said').textContent;
+      };
+      const [least, most] = take('none').match(/from (\\S+) to (\\S+)/).slice(1);
+      return [take(least), take(most), take(1)].filter((said) => said);
+    })`);
+    for (const said of refused) assert.match(said, /^No effect: .* (needs equal rods|gravity g above 0)/);
+  }
+
+  // The fields, and the words in their own field.
+  await open('');
+  const enter = (id, text) => of(`{
+    at('${id}').value = '${text}';
+    at('${id}').dispatchEvent(new Event('change'));
+  } later()`);
+  await enter('field-l2', '0.7');
+  await enter('field-w1', '-2');
+  await see({ caption: 'l₂ = 0.7 m, .* α₂ = 120 degrees, ω₁ = -2 rad/s, ω₂ = 0 rad/s$' });
+  await enter('field-l2', '-1');
+  await see({ said: '^l2=-1: use a number from 0.001 to 1000 m.$', caption: 'l₂ = 0.7 m' });
+  await enter('words', 'file:///page.html#scene=flips&m2=3');
+  await see({ scene: 'flips', caption: 'a map of all starts.*; m₁ = 1 kg, m₂ = 3 kg.* m/s²$' });
+  assert.ok(await of("at('energy-card').hidden && at('save-numbers').disabled"));
+  await enter('words', '#l1=0.001&l2=10');
+  await see({ caption: 'stopped: too fast for this chip; it needs longer rods.* l₁ = 0.001 m' });
+  await of("at('words').focus()");
+  await press('n');
+  await see({ scene: 'page' });
+
+  // The clipboard and files.
+  await open('#panel=oled');
+  await of("run(29), addEventListener('copy', () => { window.copied = `${getSelection()}`; })");
+  await drag(false, 'copy', [[0.5, 0.5]]);
+  assert.equal(await of('copied'), '#scene=page&mu=1&angle=120&panel=oled');
+  await open('#panel=oled');
+  await of('run(29)');
+  const saved = (id) => of(`new Promise((done) => {
+    URL.createObjectURL = done;
+    HTMLAnchorElement.prototype.click = () => {};
+    at('${id}').click();
+  }).then(async (blob) => ({ type: blob.type, text: await blob.text() }))`);
+  const numbers = (await saved('save-numbers')).text.split('\n');
+  assert.equal(numbers[0], 't,a1,a2,p1,p2,energy_error,horizon,method,steps');
+  assert.equal(numbers.length, 1 + 30 + 1);
+  assert.match(numbers[30], /^0.5,1\.\d+,1\.\d+,-?\d.*,[a-z0-9-]+,\d+$/);
+  assert.equal((await saved('save-picture')).type, 'image/png');
 
   // Every width, both schemes, less motion, and a label for every control.
-  const widths = [[360, 1], [360, 3], [412, 2.625], [1000, 1.25], [2560, 1]];
+  const widths = [[280, 1], [360, 1], [360, 3], [412, 2.625], [1000, 1.25], [2560, 1]];
   for (const [width, deviceScaleFactor] of widths) {
     const size = { width, height: 900, deviceScaleFactor, mobile: false };
     await call('Emulation.setDeviceMetricsOverride', size);

@@ -14,7 +14,7 @@ use emulator::toolchain::{WASM, set_up_chromium, set_up_for, workspace};
 use firmware::config::TICK_RATE;
 use firmware::protocol::{Answer, Frame, MAX_WIRE, ToHost, encode};
 use firmware::scenes::SceneName;
-use host_tests::commands::web::{HEADLESS, PROCESSORS, digits, write_page};
+use host_tests::commands::web::{HEADLESS, OFFERED, digits, write_page};
 
 use crate::support::LIMIT;
 
@@ -46,13 +46,13 @@ fn page() -> anyhow::Result<PathBuf> {
 fn boards_on_the_page_send_the_hosts_bytes() -> anyhow::Result<()> {
     unless_missing(|| {
         let page = page()?;
-        let codes = PROCESSORS.map(|(_, _, processor)| processor.code.to_string());
+        let codes = OFFERED.map(|(board, _)| board.processor().code.to_string());
         let output = run("board.js", |node| _ = node.arg(page).args(codes))?;
         let mut sent = output.lines();
 
         for scene in SceneName::ALL {
-            for (chip, _, processor) in PROCESSORS {
-                let mut show = Show::on(processor, *scene, &scene.first_settings())?;
+            for (board, chip) in OFFERED {
+                let mut show = Show::on(board.processor(), *scene, &scene.first_settings())?;
                 let mut first = ToHost::Answer(0, Answer::Done);
                 for sequence in 0..=18 * TICK_RATE {
                     let status = ToHost::Answer(0, Answer::Status(show.player.status()));

@@ -8,7 +8,7 @@ use std::time::Duration;
 use anyhow::{bail, ensure};
 use clap::Parser;
 use double_pendulum::Method;
-use firmware::config::{CORTEX_M0PLUS, CORTEX_M3, CORTEX_M4F, MASS_RATIOS, Processor, TICK_RATE};
+use firmware::config::{MASS_RATIOS, TICK_RATE};
 use firmware::display::PanelName;
 use firmware::graphics::Format;
 use firmware::scenes::{LEAST_ENERGY_ERROR, SceneName};
@@ -16,6 +16,7 @@ use serde_json::{Value, json};
 
 use console::cli::{Refused, say};
 use demo::{KEYS, SPEEDS, palette, scene_key, shows};
+use emulator::boards::{Board, LM3S6965EVB, LM3S6965EVB_M4, PICO, STM32F405, every_board};
 use emulator::out_file::{self, OutFile};
 use emulator::process;
 use emulator::toolchain::{self, find, target};
@@ -23,10 +24,13 @@ use emulator::toolchain::{self, find, target};
 pub const FILE: &str = "double-pendulum.html";
 const TEMPLATE: &str = include_str!("../../../firmware/web/page.html");
 
-pub const PROCESSORS: [(&str, &str, Processor); 3] = [
-    ("pico", "Raspberry Pi Pico (Cortex-M0+)", CORTEX_M0PLUS),
-    ("m3", "Cortex-M3 at 50 MHz", CORTEX_M3),
-    ("m4f", "Cortex-M4F at 25 MHz", CORTEX_M4F),
+/// The boards that the page offers, each with a description. Links name them as `--board` does.
+/// The first one is the default.
+pub const OFFERED: [(&Board, &str); 4] = [
+    (&PICO, "Raspberry Pi Pico (Cortex-M0+)"),
+    (&LM3S6965EVB, "LM3S6965EVB (Cortex-M3 at 50 MHz)"),
+    (&LM3S6965EVB_M4, "Cortex-M4F at 25 MHz"),
+    (&STM32F405, "STM32F405 (Cortex-M4F at 168 MHz)"),
 ];
 pub const PANELS: [PanelName; 4] = [
     PanelName::Lcd13,
@@ -133,8 +137,16 @@ fn facts() -> Value {
         "rate": TICK_RATE,
         "palette": palette().chunks(3).collect::<Vec<_>>(),
         "scenes": scenes.collect::<Vec<_>>(),
-        "processors": PROCESSORS
-            .map(|(name, text, chip)| json!({"name": name, "text": text, "code": chip.code})),
+        "boards": OFFERED.map(|(board, text)| {
+            let code = board.processor().code;
+            let same = every_board().filter(|board| board.processor().code == code);
+            json!({
+                "name": board.name,
+                "names": same.flat_map(Board::names).collect::<Vec<_>>(),
+                "text": text,
+                "code": code,
+            })
+        }),
         "panels": PANELS.map(|panel| {
             let Format { width, height, .. } = panel.format();
             json!({
