@@ -9,13 +9,13 @@ pub mod small;
 
 use std::path::{Path, PathBuf};
 
-use anyhow::{Result, ensure};
+use anyhow::Result;
 use clap::Parser;
+use firmware::display::PanelName;
 use firmware::scenes::SceneName;
 
-use console::cli::{complain, say, unwritable};
-use demo::DemoOptions;
-use emulator::out_file::write;
+use console::cli::{say, unwritable};
+use emulator::out_file::{OutFile, write};
 use emulator::toolchain::workspace;
 
 /// Draws figures 2 to 5 and 7 of math24.net's page on the double pendulum, as SVG.
@@ -25,7 +25,7 @@ use emulator::toolchain::workspace;
     after_help = "Example: cargo figures --out /tmp/figures"
 )]
 pub struct FiguresOptions {
-    /// Also record an animation of every scene; prints the `cargo demo` command of each
+    /// Also draw an animation of every scene, as a Pico with a colour panel shows it
     #[arg(long)]
     animations: bool,
     /// The folder to write to [default: host-tests/pictures, which the READMEs show]
@@ -58,7 +58,7 @@ pub fn run(options: &FiguresOptions) -> Result<()> {
         write("--out", &folder.join(name), svg)?;
     }
 
-    // The animations take minutes, so they are recorded only on request.
+    // The animations take longer, so they are drawn only on request.
     if options.animations {
         std::fs::create_dir_all(folder.join("panel"))
             .map_err(|error| unwritable("--out", &folder, &error))?;
@@ -74,37 +74,18 @@ pub fn animation(scene: SceneName, folder: &Path) -> PathBuf {
     folder.join(format!("panel/{}.gif", scene.name()))
 }
 
-fn record(scene: SceneName, folder: &Path) -> Result<()> {
-    // Each scene is recorded until it has shown everything.
-    let seconds = match scene {
-        SceneName::Figure7 => "20",
-        SceneName::SmallLight | SceneName::SmallEqual | SceneName::SmallHeavy => "4",
-        SceneName::Frequencies => "3",
-        SceneName::Flips => "60",
-        _ => "10",
+/// Draws the animation of a scene into its file in a folder.
+pub fn record(scene: SceneName, folder: &Path) -> Result<()> {
+    // Each scene is recorded until it has shown everything. The first picture of the README is
+    // larger than the others.
+    let (seconds, scale) = match scene {
+        SceneName::Page => (10, 2),
+        SceneName::Figure7 => (12, 1),
+        SceneName::SmallLight | SceneName::SmallEqual | SceneName::SmallHeavy => (4, 1),
+        SceneName::Frequencies => (3, 1),
+        SceneName::Flips => (120, 1),
+        _ => (10, 1),
     };
-    let file = animation(scene, folder);
-    let words = [
-        "cargo demo",
-        "--scene",
-        scene.name(),
-        "--headless",
-        "--seconds",
-        seconds,
-    ];
-    complain(format_args!(
-        "{} --record {}",
-        words.join(" "),
-        file.display()
-    ));
-    let options = DemoOptions {
-        record: Some(file),
-        ..DemoOptions::try_parse_from(words)?
-    };
-    ensure!(
-        demo::run(&options)?,
-        "{} was recorded with the problems above",
-        scene.name()
-    );
-    Ok(())
+    let file = OutFile::create("--out", &animation(scene, folder))?;
+    demo::animate(scene, PanelName::Lcd13, seconds, scale, file)
 }

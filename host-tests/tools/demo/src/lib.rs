@@ -34,9 +34,14 @@ use options::MOST_SECONDS;
 use panel::{Recording, png};
 use session::{Session, Source};
 
+use firmware::config::{CORTEX_M0PLUS, TICK_RATE};
+use firmware::display::PanelName;
+use firmware::scenes::SceneName;
+
 use console::cli::{Refused, complain, say};
 use console::progress::Progress;
 use emulator::boards::{Board, PICO};
+use emulator::host::Show;
 use emulator::link::Port;
 use emulator::out_file::OutFile;
 use emulator::pico::PicoMachine;
@@ -48,6 +53,27 @@ const NO_TERMINAL: &str = "no terminal: running headless; --record FILE.gif or -
                            FILE.png saves what the panel shows";
 /// The time limit of an emulated board: a constant part, and a part for each second of its time.
 const LIMIT: [f64; 2] = [60.0, 20.0];
+
+/// Draws an animation of a scene as a Pico with this panel shows it, by the host's own code.
+pub fn animate(
+    scene: SceneName,
+    panel: PanelName,
+    seconds: u32,
+    scale: usize,
+    file: OutFile,
+) -> anyhow::Result<()> {
+    let format = panel.format();
+    let mut recording = Recording::begin(file, format, scale)?;
+    let mut show = Show::in_format(format, CORTEX_M0PLUS, scene, &scene.first_settings())
+        .map_err(|error| anyhow::anyhow!("{}: {error}", scene.name()))?;
+    for tick in 0..i64::from(seconds * TICK_RATE) {
+        show.tick();
+        if recording.is_due(tick) {
+            recording.add(&show.frame(), tick)?;
+        }
+    }
+    recording.finish().map(drop)
+}
 
 /// Shows the board in the terminal, or runs it without one, and prints a summary. Returns true if
 /// no compared bit differs from the host's and if, on an emulated board that is run frame by frame,
