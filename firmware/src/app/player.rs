@@ -17,9 +17,8 @@ pub enum PlannerEvent {
     /// The planner has found a result: a plan, or the reason why no method fits.
     Found(PlanResult),
     /// The motion is now computed by this method and step count, at this cost of a frame, cycles of
-    /// the price list. [`Player::tick`] reports it when a plan takes over, and when the motion
-    /// continues by other steps after the horizon. The application also logs it when a command has
-    /// started a scene whose report names a method.
+    /// the price list. [`Player::tick`] reports it when a plan takes over. The application also logs
+    /// it when a command has started a scene whose report names a method.
     Shown(Stepping, f32),
 }
 
@@ -35,6 +34,8 @@ pub struct Player<'a> {
     /// The requested method; `None` leaves the choice to the plan. It outlasts the scene.
     method: Option<Method>,
     motion: MotionState,
+    /// The number of ticks of the scene since its start.
+    step: u64,
     planner: Planner,
     /// The last frame drawn.
     pub canvas: Canvas<'a>,
@@ -50,16 +51,11 @@ pub struct Player<'a> {
 )]
 #[derive(Debug)]
 enum MotionState {
-    /// The motion keeps the requested method. The planner only verifies its horizon.
-    KeepsMethod,
-    /// The motion follows the plan: the next better result of the planner replaces its method.
-    FollowsPlan,
+    /// The motion is computed by its present method. A result of the planner may replace it.
+    Steady,
     /// The planned motion catches up with the current one, and then takes over. Meanwhile nothing
     /// is planned.
     Switching(CatchingUp),
-    /// The horizon of the last plan, s, is past, and the motion keeps its present method. If the
-    /// plan would not keep the energy, that is its first method, unless this has refused the state.
-    PastHorizon { horizon: f32 },
     /// The motion cannot be computed. It is too fast for every method that a frame can pay for, or
     /// has left the finite numbers.
     Stopped,
@@ -78,7 +74,8 @@ impl<'a> Player<'a> {
             settings: Settings::default(),
             scene,
             method: None,
-            motion: MotionState::FollowsPlan,
+            motion: MotionState::Steady,
+            step: 0,
             planner: Planner::new(processor),
             canvas,
             pace: Pace::default(),
@@ -125,20 +122,19 @@ impl<'a> Player<'a> {
         let stands = !name.is_linear() && settings.rests();
         self.name = name;
         self.settings = settings;
+        self.step = 0;
         self.motion = if self.scene.is_too_fast() {
             MotionState::Stopped
-        } else if method.is_some() || stands {
-            MotionState::KeepsMethod
         } else {
-            MotionState::FollowsPlan
+            MotionState::Steady
         };
 
-        // Start the planner with the method that the scene has chosen.
+        // A requested method, and that of a scene without a choice, are only verified.
         let initial = self.scene.report(0).stepping;
-        let keeps_initial = method.is_some() || self.scene.planned().is_none();
+        let is_fixed = method.is_some() || self.scene.planned().is_none();
         let height = height.filter(|_| !self.is_stopped() && !stands);
         self.planner
-            .start(&settings, height, initial, keeps_initial);
+            .start(&settings, height, initial.filter(|_| is_fixed));
 
         self.canvas.blank(name.palette());
         self.report = self.now();
@@ -207,7 +203,8 @@ impl<'a> Player<'a> {
 
     /// Advances by one tick of the clock, which is 0 to
     /// [`GREATEST_SPEED`](crate::config::GREATEST_SPEED) ticks of the scene, as its speed requires:
-    /// none while it is stopped, and while it is paused one if a step is left.
+    /// none while it is stopped, and while it is paused one if a step is left. At any speed it plans
+    /// for one tick of the clock.
     ///
     /// Calls `tell` with each result of the planner, and with each method that takes over. A motion
     /// that diverges is not noticed here, but by [`check`](Self::check).
@@ -216,28 +213,29 @@ impl<'a> Player<'a> {
         if self.is_stopped() {
             return;
         }
-        for _ in 0..self.pace.tick() {
-            self.scene.tick(self.planner.ticks + 1, &mut self.canvas);
+        let due = self.pace.tick();
+        for _ in 0..due {
+            self.step += 1;
+            self.scene.tick(self.step, &mut self.canvas);
+        }
+        if due == 0 && self.pace.paused {
+            return;
+        }
 
-            // Either the planned motion catches up, or the planner works.
-            if let MotionState::Switching(next) = &mut self.motion {
-                self.planner.skip_tick();
-                if self.scene.planned().is_none_or(|motion| next.tick(motion)) {
-                    self.motion = MotionState::FollowsPlan;
-                    if let Some(stepping) = self
-                        .scene
-                        .planned()
-                        .map(|simulation| simulation.motion.stepping())
-                    {
-                        tell(PlannerEvent::Shown(stepping, self.cost(stepping)));
-                    }
-                }
-            } else if let Some(found) = self.planner.tick() {
-                tell(PlannerEvent::Found(found));
-                self.follow(&found);
-            } else if let Some(stepping) = self.leave_plan() {
+        // Either the planned motion catches up, or the planner works.
+        if let MotionState::Switching(next) = &mut self.motion {
+            if self
+                .scene
+                .planned()
+                .is_none_or(|motion| next.tick(motion, due))
+            {
+                let stepping = next.stepping();
+                self.motion = MotionState::Steady;
                 tell(PlannerEvent::Shown(stepping, self.cost(stepping)));
             }
+        } else if let Some(found) = self.planner.tick(self.step) {
+            tell(PlannerEvent::Found(found));
+            self.follow(&found);
         }
     }
 
@@ -248,17 +246,14 @@ impl<'a> Player<'a> {
     /// that motion is as inaccurate as the current one. A plan that costs less, but has a shorter
     /// horizon than the panel has shown, is not followed either.
     fn follow(&mut self, found: &PlanResult) {
-        let (MotionState::FollowsPlan, Ok(plan)) = (&self.motion, found) else {
-            return;
-        };
-        let Some(simulation) = self.scene.planned() else {
+        let (Ok(plan), Some(simulation)) = (found, self.scene.planned()) else {
             return;
         };
 
         let current = simulation.motion.stepping();
         let planned = plan.stepping();
         let processor = &self.planner.processor;
-        let arrival = CatchingUp::arrival(&self.settings, planned, processor, self.planner.ticks);
+        let arrival = CatchingUp::arrival(&self.settings, planned, processor, self.step);
         let is_longer = plan.horizon >= self.planner.horizon(current).max(arrival);
         if planned == current || !is_longer {
             return;
@@ -266,27 +261,6 @@ impl<'a> Player<'a> {
         if let Ok(next) = CatchingUp::new(&self.settings, planned, processor) {
             self.motion = MotionState::Switching(next);
         }
-    }
-
-    /// Stops following the plan when planning has ended and the horizon is past. If the plan would
-    /// not keep the energy, the motion continues by the method that is returned.
-    fn leave_plan(&mut self) -> Option<Stepping> {
-        if !matches!(self.motion, MotionState::FollowsPlan) || !self.planner.is_settled() {
-            return None;
-        }
-        let simulation = self.scene.planned()?;
-        let stepping = simulation.motion.stepping();
-        let horizon = self.planner.horizon(stepping);
-        if simulation.time() <= horizon {
-            return None;
-        }
-
-        self.motion = MotionState::PastHorizon {
-            horizon: horizon as f32,
-        };
-        let next = self.planner.resolving(stepping)?;
-        let continued = simulation.continue_by(&self.settings, next);
-        continued.is_ok().then_some(next)
     }
 
     /// Performs a piece of the next tick's planning in advance. Returns true if it did, so that
@@ -321,7 +295,7 @@ impl<'a> Player<'a> {
 
     /// Returns the report of the scene, with the horizon that the planner has verified.
     fn now(&self) -> Report {
-        let report = self.scene.report(self.planner.ticks);
+        let report = self.scene.report(self.step);
         if self.is_stopped() {
             return Report {
                 stepping: None,
@@ -334,10 +308,7 @@ impl<'a> Player<'a> {
             return report;
         };
 
-        let verified = match self.motion {
-            MotionState::PastHorizon { horizon } => horizon,
-            _ => self.planner.horizon(stepping) as f32,
-        };
+        let verified = self.planner.horizon(stepping) as f32;
         let horizon = if self.planner.is_settled() && !self.is_switching() {
             Horizon::Until(verified)
         } else if verified >= report.time as f32 {
@@ -361,7 +332,7 @@ impl<'a> Player<'a> {
     #[inline(never)] // Test `scenes` profiles it by its name.
     pub fn check(&mut self) -> bool {
         // Without a tick of the scene the report stays: only work done in advance could change it.
-        if self.is_stopped() || self.report.step == self.planner.ticks {
+        if self.is_stopped() || self.report.step == self.step {
             return false;
         }
         let report = self.now();

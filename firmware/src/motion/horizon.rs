@@ -20,8 +20,8 @@ pub enum Horizon {
     /// The horizon is at least this time, s, which is not past. Planning is in progress, and may
     /// raise it.
     AtLeast(f32),
-    /// The horizon is this time, s. Planning has ended. The time may be past; it is 0 if no frame
-    /// is accurate, and for a scene that is too fast from its start.
+    /// The horizon is this time, s. Planning has ended. The time may be past. It is 0 if there is no
+    /// promise, and for a scene that is too fast from its start.
     Until(f32),
 }
 
@@ -37,7 +37,7 @@ impl Horizon {
     }
 
     /// Returns the horizon as the panel shows it. `½px 8.4 s` is a final result, `½px>8.4 s` may
-    /// still grow, `½px ?` means that nothing is known, and `½px ok` that frames are always
+    /// still grow, `½px ?` means that nothing is known or that there is no promise, and `½px ok` that frames are always
     /// accurate.
     ///
     /// It is rounded down to tenths of a second, or to seconds from 1,000 s on, so that no frame is
@@ -47,6 +47,7 @@ impl Horizon {
     pub fn label(self) -> Label {
         match self {
             Self::AtLeast(until) => label::rounded_down("½px>", until),
+            Self::Until(0.0) => Label::try_from("½px ?").unwrap_or_default(),
             Self::Until(until) if until < 1.0 => label::label("½px ", until, 2, " s"),
             Self::Until(until) => label::rounded_down("½px ", until),
             Self::Undecided => Label::try_from("½px ?").unwrap_or_default(),

@@ -25,9 +25,6 @@ pub struct Simulation {
     pub energy: Energy,
     /// The motion. It is for reading only; [`tick`](Self::tick) advances it.
     pub motion: PlannedRun,
-    /// The frame of the scene in which `motion` began: 0, or that of
-    /// [`continue_by`](Self::continue_by).
-    first_frame: u64,
     /// True if no method that resolves the motion is within the budget of a frame. Then `motion` is
     /// only the pose at the start, and must not be advanced. It is never true with a requested
     /// method.
@@ -72,7 +69,6 @@ impl Simulation {
         Ok(Self {
             energy: Energy::new(settings)?,
             motion: settings.run(0.0, stepping)?,
-            first_frame: 0,
             is_too_fast: initial.is_none(),
         })
     }
@@ -88,29 +84,7 @@ impl Simulation {
 
     /// Returns the number of frames, 1/60 s each, since the start of the scene.
     pub fn frame(&self) -> u64 {
-        self.first_frame + self.motion.frame()
-    }
-
-    /// Returns the time since the start of the scene, s.
-    pub fn time(&self) -> f64 {
-        self.frame() as f64 / f64::from(TICK_RATE)
-    }
-
-    /// Continues from the present state by another method and step count. `settings` must be those
-    /// of the start, which is not checked.
-    ///
-    /// # Errors
-    ///
-    /// Refuses what [`PlannedRun::new`] refuses, also the state of a motion that has diverged. Then
-    /// nothing is changed.
-    pub fn continue_by(&mut self, settings: &Settings, stepping: Stepping) -> Result<(), Error> {
-        let mut problem = settings.problem(Format::OLED.height.into());
-        problem.start = self.energy.pendulum.to_motion(&self.motion.state());
-        let motion = PlannedRun::new(&problem, stepping)?;
-
-        self.first_frame = self.frame();
-        self.motion = motion;
-        Ok(())
+        self.motion.frame()
     }
 }
 
@@ -146,8 +120,8 @@ pub struct CatchingUp {
 }
 
 impl CatchingUp {
-    /// Creates the motion of `settings` at its start, by `stepping`. In each tick it advances by as
-    /// many frames of 1/60 s as [`Processor::look_ahead`] pays for, at least 2.
+    /// Creates the motion of `settings` at its start, by `stepping`. In each tick of the clock it
+    /// advances by as many frames of 1/60 s as [`Processor::look_ahead`] pays for, at least 2.
     ///
     /// # Errors
     ///
@@ -163,12 +137,16 @@ impl CatchingUp {
         })
     }
 
-    /// Returns the number of frames that a motion by `stepping` advances in a tick.
+    /// Returns the number of frames that a motion by `stepping` advances in a tick of the clock.
     fn frames(settings: &Settings, stepping: Stepping, processor: &Processor) -> u32 {
         let costs = processor.costs.for_pendulum(&settings.parameters.cast());
         let frame = costs.of_frame(stepping).max(processor.piece());
-        let affordable = (processor.look_ahead / frame) as u32;
-        affordable.max(2) // With fewer it would never catch up.
+        ((processor.look_ahead / frame) as u32).max(2)
+    }
+
+    /// Returns the method and step count.
+    pub fn stepping(&self) -> Stepping {
+        self.motion.stepping()
     }
 
     /// Returns the time, s since the start of the scene, when a motion by `stepping` has caught up
@@ -183,13 +161,13 @@ impl CatchingUp {
         ticks as f64 / f64::from(TICK_RATE) * (frames / (frames - 1.0))
     }
 
-    /// Advances by the frames of a tick, but not beyond `simulation`. Returns true if it has caught
-    /// up with `simulation`, which then continues with this motion. To be called after each
-    /// [`Simulation::tick`], until it returns true; with few frames to catch up, the first call
-    /// does. A motion that diverges is not reported here. Not checked: both motions have the same
-    /// settings.
-    pub fn tick(&mut self, simulation: &mut Simulation) -> bool {
-        for _ in 0..self.most {
+    /// Advances by the frames of a tick of the clock, in which `simulation` has advanced by `due`,
+    /// but not beyond `simulation`. Returns true if it has caught up with it. Then `simulation`
+    /// continues with this motion. A motion that diverges is not reported here. Not checked: both
+    /// motions have the same settings.
+    pub fn tick(&mut self, simulation: &mut Simulation, due: u32) -> bool {
+        // With fewer than one more it would never catch up.
+        for _ in 0..self.most.max(due + 1) {
             if self.motion.frame() < simulation.frame() {
                 let _is_lost = self.motion.advance(1);
             }
@@ -198,7 +176,6 @@ impl CatchingUp {
         let is_there = self.motion.frame() == simulation.frame();
         if is_there {
             simulation.motion = self.motion;
-            simulation.first_frame = 0;
         }
         is_there
     }

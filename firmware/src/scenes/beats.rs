@@ -131,7 +131,7 @@ impl Beats {
             Spot::at(x + self.scale * across, down, self.layout.format)
         };
         let [left, right] = self.layout.middles;
-        let linear = self.linear.at(self.simulation.time()).angles();
+        let linear = self.linear.at(self.simulation.motion.time()).angles();
         [spot(left, linear), spot(right, self.exact)]
     }
 }

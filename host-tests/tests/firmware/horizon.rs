@@ -171,13 +171,13 @@ const LEAST_ENDING: usize = 10;
 const LEAST_CHANGES: usize = 10;
 
 /// On a Cortex-M3 and a Cortex-M4F, the page must be known to be accurate for 18.5 s and figure 7
-/// for 19.5 s, at the latest after 40 s, and the page on the Cortex-M3 after 12 s. A frame of the
+/// for 17.5 s, at the latest after 40 s, and the page on the Cortex-M3 after 12 s. A frame of the
 /// page may take 125,000 cycles, 15 % of a tick of a Cortex-M3 at 50 MHz.
 #[test]
 fn the_page_and_figure_7_reach_their_goals() {
     for (name, least, most) in [
         (SceneName::Page, 18.5, 125_000.0),
-        (SceneName::Figure7, 19.5, f32::INFINITY),
+        (SceneName::Figure7, 17.5, f32::INFINITY),
     ] {
         for processor in [CORTEX_M3, CORTEX_M4F] {
             let mut show = Show::on(processor, name, &name.first_settings())
@@ -206,67 +206,6 @@ fn the_page_and_figure_7_reach_their_goals() {
                 name.name()
             );
         }
-    }
-}
-
-/// The largest change of the relative energy error after the horizon. In the steps of the first
-/// plan below it is -1.6e-2 after 300 s.
-const KEPT: f32 = 1e-5;
-
-/// The largest error of an angle, rad, in the first frame of the other method: the motion continues
-/// without a jump. The reported state before may be half a step off, 1/960 s, at about 1 rad/s.
-const CONTINUED: f64 = 1e-3;
-
-/// A motion by a plan in 32 bits continues after the horizon from its present state by its first
-/// method, with the same horizon and without a jump, and keeps its energy.
-///
-/// The first plan is accurate until 85 s, in steps that do not resolve a later, faster part of the
-/// motion. The second one resolves the motion, until 18 minutes.
-#[test]
-fn energy_is_kept_after_the_horizon_of_a_plan() {
-    for (processor, settings, duration) in [
-        (CORTEX_M4F, Settings::equal_rods(25.0, -78.0), 600.0),
-        (CORTEX_M3, Settings::equal_rods(3.0, 38.0), 1800.0),
-    ] {
-        let mut show = Show::on(processor, SceneName::Page, &settings).expect("good settings");
-        let initial = show.report().stepping;
-        let parameters = settings.parameters.cast::<f64>();
-        let pendulum = Pendulum::new(&parameters).expect("the scene took it");
-
-        // Find the first frame after the planned method.
-        let mut before = show.report();
-        let mut has_followed = false;
-        while !(has_followed && show.report().stepping == initial) {
-            before = show.report();
-            assert!(before.time < duration, "{before:?}");
-            show.tick();
-            has_followed |= show.report().stepping != initial;
-        }
-        let after = show.report();
-        let horizon = f64::from(after.horizon.verified());
-        assert!(after.time > horizon, "{after:?}");
-        assert_eq!(
-            (after.step, after.horizon),
-            (before.step + 1, before.horizon)
-        );
-
-        // It is the frame that follows from the state before.
-        let motion = pendulum.to_motion(&before.state.cast());
-        let mut reference = Reference::new(&parameters, &motion);
-        reference.advance_to(1.0 / f64::from(TICK_RATE));
-        let exact = reference.motion().angles();
-        let shown = after.state.angles().map(f64::from);
-        for (shown, exact) in shown.into_iter().zip(exact) {
-            assert!((shown - exact).abs() < CONTINUED, "{shown} {exact}");
-        }
-
-        while show.report().time < duration {
-            show.tick();
-        }
-        let last = show.report();
-        assert_eq!(last.horizon, before.horizon);
-        let change = last.energy_error - after.energy_error;
-        assert!(change.abs() < KEPT, "{change:e}: {last:?}");
     }
 }
 

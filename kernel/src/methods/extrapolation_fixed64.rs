@@ -24,6 +24,7 @@
 //! Products round down. So each result is moved to the middle of the values it may have had before
 //! rounding, and the step corrects the remaining bias ([`Rows::rounded_down`]).
 
+mod errors;
 mod rows;
 
 use core::cell::Cell;
@@ -37,6 +38,8 @@ use crate::methods::{Advance, FormOperations};
 use crate::numbers::Real;
 use crate::numbers::fixed::Q64;
 use crate::pendulum::{Direction, Parameters, Pendulum, State};
+use errors::Moments;
+pub(crate) use errors::Truncation;
 use rows::{EIGHTH, Rows, unit_of_time};
 
 /// A motion in the direction form, stepped by extrapolation of order `ORDER`, 2, 4 .. 16, in 64-bit
@@ -89,6 +92,9 @@ const STEP: f64 = 15.0;
 const FOREVER: f64 = 1e150;
 /// The largest turn of a rod in a step, rad.
 const TURN: f64 = 1.5;
+
+/// The number of units of the last digit in 1.
+const UNITS: f64 = 18_446_744_073_709_551_616.0;
 
 /// The square of the length 1, over 64.
 const ONE: Q64 = Q64(1 << 58);
@@ -151,22 +157,41 @@ impl Fixed64State {
 
     fn advance(&mut self, steps: u32) {
         for _ in 0..steps {
-            if !self.rests() {
-                self.step();
-            }
+            self.step(None);
         }
     }
 
-    /// Returns true if both rods are vertical and nothing turns. A step would push them, because
-    /// its results are the middles of what they may have been before rounding.
+    /// Advances the motion by `steps` steps of order 10, and adds their truncation errors.
+    fn measure(&mut self, steps: u32, truncation: &mut Truncation) {
+        for _ in 0..steps {
+            let mut moments = Moments::ZERO;
+            self.step(Some(&mut moments));
+            truncation.add(&moments);
+        }
+    }
+
+    /// Returns errors of the stored numbers as errors of a1 and a2, rad, and of p1 and p2,
+    /// kg m^2/s. Both are in units of 2^-64.
+    fn in_si_units(&self, angles: [f64; 2], [of_p1, of_p2]: [f64; 2]) -> [f32; 4] {
+        let [unit1, unit2] = self.momenta.map(libm::fabs);
+        let [a1, a2] = angles;
+        [a1, a2, of_p1 / unit1, of_p2 / unit2].map(|error| (error / UNITS) as f32)
+    }
+
+    /// Returns true if both rods hang or stand straight up and nothing turns. A step would push
+    /// them, because its results are the middles of what they may have been before rounding.
     fn rests(&self) -> bool {
         let [sin1, _, s, _, p1, p2] = self.z;
         [sin1, s, p1, p2].iter().all(|z| z.0 == 0)
     }
 
-    fn step(&mut self) {
+    /// Advances the motion by one step, and measures its errors if there are `moments`.
+    fn step(&mut self, moments: Option<&mut Moments>) {
+        if self.rests() {
+            return;
+        }
         let reach = Cell::new(0);
-        let end = self.rows.end(&self.z, &reach);
+        let end = self.rows.end(&self.z, &reach, moments);
 
         // Give back what rounding down took. Half of the last digit is rounded up if that digit is
         // odd, which it is as often as not.
@@ -216,6 +241,39 @@ fn restored([s, c]: [Q64; 2], square: Q64, gain: Q64) -> ([Q64; 2], Q64) {
     let relative = missing.up(7) * gain;
     let restored = |x: Q64| x + (x * relative).up(2);
     ([restored(s), restored(c)], missing)
+}
+
+/// The errors of steps, each of a1 and a2, rad, and of p1 and p2, kg m^2/s.
+pub(crate) type StepErrors = [f32; 4];
+
+impl Fixed64<10> {
+    /// Advances the motion as [`advance`](Advance::advance) does, bit for bit, and adds the
+    /// truncation errors of the steps.
+    #[inline(never)] // Counted by its name.
+    pub(crate) fn measure(&mut self, steps: u32, truncation: &mut Truncation) {
+        self.0.measure(steps, truncation);
+    }
+
+    /// Returns the truncation errors of no steps, to add to.
+    pub(crate) fn truncation(&self) -> Truncation {
+        Truncation::new(self.0.rows.rounding(), self.0.norm)
+    }
+
+    /// Returns the errors that the same steps would have in order 8 and in order 6.
+    pub(crate) fn lower_orders(&self, truncation: &Truncation) -> [StepErrors; 2] {
+        truncation.orders().map(|errors| {
+            let [sin1, cos1, s, c, p1, p2] = errors.map(f64::from);
+            let a1 = (sin1 + cos1) / EIGHTH;
+            let elbow = (s + c) / EIGHTH / self.0.norm;
+            self.0.in_si_units([a1, a1 + elbow], [p1, p2])
+        })
+    }
+
+    /// Returns the standard deviation of the rounding error of a step.
+    pub(crate) fn rounding(&self) -> StepErrors {
+        let [a1, a2, p1, p2] = self.0.rows.rounding();
+        self.0.in_si_units([a1, a2], [p1, p2])
+    }
 }
 
 impl<const ORDER: u32> Advance for Fixed64<ORDER> {

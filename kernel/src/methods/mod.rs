@@ -22,6 +22,7 @@ pub use canonical::{Canonical, Derivatives, Rk4, RungeKutta};
 pub use closed_form::{ClosedForm, SmallOscillations};
 pub use extrapolation_f64::ExtrapolationF64;
 pub use extrapolation_fixed64::Fixed64;
+pub(crate) use extrapolation_fixed64::{StepErrors, Truncation};
 pub use rk4_direction::Rk4Direction;
 pub use rk4_fixed32::Fixed32;
 pub use run::Run;

@@ -1,60 +1,63 @@
 //! Planning: finds the cheapest method whose frames are accurate, and predicts its accuracy
 //! horizon.
 //!
-//! A frame is accurate if both bobs are within a tolerance of the exact motion.
+//! A frame is accurate if both bobs are within a tolerance of the exact motion. Which is the
+//! cheapest method that a frame can pay for and that stays accurate for longest, and until when?
 //!
-//! # Measurement of errors
+//! # The race
 //!
-//! The growth of an error depends on the individual motion. Of two starts with the same energy, one
-//! may be regular and the other chaotic, and no formula in the energy distinguishes them. A
-//! [`Search`] therefore runs the motion itself, in coarse steps and in fine ones, and compares the
-//! positions of the bobs:
+//! The methods run side by side, ahead of the scene, with a *reference* R in 64 bits. *Candidates*
+//! are the closed form; RK4 in 32 bits in steps that resolve the motion, and in twice as many steps,
+//! and so on; and the method in 64 bits that the scene starts with. In each frame
 //!
-//! | error | measurement |
+//! ```text
+//! bound(candidate) = distance(candidate, R) + error(R)              in units of the tolerance
+//! ```
+//!
+//! A candidate leaves the race when its bound exceeds 1. The race ends with the problem, with the
+//! last candidate, with R or with the planning budget. The plan is the cheapest candidate that
+//! reached the end. If none did, it is the cheapest one whose horizon is at most a tenth shorter
+//! than the longest.
+//!
+//! # The error of the reference
+//!
+//! A step of R extrapolates five rows. Without its first row, and without its first two, it would
+//! be off by d8 and d6, which cost a few additions. Its own error is about
+//!
+//! ```text
+//! T = d8 x max(1, x)        x = 16 d8/d6
+//! ```
+//!
+//! The errors of R are in an ellipsoid P of phase space. The motion maps small errors by its
+//! derivative J, and each step adds truncation, T, and rounding, q:
+//!
+//! ```text
+//! P  <-  (1 + 1/b) J P J^T + (1 + b) T^2 + n q^2        b = sqrt(tr(J P J^T)/tr(T^2))
+//! ```
+//!
+//! T adds up, because truncation may always point in the same direction; rounding errors are
+//! independent, and their squares add up. q follows from the number formats. J is measured by five
+//! *shadows*, cheap motions in 32 bits that start close to R. The error of R in a frame is that of
+//! P on the display.
+//!
+//! # Budgets
+//!
+//! The budget of a frame limits the candidates. The planning budget pays for the shadows, for the
+//! candidates, and for R. If it pays for no R, there is no promise: [`PlanError::NoMethod`]. R makes
+//! steps so short that rounding is its larger error, or as many as planning can pay for. If
+//! truncation of R has ended the race, the race is repeated with finer steps for the frames that are
+//! left in question. Planning needs no heap, and is divided into pieces that a busy caller can
+//! afford ([`Search`]). The prices are in any unit ([`Costs`]).
+//!
+//! | file | idea |
 //! |---|---|
-//! | methods in 32 bits, closed form | the distance to a run in 64 bits, plus its error |
-//! | the same, without such a run | the distances to runs in finer steps, inputs perturbed |
-//! | truncation in 64 bits | the distance to a second run in 64 bits, in other steps |
-//! | rounding in 64 bits | its size where it arises, times the later growth of small distances |
-//!
-//! The runs in finer steps are used if planning cannot pay for a run in 64 bits, if that would be
-//! too expensive, or to find out first how fast errors grow. Their inputs are perturbed by an ulp.
-//! There are three of them, or fewer if planning cannot pay for three. With fewer runs, the bound
-//! is a larger multiple of the distance.
-//!
-//! No run is assumed to be exact. Errors grow along a single direction, and along it two equally
-//! wrong runs may agree by chance. The growth is measured by *shadows*: motions in 32 bits that are
-//! kept close to the one in 64 bits.
-//!
-//! # Choice of the method
-//!
-//! The search starts with coarse steps and refines them until a candidate is accurate to the end of
-//! the problem. If several candidates of that trial are, it chooses the cheapest of them. If no
-//! candidate is accurate to the end, as in chaotic motions, it chooses the longest horizon that is
-//! worth its cost. If no method within the budgets has an accurate frame, it returns
-//! [`PlanError::NoMethod`].
-//!
-//! The first steps are usually as long as four steps of
-//! [`Pendulum::admissible_step`](crate::Pendulum::admissible_step). In such a step the fastest rate
-//! that the energy allows, a proven bound, advances a phase by a radian. If the budgets do not pay
-//! for steps of this length, the first steps are up to 16 times as long. If a frame cannot pay for
-//! these either, they are up to 512 times as long. In all first steps the faster normal mode
-//! advances by at most a radian. The first trial uses these steps and, if it has a run in 64 bits,
-//! steps of a half and a quarter of their length. Its method is compensated `f32` or 32 bits of
-//! fixed point, by their costs. If fixed point refuses the motion, or all steps that a frame can
-//! pay for, it is `f32`.
-//!
-//! The search changes to 64 bits if three finer runs show that errors grow faster than the cube of
-//! the time, as in chaotic motions; if rounding is the larger error; if 64 bits cost less; or if 32
-//! bits fail early and planning can pay for 64 bits but not for finer steps in 32 bits as well,
-//! unless 64 bits are too expensive and finer steps gain much. It then takes the finest steps that
-//! both budgets can pay for. If a frame cannot pay for 64 bits, or if these refuse the motion, the
-//! search continues in `f32`. It refines the steps as long as finer ones help and a frame can pay
-//! for them.
-//!
-//! Planning needs no heap. It is divided into pieces that a busy caller can afford ([`Search`]).
-//! The caller provides the cost of a step: [`Costs`] is a price list in any unit. The kernel has
-//! the lists of three processors, in cycles.
+//! | `problem`, `cost`, `prices` | the inputs, and the steps that resolve a motion |
+//! | `run` | a motion that is advanced from frame to frame |
+//! | `candidate` | a method, and for how long it is accurate |
+//! | `reference` | T |
+//! | `uncertainty` | P |
+//! | `race` | the participants side by side |
+//! | `search` | the budgets, and the plan |
 //!
 //! # Example
 //!
@@ -93,10 +96,11 @@ mod cost;
 mod error;
 mod prices;
 mod problem;
+mod race;
+mod reference;
 mod run;
 mod search;
-mod shadow;
-mod trial;
+mod uncertainty;
 
 use crate::error::Error;
 use crate::table::Method;

@@ -2,7 +2,8 @@
 
 use super::{Problem, Stepping};
 use crate::error::Error;
-use crate::methods::{Advance, DrawnMotion};
+use crate::methods::any::{Motion32, Motion64};
+use crate::methods::{Advance, DrawnMotion, FormOperations};
 use crate::pendulum::{Direction, Pendulum, State};
 use crate::table::Method;
 
@@ -61,10 +62,10 @@ impl PlannedRun {
 
         // The steps divide the time of a frame equally.
         let state = Pendulum::new(&pendulum)?.to_state(&start);
-        let dt = 1.0 / (f64::from(rate) * f64::from(steps));
-        let motion = DrawnMotion::new(stepping.method, &pendulum, &state, dt)?;
+        let stepping = Stepping { steps, ..stepping };
+        let motion = DrawnMotion::new(stepping.method, &pendulum, &state, stepping.dt(rate))?;
         Ok(Self {
-            stepping: Stepping { steps, ..stepping },
+            stepping,
             rate,
             frame: 0,
             motion,
@@ -149,6 +150,74 @@ impl PlannedRun {
     #[must_use]
     pub fn state(&self) -> State<f64> {
         self.motion.state()
+    }
+}
+
+/// A motion in a race, which is advanced from frame to frame, a few steps at a time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Run<M> {
+    pub stepping: Stepping,
+    /// The number of steps since the last frame.
+    made: u32,
+    /// The motion; `None` until it is prepared.
+    pub motion: Option<M>,
+}
+
+impl Run<Motion32> {
+    /// Prepares the motion of a problem at `start`.
+    pub fn prepare(&mut self, problem: &Problem, start: &State<f64>) -> Result<(), Error> {
+        let dt = self.stepping.dt(problem.rate);
+        let method = self.stepping.method;
+        self.motion = Some(Motion32::new(method, &problem.pendulum, start, dt)?);
+        Ok(())
+    }
+}
+
+impl Run<Motion64> {
+    /// Prepares the motion of a problem at `start`.
+    pub fn prepare(&mut self, problem: &Problem, start: &State<f64>) -> Result<(), Error> {
+        let dt = self.stepping.dt(problem.rate);
+        self.motion = Some(FormOperations::new(&problem.pendulum, start, dt)?);
+        Ok(())
+    }
+}
+
+impl<M: Advance> Run<M> {
+    /// Creates a run whose motion is not prepared yet.
+    pub fn new(stepping: Stepping) -> Self {
+        Self {
+            stepping,
+            made: 0,
+            motion: None,
+        }
+    }
+
+    /// Takes steps towards the next frame, at `price` each, for the caller to make: as many as the
+    /// rest of `cost` pays for after `spent`, but at least one if nothing is spent yet. Returns
+    /// their number.
+    pub fn take(&mut self, price: f32, cost: f32, spent: f32) -> u32 {
+        let affordable = ((cost - spent) / price) as u32;
+        let least = u32::from(spent == 0.0);
+        let steps = (self.stepping.steps - self.made).min(affordable.max(least));
+        self.made += steps;
+        steps
+    }
+
+    /// Makes the steps that [`take`](Self::take) returns, and returns their cost.
+    pub fn advance(&mut self, price: f32, cost: f32, spent: f32) -> f32 {
+        let steps = self.take(price, cost, spent);
+        if let Some(motion) = &mut self.motion {
+            motion.advance(steps);
+        }
+        price * steps as f32
+    }
+
+    /// Returns the directions in the frame, and begins the next one. They are NaN if the motion has
+    /// diverged.
+    pub fn frame(&mut self) -> Directions {
+        self.made = 0;
+        let motion = self.motion.as_ref().filter(|motion| motion.check().is_ok());
+        motion.map_or([[f32::NAN; 2]; 2], Advance::directions)
     }
 }
 

@@ -164,7 +164,7 @@ fn on(target: &Target, toolchain: &Toolchain) -> Result<Costs> {
 
 const STEP: &str = "Fixed64State::advance";
 const PREPARATION: &str = "PlannedRun::new";
-const RESTART: &str = "Trial::restart_shadows";
+const RESTART: &str = "Uncertainty::restart";
 
 fn in_application(board: &'static Board, toolchain: &Toolchain) -> Result<(f32, f32)> {
     let elf = toolchain.build_for(board)?;

@@ -3,6 +3,7 @@
 
 use core::cell::Cell;
 
+use super::errors::Moments;
 use crate::error::Error;
 use crate::methods::extrapolation::{ROWS, half_substeps, rows, weight};
 use crate::methods::scaling::{Scaling, Shifts};
@@ -138,6 +139,20 @@ impl Rows {
         self.norm
     }
 
+    /// Returns nu/sigma.
+    pub fn norm_value(&self) -> f64 {
+        self.norm.value() / EIGHTH
+    }
+
+    /// Returns the length of the step in units of time.
+    pub fn step(&self) -> f64 {
+        libm::fabs(f64::from(self.rows[0].share)) / SHARE
+    }
+
+    pub fn shifts(&self) -> Shifts {
+        self.shifts
+    }
+
     /// Returns the mean amounts that a step loses by rounding down, in halves of 2^-64: of P1, and
     /// of each other quantity. A negative amount is a gain.
     ///
@@ -156,17 +171,19 @@ impl Rows {
     /// by a factor of 2 or more; the end is then meaningless.
     ///
     /// Compiled for three kinds of pendulum, because shifts by constants are cheaper: without
-    /// shifts, with a shift of r only (a heavier bob 2), and all others.
-    pub fn end(&self, z: &[Q64; 6], reach: &Cell<u32>) -> [Q64; 6] {
+    /// shifts ([`Shifts::NONE`]), with a shift of r only (a heavier bob 2), and all others.
+    ///
+    /// If there are `moments`, adds those of the step, which must be of order 10.
+    pub fn end(&self, z: &[Q64; 6], reach: &Cell<u32>, moments: Option<&mut Moments>) -> [Q64; 6] {
         match self.shifts {
-            Shifts::NONE => self.end_in::<false, false>(z, reach),
+            Shifts::NONE => self.end_in::<false, false>(z, reach, moments),
             Shifts {
                 momentum: 0,
                 inverse: _,
                 upper: 0,
                 lower: 0,
-            } => self.end_in::<false, true>(z, reach),
-            _ => self.end_in::<true, true>(z, reach),
+            } => self.end_in::<false, true>(z, reach, moments),
+            _ => self.end_in::<true, true>(z, reach, moments),
         }
     }
 
@@ -175,6 +192,7 @@ impl Rows {
         &self,
         origin: &[Q64; 6],
         reach: &Cell<u32>,
+        mut moments: Option<&mut Moments>,
     ) -> [Q64; 6] {
         let equations = Equations::<UNLIKE, INVERSE> { rows: self, reach };
         let first = equations.slope(&self.rows[0], origin);
@@ -208,8 +226,12 @@ impl Rows {
                 reference = *last;
             } else {
                 let weight = &self.weights[row % ROWS];
+                let differences = core::array::from_fn(|i| weight.times(last[i] - reference[i]));
                 for i in 0..6 {
-                    sum[i] = sum[i] + weight.times(last[i] - reference[i]);
+                    sum[i] = sum[i] + differences[i];
+                }
+                if let Some(moments) = &mut moments {
+                    moments.add(row, &differences);
                 }
             }
         }
@@ -331,7 +353,7 @@ mod tests {
         let [by_rates, by_torques] = seconds.longest(&bounds, [0.125, 1.0 / 256.0]);
         let scaling = seconds.in_unit(unit_of_time(libm::fmin(by_rates, by_torques), dt));
         let reach = Cell::new(0);
-        Rows::new(2, &scaling, dt)?.end(&z.map(Q64::from_f64), &reach);
+        Rows::new(2, &scaling, dt)?.end(&z.map(Q64::from_f64), &reach, None);
         Ok(reach.get() != 0)
     }
 

@@ -1,0 +1,220 @@
+//! A race: the candidates run side by side with the reference, and each leaves when it is
+//! inaccurate.
+
+use super::candidate::{Candidate, distance};
+use super::reference::Reference;
+use super::run::{Directions, Run};
+use super::uncertainty::{SHADOWS, Uncertainty};
+use super::{Costs, Problem, Stepping};
+use crate::error::Error;
+use crate::methods::any::{Motion32, Motion64};
+use crate::pendulum::Pendulum;
+use crate::table::Method;
+
+/// The largest number of candidates in 32 bits: the closed form and RK4.
+pub(super) const IN_32_BITS: usize = 8;
+/// The largest number of all candidates. The last one is in 64 bits.
+pub(super) const CANDIDATES: usize = IN_32_BITS + 1;
+/// The cost of a step in 64 bits that measures its truncation, relative to another one.
+pub(super) const MEASURED: f32 = 1.03;
+
+/// The candidates of a race; `None` for unused places. The last one is in 64 bits.
+pub(super) type Entry = [Option<Stepping>; CANDIDATES];
+
+/// A race in progress.
+///
+/// For each frame, call [`prepare`](Self::prepare) until it returns false, then
+/// [`advance`](Self::advance) until it returns 0, and then [`compare`](Self::compare).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Race {
+    /// The last compared frame.
+    pub compared: u32,
+    pub candidates: [Candidate; CANDIDATES],
+    runs: [Run<Motion32>; IN_32_BITS],
+    /// The candidate in 64 bits. It does not run if it has the steps of the reference.
+    in_64_bits: Run<Motion64>,
+    reference: Reference,
+    uncertainty: Uncertainty,
+    /// True if the error of the reference is too large or unknown in the next frame. The race is over.
+    pub is_reference_lost: bool,
+    /// True if finer steps of the reference would not make its error smaller.
+    pub is_finest: bool,
+    /// The lengths of the rods divided by the tolerance.
+    rods: [f32; 2],
+}
+
+impl Race {
+    /// Creates a race whose motions are not prepared yet. The reference makes `steps` steps per
+    /// frame, and its shadows those of `shadows`.
+    pub fn new(
+        entry: &Entry,
+        steps: u32,
+        shadows: Stepping,
+        problem: &Problem,
+        costs: &Costs,
+    ) -> Result<Self, Error> {
+        let reference = Stepping {
+            method: Method::Extrapolation10Fixed64,
+            steps,
+        };
+        let candidates = entry.map(|stepping| Candidate {
+            is_alive: stepping.is_some(),
+            ..Candidate::new(stepping.unwrap_or(reference), costs)
+        });
+        let [.., in_64_bits] = &candidates;
+        let Problem {
+            pendulum,
+            tolerance,
+            ..
+        } = problem;
+        Ok(Self {
+            compared: 0,
+            candidates,
+            runs: core::array::from_fn(|i| Run::new(candidates[i].stepping)),
+            in_64_bits: Run::new(in_64_bits.stepping),
+            reference: Reference::new(Run::new(reference)),
+            uncertainty: Uncertainty::new(shadows, problem)?,
+            is_reference_lost: false,
+            is_finest: false,
+            rods: [pendulum.l1, pendulum.l2].map(|l| (l / tolerance) as f32),
+        })
+    }
+
+    /// Takes over the accurate frames of the same candidates in an earlier race.
+    pub fn keep(&mut self, earlier: &[Candidate]) {
+        for candidate in &mut self.candidates {
+            let same = earlier
+                .iter()
+                .find(|one| one.stepping == candidate.stepping);
+            if let Some(&Candidate { frames, error, .. }) = same {
+                candidate.frames = frames;
+                candidate.error = error;
+            }
+        }
+    }
+
+    /// Returns the number of steps per frame of the reference.
+    pub fn reference_steps(&self) -> u32 {
+        self.reference.run.stepping.steps
+    }
+
+    /// Returns true if any candidate is alive.
+    pub fn is_alive(&self) -> bool {
+        self.candidates.iter().any(|candidate| candidate.is_alive)
+    }
+
+    /// Removes all candidates but this one.
+    pub fn retain(&mut self, stepping: Stepping) {
+        for candidate in &mut self.candidates {
+            candidate.is_alive &= candidate.stepping == stepping;
+        }
+    }
+
+    /// Returns true if a candidate in 64 bits runs beside the reference.
+    fn runs_in_64_bits(&self) -> bool {
+        let [.., candidate] = &self.candidates;
+        candidate.is_alive && candidate.stepping != self.reference.run.stepping
+    }
+
+    /// Prepares one motion, or restarts the shadows if that is due. Returns false if there is
+    /// nothing to prepare. A candidate that refuses the motion leaves the race.
+    ///
+    /// # Errors
+    ///
+    /// Returns the error of the reference or of a shadow that refuses the motion.
+    #[inline(never)]
+    pub fn prepare(&mut self, problem: &Problem) -> Result<bool, Error> {
+        if self.compared > 0 {
+            let is_due = self.uncertainty.is_due;
+            if let (true, Some(motion)) = (is_due, &self.reference.run.motion) {
+                self.uncertainty.restart(motion);
+            }
+            return Ok(is_due);
+        }
+
+        let start = Pendulum::new(&problem.pendulum)?.to_state(&problem.start);
+        if self.reference.run.motion.is_none() {
+            self.reference.prepare(problem, &start)?;
+            return Ok(true);
+        }
+        for (candidate, run) in self.candidates.iter_mut().zip(&mut self.runs) {
+            if candidate.is_alive && run.motion.is_none() {
+                candidate.is_alive = run.prepare(problem, &start).is_ok();
+                return Ok(true);
+            }
+        }
+        if self.runs_in_64_bits() && self.in_64_bits.motion.is_none() {
+            let [.., candidate] = &mut self.candidates;
+            candidate.is_alive = self.in_64_bits.prepare(problem, &start).is_ok();
+            return Ok(true);
+        }
+        self.uncertainty.prepare(problem, &start)
+    }
+
+    /// Returns true if a motion may have to be prepared, or if the shadows must be restarted.
+    pub fn is_preparing(&self) -> bool {
+        self.compared == 0 || self.uncertainty.is_due
+    }
+
+    /// Makes steps of several motions towards the next frame, for about `cost` but at least one.
+    /// Returns their cost; 0 if every motion has arrived.
+    pub fn advance(&mut self, costs: &Costs, cost: f32) -> f32 {
+        let mut spent = 0.0;
+        for (candidate, run) in self.candidates.iter().zip(&mut self.runs) {
+            if candidate.is_alive {
+                spent += run.advance(costs.of_step(run.stepping), cost, spent);
+            }
+        }
+        if self.runs_in_64_bits() {
+            spent += self.in_64_bits.advance(costs.fixed64, cost, spent);
+        }
+        let price = MEASURED * costs.fixed64;
+        spent += self.reference.advance(price, cost, spent);
+        spent + self.uncertainty.advance(costs, cost, spent)
+    }
+
+    /// Returns the cost of the next frame.
+    pub fn cost(&self, costs: &Costs) -> f32 {
+        let [in_32_bits @ .., in_64_bits] = &self.candidates;
+        let alive = in_32_bits.iter().filter(|one| one.is_alive);
+        let in_32_bits: f32 = alive.map(|one| one.cost).sum();
+        let in_64_bits = if self.runs_in_64_bits() {
+            in_64_bits.cost
+        } else {
+            0.0
+        };
+        let reference = MEASURED * costs.of_frame(self.reference.run.stepping);
+        let shadows = SHADOWS as f32 * costs.of_frame(self.uncertainty.stepping());
+        in_32_bits + in_64_bits + reference + shadows
+    }
+
+    /// Compares all candidates with the reference in the next frame. All motions must have arrived.
+    /// Nothing is known of that frame if the reference is lost.
+    pub fn compare(&mut self) {
+        let runs_in_64_bits = self.runs_in_64_bits();
+        let compared = self.reference.compare(self.uncertainty.scales);
+        let own = self.uncertainty.compare(self.rods, &compared);
+        let is_known = own <= 1.0;
+        self.is_reference_lost = !is_known;
+        if self.is_reference_lost {
+            return;
+        }
+        self.compared += 1;
+
+        let reference = &compared.directions;
+        let rods = self.rods;
+        let bound = |shown: &Directions| own + distance(rods, shown, reference);
+        let [in_32_bits @ .., in_64_bits] = &mut self.candidates;
+        for (candidate, run) in in_32_bits.iter_mut().zip(&mut self.runs) {
+            if candidate.is_alive {
+                candidate.note(self.compared, bound(&run.frame()));
+            }
+        }
+        let bound = if runs_in_64_bits {
+            bound(&self.in_64_bits.frame())
+        } else {
+            bound(reference)
+        };
+        in_64_bits.note(self.compared, bound);
+    }
+}
