@@ -53,7 +53,7 @@ pub const FIGURE_7_ENERGY: f64 = 0.01;
 ///   epsilon W t sqrt((m1 + m2)/m1). The change of all rates by the rounding of the parameters is
 ///   as large, and is not added.
 ///
-/// Where the tolerance exceeds 1, the test claims nothing. [`KNOWN_ANSWERS_CLAIMED`] counts the
+/// Where the tolerance exceeds 1, the test claims nothing. `KNOWN_ANSWERS_CLAIMED` counts the
 /// other rows.
 pub fn known_answer(row: &KnownAnswer, method: Method, &State { a1, a2, .. }: &State<f64>) -> f64 {
     const STEPS_PER_SECOND: f64 = 4096.0;

@@ -106,8 +106,8 @@ impl Rows {
 }
 
 /// Returns the request of the options, and the times of its rows. The step divides the time between
-/// rows. Its default is at most [`USUAL_STEP`] and short enough for the fastest motion of this
-/// energy, if that takes no more than [`MOST_CHOSEN`] steps.
+/// rows. Its default is at most `USUAL_STEP` and short enough for the fastest motion of this
+/// energy, if that takes no more than `MOST_CHOSEN` steps.
 pub fn plan(options: &SimulateOptions) -> anyhow::Result<(Request, Rows)> {
     let rows = Rows::of(options)?;
     let method = method(options)?;
