@@ -48,8 +48,7 @@ impl<R: Real> Modes<R> {
     /// For d < 0 the sum is c + d = 4 m2 l1 l2 / (M (c - d)). The only subtraction is l1 - l2, so
     /// that nothing cancels.
     ///
-    /// Both frequencies are within 4 ulp, in `f32` and `f64`, for m2/m1 from 1e-7 to 1e7 and l1/l2
-    /// from 1e-3 to 1e3.
+    /// Both frequencies are within 4 ulp, in `f32` and `f64`.
     ///
     /// # Errors
     ///

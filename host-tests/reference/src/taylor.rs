@@ -72,12 +72,14 @@ impl Reference {
     }
 
     pub fn of(start: &Start) -> Self {
-        let Some(fractions) = start.fractions else {
-            let (parameters, motion) = &start.about;
-            return Self::new(parameters, motion);
-        };
-        let [a1, a2, w1, w2, m1, m2, l1, l2, g] =
-            fractions.map(|(above, below)| divide(TwoFloat::from(above), TwoFloat::from(below)));
+        let (Parameters { m1, m2, l1, l2, g }, Motion { a1, a2, w1, w2 }) = start.about;
+        let numbers = start.fractions.map_or_else(
+            || [a1, a2, w1, w2, m1, m2, l1, l2, g].map(TwoFloat::from),
+            |fractions| {
+                fractions.map(|(above, below)| divide(TwoFloat::from(above), TwoFloat::from(below)))
+            },
+        );
+        let [a1, a2, w1, w2, m1, m2, l1, l2, g] = numbers;
         let radians = |x: TwoFloat, degrees: bool| {
             // Exact at quarter turns.
             if degrees {
@@ -87,7 +89,14 @@ impl Reference {
             }
         };
         let [in_degrees, per_second] = start.degrees;
-        let [a1, a2] = [a1, a2].map(|a| radians(a, in_degrees));
+        let [quarters1, quarters2] = start.quarters();
+        let angle = |a: TwoFloat, quarters: Option<f64>| {
+            quarters.map_or_else(
+                || radians(a, in_degrees),
+                |quarters| FRAC_PI_2 * TwoFloat::from(quarters),
+            )
+        };
+        let [a1, a2] = [angle(a1, quarters1), angle(a2, quarters2)];
         let [w1, w2] = [w1, w2].map(|w| radians(w, per_second));
         Self::exact(Parameters { m1, m2, l1, l2, g }, [a1, a2, w1, w2])
     }

@@ -4,6 +4,8 @@
 mod motions;
 mod periodic_orbits;
 
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
+
 use double_pendulum::{Motion, Parameters};
 use fastrand::Rng;
 use firmware::scenes::SceneName;
@@ -11,6 +13,7 @@ use host_tests::commands::prove::{HEADING, horizons, known_answers};
 use host_tests::oracle::known_answers::table;
 use host_tests::oracle::random::symmetric;
 use reference::enclosure::{Enclosure, Fineness, Fixed, Start, sin_cos};
+use reference::taylor::Reference;
 
 /// The times of frames are exact in `f64`.
 const RATE: u16 = 64;
@@ -166,6 +169,40 @@ fn whole_turns_are_removed_exactly() {
 
     let (exact, double) = hull([(1000, 1), (-700, 1)], false);
     assert_eq!(exact, double);
+}
+
+/// A start in rad at the `f64` of a quarter turn is that quarter turn, as in the kernel.
+#[test]
+fn number_nearest_to_a_quarter_turn_counts_as_one() {
+    let parameters = Parameters::equal_rods(1.0, 1.0, 1.0);
+    let at = |a1, a2| Start::of(&parameters, &Motion::at_rest(a1, a2));
+    assert!(at(PI, -PI).rests());
+    assert!(at(TAU, 3.0 * PI).rests());
+    assert!(!at(PI.next_up(), PI).rests());
+    assert!(!at(PI, FRAC_PI_2).rests());
+
+    let typed = |angles: [(i64, u64); 2], in_degrees: bool| {
+        let [zero, one] = [(0, 1), (1, 1)];
+        let start = Start {
+            about: at(FRAC_PI_2, -PI).about,
+            fractions: Some([angles[0], angles[1], zero, zero, one, one, one, one, one]),
+            degrees: [in_degrees, false],
+        };
+        let mut exact = Reference::of(&start);
+        exact.advance_to(1.0);
+        (start.enclose(RATE).hull(), exact.motion())
+    };
+    let digits = 10_u64.pow(16);
+    let in_rad = [
+        (15_707_963_267_948_966, digits),
+        (-31_415_926_535_897_930, digits),
+    ];
+    let (box_in_rad, in_rad) = typed(in_rad, false);
+    let (box_in_degrees, in_degrees) = typed([(90, 1), (-180, 1)], true);
+    assert_eq!(in_rad, in_degrees);
+    for (one, other) in box_in_rad.into_iter().zip(box_in_degrees) {
+        assert!((one - other).size() < 1e-30);
+    }
 }
 
 #[test]

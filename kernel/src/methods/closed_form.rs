@@ -17,9 +17,11 @@ pub(crate) struct Oscillation<R> {
 }
 
 impl<R: Real> Oscillation<R> {
-    /// Returns the amplitude of rod 1, rad.
+    /// Returns the amplitude of rod 1, rad. Its squares underflow in `f32` if the shape, up to 1e18,
+    /// makes it an amplitude of rod 2 of 1 rad.
     pub fn amplitude(&self) -> R {
-        (self.cosine * self.cosine + self.sine * self.sine).sqrt()
+        let [cosine, sine] = [self.cosine, self.sine].map(R::to_f64);
+        R::from_f64(libm::sqrt(cosine * cosine + sine * sine))
     }
 
     /// Returns the phase, rad: C cos wt + S sin wt = amplitude cos(wt + phase).

@@ -1,8 +1,9 @@
 //! The set of starts of a pendulum's motion.
 
 use std::array::from_fn;
+use std::f64::consts::FRAC_PI_2;
 
-use double_pendulum::{Bounds, Motion, Parameters, Pendulum};
+use double_pendulum::{Bounds, Motion, Parameters, Pendulum, sin_cos as kernel_sin_cos};
 
 use super::equations::Equations;
 use super::fixed::Fixed;
@@ -40,7 +41,18 @@ impl Start {
         }
     }
 
-    /// An angle in rad is never straight up.
+    /// The quarter turns that the angles count as: those in rad whose `f64` has an exact direction
+    /// in the kernel. No number is pi, so a user who types 3.141592653589793 means 180 degrees.
+    pub fn quarters(&self) -> [Option<f64>; 2] {
+        let (_, Motion { a1, a2, .. }) = self.about;
+        let has_degrees = self.fractions.is_some() && self.degrees[0];
+        [a1, a2].map(|angle| {
+            let (sine, cosine) = kernel_sin_cos(angle);
+            let is_exact = angle != 0.0 && sine * cosine == 0.0;
+            (is_exact && !has_degrees).then(|| (angle / FRAC_PI_2).round())
+        })
+    }
+
     pub fn rests(&self) -> bool {
         let (_, Motion { a1, a2, w1, w2 }) = self.about;
         let is_vertical = |(numerator, denominator): (i64, u64)| {
@@ -48,7 +60,7 @@ impl Start {
         };
         let are_vertical = match self.fractions {
             Some([a1, a2, ..]) if self.degrees[0] => is_vertical(a1) && is_vertical(a2),
-            _ => [a1, a2] == [0.0; 2],
+            _ => [a1, a2].map(|angle| kernel_sin_cos(angle).0) == [0.0; 2],
         };
         are_vertical && [w1, w2] == [0.0; 2]
     }
@@ -102,7 +114,12 @@ impl Start {
         let [a1, a2] = if self.degrees[0] {
             [a1(0), a2(0)].map(|a| radians(a, true))
         } else {
-            [without_turns(a1, about[0]), without_turns(a2, about[1])]
+            let [quarters1, quarters2] = self.quarters();
+            let exact = |quarters: f64| Fixed::of(quarters.rem_euclid(4.0) / 2.0) * Fixed::PI;
+            [
+                quarters1.map_or_else(|| without_turns(a1, about[0]), exact),
+                quarters2.map_or_else(|| without_turns(a2, about[1]), exact),
+            ]
         };
         let [w1, w2] = [w1(-unit), w2(-unit)].map(|w| radians(w, self.degrees[1]));
         let [sin1, cos1] = sin_cos(a1);

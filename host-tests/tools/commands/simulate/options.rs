@@ -140,10 +140,8 @@ impl SimulateOptions {
     /// Returns the exact motion, from exactly the given decimals if they are not too long.
     pub fn reference(&self) -> Reference {
         let start = self.start();
-        match start.exact() {
-            Some(exact) => Reference::of(&exact),
-            None => Reference::new(&start.parameters(), &start.motion()),
-        }
+        let rounded = || Exact::of(&start.parameters(), &start.motion());
+        Reference::of(&start.exact().unwrap_or_else(rounded))
     }
 }
 
