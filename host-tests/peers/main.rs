@@ -132,8 +132,7 @@ impl<E: Fn(&[f64; 4]) -> [f64; 4]> System<f64, Vector4<f64>> for Problem<E> {
     }
 }
 
-/// Some integrators end early at tolerances near the resolution of f64.
-/// resolution of f64.
+/// The result of an integrator that ends early at tolerances near the resolution of f64.
 const ENDED_EARLY: [f64; 4] = [f64::NAN; 4];
 
 fn library_rk4(

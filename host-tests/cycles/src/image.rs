@@ -26,7 +26,7 @@ pub struct Image {
 /// A function with its literal pools, or any other symbol in a section with code.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Function {
-    /// Without the Thumb bit.
+    /// The address without the Thumb bit.
     pub address: u32,
     /// 0 if the file does not declare it.
     pub size: u32,
@@ -136,7 +136,7 @@ impl Image {
         anyhow!("{}: no function {function}", self.path.display())
     }
 
-    /// Of several, the one that begins last.
+    /// Returns the function at this address; of several, the one that begins last.
     pub fn function_at(&self, address: u32) -> Option<&Function> {
         let before = self
             .functions

@@ -7,15 +7,15 @@ use crate::Core;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Class {
     Fixed,
-    /// It refills the pipeline sooner than a branch to an address in a register.
+    /// A branch that refills the pipeline sooner than a branch to an address in a register.
     Branch,
-    /// It takes no time after a 16-bit instruction.
+    /// An `it`, which takes no time after a 16-bit instruction.
     IfThen,
     Divide,
     Load,
     /// A load after it takes 1 cycle more, if the store has a constant offset.
     Store,
-    /// It is not pipelined. A store of two words is [`Self::Fixed`].
+    /// A load that is not pipelined. A store of two words is [`Self::Fixed`].
     LoadPair,
     /// 1 cycle more for each core register in the list.
     LoadList,
@@ -97,13 +97,13 @@ pub struct Row {
     pub name: &'static str,
     pub(super) mask: u32,
     pub(super) value: u32,
-    /// On the M3, the M4F and the M0+; 0 for a division, or if the core does not have the
-    /// instruction.
+    /// The cycles on the M3, the M4F and the M0+; 0 for a division, or if the core does not have
+    /// the instruction.
     pub(super) cycles: [u64; 3],
     pub class: Class,
     /// Lists and pairs are left out.
     pub(super) writes: &'static [Field],
-    /// For a load, a store or a table branch. 15 does not count.
+    /// The registers of the address of a load, a store or a table branch. 15 does not count.
     pub(super) address: &'static [Field],
 }
 

@@ -26,7 +26,7 @@ impl Registers {
         self.general[13]
     }
 
-    /// Before the first instruction of a function it is the return address.
+    /// Returns the link register: before the first instruction of a function the return address.
     pub fn lr(&self) -> u32 {
         self.general[14]
     }
@@ -98,7 +98,7 @@ pub struct Calls<'a> {
     entries: BTreeSet<u32>,
     /// The registers at its entry, its stream since then, and its cost so far.
     pub running: Option<(Registers, Stream<'a>, Cost)>,
-    /// In the order of the returns.
+    /// The costs of the calls, in the order of the returns.
     pub ended: Vec<Cost>,
     pub spots: BTreeMap<u32, (Instruction, Cost)>,
     pub stack_bytes: u32,

@@ -54,7 +54,7 @@ impl Board {
         }
     }
 
-    /// In s, when QEMU's clock counts instructions.
+    /// Returns the seconds of an instruction when QEMU's clock counts instructions.
     pub fn instruction(&self) -> f64 {
         f64::from(1 << self.instruction_shift()) * 1e-9
     }

@@ -15,11 +15,11 @@ pub const SHOWING: u64 = 110_000;
 /// buses.
 pub const IDLE: f64 = 0.4;
 
-/// In bytes.
+/// The memory of a program, bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Memory {
     pub text: u32,
-    /// In flash and in memory.
+    /// Initialised statics, in flash and in memory.
     pub data: u32,
     pub bss: u32,
     pub stack: u32,

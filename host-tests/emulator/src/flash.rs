@@ -17,7 +17,7 @@ const MAGIC_END: u32 = 0x0ab1_6f30;
 const BROUGHT: usize = 256;
 const ROOM: usize = 476;
 pub const ERASED: u8 = 0xff;
-/// No chip here has more flash.
+/// The largest image; the chips here have no more flash.
 const MOST: usize = 1 << 21;
 
 pub fn flash_image(elf: &[u8]) -> Result<(u32, Vec<u8>)> {

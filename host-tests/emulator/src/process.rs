@@ -90,7 +90,7 @@ impl Running {
         self.child.try_wait()?.map(|_| self.wait()).transpose()
     }
 
-    /// If no stream is open, the child is about to end, and this waits for it.
+    /// Returns the exit status. A child without an open stream is about to end and is waited for.
     pub fn ended(&mut self, streams: &[Stream]) -> io::Result<Option<ExitStatus>> {
         if streams.iter().any(|stream| stream.is_open) {
             self.try_wait()

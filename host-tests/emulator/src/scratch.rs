@@ -12,7 +12,7 @@ use tempfile::TempDir;
 use super::process::remove_on_interrupt;
 
 const PREFIX: &str = "double-pendulum-run-";
-/// By this age a folder has been locked by its owner.
+/// The age by which a folder has been locked by its owner.
 const LOCKED_BY_THEN: Duration = Duration::from_secs(60);
 
 /// A temporary folder of this process.

@@ -70,7 +70,7 @@ pub fn wait<'a>(streams: impl Iterator<Item = &'a Stream>) {
 pub struct Channel {
     /// A write that does not fit is an error of kind `WouldBlock`.
     pub sender: File,
-    /// It stays open after QEMU's end, so its `is_open` does not show the end.
+    /// The stream stays open after QEMU's end, so its `is_open` does not show the end.
     pub stream: Stream,
 }
 

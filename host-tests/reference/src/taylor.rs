@@ -57,7 +57,7 @@ impl Reference {
         Self::exact(Parameters { m1, m2, l1, l2, g }, [a1, a2, w1, w2])
     }
 
-    /// From a1, a2 (rad), w1, w2 (rad/s).
+    /// Starts from a1, a2 (rad), w1, w2 (rad/s).
     pub fn exact(parameters: Parameters<TwoFloat>, motion: [TwoFloat; 4]) -> Self {
         let zero = TwoFloat::from(0.0);
         Self {
@@ -132,13 +132,13 @@ impl Reference {
         }
     }
 
-    /// With all turns.
+    /// Returns the motion with all turns.
     pub fn motion(&self) -> Motion<f64> {
         let [a1, a2, w1, w2] = self.motion.map(f64::from);
         Motion { a1, a2, w1, w2 }
     }
 
-    /// With all turns.
+    /// Returns the state with all turns.
     pub fn state(&self) -> State<f64> {
         self.exact_state().map(f64::from).into()
     }

@@ -14,7 +14,8 @@ use host_tests::commands::count::{
 };
 use rayon::prelude::*;
 
-/// At 12.5 MHz after reset, under `-icount`, where an instruction takes 1 ns.
+/// The instructions in a tick at 12.5 MHz after reset, under `-icount`, where an instruction takes
+/// 1 ns.
 const INSTRUCTIONS_PER_TICK: f64 = 80.0;
 
 fn request(method: Method, angle: f64, stride: u32) -> Request {

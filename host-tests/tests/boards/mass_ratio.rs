@@ -10,8 +10,8 @@ use firmware::scenes::SceneName;
 
 use crate::support::on;
 
-/// In ticks. With steps that do not resolve the motion, it diverged after 2.6 s, and `figure-7`
-/// after 1 s.
+/// The duration, ticks. With steps that do not resolve the motion, it diverged after 2.6 s, and
+/// `figure-7` after 1 s.
 const FOLLOWED: u64 = 4 * TICK_RATE as u64;
 
 /// Relative. An error of 1 % becomes visible after some seconds.

@@ -253,7 +253,7 @@ fn a_board_that_hangs_restarts_in_its_scene_and_reports_the_cause() -> anyhow::R
     Ok(())
 }
 
-/// One copy of the record is damaged. One fault is while the scene is started.
+/// A copy of the record is damaged. One fault is while the scene is started.
 #[test]
 fn without_a_debugger_a_fault_restarts_the_board() -> anyhow::Result<()> {
     for board in watched() {

@@ -27,7 +27,7 @@ fn run(script: &str, add: impl FnOnce(&mut Command)) -> anyhow::Result<String> {
     Ok(output.stdout)
 }
 
-/// This message is not captured.
+/// Reports a missing tool; the message is not captured.
 fn unless_missing(test: fn() -> anyhow::Result<()>) -> anyhow::Result<()> {
     test().or_else(|error| {
         let missing = error.downcast::<Refused>()?;

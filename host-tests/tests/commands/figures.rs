@@ -13,8 +13,8 @@ use reference::taylor::Reference;
 
 use super::cli::{output, program};
 
-/// In J: the plotted path of the misprinted form must reach the first or less, and more than the
-/// second (measured -45 to 63.1, from 62.9 at the start).
+/// The energies, J: the plotted path of the misprinted form must reach the first or less, and more
+/// than the second (measured -45 to 63.1, from 62.9 at the start).
 const MISPRINT_SWING: [f64; 2] = [-40.0, 60.0];
 
 /// Relative, where a curve crosses a level: half of the last digit of the shortest given number,
@@ -28,7 +28,7 @@ const PLOTTED_FREQUENCY: f64 = 3e-6;
 /// it.
 const PLOTTED_AMPLITUDE: f64 = 5e-4;
 
-/// In m: a hundredth of the width of the lines (measured: 3e-6).
+/// The error of the path, m: a hundredth of the width of the lines (measured: 3e-6).
 const FIGURE_7_PATH: f64 = 1e-4;
 
 /// Figures 3 to 5: w1, w2 (rad/s), the envelope's period (s), the largest |a1| (degrees).

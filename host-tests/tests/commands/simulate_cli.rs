@@ -54,9 +54,9 @@ fn unequal_rods_with_velocities_have_the_same_bits_on_every_board() {
     }
 }
 
-/// Less than 1 only for rows that are as accurate as the second run.
+/// A share, which is less than 1 only for rows that are as accurate as the second run.
 const SHORT: f64 = 0.8;
-/// In s: the table has fewer digits than the compared numbers.
+/// The time of two rows, s: the table has fewer digits than the compared numbers.
 const ROWS: f64 = 0.02;
 
 /// Each time is that of the exact motion of the given decimals, or a little earlier.
@@ -122,7 +122,7 @@ const PLACES: [(&str, &[f64]); 3] = [
     ("stm32f405", &[1e-2, 1e-9]),
 ];
 
-/// In the next smaller number of steps the chosen method must not keep the tolerance.
+/// The chosen method in the next smaller number of steps must not keep the tolerance.
 #[test]
 fn every_row_is_within_the_tolerance_and_longer_steps_are_not() {
     for motion in MOTIONS {

@@ -217,7 +217,7 @@ fn counting(mut message: ToHost, measurements: &mut u32) -> Vec<u8> {
     wire(message)
 }
 
-/// There are six problems: two flipped bits, a frame that is too long, a restart, the panel and a
+/// The six problems are two flipped bits, a frame that is too long, a restart, the panel and a
 /// button.
 #[test]
 fn the_report_has_differences_answers_of_the_person_and_counted_cycles() {

@@ -20,8 +20,8 @@ use firmware::scenes::{Report, SceneName};
 
 use crate::bench::{Plain, app, frames, messages, of, starting_with, wire};
 
-/// In relative energy: some roundings of `f64`. The rounded numbers are three times as large as the
-/// energy above rest, and the difference is relative to that energy.
+/// The relative error of an energy: some roundings of `f64`. The rounded numbers are three times as
+/// large as the energy above rest, and the difference is relative to that energy.
 const ENERGY_SHOWN: f64 = 1e-14;
 
 fn run(clock: impl IntoIterator<Item = u32>) -> Plain {
@@ -281,7 +281,7 @@ impl Buttons for Script {
     }
 }
 
-/// Up counts when it is pressed, select when it is released.
+/// The button up counts when it is pressed, select when it is released.
 #[test]
 fn buttons_restart_with_the_new_settings() {
     let mut app = of(NoDisplay, Vec::new(), Script::default());

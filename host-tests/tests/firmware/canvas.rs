@@ -10,7 +10,7 @@ use firmware::graphics::{Canvas, Disc, Format, Glyph, Palette, SUBPIXELS, Spot, 
 
 use crate::bench::{blank, places};
 
-/// In pixels. Greys are rounded down to one of 16, which shifts the light by far less.
+/// The tolerance, pixels. Greys are rounded down to one of 16, which shifts the light by far less.
 const CENTRE_TOLERANCE: f64 = 0.1;
 
 /// A ramp one pixel wide differs from the covered share of a pixel, at most by 3.3 of 15 greys, at

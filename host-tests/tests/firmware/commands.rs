@@ -204,7 +204,7 @@ fn a_bad_command_is_answered_with_the_field_and_changes_nothing() {
     assert_eq!((status(&mut app), app.player.report), before);
 }
 
-/// Only the angle that a command sets is checked, so an angle beyond straight up that the program
+/// The check is of the angle that a command sets, so an angle beyond straight up that the program
 /// has set stays.
 #[test]
 fn an_angle_beyond_straight_up_does_not_refuse_another_field() {
@@ -493,7 +493,7 @@ fn a_method_can_be_forced() {
     }
 }
 
-/// Too expensive for a frame of a Cortex-M3, because a short rod swings fast.
+/// A method that is too expensive for a frame of a Cortex-M3, because a short rod swings fast.
 const COSTLY: Method = Method::Rk4F32DirectionPlain;
 
 fn fast() -> Settings {

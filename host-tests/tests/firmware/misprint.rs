@@ -10,15 +10,16 @@ use firmware::motion::{Energy, Misprinted, Settings};
 use firmware::scenes::SceneName;
 use host_tests::oracle::{textbook, tolerances};
 
-/// In J, of the mean of 32 chaotic runs, whose spread the tolerance covers (measured -18.3, without
-/// the first 5 s -18.9, and falling further in longer runs).
+/// The tolerance, J, of the mean of 32 chaotic runs, whose spread the tolerance covers (measured
+/// -18.3, without the first 5 s -18.9, and falling further in longer runs).
 const MISPRINT_ENERGY: f64 = 2.0;
 
 /// The share of the time that bob 2 of the misprinted form may be above the pivot in these runs
 /// (measured 8.4 %).
 const MISPRINT_ABOVE: f64 = 0.12;
 
-/// In J, for the displayed energy in the first 5 s (measured 0.15, where rod 2 is fastest).
+/// The tolerance, J, of the displayed energy in the first 5 s (measured 0.15, where rod 2 is
+/// fastest).
 const MISPRINT_SHOWN: f64 = 0.3;
 
 const LAST_DIGIT_OF_62_9: f64 = 0.05;
@@ -27,15 +28,15 @@ const LAST_DIGIT_OF_62_9: f64 = 0.05;
 /// pivot. It covers the spread of the chaotic runs (measured 52.0 %).
 const FIGURE_7_ABOVE: f64 = 0.03;
 
-/// Of the displayed energy of a misprinted motion, relative to twice the largest potential energy.
-/// At large mass ratios this motion is wilder than any true motion, and roundings are visible
-/// within a second.
+/// The error of the displayed energy of a misprinted motion, relative to twice the largest
+/// potential energy. At large mass ratios this motion is wilder than any true motion, and roundings
+/// are visible within a second.
 const MISPRINT_ENERGY_SHOWN: f64 = 0.1;
 
 const MU: f64 = 2.75;
 const STEPS_PER_SECOND: usize = 512;
 const SECONDS: usize = 100;
-/// Both systems are chaotic, so one run is not meaningful. The starts differ by millionths of a
+/// The systems are chaotic, so one run is not meaningful. The starts differ by millionths of a
 /// radian.
 const RUNS: usize = 32;
 
@@ -210,7 +211,7 @@ fn a_motion_is_lost_when_its_rods_turn_too_far_in_the_shortest_step() {
     }
 }
 
-/// In these motions without gravity the shortest step resolves the motion at its start only.
+/// The shortest step resolves these motions without gravity at its start only.
 #[test]
 fn a_step_that_is_resolved_only_at_its_start_is_not_taken() {
     for [a1, a2, p1, p2] in [[3.0, 2.3, 52.0, 135.0], [2.2, 1.5, 72.0, 147.0]] {

@@ -21,7 +21,7 @@ use host_tests::oracle::snapshot;
 
 use crate::bench::{app, blank, places, wire};
 
-/// In pixels, for a height of three digits.
+/// The relative error of a height that follows from a number of three digits.
 const SHOWN_HEIGHT: f32 = 1e-3;
 
 const LINE: i32 = Format::OLED.line();
@@ -35,7 +35,7 @@ const RESOURCES: Resources = Resources {
     format: Format::OLED,
 };
 
-/// When everything is visible, and later.
+/// The ticks when everything is visible, and later.
 const PICTURED: [u32; 2] = [60, 240];
 
 fn scene(name: SceneName) -> Show {
@@ -159,9 +159,8 @@ fn a_pause_is_marked_and_only_a_pause() -> Result<(), String> {
     Ok(())
 }
 
-/// Either rod of the planned pendulum is as long as a radian on the frame. As the figure shows
-/// angle 1 larger by sqrt((1 + mu)/mu), that is times the root of the mean square of this factor
-/// and 1.
+/// Each rod of the planned pendulum is as long as a radian on the frame. As the figure shows angle
+/// 1 larger by sqrt((1 + mu)/mu), that is times the root of the mean square of this factor and 1.
 #[test]
 fn the_planned_height_is_that_of_the_shown_figure() {
     let start = |scene: &mut AnyScene, name: SceneName| {

@@ -14,7 +14,7 @@ use reference::taylor::Reference;
 /// 3.7e-5. It is computed for five periods of the fast mode, the most in any of these scenes.
 const CLOSED: f64 = 5.0 * f32::EPSILON as f64 * 2.0 * 5.0 * std::f64::consts::TAU;
 
-/// In pixels: more than the width of a line.
+/// The distance, pixels: more than the width of a line.
 const NOT_CLOSED: f64 = 1.0;
 
 const SMALL: [(SceneName, f64); 3] = [

@@ -18,8 +18,8 @@ const FIXED_32_FLOOR: f64 = 5e-9;
 /// motions.
 const FIXED_32_ORDER_MEASURABLE: f64 = 5e-6;
 
-/// In the same steps, in 5 s of the chaotic scene. The error of `f64` counts as at least half of
-/// [`FIXED_64_FLOOR`].
+/// The ratio in the same steps, in 5 s of the chaotic scene. The error of `f64` counts as at least
+/// half of [`FIXED_64_FLOOR`].
 const FIXED_64_AGAINST_DOUBLE: f64 = 2.0;
 
 /// The error of an angle by 64-bit fixed point, rad, that is due to its roundings alone. In the
@@ -27,7 +27,8 @@ const FIXED_64_AGAINST_DOUBLE: f64 = 2.0;
 /// in 5 s.
 const FIXED_64_FLOOR: f64 = 1e-12;
 
-/// In rad, after three steps that are at least half as long as the longest accepted ones.
+/// The difference, rad, after three steps that are at least half as long as the longest accepted
+/// ones.
 const FIXED_64_AND_DOUBLE: f64 = 1e-9;
 
 const TRIALS: u32 = 3000;

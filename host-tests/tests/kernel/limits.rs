@@ -13,7 +13,8 @@ use reference::taylor::Reference;
 
 use super::hard_cases::HALVINGS;
 
-/// In s: one sampling interval, 1/64 s, and RK4's error of the growth rate in steps of 2^-6 s.
+/// The tolerance, s: one sampling interval, 1/64 s, and RK4's error of the growth rate in steps of
+/// 2^-6 s.
 const FALL: f64 = 1.5 / 64.0;
 
 /// Relative. The fall begins at a whole step, and the angular velocity is rounded.
@@ -51,7 +52,7 @@ fn fall(mut angle: impl FnMut() -> f64) -> f64 {
     looks.map_or(f64::INFINITY, |looks| f64::from(looks) / 64.0)
 }
 
-/// In angles small increments are lost by rounding, which the next test covers. In fixed point a
+/// A sum of angles loses small increments by rounding, which the next test covers. In fixed point a
 /// sine has too few digits.
 #[test]
 fn upright_pendulum_falls_with_the_exact_motion_in_direction_form() -> Result<(), Error> {

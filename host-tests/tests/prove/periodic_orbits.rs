@@ -18,7 +18,7 @@ use crate::RATE;
 
 struct Orbit {
     twice_energy: u32,
-    /// In kg m^2/s and units of 1e-16, as the time in s.
+    /// The bounds of p2, in kg m^2/s and units of 1e-16, as the time in s.
     p2: [i64; 2],
     time: [i64; 2],
 }

@@ -133,7 +133,7 @@ pub fn fw(options: &FwOptions) -> anyhow::Result<ExitCode> {
     }
 }
 
-/// Of a path that contains a target, only boards with that target are considered.
+/// Returns a board that runs the binary; a target in the path selects it.
 fn board_for(binary: &Path) -> &'static Board {
     let is_target = |board: &&Board| {
         binary
@@ -334,7 +334,7 @@ fn every_test_program_is_run() {
     assert!(found >= 5, "{found}");
 }
 
-/// Of a path that contains a target, only boards with that target are considered.
+/// The target in a path selects the board.
 #[test]
 fn the_board_follows_from_the_binary() {
     for (binary, name) in [

@@ -39,7 +39,7 @@ pub const PANELS: [PanelName; 4] = [
     PanelName::Oled,
 ];
 
-/// Without a window, also for root, without requests of its own.
+/// The options for no window, also for root, and no requests of its own.
 pub const HEADLESS: &str = "--headless --no-sandbox --disable-gpu --disable-quic --no-first-run \
     --disable-background-networking --disable-component-update --disable-sync --hide-scrollbars";
 const PICTURE: &str = "--window-size=1000,850 --virtual-time-budget=60000";

@@ -24,12 +24,12 @@ pub fn exact_methods() -> impl Iterator<Item = Method> {
 pub trait CountingRun: Debug {
     fn advance(&mut self, steps: u32) -> Result<(), Error>;
     fn state(&self) -> State<f64>;
-    /// In the direction form in floating point they may be up to half a step ahead of the state or
-    /// behind it.
+    /// Returns (sin, cos) of both angles. In the direction form in floating point they may be up to
+    /// half a step ahead of the state or behind it.
     fn directions(&self) -> [Direction<f64>; 2];
-    /// At the time of the directions.
+    /// Returns a1 and a2 at the time of the directions.
     fn angles(&self) -> [f64; 2];
-    /// At the time of the directions.
+    /// Returns the energy at the time of the directions.
     fn energy(&self) -> f64;
 }
 
@@ -109,17 +109,17 @@ impl Trial {
         }
     }
 
-    /// From rest with both rods at 0.5 rad.
+    /// A motion from rest with both rods at 0.5 rad.
     pub fn regular(seconds: f64) -> Self {
         Self::at_rest(1.0, 0.5, 0.5, seconds)
     }
 
-    /// From rest with both rods at 2 rad. After some time rods turn over.
+    /// A motion from rest with both rods at 2 rad. After some time rods turn over.
     pub fn chaotic(seconds: f64) -> Self {
         Self::at_rest(1.0, 2.0, 2.0, seconds)
     }
 
-    /// At small angles, in motion at the start, with unlike bobs and rods.
+    /// A motion at small angles, in motion at the start, with unlike bobs and rods.
     pub fn unlike(seconds: f64) -> Self {
         let parameters = Parameters {
             m1: 0.7,

@@ -36,7 +36,7 @@ pub struct Port {
     pub name: String,
     port: Box<dyn SerialPort>,
     pub inbox: Inbox,
-    /// This may be a restart before the connection.
+    /// The last restart, which may be a restart before the connection.
     pub restarted: Option<Restarted>,
     /// Problems, recoveries and restarts of the board, one line each. The caller drains them.
     pub notices: Vec<String>,

@@ -200,9 +200,9 @@ impl Machine {
         Ok(())
     }
 
-    /// If the machine is stopped at a `wfi`, the `wfi` is skipped. The architecture allows it to
-    /// wake at any time. While the machine was stopped, QEMU has advanced its clock to the next
-    /// event, which is exactly the effect of sleeping.
+    /// Skips a `wfi` at which the machine is stopped. The architecture allows it to wake at any
+    /// time. While the machine was stopped, QEMU has advanced its clock to the next event, which is
+    /// exactly the effect of sleeping.
     fn leave(&mut self, places: &[u32]) -> anyhow::Result<()> {
         let set = std::mem::replace(&mut self.places.breakpoints, places.to_vec());
         for (change, these, others) in [('z', &set[..], places), ('Z', places, &set[..])] {
@@ -260,7 +260,7 @@ impl Machine {
     }
 }
 
-/// Does not wait for the acknowledgement.
+/// Sends a packet, and does not wait for the acknowledgement.
 pub fn send_packet(sender: &mut File, packet: &str) -> io::Result<()> {
     let checksum = packet.bytes().fold(0, u8::wrapping_add);
     write!(sender, "${packet}#{checksum:02x}")

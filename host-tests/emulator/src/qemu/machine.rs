@@ -35,7 +35,7 @@ pub struct Settings<'a> {
     pub board: &'a Board,
     pub elf: &'a Path,
     pub clock: Clock,
-    /// With a debugger the firmware sends its log, and a crash ends QEMU. Without one, a crash
+    /// The firmware sees a debugger: it sends its log, and a crash ends QEMU. Without one, a crash
     /// restarts the board.
     pub debugger: bool,
     pub limit: Duration,
@@ -47,7 +47,7 @@ const CHATTER: [&str; 2] = ["Timer with period zero, disabling", "has no peer"];
 /// An emulated board. Every method that waits also reads all output of the board, because QEMU
 /// stops while its output is not read.
 pub struct Machine {
-    /// If the link is not read, the board's output fills the pipe and then its serial port.
+    /// The link is read. Otherwise the board's output fills the pipe and then its serial port.
     pub listens: bool,
     pub(super) monitor: Channel,
     pub(super) debugger: Channel,

@@ -16,7 +16,7 @@ const GREY_UNIT: u8 = 17;
 pub struct Screenshot {
     pub format: Format,
     pub greys: Vec<u8>,
-    /// On a colour panel: five bits of red, six of green, five of blue.
+    /// The colours of a colour panel: five bits of red, six of green, five of blue.
     pub colours: Option<Vec<u16>>,
 }
 

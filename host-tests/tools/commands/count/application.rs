@@ -46,11 +46,12 @@ const KEEPING: Place = ("firmware::board::cortex_m::retained::", "keep");
 /// The cost of one frame, with all calls and interrupts.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct FrameProfile {
-    /// Of computing and drawing.
+    /// The cost of computing and drawing.
     pub scene: Cost,
-    /// Of computing, drawing and sending. Planning in the time that is left is not included.
+    /// The cost of computing, drawing and sending. Planning in the time that is left is not
+    /// included.
     pub busy: Cost,
-    /// Of drawing and sending.
+    /// The cost of drawing and sending.
     pub showing: Cost,
 }
 

@@ -43,7 +43,7 @@ impl fmt::Display for Program {
     }
 }
 
-/// In the order of the kernel's README.
+/// The programs, in the order of the kernel's README.
 pub const PROGRAMS: [Program; 8] = [
     Program {
         form: "DirectionF32",
@@ -103,7 +103,7 @@ pub struct Minimal {
     pub step: f64,
     /// The cycles of a call with no step: the checks.
     pub call: u64,
-    /// In flash, on top of a program without a motion.
+    /// The bytes in flash, on top of a program without a motion.
     pub flash: usize,
 }
 

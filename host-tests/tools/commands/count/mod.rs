@@ -41,7 +41,7 @@ pub struct StepCost {
     pub stalls: f64,
     /// The distinct executed instructions, without literal pools.
     pub hot_bytes: u32,
-    /// All entered functions, with their literal pools and the paths that were not taken.
+    /// The entered functions, with their literal pools and the paths that were not taken.
     pub code_bytes: u32,
     pub stack_bytes: u32,
 }

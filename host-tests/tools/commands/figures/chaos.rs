@@ -11,7 +11,7 @@ use crate::oracle::textbook::misprinted_equal_rods;
 const MASS_RATIO: f64 = 2.75;
 const START: f64 = 171.0;
 const ROD: f64 = 1.0;
-/// In this time the path by the right equations follows the exact motion (test `figures`).
+/// The seconds in which the path by the right equations follows the exact motion (test `figures`).
 pub const DURATION: u32 = 10;
 const STEPS: u32 = 8192;
 const STEPS_PER_POINT: u32 = 32;
@@ -19,7 +19,7 @@ const STEPS_PER_POINT: u32 = 32;
 const REACH: f64 = 2.1;
 
 pub struct Path {
-    /// In m right of the pivot and above it.
+    /// The points, m right of the pivot and above it.
     pub points: Vec<(f64, f64)>,
     /// The smallest and the largest energy, J, by the right equations.
     pub energies: [f64; 2],

@@ -9,16 +9,16 @@ use vectors::{Search, flips};
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Map {
-    /// Its gravity is the same number as its l1, so that sqrt(l1/g) is 1 s.
+    /// The pendulum, whose gravity is the same number as its l1, so that sqrt(l1/g) is 1 s.
     pub parameters: Parameters<f32>,
-    /// Of the first search, in sqrt(l1/g), as all times.
+    /// The step of the first search, in sqrt(l1/g), as all times.
     pub dt: f64,
     pub limit: f32,
     pub size: [usize; 2],
     pub centre: [f64; 2],
-    /// From the middle to the ends of the longer side, rad.
+    /// The distance from the middle to the ends of the longer side, rad.
     pub half: f64,
-    /// With the step and with half of it.
+    /// The searches with the step and with half of it.
     pub searches: [Search; 2],
 }
 

@@ -88,7 +88,7 @@ pub struct FlipsOptions {
     out: PathBuf,
 }
 
-/// With more steps even a small map takes a minute or more.
+/// The limit beyond which even a small map takes a minute or more.
 const ANNOUNCED_STEPS: f64 = 1e6;
 
 /// Computes the map and writes the file. An existing file is replaced when the map is complete.

@@ -45,7 +45,7 @@ const NEVER: Colour = [0, 0, 0];
 const LATER: Colour = [110, 110, 118];
 const DOUBT: Colour = [255, 0, 90];
 
-/// In this scale, viridis, equal steps look equal.
+/// The colour scale viridis, in which equal steps look equal.
 fn scale(share: f32) -> Colour {
     colorous::VIRIDIS
         .eval_continuous(f64::from(1.0 - share))
@@ -78,7 +78,7 @@ fn table(map: &Map, pixels: impl Iterator<Item = ([usize; 2], FlipPair)>) -> Res
     Ok(text.into_bytes())
 }
 
-/// In units; a unit is a whole number of pixels.
+/// The sizes in units; a unit is a whole number of pixels.
 const WIDTH: usize = 400;
 const HEIGHT: usize = 42;
 const LEFT: usize = 8;

@@ -13,7 +13,7 @@ use crate::commands::simulate::StartOptions;
 use crate::oracle::known_answers::KnownAnswer;
 use console::number::Number;
 
-/// All scenes with angles except `upright`, which shows two given arithmetics.
+/// Returns the scenes with angles, except `upright`, which shows two given arithmetics.
 pub fn moving() -> impl Iterator<Item = &'static SceneName> {
     SceneName::ALL
         .iter()

@@ -68,7 +68,7 @@ pub struct Readings {
     unusable: Option<(SceneName, Method)>,
     pub(super) arrivals: Vec<Instant>,
     frames: u64,
-    /// Of all scenes together, relative to the energy above rest.
+    /// The largest of all scenes, relative to the energy above rest.
     greatest_energy_error: f32,
     /// The simulated time of all scenes and restarts together, s.
     simulated: f64,

@@ -16,9 +16,9 @@ use emulator::pico::PicoMachine;
 use emulator::qemu::{LogLine, Machine, Screenshot};
 
 pub enum Source {
-    /// In QEMU, by the host's clock.
+    /// A board in QEMU, by the host's clock.
     Live(Machine),
-    /// In QEMU, from frame to frame.
+    /// A board in QEMU, from frame to frame.
     Lockstep(Machine),
     Pico(Box<PicoMachine>),
     Port(Port),
@@ -177,7 +177,7 @@ impl<'a> Session<'a> {
         self.source.send(self.question, Command::Ask)
     }
 
-    /// Only the answer to the latest question contains the speed that was set last.
+    /// The answer to the latest question alone contains the speed that was set last.
     fn status(&mut self, question: u16, status: &Status) {
         self.awaited.take_if(|start| *start == status.settings);
         if question == self.question {
@@ -323,7 +323,7 @@ mod tests {
 
     use super::*;
 
-    /// From a speed in between, the keys go to its neighbours.
+    /// The keys go from a speed in between to its neighbours.
     #[test]
     fn the_speed_keys_step_from_the_least_to_the_greatest_and_back() {
         let steps = |from, next: fn(f32) -> Option<f32>| {
