@@ -17,7 +17,7 @@ mod st7789;
 pub use bus::{OutByte, Outbox, PanelBus, SILENCE, Sent, free_bus};
 pub use oled_i2c::{OledError, OledI2c};
 pub use panels::PanelName;
-pub use ssd0323::Ssd0323;
+pub use ssd0323::{Memory, Ssd0323};
 pub use st7789::{PixelBus, St7789};
 
 /// The driver of a panel. It takes a frame in each tick.

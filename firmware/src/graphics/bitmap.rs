@@ -81,6 +81,10 @@ impl From<&Canvas<'_>> for Bitmap {
             for (y, room) in (0..ROWS).zip(room.iter().cycle()) {
                 let row = canvas.row(ROWS * page + y);
                 for (columns, word) in columns.as_chunks_mut::<4>().0.iter_mut().zip(row) {
+                    // Most words are black.
+                    if *word == 0 {
+                        continue;
+                    }
                     let lit = carried(visible(*word), *room) << y;
                     *columns = (u32::from_le_bytes(*columns) | lit).to_le_bytes();
                 }

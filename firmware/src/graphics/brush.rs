@@ -130,8 +130,9 @@ impl Disc {
         // The distance is a root only at the edges, where it matters.
         let format = canvas.format;
         let columns = pixels([centre_x; 2], outer, format.right());
+        let touched = canvas.cells_of(columns.clone());
         for y in pixels([centre_y; 2], outer, format.bottom()) {
-            let Some(mut row) = canvas.row_mut(y, columns.clone()) else {
+            let Some(mut row) = canvas.row_in(y, touched) else {
                 return;
             };
             let dy = middle(y) - i32::from(centre_y);

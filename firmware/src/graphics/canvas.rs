@@ -43,6 +43,15 @@ impl Cells {
     };
 }
 
+impl Cells {
+    fn touch(&mut self, layer: Layer, touched: u32) {
+        match layer {
+            Layer::Ink => self.changed |= touched,
+            Layer::Foreground => self.drawn |= touched,
+        }
+    }
+}
+
 /// The layer that is drawn on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Layer {
@@ -75,6 +84,42 @@ impl Layer {
             Self::Ink => pixel & 0x0F | grey << 4,
             Self::Foreground => pixel & 0xF0 | grey.max(BLACK),
         }
+    }
+
+    /// Sets a pixel to a grey, unless it is brighter.
+    fn lighten(self, pixel: &mut u8, grey: u8) {
+        if grey > self.grey(*pixel) {
+            *pixel = self.with(*pixel, grey);
+        }
+    }
+
+    /// Returns a tool that sets pixels of this layer to a grey.
+    fn paint(self, grey: u8) -> Paint {
+        let (shift, level) = match self {
+            Self::Ink => (4, grey),
+            Self::Foreground => (0, grey.max(BLACK)),
+        };
+        Paint {
+            shift,
+            levels: (u32::from(level) * ONES) << shift,
+        }
+    }
+}
+
+/// A grey of a layer, for four pixels at once.
+#[derive(Clone, Copy, Debug)]
+struct Paint {
+    /// The place of the layer in a pixel.
+    shift: u32,
+    levels: u32,
+}
+
+impl Paint {
+    /// Sets the pixels of a word whose bits are set in `pixels`, the left one in bit 0.
+    fn put(self, word: &mut u32, pixels: u32) {
+        let bits = (pixels & 15).wrapping_mul(0x0020_4081) & ONES;
+        let covered = (15 * bits) << self.shift;
+        *word = (*word & !covered) | (self.levels & covered);
     }
 }
 
@@ -143,20 +188,23 @@ impl<'a> Canvas<'a> {
     #[inline(never)] // Test `scenes` profiles it by its name.
     pub fn on_clear_foreground(&mut self) -> &mut Self {
         self.layer = Layer::Foreground;
-        let words_per_cell = self.cell() / 4;
+        let shift = self.cell_shift() - 2;
         let rows = self.words.chunks_exact_mut(self.format.row_words().max(1));
         for (row, cells) in rows.zip(&mut *self.cells) {
-            let mut drawn = core::mem::take(&mut cells.drawn);
-            cells.changed |= drawn;
-            for cell in row.chunks_mut(words_per_cell) {
-                if drawn & 1 != 0 {
-                    cell.iter_mut().for_each(|word| *word &= !FOREGROUND);
-                }
-                drawn >>= 1;
-                if drawn == 0 {
-                    break;
-                }
+            let drawn = core::mem::take(&mut cells.drawn);
+            if drawn == 0 {
+                continue;
             }
+            cells.changed |= drawn;
+            let first = (drawn.trailing_zeros() << shift) as usize;
+            let end = ((u32::BITS - drawn.leading_zeros()) << shift) as usize;
+            let words = row.get_mut(first..end).unwrap_or_default();
+            let (pairs, rest) = words.as_chunks_mut::<2>();
+            for [left, right] in pairs {
+                *left &= !FOREGROUND;
+                *right &= !FOREGROUND;
+            }
+            rest.iter_mut().for_each(|word| *word &= !FOREGROUND);
         }
         self
     }
@@ -196,29 +244,48 @@ impl<'a> Canvas<'a> {
         self.cells.iter_mut().for_each(|cells| cells.changed = all);
     }
 
+    /// Returns the cells that these columns are in, a bit each.
+    pub(super) fn cells_of(&self, columns: Range<i32>) -> u32 {
+        let shift = self.cell_shift();
+        let from = columns.start.max(0);
+        let to = columns.end.min(self.format.right());
+        if from >= to {
+            return 0;
+        }
+        let last = ((to - 1) as u32 >> shift).min(31);
+        (u32::MAX >> (31 - last)) & (u32::MAX << (from as u32 >> shift))
+    }
+
     /// Returns row `y` for drawing in these columns, which count as changed; `None` outside the
     /// canvas.
     pub fn row_mut(&mut self, y: i32, columns: Range<i32>) -> Option<Row<'_>> {
-        let shift = self.cell_shift();
-        let from = columns.start.max(0) as u32;
-        let to = columns.end.min(self.format.right()) as u32;
-        let y = usize::try_from(y).ok()?;
-        let cells = self.cells.get_mut(y)?;
+        self.row_in(y, self.cells_of(columns))
+    }
 
-        if columns.end > 0 && from < to {
-            let last = ((to - 1) >> shift).min(31);
-            let touched = (u32::MAX >> (31 - last)) & (u32::MAX << (from >> shift));
-            match self.layer {
-                Layer::Ink => cells.changed |= touched,
-                Layer::Foreground => cells.drawn |= touched,
-            }
-        }
-
-        let words = self.words.get_mut(self.format.row_range(y)?)?;
+    /// Returns row `y` for drawing in these cells, as [`row_mut`](Self::row_mut). Several rows then
+    /// need [`cells_of`](Self::cells_of) only once.
+    pub(super) fn row_in(&mut self, y: i32, touched: u32) -> Option<Row<'_>> {
+        let layer = self.layer;
+        let words = self.words_in(y, touched)?;
         Some(Row {
-            words,
-            layer: self.layer,
+            pixels: bytemuck::cast_slice_mut(words),
+            layer,
         })
+    }
+
+    fn words_in(&mut self, y: i32, touched: u32) -> Option<&mut [u32]> {
+        self.cells.get_mut(y as usize)?.touch(self.layer, touched);
+        self.words_of(y)
+    }
+
+    fn words_of(&mut self, y: i32) -> Option<&mut [u32]> {
+        // A negative number becomes a row far beyond the end.
+        if y as u32 >= self.format.height.into() {
+            return None;
+        }
+        let length = self.format.row_words();
+        let rest = self.words.get_mut(y as usize * length..)?;
+        rest.get_mut(..length)
     }
 
     /// Returns the grey that a pixel shows, 0 to 15; `None` outside the canvas.
@@ -240,42 +307,88 @@ impl<'a> Canvas<'a> {
         }
     }
 
-    /// Sets a square of a unit, with its corner at (x, y), to a grey, unless a pixel is brighter.
-    pub fn dot(&mut self, x: i32, y: i32, grey: u8) {
-        let size = self.format.units(1);
-        for y in y..y + size {
-            if let Some(mut row) = self.row_mut(y, x..x + size) {
-                (x..x + size).for_each(|x| row.lighten(x, grey));
+    /// Sets a rectangle to a grey, except pixels that are brighter.
+    #[inline(never)] // Inlined, it takes 1,508 bytes of flash (M3).
+    pub fn lighten(&mut self, columns: Range<i32>, rows: Range<i32>, grey: u8) {
+        let touched = self.cells_of(columns.clone());
+        for y in rows {
+            if let Some(mut row) = self.row_in(y, touched) {
+                columns.clone().for_each(|x| row.lighten(x, grey));
             }
         }
     }
 
+    /// Counts a rectangle as changed.
+    pub(super) fn touch(&mut self, columns: Range<i32>, rows: Range<i32>) {
+        let touched = self.cells_of(columns);
+        rows.for_each(|y| drop(self.words_in(y, touched)));
+    }
+
     /// Sets pixels to one grey, brighter ones, too: the squares of a unit whose bits are set, of
     /// the 8 x 8 to the right of column `x` and below row `y`. The first row is in the highest
-    /// byte, and the leftmost square of a row is in its highest bit.
-    #[inline(never)] // Inlined, it takes 336 bytes of flash (M3).
+    /// byte, and the leftmost square of a row is in its highest bit. A unit is at most 3 pixels.
     pub fn stamp(&mut self, x: i32, y: i32, bits: u64, grey: u8) {
+        let size = self.format.line();
+        self.touch(x..x.saturating_add(size), y..y.saturating_add(size));
+        self.stamp_touched(x, y, bits, grey);
+    }
+
+    /// As [`stamp`](Self::stamp), where the caller has touched the pixels.
+    #[inline(never)] // Inlined, it takes 336 bytes of flash (M3).
+    pub(super) fn stamp_touched(&mut self, x: i32, y: i32, bits: u64, grey: u8) {
         let unit = self.format.units(1);
-        for (place, squares) in (0..).zip(bits.to_be_bytes()) {
-            if squares == 0 {
-                continue;
-            }
-            let top = y.saturating_add(unit * place);
-            let end = x.saturating_add(unit * (8 - squares.trailing_zeros() as i32));
-            for y in top..top.saturating_add(unit) {
-                let Some(mut row) = self.row_mut(y, x..end) else {
-                    continue;
-                };
-                let mut left = x;
-                let mut squares = squares;
-                while squares != 0 {
-                    if squares & 0x80 != 0 {
-                        (left..left.saturating_add(unit)).for_each(|x| row.set(x, grey));
+        let paint = self.layer.paint(grey);
+
+        let mut top = y;
+        for squares in bits.to_be_bytes() {
+            let end = top.saturating_add(unit);
+            if squares != 0 {
+                let pixels = stretched(squares, unit) << (x & 3);
+                // Negative numbers become rows and words far beyond the end.
+                for y in top..end {
+                    let Some(words) = self.words_of(y) else {
+                        continue;
+                    };
+                    let mut place = (x >> 2) as usize;
+                    let mut pixels = pixels;
+                    while pixels != 0 {
+                        if let Some(word) = words.get_mut(place) {
+                            paint.put(word, pixels);
+                        }
+                        pixels >>= 4;
+                        place = place.wrapping_add(1);
                     }
-                    squares <<= 1;
-                    left = left.saturating_add(unit);
                 }
             }
+            top = end;
+        }
+    }
+
+    /// Sets the pixels of column `x` in these rows to the greys that `grey` returns, except those
+    /// that are brighter.
+    pub(super) fn lighten_down(
+        &mut self,
+        x: i32,
+        rows: Range<i32>,
+        mut grey: impl FnMut(i32) -> u8,
+    ) {
+        let touched = self.cells_of(x..x.saturating_add(1));
+        if touched == 0 {
+            return;
+        }
+        let rows = rows.start.max(0)..rows.end.min(self.format.bottom());
+        let width = 4 * self.format.row_words();
+        let pixels: &mut [u8] = bytemuck::cast_slice_mut(self.words);
+        let mut place = rows.start as usize * width + x as usize;
+        for y in rows {
+            let (Some(pixel), Some(cells)) =
+                (pixels.get_mut(place), self.cells.get_mut(y as usize))
+            else {
+                return;
+            };
+            self.layer.lighten(pixel, grey(y));
+            cells.touch(self.layer, touched);
+            place += width;
         }
     }
 
@@ -283,18 +396,27 @@ impl<'a> Canvas<'a> {
     /// `left - 1`, where the moving part ends. Columns before it must be black.
     #[inline(never)] // Test `scenes` profiles it by its name.
     pub fn scroll(&mut self, left: i32) {
-        let width = self.format.right();
+        self.on_ink();
+        let all = self.cells_of(left - 1..self.format.right());
+        let first = ((left - 1).max(0) >> 2) as usize;
         for y in 0..self.format.bottom() {
-            let Some(mut row) = self.row_mut(y, left..width) else {
+            let Some(words) = self.words_in(y, 0) else {
                 return;
             };
+            let mut changes = 0;
             let mut from_right = 0;
-            for word in row.words.iter_mut().rev() {
+            for word in words.iter_mut().skip(first).rev() {
                 let ink = *word & !FOREGROUND;
-                *word = (*word & FOREGROUND) | (ink >> 8) | from_right;
+                let change = ((ink >> 8) | from_right) ^ ink;
                 from_right = ink << 24;
+                *word ^= change;
+                changes |= change;
             }
-            row.update(left - 1, |_| 0);
+            if changes != 0
+                && let Some(mut row) = self.row_in(y, all)
+            {
+                row.update(left - 1, |_| 0);
+            }
         }
     }
 
@@ -306,8 +428,9 @@ impl<'a> Canvas<'a> {
                 .row(y as usize)
                 .iter()
                 .any(|word| word & !FOREGROUND != 0);
-            if has_ink && let Some(row) = self.row_mut(y, 0..self.format.right()) {
-                row.words.iter_mut().for_each(|word| *word &= FOREGROUND);
+            let touched = self.cells_of(0..self.format.right());
+            if has_ink && let Some(words) = self.words_in(y, touched) {
+                words.iter_mut().for_each(|word| *word &= FOREGROUND);
             }
         }
     }
@@ -332,7 +455,10 @@ impl<'a> Canvas<'a> {
         // A level above `last` carries out of its nibble, and then loses 1.
         for _ in 0..rows {
             let y = usize::from(self.row);
-            self.row = (self.row + 1) % self.format.height.max(1);
+            self.row += 1;
+            if self.row >= self.format.height {
+                self.row = 0;
+            }
             let row = self
                 .words
                 .get_mut(self.format.row_range(y).unwrap_or_default());
@@ -355,7 +481,7 @@ impl<'a> Canvas<'a> {
 /// A row of a canvas, for drawing on one layer.
 #[derive(Debug)]
 pub struct Row<'c> {
-    words: &'c mut [u32],
+    pixels: &'c mut [u8],
     layer: Layer,
 }
 
@@ -363,29 +489,27 @@ impl Row<'_> {
     /// Replaces the grey of the pixel in column `x` by a function of it. Only the low four bits of
     /// the result count. The function is not called for a pixel outside the row.
     pub fn update(&mut self, x: i32, new: impl FnOnce(u8) -> u8) {
-        if let Some(word) = self.words.get_mut((x >> 2) as usize) {
-            let shift = 8 * (x as u32 & 3);
-            let pixel = (*word >> shift) as u8;
-            let old = self.layer.grey(pixel);
+        if let Some(pixel) = self.pixels.get_mut(x as usize) {
+            let old = self.layer.grey(*pixel);
             let new = new(old) & 15;
             if new != old {
-                *word ^= u32::from(pixel ^ self.layer.with(pixel, new)) << shift;
+                *pixel = self.layer.with(*pixel, new);
             }
         }
     }
 
     /// Sets a pixel to a grey of 0 to 15. It then covers the ink, also if that has the same grey.
     pub fn set(&mut self, x: i32, grey: u8) {
-        if let Some(word) = self.words.get_mut((x >> 2) as usize) {
-            let shift = 8 * (x as u32 & 3);
-            let pixel = (*word >> shift) as u8;
-            *word ^= u32::from(pixel ^ self.layer.with(pixel, grey)) << shift;
+        if let Some(pixel) = self.pixels.get_mut(x as usize) {
+            *pixel = self.layer.with(*pixel, grey);
         }
     }
 
     /// Sets a pixel to a grey of 0 to 15. A pixel that is brighter already keeps its grey.
     pub fn lighten(&mut self, x: i32, grey: u8) {
-        self.update(x, |old| old.max(grey));
+        if let Some(pixel) = self.pixels.get_mut(x as usize) {
+            self.layer.lighten(pixel, grey);
+        }
     }
 }
 
@@ -414,9 +538,44 @@ pub(super) fn carried(greys: u32, room: u32) -> u32 {
     (((greys & FOREGROUND) + room) >> 4) & ONES
 }
 
+/// Returns the squares of a row as pixels, the left one in bit 0.
+fn stretched(squares: u8, unit: i32) -> u32 {
+    let squares = u32::from(squares.reverse_bits());
+    if unit == 1 {
+        return squares;
+    }
+    widened(squares, unit as u32)
+}
+
+#[inline(never)] // Inlined, it takes registers from the stamps of a small panel.
+fn widened(squares: u32, unit: u32) -> u32 {
+    let square = (1 << unit) - 1;
+    (0..8)
+        .filter(|place| squares >> place & 1 != 0)
+        .fold(0, |pixels, place| pixels | square << (unit * place))
+}
+
+/// Returns the greys that two words of four pixels show: of the left one in the low nibbles of the
+/// bytes, of the right one in the high nibbles.
+pub fn visible_pair(left: u32, right: u32) -> u32 {
+    const NIBBLES: u32 = 0x1111_1111;
+    let ink = (left >> 4) & FOREGROUND | right & !FOREGROUND;
+    if (left | right) & FOREGROUND == 0 {
+        return ink;
+    }
+    let foreground = left & FOREGROUND | (right & FOREGROUND) << 4;
+    let above_black = foreground >> 1 | foreground >> 2 | foreground >> 3;
+    let is_lit = above_black & NIBBLES;
+    let is_drawn = (above_black | foreground) & NIBBLES;
+    ink & !(15 * is_drawn) | foreground & (15 * is_lit)
+}
+
 /// Returns the greys that a word of four pixels shows, one in each byte.
 pub fn visible(word: u32) -> u32 {
     let foreground = word & FOREGROUND;
+    if foreground == 0 {
+        return word >> 4;
+    }
     let is_drawn = carried(foreground, 15 * ONES);
     let is_lit = carried(foreground, 14 * ONES);
     ((word >> 4) & FOREGROUND & !(15 * is_drawn)) | (foreground & (15 * is_lit))

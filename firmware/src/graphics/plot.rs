@@ -32,13 +32,10 @@ pub fn column(canvas: &mut Canvas, x: i32, from: Height, to: Height, brightness:
     let first = top.div_euclid(SUBPIXELS).max(0);
     let last = bottom.div_euclid(SUBPIXELS).min(canvas.format.bottom() - 1);
 
-    for y in first..last + 1 {
+    canvas.lighten_down(x, first..last + 1, |y| {
         let covered = bottom.min((y + 1) * SUBPIXELS) - top.max(y * SUBPIXELS);
-        let grey = ((u16::from(brightness) * covered as u16 + GREY / 2) / GREY) as u8;
-        if let Some(mut row) = canvas.row_mut(y, x..x + 1) {
-            row.lighten(x, grey);
-        }
-    }
+        ((u16::from(brightness) * covered as u16 + GREY / 2) / GREY) as u8
+    });
 }
 
 /// The grey of axes and scale lines, of 15. It is bright enough for a panel of one colour.
@@ -47,37 +44,46 @@ pub const AXIS_GREY: u8 = 8;
 /// Draws a dotted line in row `y`, a unit of every third from column `from` to column `to`
 /// (exclusive), in [`AXIS_GREY`]. Brighter pixels keep their grey.
 pub fn axis(canvas: &mut Canvas, from: i32, to: i32, y: i32) {
-    let step = canvas.format.units(3) as usize;
-    (from..to)
-        .step_by(step)
-        .for_each(|x| axis_dot(canvas, x, y));
+    let unit = canvas.format.units(1);
+    let touched = canvas.cells_of(from..to);
+    for y in y..y + unit {
+        if let Some(mut row) = canvas.row_in(y, touched) {
+            let mut dot = from;
+            while dot < to {
+                (dot..dot + unit).for_each(|x| row.lighten(x, AXIS_GREY));
+                dot += distance(unit);
+            }
+        }
+    }
+}
+
+/// Returns the distance of the dots of a dotted line.
+fn distance(unit: i32) -> i32 {
+    3 * unit.max(1)
 }
 
 /// Draws a dotted line in column `x`, as [`axis`] does, from row `from` to row `to` (exclusive).
 pub fn upright_axis(canvas: &mut Canvas, x: i32, from: i32, to: i32) {
-    let step = canvas.format.units(3) as usize;
-    (from..to)
-        .step_by(step)
-        .for_each(|y| axis_dot(canvas, x, y));
+    let unit = canvas.format.units(1);
+    let mut dot = from;
+    while dot < to {
+        canvas.lighten(x..x + unit, dot..dot + unit, AXIS_GREY);
+        dot += distance(unit);
+    }
 }
 
 /// Draws a scale bar of one unit, upright or level, from (x1, y1) to (x2, y2), which is to its
 /// right or below it, in [`AXIS_GREY`]. Either end has a foot of a unit to both sides. Brighter
 /// pixels keep their grey.
 pub fn bar(canvas: &mut Canvas, (x1, y1): (i32, i32), (x2, y2): (i32, i32)) {
-    (x1..=x2).for_each(|x| (y1..=y2).for_each(|y| axis_dot(canvas, x, y)));
     let unit = canvas.format.units(1);
+    canvas.lighten(x1..x2 + unit, y1..y2 + unit, AXIS_GREY);
     let (across, down) = if x1 == x2 { (unit, 0) } else { (0, unit) };
     for (x, y) in [(x1, y1), (x2, y2)] {
-        axis_dot(canvas, x - across, y - down);
-        axis_dot(canvas, x + across, y + down);
+        for (x, y) in [(x - across, y - down), (x + across, y + down)] {
+            canvas.lighten(x..x + unit, y..y + unit, AXIS_GREY);
+        }
     }
-}
-
-/// Lightens a unit of an axis or a bar.
-#[inline(never)] // Inlined, it takes 1,508 bytes of flash (M3).
-fn axis_dot(canvas: &mut Canvas, x: i32, y: i32) {
-    canvas.dot(x, y, AXIS_GREY);
 }
 
 /// Returns the smallest step of a scale that is at least `least`: 1, 2 or 5 times a power of ten,

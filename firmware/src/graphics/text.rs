@@ -11,8 +11,6 @@ const GREY: u8 = 11;
 /// The distance of text from the edges of the panel, units. A character contains such a gap above
 /// it and on its right.
 const MARGIN: i32 = 1;
-/// The rows of a character.
-const ROWS: usize = 8;
 
 /// The position of a line of text. The last number is y, the row of its top; a number before it is
 /// the column x, both in pixels. The parts of the text beyond the edges are not drawn.
@@ -52,10 +50,14 @@ pub fn write_on(canvas: &mut Canvas, text: &str, anchor: Anchor, [ink, ground]: 
     let (left, top) = corner(anchor, text, canvas.format);
 
     // The background begins one column left of the text.
+    canvas.touch(
+        left - unit..left + unit * width,
+        top..top.saturating_add(canvas.format.line()),
+    );
     for x in (-1..width).step_by(8) {
         let row = !(0xFF_u32 >> (width - x).min(8)) as u8;
-        let rows = u64::from_be_bytes([row; ROWS]);
-        canvas.stamp(left + unit * x, top, rows, ground);
+        let rows = u64::from_be_bytes([row; 8]);
+        canvas.stamp_touched(left + unit * x, top, rows, ground);
     }
 
     put(canvas, text, (left, top), ink);
@@ -81,8 +83,10 @@ fn corner(anchor: Anchor, text: &str, format: Format) -> (i32, i32) {
 
 /// Draws the characters from the corner (left, top) on.
 fn put(canvas: &mut Canvas, text: &str, (mut left, top): (i32, i32), grey: u8) {
+    let end = left + canvas.format.units(width(text));
+    canvas.touch(left..end, top..top.saturating_add(canvas.format.line()));
     for Glyph { width, rows } in text.chars().map(glyph) {
-        canvas.stamp(left, top, rows, grey);
+        canvas.stamp_touched(left, top, rows, grey);
         left += canvas.format.units(width);
     }
 }

@@ -41,7 +41,7 @@ struct Grid {
 
 impl Grid {
     fn of(format: Format) -> Self {
-        let cell = format.units(1);
+        let cell = format.units(1).max(1);
         Self {
             cell,
             columns: format.right() / cell,
@@ -305,7 +305,7 @@ impl Scene for Flips {
         let corner = if self.is_done() {
             label::mass_ratio(self.mass_ratio)
         } else {
-            let all = (self.grid.columns * self.grid.computed_rows()) as u32;
+            let all = ((self.grid.columns * self.grid.computed_rows()) as u32).max(1);
             label::label("", (100 * self.done / all) as f32, 0, " %")
         };
         text::write_on(canvas, &corner, Anchor::Left(0), text::WHITE_ON_BLACK);

@@ -83,8 +83,8 @@ pub struct Small {
     scale: f32,
     ticks_per_column: u32,
     layout: Layout,
-    /// The number of columns that are drawn.
-    drawn: u64,
+    /// The next column of a sweep, from the left of the plot.
+    next: i32,
     /// The heights of the ends of the curves.
     ends: Option<[Height; 2]>,
 }
@@ -115,7 +115,10 @@ impl Small {
         let unit = ink.format.units(1);
         let mut x = left + columns - 1;
         if ink.format.is_large() {
-            x = left + (self.drawn % columns as u64) as i32;
+            if self.next >= columns {
+                self.next = 0;
+            }
+            x = left + self.next;
             let end = left + columns;
             let gap = ink.format.units(SWEEP_GAP);
             ink.clear_columns(x..(x + gap).min(end));
@@ -124,7 +127,7 @@ impl Small {
             if x == left {
                 self.ends = None;
             }
-            self.drawn += 1;
+            self.next += 1;
         } else {
             ink.scroll(left);
         }
@@ -138,9 +141,7 @@ impl Small {
                 plot::height(0.0, 2.0 * envelope.1, 0.0).saturating_sub(height(envelope));
             for height in [height(envelope), mirrored] {
                 let top = i32::from(height).div_euclid(SUBPIXELS);
-                for y in top..top + unit {
-                    ink.update(x, y, |old| old.max(ENVELOPE_GREY));
-                }
+                ink.lighten(x..x + 1, top..top + unit, ENVELOPE_GREY);
             }
         }
 
@@ -206,7 +207,7 @@ impl Scene for Small {
             scale,
             ticks_per_column: ticks_per_column.max(1),
             layout,
-            drawn: 0,
+            next: 0,
             ends: None,
         };
         Ok((scene, (scale > 0.0).then(|| planned_height(scale))))

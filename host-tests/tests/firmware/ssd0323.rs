@@ -7,7 +7,7 @@ use std::convert::Infallible;
 use crate::bench::{blank, places};
 use embedded_hal::digital::{self, OutputPin};
 use embedded_hal::spi::{ErrorKind, ErrorType, Operation, SpiDevice};
-use firmware::display::{Display, Ssd0323};
+use firmware::display::{Display, Memory, Ssd0323};
 use firmware::graphics::Canvas;
 
 fn arguments(command: u8) -> usize {
@@ -158,7 +158,8 @@ fn switches_on_with_a_black_frame_and_sends_what_has_changed() {
     let controller = RefCell::new(Controller::holding(None, usize::MAX));
     let mut canvas = blank();
     canvas.on_ink();
-    let mut panel = Ssd0323::new(Wires(&controller), Wires(&controller));
+    let mut memory = Memory::UNKNOWN;
+    let mut panel = Ssd0323::new(Wires(&controller), Wires(&controller), &mut memory);
     panel.init().expect("the bus works");
     canvas.settle();
     assert!(controller.borrow().shows(&canvas));
@@ -186,7 +187,8 @@ fn the_error_of_the_bus_is_returned_and_the_next_frame_is_sent_completely() {
     let controller = RefCell::new(Controller::holding(None, 0));
     let mut canvas = blank();
     canvas.on_ink();
-    let mut panel = Ssd0323::new(Wires(&controller), Wires(&controller));
+    let mut memory = Memory::UNKNOWN;
+    let mut panel = Ssd0323::new(Wires(&controller), Wires(&controller), &mut memory);
     assert_eq!(
         (panel.init(), panel.flush(&canvas)),
         (Err(BUS_ERROR), Err(BUS_ERROR))

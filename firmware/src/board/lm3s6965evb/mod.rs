@@ -24,7 +24,7 @@ use crate::board::cortex_m::watchdog::TwoStage;
 use crate::board::register::{Device, Register};
 use crate::board::serial::{Inbox, Outward, receive_by, send};
 use crate::config::BAUD;
-use crate::display::Ssd0323;
+use crate::display::{Memory, Ssd0323};
 use crate::graphics::Format;
 use crate::protocol::BoardName;
 
@@ -32,7 +32,7 @@ use pins::{Output, Ssi};
 
 pub const FORMAT: Format = Format::OLED;
 
-pub type Lm3s6965evb = Board<Ssd0323<Ssi, Output>, Outward, Keys, TwoStage>;
+pub type Lm3s6965evb = Board<Ssd0323<'static, Ssi, Output>, Outward, Keys, TwoStage>;
 
 /// Sets the board up. The tick and the watchdog run from then on. A panel that does not take its
 /// settings is only logged, and stays dark.
@@ -48,7 +48,8 @@ pub fn take() -> Option<Lm3s6965evb> {
     pins::F.use_for_input(1 << 1);
 
     let link = start_link(hertz);
-    let mut panel = Ssd0323::new(Ssi::start(hertz), pins::C.use_for_output(1 << 7));
+    let memory = cortex_m::singleton!(: Memory = Memory::UNKNOWN)?;
+    let mut panel = Ssd0323::new(Ssi::start(hertz), pins::C.use_for_output(1 << 7), memory);
     if panel.init().is_err() {
         defmt::error!("the panel does not answer");
     }
