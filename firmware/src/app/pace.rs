@@ -67,7 +67,7 @@ impl Pace {
     /// Returns the largest number of ticks of the clock that a frame may complete, so that the scene
     /// advances by [`MOST_TICKS_PER_FRAME`] at most.
     pub fn most_ticks(&self) -> u32 {
-        MOST_TICKS_PER_FRAME / self.speed.div_ceil(WHOLE_TICK)
+        MOST_TICKS_PER_FRAME / self.speed.div_ceil(WHOLE_TICK).max(1)
     }
 
     /// Notes a frame that completes this number of ticks of the clock.

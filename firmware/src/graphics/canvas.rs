@@ -321,7 +321,9 @@ impl<'a> Canvas<'a> {
     /// Counts a rectangle as changed.
     pub(super) fn touch(&mut self, columns: Range<i32>, rows: Range<i32>) {
         let touched = self.cells_of(columns);
-        rows.for_each(|y| drop(self.words_in(y, touched)));
+        for y in rows {
+            self.words_in(y, touched);
+        }
     }
 
     /// Sets pixels to one grey, brighter ones, too: the squares of a unit whose bits are set, of
