@@ -10,8 +10,7 @@ use object::{
 
 use crate::instruction::{Instruction, is_long};
 
-/// Addresses are those at which the program uses its code and data, also if these are copied at the
-/// start.
+/// A program. Its addresses are for use after the start, which may copy code and data.
 #[derive(Debug)]
 pub struct Image {
     path: PathBuf,
@@ -136,7 +135,7 @@ impl Image {
         anyhow!("{}: no function {function}", self.path.display())
     }
 
-    /// Returns the function at this address; of several, the one that begins last.
+    /// Returns the function at this address; the last to begin, if there are several.
     pub fn function_at(&self, address: u32) -> Option<&Function> {
         let before = self
             .functions

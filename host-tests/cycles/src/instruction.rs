@@ -72,7 +72,8 @@ impl Instruction {
         self.word >> 26 == 0b11_1011
     }
 
-    /// Rows that several instructions share are not told apart.
+    /// Returns true if the core lacks the instruction. Rows that several instructions share count
+    /// as one.
     pub fn is_missing_on(&self, core: Core) -> bool {
         self.row.cycles(core) == 0 && (self.row.class != Class::Divide || core == Core::M0Plus)
     }

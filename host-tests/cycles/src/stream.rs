@@ -96,7 +96,7 @@ pub struct Calls<'a> {
     image: &'a Image,
     core: Core,
     entries: BTreeSet<u32>,
-    /// The registers at its entry, its stream since then, and its cost so far.
+    /// The running call: the registers at its entry, its stream, and its cost.
     pub running: Option<(Registers, Stream<'a>, Cost)>,
     /// The costs of the calls, in the order of the returns.
     pub ended: Vec<Cost>,

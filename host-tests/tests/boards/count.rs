@@ -111,7 +111,7 @@ fn minimal() -> &'static [MinimalPrices] {
 /// The same loop, compiled in two programs.
 const PUBLIC: RangeInclusive<f64> = 0.97..=1.03;
 
-/// The hidden function is the one that the methods are compared by.
+/// The methods are compared by the hidden function.
 #[test]
 fn a_crate_outside_pays_what_the_hidden_function_costs() -> Result<()> {
     let targets = targets();

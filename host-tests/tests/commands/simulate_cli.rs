@@ -59,7 +59,7 @@ const SHORT: f64 = 0.8;
 /// The time of two rows, s: the table has fewer digits than the compared numbers.
 const ROWS: f64 = 0.02;
 
-/// Each time is that of the exact motion of the given decimals, or a little earlier.
+/// Each time is when the exact motion of the given decimals leaves the level, or a little earlier.
 #[test]
 fn the_note_says_until_when_rows_hold() {
     for motion in [

@@ -59,7 +59,7 @@ fn has_text(frame: &Screenshot, words: &str, anchor: Anchor) -> bool {
     places().all(|(x, y)| canvas.get(x, y) == Some(0) || canvas.get(x, y) == frame.get(x, y))
 }
 
-/// Each scene is drawn over the frame of another one, of which nothing may remain.
+/// Each scene is drawn over another scene's frame. Nothing of it may remain.
 #[test]
 fn every_scene_equals_its_snapshot() {
     let check = |name: SceneName, ticks| {
@@ -519,7 +519,7 @@ fn every_scene_has_the_golden_colours_on_every_panel() -> Result<(), String> {
     snapshot::check_lines("host-tests/golden/colours.csv", &lines)
 }
 
-/// Writes a sheet of all scenes for each format, to be looked at.
+/// Writes a sheet of all scenes for each format, for a person.
 #[test]
 #[ignore = "writes pictures"]
 fn sheets_of_all_formats() {

@@ -320,7 +320,7 @@ fn largest_angle(state: &State<f64>) -> f64 {
     state.a1.abs().max(state.a2.abs())
 }
 
-/// The angle of `rk4-f32` is the nearest `f32` to pi, from which the pendulum falls.
+/// The pendulum falls from the nearest `f32` to pi, the angle of `rk4-f32`.
 #[test]
 fn pendulum_that_stands_upright_never_falls() -> Result<(), Error> {
     let start = State::at_rest(radians(180.0), radians(-180.0));

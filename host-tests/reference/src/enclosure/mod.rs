@@ -107,7 +107,7 @@ impl Enclosure {
             .map(up)
     }
 
-    /// About the factor by which a small error of the start has grown, for information only.
+    /// Returns the approximate growth of a small error of the start, for information only.
     pub fn growth(&self) -> f64 {
         let of = |i: usize| {
             self.segments

@@ -1,4 +1,4 @@
-//! A second run beside the rows, which shows until when they hold.
+//! A second run, which shows when the rows stop being right.
 //!
 //! It is an extrapolation of order 16 in compensated `f64`, in steps of another length. Its
 //! pendulum is a few roundings heavier and in more gravity than the given one, so that the
@@ -20,7 +20,7 @@ const ROUNDINGS: [f64; 2] = [2.0 * f64::EPSILON, -2.0 * f64::EPSILON];
 pub struct SecondRun {
     run: Option<Run<ExtrapolationF64<16>, true>>,
     stride: u32,
-    /// The largest difference of an angle so far, rad.
+    /// The largest difference of an angle until now, rad.
     worst: f64,
     until: [Option<f64>; LEVELS.len()],
     end: f64,

@@ -23,7 +23,7 @@ const PATIENCE: u32 = TICK_RATE;
 /// catches up.
 const MOST_TICKS: u32 = 2000;
 
-/// The comparison of a board with the host, bit by bit, of all but method and step count.
+/// The comparison of a board with the host, bit by bit, without method and step count.
 #[derive(Debug, Default)]
 pub struct Comparison {
     playing: Option<(Status, Show)>,

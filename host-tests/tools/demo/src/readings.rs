@@ -58,8 +58,8 @@ pub struct Readings {
     pub panel: Option<PanelReport>,
     /// The reports since the start of the motion, for the charts. Empty in scenes without angles.
     pub past: Vec<Report>,
-    /// The board's log and the warnings of the host. A run without a terminal takes those of a
-    /// port.
+    /// The board's log and the warnings of the host. A run without a terminal takes a port's
+    /// warnings out.
     pub lines: Vec<LogLine>,
     pub comparison: Comparison,
     pub help: Help,
@@ -189,8 +189,8 @@ impl Readings {
             .collect()
     }
 
-    /// Returns the summary of all scenes and restarts together. The dropped frames, the method and
-    /// the horizon are those of the latest frame.
+    /// Returns the summary of all scenes and restarts. The latest frame has the dropped frames, the
+    /// method and the horizon.
     pub fn report(&self) -> String {
         let Self {
             frames,

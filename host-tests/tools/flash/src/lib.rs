@@ -145,7 +145,8 @@ fn restart_in_boot_loader(port: &str) -> anyhow::Result<PathBuf> {
     }
 }
 
-/// The drive of a Pico 2 is refused, and so is one that is not mounted.
+/// Returns the mounted drive of an RP2040. The drive of a Pico 2 and an unmounted drive are
+/// refused.
 fn find_drive() -> Result<Option<PathBuf>, Refused> {
     let folders = match fs::read_to_string("/proc/mounts") {
         Ok(mounts) => mounted(&mounts),

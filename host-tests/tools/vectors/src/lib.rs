@@ -15,19 +15,14 @@ pub type Search = Flips<DirectionF32Plain>;
 /// without.
 const LANES: usize = 8;
 
-/// Returns the first flip from rest at each of the starts (a1, a2 in rad), in their order, as
-/// [`Flips::of`] does, bit-identical. Times are in s. It is computed with AVX2 on x86-64 processors
-/// that have it with FMA, BMI and LZCNT, and as by [`baseline`] on others. Only the calling thread
-/// computes.
-///
-/// It is an error, without any result, if an angle is not finite. No starts give an empty list.
+/// Returns the first flip from rest at each of the starts (a1, a2 in rad), bit-identical to
+/// [`Flips::of`], with AVX2 if the processor has it.
 #[multiversion(targets("x86_64+avx2+bmi1+bmi2+fma+lzcnt+popcnt"))]
 pub fn flips(search: &Search, starts: &[[f32; 2]]) -> Result<Vec<Flip<f32>>, Error> {
     each(search, starts)
 }
 
-/// Returns the same as [`flips`], bit-identical and with the same error, computed with instructions
-/// that every processor of this architecture has.
+/// Returns the same as [`flips`] with instructions that every processor of this architecture has.
 pub fn baseline(search: &Search, starts: &[[f32; 2]]) -> Result<Vec<Flip<f32>>, Error> {
     each(search, starts)
 }
