@@ -90,6 +90,13 @@ pub fn set_up_for(target: &str) -> Result<Toolchain, Refused> {
     both(tools::core(true, &[target]), emulator.set_up())
 }
 
+/// Flashing a board needs no emulator.
+pub fn set_up_to_flash() -> Result<Toolchain, Refused> {
+    check_temporary_folder()?;
+    tools::core(true, &TARGETS)?;
+    Ok(compiler())
+}
+
 pub fn set_up_web() -> Result<Toolchain, Refused> {
     tools::core(true, &[WASM])?;
     Ok(compiler())

@@ -90,7 +90,7 @@ pub fn pico(options: &PicoOptions) -> anyhow::Result<()> {
     if options.drive.is_none() {
         find_drive()?;
     }
-    let (bytes, file) = uf2_file(&toolchain::set_up()?, options.panel)?;
+    let (bytes, file) = uf2_file(&toolchain::set_up_to_flash()?, options.panel)?;
     say(format_args!("{}: {bytes} bytes of flash", file.display()))?;
 
     let blocks = fs::read(&file)?;
@@ -255,7 +255,7 @@ pub fn stm32f405(options: &FlashOptions) -> anyhow::Result<()> {
             "flashing needs {program}, which is not installed: {source}"
         )));
     }
-    let elf = toolchain::ready()?.build_for(&STM32F405)?;
+    let elf = toolchain::set_up_to_flash()?.build_for(&STM32F405)?;
 
     let mut command = Command::new(program);
 
