@@ -12,6 +12,20 @@
 //!
 //! The modules `stm32f405` and `pico` exist only with the features of these names; `log` and
 //! `panel_bus` with either of them.
+//!
+//! To add a board with another Cortex-M3, M4 or M7:
+//!
+//! 1. Write `board/NAME/mod.rs`, modelled on [`lm3s6965evb`] (registers by hand) or `stm32f405` (a
+//!    support library). Its `take` starts the clock and returns the [`Board`]. Panels: `OledI2c` on
+//!    I2C driven by interrupts (`panel_bus`), `Ssd0323` on SPI, `NoDisplay`.
+//! 2. Write `bin/NAME.rs`, one line. Add a `[[bin]]` in `Cargo.toml`, the start of its flash in
+//!    `build.rs`, and its name in `protocol/to_host.rs`.
+//! 3. If QEMU has the machine, add a row in `boards.rs` and in `budgets.rs` of
+//!    `host-tests/emulator/src/`.
+//!
+//! Then run `cargo fw --check`, `cargo test -p host-tests --test boards` with `no_panic::`, then
+//! with `qemu_plan:: qemu_unread:: qemu_restart::`, then with `scenes::`; and on the board `cargo
+//! verify-board --port auto`.
 
 pub mod cortex_m;
 pub mod lm3s6965evb;

@@ -1,5 +1,16 @@
 //! Panel drivers. A panel takes a finished frame; only that can fail. Panels on I2C look alike, but
 //! may have different controllers.
+//!
+//! To add a controller of the family SSD1306:
+//!
+//! 1. Add a variant of [`Controller`], the last one, because its place is its number on the link,
+//!    and its name in `Controller::named`. The compiler asks for a `Profile` in `oled_i2c.rs`. If
+//!    reading the memory back identifies it, add it to `with_memory` there.
+//! 2. Add a row in the model of modules, `host-tests/tests/firmware/oled_i2c/bus.rs`, with what the
+//!    data sheet says it answers. Then `cargo test -p host-tests --test firmware -- oled_i2c::
+//!    link::`, with `BLESS=1` for its number.
+//!
+//! A controller of another family implements [`Display`], as `ssd0323.rs` does.
 
 use core::convert::Infallible;
 

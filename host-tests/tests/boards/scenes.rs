@@ -6,7 +6,7 @@
 //! The clock of an emulated board counts instructions, so that an hour of it takes minutes. The
 //! long test is run by `cargo test -p host-tests --test boards scenes:: -- --ignored` or `cargo
 //! verify --long`. The command `cargo test -p host-tests --test boards scenes:: -- --nocapture`
-//! prints the README's table.
+//! prints the memory and the idle time of each board.
 
 use std::time::Duration;
 

@@ -5,7 +5,7 @@ use firmware::protocol::Restarted;
 use super::Section;
 use emulator::link::{Port, describe_restart};
 
-/// A manual check that the firmware's README describes.
+/// A manual check that the README of `firmware/boards-measured` describes.
 pub struct Check {
     pub name: &'static str,
     /// All boards if the list is empty.
@@ -45,7 +45,8 @@ pub const BLANK: &str = "(fill in)";
 /// one is not, because the person at the board may have caused it.
 pub fn section(port: &Port, name: &str, compared: u64) -> Section {
     let note = "The board reports its restarts itself. Please fill in the other rows as the check \
-                list in `firmware/README.md` describes; leave rows that do not apply.";
+                list in `firmware/boards-measured/README.md` describes; leave rows that do not \
+                apply.";
     let mut section = Section::new("Check list", note, &["what", "found"]);
     let during = "restarts during the comparison";
     let fault = (compared > 0).then(|| format!("{during}: {compared}"));
@@ -77,8 +78,8 @@ mod tests {
 
     #[test]
     fn the_readme_describes_every_check() {
-        let page = std::fs::read_to_string(workspace().join("firmware/README.md")).expect("a page");
-
+        let page = workspace().join("firmware/boards-measured/README.md");
+        let page = std::fs::read_to_string(page).expect("a page");
         let page = page.split_whitespace().collect::<Vec<_>>().join(" ");
         for check in CHECKS {
             assert!(page.contains(check.name), "{} is not described", check.name);
