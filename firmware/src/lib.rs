@@ -13,7 +13,7 @@
 //! | [`job`] | motions that are computed on request, by any method |
 //! | [`motion`] | settings, the motion in progress, the planner, the accuracy horizon |
 //! | [`display`] | panel drivers, generic over `embedded-hal` |
-//! | [`graphics`] | canvas, brush, fade layer, plots, text and its font, frame buffers |
+//! | [`graphics`] | canvas in two layers, brush, plots, text and its font, colours |
 //! | [`fault`] | the text of a crash report |
 //! | [`config`] | all tunable numbers |
 //!
@@ -29,8 +29,7 @@
 //! - **The step of a motion on the panel.** `Simulation::tick` (`motion/simulation.rs`),
 //!   `PlannedRun::advance` (`kernel/src/plan/run.rs`), `DrawnMotion::advance`
 //!   (`kernel/src/methods/any.rs`), and the step itself in the file of the method in
-//!   `kernel/src/methods/`. Scene and processor decide which method that is, and `cargo plan
-//!   --scene page --board lm3s6965evb` prints it:
+//!   `kernel/src/methods/`. `cargo plan --scene page --board lm3s6965evb` prints which one that is:
 //!   - `extrapolation_fixed64.rs` (`Fixed64State::step`), with the equations in its `rows.rs`:
 //!     64-bit fixed point, multiples of 2^-64 (`Q64`). It draws the page, on every board.
 //!   - `rk4_fixed32.rs` (`Fixed32::step`): RK4 in 32-bit fixed point, multiples of 2^-30 (`Q30`).
@@ -40,9 +39,10 @@
 //!     unit.
 //! - **Its method and step count.** Before there is a plan: `Simulation::new`, with
 //!   `Stepping::initial` (`kernel/src/plan/cost.rs`). Then `Planner::tick` (`motion/planner.rs`)
-//!   advances a `Search` (`kernel/src/plan/search.rs`): its `refine` chooses the next step count to
-//!   try, and its `is_better` the method. `Player::follow` (`app/player.rs`) adopts the plan. The
-//!   prices are in `kernel/src/plan/prices.rs`, the budgets in [`config`] (`Processor`).
+//!   advances a `Search` (`kernel/src/plan/search.rs`): a race of candidates against a reference
+//!   (`race.rs`), from which `best` (`candidate.rs`) chooses. `Player::follow` (`app/player.rs`)
+//!   adopts the plan. The prices are in `kernel/src/plan/prices.rs`, the budgets in [`config`]
+//!   (`Processor`).
 //! - **A button.** `Buttons::read` of the board (its `mod.rs`) reads the pins in `App::tick`
 //!   (`app/mod.rs`). `Controls::tick` (`app/controls.rs`) debounces them and returns a
 //!   [`protocol::Command`], such as `Heavier`. `Player::execute` (`app/player.rs`) calls
@@ -55,72 +55,37 @@
 //!   debugger may read it, not on a Pico; store the cause in memory that a reset keeps
 //!   (`board/cortex_m/retained.rs`); and reset. Then `resume` (`board/main_loop.rs`) starts the
 //!   same scene again, or after more than `MOST_RESTARTS` (`app/warm_restart.rs`) the first one,
-//!   and logs the cause. The host asks for it and prints it (`host-tests/emulator/src/link/`,
-//!   `restarts.rs`). The user's side is "When it crashes or hangs" in `firmware/README.md`.
-//! - **The bytes for a panel.** `display/oled_i2c.rs`, with a row for each controller, or
-//!   `display/ssd0323.rs`.
+//!   and logs the cause. The host asks for it and prints it (`describe_restart`,
+//!   `host-tests/emulator/src/link/mod.rs`). The user's side is "When it crashes or hangs" in
+//!   `firmware/README.md`.
+//! - **The bytes for a panel.** `display/oled_i2c.rs`, with a row for each controller,
+//!   `display/st7789.rs` or `display/ssd0323.rs`.
 //! - **Another term of the equations, such as friction.** No scene has one. "Out of scope" in
 //!   `kernel/README.md` says what it takes.
 //!
-//! To add a panel controller or a board: the sections of these names in `firmware/README.md`. To
-//! add a scene or a method: "Changing it" in `host-tests/README.md`.
+//! To add a panel controller or a board: the top of `display/mod.rs` or `board/mod.rs`. To add a
+//! scene or a method: "Changing it" in `host-tests/README.md`.
 //!
 //! # Glossary
 //!
 //! Terms of physics, numerics and plans are in the glossary of the kernel ([`double_pendulum`]).
 //!
-//! Time:
-//!
 //! - **tick**: 1/60 s of the board's clock. At full speed the scene advances by one tick, too.
-//! - **pace**: the number of ticks of a scene in a tick of the clock: paused, slower or faster
-//!   ([`config::GREATEST_SPEED`]).
 //! - **late**: behind the clock by more than one tick. No tick is left out, but its frame is.
-//! - **stopped**: a scene whose motion cannot be computed; it does not advance.
-//!
-//! Scenes:
-//!
 //! - **scene**: a figure that moves, such as one pendulum or a plot ([`scenes::Scene`]).
-//! - **catalogue**: the table of all scenes with their names and initial settings.
-//! - **settings**: a pendulum and its initial angles, in degrees, and velocities, in rad/s
-//!   ([`motion::Settings`]).
 //! - **page**: the article `[math24]` of the kernel, the source of the figures.
-//! - **player**: the state of the scene that is shown, and its pace ([`app::Player`]).
 //! - **report**: the numbers of a scene at one tick ([`scenes::Report`]).
-//! - **planner**: finds the method and its accuracy horizon while the scene runs
-//!   ([`motion::Planner`]).
-//! - **look-ahead**: the cycles for planning in each tick, which may be spent early.
 //! - **processor class**: processors with one price list and one set of budgets
 //!   ([`config::Processor`]).
-//!
-//! Drawing:
-//!
-//! - **format**: the size of a panel and of its text ([`graphics::Format`]).
-//! - **canvas**: the picture in two layers of 16 levels ([`graphics::Canvas`]).
+//! - **look-ahead**: the cycles for planning in each tick, which may be spent early.
+//! - **unit**: the size of a text pixel: 1 pixel of an OLED, 2 of a larger panel
+//!   ([`graphics::Format`]).
 //! - **grey, brightness**: of a pixel, 0 (black) to 15; of a brush, 0 (black) to 255 (grey 15).
-//! - **ink**: the layer of the traces of earlier frames, which may fade.
-//! - **foreground**: the layer over the ink, drawn anew in each frame.
-//! - **frame buffers**: the memory of the canvas ([`graphics::FrameBuffers`]).
-//! - **subpixel**: 1/32 of a pixel.
-//! - **panel**: the display hardware.
-//! - **controller**: the chip on the panel, such as an SSD1306 ([`display::Controller`]).
-//! - **outbox**: the bytes that an interrupt sends to a panel ([`display::Outbox`]).
-//!
-//! Link:
-//!
-//! - **link**: the serial connection to a host.
-//! - **message**: a checked packet on the link, in either direction.
-//! - **command**: a message to the board, or the effect of a button ([`protocol::Command`]).
-//! - **answer**: a message of the board to the host about one command ([`protocol::Answer`]).
-//! - **frame**: a drawn picture, or the message that describes it ([`protocol::Frame`]).
-//! - **request, job**: a motion to compute for the host, and its computation ([`job::Job`]).
-//! - **reading, sample**: the numbers of a job at one time; sample is its message.
-//!
-//! Faults:
-//!
-//! - **warm restart**: a reset that the board makes on its own; the same scene starts again.
-//! - **retained record**: scene, settings and cause, kept in memory across a reset
-//!   ([`app::Record`]).
-//! - **rate-limited log**: a log line that appears at most once a second, such as lost bytes.
+//! - **ink, foreground**: the layer of the traces of earlier frames, which may fade; the layer over
+//!   it, drawn anew in each frame.
+//! - **job**: a motion that is computed for the host ([`job::Job`]).
+//! - **warm restart**: a reset that the board makes on its own; the same scene starts again, from a
+//!   record that memory keeps ([`app::Record`]).
 #![cfg_attr(not(test), no_std)]
 #![deny(unsafe_code)]
 

@@ -1,19 +1,14 @@
 //! Numbers as text without floating-point formatting, which alone would take 14 KB of flash.
 //!
-//! A name in front and a unit behind are written as they are, with the space that they contain. If
-//! a part of a label (a name, a digit, a unit) does not fit, it and the later parts are left out.
-//! NaN is written as 0, or 0.0 and so on with decimals. A number of more than 4,294,967,295 units
-//! of its last decimal place, or infinity, is written as that limit; the sign remains.
+//! A part of a label (a name, a digit, a unit) that does not fit is left out, with all later ones.
+//! Numbers are limited to 4,294,967,295 units of their last decimal place.
 
 use heapless::String;
 
 /// A label in UTF-8. Its capacity, 16 bytes, is the number that fits next to the motion.
 pub type Label = String<16>;
 
-/// Returns the mass ratio m2/m1, rounded to three significant digits, from 100 on to whole numbers,
-/// and below 0.1 to four decimals: `μ 100`, `μ 31.5`, `μ 2.75`, `μ 0.315`, `μ 0.0125`. The number
-/// of decimals is chosen before rounding: 9.996 gives `μ 10.00`. A negative ratio, which no
-/// pendulum has, has a sign and four decimals. NaN gives `μ 0`.
+/// Returns the mass ratio m2/m1: `μ 100`, `μ 31.5`, `μ 2.75`, `μ 0.315`, `μ 0.0125`.
 pub fn mass_ratio(ratio: f32) -> Label {
     let decimals = [100.0, 10.0, 1.0, 0.1]
         .into_iter()
@@ -22,8 +17,7 @@ pub fn mass_ratio(ratio: f32) -> Label {
     label("μ ", ratio, decimals as u32, "")
 }
 
-/// Returns a start angle, degrees, after its name: `α 120°`. It is rounded to one decimal if it is
-/// not a whole number of degrees: `α 12.5°`. NaN gives `0.0°`.
+/// Returns a start angle after its name, with a decimal if it is not whole: `α 120°`, `α 12.5°`.
 pub fn degrees(name: &str, degrees: f64) -> Label {
     let degrees = degrees as f32;
     let decimals = if degrees == (degrees as i32) as f32 {
@@ -34,9 +28,8 @@ pub fn degrees(name: &str, degrees: f64) -> Label {
     label(name, degrees, decimals, "°")
 }
 
-/// Returns a number of an axis, before its unit: `10`, `0.2 s`. It is rounded to one decimal from
-/// 0.1 to below 1, and to two from 0.01 to below 0.1. Every other number is rounded to a whole
-/// number, such as 2.5 to `3`, 0.005 to `0` and -0.2 to `-0`.
+/// Returns a number of an axis before its unit: `10`, `0.2 s`. It has one decimal from 0.1 to 1,
+/// two from 0.01, and else none.
 pub fn tick(value: f32, unit: &str) -> Label {
     let decimals = match value {
         0.1..1.0 => 1,
@@ -46,15 +39,13 @@ pub fn tick(value: f32, unit: &str) -> Label {
     label("", value, decimals, unit)
 }
 
-/// Returns a time, s, after a name and before its unit, rounded down to tenths of a second, to
-/// seconds from 1,000 s on, and to tenths of an hour from 100,000 s on: `½px 12.3 s`, `½px 1234 s`,
-/// `½px 27.7 h`. A negative time is written as 0.
+/// Returns a time after a name, rounded down to tenths of a second, to seconds from 1,000 s on, and
+/// to tenths of an hour from 100,000 s on: `½px 12.3 s`, `½px 1234 s`, `½px 27.7 h`.
 pub fn rounded_down(name: &str, seconds: f32) -> Label {
     tenths(name, (seconds * 10.0) as u32)
 }
 
-/// Returns a time, s, rounded down as by [`rounded_down`]: `12.3 s`. A negative time is written as
-/// 0.
+/// Returns a time, rounded down as by [`rounded_down`]: `12.3 s`.
 pub fn time(seconds: f64) -> Label {
     tenths("", (seconds * 10.0) as u32)
 }
@@ -69,9 +60,8 @@ fn tenths(name: &str, tenths: u32) -> Label {
     written([name, ""], number, parts, unit)
 }
 
-/// Returns `value`, rounded to `decimals` places, after a name and before a unit. A negative value
-/// that is rounded to 0 keeps its sign. Halves are rounded away from 0. Examples: `±12°`, `ω₁
-/// 1.848`, `true -18.7 J`. Not checked: `decimals` is 0 to 9; with more, the digits are wrong.
+/// Returns `value`, rounded to at most 9 decimals, after a name and before a unit: `±12°`, `ω₁
+/// 1.848`, `true -18.7 J`.
 #[inline(never)] // Inlined, it takes 992 bytes of flash (M3).
 pub fn label(name: &str, value: f32, decimals: u32, unit: &str) -> Label {
     let one = 10_u32.saturating_pow(decimals);

@@ -8,30 +8,26 @@ use crate::graphics::{Canvas, Format};
 
 /// The grey of the text, of 15. It is darker than the motion.
 const GREY: u8 = 11;
-/// The distance of text from the edges of the panel, units. A character contains such a gap above
-/// it and on its right.
+/// The distance of text from the edges, units. A character contains such a gap above it and on its
+/// right.
 const MARGIN: i32 = 1;
 
-/// The position of a line of text. The last number is y, the row of its top; a number before it is
-/// the column x, both in pixels. The parts of the text beyond the edges are not drawn.
+/// The position of a line of text. The last number is y, the row of its top.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Anchor {
-    /// The line begins at the left edge, after a margin of one pixel.
+    /// The line begins at the left edge.
     Left(i32),
-    /// The line ends at the right edge, before a margin of one pixel, which is the gap after the
-    /// last character.
+    /// The line ends at the right edge.
     Right(i32),
     /// The line is centred on the canvas.
     Middle(i32),
     /// The first character begins at column x.
     At(i32, i32),
-    /// The last character, with the gap after it, ends before column x.
+    /// The last character ends before column x.
     EndingAt(i32, i32),
 }
 
-/// Writes a line of text over the canvas, in grey 11, which also replaces brighter pixels.
-/// Characters have the glyphs of [`glyph`]. The pixels around the ink of the characters keep their
-/// grey.
+/// Writes a line of text over the canvas. The pixels around the characters stay.
 pub fn write(canvas: &mut Canvas, text: &str, anchor: Anchor) {
     put(canvas, text, corner(anchor, text, canvas.format), GREY);
 }
@@ -41,9 +37,7 @@ pub const MARKED: [u8; 2] = [0, GREY];
 /// The greys of ink and background of a line over a picture.
 pub const WHITE_ON_BLACK: [u8; 2] = [15, 0];
 
-/// Writes a line of text with the grey `ink` on a background of the grey `ground`, both 0 to 15,
-/// which is not checked. The background has the height of the line. It begins one column left of
-/// the text, and ends with the gap after the last character. Without text it is this one column.
+/// Writes a line of text on a background, which begins one column left of the text.
 pub fn write_on(canvas: &mut Canvas, text: &str, anchor: Anchor, [ink, ground]: [u8; 2]) {
     let width = width(text);
     let unit = canvas.format.units(1);
@@ -91,8 +85,7 @@ fn put(canvas: &mut Canvas, text: &str, (mut left, top): (i32, i32), grey: u8) {
     }
 }
 
-/// Draws the mark of a paused scene at the right edge below the first line of text: two upright
-/// bars of grey 11 on black.
+/// Draws the mark of a paused scene at the right edge: two upright bars.
 pub fn pause_mark(canvas: &mut Canvas) {
     let left = canvas.format.right() - canvas.format.units(9);
     let top = canvas.format.line() + canvas.format.units(2);
@@ -104,7 +97,7 @@ pub fn pause_mark(canvas: &mut Canvas) {
 /// The picture of a character.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Glyph {
-    /// The number of columns, with the gap after the character: 3 to 9.
+    /// The number of columns, with the gap after the character.
     pub width: i32,
     /// Eight rows from the top. The first row is in the highest byte, and the leftmost pixel of a
     /// row is in its highest bit. A bit of 1 is ink.
@@ -131,8 +124,7 @@ const GLYPHS: [u64; 112] = {
     glyphs
 };
 
-/// Returns the glyph of a character: the printable ASCII characters and `½±°μ₁₂αω√→↑`. Any other
-/// character, such as the end of a line, has the glyph of a question mark.
+/// Returns the glyph of a character; that of a question mark if the font lacks it.
 pub fn glyph(character: char) -> Glyph {
     let (place, width) = match character {
         ' ' => (0, 3),

@@ -5,16 +5,15 @@ use double_pendulum::Parameters;
 use crate::config::{GREATEST_RADIUS, LEAST_RADIUS, REACH, ROD_HALF_WIDTH};
 use crate::graphics::{Canvas, Disc, Format, SUBPIXELS, Spot, Stroke};
 
-/// The directions of both rods, rod 1 first: (sin, cos) of their angles, each from the downward
-/// vertical and positive to the right. Not checked: the length of each direction is 1.
+/// The directions of both rods: (sin, cos) of their angles from the downward vertical, positive to
+/// the right.
 pub type RodDirections = [[f32; 2]; 2];
 
-/// The brightness of a rod, of 255. It is between the trail's and the bobs'.
+/// The brightness of a rod, between the trail's and the bobs'.
 const ROD_BRIGHTNESS: u8 = 190;
 /// The width of the dark gap between a bob and its background, subpixels.
 const GAP: u16 = SUBPIXELS as u16;
-/// Half the width of a trace that fades as [`Fading::TRACE`](crate::graphics::Fading::TRACE) and so
-/// remains visible, subpixels, on an OLED.
+/// Half the width of a trace that remains visible, subpixels on an OLED.
 pub const TRACE_HALF_WIDTH: u16 = 15;
 
 /// The width of the longest label in a corner, `½px>15.5 s`, units.
@@ -25,15 +24,15 @@ const CORNER: i32 = 51;
 pub struct Place {
     /// The format of the frame.
     pub format: Format,
-    /// The pivot, pixels right and down from the top left corner of the canvas.
+    /// The pivot, pixels from the top left corner of the canvas.
     pub pivot: (f32, f32),
     /// The length of both rods together, pixels.
     pub reach: f32,
 }
 
 impl Place {
-    /// Returns the place in a circle around `pivot`. The heavier bob and its soft edge just touch
-    /// the circle.
+    /// Returns the place in a circle around `pivot`, which the heavier bob and its soft edge just
+    /// touch.
     pub fn within(radius: f32, pivot: (f32, f32), format: Format) -> Self {
         let reach = (radius - 0.5) * (REACH / (REACH + GREATEST_RADIUS));
         Self {
@@ -43,8 +42,8 @@ impl Place {
         }
     }
 
-    /// Returns the place in the middle of the whole frame. On an OLED its reach is 28.5 pixels. On
-    /// a larger panel it leaves the corners to labels.
+    /// Returns the place in the middle of the whole frame. On a larger panel it leaves the corners
+    /// to labels.
     pub fn whole(format: Format) -> Self {
         let width = format.right() as f32;
         let height = format.bottom() as f32;
@@ -64,9 +63,8 @@ impl Place {
         Self::within(radius.min(0.5 * height), pivot, format)
     }
 
-    /// Returns the left half and the right half. On an OLED each is a circle with a radius of 25
-    /// pixels and room for a bob around it, with room for a line of text above them, and for one
-    /// between them at the bottom. On a larger panel there is a line of text above and one below.
+    /// Returns the left half and the right half. They leave room for a line of text above, and on a
+    /// larger panel for one below.
     pub fn halves(format: Format) -> [Self; 2] {
         let width = format.right() as f32;
         let height = format.bottom() as f32;
@@ -81,8 +79,7 @@ impl Place {
         [0.25, 0.75].map(|part| Self::within(radius, (part * width, 0.5 * height), format))
     }
 
-    /// Returns the factor for the widths of lines and gaps: 1 on an OLED, and more for a larger
-    /// pendulum.
+    /// Returns the factor for the widths of lines and gaps.
     fn scale(&self) -> f32 {
         (self.reach / REACH).max(1.0)
     }
@@ -101,15 +98,10 @@ pub struct View {
 }
 
 impl View {
-    /// Creates the view of a pendulum with these parameters and directions. Both rods together are
-    /// `place.reach` pixels long. Nothing is checked. Of masses and lengths only the ratios count,
-    /// and gravity has no effect. Positions are limited as in [`Spot::at`].
+    /// Creates the view of a pendulum. Of masses and lengths only the ratios count.
     ///
-    /// The bobs are spheres of one material, so that their radii are proportional to the cube root
-    /// of the mass. The heavier bob has the radius [`GREATEST_RADIUS`], 3 pixels at the reach of an
-    /// OLED, in proportion to the reach. No radius is less than [`LEAST_RADIUS`], 1.5 pixels,
-    /// widened as the rods are. A ratio of masses that is NaN gives the least radius,
-    /// and a rod length that is NaN the positions of [`turn`](Self::turn) for NaN.
+    /// The bobs are spheres of one material: their radii are proportional to the cube root of the
+    /// mass, but not less than [`LEAST_RADIUS`].
     pub fn new(parameters: &Parameters<f64>, place: Place, directions: RodDirections) -> Self {
         let Parameters { m1, m2, l1, l2, .. } = parameters.cast::<f32>();
         let greatest = GREATEST_RADIUS * place.reach / REACH;
@@ -129,12 +121,8 @@ impl View {
         view
     }
 
-    /// Returns the centres that bob 1 and bob 2 have with these directions, in pixels right and
-    /// down from the top left corner of the canvas. The view is not turned. Unlike in
-    /// [`turn`](Self::turn), the numbers are not limited, and may be NaN.
-    ///
-    /// A rod with the direction (sin a, cos a) from the downward vertical extends that far right
-    /// and down. Pixel i covers i to i + 1.
+    /// Returns the centres of both bobs for these directions, pixels from the top left corner of
+    /// the canvas. The view is not turned, and the numbers are not limited to the canvas.
     pub fn bobs(&self, [[sin1, cos1], [sin2, cos2]]: RodDirections) -> [(f32, f32); 2] {
         let (x, y) = self.place.pivot;
         let [rod1, rod2] = self.rods;
@@ -143,21 +131,14 @@ impl View {
         [(x1, y1), (x1 + rod2 * sin2, y1 + rod2 * cos2)]
     }
 
-    /// Turns the rods to these directions: the bobs move there at once, and leave no trace. Their
-    /// positions are limited as in [`Spot::at`]. A coordinate that is NaN becomes 0, the left or
-    /// the top edge of the canvas.
+    /// Turns the rods to these directions, without a trace.
     pub fn turn(&mut self, directions: RodDirections) {
         let format = self.place.format;
         self.spots = self.bobs(directions).map(|(x, y)| Spot::at(x, y, format));
     }
 
     /// Turns the rods to these directions. Bob 2 leaves a straight stroke in the ink, from its last
-    /// position to the new one, `2 * half_width` subpixels wide on an OLED and wider on a larger
-    /// place, with a brightness of 0 (black) to 255 (grey 15). Pixels that are brighter already keep their grey.
-    ///
-    /// The last position is the result of the last call of this function or of
-    /// [`turn`](Self::turn). Before the first call it is the position that the view was created
-    /// with. The parts of a stroke outside the canvas are not drawn.
+    /// position, `2 * half_width` subpixels wide on an OLED.
     pub fn trace(
         &mut self,
         directions: RodDirections,
@@ -177,10 +158,8 @@ impl View {
         .lighten(ink, brightness);
     }
 
-    /// Draws the pivot, the rods and the bobs over the canvas. The brightness of the bobs is 0
-    /// (black) to 255 (grey 15); the rods are no brighter than the bobs, and at most 190. Around
-    /// each bob the background is darkened. Pixels under pivot and rods that are brighter already
-    /// keep their grey; the bobs replace them. The parts outside the canvas are not drawn.
+    /// Draws the pivot, the rods and the bobs over the canvas. Around each bob the background is
+    /// darkened.
     pub fn draw(&self, canvas: &mut Canvas, brightness: u8) {
         let Place { format, pivot, .. } = self.place;
         let pivot = Spot::at(pivot.0, pivot.1, format);

@@ -38,12 +38,10 @@ const PARTS: u32 = 4 * STEPS_PER_TICK;
 /// The length of the shortest step, s.
 const PART: f32 = (DT / 4.0) as f32;
 
-/// The largest rotation of a rod in a step, rad. Beyond it steps of this length do not resolve the
-/// motion.
+/// The largest rotation of a rod in a step, rad.
 const MOST_TURN: f32 = 0.5;
 
-/// The largest error of a squared length in a tick. If the rates change too fast for the bounds
-/// above and below, a step stretches a direction by more.
+/// The largest error of a squared length in a tick. It bounds how fast the rates change.
 const LENGTH_ERROR: f32 = 1e-3;
 
 /// The largest bend of the elbow in a step, rad, times sqrt(1 + mu). The number r changes within an
@@ -51,11 +49,7 @@ const LENGTH_ERROR: f32 = 1e-3;
 const MOST_BEND: f32 = 1.0;
 
 impl Misprinted {
-    /// Creates the motion of equal rods (kg, m, m/s^2) from the canonical state `start` (rad,
-    /// kg m^2/s).
-    ///
-    /// The parameters are not checked: l2 is ignored and taken to be l1. A motion whose numbers are
-    /// not finite is lost in its first tick.
+    /// Creates the motion of equal rods from the canonical state `start`. l2 is taken to be l1.
     pub fn new(
         &Parameters {
             m1, m2, l1: l, g, ..
@@ -78,16 +72,13 @@ impl Misprinted {
         }
     }
 
-    /// Returns true if a [`tick`](Self::tick) found the motion too fast for the shortest step,
-    /// 1/480 s, or not finite. It is then lost, and stays so. Before the first tick it is false.
+    /// Returns true if the motion became too fast for the shortest step. It stays so.
     pub fn is_lost(&self) -> bool {
         self.is_lost
     }
 
-    /// Advances by one tick of 1/60 s, in 2 to 8 steps that resolve the motion at both of their
-    /// ends: no rod turns by more than 0.5 rad in the step, the elbow bends by at most
-    /// 1/sqrt(1 + mu) rad, and the squared lengths of the directions are within 0.001 of 1. If no
-    /// step does, the motion is lost, and the tick ends early. A lost motion does nothing.
+    /// Advances by one tick, in 2 to 8 steps that resolve the motion at both of their ends. If none
+    /// does, the motion is lost, and no longer moves.
     pub fn tick(&mut self) {
         let mut left = PARTS;
         let mut parts = PARTS / STEPS_PER_TICK;
@@ -114,9 +105,7 @@ impl Misprinted {
         self.z = [sin1, cos1, sin_d, cos_d, q1, q2];
     }
 
-    /// Returns the directions (sin, cos) of both rods, from the downward vertical. A lost motion
-    /// keeps the last directions that a step reached; without one, those of the start, which may be
-    /// NaN.
+    /// Returns the directions of both rods.
     pub fn directions(&self) -> RodDirections {
         let [sin1, cos1, sin_d, cos_d, ..] = self.z;
         [
@@ -125,11 +114,7 @@ impl Misprinted {
         ]
     }
 
-    /// Returns the energy H now, J, by the correct formula, as
-    /// [`Pendulum::energy`](double_pendulum::Pendulum::energy) does: ((q1 - q2 cos D)^2 r +
-    /// q2^2/mu)/2 - (1 + mu) G cos a1 - mu G cos a2, times m1 l^2. The potential is zero at the
-    /// pivot. A lost motion has the energy of the last step or, without one, of the start. Numbers
-    /// beyond the range of `f32` give infinity or NaN.
+    /// Returns the energy by the correct formula, J. It is 0 at the height of the pivot.
     pub fn energy(&self) -> f32 {
         let &Self {
             mass_ratio: mu,

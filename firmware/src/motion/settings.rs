@@ -11,9 +11,8 @@ use crate::graphics::Format;
 
 /// A double pendulum, its initial angles and its initial angular velocities.
 ///
-/// Any numbers can be stored, and the methods that change them check nothing.
-/// [`start`](Self::start) checks them. The default is [`equal_rods`](Self::equal_rods) with a mass
-/// ratio of 1 and 120 degrees, the settings at power-on.
+/// Any numbers can be stored; [`start`](Self::start) checks them. The default is the settings at
+/// power-on.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 #[cfg_attr(target_os = "none", derive(defmt::Format))]
 pub struct Settings {
@@ -33,9 +32,8 @@ impl Default for Settings {
 }
 
 impl Settings {
-    /// Returns a pendulum with equal rods: rods of 1 m ([`ROD`]), a first bob of 1 kg, a gravity of
-    /// 9.81 m/s^2 ([`GRAVITY`]), and the mass ratio m2/m1. Both rods are released from rest at the
-    /// angle `degrees`.
+    /// Returns a pendulum with rods of [`ROD`], a first bob of 1 kg and this mass ratio, released
+    /// from rest at this angle.
     pub fn equal_rods(mass_ratio: f64, degrees: f64) -> Self {
         let parameters = Parameters::equal_rods(mass_ratio, ROD, GRAVITY);
         Self {
@@ -45,13 +43,12 @@ impl Settings {
         }
     }
 
-    /// Returns the mass ratio m2/m1. An m1 of 0 gives infinity or NaN.
+    /// Returns the mass ratio m2/m1.
     pub fn mass_ratio(&self) -> f32 {
         self.parameters.mass_ratio() as f32
     }
 
-    /// Returns the settings with the mass of bob 2 changed, so that the mass ratio m2/m1 is
-    /// `mass_ratio`, which is not checked. An m1 of 0 gives an m2 of 0, and no such ratio.
+    /// Returns the settings with this mass ratio, by another m2.
     pub fn with_mass_ratio(self, mass_ratio: f64) -> Self {
         Self {
             parameters: Parameters {
@@ -62,10 +59,9 @@ impl Settings {
         }
     }
 
-    /// Returns the settings with the next larger mass ratio of [`MASS_RATIOS`], 0.01 to 100, by
-    /// another m2. From the largest one on, 100, and for NaN, they are unchanged. Rounding counts:
-    /// a ratio just below a value of the table becomes that value. After a value that a call has
-    /// set, the next call sets the next one.
+    /// Returns the settings with the next larger mass ratio of [`MASS_RATIOS`], or unchanged if
+    /// there is none. Ratios are compared after rounding, so that a second call never stays at the
+    /// same value.
     pub fn heavier(self) -> Self {
         let next = MASS_RATIOS
             .iter()
@@ -75,9 +71,7 @@ impl Settings {
         next.unwrap_or(self)
     }
 
-    /// Returns the settings with the next smaller mass ratio of [`MASS_RATIOS`], 0.01 to 100, by
-    /// another m2. From the smallest one down, 0.01, for NaN, and for an m1 of 0, they are
-    /// unchanged. Rounding counts as in [`heavier`](Self::heavier).
+    /// Returns the settings with the next smaller mass ratio, as [`heavier`](Self::heavier).
     pub fn lighter(self) -> Self {
         let next = MASS_RATIOS
             .iter()
@@ -88,10 +82,8 @@ impl Settings {
         next.unwrap_or(self)
     }
 
-    /// Returns the settings with the start angles of both rods turned by `steps` times
-    /// [`ANGLE_STEP`], 1 degree, counter-clockwise if `steps` is positive. Each rod stops at
-    /// straight up, 180 or -180 degrees; an angle that is already beyond is moved there, also by 0
-    /// steps. An angle that is NaN stays NaN.
+    /// Returns the settings with both rods turned by `steps` times [`ANGLE_STEP`],
+    /// counter-clockwise if `steps` is positive. Each rod stops at straight up.
     pub fn turned(self, steps: i8) -> Self {
         let turn = |degrees: f64| {
             (degrees + f64::from(steps) * ANGLE_STEP).clamp(-GREATEST_ANGLE, GREATEST_ANGLE)
@@ -102,24 +94,18 @@ impl Settings {
         }
     }
 
-    /// Returns the start angles of rod 1 and rod 2, rad: pi/180 times the degrees.
+    /// Returns the start angles, rad.
     pub fn angles(&self) -> [f64; 2] {
         self.degrees.map(radians)
     }
 
-    /// Returns the angles, rad, and the angular velocities, rad/s, at the start.
+    /// Returns the motion at the start, in rad and rad/s.
     pub fn motion(&self) -> Motion<f64> {
         let ([a1, a2], [w1, w2]) = (self.angles(), self.velocities);
         Motion { a1, a2, w1, w2 }
     }
 
-    /// Returns the pendulum and its initial canonical state, in SI units: the angles in rad, not in
-    /// degrees, and the momenta in kg m^2/s.
-    ///
-    /// # Errors
-    ///
-    /// Refuses masses, lengths and gravity that [`Pendulum::new`] refuses, and angles, velocities
-    /// or resulting momenta that are not finite. Angles beyond straight up are accepted.
+    /// Returns the pendulum and its initial state, both checked.
     pub fn start(&self) -> Result<(Pendulum<f64>, State<f64>), Error> {
         let pendulum = Pendulum::new(&self.parameters)?;
         let motion = self.motion();
@@ -138,8 +124,7 @@ impl Settings {
     }
 
     /// Returns the problem to plan for a display `height` pixels high, in whose half height both
-    /// rods fit: a tolerance of half a pixel, in m, [`PLANNED`] seconds, 30, and [`TICK_RATE`]
-    /// frames per second, 60. Angles are in rad there. Nothing is checked.
+    /// rods fit.
     pub fn problem(&self, height: f32) -> Problem {
         Problem {
             pendulum: self.parameters,
@@ -150,17 +135,8 @@ impl Settings {
         }
     }
 
-    /// Returns the motion at its start, by this method and step count per frame of 1/60 s. A count
-    /// of 0 counts as 1, and the closed form always has 1. Angle 1 starts `apart` rad larger than
-    /// in the settings; the velocities are those of the settings.
-    ///
-    /// # Errors
-    ///
-    /// Refuses settings that describe no pendulum or no finite start, numbers out of the range of
-    /// the method, a step that the method cannot make, for the closed form a gravity of 0, and a
-    /// method that is not in
-    /// [`Method::DRAWN`](double_pendulum::Method::DRAWN). Most methods accept a step that is
-    /// unstable ([`PlannedRun::new`]), unlike [`Simulation::new`](super::Simulation::new).
+    /// Returns the motion at its start, by this method and step count per tick. Angle 1 starts
+    /// `apart` rad larger than in the settings.
     pub fn run(&self, apart: f64, stepping: Stepping) -> Result<PlannedRun, Error> {
         let mut problem = self.problem(Format::OLED.height.into());
         problem.start.a1 += apart;
@@ -168,9 +144,8 @@ impl Settings {
     }
 }
 
-/// Returns [`HALF_PIXEL`] in metres on a display `height` pixels high, (l1 + l2)/`height`. The
-/// length of both rods together is half of that height. Nothing is checked; a height of 0 gives
-/// infinity or NaN.
+/// Returns [`HALF_PIXEL`] in metres on a display `height` pixels high, in whose half height both
+/// rods fit.
 pub fn half_pixel(&Parameters { l1, l2, .. }: &Parameters<f64>, height: f64) -> f64 {
     f64::from(HALF_PIXEL) * (l1 + l2) / (0.5 * height)
 }

@@ -30,90 +30,80 @@ pub enum Shows {
     Figure,
 }
 
-/// A figure that moves. It starts from settings, advances tick by tick (1/60 s of simulated time),
-/// and is drawn when there is time.
+/// A figure that moves. It starts from settings, advances tick by tick, and is drawn when there is
+/// time.
 pub trait Scene: Sized {
     /// The subject of the scene.
     const SHOWS: Shows;
-    /// The fading of the ink in a tick, which the caller applies after each [`tick`](Self::tick).
-    /// By default it is the fading of a trace, which stays visible.
+    /// The fading of the ink after each tick. By default it is that of a trace, which stays
+    /// visible.
     const FADING: Fading = Fading::TRACE;
     /// The colours of the scene.
     const PALETTE: Palette = Palette::Trail;
 
-    /// Creates the scene at its start. Returns also the height of the display for the plan, pixels.
+    /// Creates the scene at its start. Returns also the height of the display for the plan, pixels;
+    /// `None` if there is nothing to plan.
     ///
     /// On a display of this height, two rods as long as in the scene extend from the middle to the
     /// edge. If the scene shows angles as curves, it is the height of such a picture of the same
-    /// accuracy. The height is `None` if there is nothing to plan.
+    /// accuracy.
     ///
     /// # Errors
     ///
-    /// Returns the kernel's error if the settings describe no pendulum, or a pendulum that the
-    /// scene cannot show, such as unequal rods. A scene that shows a motion also refuses a start
-    /// that is not finite. A motion that is only too fast is no error
-    /// ([`is_too_fast`](Self::is_too_fast)), unless the user has requested its method. A scene that
-    /// uses the requested method refuses it if it cannot compute the motion.
+    /// Returns the kernel's error if the settings describe no pendulum, or one that the scene
+    /// cannot show, or if the requested method cannot compute the motion. A motion that is only too
+    /// fast is no error.
     fn new(settings: &Settings, resources: &Resources) -> Result<(Self, Option<f32>), Error>;
 
-    /// Advances by one tick, to `ticks` ticks after the start, and adds the lasting part of the
-    /// picture to the ink. The first call has `ticks` 1, and each further one 1 more, which is not
-    /// checked. The result is the same if earlier ticks were not drawn.
+    /// Advances to `ticks` ticks after the start, 1 more than at the last call, and adds the
+    /// lasting part of the picture to the ink. The result is the same if earlier ticks were not
+    /// drawn.
     fn tick(&mut self, ticks: u64, ink: &mut Canvas);
 
-    /// Draws the rest of the picture in the clear foreground over the ink. `report` is the current
-    /// report of the scene, so that its numbers need not be computed again; not checked.
+    /// Draws the rest of the picture in the clear foreground. `report` is the current report, so
+    /// that its numbers need not be computed again.
     fn draw(&self, report: &Report, canvas: &mut Canvas);
 
-    /// Returns the numbers of the scene now, `ticks` ticks after the start; not checked: it is the
-    /// number of the last tick. By default there is no moving pendulum. Of a planned motion the
-    /// horizon is `Always` here; the player sets it.
+    /// Returns the numbers of the scene, `ticks` ticks after the start. The player sets the
+    /// horizon.
     fn report(&self, ticks: u64) -> Report {
         Report::at(ticks)
     }
 
-    /// Returns the motion whose method and step count the plan may change; `None` (the default) if
-    /// the scene keeps its method or has no motion.
+    /// Returns the motion whose method and step count the plan may change.
     fn planned(&mut self) -> Option<&mut Simulation> {
         None
     }
 
     /// Returns true if no method resolves the motion at a cost that a frame can pay. Then the scene
-    /// must not advance. It is known at the start and does not change; by default it is false.
+    /// must not advance.
     fn is_too_fast(&self) -> bool {
         false
     }
 }
 
-/// The smallest relative energy error that `f64` can resolve. The energy is a sum of some 20
+/// The smallest relative energy error that `f64` can resolve: the energy is a sum of some 20
 /// rounded numbers.
 pub const LEAST_ENERGY_ERROR: f32 = 4e-15;
 
 /// The numbers of a scene at one tick.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Report {
-    /// The number of ticks of 1/60 s of simulated time since the start of the scene.
+    /// The number of ticks of simulated time since the start of the scene.
     pub step: u64,
     /// The simulated time since the start, s.
     pub time: f64,
-    /// The canonical state of the first pendulum shown, in SI units (rad, kg m^2/s), with angles in
-    /// [-pi, pi]; zeros if no pendulum moves. By RK4 in `f32` it may be up to half a step ahead of
-    /// `time`, or behind it ([`PlannedRun::rounded_state`]). The state of a diverged motion is not
-    /// finite; the player then stops the scene, and keeps and sends the report of the frame before.
-    ///
-    /// [`PlannedRun::rounded_state`]: double_pendulum::plan::PlannedRun::rounded_state
+    /// The state of the first pendulum shown, in SI units; zeros if no pendulum moves. By RK4 in
+    /// `f32` it may be up to half a step ahead of `time`, or behind it.
     pub state: State<f32>,
-    /// The relative energy error (E - E0)/(E0 - Emin) of that pendulum, computed before its numbers
-    /// are rounded for this report. E is the energy now, E0 that of the start, and Emin that of
-    /// hanging at rest. It is 0 for the linear motion, if no pendulum moves, and if the start is
+    /// The relative energy error (E - E0)/(E0 - Emin) of that pendulum, where Emin is the energy of
     /// hanging at rest. An error smaller than [`LEAST_ENERGY_ERROR`] is rounding of the energy
     /// itself.
     pub energy_error: f32,
     /// The accuracy horizon of the scene.
     pub horizon: Horizon,
-    /// The method and its step count per tick. In the player's report it is `None` for a figure,
-    /// for `upright`, which shows two fixed arithmetics, and for a scene that is too fast from its
-    /// start.
+    /// The method and its step count per tick; `None` for a figure, for two fixed arithmetics, and
+    /// for a scene that is too fast.
     pub stepping: Option<Stepping>,
 }
 
@@ -127,8 +117,7 @@ impl Report {
         }
     }
 
-    /// Returns the report of a scene whose first pendulum is `simulation`. The horizon is `Always`
-    /// until the player sets it. The stepping is that of the simulation, also if it is too fast.
+    /// Returns the report of a scene whose first pendulum is `simulation`.
     pub fn of(simulation: &Simulation) -> Self {
         let motion = &simulation.motion;
         Self {
@@ -182,8 +171,7 @@ macro_rules! catalogue {
         $(const _: () = assert!(SceneName::$row as u32 == $number);)*
 
         impl SceneName {
-            /// Returns the initial settings of the scene, with the angles in degrees. Those of a
-            /// figure have a start, too, which the figure does not use.
+            /// Returns the initial settings of the scene.
             pub fn first_settings(self) -> Settings {
                 match self { $(Self::$row => $first,)* }
             }
@@ -208,18 +196,8 @@ macro_rules! catalogue {
         pub enum AnyScene { $($row($scene),)* }
 
         impl AnyScene {
-            /// Starts the scene `name` in place of this one, and returns its height for the plan,
-            /// pixels, as [`Scene::new`] does: `None` if there is nothing to plan. A motion that is
-            /// only too fast is no error ([`is_too_fast`](Self::is_too_fast)). The ink is not
-            /// cleared.
-            ///
-            /// # Errors
-            ///
-            /// Refuses settings that describe no pendulum or no finite start, or a pendulum that
-            /// the scene cannot show, such as one without gravity or with unequal rods. A scene
-            /// that uses the requested method refuses it if it cannot compute the motion, or if a
-            /// frame costs more than the budget. After an error this scene continues. Not checked:
-            /// the start in `flips`, and all but the mass ratio in `frequencies`.
+            /// Starts the scene `name` in place of this one, as [`Scene::new`]. The ink is not
+            /// cleared. After an error this scene continues.
             pub fn start(
                 &mut self,
                 name: SceneName,
@@ -231,10 +209,7 @@ macro_rules! catalogue {
                 }
             }
 
-            /// Advances the scene by one tick of 1/60 s, to `ticks` ticks after the start, as
-            /// [`Scene::tick`], and fades the ink. The first call has `ticks` 1, and each further
-            /// one 1 more. The canvas must be blank at the start. A scene that is [too
-            /// fast](Self::is_too_fast) must not advance. None of this is checked.
+            /// Advances the scene, as [`Scene::tick`], and fades the ink.
             pub fn tick(&mut self, ticks: u64, canvas: &mut Canvas) {
                 let ink = canvas.on_ink();
                 let fading = match self {
@@ -246,28 +221,23 @@ macro_rules! catalogue {
                 ink.fade(fading);
             }
 
-            /// Draws the foreground of the frame, in place of that of the previous one. `report` is
-            /// the current report of the scene, which is not checked.
+            /// Draws the foreground of the frame, as [`Scene::draw`].
             pub fn draw(&self, report: &Report, canvas: &mut Canvas) {
                 let canvas = canvas.on_clear_foreground();
                 match self { $(Self::$row(scene) => scene.draw(report, canvas),)* }
             }
 
-            /// Returns the motion whose method and step count the plan may change; `None` if the
-            /// scene keeps its method or has no motion ([`Scene::planned`]).
+            /// Returns the motion that is planned, as [`Scene::planned`].
             pub fn planned(&mut self) -> Option<&mut Simulation> {
                 match self { $(Self::$row(scene) => scene.planned(),)* }
             }
 
-            /// Returns true if no method resolves the motion at a cost that a frame can pay. Then
-            /// the scene must not advance ([`Scene::is_too_fast`]).
+            /// Returns true if the scene must not advance ([`Scene::is_too_fast`]).
             pub fn is_too_fast(&self) -> bool {
                 match self { $(Self::$row(scene) => scene.is_too_fast(),)* }
             }
 
-            /// Returns the numbers of the scene now, `ticks` ticks after the start; not checked: it
-            /// is the number of the last tick. Of a planned motion the horizon is `Always`; the
-            /// player sets it ([`Scene::report`]).
+            /// Returns the numbers of the scene ([`Scene::report`]).
             pub fn report(&self, ticks: u64) -> Report {
                 match self { $(Self::$row(scene) => scene.report(ticks),)* }
             }
@@ -292,9 +262,7 @@ catalogue! {
 }
 
 impl AnyScene {
-    /// Returns an empty figure, which takes the place of a scene until one starts. Its ticks add
-    /// nothing to the ink. Its picture has axes, marks and labels without meaning, and its report
-    /// has no moving pendulum.
+    /// Returns an empty figure, which takes the place of a scene until one starts.
     pub fn empty() -> Self {
         Self::Frequencies(frequencies::Frequencies::default())
     }
@@ -315,12 +283,12 @@ impl AnyScene {
 }
 
 impl SceneName {
-    /// Returns true if the scene shows a motion, which starts from two angles.
+    /// Returns true if the scene starts from two angles.
     pub fn has_angles(self) -> bool {
         self.shows() != Shows::Figure
     }
 
-    /// Returns true if the scene shows the linear motion, on purpose, and not the exact one.
+    /// Returns true if the scene shows the linear motion.
     pub fn is_linear(self) -> bool {
         self.shows() == Shows::LinearMotion
     }
