@@ -215,7 +215,11 @@ impl<'a> Canvas<'a> {
     }
 
     fn cell_shift(&self) -> u32 {
-        if self.format.width <= 256 { 3 } else { 4 }
+        if self.format.known().width <= 256 {
+            3
+        } else {
+            4
+        }
     }
 
     /// Returns the cells of row `y` that the panel may not show as they are, a bit each, the
@@ -239,7 +243,7 @@ impl<'a> Canvas<'a> {
 
     /// Marks everything as changed, because the panel may show anything.
     pub fn touch_all(&mut self) {
-        let count = (u32::from(self.format.width) - 1) >> self.cell_shift();
+        let count = (u32::from(self.format.known().width) - 1) >> self.cell_shift();
         let all = u32::MAX >> (31 - count.min(31));
         self.cells.iter_mut().for_each(|cells| cells.changed = all);
     }
@@ -280,7 +284,7 @@ impl<'a> Canvas<'a> {
 
     fn words_of(&mut self, y: i32) -> Option<&mut [u32]> {
         // A negative number becomes a row far beyond the end.
-        if y as u32 >= self.format.height.into() {
+        if y as u32 >= self.format.known().height.into() {
             return None;
         }
         let length = self.format.row_words();
@@ -452,13 +456,13 @@ impl<'a> Canvas<'a> {
     pub fn fade(&mut self, Fading { rows, last }: Fading) {
         let room = u32::from(15_u8.saturating_sub(last)) * ONES;
         let shift = self.cell_shift() - 2;
-        let rows = (u32::from(rows) * u32::from(self.format.height) + 32) / 64;
+        let rows = (u32::from(rows) * u32::from(self.format.known().height) + 32) / 64;
 
         // A level above `last` carries out of its nibble, and then loses 1.
         for _ in 0..rows {
             let y = usize::from(self.row);
             self.row += 1;
-            if self.row >= self.format.height {
+            if self.row >= self.format.known().height {
                 self.row = 0;
             }
             let row = self

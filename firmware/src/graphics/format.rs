@@ -2,6 +2,8 @@
 
 use core::ops::Range;
 
+use crate::display::PANEL;
+
 /// The size of a panel, and of a pixel of its text. Scenes compute their layout from it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct Format {
@@ -19,6 +21,15 @@ impl Default for Format {
     }
 }
 
+/// The format that a board's program is built for, so that the compiler leaves out the layouts of
+/// the others: they take 10 KB of flash, and their arithmetic half of the time to draw. A host and a
+/// browser know the format only at run time.
+const BUILT_FOR: Option<Format> = if cfg!(target_os = "none") {
+    Some(PANEL.format())
+} else {
+    None
+};
+
 impl Format {
     /// The format of the OLED panels, 128 x 64.
     pub const OLED: Self = Self::new(128, 64, 1);
@@ -32,19 +43,27 @@ impl Format {
         }
     }
 
+    /// Returns this format, as a constant on a board.
+    pub const fn known(self) -> Self {
+        match BUILT_FOR {
+            Some(format) => format,
+            None => self,
+        }
+    }
+
     /// Returns the number of words of four pixels in a row.
     pub const fn row_words(self) -> usize {
-        self.width as usize / 4
+        self.known().width as usize / 4
     }
 
     /// Returns the number of words in all rows.
     pub const fn words(self) -> usize {
-        self.row_words() * self.height as usize
+        self.row_words() * self.known().height as usize
     }
 
     /// Returns the words of row `y`; `None` outside the panel.
     pub fn row_range(self, y: usize) -> Option<Range<usize>> {
-        (y < self.height.into()).then(|| {
+        (y < self.known().height.into()).then(|| {
             let first = y * self.row_words();
             first..first + self.row_words()
         })
@@ -52,17 +71,17 @@ impl Format {
 
     /// Returns the width, pixels.
     pub const fn right(self) -> i32 {
-        self.width as i32
+        self.known().width as i32
     }
 
     /// Returns the height, pixels.
     pub const fn bottom(self) -> i32 {
-        self.height as i32
+        self.known().height as i32
     }
 
     /// Returns this number of units in pixels.
     pub const fn units(self, units: i32) -> i32 {
-        units * self.unit as i32
+        units * self.known().unit as i32
     }
 
     /// Returns the height of a line of text, pixels.
@@ -78,11 +97,11 @@ impl Format {
     /// Returns true for panels larger than an OLED. They have room for a line of text at the top
     /// and one at the bottom that nothing else reaches.
     pub const fn is_large(self) -> bool {
-        self.unit > 1
+        self.known().unit > 1
     }
 
     /// Returns true if a pendulum and a plot have more room one below the other.
     pub const fn is_tall(self) -> bool {
-        4 * self.height >= 3 * self.width
+        4 * self.known().height >= 3 * self.known().width
     }
 }

@@ -11,7 +11,8 @@ use std::path::{Path, PathBuf};
 
 use addr2line::Context;
 use addr2line::gimli::{self, Dwarf, EndianSlice, LittleEndian, SectionId};
-use emulator::boards::{BOARDS, every_board};
+use emulator::boards::{BOARDS, every_board, pico_with};
+use firmware::display::PanelName;
 use object::{Object, ObjectSection};
 
 use crate::support::code::Code;
@@ -167,6 +168,7 @@ fn images() -> BTreeSet<PathBuf> {
     every_board()
         .flat_map(|board| [(board.binary, board.target), ("measure", board.target)])
         .map(build)
+        .chain([crate::support::application(&pico_with(PanelName::Lcd13))])
         .collect()
 }
 
