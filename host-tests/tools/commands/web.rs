@@ -42,7 +42,7 @@ pub const PANELS: [PanelName; 4] = [
 /// The options for no window, also for root, and no requests of its own.
 pub const HEADLESS: &str = "--headless --no-sandbox --disable-gpu --disable-quic --no-first-run \
     --disable-background-networking --disable-component-update --disable-sync --hide-scrollbars";
-const PICTURE: &str = "--window-size=1000,850 --virtual-time-budget=60000";
+const PICTURE: &str = "--window-size=1000,960 --virtual-time-budget=60000";
 const PICTURE_LIMIT: Duration = Duration::from_secs(120);
 /// A clock for the picture: 8.5 s in frames of 1/60 s, independent of the speed of the machine. The
 /// module is compiled at once, because the virtual time does not wait for a compilation, and a page
