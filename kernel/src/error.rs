@@ -55,6 +55,8 @@ pub enum Parameter {
     Cost,
     /// Price of a step by this method, or of a frame by the closed form.
     Price(Method),
+    /// Price of preparing a motion.
+    Preparation,
     /// Largest allowed cost of computing a frame.
     FrameBudget,
     /// Largest allowed cost of planning.
@@ -85,6 +87,7 @@ impl fmt::Display for Parameter {
             Parameter::Rate => "rate",
             Parameter::Cost => "cost",
             Parameter::Price(method) => return write!(f, "cost of {method}"),
+            Parameter::Preparation => "cost of a preparation",
             Parameter::FrameBudget => "frame budget",
             Parameter::PlanningBudget => "planning budget",
         })

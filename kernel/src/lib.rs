@@ -87,8 +87,8 @@
 //! # Versions
 //!
 //! Semantic versioning. [`Error`], [`Parameter`], [`plan::PlanError`] and [`plan::Limit`] may get
-//! new variants, and the traits [`Real`] and [`Form`] are sealed and may get new methods; both are
-//! minor versions, as is a higher least Rust version (1.85 now). Items that are hidden from the
+//! new variants, [`plan::Costs`] new prices, and the traits [`Real`] and [`Form`] are sealed and may
+//! get new methods; all are minor versions, as is a higher least Rust version (1.85 now). Items that are hidden from the
 //! documentation may change at any time.
 //!
 //! A change of any bit of a step is a major version. "Determinism scope" in the README says which

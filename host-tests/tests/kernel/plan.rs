@@ -77,11 +77,9 @@ fn planner_chooses_the_cheapest_method_with_the_longest_horizon() {
     let small = scene(1.0, 3.0, 10.0);
     let large = scene(1.0, 60.0, 10.0);
     let figure7 = scene(2.75, 171.0, 30.0);
-    let costly = Costs {
-        fixed32: 20e3,
-        fixed32_unlike: 20e3,
-        ..M3
-    };
+    let mut costly = M3;
+    costly.fixed32 = 20e3;
+    costly.fixed32_unlike = 20e3;
     let rows: [Row; 9] = [
         // A step costs less than the closed form if it uses integers or a floating-point unit.
         (
@@ -571,15 +569,14 @@ fn errors_contain_the_parameter_and_its_value() {
             error(Parameter::M2),
         );
 
-        refused(
-            good,
-            Costs {
-                direction: single,
-                ..M4F
-            },
-            budget,
-            error(Parameter::Price(Method::Rk4F32Direction)),
-        );
+        let mut costs = M4F;
+        costs.direction = single;
+        let parameter = Parameter::Price(Method::Rk4F32Direction);
+        refused(good, costs, budget, error(parameter));
+
+        let mut costs = M4F;
+        costs.preparation = single;
+        refused(good, costs, budget, error(Parameter::Preparation));
 
         refused(
             good,

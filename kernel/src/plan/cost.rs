@@ -13,8 +13,9 @@ use crate::table::Method;
 /// The unit is arbitrary, usually cycles; the [`Budget`] has the same unit. Every price must be
 /// finite and more than 0, otherwise a search is refused. The lists of some processors are
 /// [`CORTEX_M3`](Self::CORTEX_M3), [`CORTEX_M4F`](Self::CORTEX_M4F) and
-/// [`CORTEX_M0PLUS`](Self::CORTEX_M0PLUS).
+/// [`CORTEX_M0PLUS`](Self::CORTEX_M0PLUS); that of another one begins with [`Costs::all`].
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive] // A new drawn method adds a price.
 pub struct Costs {
     /// A frame by [`Method::ClosedFormF32`].
     pub closed_form: f32,
@@ -36,6 +37,33 @@ pub struct Costs {
 }
 
 impl Costs {
+    /// Returns a list in which everything costs `price`, for prices of your own. With a `price`
+    /// above the budget of a frame, a method without a price of its own is not chosen.
+    ///
+    /// On your chip, time [`PlannedRun::advance`] for a step, and [`PlannedRun::new`] for the
+    /// preparation.
+    ///
+    /// ```
+    /// use double_pendulum::plan::Costs;
+    ///
+    /// let mut costs = Costs::all(1e9); // More than a frame may cost.
+    /// costs.direction = 250.0;
+    /// costs.fixed64 = 14_000.0;
+    /// costs.preparation = 160_000.0;
+    /// ```
+    #[must_use]
+    pub const fn all(price: f32) -> Self {
+        Self {
+            closed_form: price,
+            direction_plain: price,
+            direction: price,
+            fixed32: price,
+            fixed32_unlike: price,
+            fixed64: price,
+            preparation: price,
+        }
+    }
+
     /// Returns the price list for this pendulum: [`fixed32`](Self::fixed32) becomes
     /// [`fixed32_unlike`](Self::fixed32_unlike) if rods or masses are not about equal. A search
     /// does this itself.

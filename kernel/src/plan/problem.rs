@@ -40,7 +40,7 @@ impl Problem {
             .filter_map(|&method| Some((Parameter::Price(method), costs.step(method)?)));
         let others = [
             (Parameter::Price(Method::Rk4Fixed32), costs.fixed32_unlike),
-            (Parameter::Cost, costs.preparation),
+            (Parameter::Preparation, costs.preparation),
         ];
         let in_f64 = |(parameter, value)| (parameter, f64::from(value));
         let costs = prices.chain(others).map(in_f64);

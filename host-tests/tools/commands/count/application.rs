@@ -152,15 +152,15 @@ fn on(target: &Target, toolchain: &Toolchain) -> Result<Costs> {
     unlike.dt = 1.0 / 8192.0;
     // Only the application has code for these two prices.
     let (fixed64, preparation) = in_application(target.board, toolchain)?;
-    Ok(Costs {
-        closed_form: step(Method::ClosedFormF32)?,
-        direction_plain: step(Method::Rk4F32DirectionPlain)?,
-        direction: step(Method::Rk4F32Direction)?,
-        fixed32: step(Method::Rk4Fixed32)?,
-        fixed32_unlike: affordable_cost(target, &unlike)?.cycles as f32,
-        fixed64,
-        preparation,
-    })
+    let mut costs = Costs::all(0.0);
+    costs.closed_form = step(Method::ClosedFormF32)?;
+    costs.direction_plain = step(Method::Rk4F32DirectionPlain)?;
+    costs.direction = step(Method::Rk4F32Direction)?;
+    costs.fixed32 = step(Method::Rk4Fixed32)?;
+    costs.fixed32_unlike = affordable_cost(target, &unlike)?.cycles as f32;
+    costs.fixed64 = fixed64;
+    costs.preparation = preparation;
+    Ok(costs)
 }
 
 const STEP: &str = "Fixed64State::advance";
