@@ -93,6 +93,7 @@
 
 mod candidate;
 mod cost;
+mod entry;
 mod error;
 mod prices;
 mod problem;

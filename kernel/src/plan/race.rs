@@ -2,6 +2,7 @@
 //! inaccurate.
 
 use super::candidate::{Candidate, distance};
+use super::entry::Entry;
 use super::reference::Reference;
 use super::run::{Directions, Run};
 use super::uncertainty::{SHADOWS, Uncertainty};
@@ -17,9 +18,6 @@ pub(super) const IN_32_BITS: usize = 8;
 pub(super) const CANDIDATES: usize = IN_32_BITS + 1;
 /// The cost of a step in 64 bits that measures its truncation, relative to another one.
 pub(super) const MEASURED: f32 = 1.03;
-
-/// The candidates of a race; `None` for unused places. The last one is in 64 bits.
-pub(super) type Entry = [Option<Stepping>; CANDIDATES];
 
 /// A race in progress.
 ///
@@ -44,40 +42,33 @@ pub(super) struct Race {
 }
 
 impl Race {
-    /// Creates a race whose motions are not prepared yet. The reference makes `steps` steps per
-    /// frame, and its shadows those of `shadows`.
-    pub fn new(
-        entry: &Entry,
-        steps: u32,
-        shadows: Stepping,
-        problem: &Problem,
-        costs: &Costs,
-    ) -> Result<Self, Error> {
+    /// Creates a race whose motions are not prepared yet.
+    #[inline(never)] // It is written to its place; a copy on the stack would be large.
+    pub fn new(entry: &Entry, problem: &Problem, costs: &Costs) -> Self {
         let reference = Stepping {
             method: Method::Extrapolation10Fixed64,
-            steps,
+            steps: entry.steps,
         };
-        let candidates = entry.map(|stepping| Candidate {
-            is_alive: stepping.is_some(),
-            ..Candidate::new(stepping.unwrap_or(reference), costs)
-        });
-        let [.., in_64_bits] = &candidates;
+        let stepping = |i: usize| entry.candidates[i].unwrap_or(reference);
         let Problem {
             pendulum,
             tolerance,
             ..
         } = problem;
-        Ok(Self {
+        Self {
             compared: 0,
-            candidates,
-            runs: core::array::from_fn(|i| Run::new(candidates[i].stepping)),
-            in_64_bits: Run::new(in_64_bits.stepping),
+            candidates: core::array::from_fn(|i| Candidate {
+                is_alive: entry.candidates[i].is_some(),
+                ..Candidate::new(stepping(i), costs)
+            }),
+            runs: core::array::from_fn(|i| Run::new(stepping(i))),
+            in_64_bits: Run::new(stepping(CANDIDATES - 1)),
             reference: Reference::new(Run::new(reference)),
-            uncertainty: Uncertainty::new(shadows, problem)?,
+            uncertainty: Uncertainty::new(entry.shadows, entry.scales, entry.most),
             is_reference_lost: false,
-            is_finest: false,
+            is_finest: entry.is_finest,
             rods: [pendulum.l1, pendulum.l2].map(|l| (l / tolerance) as f32),
-        })
+        }
     }
 
     /// Takes over the accurate frames of the same candidates in an earlier race.
@@ -94,7 +85,7 @@ impl Race {
     }
 
     /// Returns the number of steps per frame of the reference.
-    pub fn reference_steps(&self) -> u32 {
+    pub fn steps(&self) -> u32 {
         self.reference.run.stepping.steps
     }
 

@@ -26,7 +26,6 @@
 //! unknown if a shadow is so far that errors no longer grow in proportion.
 
 use super::candidate::{distance, greater};
-use super::cost::admissible_step;
 use super::reference::Compared;
 use super::run::Run;
 use super::{Costs, Problem, Stepping};
@@ -100,19 +99,19 @@ pub(super) fn most_between(admissible: f64, rate: u16) -> u32 {
 }
 
 impl Uncertainty {
-    /// Creates the uncertainty of a reference at its start. `stepping` is that of the shadows.
-    pub fn new(stepping: Stepping, problem: &Problem) -> Result<Self, Error> {
-        let pendulum = Pendulum::new(&problem.pendulum)?;
-        Ok(Self {
-            runs: [Run::new(stepping); SHADOWS],
-            scales: scales(&pendulum, &pendulum.to_state(&problem.start)),
+    /// Creates the uncertainty of a reference at its start. `stepping` is that of the shadows, and
+    /// `most` the largest number of frames between two restarts.
+    pub fn new(stepping: Stepping, scales: [f64; 2], most: u32) -> Self {
+        Self {
+            runs: core::array::from_fn(|_| Run::new(stepping)),
+            scales,
             unit: (START / NEAR) as f32,
             independent: [0.0; 4],
             common: [0.0; 4],
             since: 0,
-            most: most_between(admissible_step(problem)?, problem.rate),
+            most,
             is_due: false,
-        })
+        }
     }
 
     /// Returns the method and step count of the shadows.

@@ -50,11 +50,12 @@ impl Moments {
     /// Adds the weighted differences of the row `row`, counted from 0, from the last row.
     #[inline(never)] // Once, and not in memory, where steps run on some boards.
     pub fn add(&mut self, row: usize, differences: &[Q64; 6]) {
-        let square = (row as i32 + 1) * (row as i32 + 1);
+        // Rows are few, so that the square is never 0, which the compiler cannot see.
+        let square = ((row as i32 + 1) * (row as i32 + 1)).max(1);
         for (i, &difference) in differences.iter().enumerate() {
             // Sums wrap, but return into range: d8 is far below 1/144, and d6 below 1/81.
             self.eighth[i] = self.eighth[i] + difference.times(SQUARES / square);
-            let part = Q64(difference.0 >> 8).times(FOURTHS / (square * square));
+            let part = Q64(difference.0 >> 8).times(FOURTHS / (square * square).max(1));
             self.sixth[i] = self.sixth[i] + part;
         }
     }

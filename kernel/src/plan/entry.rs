@@ -1,0 +1,123 @@
+//! The entry of a race: the participants that the budgets pay for.
+
+use super::cost::{OF_RK4, admissible_step};
+use super::race::{CANDIDATES, IN_32_BITS, MEASURED};
+use super::uncertainty::{SHADOWS, most_between, scales};
+use super::{Costs, Problem, Stepping};
+use crate::error::Error;
+use crate::pendulum::Pendulum;
+use crate::table::Method;
+
+/// The number of motions that a race prepares at most.
+const MOTIONS: usize = CANDIDATES + 1 + SHADOWS;
+
+/// The share of the planning budget for candidates in 32 bits, after the shadows. They get more if
+/// the reference leaves more. A choice: with a quarter or a half the horizons are as long.
+const SHARE: f32 = 0.4;
+/// The participants of a race, before their motions are created.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Entry {
+    /// `None` for unused places. The last one is in 64 bits.
+    pub candidates: [Option<Stepping>; CANDIDATES],
+    /// The number of steps per frame of the reference.
+    pub steps: u32,
+    /// True if finer steps of the reference would not make its error smaller.
+    pub is_finest: bool,
+    pub shadows: Stepping,
+    /// The units of the momenta, kg m^2/s.
+    pub scales: [f64; 2],
+    /// The largest number of frames between two restarts of the shadows.
+    pub most: u32,
+}
+
+impl Entry {
+    /// Returns the participants that `planning` can pay for over `frames` frames: the candidates in
+    /// 32 bits, of those that `wanted` returns for the coarsest steps of RK4, and the one in 64
+    /// bits. It is `None` if planning pays for no reference, or if the methods refuse the motion.
+    ///
+    /// The shadows are paid for first, then the candidates in 32 bits, and the reference takes as
+    /// many steps as the rest pays for, up to those in which rounding is its larger error. It has the
+    /// steps of the candidate in 64 bits if more would cost too much beside that, and replaces it if
+    /// it has fewer.
+    #[inline(never)] // The motions that it checks are on the stack.
+    pub fn of<I: Iterator<Item = Stepping>>(
+        problem: &Problem,
+        costs: &Costs,
+        planning: f32,
+        frames: f32,
+        in_64_bits: Option<Stepping>,
+        wanted: impl Fn(Stepping) -> I,
+    ) -> Result<Option<Self>, Error> {
+        let admissible = admissible_step(problem)?;
+        let Some(shadows) = Stepping::rk4(problem, OF_RK4 * admissible, costs) else {
+            let method = Method::Rk4F32Direction;
+            Stepping { method, steps: 1 }.check(problem)?;
+            return Ok(None);
+        };
+        let Some(resolving) = Stepping::in_64_bits(problem, admissible, u32::MAX) else {
+            return Ok(None);
+        };
+        let Some(fewest) = Stepping::in_64_bits(problem, admissible, 0) else {
+            return Ok(None);
+        };
+        let price = MEASURED * costs.fixed64;
+        let of_fewest = price * fewest.steps as f32;
+        let of_drawn = in_64_bits.map_or(0.0, |one| costs.of_frame(one));
+
+        // The shadows with their restarts. If planning cannot pay for all frames, it pays for the
+        // cheapest reference and the coarsest steps of RK4 in fewer.
+        let most = most_between(admissible, problem.rate);
+        let restarts = costs.preparation / most as f32;
+        let of_shadows = SHADOWS as f32 * costs.of_frame(shadows) + restarts;
+        let needed = of_shadows + of_fewest + costs.of_frame(shadows);
+        let affordable = planning - MOTIONS as f32 * costs.preparation;
+        let frames = frames.min(affordable / needed);
+        if frames < 1.0 {
+            return Ok(None);
+        }
+        let mut left = affordable / frames - of_shadows;
+
+        // The candidates in 32 bits.
+        let mut candidates = [None; CANDIDATES];
+        let (in_32_bits, last) = candidates.split_at_mut(IN_32_BITS);
+        let of_resolving = price * resolving.steps as f32;
+        let share = f32::max(SHARE * left, left - of_resolving - of_drawn);
+        let mut share = share.min(left - of_fewest);
+        for (place, stepping) in in_32_bits.iter_mut().zip(wanted(shadows)) {
+            let cost = costs.of_frame(stepping);
+            if cost <= share {
+                *place = Some(stepping);
+                share -= cost;
+                left -= cost;
+            }
+        }
+
+        // The reference, and the candidate in 64 bits.
+        let affordable = |left: f32| ((left / price) as u32).clamp(fewest.steps, resolving.steps);
+        let mut steps = affordable(left);
+        if let Some(drawn) = in_64_bits {
+            let beside = affordable(left - of_drawn);
+            steps = steps.min(beside.max(drawn.steps));
+            last.fill(Some(Stepping {
+                steps: steps.min(drawn.steps),
+                ..drawn
+            }));
+        }
+        let pendulum = Pendulum::new(&problem.pendulum)?;
+        Ok(Some(Self {
+            candidates,
+            steps,
+            is_finest: steps >= resolving.steps,
+            shadows,
+            scales: scales(&pendulum, &pendulum.to_state(&problem.start)),
+            most,
+        }))
+    }
+
+    /// Removes all candidates but this one.
+    pub fn retain(&mut self, stepping: Stepping) {
+        for candidate in &mut self.candidates {
+            *candidate = candidate.filter(|one| *one == stepping);
+        }
+    }
+}
