@@ -140,10 +140,10 @@ impl Trial {
         }
     }
 
-    /// Returns the trial with its numbers rounded once to `f32`, if the numbers of `method` are
-    /// `f32`. 32-bit fixed point rounds them itself.
+    /// Returns the trial with its numbers rounded once to `f32`, if `method` holds them in `f32`.
+    /// The methods in directions form their constants and their start in `f64`.
     pub fn held_by(&self, method: Method) -> Self {
-        if !method.is_single() {
+        if !method.is_single() || method.equations() == Equations::Directions {
             return *self;
         }
         let parameters = self.parameters.cast::<f32>();
