@@ -209,17 +209,22 @@ impl<'a> Player<'a> {
     /// Calls `tell` with each result of the planner, and with each method that takes over. A motion
     /// that diverges is not noticed here, but by [`check`](Self::check).
     #[inline(never)] // Inlined, it takes 756 bytes of flash (M0+).
-    pub fn tick(&mut self, mut tell: impl FnMut(PlannerEvent)) {
+    pub fn tick(&mut self, tell: impl FnMut(PlannerEvent)) {
         if self.is_stopped() {
             return;
         }
         let due = self.pace.tick();
+        if due > 0 || !self.pace.paused {
+            self.advance(due, tell);
+        }
+    }
+
+    /// Advances by one tick of the clock, which is `due` ticks of the scene at any speed, as
+    /// [`tick`](Self::tick) does. For a host that repeats the frames of a board.
+    pub fn advance(&mut self, due: u32, mut tell: impl FnMut(PlannerEvent)) {
         for _ in 0..due {
             self.step += 1;
             self.scene.tick(self.step, &mut self.canvas);
-        }
-        if due == 0 && self.pace.paused {
-            return;
         }
 
         // Either the planned motion catches up, or the planner works.

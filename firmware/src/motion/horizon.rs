@@ -58,6 +58,6 @@ impl Horizon {
     /// Returns true if planning has ended and frames at `time` are later than the horizon.
     #[must_use]
     pub fn is_past(self, time: f64) -> bool {
-        matches!(self, Self::Until(end) if time > f64::from(end))
+        matches!(self, Self::Until(end) if time as f32 > end)
     }
 }

@@ -51,6 +51,15 @@ impl Show {
         let _ = player.check();
     }
 
+    /// Advances by one tick of the clock and `due` ticks of the scene, at any speed.
+    pub fn advance(&mut self, due: u32) {
+        let Self { player, news } = self;
+        let step = player.report.step + 1;
+        player.advance(due, |one| news.push((step, one)));
+
+        let _ = player.check();
+    }
+
     pub fn frame(&mut self) -> Screenshot {
         self.player.draw();
         Screenshot::from(&self.player.canvas)

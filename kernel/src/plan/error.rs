@@ -18,8 +18,8 @@ pub enum Limit {
     ///
     /// Also the limit if 64 bits refuse the motion and finer steps in 32 bits do not help.
     Budget,
-    /// The planning budget. It does not cover the next motion or frame of a trial, or a trial in
-    /// finer steps or with more finer runs.
+    /// The planning budget. It pays for no further frame, or for no finer steps of the reference.
+    /// Later frames may be accurate.
     Planning,
     /// The method and step count, which are fixed ([`Search::of`](super::Search::of) and
     /// [`Search::extend`](super::Search::extend)). Others may have a longer horizon.

@@ -151,14 +151,16 @@ fn limit(plan: &Plan, frame: f32) -> String {
         }
         Limit::End => "no cheaper method that was tried stays accurate to the end".into(),
         Limit::Growth => {
-            "the motion is chaotic: even 64 bits are not enough beyond this time, in any number \
-             of steps"
+            "the motion is chaotic: one frame later, its rounding errors, even of 64 bits, may have \
+             grown to half a pixel"
                 .into()
         }
         Limit::Budget => format!(
             "errors grow; a method that lasts longer costs more than the {frame:.0} cycles allowed"
         ),
-        Limit::Planning => "planning further ahead takes more time than the scene has".into(),
+        Limit::Planning => {
+            "the budget for planning ended there: later frames may be accurate, too".into()
+        }
         other => other.name().into(),
     }
 }

@@ -27,6 +27,9 @@ const MOST_TICKS: u32 = 2000;
 #[derive(Debug, Default)]
 pub struct Comparison {
     playing: Option<(Status, Show)>,
+    /// The ticks of the board's clock at which the scene began, and which the host has reached.
+    began: u32,
+    reached: u32,
     waiting: VecDeque<Frame>,
     /// The waiting frames that arrived before the board reported its scene. They may be of another
     /// one.
@@ -48,6 +51,8 @@ impl Comparison {
         let starts =
             |last: &Frame| frame.scene != last.scene || frame.report.step < last.report.step;
         if self.last.as_ref().is_none_or(starts) {
+            // A scene that was joined in its course has played at full speed.
+            self.began = self.last.as_ref().map_or_else(|| full_speed(frame), clock);
             self.skipped += self.waiting.len() as u64;
             self.waiting.clear();
             self.playing = None;
@@ -83,7 +88,11 @@ impl Comparison {
                 self.first.get_or_insert(doubt);
             }
             (None, Some(_)) => {}
-            _ => {
+            (doubt, _) => {
+                if let (Some(_), Some(frame)) = (doubt, self.waiting.front()) {
+                    self.began = full_speed(frame);
+                }
+                self.reached = self.began;
                 self.playing = played(&start).ok().map(|show| (start, show));
                 self.unsure = self.waiting.len();
             }
@@ -97,7 +106,7 @@ impl Comparison {
             .waiting
             .front()
             .copied()
-            .filter(|frame| is_reached(show, frame))?;
+            .filter(|frame| is_reached(show, &mut self.reached, frame))?;
         let difference = difference(&frame, &show.player.frame());
 
         // A first difference is not reported at once. The board may have started another scene.
@@ -179,12 +188,35 @@ fn played(start: &Status) -> Result<Show, Field> {
     Ok(show)
 }
 
-fn is_reached(show: &mut Show, frame: &Frame) -> bool {
+/// Returns the number of ticks of the board's clock until this frame.
+fn clock(frame: &Frame) -> u32 {
+    frame.sequence.wrapping_add(frame.dropped)
+}
+
+/// Returns the tick in which the scene of this frame began if it has played at full speed.
+fn full_speed(frame: &Frame) -> u32 {
+    clock(frame).wrapping_sub(frame.report.step as u32)
+}
+
+/// Advances the host's scene by the ticks of the board's clock, because the board plans in each of
+/// them, and by as many ticks of the scene in each as the board's speed has made. If the clock does
+/// not fit, as after a reset, each makes one tick of the scene.
+fn is_reached(show: &mut Show, reached: &mut u32, frame: &Frame) -> bool {
     for _ in 0..MOST_TICKS {
-        if show.report().step >= frame.report.step || show.player.is_still() {
+        let due = frame.report.step.saturating_sub(show.report().step) as u32;
+        let ticks = clock(frame).wrapping_sub(*reached);
+        let is_paused = frame.state == PlayState::Paused;
+        let is_counted = !is_paused && (1..=PATIENCE * PATIENCE).contains(&ticks);
+        if show.player.is_still() || due == 0 && !is_counted {
+            *reached = clock(frame);
             return true;
         }
-        show.tick();
+        if is_counted {
+            *reached = reached.wrapping_add(1);
+            show.advance(due / ticks);
+        } else {
+            show.advance(1);
+        }
     }
     false
 }
