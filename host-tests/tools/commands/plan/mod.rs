@@ -135,7 +135,7 @@ fn method(method: Method) -> String {
             "until the horizon the linear motion is within half a pixel".into()
         }
         Method::Rk4F32DirectionPlain => directions("the rounding errors of plain sums do not show"),
-        Method::Rk4F32Direction => directions("the rounding errors of plain sums would show"),
+        Method::Rk4F32Direction => directions("compensated sums keep rounding errors small"),
         Method::Rk4Fixed32 => directions("integers are cheapest here"),
         Method::Extrapolation10Fixed64 => {
             "32-bit methods are too inaccurate, or need so many steps that they cost more".into()
