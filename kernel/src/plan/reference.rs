@@ -22,8 +22,9 @@ use crate::pendulum::State;
 /// The factor on the ratio of the errors of two orders.
 ///
 /// A choice: the ratio of one pair of orders is taken for that of the next. With a heavy bob 2, in the
-/// moment in which it drives rod 1 fast, the error was 2.5 times the bound with a factor of 4. Where
-/// steps resolve the motion, a factor of 4 gives the same horizons within a frame.
+/// moment in which it drives rod 1 fast, the error was 2.5 times the bound with a factor of 4. With
+/// that factor the mean horizon of 20 high starts is 0.7 % longer, and with T = d8, which needs no
+/// factor, 1.5 % shorter.
 const TRUST: f32 = 16.0;
 
 /// The run in 64 bits that all others are compared with.
