@@ -194,8 +194,8 @@ fn planner_chooses_the_cheapest_method_with_the_longest_horizon() {
 }
 
 /// Methods beyond the frame budget are not tried: with a small budget the limit is the frame budget,
-/// and planning costs little. A method that costs more, and is accurate for less than a tenth longer, is chosen if it is accurate to the
-/// end.
+/// and planning costs little. A method that costs more, and is accurate for less than a tenth
+/// longer, is chosen if it is accurate to the end.
 #[test]
 fn planner_keeps_to_the_frame_budget_and_pays_for_the_end() {
     let figure7 = scene(2.75, 171.0, 30.0);

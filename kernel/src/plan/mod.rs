@@ -1,8 +1,7 @@
 //! Planning: finds the cheapest method whose frames are accurate, and predicts its accuracy
 //! horizon.
 //!
-//! A frame is accurate if both bobs are within a tolerance of the exact motion. Which is the
-//! cheapest method that a frame can pay for and that stays accurate for longest, and until when?
+//! A frame is accurate if both bobs are within a tolerance of the exact motion.
 //!
 //! # The race
 //!
@@ -45,9 +44,8 @@
 //! The budget of a frame limits the candidates. The planning budget pays for the shadows, for the
 //! candidates, and for R. If it pays for no R, there is no promise: [`PlanError::NoMethod`]. R makes
 //! steps so short that rounding is its larger error, or as many as planning can pay for. If
-//! truncation of R has ended the race, the race is repeated with finer steps for the frames that are
-//! left in question. Planning needs no heap, and is divided into pieces that a busy caller can
-//! afford ([`Search`]). The prices are in any unit ([`Costs`]).
+//! truncation of R has ended the race, it is repeated with finer steps. Planning is divided into
+//! pieces that a busy caller can afford ([`Search`]).
 //!
 //! | file | idea |
 //! |---|---|
@@ -57,7 +55,8 @@
 //! | `reference` | T |
 //! | `uncertainty` | P |
 //! | `race` | the participants side by side |
-//! | `search` | the budgets, and the plan |
+//! | `entry` | the participants that the budgets pay for |
+//! | `search` | the course of the races, and the plan |
 //!
 //! # Example
 //!
@@ -178,8 +177,9 @@ impl Plan {
     /// # Errors
     ///
     /// Refuses what [`PlannedRun::new`] refuses: a problem with an invalid pendulum, with a start
-    /// that is not finite, with numbers out of the range of the method, with a rate of 0 or, in fixed point, with a step that is too long; for the closed
-    /// form a pendulum without gravity; and a method that is not in [`Method::DRAWN`].
+    /// that is not finite, with numbers out of the range of the method, with a rate of 0 or, in
+    /// fixed point, with a step that is too long; for the closed form a pendulum without gravity;
+    /// and a method that is not in [`Method::DRAWN`].
     pub fn run(&self, problem: &Problem) -> Result<PlannedRun, Error> {
         PlannedRun::new(problem, self.stepping())
     }
