@@ -77,6 +77,12 @@ impl Processor {
         self.costs.closed_form.max(1_000.0)
     }
 
+    /// Returns the price of the comparison of a frame with the reference, cycles: some twenty
+    /// distances and roots, about as much as ten frames by the closed form.
+    pub fn comparison(&self) -> f32 {
+        10.0 * self.piece()
+    }
+
     /// Returns the budgets of a problem: of each frame, and of all its planning. The search may
     /// spend [`look_ahead`](Self::look_ahead) in each tick until the last frame, so that it stays
     /// ahead of the scene.

@@ -96,7 +96,11 @@ impl Entry {
         }
 
         // The reference, and the candidate in 64 bits.
-        let affordable = |left: f32| ((left / price) as u32).clamp(fewest.steps, resolving.steps);
+        let affordable = |left: f32| {
+            ((left / price) as u32)
+                .max(fewest.steps)
+                .min(resolving.steps)
+        };
         let mut steps = affordable(left);
         if let Some(drawn) = in_64_bits {
             let beside = affordable(left - of_drawn);
