@@ -83,7 +83,7 @@ pub const MEMORY: [(&str, Memory); 5] = [
         Memory {
             text: 272 * KIB,
             data: 256,
-            bss: 25 * KIB,
+            bss: 26 * KIB,
             stack: 28 * KIB,
         },
     ),

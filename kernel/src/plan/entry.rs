@@ -16,6 +16,38 @@ const MOTIONS: usize = CANDIDATES + 1 + SHADOWS;
 /// mean horizon (Cortex-M3 and Cortex-M4F).
 const SHARE: f32 = 0.4;
 
+/// The steps that the methods accept and a race needs. To find them takes the time of several
+/// preparations, so that a repeated race does not look for them again.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Bounds {
+    pub shadows: Stepping,
+    /// The fewest steps of a reference, and those in which rounding is its larger error.
+    fewest: Stepping,
+    resolving: Stepping,
+}
+
+impl Bounds {
+    /// Returns `None` if the methods refuse the motion in all steps of a race.
+    #[inline(never)] // The motions that it checks are on the stack.
+    pub fn of(problem: &Problem, costs: &Costs) -> Result<Option<Self>, Error> {
+        let admissible = admissible_step(problem)?;
+        let Some(shadows) = Stepping::rk4(problem, OF_RK4 * admissible, costs) else {
+            let method = Method::Rk4F32Direction;
+            Stepping { method, steps: 1 }.check(problem)?;
+            return Ok(None);
+        };
+        let in_64_bits = |steps| Stepping::in_64_bits(problem, admissible, steps);
+        Ok(in_64_bits(u32::MAX).and_then(|resolving| {
+            let fewest = in_64_bits(0)?;
+            Some(Self {
+                shadows,
+                fewest,
+                resolving,
+            })
+        }))
+    }
+}
+
 /// The participants of a race, before their motions are created.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Entry {
@@ -25,7 +57,7 @@ pub(super) struct Entry {
     pub steps: u32,
     /// True if finer steps of the reference would not make its error smaller.
     pub is_finest: bool,
-    pub shadows: Stepping,
+    pub bounds: Bounds,
     /// The units of the momenta, kg m^2/s.
     pub scales: [f64; 2],
     /// The largest number of frames between two restarts of the shadows.
@@ -41,34 +73,27 @@ impl Entry {
     /// many steps as the rest pays for, up to those in which rounding is its larger error. It has the
     /// steps of the candidate in 64 bits if more would cost too much beside that, and replaces it if
     /// it has fewer.
-    #[inline(never)] // The motions that it checks are on the stack.
     pub fn of<I: Iterator<Item = Stepping>>(
         problem: &Problem,
         costs: &Costs,
         planning: f32,
         frames: f32,
         in_64_bits: Option<Stepping>,
+        bounds: Bounds,
         wanted: impl Fn(Stepping) -> I,
     ) -> Result<Option<Self>, Error> {
-        let admissible = admissible_step(problem)?;
-        let Some(shadows) = Stepping::rk4(problem, OF_RK4 * admissible, costs) else {
-            let method = Method::Rk4F32Direction;
-            Stepping { method, steps: 1 }.check(problem)?;
-            return Ok(None);
-        };
-        let Some(resolving) = Stepping::in_64_bits(problem, admissible, u32::MAX) else {
-            return Ok(None);
-        };
-        let Some(fewest) = Stepping::in_64_bits(problem, admissible, 0) else {
-            return Ok(None);
-        };
+        let Bounds {
+            shadows,
+            fewest,
+            resolving,
+        } = bounds;
         let price = MEASURED * costs.fixed64;
         let of_fewest = price * fewest.steps as f32;
         let of_drawn = in_64_bits.map_or(0.0, |one| costs.of_frame(one));
 
         // The shadows with their restarts. If planning cannot pay for all frames, it pays for the
         // cheapest reference and the coarsest steps of RK4 in fewer.
-        let most = most_between(admissible, problem.rate);
+        let most = most_between(admissible_step(problem)?, problem.rate);
         let restarts = costs.preparation / most as f32;
         let of_shadows = SHADOWS as f32 * costs.of_frame(shadows) + restarts;
         let needed = of_shadows + of_fewest + costs.of_frame(shadows);
@@ -115,7 +140,7 @@ impl Entry {
             candidates,
             steps,
             is_finest: steps >= resolving.steps,
-            shadows,
+            bounds,
             scales: scales(&pendulum, &pendulum.to_state(&problem.start)),
             most,
         }))

@@ -2,7 +2,7 @@
 //! inaccurate.
 
 use super::candidate::{Candidate, distance};
-use super::entry::Entry;
+use super::entry::{Bounds, Entry};
 use super::reference::Reference;
 use super::run::{Directions, Run};
 use super::uncertainty::{SHADOWS, Uncertainty};
@@ -37,6 +37,7 @@ pub(super) struct Race {
     pub is_reference_lost: bool,
     /// True if finer steps of the reference would not make its error smaller.
     pub is_finest: bool,
+    pub bounds: Bounds,
     /// The lengths of the rods divided by the tolerance.
     rods: [f32; 2],
 }
@@ -64,9 +65,10 @@ impl Race {
             runs: core::array::from_fn(|i| Run::new(stepping(i))),
             in_64_bits: Run::new(stepping(CANDIDATES - 1)),
             reference: Reference::new(Run::new(reference)),
-            uncertainty: Uncertainty::new(entry.shadows, entry.scales, entry.most),
+            uncertainty: Uncertainty::new(entry.bounds.shadows, entry.scales, entry.most),
             is_reference_lost: false,
             is_finest: entry.is_finest,
+            bounds: entry.bounds,
             rods: [pendulum.l1, pendulum.l2].map(|l| (l / tolerance) as f32),
         }
     }
