@@ -222,9 +222,11 @@ impl<'a> Player<'a> {
     /// Advances by one tick of the clock, which is `due` ticks of the scene at any speed, as
     /// [`tick`](Self::tick) does. For a host that repeats the frames of a board.
     pub fn advance(&mut self, due: u32, mut tell: impl FnMut(PlannerEvent)) {
+        let mut other_steps = 0;
         for _ in 0..due {
             self.step += 1;
             self.scene.tick(self.step, &mut self.canvas);
+            other_steps += self.scene.other_steps();
         }
 
         // Either the planned motion catches up, or the planner works.
@@ -238,7 +240,10 @@ impl<'a> Player<'a> {
                 self.motion = MotionState::Steady;
                 tell(PlannerEvent::Shown(stepping, self.cost(stepping)));
             }
-        } else if let Some(found) = self.planner.tick(self.step) {
+            return;
+        }
+        self.planner.leave_time_for(other_steps);
+        if let Some(found) = self.planner.tick(self.step) {
             tell(PlannerEvent::Found(found));
             self.follow(&found);
         }

@@ -30,6 +30,8 @@ pub struct Misprinted {
     z: [f32; 6],
     /// True if the rods were ever too fast for the steps. Then `z` stays as it was before.
     is_lost: bool,
+    /// The number of steps that the last tick has tried.
+    pub tried: u32,
 }
 
 /// The largest number of steps in a tick. It is the limit of a Cortex-M3.
@@ -69,6 +71,7 @@ impl Misprinted {
             inertia,
             z,
             is_lost: false,
+            tried: 0,
         }
     }
 
@@ -80,6 +83,7 @@ impl Misprinted {
     /// Advances by one tick, in 2 to 8 steps that resolve the motion at both of their ends. If none
     /// does, the motion is lost, and no longer moves.
     pub fn tick(&mut self) {
+        self.tried = 0;
         let mut left = PARTS;
         let mut parts = PARTS / STEPS_PER_TICK;
         while left > 0 {
@@ -87,6 +91,7 @@ impl Misprinted {
                 return;
             }
             // Try a step, and halve it until it resolves the motion at both ends.
+            self.tried += 1;
             let z = rk4::step(|z| self.rates(z), &self.z, parts as f32 * PART);
             if self.is_resolved(&self.z, parts) && self.is_resolved(&z, parts) {
                 self.z = z;

@@ -70,6 +70,12 @@ pub trait Scene: Sized {
         Report::at(ticks)
     }
 
+    /// Returns the number of steps by RK4 in `f32` that the last tick has made for a motion which is
+    /// shown for comparison: time that planning must leave.
+    fn other_steps(&self) -> u32 {
+        0
+    }
+
     /// Returns the motion whose method and step count the plan may change.
     fn planned(&mut self) -> Option<&mut Simulation> {
         None
@@ -225,6 +231,11 @@ macro_rules! catalogue {
             pub fn draw(&self, report: &Report, canvas: &mut Canvas) {
                 let canvas = canvas.on_clear_foreground();
                 match self { $(Self::$row(scene) => scene.draw(report, canvas),)* }
+            }
+
+            /// Returns the steps of another motion, as [`Scene::other_steps`].
+            pub fn other_steps(&self) -> u32 {
+                match self { $(Self::$row(scene) => scene.other_steps(),)* }
             }
 
             /// Returns the motion that is planned, as [`Scene::planned`].

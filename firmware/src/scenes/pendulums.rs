@@ -226,6 +226,10 @@ impl Scene for Figure7 {
         );
     }
 
+    fn other_steps(&self) -> u32 {
+        self.misprinted.tried
+    }
+
     fn draw(&self, report: &Report, canvas: &mut Canvas) {
         // The energy of the exact motion, and the energy of the misprinted motion.
         let right = self.right.energy.of_error(report.energy_error);
