@@ -77,8 +77,8 @@ impl Processor {
         self.costs.closed_form.max(1_000.0)
     }
 
-    /// Returns the price of the comparison of a frame with the reference, cycles: some twenty
-    /// distances and roots, about as much as ten frames by the closed form.
+    /// Returns the price of the comparison of a frame with the reference, cycles. It is an estimate,
+    /// not counted: some twenty distances and roots.
     pub fn comparison(&self) -> f32 {
         10.0 * self.piece()
     }
