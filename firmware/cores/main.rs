@@ -95,7 +95,7 @@ mod machine {
     }
 }
 
-/// A WebAssembly module, whose host prints (`host-tests/emulator/wasm.js`).
+/// A WebAssembly module, whose host prints (`host-tests/boards/wasm.js`).
 #[cfg(target_arch = "wasm32")]
 mod machine {
     use core::arch::wasm32::unreachable;

@@ -56,7 +56,7 @@
 //!   (`board/cortex_m/retained.rs`); and reset. Then `resume` (`board/main_loop.rs`) starts the
 //!   same scene again, or after more than `MOST_RESTARTS` (`app/warm_restart.rs`) the first one,
 //!   and logs the cause. The host asks for it and prints it (`describe_restart`,
-//!   `host-tests/emulator/src/link/mod.rs`). The user's side is "When it crashes or hangs" in
+//!   `host-tests/boards/src/link/mod.rs`). The user's side is "When it crashes or hangs" in
 //!   `firmware/README.md`.
 //! - **The bytes for a panel.** `display/oled_i2c.rs`, with a row for each controller,
 //!   `display/st7789.rs` or `display/ssd0323.rs`.

@@ -8,12 +8,12 @@ use std::process::Command;
 use std::time::Instant;
 
 use anyhow::{Context, Result, ensure};
+use boards::toolchain::workspace;
 use double_pendulum::flips::Flip;
 use double_pendulum::{Error, Parameters};
-use emulator::toolchain::workspace;
-use host_tests::commands::flips::map::Map;
+use exact::vectors::Search;
+use host_tests::flips::map::Map;
 use rayon::prelude::*;
-use vectors::Search;
 
 const SIDE: usize = 128;
 const LIMIT: f32 = 100.0;
@@ -30,12 +30,12 @@ const WAYS: [Way; 4] = [
     ("this kernel: one start after the other", one_by_one, None),
     (
         "24 side by side, any x86-64",
-        vectors::baseline,
+        exact::vectors::baseline,
         Some(130.0 / 11.0),
     ),
     (
         "24 side by side, vectors as this processor has them",
-        vectors::flips,
+        exact::vectors::flips,
         Some(280.0 / 11.0),
     ),
     ("the same on all threads", threads, None),
@@ -48,7 +48,7 @@ fn one_by_one(search: &Search, starts: &[[f32; 2]]) -> Found {
 fn threads(search: &Search, starts: &[[f32; 2]]) -> Found {
     let portions = starts
         .par_chunks(PORTION)
-        .map(|portion| vectors::flips(search, portion));
+        .map(|portion| exact::vectors::flips(search, portion));
     Ok(portions.collect::<Result<Vec<_>, _>>()?.concat())
 }
 

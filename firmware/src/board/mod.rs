@@ -21,7 +21,7 @@
 //! 2. Write `bin/NAME.rs`, one line. Add a `[[bin]]` in `Cargo.toml`, the start of its flash in
 //!    `build.rs`, and its name in `protocol/to_host.rs`.
 //! 3. If QEMU has the machine, add a row in `boards.rs` and in `budgets.rs` of
-//!    `host-tests/emulator/src/`.
+//!    `host-tests/boards/src/`.
 //!
 //! Then run `cargo fw --check`, `cargo test -p host-tests --test boards` with `no_panic::`, then
 //! with `qemu_plan:: qemu_unread:: qemu_restart::`, then with `scenes::`; and on the board `cargo

@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
+use boards::Board;
+use boards::budgets::{self, MEMORY, Memory};
 use double_pendulum::Method;
-use emulator::boards::Board;
-use emulator::budgets::{self, MEMORY, Memory};
 use firmware::config::TICK_RATE;
 use firmware::job::{ON_BOARDS, Request};
 use firmware::protocol::{Command, Field, MAX_WIRE, ToHost, encode_command, frame};

@@ -3,10 +3,10 @@
 use std::time::Duration;
 
 use crate::support::{LIMIT, application};
-use emulator::boards::pico_with;
-use emulator::host::Show;
-use emulator::pico::PicoMachine;
-use emulator::toolchain;
+use boards::host::Show;
+use boards::pico::PicoMachine;
+use boards::pico_with;
+use boards::toolchain;
 use firmware::config::{CORTEX_M0PLUS, TICK_RATE};
 use firmware::display::PanelName;
 use firmware::protocol::{Command, ToHost};

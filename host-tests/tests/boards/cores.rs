@@ -9,7 +9,7 @@ use std::io::{Write, stderr};
 use std::process::Command;
 
 use crate::support::LIMIT;
-use emulator::{process, toolchain};
+use boards::{process, toolchain};
 use rayon::prelude::*;
 
 enum Emulator {
@@ -36,7 +36,7 @@ fn emulated(Core(_, target, emulator, double): &Core) -> anyhow::Result<Command>
         }
         Linux => {}
         Node => {
-            command.arg(toolchain::workspace().join("host-tests/emulator/wasm.js"));
+            command.arg(toolchain::workspace().join("host-tests/boards/wasm.js"));
         }
     }
     // A failed build fails the test here; only a missing tool is returned as an error.

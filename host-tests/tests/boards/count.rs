@@ -9,7 +9,7 @@ use crate::support::{targets, toolchain};
 use double_pendulum::Method;
 use double_pendulum::plan::{Costs, Stepping};
 use firmware::job::Request;
-use host_tests::commands::count::{
+use host_tests::count::{
     Minimal, MinimalPrices, affordable_cost, prices, step_cost, table, table_in_readme,
 };
 use rayon::prelude::*;

@@ -5,11 +5,11 @@ use std::process::Command;
 
 use crate::support::targets;
 use anyhow::Result;
+use boards::toolchain;
 use cycles::{Core, Instruction};
 use double_pendulum::{Method, Parameters};
-use emulator::toolchain;
 use firmware::job::Request;
-use host_tests::commands::report::accuracy::{SCENES, Scene, request};
+use host_tests::report::accuracy::{SCENES, Scene, request};
 use rayon::prelude::*;
 
 /// Fewer on the Cortex-M0+, which has no long products.

@@ -1,7 +1,7 @@
 //! A board that is late by ever more frames.
 
-use emulator::boards::LM3S6965EVB;
-use emulator::qemu::Machine;
+use boards::LM3S6965EVB;
+use boards::qemu::Machine;
 use firmware::protocol::{Answer, Command, Field, ToHost};
 use firmware::scenes::SceneName;
 

@@ -1,9 +1,9 @@
 //! The largest mass ratio that the keys reach, on the emulated board that is slowest with it. The
 //! command of the key up is sent until nothing changes any more.
 
-use emulator::boards::LM3S6965EVB;
-use emulator::host::Show;
-use emulator::qemu::Machine;
+use boards::LM3S6965EVB;
+use boards::host::Show;
+use boards::qemu::Machine;
 use firmware::config::{MASS_RATIOS, TICK_RATE};
 use firmware::protocol::{Answer, Command, PlayState};
 use firmware::scenes::SceneName;

@@ -6,15 +6,15 @@ use std::time::Duration;
 
 use crate::support::{LIMIT, application, show};
 use anyhow::Context;
+use boards::flash::image::{flash_image, uf2};
+use boards::link::BAUD_OF_BOOT_LOADER;
+use boards::pico::PicoMachine;
+use boards::process;
+use boards::scratch::Scratch;
+use boards::toolchain::{self, workspace};
+use boards::{BOARDS, PICO};
 use cycles::Core;
 use double_pendulum::Method;
-use emulator::boards::{BOARDS, PICO};
-use emulator::flash::{flash_image, uf2};
-use emulator::link::BAUD_OF_BOOT_LOADER;
-use emulator::pico::PicoMachine;
-use emulator::process;
-use emulator::scratch::Scratch;
-use emulator::toolchain::{self, workspace};
 use firmware::app::Key;
 use firmware::config::{
     BAUD, HOLD_TICKS, MOST_MEASURED_STEPS, RECEIVE_QUEUE, TICK_RATE, WATCHDOG_SECONDS,
@@ -26,7 +26,7 @@ use firmware::protocol::{
     Answer, BoardName, Cause, Command, Field, Frame, MAX_WIRE, Restarted, ToHost, encode_command,
 };
 use firmware::scenes::SceneName;
-use host_tests::commands::count::{FULL_CYCLE, Target, affordable_steps, step_cost};
+use host_tests::count::{FULL_CYCLE, Target, affordable_steps, step_cost};
 
 const PICTURE: Duration = Duration::from_millis(50);
 /// Finding the changes on the panel and handing over a frame takes 1.3 ms; waiting for the UART
@@ -86,7 +86,7 @@ fn faster_execution_has_the_results_of_the_emulators_own() -> anyhow::Result<()>
     let mut compare = Program::new(node);
     compare
         .arg("--single-threaded")
-        .arg(workspace().join("host-tests/emulator/rp2040/compare.js"))
+        .arg(workspace().join("host-tests/boards/rp2040/compare.js"))
         .arg(&file)
         .arg(COMPARED.to_string());
     let output = process::run(&mut compare, LIMIT)?;

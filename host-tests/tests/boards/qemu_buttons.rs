@@ -2,8 +2,8 @@
 //! the motion.
 
 use crate::support::on;
-use emulator::boards::{BOARDS, Board};
-use emulator::qemu::Machine;
+use boards::qemu::Machine;
+use boards::{BOARDS, Board};
 use firmware::app::Key;
 use firmware::config::{ANGLE_STEP, MASS_RATIOS};
 use firmware::protocol::Frame;

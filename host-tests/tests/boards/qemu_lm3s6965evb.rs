@@ -1,8 +1,8 @@
 //! Registers of the emulated LM3S6965, which reports revision A2.
 
 use crate::support::{address, application, on};
-use emulator::boards::BOARDS;
-use emulator::qemu::Machine;
+use boards::BOARDS;
+use boards::qemu::Machine;
 
 /// The register of the voltage regulator, and its value for 2.75 V.
 const LDOPCTL: u32 = 0x400f_e034;

@@ -2,10 +2,10 @@
 //! host, without delaying a frame. It is reported in answers and in the log.
 
 use crate::support::{on, show};
+use boards::qemu::Machine;
+use boards::{BOARDS, Board};
 use double_pendulum::Method;
 use double_pendulum::plan::Plan;
-use emulator::boards::{BOARDS, Board};
-use emulator::qemu::Machine;
 use firmware::app::PlannerEvent;
 use firmware::config::TICK_RATE;
 use firmware::protocol::{Answer, Command};

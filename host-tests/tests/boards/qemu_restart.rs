@@ -7,9 +7,9 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use crate::support::{address, application, on, settings, toolchain};
+use boards::qemu::{Machine, Register, Settings};
+use boards::{BOARDS, Board, STM32F405};
 use cycles::Image;
-use emulator::boards::{BOARDS, Board, STM32F405};
-use emulator::qemu::{Machine, Register, Settings};
 use firmware::app::MOST_RESTARTS;
 use firmware::protocol::{Cause, Command, Field, Frame, Restarted, ToHost};
 use firmware::scenes::SceneName;

@@ -2,8 +2,8 @@
 //! button.
 
 use crate::support::{address, application, on};
-use emulator::boards::STM32F405;
-use emulator::qemu::Machine;
+use boards::STM32F405;
+use boards::qemu::Machine;
 
 #[test]
 fn the_image_sets_its_vectors_and_runs_without_a_panel() -> anyhow::Result<()> {

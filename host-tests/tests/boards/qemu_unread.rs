@@ -7,8 +7,8 @@ use std::time::{Duration, Instant};
 
 use crate::support::bench::BOARD;
 use crate::support::{LIMIT, on, show};
-use emulator::boards::{BOARDS, STM32F405};
-use emulator::qemu::{Clock, Machine, Settings};
+use boards::qemu::{Clock, Machine, Settings};
+use boards::{BOARDS, STM32F405};
 use firmware::config::TICK_RATE;
 use firmware::scenes::SceneName;
 use nix::sys::signal::{Signal, kill};

@@ -12,19 +12,19 @@ use std::time::Duration;
 
 use crate::budgets::{Next, beyond, exercise, wire};
 use crate::support::{LIMIT, PAINT, application, depth, on, show, stack};
+use boards::budgets;
+use boards::host::Show;
+use boards::link::Counts;
+use boards::pico::PicoMachine;
+use boards::qemu::{Machine, Settings};
+use boards::toolchain;
+use boards::{BOARDS, Board, PICO};
 use cycles::{Core, Cost, Image};
-use emulator::boards::{BOARDS, Board, PICO};
-use emulator::budgets;
-use emulator::host::Show;
-use emulator::link::Counts;
-use emulator::pico::PicoMachine;
-use emulator::qemu::{Machine, Settings};
-use emulator::toolchain;
 use firmware::config::TICK_RATE;
 use firmware::display::PanelName;
 use firmware::protocol::{Command, Frame, ToHost};
 use firmware::scenes::SceneName;
-use host_tests::commands::count::FrameProfile;
+use host_tests::count::FrameProfile;
 use rayon::prelude::*;
 
 const EVERY: u32 = 25;

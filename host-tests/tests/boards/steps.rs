@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use crate::support::application;
 use crate::support::code::Code;
-use emulator::boards::PICO;
+use boards::PICO;
 
 /// Returns the functions that steps of the form `form` reach in the Pico's application.
 fn reached(code: &Code, form: &str) -> BTreeSet<String> {

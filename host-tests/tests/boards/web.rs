@@ -7,20 +7,20 @@ use std::path::PathBuf;
 use std::process::Command;
 use std::sync::Mutex;
 
-use console::cli::Refused;
-use emulator::host::Show;
-use emulator::process;
-use emulator::toolchain::{WASM, set_up_chromium, set_up_for, workspace};
+use boards::console::cli::Refused;
+use boards::host::Show;
+use boards::process;
+use boards::toolchain::{WASM, set_up_chromium, set_up_for, workspace};
 use firmware::config::TICK_RATE;
 use firmware::protocol::{Answer, Frame, MAX_WIRE, ToHost, encode};
 use firmware::scenes::SceneName;
-use host_tests::commands::web::{HEADLESS, OFFERED, digits, write_page};
+use host_tests::web::{HEADLESS, OFFERED, digits, write_page};
 
 use crate::support::LIMIT;
 
 fn run(script: &str, add: impl FnOnce(&mut Command)) -> anyhow::Result<String> {
     let mut node = Command::new(set_up_for(WASM)?.qemu);
-    node.arg(workspace().join("host-tests/emulator/web").join(script));
+    node.arg(workspace().join("host-tests/boards/web").join(script));
     add(&mut node);
     let output = process::run(&mut node, LIMIT)?;
     anyhow::ensure!(output.status.success(), output.stderr);

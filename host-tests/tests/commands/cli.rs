@@ -8,13 +8,13 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 use std::{fs, io};
 
-use emulator::host::Show;
-use emulator::process::{Output, run};
-use emulator::toolchain::workspace;
+use crate::support::snapshot::BLESS;
+use boards::host::Show;
+use boards::process::{Output, run};
+use boards::toolchain::workspace;
 use firmware::app::PlannerEvent;
 use firmware::config::{CORTEX_M3, STM32F405};
 use firmware::scenes::SceneName;
-use host_tests::oracle::snapshot::BLESS;
 use rayon::prelude::*;
 
 use crate::support::LIMIT;
@@ -203,7 +203,7 @@ fn wait_for_handler(process: u32) {
 #[cfg(target_os = "linux")]
 #[test]
 fn an_interrupted_proof_prints_what_it_has_proved() {
-    use emulator::process::spawn;
+    use boards::process::spawn;
     use nix::sys::signal::{Signal, kill};
     use nix::unistd::Pid;
     use std::io::Read;

@@ -7,9 +7,9 @@ use std::path::{Path, PathBuf};
 
 use super::cli::{output, program};
 use crate::support::toolchain;
+use boards::host::Show;
 use demo::played;
 use double_pendulum::Parameters;
-use emulator::host::Show;
 use firmware::config::STM32F405;
 use firmware::motion::Settings;
 use firmware::scenes::SceneName;

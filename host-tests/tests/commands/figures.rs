@@ -5,11 +5,11 @@ use std::f64::consts::PI;
 use std::fs;
 
 use double_pendulum::{Motion, State};
+use exact::taylor::Reference;
+use exact::tolerances;
 use firmware::scenes::SceneName;
-use host_tests::commands::figures::small::{CurvePoint, MASS_RATIOS, modes, points};
-use host_tests::commands::figures::{animation, chaos, figures, folder, record};
-use host_tests::oracle::tolerances;
-use reference::taylor::Reference;
+use host_tests::figures::small::{CurvePoint, MASS_RATIOS, modes, points};
+use host_tests::figures::{animation, chaos, figures, folder, record};
 
 use super::cli::{output, program};
 

@@ -8,11 +8,11 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::time::{Duration, SystemTime};
 
-use emulator::boards::{PICO, STM32F405};
-use emulator::flash::flash_image;
-use emulator::link::Inbox;
-use emulator::process::{self, Output};
-use emulator::toolchain;
+use boards::flash::image::flash_image;
+use boards::link::Inbox;
+use boards::process::{self, Output};
+use boards::toolchain;
+use boards::{PICO, STM32F405};
 use firmware::protocol::ToHost;
 use nix::sys::signal::{Signal, kill};
 use nix::unistd::Pid;

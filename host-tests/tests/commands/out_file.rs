@@ -7,7 +7,7 @@ use std::process::{Command, Stdio};
 use std::thread::sleep;
 use std::time::Duration;
 
-use emulator::process::spawn;
+use boards::process::spawn;
 use nix::sys::signal::{Signal, kill};
 use nix::unistd::Pid;
 

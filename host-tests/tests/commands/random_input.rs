@@ -2,12 +2,13 @@
 //! input is valid, and refused input changes nothing. `PROPTEST_CASES=1000000 cargo test -p
 //! host-tests --test commands random_input::` runs more cases.
 
+use boards::console::number::Number;
+use boards::host::canvas;
+use boards::link::Inbox;
 use clap::Parser;
-use console::number::Number;
 use double_pendulum::plan::{Budget, Limit, Problem, Search, Stepping};
 use double_pendulum::{Error, Method, Modes, Motion, Parameters, Pendulum, Real, State};
-use emulator::host::canvas;
-use emulator::link::Inbox;
+use exact::trials;
 use firmware::app::{App, NoButtons};
 use firmware::config::CORTEX_M4F;
 use firmware::display::NoDisplay;
@@ -19,8 +20,7 @@ use firmware::protocol::{
     frame,
 };
 use firmware::scenes::SceneName;
-use host_tests::commands::simulate::{SimulateOptions, plan};
-use host_tests::oracle::trials;
+use host_tests::simulate::{SimulateOptions, plan};
 use proptest::array::{uniform2, uniform4, uniform5};
 use proptest::collection::vec;
 use proptest::prelude::*;

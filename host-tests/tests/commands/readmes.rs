@@ -5,7 +5,7 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-use emulator::toolchain::workspace;
+use boards::toolchain::workspace;
 
 use super::cli::output;
 

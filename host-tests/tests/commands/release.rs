@@ -9,10 +9,10 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::Duration;
 
-use emulator::boards::every_board;
-use emulator::flash::flash_image;
-use emulator::process::{self, Output};
-use emulator::toolchain::{target, workspace};
+use boards::every_board;
+use boards::flash::image::flash_image;
+use boards::process::{self, Output};
+use boards::toolchain::{target, workspace};
 
 use super::cli::{output, program};
 use crate::support::{application, toolchain};

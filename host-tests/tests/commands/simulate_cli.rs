@@ -1,10 +1,10 @@
 //! `cargo simulate`: the rows of a board are equal to the host's, and what is said about the rows
 //! is true. Digits and bits are in the snapshots.
 
+use boards::BOARDS;
+use boards::process::Output;
 use clap::Parser;
-use emulator::boards::BOARDS;
-use emulator::process::Output;
-use host_tests::commands::simulate::{SimulateOptions, choose, plan};
+use host_tests::simulate::{SimulateOptions, choose, plan};
 
 use super::cli::{output, program};
 

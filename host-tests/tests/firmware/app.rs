@@ -4,12 +4,12 @@
 use std::convert::Infallible;
 use std::sync::atomic::{AtomicU32, Ordering};
 
+use boards::host::Show;
+use boards::link::Inbox;
+use boards::qemu::Screenshot;
 use double_pendulum::plan::Stepping;
 use double_pendulum::{Method, Parameters, Pendulum, State, radians};
 use embedded_io::{ErrorKind, ErrorType, Write};
-use emulator::host::Show;
-use emulator::link::Inbox;
-use emulator::qemu::Screenshot;
 use firmware::app::{Buttons, Event, MOST_RESTARTS, NoButtons, Pressed, Record};
 use firmware::config::{DIM_TICKS, GRAVITY, MOST_TICKS_PER_FRAME, ROD, TICK_RATE};
 use firmware::display::{Controller, Display, NoDisplay, PanelOptions, PanelReport};

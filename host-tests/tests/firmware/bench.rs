@@ -1,9 +1,9 @@
 //! The application that runs on the boards, without panel and buttons, its messages, and the places
 //! of a frame.
 
+use boards::host::canvas;
+use boards::link::Inbox;
 use embedded_io::Write;
-use emulator::host::canvas;
-use emulator::link::Inbox;
 use firmware::app::{App, Buttons, NoButtons};
 use firmware::config::PROCESSOR;
 use firmware::display::{Display, NoDisplay};

@@ -2,10 +2,10 @@
 
 use std::f64::consts::PI;
 
+use boards::link::refusal;
 use double_pendulum::parts::Advance;
 use double_pendulum::plan::Stepping;
 use double_pendulum::{Error, Method, Parameters};
-use emulator::link::refusal;
 use fastrand::Rng;
 use firmware::app::{Event, Instruments, PlannerEvent};
 use firmware::config::{

@@ -1,14 +1,14 @@
 //! The first 10 s of every scene on every class of processors equal `golden/frames.csv`: each
 //! picture's greys and each report's bits.
 
+use crate::snapshot;
+use boards::host::Show;
 use double_pendulum::golden::{FNV_OFFSET, fnv_1a};
-use emulator::host::Show;
 use firmware::config::{
     CORTEX_M0PLUS, CORTEX_M3, CORTEX_M4F, PROCESSORS, Processor, STM32F405, TICK_RATE,
 };
 use firmware::protocol::{MAX_WIRE, ToHost, encode};
 use firmware::scenes::SceneName;
-use host_tests::oracle::snapshot;
 use rayon::prelude::*;
 
 const FRAMES: u32 = 10 * TICK_RATE;

@@ -1,17 +1,17 @@
 //! The frames compared with the exact motion. They are accurate to half a pixel until the time that
 //! the panel predicts, and not much longer, before and after a change of the method.
 
+use boards::host::Show;
 use double_pendulum::{Parameters, Pendulum};
-use emulator::host::Show;
+use exact::taylor::Reference;
+use exact::tolerances::PLAN_SHARE;
 use firmware::config::{
     CORTEX_M3, CORTEX_M4F, HALF_PIXEL, MASS_RATIOS, Processor, REACH, TICK_RATE,
 };
 use firmware::graphics::{Format, Place};
 use firmware::motion::{self, Settings};
 use firmware::scenes::SceneName;
-use host_tests::oracle::tolerances::PLAN_SHARE;
 use rayon::prelude::*;
-use reference::taylor::Reference;
 
 /// The duration of each motion, s.
 const FOLLOWED: f64 = 25.0;

@@ -3,6 +3,7 @@
 use std::collections::HashSet;
 use std::fmt::Debug;
 
+use crate::snapshot;
 use double_pendulum::plan::{Limit, Plan, PlanError, Stepping};
 use double_pendulum::{Error, Method};
 use firmware::app::Record;
@@ -17,7 +18,6 @@ use firmware::protocol::{
     read,
 };
 use firmware::scenes::{Report, SceneName};
-use host_tests::oracle::snapshot;
 
 use crate::bench::messages;
 

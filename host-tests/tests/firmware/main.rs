@@ -16,6 +16,8 @@ mod oled_i2c;
 mod planner;
 mod scenes;
 mod service;
+#[path = "../support/snapshot.rs"]
+mod snapshot;
 mod ssd0323;
 mod sweep;
 mod tick_timer;

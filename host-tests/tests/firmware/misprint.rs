@@ -2,13 +2,13 @@
 //! 7.
 
 use crate::bench::blank;
+use boards::host::Show;
 use double_pendulum::{Parameters, Pendulum, State, rk4};
-use emulator::host::Show;
+use exact::{textbook, tolerances};
 use firmware::config::{HALF_PIXEL, MASS_RATIOS, TICK_RATE};
 use firmware::graphics::{Anchor, Format, Place, View, text};
 use firmware::motion::{Energy, Misprinted, Settings};
 use firmware::scenes::SceneName;
-use host_tests::oracle::{textbook, tolerances};
 
 /// The tolerance, J, of the mean of 32 chaotic runs, whose spread the tolerance covers (measured
 /// -18.3, without the first 5 s -18.9, and falling further in longer runs).

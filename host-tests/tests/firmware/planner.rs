@@ -1,8 +1,8 @@
 //! The planner of a scene: its work in a tick, its results, and their format in messages.
 
+use boards::host::Show;
 use double_pendulum::Method;
 use double_pendulum::plan::{Budget, Limit, PlanError, Problem, Stepping};
-use emulator::host::Show;
 use firmware::config::{
     CORTEX_M3, CORTEX_M4F, PLANNED, PROCESSORS, Processor, SETTLED_TICKS, STM32F405, TICK_RATE,
 };

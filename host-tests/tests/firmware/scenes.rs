@@ -3,9 +3,10 @@
 
 use std::f64::consts::TAU;
 
+use crate::snapshot;
+use boards::host::Show;
+use boards::qemu::Screenshot;
 use double_pendulum::{Modes, State};
-use emulator::host::Show;
-use emulator::qemu::Screenshot;
 use firmware::app::PlannerEvent;
 use firmware::config::{
     CORTEX_M0PLUS, CORTEX_M3, CORTEX_M4F, PIVOT, PROCESSOR, Processor, REACH, STM32F405, TICK_RATE,
@@ -17,7 +18,6 @@ use firmware::job::CRC;
 use firmware::motion::{Resources, Settings};
 use firmware::protocol::{Command, PlayState};
 use firmware::scenes::{AnyScene, Flips, Scene, SceneName};
-use host_tests::oracle::snapshot;
 
 use crate::bench::{app, blank, places, wire};
 

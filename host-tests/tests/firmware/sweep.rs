@@ -2,15 +2,15 @@
 //! its energy, and every frame is within half a pixel of the exact motion until the time on the
 //! panel.
 
+use boards::host::Show;
 use double_pendulum::{Modes, Parameters, Pendulum, SmallOscillations};
-use emulator::host::Show;
+use exact::taylor::Reference;
 use firmware::config::{HALF_PIXEL, MASS_RATIOS, PROCESSORS, Processor, REACH, TICK_RATE};
 use firmware::graphics::{Format, Place};
 use firmware::motion::{Horizon, Settings};
 use firmware::protocol::PlayState;
 use firmware::scenes::SceneName;
 use rayon::prelude::*;
-use reference::taylor::Reference;
 
 const TICKS: u32 = 20 * TICK_RATE;
 

@@ -1,7 +1,7 @@
 //! The record that is kept across a reset is trusted only if it is intact, and is played again
 //! unchanged.
 
-use emulator::host::Show;
+use boards::host::Show;
 use fastrand::Rng;
 use firmware::app::{Journal, MOST_RESTARTS, Player, Record, SOUND_FRAMES};
 use firmware::display::{BUILT_FOR, Controller};

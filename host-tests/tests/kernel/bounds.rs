@@ -5,11 +5,11 @@ use std::f64::consts::PI;
 
 use double_pendulum::parts::DirectionF64;
 use double_pendulum::{Bounds, Error, Motion, Parameters, Pendulum, Real, State};
+use exact::optimised::Step;
+use exact::taylor::Reference;
+use exact::trials::apart;
+use exact::{random, tolerances};
 use fastrand::Rng;
-use host_tests::oracle::trials::apart;
-use host_tests::oracle::{random, tolerances};
-use reference::optimised::Step;
-use reference::taylor::Reference;
 
 /// The excess over the bounds from the energy along 100 steps of RK4, in which no rod turns by more
 /// than 0.05 rad each, relative to each bound: the energy error of the steps (measured: no excess

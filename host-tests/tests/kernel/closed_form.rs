@@ -3,12 +3,12 @@
 
 use std::f64::consts::{FRAC_PI_6, PI, TAU};
 
+use boards::host::Show;
 use double_pendulum::{Modes, Motion, Parameters, Pendulum, SmallOscillations};
-use emulator::host::Show;
+use exact::taylor::Reference;
+use exact::tolerances::CLOSED_FORM;
 use firmware::config::TICK_RATE;
 use firmware::scenes::SceneName;
-use host_tests::oracle::tolerances::CLOSED_FORM;
-use reference::taylor::Reference;
 
 /// The error of the angles after the period in which a figure closes, relative to their amplitude:
 /// 3.7e-5. It is computed for five periods of the fast mode, the most in any of these scenes.

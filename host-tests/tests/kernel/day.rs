@@ -3,12 +3,12 @@
 use double_pendulum::parts::DirectionF64;
 use double_pendulum::plan::Stepping;
 use double_pendulum::{Equations, Error, Method, Numbers, Pendulum, State};
+use exact::advance;
+use exact::trials::{self, Trial};
 use firmware::config::{STM32F405, TICK_RATE};
 use firmware::graphics::Format;
 use firmware::motion::{Resources, Simulation};
 use firmware::scenes::{Report, SceneName};
-use host_tests::oracle::trials::{self, Trial};
-use reference::advance;
 
 /// The difference of the energy by a method in 32 bits from that of `f64` in the same steps, at any
 /// time of a simulated day, relative to the energy above rest: the goal (measured at five mass

@@ -1,9 +1,10 @@
 //! Steps that are too long for a motion: the error has a type, the last good state is kept, and no
 //! result is NaN.
 
+use boards::host::canvas;
+use boards::qemu::Screenshot;
 use double_pendulum::{Error, Integrator, Method, Parameter, Parameters, State};
-use emulator::host::canvas;
-use emulator::qemu::Screenshot;
+use exact::trials;
 use firmware::app::{App, NoButtons};
 use firmware::config::PROCESSOR;
 use firmware::display::NoDisplay;
@@ -12,7 +13,6 @@ use firmware::job::{BoardMotion, Job, Reading, Request};
 use firmware::motion::Settings;
 use firmware::protocol::{Command, Field, PlayState};
 use firmware::scenes::SceneName;
-use host_tests::oracle::trials;
 
 /// A step below the stability limit of 0.49 s, but far too long for a motion of 300 rad/s.
 const TOO_LONG: f64 = 0.3;

@@ -4,9 +4,9 @@ use std::f64::consts::PI;
 
 use double_pendulum::{Error, ExtrapolationF64, Fixed32, Fixed64, Form, Method};
 use double_pendulum::{Motion, Parameter, Parameters, Pendulum, State};
+use exact::random::{self, log_uniform, symmetric};
+use exact::trials::{MOMENTS, Trial, largest_difference};
 use firmware::config::GRAVITY;
-use host_tests::oracle::random::{self, log_uniform, symmetric};
-use host_tests::oracle::trials::{MOMENTS, Trial, largest_difference};
 
 /// The error of the angles by 32-bit fixed point in the regular scene for 10 s, rad, with steps so
 /// fine that the method's error is smaller (measured 2e-9; compensated `f32` has 3e-8). It is also

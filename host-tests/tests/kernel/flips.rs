@@ -5,9 +5,9 @@ use std::f64::consts::PI;
 use double_pendulum::flips::{Flip, Flips};
 use double_pendulum::parts::DirectionF64;
 use double_pendulum::{Error, Motion, Parameters};
+use exact::taylor::Reference;
 use fastrand::Rng;
-use host_tests::commands::flips::map::{FlipPair, Map};
-use reference::taylor::Reference;
+use host_tests::flips::map::{FlipPair, Map};
 
 /// The smallest share, of 1, of correct points in a map of flips with a limit of 10 sqrt(l/g),
 /// among the points that may turn over. A point is correct if it differs from far finer steps in
@@ -60,7 +60,7 @@ fn judge(map: &Map) -> Result<[usize; 4], Error> {
         .into_iter()
         .try_fold([0; 4], |counts, (start, point)| {
             let [a1, a2] = start.map(f64::from);
-            let exact = match reference::flip(&fine, a1, a2)? {
+            let exact = match exact::flip(&fine, a1, a2)? {
                 Flip::Never => Flip::Never,
                 Flip::After(time) => Flip::After(time as f32),
                 Flip::Later => Flip::Later,

@@ -6,9 +6,9 @@ use double_pendulum::parts::Turns;
 use double_pendulum::{
     DirectionF32, Error, Method, Motion, Numbers, Parameter, Parameters, Pendulum, Run, State,
 };
+use exact::trials::{self, Trial, exact_methods, largest_difference};
+use exact::{random, tolerances};
 use fastrand::Rng;
-use host_tests::oracle::trials::{self, Trial, exact_methods, largest_difference};
-use host_tests::oracle::{random, tolerances};
 
 /// The largest relative excess of a step over dt, in epsilons of the method's numbers, or of `f32`
 /// in fixed point. The unit of time may be rounded by half of the rounding of gravity.
@@ -21,8 +21,8 @@ const LONGER: f64 = 17.0;
 const DIRECTIONS: f64 = 8.0;
 
 /// The difference of the lengths of directions from 1, by each of the
-/// [`exact_methods`](crate::oracle::trials::exact_methods), in 70 steps of 1/64 s of the chaotic
-/// scene and of [`Trial::unlike`](crate::oracle::trials::Trial::unlike): the remainder after
+/// [`exact_methods`](exact::trials::exact_methods), in 70 steps of 1/64 s of the chaotic
+/// scene and of [`Trial::unlike`](exact::trials::Trial::unlike): the remainder after
 /// restoring them to first order (measured 3e-6).
 const LENGTHS: f64 = 1e-5;
 

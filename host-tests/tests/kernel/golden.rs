@@ -1,8 +1,8 @@
 //! The methods of the table compute the bits that are stored in the kernel's `golden/bits.csv`,
 //! including the methods of the firmware.
 
+use crate::snapshot;
 use firmware::job::write_golden;
-use host_tests::oracle::snapshot;
 
 /// Any bit that differs from the file fails. The test updates the file instead if `BLESS=1` is set.
 /// A test of the kernel then requires an entry in its change log.

@@ -1,14 +1,14 @@
 //! The hard cases: the methods of the table on motions that are difficult for their numbers.
 
 use double_pendulum::{Equations, Error, Method, Numbers, Parameter, State};
-use host_tests::oracle::hard_cases::{HardCase, hard_cases};
-use host_tests::oracle::tolerances;
-use host_tests::oracle::trials::{MOMENTS, Trial, exact_methods, largest_difference};
+use exact::hard_cases::{HardCase, hard_cases};
+use exact::tolerances;
+use exact::trials::{MOMENTS, Trial, exact_methods, largest_difference};
 use rayon::prelude::*;
 
 /// The error of an angle, rad, along a million compensated steps of 2^-13 s of the regular scene,
 /// in `f32` and in the `f64` of
-/// [`Trial::states_in_f64`](crate::oracle::trials::Trial::states_in_f64) (measured 2e-7 and 9e-14;
+/// [`Trial::states_in_f64`](exact::trials::Trial::states_in_f64) (measured 2e-7 and 9e-14;
 /// plain sums have an error of 2e-5 in `f32`).
 const MILLION_STEPS: tolerances::PerPrecision = tolerances::PerPrecision {
     single: 5e-7,

@@ -4,12 +4,12 @@
 use std::sync::LazyLock;
 
 use double_pendulum::{Error, Method, Parameter, State};
-use host_tests::oracle::known_answers::{KnownAnswer, table};
-use host_tests::oracle::tolerances;
-use host_tests::oracle::trials::{self, exact_methods};
+use exact::known_answers::{KnownAnswer, table};
+use exact::taylor::Reference;
+use exact::tolerances;
+use exact::trials::{self, exact_methods};
+use exact::twofloat::TwoFloat;
 use rayon::prelude::*;
-use reference::taylor::Reference;
-use reference::twofloat::TwoFloat;
 
 /// The smallest number of rows of the table for which a method must have a tolerance below 1
 /// ([`known_answer`]), so that the test is meaningful. The other rows are chaotic.

@@ -7,9 +7,9 @@ use double_pendulum::{
     Equations, Error, Integrator, Method, Modes, Motion, Numbers, Parameters, Pendulum, State,
     radians,
 };
-use host_tests::oracle::tolerances;
-use host_tests::oracle::trials::{exact_methods, run};
-use reference::taylor::Reference;
+use exact::taylor::Reference;
+use exact::tolerances;
+use exact::trials::{exact_methods, run};
 
 use super::hard_cases::HALVINGS;
 

@@ -16,4 +16,6 @@ mod plan;
 mod plan_study;
 mod range;
 mod small_oscillations;
+#[path = "../support/snapshot.rs"]
+mod snapshot;
 mod stated_errors;

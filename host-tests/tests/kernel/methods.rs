@@ -1,7 +1,7 @@
 //! The orders of all methods with steps, and of extrapolation of any equation.
 
 use double_pendulum::{Error, Extrapolation, Method, Parameter, Parameters, State};
-use host_tests::oracle::trials::{Trial, exact_methods, largest_difference};
+use exact::trials::{Trial, exact_methods, largest_difference};
 
 /// The error of the measured order of extrapolation of z'' = -z, in orders. The steps must be
 /// coarse, so that high orders are above the roundings of a hundred steps, which they enlarge. The

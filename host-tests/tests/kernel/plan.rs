@@ -8,10 +8,10 @@ use double_pendulum::plan::{
     Budget, Costs, Limit, Plan, PlanError, PlannedRun, Problem, Search, Stepping,
 };
 use double_pendulum::{Error, Motion, Parameter, Parameters, Pendulum};
+use exact::random::{log_uniform, symmetric};
 use fastrand::Rng;
 use firmware::config::{CORTEX_M0PLUS, CORTEX_M3, CORTEX_M4F, STM32F405};
 use firmware::motion::half_pixel;
-use host_tests::oracle::random::{log_uniform, symmetric};
 use rayon::prelude::*;
 
 /// Frames per second.

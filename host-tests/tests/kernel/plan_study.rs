@@ -14,13 +14,13 @@ use std::f64::consts::PI;
 
 use double_pendulum::plan::{Plan, PlanError, Problem};
 use double_pendulum::{Motion, Parameters};
+use exact::random::{log_uniform, symmetric};
+use exact::taylor::Reference;
 use fastrand::Rng;
 use firmware::config::GRAVITY;
 use firmware::motion::half_pixel;
-use host_tests::commands::plan::{CHIPS, Chip};
-use host_tests::oracle::random::{log_uniform, symmetric};
+use host_tests::plan::{CHIPS, Chip};
 use rayon::prelude::*;
-use reference::taylor::Reference;
 
 /// The largest number of scenes out of 2,000 with a frame that is inaccurate before the predicted
 /// horizon, and the largest error of such a frame, half pixels.

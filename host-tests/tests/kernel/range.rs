@@ -7,8 +7,8 @@ use double_pendulum::{
     Fixed32, Fixed64, Form, HamiltonF32, HamiltonF64, Modes, Motion, Parameter, Parameters,
     Pendulum, State, periodic_mass_ratio,
 };
+use exact::random::{log_uniform, symmetric};
 use fastrand::Rng;
-use host_tests::oracle::random::{log_uniform, symmetric};
 
 fn magnitude(rng: &mut Rng) -> f64 {
     match rng.u8(..8) {

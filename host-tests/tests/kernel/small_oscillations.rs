@@ -1,10 +1,10 @@
 //! Small oscillations: frequencies accurate to the last place, and the limit of the exact motion.
 
 use double_pendulum::{Mode, Modes, Motion, Parameters, Real, SmallOscillations};
+use exact::random::{log_uniform, parameters, symmetric};
+use exact::taylor::{Reference, divide};
+use exact::twofloat::TwoFloat;
 use fastrand::Rng;
-use host_tests::oracle::random::{log_uniform, parameters, symmetric};
-use reference::taylor::{Reference, divide};
-use reference::twofloat::TwoFloat;
 
 /// The errors of the fast and the slow normal frequency, of the fast and the slow mode shape, and
 /// of the difference of the frequencies, in ulps of the numbers, `f32` or `f64`: nine roundings,
@@ -141,7 +141,7 @@ fn upright_pendulum_falls_at_the_rates_of_the_modes() {
     };
 
     let modes = Modes::new(&parameters).expect("valid parameters");
-    let upright = reference::twofloat::consts::PI;
+    let upright = exact::twofloat::consts::PI;
     for Mode { frequency, shape } in [modes.fast, modes.slow] {
         // The push is so small that the motion remains linear.
         let push = 1e-10;

@@ -3,8 +3,8 @@
 //! motion of the numbers typed.
 
 use double_pendulum::{Error, Method, Motion, Parameters, State};
-use host_tests::oracle::trials::{apart, run};
-use reference::taylor::Reference;
+use exact::taylor::Reference;
+use exact::trials::{apart, run};
 
 /// Returns the largest error of an angle, rad, in `seconds` of the motion from rest at 0.5 rad, in
 /// steps of 1/`rate` s, after every `every` steps.

@@ -7,13 +7,13 @@ mod periodic_orbits;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use double_pendulum::{Motion, Parameters};
+use exact::enclosure::{Enclosure, Fineness, Fixed, Start, sin_cos};
+use exact::known_answers::table;
+use exact::random::symmetric;
+use exact::taylor::Reference;
 use fastrand::Rng;
 use firmware::scenes::SceneName;
-use host_tests::commands::prove::{HEADING, horizons, known_answers};
-use host_tests::oracle::known_answers::table;
-use host_tests::oracle::random::symmetric;
-use reference::enclosure::{Enclosure, Fineness, Fixed, Start, sin_cos};
-use reference::taylor::Reference;
+use host_tests::prove::{HEADING, horizons, known_answers};
 
 /// The times of frames are exact in `f64`.
 const RATE: u16 = 64;
@@ -65,7 +65,7 @@ fn the_known_answers_are_those_that_the_command_makes() {
         .into_iter()
         .filter(|row| row.scene == "S11")
         .collect();
-    let kept = include_str!("../../reference/known_answers.csv")
+    let kept = include_str!("../../exact/known_answers.csv")
         .lines()
         .filter(|line| line.starts_with("S11,"));
     assert_eq!(

@@ -1,13 +1,13 @@
 //! The enclosure contains the exact motion and the reference.
 
 use double_pendulum::{Motion, Parameters, Pendulum};
+use exact::enclosure::{Enclosure, Fineness, Fixed, Start};
+use exact::hard_cases::hard_cases;
+use exact::random::{log_uniform, symmetric};
+use exact::taylor::Reference;
+use exact::tolerances;
 use fastrand::Rng;
-use host_tests::commands::prove::moving;
-use host_tests::oracle::hard_cases::hard_cases;
-use host_tests::oracle::random::{log_uniform, symmetric};
-use host_tests::oracle::tolerances;
-use reference::enclosure::{Enclosure, Fineness, Fixed, Start};
-use reference::taylor::Reference;
+use host_tests::prove::moving;
 
 use crate::{RATE, after, equal_rods, meet};
 

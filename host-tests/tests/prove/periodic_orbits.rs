@@ -12,7 +12,7 @@
 use std::f64::consts::TAU;
 
 use double_pendulum::{Motion, Parameters};
-use reference::enclosure::{Enclosure, Fineness, Fixed, Start};
+use exact::enclosure::{Enclosure, Fineness, Fixed, Start};
 
 use crate::RATE;
 

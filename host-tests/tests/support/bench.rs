@@ -10,10 +10,10 @@ use std::process::Command;
 use std::thread::{scope, sleep};
 use std::time::Duration;
 
-use emulator::boards::{Board, LM3S6965EVB};
-use emulator::pico::PicoMachine;
-use emulator::process::{Output, run};
-use emulator::qemu::{Clock, Machine, Settings};
+use boards::pico::PicoMachine;
+use boards::process::{Output, run};
+use boards::qemu::{Clock, Machine, Settings};
+use boards::{Board, LM3S6965EVB};
 use firmware::protocol::{MAX_WIRE, ToHost, encode};
 use nix::fcntl::OFlag;
 use nix::pty::{PtyMaster, grantpt, posix_openpt, ptsname_r, unlockpt};

@@ -3,17 +3,18 @@
 
 pub mod bench;
 pub mod code;
+pub mod snapshot;
 
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use emulator::boards::Board;
-use emulator::host::Show;
-use emulator::qemu::{Clock, Settings};
-use emulator::toolchain::{self, Toolchain};
+use boards::Board;
+use boards::host::Show;
+use boards::qemu::{Clock, Settings};
+use boards::toolchain::{self, Toolchain};
 use firmware::scenes::SceneName;
-use host_tests::commands::count::Target;
+use host_tests::count::Target;
 use object::{Object, ObjectSymbol};
 
 /// The time limit against hanging: many times the duration of any run, on a slow and busy machine

@@ -1,7 +1,7 @@
 //! Sines and cosines with few additions and multiplications, because each is a call in software.
 //!
 //! The argument is reduced by the nearest multiple of pi/2 (Cody-Waite reduction). Then minimax
-//! polynomials are used. `host-tests/tools/sine_polynomials.py` computes the constants.
+//! polynomials are used. `host-tests/exact/sine_polynomials.py` computes the constants.
 //!
 //! No `f64` is pi. A pendulum that starts straight up would fall if the `f64` nearest to pi were
 //! taken literally. So a whole number times the `f64` nearest to pi/2 is that number of quarter

@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 
 use addr2line::Context;
 use addr2line::gimli::{self, Dwarf, EndianSlice, LittleEndian, SectionId};
-use emulator::boards::{BOARDS, every_board, pico_with};
+use boards::{BOARDS, every_board, pico_with};
 use firmware::display::PanelName;
 use object::{Object, ObjectSection};
 

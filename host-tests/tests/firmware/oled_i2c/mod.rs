@@ -3,9 +3,9 @@
 
 mod bus;
 
+use boards::host::Show;
+use boards::qemu::Screenshot;
 use embedded_hal::i2c::ErrorKind;
-use emulator::host::Show;
-use emulator::qemu::Screenshot;
 use fastrand::Rng;
 use firmware::config::{STM32F405, TICK_RATE};
 use firmware::display::{

@@ -1,0 +1,295 @@
+//! Builds of the firmware.
+//!
+//! A build writes below `firmware` in the target folder, shows its progress on stderr, and ignores
+//! variables such as `RUSTFLAGS`.
+
+use std::ffi::OsString;
+use std::path::PathBuf;
+use std::process::Command;
+use std::sync::{Mutex, PoisonError};
+use std::time::Duration;
+use std::{env, fs};
+
+use anyhow::{anyhow, ensure};
+
+use super::run::{quick_output, run_shown};
+use super::{TARGETS, Toolchain, WASM, remap, set_up_for, target, workspace};
+use firmware::display::PanelName;
+
+use crate::board::{Board, every_board};
+
+/// The list saves time: another call of cargo takes half a second.
+static BUILT: Mutex<Vec<(String, String)>> = Mutex::new(Vec::new());
+
+/// The binaries that run on every target.
+const AHEAD: [&str; 3] = ["lm3s6965evb", "measure", "inject-panic"];
+
+/// For a slow, busy machine, including downloads.
+const LIMIT: Duration = Duration::from_secs(1800);
+
+/// The prefixes of environment variables that are removed for the firmware's build. `cargo run` and
+/// `cargo test` set such variables, and a user may have set them for host programs.
+const FOREIGN: [&str; 5] = ["CARGO", "RUST", "LD_LIBRARY_PATH", "DYLD_", "OUT_DIR"];
+const OURS: [&str; 5] = [
+    "CARGO_HOME",
+    "CARGO_HTTP_",
+    "CARGO_NET_",
+    "CARGO_REGISTR",
+    "RUSTUP_",
+];
+
+/// An image of the golden bits: its target, and the processor's name if the image is built with the
+/// kernel's feature `double-fpu`.
+pub type CoreImage = (&'static str, Option<&'static str>);
+
+/// The images of the golden bits. Those of the boards' [`TARGETS`] come first. The next two need
+/// the core library of their target, and the last three another emulator, too.
+pub const CORE_IMAGES: [CoreImage; 9] = [
+    ("thumbv6m-none-eabi", None),
+    ("thumbv7m-none-eabi", None),
+    ("thumbv7em-none-eabihf", None),
+    ("thumbv7em-none-eabihf", Some("cortex-m7")),
+    ("thumbv8m.main-none-eabihf", None),
+    ("thumbv8m.main-none-eabihf", Some("cortex-m55")),
+    ("wasm32-unknown-unknown", None),
+    ("riscv32imac-unknown-none-elf", None),
+    ("aarch64-unknown-none", None),
+];
+
+impl Toolchain {
+    fn cargo(&self) -> Command {
+        let mut command = Command::new("cargo");
+        // The variables of the surrounding cargo would change the flags of this build.
+        for (name, _) in env::vars_os().filter(|(name, _)| is_foreign(name)) {
+            command.env_remove(name);
+        }
+        command
+            .current_dir(workspace())
+            .env("RUSTUP_AUTO_INSTALL", "0");
+        command
+    }
+
+    /// The folder is separate from that of the host's programs, so that neither build waits for the
+    /// other.
+    fn folder() -> PathBuf {
+        target().join("firmware")
+    }
+
+    /// The folder is separate, so that cargo can build these images and the boards' programs at the
+    /// same time. Only macros and build scripts are compiled twice because of it.
+    fn folder_of_cores() -> PathBuf {
+        Self::folder().join("cores")
+    }
+
+    pub fn build_for(&self, board: &Board) -> anyhow::Result<PathBuf> {
+        if board.panel == PanelName::Oled {
+            return self.build(board.binary, board.target);
+        }
+
+        // Cargo gives the images for all panels the same name. Each is copied before the next
+        // build replaces it.
+        static TURN: Mutex<()> = Mutex::new(());
+        let _turn = TURN.lock().unwrap_or_else(PoisonError::into_inner);
+        let name = board.panel.name();
+        let folder = Self::folder().join(board.target).join("release");
+        let image = folder.join(format!("{}-{name}", board.binary));
+        let this = (image.display().to_string(), board.target.to_owned());
+        if !BUILT.lock().is_ok_and(|built| built.contains(&this)) {
+            let mut command = self.for_targets("build", &[board.target])?;
+            command.args(["--bin", board.binary, "--features", board.feature]);
+            command.env("PANEL", name);
+            self.finish(command, &format!("building {} for {name}", board.binary))?;
+            fs::copy(folder.join(board.binary), &image)?;
+            BUILT
+                .lock()
+                .into_iter()
+                .for_each(|mut built| built.push(this.clone()));
+        }
+        Ok(image)
+    }
+
+    /// Built once per process.
+    pub fn build(&self, binary: &str, target: &str) -> anyhow::Result<PathBuf> {
+        let elf = Self::folder().join(target).join("release").join(binary);
+        let this = (binary.to_owned(), target.to_owned());
+        if !BUILT.lock().is_ok_and(|built| built.contains(&this)) {
+            let feature = every_board()
+                .find(|board| board.binary == binary)
+                .map_or("", |board| board.feature);
+            let mut command = self.for_targets("build", &[target])?;
+            command.args(["--bin", binary, "--features", feature]);
+            self.finish(command, &format!("building {binary} for {target}"))?;
+            BUILT
+                .lock()
+                .into_iter()
+                .for_each(|mut built| built.push(this.clone()));
+        }
+        Ok(elf)
+    }
+
+    pub fn build_cores(&self, target: &str, double: Option<&str>) -> anyhow::Result<PathBuf> {
+        // Cargo gives both kinds of image the same name. Each is copied before the next build
+        // replaces it.
+        static TURN: Mutex<()> = Mutex::new(());
+        let _turn = TURN.lock().unwrap_or_else(PoisonError::into_inner);
+        self.build_core_images(&[target], double)?;
+        let folder = Self::folder_of_cores().join(target).join("release");
+        let built = if target.starts_with("wasm") {
+            "cores.wasm"
+        } else {
+            "cores"
+        };
+        let image = folder.join(format!("{}-{built}", double.unwrap_or("any")));
+        fs::copy(folder.join(built), &image)?;
+        Ok(image)
+    }
+
+    fn build_core_images(&self, targets: &[&str], double: Option<&str>) -> anyhow::Result<()> {
+        let mut command = self.for_targets("build", targets)?;
+        command
+            .args(["--bin", "cores", "--no-default-features"])
+            .args(["--features", "cores"])
+            .env("CARGO_TARGET_DIR", Self::folder_of_cores())
+            // Nobody debugs these images, and debug information would double the time.
+            .env("CARGO_PROFILE_RELEASE_DEBUG", "false");
+        if let Some(cpu) = double {
+            // These flags replace the flags of the configuration, which are for a Cortex-M4F.
+            command.args(["--features", "double-pendulum-kernel/double-fpu"]);
+            command.env("RUSTFLAGS", format!("-Ctarget-cpu={cpu}"));
+        }
+        let names = double.map_or_else(|| targets.join(", "), str::to_owned);
+        self.finish(command, &format!("building cores for {names}"))
+    }
+
+    /// Builds the [`CORE_IMAGES`] ahead. It stops before the first target whose tools cannot be
+    /// provided: without a network, each further one would wait for it.
+    pub fn build_cores_ahead(&self) -> anyhow::Result<()> {
+        let is_ready = |target: &str| set_up_for(target).is_ok();
+        let (double, any): (Vec<CoreImage>, Vec<CoreImage>) = CORE_IMAGES
+            .into_iter()
+            .take_while(|(target, _)| is_ready(target))
+            .partition(|(_, double)| double.is_some());
+
+        // Images for no particular processor are built together, the others one at a time. The one
+        // for WebAssembly is built alone, too: in one call with microcontrollers, cargo would
+        // enable their features for it, and the test's build would compile it again.
+        let (alone, together): (Vec<_>, Vec<_>) =
+            any.into_iter().partition(|(target, _)| *target == WASM);
+        let together: Vec<_> = together.into_iter().map(|(target, _)| target).collect();
+        if !together.is_empty() {
+            self.build_core_images(&together, None)?;
+        }
+        double
+            .into_iter()
+            .chain(alone)
+            .try_for_each(|(target, double)| self.build_core_images(&[target], double))
+    }
+
+    /// Builds the programs of `kernel/minimal` as a user of the kernel would: in an empty folder,
+    /// so that the settings of this repository do not apply.
+    pub fn build_minimal(&self, target: &str) -> anyhow::Result<PathBuf> {
+        let nowhere = tempfile::tempdir()?;
+        let package = workspace().join("kernel/minimal");
+        // A folder of their own: where the firmware's flags differ, cargo would compile the common
+        // crates anew for either, and link all images again.
+        let folder = Self::folder().join("minimal");
+        let flags = remap::flags().map_err(|error| anyhow!(error))?;
+
+        let mut sysroot = Command::new("rustc");
+        sysroot
+            .args(["--print", "sysroot"])
+            .current_dir(workspace());
+        let sysroot = quick_output(&mut sysroot).map_err(|error| anyhow!(error))?;
+        let suffix = env::consts::EXE_SUFFIX;
+        let rustc = PathBuf::from(sysroot.trim()).join(format!("bin/rustc{suffix}"));
+        let mut command = self.cargo();
+        command.env("RUSTC", rustc);
+        command
+            .current_dir(&nowhere)
+            .args(["build", "--release", "--locked", "--target", target])
+            .arg("--manifest-path")
+            .arg(package.join("Cargo.toml"))
+            .arg("--config")
+            .arg(package.join(".cargo/config.toml"))
+            .args(["--config", &format!("target.{target}.rustflags={flags:?}")])
+            .env("CARGO_TARGET_DIR", &folder);
+        self.finish(
+            command,
+            &format!("building the minimal programs for {target}"),
+        )?;
+        Ok(folder.join(target).join("release"))
+    }
+
+    pub fn build_web(&self) -> anyhow::Result<PathBuf> {
+        let mut command = self.for_targets("build", &[WASM])?;
+        command
+            .args(["--bin", "web", "--features", "web"])
+            .env("CARGO_PROFILE_RELEASE_DEBUG", "false")
+            .env("CARGO_PROFILE_RELEASE_STRIP", "symbols");
+        self.finish(command, "building the application for the browser")?;
+        Ok(Self::folder().join(WASM).join("release/web.wasm"))
+    }
+
+    pub fn build_ahead(&self) -> anyhow::Result<()> {
+        let mut command = self.for_targets("build", &TARGETS)?;
+        command.args(AHEAD.iter().flat_map(|binary| ["--bin", binary]));
+        self.finish(command, "building the firmware for all targets")
+    }
+
+    pub fn build_applications_ahead(&self) -> anyhow::Result<()> {
+        every_board().try_for_each(|board| self.build_for(board).map(drop))
+    }
+
+    pub fn build_minimal_ahead(&self) -> anyhow::Result<()> {
+        TARGETS
+            .iter()
+            .try_for_each(|target| self.build_minimal(target).map(drop))
+    }
+
+    pub fn check(&self) -> anyhow::Result<()> {
+        for target in TARGETS {
+            // All boards of a target are checked at once, with the features of all.
+            let features = every_board()
+                .filter(|board| board.target == target)
+                .map(|board| board.feature);
+            let features = features.collect::<Vec<_>>().join(",");
+
+            let mut command = self.for_targets("clippy", &[target])?;
+            command.args(["--bins", "--features", &features]);
+            command.args(["--", "--deny", "warnings"]);
+            self.finish(command, &format!("checking the firmware for {target}"))?;
+        }
+        Ok(())
+    }
+
+    fn for_targets(&self, what: &str, targets: &[&str]) -> anyhow::Result<Command> {
+        let flags = remap::flags().map_err(|error| anyhow!(error))?;
+        let mut command = self.cargo();
+        command
+            .args([what, "--release", "--package", "firmware"])
+            .env("CARGO_TARGET_DIR", Self::folder());
+        for target in targets {
+            // These flags are added to the configured flags. A TOML string has the same escapes as
+            // a Rust string. The name of a target may contain a dot; cargo does not find the flags
+            // if it is quoted.
+            let flags = format!("target.{target}.rustflags={flags:?}");
+            command.args(["--target", target, "--config", &flags]);
+        }
+        Ok(command)
+    }
+
+    fn finish(&self, mut command: Command, doing: &str) -> anyhow::Result<()> {
+        let output = run_shown(&mut command, LIMIT, doing)?;
+        ensure!(
+            output.status.success(),
+            "the firmware does not build\n{}",
+            output.stderr
+        );
+        Ok(())
+    }
+}
+
+fn is_foreign(name: &OsString) -> bool {
+    let begins = |with: &&str| name.as_encoded_bytes().starts_with(with.as_bytes());
+    FOREIGN.iter().any(begins) && !OURS.iter().any(begins)
+}
