@@ -58,8 +58,7 @@ pub struct Processor {
     /// The budget for computing one tick of the scene. The rest of the time is for drawing and
     /// sending the frame.
     pub frame: f32,
-    /// The budget for planning in each tick of the scene. The comparison of frames takes up to a
-    /// quarter more, which is not counted.
+    /// The budget for planning in each tick of the clock.
     pub look_ahead: f32,
     /// The work of the map of flips in a tick of the scene.
     pub flips: FlipsPace,
@@ -75,12 +74,6 @@ impl Processor {
     /// not shown, is charged. The steps may cost less than the work around them.
     pub fn piece(&self) -> f32 {
         self.costs.closed_form.max(1_000.0)
-    }
-
-    /// Returns the price of the comparison of a frame with the reference, cycles. It is an estimate,
-    /// not counted: some twenty distances and roots.
-    pub fn comparison(&self) -> f32 {
-        10.0 * self.piece()
     }
 
     /// Returns the budgets of a problem: of each frame, and of all its planning. The search may
@@ -100,7 +93,7 @@ pub const CORTEX_M3: Processor = Processor {
     code: 0,
     costs: Costs::CORTEX_M3,
     frame: 200_000.0,
-    look_ahead: 380_000.0,
+    look_ahead: 440_000.0,
     flips: FIXED,
 };
 /// A Cortex-M0+ at 125 MHz or more, as on the Raspberry Pi Pico. A tick has 2,083,000 cycles. A
@@ -110,7 +103,7 @@ pub const CORTEX_M0PLUS: Processor = Processor {
     code: 3,
     costs: Costs::CORTEX_M0PLUS,
     frame: 330_000.0,
-    look_ahead: 640_000.0,
+    look_ahead: 700_000.0,
     flips: FlipsPace { start: 46, ..FIXED },
 };
 /// A Cortex-M4F at 25 MHz or more. At 25 MHz a tick has 417,000 cycles.
@@ -118,7 +111,7 @@ pub const CORTEX_M4F: Processor = Processor {
     code: 1,
     costs: Costs::CORTEX_M4F,
     frame: 150_000.0,
-    look_ahead: 190_000.0,
+    look_ahead: 200_000.0,
     flips: FLOAT,
 };
 /// The Cortex-M4F of the STM32F405 at 168 MHz. A tick has 2,800,000 cycles. With less planning, the

@@ -57,6 +57,8 @@ pub enum Parameter {
     Price(Method),
     /// Price of preparing a motion.
     Preparation,
+    /// The cost of a comparison in a price list.
+    Comparison,
     /// Largest allowed cost of computing a frame.
     FrameBudget,
     /// Largest allowed cost of planning.
@@ -88,6 +90,7 @@ impl fmt::Display for Parameter {
             Parameter::Cost => "cost",
             Parameter::Price(method) => return write!(f, "cost of {method}"),
             Parameter::Preparation => "cost of a preparation",
+            Parameter::Comparison => "cost of a comparison",
             Parameter::FrameBudget => "frame budget",
             Parameter::PlanningBudget => "planning budget",
         })

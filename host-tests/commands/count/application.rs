@@ -7,9 +7,8 @@ use std::path::PathBuf;
 use anyhow::{Context, Result, ensure};
 use cycles::{Calls, Core, Cost, Image, for_each_instruction};
 use double_pendulum::Method;
-use double_pendulum::plan::{Costs, Stepping};
+use double_pendulum::plan::Costs;
 use firmware::job::Request;
-use firmware::protocol::{Command, ToHost};
 use rayon::prelude::*;
 
 use super::trace::LIMIT;
@@ -126,10 +125,10 @@ const MARKS: [&str; 2] = [
 ];
 
 /// Returns the price list of every method that a plan chooses from, on one board for each kind of
-/// core. `preparation` is the larger of two costs: the most expensive preparation of a motion in
-/// the application, and the first restart of the shadows of its plan. `fixed64` is the most
-/// expensive step in a frame of the application. All others are averages over a regular motion;
-/// `fixed32_unlike` is of unlike bobs and rods.
+/// core. Three prices are those of the plan of the application's first scene: `preparation` is the
+/// most expensive one of a motion, of the search and of a restart of its shadows, `fixed64` and
+/// `comparison` are the first ones. All others are averages over a regular motion; `fixed32_unlike`
+/// is of unlike bobs and rods.
 pub fn prices(toolchain: &Toolchain) -> Result<Vec<(&'static Board, Costs)>> {
     let targets = Target::build_all(toolchain)?;
     targets
@@ -150,24 +149,37 @@ fn on(target: &Target, toolchain: &Toolchain) -> Result<Costs> {
     unlike.parameters.m2 = 30.0;
     unlike.parameters.l2 = 3.0;
     unlike.dt = 1.0 / 8192.0;
-    // Only the application has code for these two prices.
-    let (fixed64, preparation) = in_application(target.board, toolchain)?;
+    let planning = in_application(target.board, toolchain)?;
     let mut costs = Costs::all(0.0);
     costs.closed_form = step(Method::ClosedFormF32)?;
     costs.direction_plain = step(Method::Rk4F32DirectionPlain)?;
     costs.direction = step(Method::Rk4F32Direction)?;
     costs.fixed32 = step(Method::Rk4Fixed32)?;
     costs.fixed32_unlike = affordable_cost(target, &unlike)?.cycles as f32;
-    costs.fixed64 = fixed64;
-    costs.preparation = preparation;
+    costs.fixed64 = planning.step;
+    costs.preparation = planning.preparation;
+    costs.comparison = planning.comparison;
     Ok(costs)
 }
 
-const STEP: &str = "Fixed64State::advance";
-const PREPARATION: &str = "PlannedRun::new";
-const RESTART: &str = "Uncertainty::restart";
+/// The functions of the planner that have a price.
+const STEP: &str = "::measure";
+const COMPARISON: &str = "Race::compare";
+/// Each with the number of calls that are counted: a race prepares ten motions.
+const PREPARATIONS: [(&str, usize); 3] = [
+    ("Search::new", 1),
+    ("Race::prepare", 10),
+    ("Uncertainty::restart", 1),
+];
 
-fn in_application(board: &'static Board, toolchain: &Toolchain) -> Result<(f32, f32)> {
+/// The prices that only the application has code for.
+struct Planning {
+    step: f32,
+    preparation: f32,
+    comparison: f32,
+}
+
+fn in_application(board: &'static Board, toolchain: &Toolchain) -> Result<Planning> {
     let elf = toolchain.build_for(board)?;
     let image = Image::read(&elf)?;
     let qemu = &toolchain.qemu;
@@ -180,35 +192,25 @@ fn in_application(board: &'static Board, toolchain: &Toolchain) -> Result<(f32, 
         limit: LIMIT,
     };
 
-    // The first frame includes the start of the program, so it is not counted.
-    let mut machine = Machine::halted(&settings)?;
-    let end = end_of_frame(&mut machine, &image)?;
-    let step = BTreeSet::from([image.function(STEP)?.address]);
-    let [calls] =
-        machine.next_frame_logged(end, |log| calls_in(log, &image, board.core(), [step]))?;
-    let messages = machine.run_to_frame()?;
-    let frame = messages.into_iter().rev().find_map(ToHost::frame);
-    let shown = frame.and_then(|frame| frame.report.stepping);
-    let Stepping { steps, .. } = shown.context("the application shows no motion")?;
-    let fixed64 = most(STEP, &calls.ended)? / steps as f32;
-
-    // The application plans its first scene.
-    let restart = image.function(RESTART)?.address;
-    let [calls] = machine.next_call_logged(restart, |log| {
-        calls_in(log, &image, board.core(), [BTreeSet::from([restart])])
-    })?;
-    let mut prepared = most(RESTART, &calls.ended)?;
-
-    let preparation = image.function(PREPARATION)?.address;
-    for &method in Method::DRAWN {
-        machine.send(1, Command::Method(Some(method)))?;
-        let [calls] = machine.next_call_logged(preparation, |log| {
-            calls_in(log, &image, board.core(), [BTreeSet::from([preparation])])
-        })?;
-        prepared = prepared.max(most(PREPARATION, &calls.ended)?);
-        machine.run_to_frame()?;
-    }
-    Ok((fixed64, prepared))
+    let price = |name: &str, calls: usize| {
+        let mut machine = Machine::halted(&settings)?;
+        let function = image.function(name)?.address;
+        let mut costs = Vec::new();
+        for _ in 0..calls {
+            let [calls] = machine.next_call_logged(function, |log| {
+                calls_in(log, &image, board.core(), [BTreeSet::from([function])])
+            })?;
+            costs.extend(calls.ended);
+        }
+        most(name, &costs)
+    };
+    let preparations = PREPARATIONS.map(|(name, calls)| price(name, calls));
+    let preparations = preparations.into_iter().collect::<Result<Vec<_>>>()?;
+    Ok(Planning {
+        step: price(STEP, 1)?,
+        preparation: preparations.into_iter().fold(0.0, f32::max),
+        comparison: price(COMPARISON, 1)?,
+    })
 }
 
 fn most(function: &str, calls: &[Cost]) -> Result<f32> {

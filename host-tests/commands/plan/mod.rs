@@ -92,7 +92,7 @@ pub fn pendulum(scene: &Problem) -> String {
     )
 }
 
-fn rests(scene: &Problem) -> bool {
+pub fn rests(scene: &Problem) -> bool {
     Pendulum::new(&scene.pendulum)
         .is_ok_and(|pendulum| pendulum.rests(&pendulum.to_state(&scene.start)))
 }

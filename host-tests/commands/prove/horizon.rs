@@ -7,6 +7,7 @@ use double_pendulum::{Error, Motion, Parameters};
 use exact::enclosure::{Fixed, Start, up};
 use firmware::config::HALF_PIXEL;
 
+use crate::plan::rests;
 use crate::table::at_most;
 
 /// A frame compared with the box that is proved to contain the exact motion.
@@ -35,11 +36,11 @@ pub fn frames<'a>(
     let mut motion = PlannedRun::new(scene, stepping)?;
     let scene = *scene;
     let mut set = start.enclose(scene.rate);
-    let rests = start.rests();
+    let stands = start.rests();
     let mut last = None;
     Ok((0..scene.frames()).map_while(move |_| {
         let advance = || {
-            if rests {
+            if stands {
                 Some(())
             } else {
                 set.advance_unless(stopped)
@@ -231,6 +232,7 @@ pub fn words(
     };
 
     let predicted = match plan {
+        _ if rests(scene) => String::from("right for ever: at rest"),
         Ok(plan) => format!(
             "right until {:.3} s by {}, steps per frame: {}",
             plan.horizon,

@@ -83,7 +83,7 @@ fn price_lists_equal_the_counted_costs() -> Result<()> {
             let steps = Method::DRAWN
                 .iter()
                 .map(move |&method| costs.of_frame(Stepping { method, steps: 1 }));
-            steps.chain([costs.fixed32_unlike, costs.preparation])
+            steps.chain([costs.fixed32_unlike, costs.preparation, costs.comparison])
         };
         let is_near = |(listed, counted): (f32, f32)| PRICED.contains(&(listed / counted));
         if !all(listed).zip(all(counted)).all(is_near) {

@@ -1,6 +1,7 @@
 //! Motions whose method is chosen at run time.
 
 use super::{ClosedFormF32, DirectionF32, DirectionF32Plain, Fixed32, Fixed64, Form};
+use super::{extrapolation_fixed64, rk4_fixed32};
 use crate::error::Error;
 use crate::pendulum::{Parameters, State};
 use crate::table::Method;
@@ -121,6 +122,23 @@ pub fn start<F: Form>(
 #[inline(never)] // Inlined, each enum would have a copy.
 pub fn advance<F: Form>(motion: &mut F, steps: u32) {
     motion.advance(steps);
+}
+
+/// Returns the longest step, s, that a method of [`Method::DRAWN`] accepts for a motion with `energy`
+/// joules above rest; infinite in floating point.
+pub(crate) fn longest_step(
+    method: Method,
+    parameters: &Parameters<f64>,
+    energy: f64,
+) -> Result<f64, Error> {
+    if !energy.is_finite() {
+        return Err(parameters.out_of_range());
+    }
+    match method {
+        Method::Rk4Fixed32 => rk4_fixed32::longest_step(parameters, energy),
+        Method::Extrapolation10Fixed64 => extrapolation_fixed64::longest_step(parameters, energy),
+        _ => Ok(f64::INFINITY),
+    }
 }
 
 motions! {

@@ -103,6 +103,31 @@ const HALF: Q64 = Q64(1 << 60);
 /// The largest change 2^-8 of a squared length in one step, over 64.
 const LENGTH: u64 = 1 << 50;
 
+/// What the energy of a motion demands.
+struct Demands {
+    /// The scaling with a unit of time of 1 s.
+    seconds: Scaling,
+    /// The longest unit of time, s.
+    longest: f64,
+    /// The longest step, s.
+    limit: f64,
+}
+
+impl Demands {
+    /// The unit of time follows from the bounds of the energy, the longest step from the unit.
+    fn new(parameters: &Parameters<f64>, energy: f64) -> Result<Self, Error> {
+        let bounds = Bounds::new(parameters, energy);
+        let seconds = Scaling::in_seconds(parameters)?;
+        let [by_rates, by_torques] = seconds.longest(&bounds, [RATE, TORQUE]);
+        let longest = libm::fmin(libm::fmin(by_rates, by_torques), FOREVER);
+        Ok(Self {
+            limit: libm::fmin(STEP * longest, TURN / RATE * by_rates),
+            seconds,
+            longest,
+        })
+    }
+}
+
 impl Fixed64State {
     fn new(
         parameters: &Parameters<f64>,
@@ -114,14 +139,13 @@ impl Fixed64State {
         check_step::<f64>(dt)?;
         start.check()?;
 
-        // The unit of time follows from the bounds of the energy, the longest step from the unit.
         let energy = pendulum.energy_above_rest(start);
         check_energy(parameters, start, energy)?;
-        let bounds = Bounds::new(parameters, energy);
-        let seconds = Scaling::in_seconds(parameters)?;
-        let [by_rates, by_torques] = seconds.longest(&bounds, [RATE, TORQUE]);
-        let longest = libm::fmin(libm::fmin(by_rates, by_torques), FOREVER);
-        let limit = libm::fmin(STEP * longest, TURN / RATE * by_rates);
+        let Demands {
+            seconds,
+            longest,
+            limit,
+        } = Demands::new(parameters, energy)?;
         if libm::fabs(dt) > limit {
             return Err(Error::TooLarge {
                 parameter: Parameter::Dt,
@@ -243,6 +267,11 @@ fn restored([s, c]: [Q64; 2], square: Q64, gain: Q64) -> ([Q64; 2], Q64) {
     ([restored(s), restored(c)], missing)
 }
 
+/// Returns the longest step, s, of a motion with `energy` joules above rest.
+pub(crate) fn longest_step(parameters: &Parameters<f64>, energy: f64) -> Result<f64, Error> {
+    Demands::new(parameters, energy).map(|demands| demands.limit)
+}
+
 /// The errors of steps, each of a1 and a2, rad, and of p1 and p2, kg m^2/s.
 pub(crate) type StepErrors = [f32; 4];
 
@@ -254,9 +283,13 @@ impl Fixed64<10> {
         self.0.measure(steps, truncation);
     }
 
-    /// Returns the truncation errors of no steps, to add to.
-    pub(crate) fn truncation(&self) -> Truncation {
-        Truncation::new(self.0.rows.rounding(), self.0.norm)
+    /// Returns the truncation errors of no steps, to add to, and the standard deviation of the
+    /// rounding error of a step.
+    pub(crate) fn errors(&self) -> (Truncation, StepErrors) {
+        let rounding = self.0.rows.rounding();
+        let [a1, a2, p1, p2] = rounding;
+        let in_si_units = self.0.in_si_units([a1, a2], [p1, p2]);
+        (Truncation::new(rounding, self.0.norm), in_si_units)
     }
 
     /// Returns the errors that the same steps would have in order 8 and in order 6.
@@ -267,12 +300,6 @@ impl Fixed64<10> {
             let elbow = (s + c) / EIGHTH / self.0.norm;
             self.0.in_si_units([a1, a1 + elbow], [p1, p2])
         })
-    }
-
-    /// Returns the standard deviation of the rounding error of a step.
-    pub(crate) fn rounding(&self) -> StepErrors {
-        let [a1, a2, p1, p2] = self.0.rows.rounding();
-        self.0.in_si_units([a1, a2], [p1, p2])
     }
 }
 

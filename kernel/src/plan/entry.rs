@@ -1,12 +1,11 @@
 //! The entry of a race: the participants that the budgets pay for.
 
-use super::cost::{OF_RK4, admissible_step};
-use super::race::{CANDIDATES, IN_32_BITS, MEASURED};
+use super::race::{CANDIDATES, IN_32_BITS};
+use super::steps::Steps;
 use super::uncertainty::{SHADOWS, most_between, scales};
 use super::{Costs, Problem, Stepping};
 use crate::error::Error;
-use crate::pendulum::Pendulum;
-use crate::table::Method;
+use crate::pendulum::{Pendulum, State};
 
 /// The number of motions that a race prepares at most.
 const MOTIONS: usize = CANDIDATES + 1 + SHADOWS;
@@ -16,34 +15,39 @@ const MOTIONS: usize = CANDIDATES + 1 + SHADOWS;
 /// mean horizon (Cortex-M3 and Cortex-M4F).
 const SHARE: f32 = 0.4;
 
-/// The steps that the methods accept and a race needs. To find them takes the time of several
-/// preparations, so that a repeated race does not look for them again.
+/// What every race of a search needs to know of the motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Bounds {
+pub(super) struct Course {
+    pub start: State<f64>,
     pub shadows: Stepping,
     /// The fewest steps of a reference, and those in which rounding is its larger error.
     fewest: Stepping,
     resolving: Stepping,
+    /// The units of the momenta, kg m^2/s.
+    pub scales: [f64; 2],
+    /// The largest number of frames between two restarts of the shadows.
+    pub most: u32,
 }
 
-impl Bounds {
-    /// Returns `None` if the methods refuse the motion in all steps of a race.
-    #[inline(never)] // The motions that it checks are on the stack.
-    pub fn of(problem: &Problem, costs: &Costs) -> Result<Option<Self>, Error> {
-        let admissible = admissible_step(problem)?;
-        let Some(shadows) = Stepping::rk4(problem, OF_RK4 * admissible, costs) else {
-            let method = Method::Rk4F32Direction;
-            Stepping { method, steps: 1 }.check(problem)?;
+impl Course {
+    /// Returns `None` if no method in 32 bits, or the one in 64 bits, accepts the motion.
+    pub fn of(problem: &Problem, steps: &Steps, costs: &Costs) -> Result<Option<Self>, Error> {
+        let pendulum = Pendulum::new(&problem.pendulum)?;
+        let found = (
+            steps.of_rk4(costs),
+            steps.in_64_bits(0),
+            steps.in_64_bits(u32::MAX),
+        );
+        let (Some(shadows), Some(fewest), Some(resolving)) = found else {
             return Ok(None);
         };
-        let in_64_bits = |steps| Stepping::in_64_bits(problem, admissible, steps);
-        Ok(in_64_bits(u32::MAX).and_then(|resolving| {
-            let fewest = in_64_bits(0)?;
-            Some(Self {
-                shadows,
-                fewest,
-                resolving,
-            })
+        Ok(Some(Self {
+            start: steps.start,
+            shadows,
+            fewest,
+            resolving,
+            scales: scales(&pendulum, &steps.start),
+            most: most_between(steps.admissible, problem.rate),
         }))
     }
 }
@@ -57,50 +61,45 @@ pub(super) struct Entry {
     pub steps: u32,
     /// True if finer steps of the reference would not make its error smaller.
     pub is_finest: bool,
-    pub bounds: Bounds,
-    /// The units of the momenta, kg m^2/s.
-    pub scales: [f64; 2],
-    /// The largest number of frames between two restarts of the shadows.
-    pub most: u32,
 }
 
 impl Entry {
     /// Returns the participants that `planning` can pay for over `frames` frames: the candidates in
     /// 32 bits, of those that `wanted` returns for the coarsest steps of RK4, and the one in 64
-    /// bits. It is `None` if planning pays for no reference, or if the methods refuse the motion.
+    /// bits. It is `None` if planning pays for no reference.
     ///
     /// The shadows are paid for first, then the candidates in 32 bits, and the reference takes as
     /// many steps as the rest pays for, up to those in which rounding is its larger error. It has the
     /// steps of the candidate in 64 bits if more would cost too much beside that, and replaces it if
     /// it has fewer.
     pub fn of<I: Iterator<Item = Stepping>>(
-        problem: &Problem,
+        course: &Course,
         costs: &Costs,
         planning: f32,
         frames: f32,
         in_64_bits: Option<Stepping>,
-        bounds: Bounds,
         wanted: impl Fn(Stepping) -> I,
-    ) -> Result<Option<Self>, Error> {
-        let Bounds {
+    ) -> Option<Self> {
+        let &Course {
             shadows,
             fewest,
             resolving,
-        } = bounds;
-        let price = MEASURED * costs.fixed64;
+            most,
+            ..
+        } = course;
+        let price = costs.fixed64;
         let of_fewest = price * fewest.steps as f32;
         let of_drawn = in_64_bits.map_or(0.0, |one| costs.of_frame(one));
 
-        // The shadows with their restarts. If planning cannot pay for all frames, it pays for the
+        // The shadows with their restarts and comparisons. If planning cannot pay for all frames, it pays for the
         // cheapest reference and the coarsest steps of RK4 in fewer.
-        let most = most_between(admissible_step(problem)?, problem.rate);
         let restarts = costs.preparation / most as f32;
-        let of_shadows = SHADOWS as f32 * costs.of_frame(shadows) + restarts;
+        let of_shadows = SHADOWS as f32 * costs.of_frame(shadows) + restarts + costs.comparison;
         let needed = of_shadows + of_fewest + costs.of_frame(shadows);
         let affordable = planning - MOTIONS as f32 * costs.preparation;
         let frames = frames.min(affordable / needed);
         if frames < 1.0 {
-            return Ok(None);
+            return None;
         }
         let mut left = affordable / frames - of_shadows;
 
@@ -135,15 +134,11 @@ impl Entry {
                 ..drawn
             }));
         }
-        let pendulum = Pendulum::new(&problem.pendulum)?;
-        Ok(Some(Self {
+        Some(Self {
             candidates,
             steps,
             is_finest: steps >= resolving.steps,
-            bounds,
-            scales: scales(&pendulum, &pendulum.to_state(&problem.start)),
-            most,
-        }))
+        })
     }
 
     /// Removes all candidates but this one.

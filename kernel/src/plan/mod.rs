@@ -21,10 +21,11 @@
 //! # The error of the reference
 //!
 //! A step of R extrapolates five rows. Without its first row, and without its first two, it would
-//! be off by d8 and d6, which cost a few additions. Its own error is about
+//! be off by d8 and d6, which cost a few additions. Its own error is smaller than d8 if the step
+//! resolves the motion, so that the bound is
 //!
 //! ```text
-//! T = d8 x max(1, x)        x = 16 d8/d6
+//! T = d8 max(1, d8/d6)
 //! ```
 //!
 //! The errors of R are in an ellipsoid P of phase space. The motion maps small errors by its
@@ -49,7 +50,8 @@
 //!
 //! | file | idea |
 //! |---|---|
-//! | `problem`, `cost`, `prices` | the inputs, and the steps that resolve a motion |
+//! | `problem`, `cost`, `prices` | the inputs |
+//! | `steps` | the steps that resolve a motion |
 //! | `run` | a motion that is advanced from frame to frame |
 //! | `candidate` | a method, and for how long it is accurate |
 //! | `reference` | T |
@@ -100,15 +102,17 @@ mod race;
 mod reference;
 mod run;
 mod search;
+mod steps;
 mod uncertainty;
 
 use crate::error::Error;
 use crate::table::Method;
-pub use cost::{Budget, Costs, Stepping};
+pub use cost::{Budget, Costs};
 pub use error::{Limit, PlanError};
 pub use problem::Problem;
 pub use run::PlannedRun;
 pub use search::Search;
+pub use steps::Stepping;
 
 /// The result of a search: the chosen method and its accuracy horizon.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -137,8 +141,7 @@ pub struct Plan {
     /// The reason why the horizon is not longer.
     pub limit: Limit,
     /// The cost of planning, in the unit of the [`Costs`]; at most the planning budget, except
-    /// after [`Search::extend`]. It is the cost of steps and preparations. To compare a frame,
-    /// with its directions by the closed form, counts as nothing ([`Search::advance`]).
+    /// after [`Search::extend`].
     pub spent: f32,
 }
 

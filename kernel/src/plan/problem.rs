@@ -41,6 +41,7 @@ impl Problem {
         let others = [
             (Parameter::Price(Method::Rk4Fixed32), costs.fixed32_unlike),
             (Parameter::Preparation, costs.preparation),
+            (Parameter::Comparison, costs.comparison),
         ];
         let in_f64 = |(parameter, value)| (parameter, f64::from(value));
         let costs = prices.chain(others).map(in_f64);

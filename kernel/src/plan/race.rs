@@ -2,27 +2,25 @@
 //! inaccurate.
 
 use super::candidate::{Candidate, distance};
-use super::entry::{Bounds, Entry};
+use super::entry::{Course, Entry};
 use super::reference::Reference;
 use super::run::{Directions, Run};
 use super::uncertainty::{SHADOWS, Uncertainty};
 use super::{Costs, Problem, Stepping};
 use crate::error::Error;
 use crate::methods::any::{Motion32, Motion64};
-use crate::pendulum::Pendulum;
 use crate::table::Method;
 
 /// The largest number of candidates in 32 bits: the closed form and RK4.
 pub(super) const IN_32_BITS: usize = 8;
 /// The largest number of all candidates. The last one is in 64 bits.
 pub(super) const CANDIDATES: usize = IN_32_BITS + 1;
-/// The cost of a step in 64 bits that measures its truncation, relative to another one.
-pub(super) const MEASURED: f32 = 1.03;
 
 /// A race in progress.
 ///
 /// For each frame, call [`prepare`](Self::prepare) until it returns false, then
-/// [`advance`](Self::advance) until it returns 0, and then [`compare`](Self::compare).
+/// [`advance`](Self::advance) until all motions [are there](Self::is_there), and then
+/// [`compare`](Self::compare).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Race {
     /// The last compared frame.
@@ -37,7 +35,7 @@ pub(super) struct Race {
     pub is_reference_lost: bool,
     /// True if finer steps of the reference would not make its error smaller.
     pub is_finest: bool,
-    pub bounds: Bounds,
+    pub course: Course,
     /// The lengths of the rods divided by the tolerance.
     rods: [f32; 2],
 }
@@ -45,7 +43,7 @@ pub(super) struct Race {
 impl Race {
     /// Creates a race whose motions are not prepared yet.
     #[inline(never)] // It is written to its place; a copy on the stack would be large.
-    pub fn new(entry: &Entry, problem: &Problem, costs: &Costs) -> Self {
+    pub fn new(entry: &Entry, course: &Course, problem: &Problem, costs: &Costs) -> Self {
         let reference = Stepping {
             method: Method::Extrapolation10Fixed64,
             steps: entry.steps,
@@ -65,10 +63,10 @@ impl Race {
             runs: core::array::from_fn(|i| Run::new(stepping(i))),
             in_64_bits: Run::new(stepping(CANDIDATES - 1)),
             reference: Reference::new(Run::new(reference)),
-            uncertainty: Uncertainty::new(entry.bounds.shadows, entry.scales, entry.most),
+            uncertainty: Uncertainty::new(course),
             is_reference_lost: false,
             is_finest: entry.is_finest,
-            bounds: entry.bounds,
+            course: *course,
             rods: [pendulum.l1, pendulum.l2].map(|l| (l / tolerance) as f32),
         }
     }
@@ -115,7 +113,7 @@ impl Race {
     /// # Errors
     ///
     /// Returns the error of the reference or of a shadow that refuses the motion.
-    #[inline(never)]
+    #[inline(never)] // Counted by its name.
     pub fn prepare(&mut self, problem: &Problem) -> Result<bool, Error> {
         if self.compared > 0 {
             let is_due = self.uncertainty.is_due;
@@ -125,7 +123,7 @@ impl Race {
             return Ok(is_due);
         }
 
-        let start = Pendulum::new(&problem.pendulum)?.to_state(&problem.start);
+        let start = self.course.start;
         if self.reference.run.motion.is_none() {
             self.reference.prepare(problem, &start)?;
             return Ok(true);
@@ -149,8 +147,8 @@ impl Race {
         self.compared == 0 || self.uncertainty.is_due
     }
 
-    /// Makes steps of several motions towards the next frame, for about `cost` but at least one.
-    /// Returns their cost; 0 if every motion has arrived.
+    /// Makes steps of several motions towards the next frame, for at most `cost` but at least one.
+    /// Returns their cost.
     pub fn advance(&mut self, costs: &Costs, cost: f32) -> f32 {
         let mut spent = 0.0;
         for (candidate, run) in self.candidates.iter().zip(&mut self.runs) {
@@ -161,9 +159,18 @@ impl Race {
         if self.runs_in_64_bits() {
             spent += self.in_64_bits.advance(costs.fixed64, cost, spent);
         }
-        let price = MEASURED * costs.fixed64;
-        spent += self.reference.advance(price, cost, spent);
+        spent += self.reference.advance(costs.fixed64, cost, spent);
         spent + self.uncertainty.advance(costs, cost, spent)
+    }
+
+    /// Returns true if every motion has arrived at the next frame.
+    pub fn is_there(&self) -> bool {
+        let candidates = self.candidates.iter().zip(&self.runs);
+        let mut in_32_bits = candidates.filter(|(candidate, _)| candidate.is_alive);
+        in_32_bits.all(|(_, run)| run.is_there())
+            && (!self.runs_in_64_bits() || self.in_64_bits.is_there())
+            && self.reference.run.is_there()
+            && self.uncertainty.is_there()
     }
 
     /// Returns the cost of the next frame.
@@ -176,13 +183,14 @@ impl Race {
         } else {
             0.0
         };
-        let reference = MEASURED * costs.of_frame(self.reference.run.stepping);
+        let reference = costs.of_frame(self.reference.run.stepping);
         let shadows = SHADOWS as f32 * costs.of_frame(self.uncertainty.stepping());
-        in_32_bits + in_64_bits + reference + shadows
+        in_32_bits + in_64_bits + reference + shadows + costs.comparison
     }
 
     /// Compares all candidates with the reference in the next frame. All motions must have arrived.
     /// Nothing is known of that frame if the reference is lost.
+    #[inline(never)] // Counted by its name.
     pub fn compare(&mut self) {
         let runs_in_64_bits = self.runs_in_64_bits();
         let compared = self.reference.compare(self.uncertainty.scales);

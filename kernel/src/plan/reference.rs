@@ -2,14 +2,13 @@
 //!
 //! A step of order 10 contains the same step of order 8 and of order 6, whose errors d8 and d6 cost
 //! a few additions ([`Truncation`]). The errors of a step that resolves the motion fall from order
-//! to order by about the same factor d8/d6, so that the step itself has an error of about
-//! d8 (d8/d6). The bound is
+//! to order, so that d8 bounds the error of the step itself. The bound is
 //!
 //! ```text
-//! T = d8 x max(1, x)        x = 16 d8/d6
+//! T = d8 max(1, d8/d6)
 //! ```
 //!
-//! If the factor is not small, the step does not resolve the motion, and T is larger than d8. Steps
+//! If the errors do not fall, the step does not resolve the motion, and T is larger than d8. Steps
 //! whose d8 is no larger than its own rounding error count as exact.
 
 use super::Problem;
@@ -19,20 +18,14 @@ use crate::methods::any::Motion64;
 use crate::methods::{StepErrors, Truncation};
 use crate::pendulum::State;
 
-/// The factor on the ratio of the errors of two orders.
-///
-/// A choice: the ratio of one pair of orders is taken for that of the next. With a heavy bob 2, in the
-/// moment in which it drives rod 1 fast, the error was 2.5 times the bound with a factor of 4. With
-/// that factor the mean horizon of 20 high starts is 0.7 % longer, and with T = d8, which needs no
-/// factor, 1.5 % shorter.
-const TRUST: f32 = 16.0;
-
 /// The run in 64 bits that all others are compared with.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Reference {
     pub run: Run<Motion64>,
     /// The errors of the steps since the last comparison.
     truncation: Truncation,
+    /// The standard deviation of the rounding error of a step.
+    rounding: [f32; 4],
 }
 
 /// The reference at a comparison, with the errors that it has made since the last one: of a1 and a2,
@@ -53,6 +46,7 @@ impl Reference {
         Self {
             run,
             truncation: Truncation::default(),
+            rounding: [f32::NAN; 4],
         }
     }
 
@@ -60,7 +54,7 @@ impl Reference {
     pub fn prepare(&mut self, problem: &Problem, start: &State<f64>) -> Result<(), Error> {
         self.run.prepare(problem, start)?;
         if let Some(motion) = &self.run.motion {
-            self.truncation = motion.truncation();
+            (self.truncation, self.rounding) = motion.errors();
         }
         Ok(())
     }
@@ -68,7 +62,7 @@ impl Reference {
     /// Makes steps towards the next comparison, as [`Run::advance`] does.
     pub fn advance(&mut self, price: f32, cost: f32, spent: f32) -> f32 {
         let steps = self.run.take(price, cost, spent);
-        if let Some(motion) = &mut self.run.motion {
+        if let (Some(motion), 1..) = (&mut self.run.motion, steps) {
             motion.measure(steps, &mut self.truncation);
         }
         price * steps as f32
@@ -81,12 +75,12 @@ impl Reference {
         let scaled = |errors: StepErrors| core::array::from_fn(|i| errors[i] * units[i]);
 
         let sums = self.truncation.take();
-        let (orders, rounding) = match &self.run.motion {
-            Some(motion) => (motion.lower_orders(&sums), motion.rounding()),
-            None => ([[f32::NAN; 4]; 2], [f32::NAN; 4]),
+        let orders = match &self.run.motion {
+            Some(motion) => motion.lower_orders(&sums),
+            None => [[f32::NAN; 4]; 2],
         };
         let [d8, d6] = orders.map(scaled);
-        let rounding = scaled(rounding);
+        let rounding = scaled(self.rounding);
         let steps = self.run.stepping.steps as f32;
         Compared {
             directions: self.run.frame(),
@@ -103,6 +97,6 @@ fn of_steps(d8: [f32; 4], d6: [f32; 4]) -> [f32; 4] {
     if size8 == 0.0 {
         return [0.0; 4];
     }
-    let x = TRUST * size8 / size6;
-    d8.map(|d8| d8 * x * f32::max(1.0, x))
+    let growth = f32::max(1.0, size8 / size6);
+    d8.map(|d8| d8 * growth)
 }

@@ -212,6 +212,11 @@ impl<M: Advance> Run<M> {
         price * steps as f32
     }
 
+    /// Returns true if the motion has arrived at the next frame.
+    pub fn is_there(&self) -> bool {
+        self.made == self.stepping.steps
+    }
+
     /// Returns the directions in the frame, and begins the next one. They are NaN if the motion has
     /// diverged.
     pub fn frame(&mut self) -> Directions {

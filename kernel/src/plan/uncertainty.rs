@@ -26,6 +26,7 @@
 //! unknown if a shadow is so far that errors no longer grow in proportion.
 
 use super::candidate::{distance, greater};
+use super::entry::Course;
 use super::reference::Compared;
 use super::run::Run;
 use super::{Costs, Problem, Stepping};
@@ -99,17 +100,16 @@ pub(super) fn most_between(admissible: f64, rate: u16) -> u32 {
 }
 
 impl Uncertainty {
-    /// Creates the uncertainty of a reference at its start. `stepping` is that of the shadows, and
-    /// `most` the largest number of frames between two restarts.
-    pub fn new(stepping: Stepping, scales: [f64; 2], most: u32) -> Self {
+    /// Creates the uncertainty of a reference at its start.
+    pub fn new(course: &Course) -> Self {
         Self {
-            runs: core::array::from_fn(|_| Run::new(stepping)),
-            scales,
+            runs: core::array::from_fn(|_| Run::new(course.shadows)),
+            scales: course.scales,
             unit: (START / NEAR) as f32,
             independent: [0.0; 4],
             common: [0.0; 4],
             since: 0,
-            most,
+            most: course.most,
             is_due: false,
         }
     }
@@ -152,6 +152,11 @@ impl Uncertainty {
             own += run.advance(price, cost, spent + own);
         }
         own
+    }
+
+    /// Returns true if all shadows have arrived at the next frame.
+    pub fn is_there(&self) -> bool {
+        self.runs.iter().all(Run::is_there)
     }
 
     /// Adds the errors since the last restart to P, and starts all shadows beside the reference.

@@ -58,10 +58,22 @@ pub struct Units {
     pub scaling: Scaling,
 }
 
-impl Units {
-    /// Chooses the units for a motion with `energy` joules above rest and steps of `dt` seconds.
-    /// Very short steps are accepted, too, but the numbers then lose digits.
-    pub fn new(parameters: &Parameters<f64>, energy: f64, dt: f64) -> Result<Self, Error> {
+/// What the energy of a motion demands.
+struct Demands {
+    /// The scaling with T = 1 s.
+    seconds: Scaling,
+    /// The kinetic energy with T = 1 s.
+    kinetic: f64,
+    /// The bound of (|u| + |v|)^2 in units of twice the kinetic energy.
+    sum: f64,
+    /// The longest unit of time that keeps rates and torques in range, s.
+    longest: f64,
+    /// The longest step, s.
+    limit: f64,
+}
+
+impl Demands {
+    fn new(parameters: &Parameters<f64>, energy: f64) -> Result<Self, Error> {
         let &Parameters { m1, m2, .. } = parameters;
         let seconds = Scaling::in_seconds(parameters)?;
 
@@ -71,22 +83,45 @@ impl Units {
         let ratio = m1 / m2 * seconds.norm * seconds.norm;
         let sum = 1.0 + (1.0 + seconds.norm) * (1.0 + seconds.norm) / ratio;
         let force = kinetic * libm::sqrt(m2 / m1);
-
-        // The longest unit of time that keeps rates and torques in range.
         let largest_gravity = seconds.gravity.into_iter().fold(0.0, f64::max);
         let longest = libm::fmin(
             LARGEST_RATE / libm::sqrt(2.0 * kinetic * sum),
             libm::sqrt(LARGEST_TORQUE / (force + largest_gravity)),
         );
 
-        // The longest step. A motion of little energy may reach the room's energy unnoticed, so
-        // that its step suits twice that. Beyond RK4's limit of stability even the smallest
-        // oscillation grows, by up to a factor of a million between two checks of the energy.
+        // A motion of little energy may reach the room's energy unnoticed, so that its step suits
+        // twice that. Beyond RK4's limit of stability even the smallest oscillation grows, by up to
+        // a factor of a million between two checks of the energy.
         let room = ENERGY_ROOM * LARGEST_RATE * LARGEST_RATE / (2.0 * sum * longest * longest);
         let unnoticed = libm::fmax(energy, 2.0 * room / per_joule);
         let elbow = Bounds::new(parameters, unnoticed).elbow * libm::sqrt(1.0 + m2 / m1);
         let resolved = libm::fmin(LONGEST_STEP * longest, LONGEST_STEP_AT_ELBOW / elbow);
-        let limit = libm::fmin(resolved, stable_step(parameters, RK4_STABLE));
+        Ok(Self {
+            limit: libm::fmin(resolved, stable_step(parameters, RK4_STABLE)),
+            seconds,
+            kinetic,
+            sum,
+            longest,
+        })
+    }
+}
+
+/// Returns the longest step, s, of a motion with `energy` joules above rest.
+pub fn longest_step(parameters: &Parameters<f64>, energy: f64) -> Result<f64, Error> {
+    Demands::new(parameters, energy).map(|demands| demands.limit)
+}
+
+impl Units {
+    /// Chooses the units for a motion with `energy` joules above rest and steps of `dt` seconds.
+    /// Very short steps are accepted, too, but the numbers then lose digits.
+    pub fn new(parameters: &Parameters<f64>, energy: f64, dt: f64) -> Result<Self, Error> {
+        let Demands {
+            seconds,
+            kinetic,
+            sum,
+            longest,
+            limit,
+        } = Demands::new(parameters, energy)?;
         let sixth = dt / 6.0;
         let fit = libm::floor(libm::log2(longest / libm::fabs(sixth)));
         if fit.is_nan() || libm::fabs(dt) > limit {
