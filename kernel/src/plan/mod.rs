@@ -25,7 +25,7 @@
 //! resolves the motion, so that the bound is
 //!
 //! ```text
-//! T = d8 max(1, d8/d6)
+//! T = d8 max(1, 4 d8/d6)
 //! ```
 //!
 //! The errors of R are in an ellipsoid P of phase space. The motion maps small errors by its
