@@ -292,14 +292,12 @@ impl Fixed64<10> {
         (Truncation::new(rounding, self.0.norm), in_si_units)
     }
 
-    /// Returns the errors that the same steps would have in order 8 and in order 6.
-    pub(crate) fn lower_orders(&self, truncation: &Truncation) -> [StepErrors; 2] {
-        truncation.orders().map(|errors| {
-            let [sin1, cos1, s, c, p1, p2] = errors.map(f64::from);
-            let a1 = (sin1 + cos1) / EIGHTH;
-            let elbow = (s + c) / EIGHTH / self.0.norm;
-            self.0.in_si_units([a1, a1 + elbow], [p1, p2])
-        })
+    /// Returns the bounds of the truncation errors.
+    pub(crate) fn bounds(&self, truncation: &Truncation) -> StepErrors {
+        let [sin1, cos1, s, c, p1, p2] = truncation.in_units().map(f64::from);
+        let a1 = (sin1 + cos1) / EIGHTH;
+        let elbow = (s + c) / EIGHTH / self.0.norm;
+        self.0.in_si_units([a1, a1 + elbow], [p1, p2])
     }
 }
 

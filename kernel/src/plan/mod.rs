@@ -21,11 +21,10 @@
 //! # The error of the reference
 //!
 //! A step of R extrapolates five rows. Without its first row, and without its first two, it would
-//! be off by d8 and d6, which cost a few additions. Its own error is smaller than d8 if the step
-//! resolves the motion, so that the bound is
+//! be off by d8 and d6, which cost a few additions. From them follows the bound
 //!
 //! ```text
-//! T = d8 max(1, 4 d8/d6)
+//! T = d8 max(1, x)        x = 4 |d8|/|d6|
 //! ```
 //!
 //! The errors of R are in an ellipsoid P of phase space. The motion maps small errors by its

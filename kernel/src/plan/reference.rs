@@ -1,17 +1,5 @@
-//! The reference: a run in 64 bits that measures the truncation error of its own steps.
-//!
-//! A step of order 10 contains the same step of order 8 and of order 6, whose errors d8 and d6 cost
-//! a few additions ([`Truncation`]). If the rows k = n .. 5 are extrapolated, the first term of the
-//! error is proportional to h^(2m)/(n ... 5)^2, with m = 6 - n rows of steps h/k (`[Hairer I]`,
-//! section II.9). So the quotient of the errors of two orders is 4 times as large for n = 1 and 2
-//! as for n = 2 and 3, and the step itself has an error of about x d8. The bound is
-//!
-//! ```text
-//! T = d8 max(1, x)        x = 4 d8/d6
-//! ```
-//!
-//! If x is above 1, the step does not resolve the motion, and T is larger than d8. Steps
-//! whose d8 is no larger than its own rounding error count as exact.
+//! The reference: a run in 64 bits that measures the truncation errors of its own steps
+//! ([`Truncation`]).
 
 use super::Problem;
 use super::run::{Directions, Run};
@@ -19,9 +7,6 @@ use crate::error::Error;
 use crate::methods::any::Motion64;
 use crate::methods::{StepErrors, Truncation};
 use crate::pendulum::State;
-
-/// (2/1)^2: how much less the errors fall from order 8 to order 10 than from order 6 to order 8.
-const NEXT: f32 = 4.0;
 
 /// The run in 64 bits that all others are compared with.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -80,28 +65,17 @@ impl Reference {
         let scaled = |errors: StepErrors| core::array::from_fn(|i| errors[i] * units[i]);
 
         let sums = self.truncation.take();
-        let orders = match &self.run.motion {
-            Some(motion) => motion.lower_orders(&sums),
-            None => [[f32::NAN; 4]; 2],
+        let truncation = match &self.run.motion {
+            Some(motion) => motion.bounds(&sums),
+            None => [f32::NAN; 4],
         };
-        let [d8, d6] = orders.map(scaled);
         let rounding = scaled(self.rounding);
         let steps = self.run.stepping.steps as f32;
         Compared {
             directions: self.run.frame(),
-            truncation: of_steps(d8, d6),
+            truncation: scaled(truncation),
             rounding,
             steps,
         }
     }
-}
-
-/// Returns the bound T of the errors of steps.
-fn of_steps(d8: [f32; 4], d6: [f32; 4]) -> [f32; 4] {
-    let [size8, size6] = [d8, d6].map(|errors| errors.iter().sum::<f32>());
-    if size8 == 0.0 {
-        return [0.0; 4];
-    }
-    let growth = f32::max(1.0, NEXT * size8 / size6);
-    d8.map(|d8| d8 * growth)
 }

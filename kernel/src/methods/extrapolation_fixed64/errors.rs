@@ -14,6 +14,18 @@
 //! are the errors of the same step with its first row left out (order 8), and about that with two
 //! rows left out (order 6). The differences from the last row replace T(k): they change neither sum.
 //!
+//! If the rows k = n .. 5 are extrapolated, the first term of the error is proportional to
+//! h^(12 - 2 n)/(n ... 5)^2 (`[Hairer I]`, section II.9). So the quotient of the errors of two
+//! orders is 4 times as large for n = 1 and 2 as for n = 2 and 3, and the step itself has an error
+//! of about x d8. The bound of a step is
+//!
+//! ```text
+//! T = d8 max(1, x)        x = 4 |d8|/|d6|
+//! ```
+//!
+//! If x is above 1, the step does not resolve the motion, and T is larger than d8. A step whose d8
+//! is no larger than its own rounding error counts as exact.
+//!
 //! # Rounding
 //!
 //! A product of two numbers is off by 0.3 units of 2^-64 (standard deviation), and 2^n times that
@@ -61,14 +73,13 @@ impl Moments {
     }
 }
 
-/// The magnitudes of the errors of order 8 and of order 6, added over steps in which the errors of
-/// order 8 are more than rounding errors.
+/// The bounds T of steps, added.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Truncation {
     /// The largest rounding errors of d8, times 144.
     noise: [u64; 6],
-    eighth: [u64; 6],
-    sixth: [u64; 6],
+    /// T, times 144.
+    bounds: [u64; 6],
 }
 
 /// Four standard deviations of the rounding error of d8, in those of a step: its weights w/k^2 add
@@ -87,24 +98,36 @@ impl Truncation {
         }
     }
 
-    /// Adds the errors of a step.
+    /// Adds the bound of a step.
     pub(super) fn add(&mut self, moments: &Moments) {
-        let mut errors = moments.eighth.iter().zip(&self.noise);
-        if errors.all(|(error, noise)| error.0.unsigned_abs() <= *noise) {
+        let magnitudes = |sums: &[Q64; 6]| sums.map(|sum| sum.0.unsigned_abs());
+        let eighth = magnitudes(&moments.eighth);
+        if eighth
+            .iter()
+            .zip(&self.noise)
+            .all(|(d8, noise)| d8 <= noise)
+        {
             return;
         }
-        let orders = [
-            (&mut self.eighth, &moments.eighth),
-            (&mut self.sixth, &moments.sixth),
-        ];
-        for (sums, errors) in orders {
-            for (sum, error) in sums.iter_mut().zip(errors) {
-                *sum = sum.saturating_add(error.0.unsigned_abs());
-            }
+
+        // x = 4 (e/144)/(s/81) = 9 e/(4 s), rounded up.
+        let size = |sums: [u64; 6]| {
+            sums.iter()
+                .fold(0, |sum: u64, one| sum.saturating_add(*one))
+        };
+        let nine = size(eighth).saturating_mul(9);
+        let four = size(magnitudes(&moments.sixth)).saturating_mul(4);
+        let x = if nine <= four {
+            1
+        } else {
+            nine.div_ceil(four.max(1))
+        };
+        for (sum, d8) in self.bounds.iter_mut().zip(eighth) {
+            *sum = sum.saturating_add(d8.saturating_mul(x));
         }
     }
 
-    /// Returns the errors, and begins anew.
+    /// Returns the bounds, and begins anew.
     pub fn take(&mut self) -> Self {
         let new = Self {
             noise: self.noise,
@@ -113,14 +136,10 @@ impl Truncation {
         core::mem::replace(self, new)
     }
 
-    /// Returns the errors of order 8 and of order 6: of sin a1, cos a1, S and C, as they are stored,
-    /// and of P1 and P2, in units of 2^-64.
-    pub(super) fn orders(&self) -> [[f32; 6]; 2] {
-        let in_units = |sums: [u64; 6], factor: f32| sums.map(|sum| sum as f32 / factor);
-        [
-            in_units(self.eighth, SQUARES as f32),
-            in_units(self.sixth, (FOURTHS >> 8) as f32),
-        ]
+    /// Returns the bounds of sin a1, cos a1, S and C, as they are stored, and of P1 and P2, in units
+    /// of 2^-64.
+    pub(super) fn in_units(&self) -> [f32; 6] {
+        self.bounds.map(|sum| sum as f32 / SQUARES as f32)
     }
 }
 
