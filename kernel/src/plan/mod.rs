@@ -24,7 +24,7 @@
 //! be off by d8 and d6, which cost a few additions. From them follows the bound
 //!
 //! ```text
-//! T = d8 max(1, x)        x = 4 |d8|/|d6|
+//! T = d8 max(1, x)        x = 16 |d8|/|d6|
 //! ```
 //!
 //! The errors of R are in an ellipsoid P of phase space. The motion maps small errors by its
