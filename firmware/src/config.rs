@@ -110,7 +110,7 @@ pub const CORTEX_M0PLUS: Processor = Processor {
 pub const CORTEX_M4F: Processor = Processor {
     code: 1,
     costs: Costs::CORTEX_M4F,
-    frame: 157_000.0,
+    frame: 158_000.0,
     look_ahead: 200_000.0,
     flips: FLOAT,
 };
