@@ -4,12 +4,12 @@ use double_pendulum::plan::Stepping;
 use double_pendulum::{Error, Method};
 
 use crate::app::pace::Pace;
-use crate::config::{GREATEST_ANGLE, Processor};
+use crate::config::Processor;
 use crate::display::PanelReport;
-use crate::graphics::{Anchor, Canvas, label, text};
+use crate::graphics::{Canvas, text};
 use crate::motion::{CatchingUp, Horizon, PlanResult, Planned, Planner, Resources, Settings};
-use crate::protocol::{Command, Field, Frame, PlayState, Status};
-use crate::scenes::{AnyScene, Report, SceneName};
+use crate::protocol::{Command, Field, Frame, PlayState, Status, in_range};
+use crate::scenes::{AnyScene, Report, SceneName, too_fast};
 
 /// An event of the planner, or of the motion that is shown.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -173,7 +173,7 @@ impl<'a> Player<'a> {
             // If the scene cannot start with the new value, report that field as the wrong one.
             Command::Set { field, value } => {
                 return self
-                    .start(self.name, self.with(field, value)?)
+                    .start(self.name, field.set(self.settings, value)?)
                     .map_err(|_| field);
             }
             Command::Pause(paused) => {
@@ -366,27 +366,7 @@ impl<'a> Player<'a> {
                 self.scene.draw(&self.report, &mut self.canvas);
                 text::pause_mark(&mut self.canvas);
             }
-            PlayState::Stopped => self.draw_stopped(),
-        }
-    }
-
-    /// Writes that the motion is too fast, and the numbers that a user can change by the buttons.
-    fn draw_stopped(&mut self) {
-        let of = match self.method {
-            None => "for this chip",
-            Some(_) => "for this method",
-        };
-        let [angle, _] = self.settings.degrees;
-        let mass_ratio = label::mass_ratio(self.settings.mass_ratio());
-        let angle = label::degrees("α ", angle);
-
-        // A stopped scene needs its ink no more.
-        self.canvas.clear_ink();
-        let canvas = self.canvas.on_clear_foreground();
-        let line = canvas.format.line();
-        let top = (canvas.format.bottom() - 8 * line) / 2;
-        for (number, words) in [(2, "too fast"), (3, of), (5, &mass_ratio), (6, &angle)] {
-            text::write(canvas, words, Anchor::Middle(top + number * line));
+            PlayState::Stopped => too_fast(&self.settings, self.method, &mut self.canvas),
         }
     }
 
@@ -524,50 +504,4 @@ impl<'a> Player<'a> {
         self.method = method;
         Ok(true)
     }
-
-    /// Returns the settings with one field changed to `value`, in the unit of the field.
-    /// Refuses an angle that is beyond straight up or NaN, and a field that is not a setting. The
-    /// angle that is not set is not checked.
-    fn with(&self, field: Field, value: f64) -> Result<Settings, Field> {
-        let mut settings = self.settings;
-        let Settings {
-            parameters,
-            degrees: [a1, a2],
-            velocities: [w1, w2],
-        } = &mut settings;
-        let is_angle = matches!(field, Field::A1 | Field::A2 | Field::Angle);
-        if is_angle && is_beyond(value) {
-            return Err(field);
-        }
-
-        match field {
-            Field::M1 => parameters.m1 = value,
-            Field::M2 => parameters.m2 = value,
-            Field::L1 => parameters.l1 = value,
-            Field::L2 => parameters.l2 = value,
-            Field::G => parameters.g = value,
-            Field::A1 => *a1 = value,
-            Field::A2 => *a2 = value,
-            Field::Angle => [*a1, *a2] = [value; 2],
-            Field::W1 => *w1 = value,
-            Field::W2 => *w2 = value,
-            Field::MassRatio => parameters.m2 = parameters.m1 * value,
-            _ => return Err(Field::Field),
-        }
-        Ok(settings)
-    }
-}
-
-/// Refuses an angle beyond straight up, and an angle that is NaN.
-fn in_range(settings: Settings) -> Result<Settings, Field> {
-    match settings.degrees.map(is_beyond) {
-        [true, _] => Err(Field::A1),
-        [_, true] => Err(Field::A2),
-        _ => Ok(settings),
-    }
-}
-
-/// Returns true for an angle, degrees, that is beyond straight up or NaN.
-fn is_beyond(degrees: f64) -> bool {
-    !(-GREATEST_ANGLE..=GREATEST_ANGLE).contains(&degrees)
 }

@@ -4,6 +4,7 @@ use double_pendulum::{Error, Method, Parameter};
 use serde::{Deserialize, Serialize};
 
 use super::{MAX_WIRE, encode, read};
+use crate::config::GREATEST_ANGLE;
 use crate::display::Controller;
 use crate::job::Request;
 use crate::motion::Settings;
@@ -145,6 +146,53 @@ choice! {
         /// The board has no panel with options.
         Panel = "panel";
     }
+}
+
+impl Field {
+    /// Returns the settings with this field changed to `value`, in its unit. Refuses an angle that is
+    /// beyond straight up or NaN, and a field that is not a setting. The angle that is not set is not
+    /// checked.
+    pub fn set(self, mut settings: Settings, value: f64) -> Result<Settings, Self> {
+        let Settings {
+            parameters,
+            degrees: [a1, a2],
+            velocities: [w1, w2],
+        } = &mut settings;
+        let is_angle = matches!(self, Self::A1 | Self::A2 | Self::Angle);
+        if is_angle && is_beyond(value) {
+            return Err(self);
+        }
+
+        match self {
+            Self::M1 => parameters.m1 = value,
+            Self::M2 => parameters.m2 = value,
+            Self::L1 => parameters.l1 = value,
+            Self::L2 => parameters.l2 = value,
+            Self::G => parameters.g = value,
+            Self::A1 => *a1 = value,
+            Self::A2 => *a2 = value,
+            Self::Angle => [*a1, *a2] = [value; 2],
+            Self::W1 => *w1 = value,
+            Self::W2 => *w2 = value,
+            Self::MassRatio => parameters.m2 = parameters.m1 * value,
+            _ => return Err(Self::Field),
+        }
+        Ok(settings)
+    }
+}
+
+/// Refuses an angle beyond straight up, and an angle that is NaN.
+pub fn in_range(settings: Settings) -> Result<Settings, Field> {
+    match settings.degrees.map(is_beyond) {
+        [true, _] => Err(Field::A1),
+        [_, true] => Err(Field::A2),
+        _ => Ok(settings),
+    }
+}
+
+/// Returns true for an angle, degrees, that is beyond straight up or NaN.
+fn is_beyond(degrees: f64) -> bool {
+    !(-GREATEST_ANGLE..=GREATEST_ANGLE).contains(&degrees)
 }
 
 impl From<Error> for Field {

@@ -28,7 +28,7 @@ use serde::de::DeserializeOwned;
 
 use crate::job::CRC;
 
-pub use command::{Command, Field, decode_command, encode_command};
+pub use command::{Command, Field, decode_command, encode_command, in_range};
 pub use to_host::{
     Answer, BoardName, Cause, Frame, Identity, PlayState, Restarted, Status, ToHost,
 };

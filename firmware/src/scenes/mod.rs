@@ -9,8 +9,10 @@ pub mod flips;
 mod frequencies;
 mod pendulums;
 mod small;
+mod too_fast;
 
 pub use flips::Flips;
+pub use too_fast::too_fast;
 
 use double_pendulum::plan::Stepping;
 use double_pendulum::{Error, State};
