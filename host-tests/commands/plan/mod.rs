@@ -7,7 +7,7 @@ pub use options::{CHIPS, Chip, SceneOptions};
 use clap::Parser;
 use double_pendulum::plan::{Limit, Plan, Problem};
 use double_pendulum::{Method, Parameters, Pendulum};
-use firmware::config::HALF_PIXEL;
+use firmware::config::{HALF_PIXEL, TICK_RATE};
 
 use boards::console::cli::{Refused, complain, say};
 
@@ -67,8 +67,8 @@ fn words(scene: &Problem, plan: &Result<Plan, Limit>, chip: &Chip) -> Vec<String
                     chip.title
                 ),
                 format!(
-                    "search   finding this plan takes the chip {:.2} s",
-                    plan.spent / chip.clock
+                    "search   the chip finds this plan after {:.1} s of playing",
+                    plan.spent / chip.processor.look_ahead / TICK_RATE as f32
                 ),
                 format!("why      {}", method(plan.method)),
                 format!("         {}", limit(plan, frame)),
