@@ -45,7 +45,7 @@ pub fn run(_: &ReleaseOptions) -> anyhow::Result<()> {
              coreutils"
         ));
     };
-    let toolchain = toolchain::set_up()?;
+    let toolchain = toolchain::set_up_to_flash()?;
     let folder = target().join(FOLDER);
     if folder.exists() {
         fs::remove_dir_all(&folder).with_context(|| folder.display().to_string())?;

@@ -146,7 +146,7 @@ fn state_of_the_panel_is_reported_with_the_remedy_when_it_changes() {
         "{messages}"
     );
     assert!(
-        summary.contains("panel                 sh1106 by reading"),
+        summary.contains("panel                 built for oled: sh1106 by reading"),
         "{summary}"
     );
 }

@@ -52,7 +52,7 @@ fn a_board_with_the_hosts_bits_is_verified_and_reported() {
         format!("# {}\n", BOARD.name),
         format!(", {} Hz\n", BOARD.hertz),
         "built from commit ".to_owned(),
-        "- panel: absent: no answer at 0x3C and 0x3D: check the wiring".to_owned(),
+        "- panel: built for oled: absent: no answer at 0x3C and 0x3D: check the wiring".to_owned(),
     ];
     assert!(
         head.iter().all(|part| markdown.contains(part)),

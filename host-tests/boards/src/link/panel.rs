@@ -1,17 +1,19 @@
 //! The state of a board's panel in words, with the remedy.
 
 use firmware::config::TICK_RATE;
-use firmware::display::{BusFault, Controller, Found, PanelReport, PanelState};
+use firmware::display::{BusFault, Controller, Found, PanelName, PanelReport, PanelState};
 
-/// Returns the panel's state, or `None` if the board does not report it.
+/// Returns the panel that the firmware is built for and its state, or `None` if the board reports
+/// neither.
 pub fn panel(report: &PanelReport) -> Option<String> {
     let line = match report.state {
-        PanelState::Unknown => return None,
+        PanelState::Unknown if report.name == PanelName::Oled => return None,
+        PanelState::Unknown => report.name.text().to_owned(),
         PanelState::Starting => "not found yet".to_owned(),
         PanelState::Absent(fault) => format!("absent: {}: {}", fault.name(), remedy(fault)),
         PanelState::Shown(found) => format!("{}, {}", identified(&found), frames(report)),
     };
-    Some(line)
+    Some(format!("built for {}: {line}", report.name.name()))
 }
 
 fn identified(found: &Found) -> String {
@@ -76,9 +78,17 @@ mod tests {
     #[test]
     fn panel_is_reported_with_its_remedy() {
         assert_eq!(line(PanelState::Unknown, 0), "");
+        let colour = PanelReport {
+            name: PanelName::Lcd13,
+            ..PanelReport::default()
+        };
+        assert_eq!(
+            panel(&colour).as_deref(),
+            Some("built for lcd-1.3: Waveshare Pico-LCD-1.3, 240 x 240")
+        );
         assert_eq!(
             line(PanelState::Absent(BusFault::NoAnswer), 0),
-            "absent: no answer at 0x3C and 0x3D: check the wiring; some modules do not acknowledge \
+            "built for oled: absent: no answer at 0x3C and 0x3D: check the wiring; some modules do not acknowledge \
              because SDAout is not connected"
         );
         let found = Found {
@@ -88,7 +98,7 @@ mod tests {
         };
         assert_eq!(
             line(PanelState::Shown(found), 60),
-            "sh1106 by reading its memory back (status 0x48), 60 frames/s"
+            "built for oled: sh1106 by reading its memory back (status 0x48), 60 frames/s"
         );
         let slow = line(PanelState::Shown(found), 30);
         assert!(slow.contains("30 of 60 frames/s, as many as"), "{slow}");
