@@ -162,9 +162,11 @@ exports! {
     /// write the [`Readings`] there, as JSON, and return their length, bytes. Returns 0 if the
     /// board has not started.
     text() => with(|board| board.text.as_ptr() as usize);
-    /// Returns the address of the canvas, row by row from the top: a byte for each pixel, ink high
-    /// and foreground low. It stays the same. Returns 0 if the board has not started.
-    canvas() => with(|board| board.app.player.canvas.row(0).as_ptr() as usize);
+    /// Returns the address of the ink, row by row from the top: a byte for two pixels, the left one
+    /// high. It stays the same. Returns 0 if the board has not started.
+    ink() => with(|board| board.app.player.canvas.row(0)[0].as_ptr() as usize);
+    /// Returns the address of the foreground, as [`ink`] does.
+    foreground() => with(|board| board.app.player.canvas.row(0)[1].as_ptr() as usize);
     /// Returns the address of the 256 colours of a pixel in the present scene, as
     /// [`Palette::colours`](firmware::graphics::Palette::colours) has them. Returns 0 if the board
     /// has not started.

@@ -42,7 +42,7 @@ static PATH: Shared<Path> = Shared::new(Path {
 /// run, but not printed.
 pub fn into_memory() {
     crash::expect_no_debugger();
-    let channel = rtt_init! { up: { 0: { size: 1024, name: "defmt" } } }.up.0;
+    let channel = rtt_init! { up: { 0: { size: 768, name: "defmt" } } }.up.0;
     PATH.with(|path| path.sink = Sink::Memory(channel));
 }
 

@@ -1,40 +1,39 @@
 //! The SSD0323 controller of a 128 x 64 OLED panel with 16 greys, on four-wire SPI.
 //!
 //! A whole frame takes 4,096 bytes, 9 ms at 3.6 MHz. So only the changes are sent: of the cells that
-//! were drawn, those that differ from the panel's memory, from the first in a row to the last.
+//! were drawn, those that differ from the panel's memory.
 //!
 //! Source: Solomon Systech, SSD0323 data sheet; register values from the panel's application note
 //! (OSRAM AN018).
 
 use core::convert::Infallible;
+use core::ops::Range;
 
 use embedded_hal::digital::OutputPin;
 use embedded_hal::spi::SpiDevice;
 
 use super::Display;
-use crate::graphics::{Canvas, Format, visible_pair};
+use crate::graphics::{Canvas, Format};
 
 const WIDTH: usize = Format::OLED.width as usize;
 const HEIGHT: usize = Format::OLED.height as usize;
+/// The number of cells in a row.
+const CELLS: usize = WIDTH / 8;
 
 const LAST_COLUMN: u8 = (WIDTH / 2 - 1) as u8;
 const LAST_ROW: u8 = (HEIGHT - 1) as u8;
 
-/// The commands for the columns, of two pixels each, and for the rows that data is written to. Each
-/// command also sets its part of the address to the first column or row. After the last column of a
-/// row, the address continues with the first column of the next row.
-const fn columns(first: u8, last: u8) -> [u8; 3] {
-    [0x15, first, last]
+/// The commands for the rows, from this one to the last, and for the columns, of two pixels each,
+/// that data is written to. They also set the address to the first row and column. After the last
+/// column of a row, the address continues with the first column of the next row.
+const fn window(row: u8, first: u8, last: u8) -> [u8; 6] {
+    [0x75, row, LAST_ROW, 0x15, first, last]
 }
-const fn rows(first: u8) -> [u8; 3] {
-    [0x75, first, LAST_ROW]
-}
-const ALL_COLUMNS: [u8; 3] = columns(0, LAST_COLUMN);
-const ALL_ROWS: [u8; 3] = rows(0);
+const ALL: [u8; 6] = window(0, 0, LAST_COLUMN);
 
 /// The commands that set the panel up, one in each line.
 #[rustfmt::skip]
-const WAKE: [&[u8]; 19] = [
+const WAKE: [&[u8]; 18] = [
     &[0xAE],                    // display off
     &[0x81, 50],                // contrast, of 127
     &[0x85],                    // half current range
@@ -52,8 +51,7 @@ const WAKE: [&[u8]; 19] = [
     &[0xBE, 0x02],              // voltage of rows not driven
     &[0xBF, 0x0D],              // low level of the segments
     &[0xAD, 0x03],              // DC-DC converter on
-    &ALL_COLUMNS,
-    &ALL_ROWS,
+    &ALL,
     &[0xAF],                    // display on
 ];
 
@@ -67,17 +65,17 @@ pub struct Ssd0323<'a, Spi, Pin> {
 }
 
 /// The contents of the panel's memory, if they are known: the rows from the top, eight pixels in a
-/// word as [`visible_pair`] returns them.
+/// word.
 #[derive(Debug)]
 pub struct Memory {
-    rows: [[u32; WIDTH / 8]; HEIGHT],
+    rows: [[u32; CELLS]; HEIGHT],
     is_known: bool,
 }
 
 impl Memory {
     /// Unknown contents.
     pub const UNKNOWN: Self = Self {
-        rows: [[0; WIDTH / 8]; HEIGHT],
+        rows: [[0; CELLS]; HEIGHT],
         is_known: false,
     };
 }
@@ -93,11 +91,10 @@ impl<'a, Spi: SpiDevice, Pin: OutputPin<Error = Infallible>> Ssd0323<'a, Spi, Pi
 
     /// Blanks the panel's memory, configures the controller and switches the panel on.
     pub fn init(&mut self) -> Result<(), Spi::Error> {
-        self.command(&ALL_COLUMNS)?;
-        self.command(&ALL_ROWS)?;
+        self.command(&ALL)?;
         self.memory.is_known = false;
         (0..HEIGHT).try_for_each(|_| self.data(&[0; WIDTH / 2]))?;
-        self.memory.rows = [[0; WIDTH / 8]; HEIGHT];
+        self.memory.rows = [[0; CELLS]; HEIGHT];
         self.memory.is_known = true;
         WAKE.iter().try_for_each(|command| self.command(command))
     }
@@ -116,56 +113,57 @@ impl<'a, Spi: SpiDevice, Pin: OutputPin<Error = Infallible>> Ssd0323<'a, Spi, Pi
 
 impl<Spi: SpiDevice, Pin: OutputPin<Error = Infallible>> Ssd0323<'_, Spi, Pin> {
     fn update(&mut self, canvas: &Canvas) -> Result<(), Spi::Error> {
-        let mut next = None;
         for y in 0..HEIGHT {
-            let Some((first, last)) = self.memory.take(y, canvas) else {
+            let drawn = canvas.changed(y);
+            if drawn == 0 {
                 continue;
-            };
-            if next != Some(y) {
-                self.command(&rows(y as u8))?;
             }
-            self.command(&columns(4 * first as u8, 4 * last as u8 + 3))?;
-            let mut bytes = [[0; 4]; WIDTH / 8];
-            let row = self.memory.rows.get(y).map_or(&[][..], |row| row);
-            let cells = row.get(first..=last).unwrap_or_default();
-            for (bytes, greys) in bytes.iter_mut().zip(cells) {
-                let [left, right] = [*greys, greys >> 4].map(|four| four & 0x0F0F_0F0F);
-                let [left, right] = [left, right].map(|four| (four << 4 | four >> 8).to_le_bytes());
-                *bytes = [left[0], left[2], right[0], right[2]];
+            let mut differing = self.memory.take(y, drawn, canvas);
+            while differing != 0 {
+                // A gap of up to two cells takes fewer bytes than another window.
+                let first = differing.trailing_zeros();
+                let near = (differing | differing << 1 | differing << 2) >> first;
+                let run = differing & (u32::MAX >> (32 - near.trailing_ones()) << first);
+                let last = u32::BITS - run.leading_zeros();
+                differing &= !run;
+                self.send(y, first as usize..last as usize)?;
             }
-            let Ok(()) = self.data_not_command.set_high();
-            let bytes = bytes.get(..cells.len()).unwrap_or_default();
-            self.spi.write(bytes.as_flattened())?;
-            next = Some(y + 1);
         }
         Ok(())
+    }
+
+    /// Sends these cells of a row from the memory.
+    fn send(&mut self, y: usize, cells: Range<usize>) -> Result<(), Spi::Error> {
+        let [first, last] = [4 * cells.start, 4 * cells.end - 1];
+        self.command(&window(y as u8, first as u8, last as u8))?;
+        let row = self.memory.rows.get(y).map_or(&[][..], |row| row);
+        let words = row.get(cells).unwrap_or_default();
+        let Ok(()) = self.data_not_command.set_high();
+        self.spi.write(bytemuck::cast_slice(words))
     }
 }
 
 impl Memory {
-    /// Takes over the drawn cells of row `y`. Returns the first and the last that differ, `None` if
-    /// all are equal.
-    fn take(&mut self, y: usize, canvas: &Canvas) -> Option<(usize, usize)> {
-        let mut drawn = canvas.changed(y);
+    /// Takes over the drawn cells of row `y`. Returns those that differ, a bit each.
+    fn take(&mut self, y: usize, drawn: u32, canvas: &Canvas) -> u32 {
+        let [_, greys] = canvas.row(y);
+        let greys: Option<&[u32; CELLS]> = greys.first_chunk();
+        let (Some(memory), Some(greys)) = (self.rows.get_mut(y), greys) else {
+            return 0;
+        };
+
+        let mut rest = drawn;
         let mut differing = 0;
-        let mut cell = 1_u32;
-        // A cell of a canvas of this size is eight pixels wide: two words.
-        let cells = canvas.row(y).as_chunks::<2>().0;
-        let is_known = self.is_known;
-        for (old, [left, right]) in self.rows.get_mut(y)?.iter_mut().zip(cells) {
-            if drawn & 1 != 0 {
-                let new = visible_pair(*left, *right);
-                if *old != new || !is_known {
-                    *old = new;
-                    differing |= cell;
-                }
+        while rest != 0 {
+            // A cell of a canvas of this size is eight pixels wide: a word.
+            let cell = rest.trailing_zeros() as usize % CELLS;
+            rest &= rest - 1;
+            if memory[cell] != greys[cell] {
+                memory[cell] = greys[cell];
+                differing |= 1 << cell;
             }
-            drawn >>= 1;
-            cell <<= 1;
         }
-        let first = differing.trailing_zeros() as usize;
-        let last = differing.checked_ilog2()? as usize;
-        Some((first, last))
+        if self.is_known { differing } else { drawn }
     }
 }
 

@@ -33,6 +33,9 @@ const WAKE: [(u8, &[u8]); 4] = [
 /// The time that the controller needs after it is woken, ms.
 const WAKING: u32 = 120;
 
+/// The high nibble of every byte.
+const HIGH: u32 = 0xF0F0_F0F0;
+
 /// The number of pixels that are sent in the time that another window costs.
 const WINDOW: u32 = 24;
 
@@ -95,10 +98,17 @@ impl<Bus: PixelBus> St7789<Bus> {
         let table = canvas.palette.colours();
         let [from, to] = columns;
         for y in rows[0]..rows[1] {
-            let words = canvas.row(y).get(from / 4..to / 4).unwrap_or_default();
+            let row = canvas.row(y);
+            let [ink, foreground] =
+                row.map(|layer| layer.get(from / 8..to / 8).unwrap_or_default());
+            let words = ink.iter().zip(foreground);
             let line = self.bus.buffer();
-            for (pixels, word) in line.as_chunks_mut::<4>().0.iter_mut().zip(words) {
-                *pixels = word.to_le_bytes().map(|pixel| table[usize::from(pixel)]);
+            for (pixels, (ink, foreground)) in line.as_chunks_mut::<8>().0.iter_mut().zip(words) {
+                let even = ink & HIGH | foreground >> 4 & !HIGH;
+                let odd = ink << 4 & HIGH | foreground & !HIGH;
+                let [even, odd] = [even, odd].map(u32::to_le_bytes);
+                let [e, o] = [even, odd].map(|four| four.map(|both| table[usize::from(both)]));
+                *pixels = [e[0], o[0], e[1], o[1], e[2], o[2], e[3], o[3]];
             }
             self.bus.send(to - from);
         }

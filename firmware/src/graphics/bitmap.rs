@@ -1,6 +1,6 @@
 //! The frame in one colour, for panels whose pixels are on or off.
 
-use crate::graphics::canvas::{Canvas, carried, visible};
+use crate::graphics::canvas::{Canvas, carried};
 use crate::graphics::{Format, Palette};
 
 /// The width and the height of an OLED, pixels.
@@ -15,8 +15,9 @@ pub const PAGES: usize = HEIGHT / ROWS;
 /// The Bayer matrix: the lighting order of the pixels of a square of 4 x 4 as it becomes brighter.
 const ORDER: [[u32; 4]; 4] = [[0, 8, 2, 10], [12, 4, 14, 6], [3, 11, 1, 9], [15, 7, 13, 5]];
 
-/// Returns the summands that [carry](carried) out of the byte of a pixel that is to be lit, one in
-/// each byte, for each of four rows.
+/// Returns the summands that [carry](carried) out of the nibble of a pixel that is to be lit, one
+/// in each byte, for each of four rows: those for the pixels in even columns, and those for the odd
+/// ones.
 ///
 /// A pixel is lit if its grey, of 15, exceeds a threshold of 2 to 7 that depends on its place in
 /// the order. Soft edges need one threshold, because many make them ragged. A fading trail needs
@@ -24,8 +25,8 @@ const ORDER: [[u32; 4]; 4] = [[0, 8, 2, 10], [12, 4, 14, 6], [3, 11, 1, 9], [15,
 /// fainter ones thin out to single pixels.
 ///
 /// In a picture all greys matter. There the thresholds are 0 to 14, as Bayer's.
-const fn room(all_greys: bool) -> [u32; 4] {
-    let mut room = [0; 4];
+const fn room(all_greys: bool) -> [[u32; 2]; 4] {
+    let mut room = [[0; 2]; 4];
     let mut place = 0;
     while place < 16 {
         let y = place / 4;
@@ -36,14 +37,15 @@ const fn room(all_greys: bool) -> [u32; 4] {
         } else {
             2 + order * 6 / 16
         };
-        room[y] |= (15 - threshold) << (8 * x);
+        // A word has two squares of the matrix.
+        room[y][x % 2] |= (15 - threshold) * (0x0001_0001 << (8 * (x / 2)));
         place += 1;
     }
     room
 }
 
 /// The summands for a drawing, and those for a picture.
-const ROOM: [[u32; 4]; 2] = [room(false), room(true)];
+const ROOM: [[[u32; 2]; 4]; 2] = [room(false), room(true)];
 
 /// 128 x 64 pixels, each on or off, in the memory layout of the panel.
 ///
@@ -76,18 +78,25 @@ impl From<&Canvas<'_>> for Bitmap {
             _ => drawing,
         };
 
-        // Four pixels are one word of a row, and four bytes of a page.
+        // Eight pixels are one word of a row, and eight bytes of a page.
         for (page, columns) in bitmap.pages.iter_mut().enumerate() {
-            for (y, room) in (0..ROWS).zip(room.iter().cycle()) {
-                let row = canvas.row(ROWS * page + y);
-                for (columns, word) in columns.as_chunks_mut::<4>().0.iter_mut().zip(row) {
+            let mut lit = [[0; 2]; WIDTH / 8];
+            for (y, [even, odd]) in (0..ROWS).zip(room.iter().cycle()) {
+                let [_, greys] = canvas.row(ROWS * page + y);
+                for (lit, greys) in lit.iter_mut().zip(greys) {
                     // Most words are black.
-                    if *word == 0 {
+                    if *greys == 0 {
                         continue;
                     }
-                    let lit = carried(visible(*word), *room) << y;
-                    *columns = (u32::from_le_bytes(*columns) | lit).to_le_bytes();
+                    lit[0] |= carried(greys >> 4, *even) << y;
+                    lit[1] |= carried(*greys, *odd) << y;
                 }
+            }
+            for (columns, lit) in columns.as_chunks_mut::<8>().0.iter_mut().zip(lit) {
+                let [even, odd] = lit.map(u32::to_le_bytes);
+                *columns = [
+                    even[0], odd[0], even[1], odd[1], even[2], odd[2], even[3], odd[3],
+                ];
             }
         }
 

@@ -136,6 +136,7 @@ impl Disc {
                 return;
             };
             let dy = middle(y) - i32::from(centre_y);
+            let mut whole = 0..0;
             for x in columns.clone() {
                 let dx = middle(x) - i32::from(centre_x);
                 let squared = dx * dx + dy * dy;
@@ -146,7 +147,10 @@ impl Disc {
                     continue;
                 }
                 if squared < inner * inner {
-                    row.set(x, full);
+                    if whole.is_empty() {
+                        whole.start = x;
+                    }
+                    whole.end = x + 1;
                     continue;
                 }
                 row.update(x, |old| {
@@ -160,6 +164,7 @@ impl Disc {
                     }
                 });
             }
+            row.fill(whole, full);
         }
     }
 }

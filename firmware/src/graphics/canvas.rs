@@ -1,38 +1,52 @@
-//! The canvas: two layers of 16 levels in one byte a pixel, and a record of what has changed.
+//! The canvas: two layers of 16 levels, and a record of what has changed.
+//!
+//! A colour panel needs both layers. A panel of greys shows one, the foreground: there it begins as a
+//! copy of the ink, which takes half of the time of composing both.
 
 use core::ops::Range;
 
 use crate::graphics::{Format, Palette};
 
-/// The frame buffers of a canvas of W4 words by H rows. They are created at their final place, on a
-/// board in a static.
+/// The frame buffers of a canvas: two layers of W8 words by H rows. They are created at their final
+/// place, on a board in a static.
 #[derive(Clone, Debug)]
 pub struct FrameBuffers<const WORDS: usize, const ROWS: usize> {
-    words: [u32; WORDS],
+    layers: [[u32; WORDS]; 2],
     cells: [Cells; ROWS],
 }
 
 impl<const WORDS: usize, const ROWS: usize> FrameBuffers<WORDS, ROWS> {
     /// Black buffers.
     pub const BLANK: Self = Self {
-        words: [0; WORDS],
+        layers: [[0; WORDS]; 2],
         cells: [Cells::NONE; ROWS],
     };
 
     /// Returns a canvas of this format in these buffers. Pixels for which they have no room are
     /// not drawn.
     pub fn canvas(&mut self, format: Format) -> Canvas<'_> {
-        Canvas::new(format, &mut self.words, &mut self.cells)
+        let [ink, foreground] = &mut self.layers;
+        Canvas::new(format, [ink, foreground], &mut self.cells)
     }
+}
+
+/// A bit for each cell of a row. An OLED has 16 cells, and its boards have little memory.
+#[cfg(all(target_os = "none", not(lcd)))]
+type Bits = u16;
+#[cfg(not(all(target_os = "none", not(lcd))))]
+type Bits = u32;
+
+fn word(bits: impl Into<u32>) -> u32 {
+    bits.into()
 }
 
 /// The cells of a row, one in each bit, from the left.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Cells {
     /// The cells that the foreground covers.
-    drawn: u32,
+    drawn: Bits,
     /// The cells that have changed since the panel took the row.
-    changed: u32,
+    changed: Bits,
 }
 
 impl Cells {
@@ -46,8 +60,8 @@ impl Cells {
 impl Cells {
     fn touch(&mut self, layer: Layer, touched: u32) {
         match layer {
-            Layer::Ink => self.changed |= touched,
-            Layer::Foreground => self.drawn |= touched,
+            Layer::Ink => self.changed |= touched as Bits,
+            Layer::Foreground => self.drawn |= touched as Bits,
         }
     }
 }
@@ -61,75 +75,60 @@ enum Layer {
     Foreground,
 }
 
-/// The level of the foreground that covers the ink with black. 0 is transparent.
+/// The level of a foreground that covers the ink with black. 0 is transparent. On a panel of greys it
+/// is not used.
 const BLACK: u8 = 1;
-/// The bits of the foreground in a word.
-const FOREGROUND: u32 = 0x0F0F_0F0F;
-/// The number 1 in every byte.
-const ONES: u32 = 0x0101_0101;
+/// The number 1 in every nibble, and in every byte.
+const ONES: u32 = 0x1111_1111;
+const BYTES: u32 = 0x0101_0101;
 
-impl Layer {
-    /// Returns the grey that this layer shows in a pixel: of the foreground the visible one.
-    fn grey(self, pixel: u8) -> u8 {
-        match (self, pixel & 15) {
-            (Self::Ink, _) | (_, 0) => pixel >> 4,
-            (_, BLACK) => 0,
-            (_, grey) => grey,
-        }
-    }
-
-    /// Returns the pixel with another grey in this layer.
-    fn with(self, pixel: u8, grey: u8) -> u8 {
-        match self {
-            Self::Ink => pixel & 0x0F | grey << 4,
-            Self::Foreground => pixel & 0xF0 | grey.max(BLACK),
-        }
-    }
-
-    /// Sets a pixel to a grey, unless it is brighter.
-    fn lighten(self, pixel: &mut u8, grey: u8) {
-        if grey > self.grey(*pixel) {
-            *pixel = self.with(*pixel, grey);
-        }
-    }
-
-    /// Returns a tool that sets pixels of this layer to a grey.
-    fn paint(self, grey: u8) -> Paint {
-        let (shift, level) = match self {
-            Self::Ink => (4, grey),
-            Self::Foreground => (0, grey.max(BLACK)),
-        };
-        Paint {
-            shift,
-            levels: (u32::from(level) * ONES) << shift,
-        }
-    }
-}
-
-/// A grey of a layer, for four pixels at once.
+/// A tool that changes pixels of a layer.
 #[derive(Clone, Copy, Debug)]
-struct Paint {
-    /// The place of the layer in a pixel.
-    shift: u32,
-    levels: u32,
+struct Pen {
+    layer: Layer,
+    /// The foreground is transparent where nothing is drawn.
+    is_apart: bool,
 }
 
-impl Paint {
-    /// Sets the pixels of a word whose bits are set in `pixels`, the left one in bit 0.
-    fn put(self, word: &mut u32, pixels: u32) {
-        let bits = (pixels & 15).wrapping_mul(0x0020_4081) & ONES;
-        let covered = (15 * bits) << self.shift;
-        *word = (*word & !covered) | (self.levels & covered);
+impl Pen {
+    /// Returns the level that shows this grey.
+    fn level(self, grey: u8) -> u8 {
+        match self.layer {
+            Layer::Ink => grey,
+            Layer::Foreground if self.is_apart => grey.max(BLACK),
+            Layer::Foreground if grey == BLACK => 0,
+            Layer::Foreground => grey,
+        }
+    }
+
+    /// Returns the grey of pixel `x` in its word, which covers that of another word, if there is one.
+    fn grey(self, word: u32, covered: Option<&u32>, x: i32) -> u8 {
+        let level = |word: u32| (word >> shift(x) & 15) as u8;
+        match covered {
+            Some(covered) => shown(level(*covered), level(word)),
+            None => level(word),
+        }
+    }
+
+    /// Sets pixel `x` in its word to a grey, unless it is brighter.
+    fn lighten(self, word: &mut u32, covered: Option<&u32>, x: i32, grey: u8) {
+        let least = match self.layer {
+            Layer::Ink => 0,
+            Layer::Foreground => BLACK,
+        };
+        if grey > self.grey(*word, covered, x).max(least) {
+            put(word, x, grey);
+        }
     }
 }
 
 /// A picture of a [`Format`] in two layers. Drawing cannot fail: pixels outside are ignored.
 ///
-/// A pixel is a byte: ink in the high nibble, foreground in the low one. Four pixels are a word,
-/// the left one in its lowest byte. A level is a grey from 0 (black) to 15. The foreground covers
-/// the ink; its level 0 is transparent, and its level 1 is black. A panel of greys shows the
-/// [visible](visible) grey, and a colour panel the colour of the byte in the
-/// [`Palette`](Palette::colours).
+/// A level is a grey from 0 (black) to 15. A panel of greys shows the foreground. On a colour panel,
+/// the foreground covers the ink; its level 0 is transparent, and its level 1 is black. The panel
+/// shows the colour of both levels in the [`Palette`](Palette::colours).
+///
+/// In each layer a byte has two pixels, the left one in the high nibble, and a word has eight.
 ///
 /// Each row keeps a bit for every cell of 8 pixels (16 on panels wider than 256) that has changed,
 /// so that a driver sends only those.
@@ -139,7 +138,8 @@ pub struct Canvas<'a> {
     pub format: Format,
     /// The colours of the scene.
     pub palette: Palette,
-    words: &'a mut [u32],
+    ink: &'a mut [u32],
+    foreground: &'a mut [u32],
     cells: &'a mut [Cells],
     layer: Layer,
     /// The next row to fade.
@@ -149,18 +149,25 @@ pub struct Canvas<'a> {
 /// Canvases are equal if they show the same picture.
 impl PartialEq for Canvas<'_> {
     fn eq(&self, other: &Self) -> bool {
-        (self.format, self.palette) == (other.format, other.palette) && self.words == other.words
+        (self.format, self.palette) == (other.format, other.palette)
+            && self.ink == other.ink
+            && self.foreground == other.foreground
     }
 }
 
 impl<'a> Canvas<'a> {
-    /// Creates a canvas in this memory, which is not cleared. Its first drawing is in the
-    /// foreground, and counts as whole.
-    pub fn new(format: Format, words: &'a mut [u32], cells: &'a mut [Cells]) -> Self {
+    /// Creates a canvas in this memory, which is not cleared: the words of the ink, those of the
+    /// foreground, and the rows' cells. Its first drawing is in the foreground, and counts as whole.
+    pub fn new(
+        format: Format,
+        [ink, foreground]: [&'a mut [u32]; 2],
+        cells: &'a mut [Cells],
+    ) -> Self {
         let mut canvas = Self {
             format,
             palette: Palette::Trail,
-            words,
+            ink,
+            foreground,
             cells,
             layer: Layer::Foreground,
             row: 0,
@@ -171,7 +178,8 @@ impl<'a> Canvas<'a> {
 
     /// Clears both layers for a new scene.
     pub fn blank(&mut self, palette: Palette) {
-        self.words.fill(0);
+        self.ink.fill(0);
+        self.foreground.fill(0);
         self.cells.fill(Cells::NONE);
         self.palette = palette;
         self.row = 0;
@@ -184,27 +192,25 @@ impl<'a> Canvas<'a> {
         self
     }
 
-    /// Clears the foreground, and draws on it from now on.
+    /// Clears the foreground to the ink alone, and draws on it from now on.
     #[inline(never)] // Test `scenes` profiles it by its name.
     pub fn on_clear_foreground(&mut self) -> &mut Self {
         self.layer = Layer::Foreground;
-        let shift = self.cell_shift() - 2;
-        let rows = self.words.chunks_exact_mut(self.format.row_words().max(1));
-        for (row, cells) in rows.zip(&mut *self.cells) {
+        let is_apart = self.pen().is_apart;
+        let shift = self.cell_shift() - 3;
+        for (y, cells) in (0..self.format.bottom()).zip(&mut *self.cells) {
             let drawn = core::mem::take(&mut cells.drawn);
-            if drawn == 0 {
-                continue;
-            }
             cells.changed |= drawn;
-            let first = (drawn.trailing_zeros() << shift) as usize;
-            let end = ((u32::BITS - drawn.leading_zeros()) << shift) as usize;
-            let words = row.get_mut(first..end).unwrap_or_default();
-            let (pairs, rest) = words.as_chunks_mut::<2>();
-            for [left, right] in pairs {
-                *left &= !FOREGROUND;
-                *right &= !FOREGROUND;
+            let ink = row_of(self.ink, self.format, y).unwrap_or_default();
+            let words = row_of(self.foreground, self.format, y).unwrap_or_default();
+            if !is_apart && cells.changed != 0 {
+                // In half of the time of the library's `memcpy`.
+                words.iter_mut().zip(ink).for_each(|(to, from)| *to = *from);
+            } else if is_apart && drawn != 0 {
+                let first = (drawn.trailing_zeros() << shift) as usize;
+                let end = ((Bits::BITS - drawn.leading_zeros()) << shift) as usize;
+                words.get_mut(first..end).unwrap_or_default().fill(0);
             }
-            rest.iter_mut().for_each(|word| *word &= !FOREGROUND);
         }
         self
     }
@@ -212,6 +218,25 @@ impl<'a> Canvas<'a> {
     /// Returns the width of a cell, pixels.
     pub fn cell(&self) -> usize {
         1 << self.cell_shift()
+    }
+
+    /// Returns the pen, the words of the layer that is drawn on and of the layer that it covers, and
+    /// the cells.
+    fn parts(&mut self) -> (Pen, [&mut [u32]; 2], &mut [Cells]) {
+        let pen = self.pen();
+        let words = match self.layer {
+            Layer::Ink => [&mut *self.ink, &mut []],
+            Layer::Foreground if pen.is_apart => [&mut *self.foreground, &mut *self.ink],
+            Layer::Foreground => [&mut *self.foreground, &mut []],
+        };
+        (pen, words, self.cells)
+    }
+
+    fn pen(&self) -> Pen {
+        Pen {
+            layer: self.layer,
+            is_apart: self.format.is_large(),
+        }
     }
 
     fn cell_shift(&self) -> u32 {
@@ -225,15 +250,14 @@ impl<'a> Canvas<'a> {
     /// Returns the cells of row `y` that the panel may not show as they are, a bit each, the
     /// leftmost in bit 0. It is 0 outside the canvas.
     pub fn changed(&self, y: usize) -> u32 {
-        self.cells
-            .get(y)
-            .map_or(0, |cells| cells.changed | cells.drawn)
+        let bits = |cells: &Cells| word(cells.changed | cells.drawn);
+        self.cells.get(y).map_or(0, bits)
     }
 
-    /// Returns the words of row `y`, none outside the canvas.
-    pub fn row(&self, y: usize) -> &[u32] {
+    /// Returns the words of row `y` of the ink and of the foreground, none outside the canvas.
+    pub fn row(&self, y: usize) -> [&[u32]; 2] {
         let range = self.format.row_range(y).unwrap_or_default();
-        self.words.get(range).unwrap_or_default()
+        [&*self.ink, &*self.foreground].map(|layer| layer.get(range.clone()).unwrap_or_default())
     }
 
     /// Marks everything as shown by the panel.
@@ -245,7 +269,9 @@ impl<'a> Canvas<'a> {
     pub fn touch_all(&mut self) {
         let count = (u32::from(self.format.known().width) - 1) >> self.cell_shift();
         let all = u32::MAX >> (31 - count.min(31));
-        self.cells.iter_mut().for_each(|cells| cells.changed = all);
+        self.cells
+            .iter_mut()
+            .for_each(|cells| cells.changed = all as Bits);
     }
 
     /// Returns the cells that these columns are in, a bit each.
@@ -269,38 +295,31 @@ impl<'a> Canvas<'a> {
     /// Returns row `y` for drawing in these cells, as [`row_mut`](Self::row_mut). Several rows then
     /// need [`cells_of`](Self::cells_of) only once.
     pub(super) fn row_in(&mut self, y: i32, touched: u32) -> Option<Row<'_>> {
-        let layer = self.layer;
-        let words = self.words_in(y, touched)?;
+        let format = self.format;
+        let (pen, [words, covered], cells) = self.parts();
+        cells.get_mut(y as usize)?.touch(pen.layer, touched);
         Some(Row {
-            pixels: bytemuck::cast_slice_mut(words),
-            layer,
+            words: row_of(words, format, y)?,
+            covered: row_of(covered, format, y).unwrap_or_default(),
+            pen,
         })
-    }
-
-    fn words_in(&mut self, y: i32, touched: u32) -> Option<&mut [u32]> {
-        self.cells.get_mut(y as usize)?.touch(self.layer, touched);
-        self.words_of(y)
-    }
-
-    fn words_of(&mut self, y: i32) -> Option<&mut [u32]> {
-        // A negative number becomes a row far beyond the end.
-        if y as u32 >= self.format.known().height.into() {
-            return None;
-        }
-        let length = self.format.row_words();
-        let rest = self.words.get_mut(y as usize * length..)?;
-        rest.get_mut(..length)
     }
 
     /// Returns the grey that a pixel shows, 0 to 15; `None` outside the canvas.
     pub fn get(&self, x: i32, y: i32) -> Option<u8> {
-        self.pixel(x, y).map(|pixel| Layer::Foreground.grey(pixel))
+        let pixel = self.pixel(x, y)?;
+        Some(if self.pen().is_apart {
+            shown(pixel >> 4, pixel & 15)
+        } else {
+            pixel & 15
+        })
     }
 
-    /// Returns both layers of a pixel; `None` outside the canvas.
+    /// Returns both layers of a pixel, the ink in the high nibble; `None` outside the canvas.
     pub fn pixel(&self, x: i32, y: i32) -> Option<u8> {
-        let word = self.row(y as usize).get((x >> 2) as usize)?;
-        Some((word >> (8 * (x as u32 & 3))) as u8)
+        let [ink, foreground] = self.row(y as usize);
+        let level = |words: &[u32]| Some(words.get((x >> 3) as usize)? >> shift(x) & 15);
+        Some((level(ink)? << 4 | level(foreground)?) as u8)
     }
 
     /// Replaces the grey of a pixel by a function of it. The function is not called for a pixel
@@ -326,7 +345,9 @@ impl<'a> Canvas<'a> {
     pub(super) fn touch(&mut self, columns: Range<i32>, rows: Range<i32>) {
         let touched = self.cells_of(columns);
         for y in rows {
-            self.words_in(y, touched);
+            if let Some(cells) = self.cells.get_mut(y as usize) {
+                cells.touch(self.layer, touched);
+            }
         }
     }
 
@@ -343,29 +364,33 @@ impl<'a> Canvas<'a> {
     #[inline(never)] // Inlined, it takes 336 bytes of flash (M3).
     pub(super) fn stamp_touched(&mut self, x: i32, y: i32, bits: u64, grey: u8) {
         let unit = self.format.units(1);
-        let paint = self.layer.paint(grey);
-
+        let greys = u32::from(self.pen().level(grey)) * ONES;
+        let format = self.format;
+        let (_, [words, _], _) = self.parts();
+        let mut rest = bits;
         let mut top = y;
-        for squares in bits.to_be_bytes() {
+        while rest != 0 {
             let end = top.saturating_add(unit);
+            let squares = (rest >> 56) as u8;
             if squares != 0 {
-                let pixels = stretched(squares, unit) << (x & 3);
-                // Negative numbers become rows and words far beyond the end.
+                let pixels = stretched(squares, unit) >> (x & 7);
                 for y in top..end {
-                    let Some(words) = self.words_of(y) else {
+                    let Some(row) = row_of(words, format, y) else {
                         continue;
                     };
-                    let mut place = (x >> 2) as usize;
                     let mut pixels = pixels;
+                    // A negative number becomes a word far beyond the end.
+                    let mut place = (x >> 3) as usize;
                     while pixels != 0 {
-                        if let Some(word) = words.get_mut(place) {
-                            paint.put(word, pixels);
+                        if let Some(word) = row.get_mut(place) {
+                            *word ^= (*word ^ greys) & nibbles(pixels >> 24);
                         }
-                        pixels >>= 4;
+                        pixels <<= 8;
                         place = place.wrapping_add(1);
                     }
                 }
             }
+            rest <<= 8;
             top = end;
         }
     }
@@ -383,18 +408,17 @@ impl<'a> Canvas<'a> {
             return;
         }
         let rows = rows.start.max(0)..rows.end.min(self.format.bottom());
-        let width = 4 * self.format.row_words();
-        let pixels: &mut [u8] = bytemuck::cast_slice_mut(self.words);
-        let mut place = rows.start as usize * width + x as usize;
+        let length = self.format.row_words();
+        let mut place = rows.start as usize * length + (x >> 3) as usize;
+        let (pen, [words, covered], cells) = self.parts();
         for y in rows {
-            let (Some(pixel), Some(cells)) =
-                (pixels.get_mut(place), self.cells.get_mut(y as usize))
+            let (Some(word), Some(cells)) = (words.get_mut(place), cells.get_mut(y as usize))
             else {
                 return;
             };
-            self.layer.lighten(pixel, grey(y));
-            cells.touch(self.layer, touched);
-            place += width;
+            cells.touch(pen.layer, touched);
+            pen.lighten(word, covered.get(place), x, grey(y));
+            place += length;
         }
     }
 
@@ -403,25 +427,37 @@ impl<'a> Canvas<'a> {
     #[inline(never)] // Test `scenes` profiles it by its name.
     pub fn scroll(&mut self, left: i32) {
         self.on_ink();
-        let all = self.cells_of(left - 1..self.format.right());
-        let first = ((left - 1).max(0) >> 2) as usize;
-        for y in 0..self.format.bottom() {
-            let Some(words) = self.words_in(y, 0) else {
+        let shift = self.cell_shift() - 3;
+        let length = self.format.row_words();
+        let edge = left - 1;
+        let first = (edge.max(0) >> 3) as usize;
+        let edge_cell = self.cells_of(edge..left);
+        let edge_bit = if edge < 0 { 0 } else { 0x80 >> (edge & 7) };
+        let edge_pixel = nibbles(edge_bit);
+        for (y, cells) in (0..self.format.bottom()).zip(&mut *self.cells) {
+            let words = row_of(self.ink, self.format, y).and_then(|row| row.get_mut(first..));
+            let Some(words) = words else {
                 return;
             };
-            let mut changes = 0;
+            let mut touched = 0;
             let mut from_right = 0;
-            for word in words.iter_mut().skip(first).rev() {
-                let ink = *word & !FOREGROUND;
-                let change = ((ink >> 8) | from_right) ^ ink;
-                from_right = ink << 24;
-                *word ^= change;
-                changes |= change;
+            let mut place = length;
+            for word in words.iter_mut().rev() {
+                place -= 1;
+                // Most of a plot is black.
+                if *word | from_right == 0 {
+                    continue;
+                }
+                let ink = u32::from_be(*word);
+                *word = (ink << 4 | from_right).to_be();
+                from_right = ink >> 28;
+                touched |= 1 << (place >> shift);
             }
-            if changes != 0
-                && let Some(mut row) = self.row_in(y, all)
+            if touched != 0
+                && let Some(word) = words.first_mut()
             {
-                row.update(left - 1, |_| 0);
+                *word &= !edge_pixel;
+                cells.touch(Layer::Ink, touched | edge_cell);
             }
         }
     }
@@ -429,15 +465,9 @@ impl<'a> Canvas<'a> {
     /// Clears the ink.
     pub fn clear_ink(&mut self) {
         self.on_ink();
-        for y in 0..self.format.bottom() {
-            let has_ink = self
-                .row(y as usize)
-                .iter()
-                .any(|word| word & !FOREGROUND != 0);
-            let touched = self.cells_of(0..self.format.right());
-            if has_ink && let Some(words) = self.words_in(y, touched) {
-                words.iter_mut().for_each(|word| *word &= FOREGROUND);
-            }
+        if self.ink.iter().any(|word| *word != 0) {
+            self.ink.fill(0);
+            self.touch_all();
         }
     }
 
@@ -445,7 +475,7 @@ impl<'a> Canvas<'a> {
     pub fn clear_columns(&mut self, columns: Range<i32>) {
         for y in 0..self.format.bottom() {
             if let Some(mut row) = self.row_mut(y, columns.clone()) {
-                columns.clone().for_each(|x| row.set(x, 0));
+                row.fill(columns.clone(), 0);
             }
         }
     }
@@ -454,29 +484,27 @@ impl<'a> Canvas<'a> {
     /// once a tick of the scene. Ink at or below the level `last` is unchanged.
     #[inline(never)] // Test `scenes` profiles it by its name.
     pub fn fade(&mut self, Fading { rows, last }: Fading) {
-        let room = u32::from(15_u8.saturating_sub(last)) * ONES;
-        let shift = self.cell_shift() - 2;
+        let room = u32::from(15_u8.saturating_sub(last)) * BYTES;
+        let shift = self.cell_shift() - 3;
         let rows = (u32::from(rows) * u32::from(self.format.known().height) + 32) / 64;
 
         // A level above `last` carries out of its nibble, and then loses 1.
         for _ in 0..rows {
-            let y = usize::from(self.row);
+            let y = self.row;
             self.row += 1;
             if self.row >= self.format.known().height {
                 self.row = 0;
             }
-            let row = self
-                .words
-                .get_mut(self.format.row_range(y).unwrap_or_default());
-            let (Some(row), Some(cells)) = (row, self.cells.get_mut(y)) else {
+            let row = row_of(self.ink, self.format, y.into());
+            let (Some(row), Some(cells)) = (row, self.cells.get_mut(usize::from(y))) else {
                 continue;
             };
             for (place, word) in row.iter_mut().enumerate() {
-                if *word & !FOREGROUND != 0 {
-                    let lost = carried(*word >> 4, room);
+                if *word != 0 {
+                    let lost = carried(*word, room) | carried(*word >> 4, room) << 4;
                     if lost != 0 {
-                        *word -= lost << 4;
-                        cells.changed |= 1 << (place >> shift);
+                        *word -= lost;
+                        cells.touch(Layer::Ink, 1 << (place >> shift));
                     }
                 }
             }
@@ -487,34 +515,48 @@ impl<'a> Canvas<'a> {
 /// A row of a canvas, for drawing on one layer.
 #[derive(Debug)]
 pub struct Row<'c> {
-    pixels: &'c mut [u8],
-    layer: Layer,
+    words: &'c mut [u32],
+    /// The words of the layer that is covered, if there is one.
+    covered: &'c mut [u32],
+    pen: Pen,
 }
 
 impl Row<'_> {
     /// Replaces the grey of the pixel in column `x` by a function of it. Only the low four bits of
     /// the result count. The function is not called for a pixel outside the row.
     pub fn update(&mut self, x: i32, new: impl FnOnce(u8) -> u8) {
-        if let Some(pixel) = self.pixels.get_mut(x as usize) {
-            let old = self.layer.grey(*pixel);
+        // A negative number becomes a word far beyond the end.
+        let place = (x >> 3) as usize;
+        if let Some(word) = self.words.get_mut(place) {
+            let old = self.pen.grey(*word, self.covered.get(place), x);
             let new = new(old) & 15;
             if new != old {
-                *pixel = self.layer.with(*pixel, new);
+                put(word, x, self.pen.level(new));
             }
         }
     }
 
-    /// Sets a pixel to a grey of 0 to 15. It then covers the ink, also if that has the same grey.
-    pub fn set(&mut self, x: i32, grey: u8) {
-        if let Some(pixel) = self.pixels.get_mut(x as usize) {
-            *pixel = self.layer.with(*pixel, grey);
+    /// Sets pixels to a grey of 0 to 15. They then cover the ink, also if that has the same grey.
+    pub fn fill(&mut self, columns: Range<i32>, grey: u8) {
+        let greys = u32::from(self.pen.level(grey)) * ONES;
+        let Range { mut start, end } = columns;
+        while start < end {
+            let from = u32::MAX >> (4 * (start & 7));
+            let beyond = (start | 7) + 1 - end;
+            let to = u32::MAX << (4 * beyond.max(0));
+            // A negative number becomes a word far beyond the end.
+            if let Some(word) = self.words.get_mut((start >> 3) as usize) {
+                *word ^= (*word ^ greys) & (from & to).to_be();
+            }
+            start = (start | 7) + 1;
         }
     }
 
     /// Sets a pixel to a grey of 0 to 15. A pixel that is brighter already keeps its grey.
     pub fn lighten(&mut self, x: i32, grey: u8) {
-        if let Some(pixel) = self.pixels.get_mut(x as usize) {
-            self.layer.lighten(pixel, grey);
+        let place = (x >> 3) as usize;
+        if let Some(word) = self.words.get_mut(place) {
+            self.pen.lighten(word, self.covered.get(place), x, grey);
         }
     }
 }
@@ -537,52 +579,64 @@ impl Fading {
     pub const TRACE: Self = Self { rows: 1, last: 4 };
 }
 
+/// Returns row `y` of the words of a layer; `None` outside the canvas.
+fn row_of(words: &mut [u32], format: Format, y: i32) -> Option<&mut [u32]> {
+    // A negative number becomes a row far beyond the end.
+    if y as u32 >= format.known().height.into() {
+        return None;
+    }
+    let length = format.row_words();
+    let rest = words.get_mut(y as usize * length..)?;
+    rest.get_mut(..length)
+}
+
 /// Returns the carries of the levels in the low nibbles of the four bytes of `greys`: bit 0 of a
 /// byte is 1 if the level plus the summand in the same byte of `room`, 0 to 15, is at least 16. All
 /// other bits are 0. The high nibbles are ignored.
 pub(super) fn carried(greys: u32, room: u32) -> u32 {
-    (((greys & FOREGROUND) + room) >> 4) & ONES
+    (((greys & (15 * BYTES)) + room) >> 4) & BYTES
 }
 
-/// Returns the squares of a row as pixels, the left one in bit 0.
+/// Sets pixel `x` in its word to a level.
+fn put(word: &mut u32, x: i32, level: u8) {
+    let shift = shift(x);
+    *word = *word & !(15 << shift) | u32::from(level) << shift;
+}
+
+/// Returns the position of a pixel's nibble in its word, as a shift.
+fn shift(x: i32) -> u32 {
+    4 * (x as u32 & 7 ^ 1)
+}
+
+/// Returns each of eight bits as a nibble of 0 or 15 of a word in memory, the highest bit on the
+/// left.
+fn nibbles(bits: u32) -> u32 {
+    let fours = (bits | bits << 12) & 0x000F_000F;
+    let twos = (fours | fours << 6) & 0x0303_0303;
+    (15 * ((twos | twos << 3) & ONES)).to_be()
+}
+
+/// Returns the squares of a row as pixels, the left one in the highest bit.
 fn stretched(squares: u8, unit: i32) -> u32 {
-    let squares = u32::from(squares.reverse_bits());
     if unit == 1 {
-        return squares;
+        return u32::from(squares) << 24;
     }
     widened(squares, unit as u32)
 }
 
 #[inline(never)] // Inlined, it takes registers from the stamps of a small panel.
-fn widened(squares: u32, unit: u32) -> u32 {
-    let square = (1 << unit) - 1;
+fn widened(squares: u8, unit: u32) -> u32 {
+    let square = !(u32::MAX >> unit);
     (0..8)
-        .filter(|place| squares >> place & 1 != 0)
-        .fold(0, |pixels, place| pixels | square << (unit * place))
+        .filter(|place| squares << place & 0x80 != 0)
+        .fold(0, |pixels, place| pixels | square >> (unit * place))
 }
 
-/// Returns the greys that two words of four pixels show: of the left one in the low nibbles of the
-/// bytes, of the right one in the high nibbles.
-pub fn visible_pair(left: u32, right: u32) -> u32 {
-    const NIBBLES: u32 = 0x1111_1111;
-    let ink = (left >> 4) & FOREGROUND | right & !FOREGROUND;
-    if (left | right) & FOREGROUND == 0 {
-        return ink;
+/// Returns the grey that these levels show.
+fn shown(ink: u8, foreground: u8) -> u8 {
+    match foreground {
+        0 => ink,
+        BLACK => 0,
+        grey => grey,
     }
-    let foreground = left & FOREGROUND | (right & FOREGROUND) << 4;
-    let above_black = foreground >> 1 | foreground >> 2 | foreground >> 3;
-    let is_lit = above_black & NIBBLES;
-    let is_drawn = (above_black | foreground) & NIBBLES;
-    ink & !(15 * is_drawn) | foreground & (15 * is_lit)
-}
-
-/// Returns the greys that a word of four pixels shows, one in each byte.
-pub fn visible(word: u32) -> u32 {
-    let foreground = word & FOREGROUND;
-    if foreground == 0 {
-        return word >> 4;
-    }
-    let is_drawn = carried(foreground, 15 * ONES);
-    let is_lit = carried(foreground, 14 * ONES);
-    ((word >> 4) & FOREGROUND & !(15 * is_drawn)) | (foreground & (15 * is_lit))
 }

@@ -7,7 +7,7 @@ use crate::display::PANEL;
 /// The size of a panel, and of a pixel of its text. Scenes compute their layout from it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct Format {
-    /// The width, pixels, a multiple of 4.
+    /// The width, pixels, a multiple of 8.
     pub width: u16,
     /// The height, pixels.
     pub height: u16,
@@ -51,12 +51,12 @@ impl Format {
         }
     }
 
-    /// Returns the number of words of four pixels in a row.
+    /// Returns the number of words of eight pixels in a row of a layer.
     pub const fn row_words(self) -> usize {
-        self.known().width as usize / 4
+        self.known().width as usize / 8
     }
 
-    /// Returns the number of words in all rows.
+    /// Returns the number of words in all rows of a layer.
     pub const fn words(self) -> usize {
         self.row_words() * self.known().height as usize
     }

@@ -12,7 +12,7 @@ mod view;
 
 pub use bitmap::{Bitmap, PAGES};
 pub use brush::{Disc, SUBPIXELS, Spot, Stroke};
-pub use canvas::{Canvas, Cells, Fading, FrameBuffers, Row, visible, visible_pair};
+pub use canvas::{Canvas, Cells, Fading, FrameBuffers, Row};
 pub use format::Format;
 pub use palette::{Palette, rgb};
 pub use plot::Height;

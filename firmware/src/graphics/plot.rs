@@ -80,9 +80,9 @@ pub fn bar(canvas: &mut Canvas, (x1, y1): (i32, i32), (x2, y2): (i32, i32)) {
     canvas.lighten(x1..x2 + unit, y1..y2 + unit, AXIS_GREY);
     let (across, down) = if x1 == x2 { (unit, 0) } else { (0, unit) };
     for (x, y) in [(x1, y1), (x2, y2)] {
-        for (x, y) in [(x - across, y - down), (x + across, y + down)] {
-            canvas.lighten(x..x + unit, y..y + unit, AXIS_GREY);
-        }
+        let columns = x - across..x + across + unit;
+        let rows = y - down..y + down + unit;
+        canvas.lighten(columns, rows, AXIS_GREY);
     }
 }
 

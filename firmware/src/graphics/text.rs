@@ -29,7 +29,9 @@ pub enum Anchor {
 
 /// Writes a line of text over the canvas. The pixels around the characters stay.
 pub fn write(canvas: &mut Canvas, text: &str, anchor: Anchor) {
-    put(canvas, text, corner(anchor, text, canvas.format), GREY);
+    let width = width(text);
+    let corner = corner(anchor, width, canvas.format);
+    put(canvas, text, width, corner, GREY);
 }
 
 /// The greys of ink and background of a highlighted line: black on grey 11.
@@ -41,7 +43,7 @@ pub const WHITE_ON_BLACK: [u8; 2] = [15, 0];
 pub fn write_on(canvas: &mut Canvas, text: &str, anchor: Anchor, [ink, ground]: [u8; 2]) {
     let width = width(text);
     let unit = canvas.format.units(1);
-    let (left, top) = corner(anchor, text, canvas.format);
+    let (left, top) = corner(anchor, width, canvas.format);
 
     // The background begins one column left of the text.
     canvas.touch(
@@ -54,7 +56,7 @@ pub fn write_on(canvas: &mut Canvas, text: &str, anchor: Anchor, [ink, ground]: 
         canvas.stamp_touched(left + unit * x, top, rows, ground);
     }
 
-    put(canvas, text, (left, top), ink);
+    put(canvas, text, width, (left, top), ink);
 }
 
 /// Returns the width of a line of text, units.
@@ -62,22 +64,22 @@ fn width(text: &str) -> i32 {
     text.chars().map(|character| glyph(character).width).sum()
 }
 
-/// Returns the top left corner of a line of text.
-fn corner(anchor: Anchor, text: &str, format: Format) -> (i32, i32) {
+/// Returns the top left corner of a line of text of this width.
+fn corner(anchor: Anchor, width: i32, format: Format) -> (i32, i32) {
     let units = |units| format.units(units);
     match anchor {
         Anchor::Left(y) => (units(MARGIN), y),
         // The gap after the last character may be in the margin.
-        Anchor::Right(y) => (format.right() - units(width(text)), y),
-        Anchor::Middle(y) => (format.right() / 2 - units((width(text) - 1) / 2), y),
+        Anchor::Right(y) => (format.right() - units(width), y),
+        Anchor::Middle(y) => (format.right() / 2 - units((width - 1) / 2), y),
         Anchor::At(x, y) => (x, y),
-        Anchor::EndingAt(x, y) => (x - units(width(text)), y),
+        Anchor::EndingAt(x, y) => (x - units(width), y),
     }
 }
 
 /// Draws the characters from the corner (left, top) on.
-fn put(canvas: &mut Canvas, text: &str, (mut left, top): (i32, i32), grey: u8) {
-    let end = left + canvas.format.units(width(text));
+fn put(canvas: &mut Canvas, text: &str, width: i32, (mut left, top): (i32, i32), grey: u8) {
+    let end = left + canvas.format.units(width);
     canvas.touch(left..end, top..top.saturating_add(canvas.format.line()));
     for Glyph { width, rows } in text.chars().map(glyph) {
         canvas.stamp_touched(left, top, rows, grey);

@@ -152,7 +152,7 @@ impl Block {
         {
             for y in top..bottom {
                 if let Some(mut row) = map.row_mut(y, left..right) {
-                    (left..right).for_each(|x| row.set(x, grey));
+                    row.fill(left..right, grey);
                 }
             }
         }

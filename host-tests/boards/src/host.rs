@@ -96,7 +96,7 @@ impl Show {
 
 /// The memory is never freed, as on a board.
 pub fn canvas(format: Format) -> Canvas<'static> {
-    let words = vec![0; format.words()];
+    let layers = [(); 2].map(|()| vec![0; format.words()].leak());
     let cells = vec![Cells::NONE; format.height.into()];
-    Canvas::new(format, words.leak(), cells.leak())
+    Canvas::new(format, layers, cells.leak())
 }

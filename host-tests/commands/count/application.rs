@@ -29,12 +29,11 @@ const SCENE: [Place; 3] = [
 
 const SENDING: Place = ("firmware::app::App", "::show");
 
-const SHOWING: [Place; 7] = [
+const SHOWING: [Place; 6] = [
     ("firmware::graphics::brush::", "::lighten"),
     ("firmware::graphics::canvas::", "::fade"),
     ("firmware::graphics::canvas::", "::scroll"),
     ("firmware::app::player::", "::draw"),
-    ("firmware::app::player::", "::check"),
     SENDING,
     KEEPING,
 ];

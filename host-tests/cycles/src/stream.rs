@@ -126,6 +126,10 @@ impl<'a> Stream<'a> {
         let Some(before) = self.before.replace(next) else {
             return Ok(None);
         };
+        // QEMU begins an instruction that accesses a device twice, and logs it twice.
+        if before == next {
+            return Ok(None);
+        }
         let instruction = self.image.instruction_at(before.pc())?;
         ensure!(
             !instruction.is_missing_on(self.core),

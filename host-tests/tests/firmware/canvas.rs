@@ -1,11 +1,13 @@
 //! The framebuffer and the brush: layout, clipping, and the position of discs.
 
+use boards::host::canvas;
 use embedded_graphics::geometry::Point;
 use embedded_graphics::image::GetPixel;
 use embedded_graphics::mono_font::MonoFont;
 use embedded_graphics::mono_font::iso_8859_7::FONT_5X8;
 use embedded_graphics::pixelcolor::BinaryColor;
 use fastrand::Rng;
+use firmware::display::PanelName;
 use firmware::graphics::{Canvas, Disc, Format, Glyph, Palette, SUBPIXELS, Spot, Stroke, glyph};
 
 use crate::bench::{blank, places};
@@ -21,14 +23,20 @@ fn grey(canvas: &Canvas, x: i32, y: i32) -> u8 {
     canvas.get(x, y).expect("inside")
 }
 
+fn ink_grey(canvas: &Canvas, x: i32, y: i32) -> u8 {
+    canvas.pixel(x, y).expect("inside") >> 4
+}
+
 fn light(canvas: &Canvas) -> u32 {
-    places().map(|(x, y)| u32::from(grey(canvas, x, y))).sum()
+    places()
+        .map(|(x, y)| u32::from(ink_grey(canvas, x, y)))
+        .sum()
 }
 
 /// Ink is in the high nibble of a pixel, and the foreground in the low one.
 #[test]
 fn the_foreground_covers_the_ink_until_it_is_cleared() {
-    let mut canvas = blank();
+    let mut canvas = canvas(PanelName::Lcd13.format());
     canvas.settle();
     for x in 2..6 {
         canvas.on_ink().update(x, 1, |_| 9);
@@ -69,7 +77,11 @@ fn pixels_outside_are_not_drawn() {
     canvas.stamp(-2, -6, u64::MAX, 9);
     canvas.stamp(width - 3, height - 1, u64::MAX, 9);
     assert_eq!(
-        (light(&canvas), grey(&canvas, 5, 1), grey(&canvas, 6, 1)),
+        (
+            light(&canvas),
+            ink_grey(&canvas, 5, 1),
+            ink_grey(&canvas, 6, 1)
+        ),
         ((2 * 6 + 3) * 9, 9, 0)
     );
 }
@@ -107,6 +119,24 @@ fn an_unknown_character_is_a_question_mark() {
     }
 }
 
+/// On a panel of greys, the foreground begins as a copy of the ink.
+#[test]
+fn a_panel_of_greys_shows_what_was_drawn_last() {
+    let mut canvas = blank();
+    for x in 2..5 {
+        canvas.on_ink().update(x, 1, |_| 9);
+    }
+    let canvas = &mut *canvas.on_clear_foreground();
+    canvas.settle();
+    canvas.update(3, 1, |old| old + 4);
+    canvas.update(4, 1, |_| 0);
+    assert_eq!([2, 3, 4, 5].map(|x| grey(canvas, x, 1)), [9, 13, 0, 0]);
+    assert_eq!([0, 1, 2].map(|y| canvas.changed(y)), [0, 1, 0]);
+
+    canvas.on_clear_foreground();
+    assert_eq!([2, 3, 4, 5].map(|x| grey(canvas, x, 1)), [9, 9, 9, 0]);
+}
+
 /// Unlike the foreground, ink has all 16 greys.
 fn ink() -> Canvas<'static> {
     let mut canvas = blank();
@@ -126,7 +156,7 @@ fn disc(x: f32, y: f32, pixels: f32) -> Disc {
 fn a_disc_of_radius_0_is_a_faint_pixel() {
     let mut canvas = ink();
     disc(10.5, 10.5, 0.0).draw(&mut canvas, u8::MAX);
-    assert_eq!((grey(&canvas, 10, 10), light(&canvas)), (8, 8));
+    assert_eq!((ink_grey(&canvas, 10, 10), light(&canvas)), (8, 8));
 }
 
 #[test]
@@ -140,7 +170,7 @@ fn a_disc_is_where_it_was_put() {
 
         let mut sum = [0.0; 3];
         for (column, row) in places() {
-            let grey = f64::from(grey(&canvas, column, row));
+            let grey = f64::from(ink_grey(&canvas, column, row));
             sum = [
                 sum[0] + grey,
                 sum[1] + grey * (f64::from(column) + 0.5),
@@ -262,7 +292,7 @@ fn a_pixel_is_as_bright_as_it_is_covered() {
         for (x, y) in places() {
             let exact =
                 15.0 * covered((x, y), [from, to], f64::from(radius) / f64::from(SUBPIXELS));
-            let error = (f64::from(grey(&canvas, x, y)) - exact).abs();
+            let error = (f64::from(ink_grey(&canvas, x, y)) - exact).abs();
             assert!(
                 error < GREY_TOLERANCE,
                 "{from:?} to {to:?}, radius {radius}: {exact} at {x}, {y}"
@@ -289,11 +319,11 @@ fn a_gap_sets_a_disc_off() {
     for (column, row) in places() {
         let share = |radius: f64| covered((column, row), [(x.into(), y.into()); 2], radius);
         let exact = 15.0 * (1.0 - share(5.0) + share(3.0));
-        let error = (f64::from(grey(&canvas, column, row)) - exact).abs();
+        let error = (f64::from(ink_grey(&canvas, column, row)) - exact).abs();
         assert!(
             error < GREY_TOLERANCE,
             "{exact} at {column}, {row}, not {}",
-            grey(&canvas, column, row)
+            ink_grey(&canvas, column, row)
         );
     }
 }

@@ -101,6 +101,7 @@ fn the_trail_is_the_path_and_fades_with_age() {
         ));
     }
 
+    ink.on_clear_foreground();
     path.reverse();
     let distance = |at: (f32, f32), [from, to]: [(f32, f32); 2]| {
         let along = (to.0 - from.0, to.1 - from.1);

@@ -151,8 +151,7 @@ impl OutputPin for Wires<'_> {
     }
 }
 
-/// In a row, the words between two changed ones are sent. A row directly below a sent row needs no
-/// address.
+/// Up to two unchanged cells between two changed ones are sent, too.
 #[test]
 fn switches_on_with_a_black_frame_and_sends_what_has_changed() {
     let controller = RefCell::new(Controller::holding(None, usize::MAX));
@@ -167,12 +166,13 @@ fn switches_on_with_a_black_frame_and_sends_what_has_changed() {
     for (changed, bytes) in [
         (&[][..], 0),
         (&[(127, 63)], 6 + 4),
-        (&[(8, 3), (31, 3), (0, 4), (5, 6)], 6 + 12 + 3 + 4 + 6 + 4),
+        (&[(8, 3), (32, 3), (64, 3), (0, 4)], 6 + 16 + 6 + 4 + 6 + 4),
         (&[], 0),
     ] {
         changed
             .iter()
-            .for_each(|&(x, y)| canvas.update(x, y, |grey| grey + 9));
+            .for_each(|&(x, y)| canvas.on_ink().update(x, y, |grey| grey + 9));
+        canvas.on_clear_foreground();
         controller.borrow_mut().received = 0;
         panel.flush(&canvas).expect("the bus works");
         canvas.settle();
@@ -197,6 +197,7 @@ fn the_error_of_the_bus_is_returned_and_the_next_frame_is_sent_completely() {
     controller.borrow_mut().fails_after = usize::MAX;
     panel.init().expect("the bus works");
     (0..64).for_each(|y| canvas.update(y, y, |_| 15));
+    canvas.on_clear_foreground();
     controller.borrow_mut().fails_after = 21;
     assert_eq!(panel.flush(&canvas), Err(BUS_ERROR));
     canvas.touch_all();

@@ -83,6 +83,7 @@ fn greys_become_patterns_of_pixels() {
             canvas.blank(palette);
             canvas.on_ink();
             places().for_each(|(x, y)| canvas.update(x, y, |_| grey));
+            canvas.on_clear_foreground();
             let ones: u32 = Bitmap::from(&canvas)
                 .pages
                 .as_flattened()
