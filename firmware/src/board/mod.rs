@@ -24,7 +24,7 @@
 //!    `host-tests/boards/src/`.
 //!
 //! Then run `cargo fw --check`, `cargo test -p host-tests --test boards` with `no_panic::`, then
-//! with `qemu_plan:: qemu_unread:: qemu_restart::`, then with `scenes::`; and on the board `cargo
+//! with `qemu_plan:: qemu_host:: qemu_restart::`, then with `scenes::`; and on the board `cargo
 //! verify-board --port auto`.
 
 pub mod cortex_m;

@@ -16,6 +16,8 @@ const commands = {
   usb: (hex) => board.usb.send(Buffer.from(hex, 'hex')),
   /** Opens the port over USB at this speed, or closes it: 0. */
   port: (baud) => board.usb.open(Number(baud)),
+  /** The USB host stops reading: 0; or reads again: 1. */
+  listen: (is) => board.usb.read(is === '1'),
   /** A long control transfer of the USB host's, which it breaks off after its first packet. */
   breakOff: () => board.usb.breakOff(),
   /** Begins (1) or ends (0) a long reset of the bus. From then on the chip is of its older revision. */

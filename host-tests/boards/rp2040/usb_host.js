@@ -24,6 +24,8 @@ const NOTICED = 10e6;
 const DEBOUNCE = 100e6;
 /** A control transfer that is longer than the board has room for, and its first packet. */
 const [TOO_LONG, PACKET] = [200, 64];
+/** Where the words about the buffers of the endpoints are. */
+const BUFFERS = 0x80;
 
 export class UsbHost {
   constructor(received) {
@@ -33,6 +35,8 @@ export class UsbHost {
     this.baud = BAUD;
     /** When the pull-up was switched off; null while it is on. */
     this.absentSince = -Infinity;
+    /** Whether the host fetches what the board has sent. */
+    this.isReading = true;
     this.forget();
   }
 
@@ -45,6 +49,7 @@ export class UsbHost {
     this.request = undefined;
     this.isConfigured = false;
     this.device = [];
+    this.unread = undefined;
   }
 
   /**
@@ -73,6 +78,12 @@ export class UsbHost {
     usb.onResetReceived = () => this.enumerate();
     usb.onEndpointRead = (end) => this.wanted(end);
     usb.onEndpointWrite = (end, bytes) => this.given(end, bytes);
+    const fetch = usb.DPRAMUpdated.bind(usb);
+    usb.DPRAMUpdated = (offset, value) => {
+      const isUnread = !this.isReading && offset === BUFFERS + 8 * this.ends.in;
+      if (isUnread) this.unread = () => fetch(offset, value);
+      else fetch(offset, value);
+    };
   }
 
   /**
@@ -128,6 +139,14 @@ export class UsbHost {
       [CLASS, SET_LINE_CODING, 0, 0, line.length, line],
       [CLASS, SET_CONTROL_LINE_STATE, OPEN, 0, 0],
     ];
+  }
+
+  /** Stops fetching what the board sends, or fetches it again. */
+  read(is) {
+    this.isReading = is;
+    if (!is) return;
+    this.unread?.();
+    this.unread = undefined;
   }
 
   /** A transfer that the host breaks off. */

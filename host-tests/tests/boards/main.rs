@@ -10,11 +10,11 @@ mod mass_ratio;
 mod no_panic;
 mod pico;
 mod qemu_buttons;
+mod qemu_host;
 mod qemu_lm3s6965evb;
 mod qemu_plan;
 mod qemu_restart;
 mod qemu_stm32f405;
-mod qemu_unread;
 mod scenes;
 mod steps;
 #[path = "../support/mod.rs"]

@@ -205,6 +205,36 @@ fn usb_and_uart_carry_the_hosts_bits_and_every_command() -> anyhow::Result<()> {
     Ok(())
 }
 
+/// The board's motion does not wait for the host. The frames that are lost are missing as a whole.
+#[test]
+fn a_host_that_stops_reading_loses_frames_and_nothing_else() -> anyhow::Result<()> {
+    let mut board = board()?;
+    let mut show = show(&PICO, SceneName::Page);
+    board.tell("listen 0")?;
+    assert!(board.run(TICK * TICK_RATE)?.is_empty());
+    board.tell("listen 1")?;
+    let messages = board.run(TICK * TICK_RATE)?;
+
+    let frames: Vec<_> = messages.into_iter().filter_map(ToHost::frame).collect();
+    for frame in &frames {
+        assert_eq!(
+            (frame.report.step, frame.dropped),
+            (u64::from(frame.sequence) + 1, 0)
+        );
+        assert_eq!(*frame, show.expected(frame));
+    }
+    let [usb, uart] = board.counts();
+    let missing = frames
+        .windows(2)
+        .map(|two| two[1].sequence - two[0].sequence - 1);
+    let missing: u32 = missing.sum();
+    println!("{} frames, {missing} lost", frames.len());
+    assert!((TICK_RATE / 2..TICK_RATE).contains(&missing), "{missing}");
+    assert_eq!((usb.lost, usb.damaged), (missing.into(), 0));
+    assert_eq!((uart.lost, uart.damaged), (0, 0));
+    Ok(())
+}
+
 fn answers(messages: Vec<ToHost>) -> Vec<(u16, Answer)> {
     messages.into_iter().filter_map(ToHost::answer).collect()
 }

@@ -47,8 +47,6 @@ const CHATTER: [&str; 2] = ["Timer with period zero, disabling", "has no peer"];
 /// An emulated board. Every method that waits also reads all output of the board, because QEMU
 /// stops while its output is not read.
 pub struct Machine {
-    /// The link is read. Otherwise the board's output fills the pipe and then its serial port.
-    pub listens: bool,
     pub(super) monitor: Channel,
     pub(super) debugger: Channel,
     serial: Channel,
@@ -129,7 +127,6 @@ impl Machine {
         let mut process = process::spawn(&mut command, settings.limit)?;
         let log = process.streams()?;
         let mut machine = Self {
-            listens: true,
             monitor,
             debugger,
             serial,
@@ -158,18 +155,10 @@ impl Machine {
             ..
         } = self;
 
-        // A link that is not read fills its pipe, as a host does that has stopped reading.
-        let serial = if self.listens {
-            Some(&mut serial.stream)
-        } else {
-            None
-        };
-
-        for stream in [&mut monitor.stream, &mut debugger.stream]
-            .into_iter()
-            .chain(log)
-            .chain(serial)
-        {
+        for channel in [monitor, debugger, serial] {
+            channel.stream.take_in();
+        }
+        for stream in log {
             stream.take_in();
         }
 
@@ -205,10 +194,9 @@ impl Machine {
             }
             taken?;
 
-            // Unread bytes of a link that is not read must not end the wait.
-            let serial = self.listens.then_some(&self.serial.stream);
-            let channels = [&self.monitor.stream, &self.debugger.stream];
-            stream::wait(channels.into_iter().chain(&self.log).chain(serial));
+            let channels = [&self.monitor, &self.debugger, &self.serial];
+            let streams = channels.map(|channel| &channel.stream);
+            stream::wait(streams.into_iter().chain(&self.log));
         }
     }
 
