@@ -14,7 +14,7 @@ use cycles::Image;
 
 use boards::console::cli::{Refused, choice_with_aliases, complain, say};
 use boards::process;
-use boards::qemu::{Clock, Machine, Settings};
+use boards::qemu::{Clock, Machine, MachineSettings};
 use boards::toolchain;
 use boards::{BOARDS, Board, PICO};
 
@@ -107,7 +107,7 @@ pub fn fw(options: &FwOptions) -> anyhow::Result<ExitCode> {
     let limit = options
         .seconds
         .map_or(LIMIT, |seconds| Duration::from_secs(seconds.into()));
-    let settings = Settings {
+    let settings = MachineSettings {
         qemu: &toolchain.qemu,
         board,
         elf: &elf,

@@ -15,7 +15,7 @@ use super::trace::LIMIT;
 use super::{Target, affordable_cost};
 use crate::table::between;
 use boards::Board;
-use boards::qemu::{Clock, Machine, Settings};
+use boards::qemu::{Clock, Machine, MachineSettings};
 use boards::toolchain::{Toolchain, workspace};
 
 /// The path of a function's module, and its name. It is not inlined.
@@ -182,7 +182,7 @@ fn in_application(board: &'static Board, toolchain: &Toolchain) -> Result<Planni
     let elf = toolchain.build_for(board)?;
     let image = Image::read(&elf)?;
     let qemu = &toolchain.qemu;
-    let settings = Settings {
+    let settings = MachineSettings {
         qemu,
         board,
         elf: &elf,

@@ -11,7 +11,7 @@ use exact::trials::apart;
 /// A motion of equal rods (1 m) and bobs (1 kg) from rest, at 9.81 m/s^2. No
 /// `f32` is 9.81: an error includes that a method rounds the numbers that a user types.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Scene {
+pub struct ReportedMotion {
     pub name: &'static str,
     pub angle: f64,
     /// Whole seconds. It is short if neighbouring motions separate quickly.
@@ -20,19 +20,19 @@ pub struct Scene {
 
 pub const SAMPLES: u32 = 4;
 
-pub const SCENES: [Scene; 2] = [
-    Scene {
+pub const SCENES: [ReportedMotion; 2] = [
+    ReportedMotion {
         name: "regular",
         angle: 0.5,
         duration: 10,
     },
-    Scene {
+    ReportedMotion {
         name: "chaotic",
         angle: 2.0,
         duration: 5,
     },
 ];
-pub const LONG: Scene = Scene {
+pub const LONG: ReportedMotion = ReportedMotion {
     name: "regular-long",
     angle: 0.5,
     duration: 100,
@@ -54,7 +54,7 @@ const LOST: Error = Error {
 };
 
 /// Returns the angles of the exact motion after each of `steps` equal steps through a scene.
-pub fn exact(scene: &Scene, steps: u32) -> Vec<[f64; 2]> {
+pub fn exact(scene: &ReportedMotion, steps: u32) -> Vec<[f64; 2]> {
     let Request {
         parameters,
         angles: [a1, a2],
@@ -76,7 +76,7 @@ fn samples(rate: u32) -> u32 {
 }
 
 /// Requests [`SAMPLES`] states per second, or fewer if these do not fall on whole steps.
-pub fn request(method: Method, scene: &Scene, rate: u32) -> Request {
+pub fn request(method: Method, scene: &ReportedMotion, rate: u32) -> Request {
     Request {
         method,
         parameters: Parameters::equal_rods(1.0, 1.0, GRAVITY),
@@ -99,7 +99,7 @@ const HIGH: [u32; 21] = [
 const LOW: [u32; 3] = [16, 32, 64];
 
 /// Returns the numbers of steps a second to try with `method` in a scene, ascending.
-pub fn rates(method: Method, scene: &Scene, finest: u32) -> impl Iterator<Item = u32> {
+pub fn rates(method: Method, scene: &ReportedMotion, finest: u32) -> impl Iterator<Item = u32> {
     let few: &[u32] = if method.order() > 4 { &HIGH } else { &LOW };
     let all = few
         .iter()
@@ -109,7 +109,7 @@ pub fn rates(method: Method, scene: &Scene, finest: u32) -> impl Iterator<Item =
 }
 
 /// Returns the error of `method` in `steps` equal steps through the scene.
-pub fn error_after(method: Method, scene: &Scene, steps: u32) -> Option<Error> {
+pub fn error_after(method: Method, scene: &ReportedMotion, steps: u32) -> Option<Error> {
     let dt = f64::from(scene.duration) / f64::from(steps);
     let request = Request {
         dt,

@@ -11,7 +11,7 @@ use std::time::Duration;
 use anyhow::{Context, Result, ensure};
 use double_pendulum::Method;
 
-use super::accuracy::{Error, SCENES, Scene, rates, request, usual_rate, worst};
+use super::accuracy::{Error, ReportedMotion, SCENES, rates, request, usual_rate, worst};
 use super::join::Point;
 use crate::count::{Target, affordable_cost};
 use boards::Board;
@@ -32,7 +32,7 @@ const TEXTBOOK: Method = Method::TextbookF32;
 pub fn points(
     toolchain: &Toolchain,
     targets: &[Target],
-    scenes: &[(&'static Scene, Vec<[f64; 2]>)],
+    scenes: &[(&'static ReportedMotion, Vec<[f64; 2]>)],
 ) -> Result<(Vec<Point>, Vec<String>)> {
     let mut points = Vec::new();
     let mut absent = Vec::new();
@@ -94,7 +94,7 @@ fn elf(sine: [&str; 2], board: &Board) -> Result<PathBuf> {
     Ok(workspace().join("target/peers-c").join(elf))
 }
 
-fn error(target: &Target, scene: &Scene, rate: u32, exact: &[[f64; 2]]) -> Result<Error> {
+fn error(target: &Target, scene: &ReportedMotion, rate: u32, exact: &[[f64; 2]]) -> Result<Error> {
     let request = request(TEXTBOOK, scene, rate);
     let printed = target.output(&request)?;
     let state = |line: &str| {

@@ -8,7 +8,7 @@ use firmware::config::REACH;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
-use super::accuracy::Scene;
+use super::accuracy::ReportedMotion;
 use super::c_peers::PROGRAMS;
 use super::join::Point;
 use boards::Board;
@@ -47,7 +47,7 @@ const LETTER: (i32, i32) = (7, 15);
 /// C are first, then the methods with the largest counts.
 fn lines<'a>(
     points: &'a [Point],
-    scene: &Scene,
+    scene: &ReportedMotion,
     board: &Board,
 ) -> Vec<(usize, &'static str, Vec<&'a Point>)> {
     let shown = points
@@ -82,7 +82,11 @@ fn lines<'a>(
 
 /// Returns a chart of the estimated cycles per simulated second against the error of an angle, as
 /// an SVG file.
-pub fn speed_against_error(points: &[Point], scene: &Scene, board: &Board) -> Result<String> {
+pub fn speed_against_error(
+    points: &[Point],
+    scene: &ReportedMotion,
+    board: &Board,
+) -> Result<String> {
     let lines = lines(points, scene, board);
     let best = lines.iter().take_while(|(best, ..)| *best > 0).count();
     let (named, others) = lines.split_at(best.min(NAMED));
@@ -99,7 +103,7 @@ pub fn speed_against_error(points: &[Point], scene: &Scene, board: &Board) -> Re
         let area = SVGBackend::with_string(&mut svg, SIZE).into_drawing_area();
         area.fill(&WHITE)?;
 
-        let Scene {
+        let ReportedMotion {
             name,
             angle,
             duration,

@@ -4,7 +4,9 @@ use anyhow::Result;
 use double_pendulum::{Integrator, Method};
 use rayon::prelude::*;
 
-use super::accuracy::{self, Error, LONG, SAMPLES, SCENES, Scene, rates, request, usual_rate};
+use super::accuracy::{
+    self, Error, LONG, ReportedMotion, SAMPLES, SCENES, rates, request, usual_rate,
+};
 use super::c_peers;
 use crate::count::{StepCost, Target, affordable_cost};
 use crate::table::{Table, small};
@@ -17,7 +19,7 @@ const FINEST: u32 = 13;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Point {
     pub name: &'static str,
-    pub scene: &'static Scene,
+    pub scene: &'static ReportedMotion,
     /// The cost was counted on the core of this board.
     pub board: &'static Board,
     pub rate: u32,

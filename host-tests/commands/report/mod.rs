@@ -23,7 +23,7 @@ use firmware::config::HALF_PIXEL;
 
 use crate::count::Target;
 use crate::table::{Table, between, small};
-use accuracy::{LONG, SCENES, Scene};
+use accuracy::{LONG, ReportedMotion, SCENES};
 use boards::console::cli::{say, unwritable};
 use boards::out_file::write;
 use boards::toolchain::{self, workspace};
@@ -143,7 +143,7 @@ fn advice(points: &[Point]) -> Vec<String> {
     let boards = BOARDS
         .iter()
         .filter(|board| points.iter().any(|point| point.board == *board));
-    let sentence = |board: &Board, scene: &Scene| {
+    let sentence = |board: &Board, scene: &ReportedMotion| {
         let of = points
             .iter()
             .filter(|point| point.scene == scene && point.board == board);

@@ -24,7 +24,7 @@ use boards::console::cli::{Refused, complain, say};
 use boards::console::progress::Progress;
 use boards::link::refusal;
 use boards::out_file::OutFile;
-use boards::qemu::{Clock, Machine, Settings};
+use boards::qemu::{Clock, Machine, MachineSettings};
 use boards::toolchain;
 use second_run::SecondRun;
 
@@ -174,7 +174,7 @@ fn on_board(
     let limit = OVERHEAD
         .saturating_add(PER_STEP.saturating_mul(request.stride.saturating_mul(request.samples)));
 
-    let settings = Settings {
+    let settings = MachineSettings {
         qemu: &toolchain.qemu,
         board,
         elf: &elf,

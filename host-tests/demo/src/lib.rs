@@ -44,7 +44,7 @@ use boards::host::Show;
 use boards::link::Port;
 use boards::out_file::OutFile;
 use boards::pico::PicoMachine;
-use boards::qemu::{Clock, Machine, Settings};
+use boards::qemu::{Clock, Machine, MachineSettings};
 use boards::toolchain;
 use boards::{Board, PICO};
 
@@ -133,7 +133,7 @@ fn emulated(board: &Board, seconds: f64, is_live: bool) -> anyhow::Result<Source
             limit,
         )?)));
     }
-    let settings = Settings {
+    let settings = MachineSettings {
         qemu: &toolchain.qemu,
         board,
         elf: &elf,

@@ -1,10 +1,6 @@
 //! The tolerances that several tests share, with their reasons. All others are beside their test.
 //!
-//! - The growth is about the factor by which a small error of the start has grown.
-//! - Figure 7 of the page is a motion from rest at 171 degrees, with rods of 1 m, bobs of 1 kg and
-//!   2.75 kg, and g = 9.8 m/s^2.
-//! - The right form is the kernel's equations; the misprinted form is those of
-//!   [`misprinted_equal_rods`](crate::textbook::misprinted_equal_rods).
+//! The growth is about the factor by which a small error of the start has grown.
 
 use crate::enclosure::fastest_rate;
 use double_pendulum::{Method, Numbers, Parameters, State};
@@ -32,11 +28,6 @@ impl PerPrecision {
 /// of the start if it is above 1 rad: the roundings (1e-32) of some hundred steps of double-double
 /// arithmetic (measured: within 3e-32, and within all digits of the table of known answers).
 pub const REFERENCE: f64 = 1e-31;
-
-/// The energy error, J, of the right form at figure 7 in RK4 with 512 steps per second, in 32 runs
-/// of 100 s (measured 2.4e-3, of 127 J above rest). It is also the largest difference of two
-/// energies along the plotted path.
-pub const FIGURE_7_ENERGY: f64 = 0.01;
 
 /// Returns the tolerance of a method compared with a known answer, for each sine and cosine: the
 /// growth times the sum of three errors of plain RK4 in 4096 steps a second, which no other of the

@@ -55,13 +55,13 @@ impl<F: Form> CountingRun for Run<F, true> {
     }
 }
 
-struct Start<'a> {
+struct CountingStart<'a> {
     pendulum: Pendulum<f64>,
     state: &'a State<f64>,
     dt: f64,
 }
 
-impl FormVisitor for Start<'_> {
+impl FormVisitor for CountingStart<'_> {
     type Output = Result<Box<dyn CountingRun>, Error>;
 
     fn visit<F: Form>(self) -> Self::Output {
@@ -80,7 +80,7 @@ pub fn run(
     let state = start;
     visit(
         method,
-        Start {
+        CountingStart {
             pendulum,
             state,
             dt,

@@ -9,16 +9,16 @@ use boards::toolchain;
 use cycles::{Core, Instruction};
 use double_pendulum::{Method, Parameters};
 use firmware::job::Request;
-use host_tests::report::accuracy::{SCENES, Scene, request};
+use host_tests::report::accuracy::{ReportedMotion, SCENES, request};
 use rayon::prelude::*;
 
 /// Fewer on the Cortex-M0+, which has no long products.
 const STEPS: [u32; 2] = [1_000_000, 100_000];
 const STEPS_UNOPTIMISED: u32 = 10_000;
 const RATE: u32 = 256;
-const MOTIONS: [&Scene; 2] = [&SCENES[0], &SCENES[1]];
+const MOTIONS: [&ReportedMotion; 2] = [&SCENES[0], &SCENES[1]];
 
-fn every_state(method: Method, scene: &Scene, steps: u32) -> Request {
+fn every_state(method: Method, scene: &ReportedMotion, steps: u32) -> Request {
     Request {
         samples: steps,
         stride: 1,

@@ -4,7 +4,7 @@ use std::thread::sleep;
 use std::time::Duration;
 
 use crate::support::on;
-use boards::qemu::{Clock, Machine, Settings};
+use boards::qemu::{Clock, Machine, MachineSettings};
 use boards::{BOARDS, STM32F405};
 use firmware::config::TICK_RATE;
 use nix::sys::signal::{Signal, kill};
@@ -22,7 +22,7 @@ fn a_board_whose_emulator_pauses_does_not_take_it_for_a_hang() -> anyhow::Result
         .filter(|board| **board != STM32F405)
         .try_for_each(|board| {
             let mut machine = on(board, |settings| {
-                Machine::start(&Settings {
+                Machine::start(&MachineSettings {
                     clock: Clock::Real,
                     ..*settings
                 })

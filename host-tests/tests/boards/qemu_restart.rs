@@ -7,7 +7,7 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use crate::support::{address, application, on, settings, toolchain};
-use boards::qemu::{Machine, Register, Settings};
+use boards::qemu::{Machine, MachineSettings, Register};
 use boards::{BOARDS, Board, STM32F405};
 use cycles::Image;
 use firmware::app::MOST_RESTARTS;
@@ -34,7 +34,7 @@ fn within(
 ) -> anyhow::Result<(PathBuf, Machine, Frame)> {
     let elf = application(board);
     let mut probe = on(board, |settings| {
-        Machine::halted(&Settings {
+        Machine::halted(&MachineSettings {
             debugger,
             limit: PATIENCE,
             ..*settings

@@ -16,7 +16,7 @@ use boards::budgets;
 use boards::host::Show;
 use boards::link::Counts;
 use boards::pico::PicoMachine;
-use boards::qemu::{Machine, Settings};
+use boards::qemu::{Machine, MachineSettings};
 use boards::toolchain;
 use boards::{BOARDS, Board, PICO};
 use cycles::{Core, Cost, Image};
@@ -171,7 +171,7 @@ fn plays(
     let image = Image::read(&elf)?;
     let stack = stack(&elf);
     let mut machine = on(board, |settings| {
-        Machine::halted(&Settings { limit, ..*settings })
+        Machine::halted(&MachineSettings { limit, ..*settings })
     })?;
     machine.write(stack.start, &vec![PAINT; stack.len()])?;
 

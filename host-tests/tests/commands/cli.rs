@@ -208,7 +208,7 @@ fn an_interrupted_proof_prints_what_it_has_proved() {
     use nix::unistd::Pid;
     use std::io::Read;
 
-    let words = "--angles 0.1,0.1 --seconds 1e4 --method rk4-fixed32 --steps 16";
+    let words = "--angles 0.1,0.1 --seconds 1e3 --method rk4-fixed32 --steps 16";
     for signal in [Signal::SIGINT, Signal::SIGTERM] {
         let mut command = program("prove");
         command

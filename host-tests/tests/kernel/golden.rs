@@ -5,7 +5,6 @@ use crate::snapshot;
 use firmware::job::write_golden;
 
 /// Any bit that differs from the file fails. The test updates the file instead if `BLESS=1` is set.
-/// A test of the kernel then requires an entry in its change log.
 #[test]
 fn every_method_computes_the_golden_bits() -> Result<(), String> {
     let mut lines = String::new();

@@ -12,7 +12,7 @@ use std::time::Duration;
 
 use boards::pico::PicoMachine;
 use boards::process::{Output, run};
-use boards::qemu::{Clock, Machine, Settings};
+use boards::qemu::{Clock, Machine, MachineSettings};
 use boards::{Board, LM3S6965EVB};
 use firmware::protocol::{MAX_WIRE, ToHost, encode};
 use nix::fcntl::OFlag;
@@ -172,8 +172,8 @@ pub fn board() -> Machine {
 
 fn machine(board: &Board) -> Machine {
     // The board runs as fast as a real one, so that the host's messages reach it in time.
-    let start = |settings: &Settings| {
-        Machine::start(&Settings {
+    let start = |settings: &MachineSettings| {
+        Machine::start(&MachineSettings {
             clock: Clock::Real,
             ..*settings
         })

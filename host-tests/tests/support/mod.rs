@@ -11,7 +11,7 @@ use std::time::Duration;
 
 use boards::Board;
 use boards::host::Show;
-use boards::qemu::{Clock, Settings};
+use boards::qemu::{Clock, MachineSettings};
 use boards::toolchain::{self, Toolchain};
 use firmware::scenes::SceneName;
 use host_tests::count::Target;
@@ -37,8 +37,12 @@ pub fn application(board: &Board) -> PathBuf {
 }
 
 /// The clock counts instructions, so that runs are bit-identical.
-pub fn settings<'a>(toolchain: &'a Toolchain, board: &'a Board, elf: &'a Path) -> Settings<'a> {
-    Settings {
+pub fn settings<'a>(
+    toolchain: &'a Toolchain,
+    board: &'a Board,
+    elf: &'a Path,
+) -> MachineSettings<'a> {
+    MachineSettings {
         qemu: &toolchain.qemu,
         board,
         elf,
@@ -50,7 +54,7 @@ pub fn settings<'a>(toolchain: &'a Toolchain, board: &'a Board, elf: &'a Path) -
 
 pub fn on<M>(
     board: &Board,
-    start: impl FnOnce(&Settings) -> anyhow::Result<M>,
+    start: impl FnOnce(&MachineSettings) -> anyhow::Result<M>,
 ) -> anyhow::Result<M> {
     let toolchain = toolchain();
     let elf = application(board);

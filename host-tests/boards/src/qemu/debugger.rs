@@ -17,7 +17,7 @@ use firmware::protocol::ToHost;
 use nix::sys::stat::Mode;
 use nix::unistd::mkfifo;
 
-use super::machine::{Clock, Machine, Settings};
+use super::machine::{Clock, Machine, MachineSettings};
 use crate::up_to_frame;
 
 const WFI: u16 = 0xBF30;
@@ -43,8 +43,8 @@ pub(super) struct Places {
 }
 
 impl Machine {
-    pub fn halted(settings: &Settings) -> anyhow::Result<Self> {
-        let mut machine = Self::boot(&Settings {
+    pub fn halted(settings: &MachineSettings) -> anyhow::Result<Self> {
+        let mut machine = Self::boot(&MachineSettings {
             clock: Clock::Counted,
             ..*settings
         })?;

@@ -29,7 +29,7 @@ pub enum Clock {
 }
 
 #[derive(Clone, Copy, Debug)]
-pub struct Settings<'a> {
+pub struct MachineSettings<'a> {
     /// An absolute path, or a name that is found by `PATH`, because QEMU runs in another folder.
     pub qemu: &'a Path,
     pub board: &'a Board,
@@ -61,13 +61,13 @@ pub struct Machine {
 }
 
 impl Machine {
-    pub fn start(settings: &Settings) -> anyhow::Result<Self> {
+    pub fn start(settings: &MachineSettings) -> anyhow::Result<Self> {
         let mut machine = Self::boot(settings)?;
         machine.run()?;
         Ok(machine)
     }
 
-    pub(super) fn boot(settings: &Settings) -> anyhow::Result<Self> {
+    pub(super) fn boot(settings: &MachineSettings) -> anyhow::Result<Self> {
         let elf = settings
             .elf
             .canonicalize()

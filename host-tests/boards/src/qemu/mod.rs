@@ -11,5 +11,5 @@ mod screenshot;
 
 pub use debugger::{Register, send_packet, take_reply};
 pub use log::{LogDecoder, LogLine};
-pub use machine::{Clock, Machine, Settings};
+pub use machine::{Clock, Machine, MachineSettings};
 pub use screenshot::{HEIGHT, Screenshot, WIDTH};

@@ -18,7 +18,7 @@ use object::{Object, ObjectSection};
 use crate::support::code::Code;
 
 /// The code that may contain a panic, with the reason why it never happens.
-const PERMITTED: [(&str, &str); 16] = [
+const PERMITTED: [(&str, &str); 14] = [
     (
         "lm3s6965evb::__cortex_m_rt_main",
         "start-up: the board is taken once",
@@ -57,15 +57,6 @@ const PERMITTED: [(&str, &str); 16] = [
     (
         "semihosting::fd::",
         "a console that could not be opened: then there is no log, and nothing is written",
-    ),
-    (
-        "core::fmt::float::",
-        "digits of numbers as text: only `measure` prints, and it is no application",
-    ),
-    (
-        "core::num::",
-        "as above; one version of the core library keeps it in `flt2dec`, \
-        the next in `imp::flt2dec`",
     ),
 ];
 
@@ -166,7 +157,7 @@ fn images() -> BTreeSet<PathBuf> {
             .unwrap_or_else(|error| panic!("{error}"))
     };
     every_board()
-        .flat_map(|board| [(board.binary, board.target), ("measure", board.target)])
+        .map(|board| (board.binary, board.target))
         .map(build)
         .chain([crate::support::application(&pico_with(PanelName::Lcd13))])
         .collect()
