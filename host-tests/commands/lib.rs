@@ -1,6 +1,6 @@
 //! The commands. A command is a function of its options, which [`boards::console::cli::main`]
 //! parses. It prints its result to stdout. An error is returned and not printed; that function
-//! prints it. The command of most modules is `run`; [`emulated`] has several.
+//! prints it.
 //!
 //! A package, and a module of this one, imports only from those below it in this table. A package
 //! is compiled apart because it is optimised, or because a command does not wait for the others.
@@ -21,14 +21,16 @@
 #![deny(clippy::print_stdout, clippy::print_stderr)]
 
 pub mod count;
-pub mod emulated;
 pub mod figures;
 pub mod flips;
+pub mod fw;
 pub mod plan;
 pub mod prove;
 pub mod release;
 pub mod report;
+pub mod setup;
 pub mod simulate;
 pub mod table;
+pub mod verify;
 pub mod verify_board;
 pub mod web;

@@ -6,7 +6,8 @@ use std::process::ExitCode;
 
 use boards::console::cli::{main as run, verdict};
 use host_tests::{
-    count, emulated, figures, flips, plan, prove, release, report, simulate, verify_board, web,
+    count, figures, flips, fw, plan, prove, release, report, setup, simulate, verify, verify_board,
+    web,
 };
 
 fn main() -> ExitCode {
@@ -17,14 +18,14 @@ fn main() -> ExitCode {
         Some("figures") => run(figures::run),
         Some("flash-f4") => run(boards::flash::stm32f405),
         Some("flips") => run(flips::run),
-        Some("fw") => run(emulated::fw),
+        Some("fw") => run(fw::run),
         Some("pico") => run(boards::flash::pico),
         Some("plan") => run(plan::run),
         Some("prove") => run(prove::run),
         Some("release-files") => run(release::run),
-        Some("setup") => run(emulated::setup),
+        Some("setup") => run(setup::run),
         Some("simulate") => run(simulate::run),
-        Some("verify") => run(emulated::verify),
+        Some("verify") => run(verify::run),
         Some("verify-board") => run(|options| verify_board::run(options).map(verdict)),
         Some("web") => run(web::run),
         Some("write-report") => run(report::run),
