@@ -252,14 +252,14 @@ impl<'a> Player<'a> {
             self.follow(&found);
         }
 
-        // Planning gives way to what exceeds the budget of a frame. The next tick does, because a board
-        // may work ahead of it.
+        // Planning gives way to what exceeds the budget of a frame, and to motions without a budget. The
+        // next tick does, because a board may work ahead of it.
         let costs = self.planner.processor.costs;
         let of_other = OTHER_STEP * costs.direction * other_steps as f32;
         let motion = self.scene.planned().map(|shown| shown.motion.stepping());
         let of_motion = motion.map_or(0.0, |stepping| self.cost(stepping));
-        self.planner
-            .leave_time_for(due as f32 * of_motion + of_other);
+        let beyond = due as f32 * of_motion - self.planner.processor.frame;
+        self.planner.leave_time_for(beyond.max(0.0) + of_other);
     }
 
     /// Begins to switch to the method and step count of a plan, if that does not shorten the
