@@ -7,8 +7,8 @@ use core::ops::Range;
 
 use crate::graphics::{Format, Palette};
 
-/// The frame buffers of a canvas: two layers of W8 words by H rows. They are created at their final
-/// place, on a board in a static.
+/// The frame buffers of a canvas: two layers of this number of words, and the rows. They are created
+/// at their final place, on a board in a static.
 #[derive(Clone, Debug)]
 pub struct FrameBuffers<const WORDS: usize, const ROWS: usize> {
     layers: [[u32; WORDS]; 2],
@@ -36,6 +36,7 @@ type Bits = u16;
 #[cfg(not(all(target_os = "none", not(lcd))))]
 type Bits = u32;
 
+/// Returns the bits as a word, which they are already on all but an OLED's board.
 fn word(bits: impl Into<u32>) -> u32 {
     bits.into()
 }
@@ -55,9 +56,7 @@ impl Cells {
         drawn: 0,
         changed: 0,
     };
-}
 
-impl Cells {
     fn touch(&mut self, layer: Layer, touched: u32) {
         match layer {
             Layer::Ink => self.changed |= touched as Bits,
