@@ -93,7 +93,7 @@ pub const CORTEX_M3: Processor = Processor {
     code: 0,
     costs: Costs::CORTEX_M3,
     frame: 200_000.0,
-    look_ahead: 440_000.0,
+    look_ahead: 400_000.0,
     flips: FIXED,
 };
 /// A Cortex-M0+ at 125 MHz or more, as on the Raspberry Pi Pico. A tick has 2,083,000 cycles. A
