@@ -310,10 +310,7 @@ impl<'a> Player<'a> {
     /// [`Method::DRAWN`], and 0 for a step count of 0, except for the closed form, whose cost does
     /// not depend on it.
     pub fn cost(&self, stepping: Stepping) -> f32 {
-        let costs = self.planner.processor.costs;
-        costs
-            .for_pendulum(&self.settings.parameters.cast())
-            .of_frame(stepping)
+        self.planner.costs.of_frame(stepping)
     }
 
     /// Returns the report of the scene, with the horizon that the planner has verified.

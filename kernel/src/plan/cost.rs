@@ -43,7 +43,10 @@ impl Costs {
     /// above the budget of a frame, a method without a price of its own is not chosen.
     ///
     /// On your chip, time [`PlannedRun::advance`] for a step, and [`PlannedRun::new`] for the
-    /// preparation. A comparison takes about a fifth of a preparation.
+    /// preparation. A comparison takes a tenth to a third of a preparation.
+    ///
+    /// [`PlannedRun::advance`]: super::PlannedRun::advance
+    /// [`PlannedRun::new`]: super::PlannedRun::new
     ///
     /// ```
     /// use double_pendulum::plan::Costs;

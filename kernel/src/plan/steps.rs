@@ -193,6 +193,8 @@ impl Stepping {
     /// count below 65,536, the result is not checked: it has the first step count, which is 65,536
     /// for a rate of 0. Only [`PlannedRun::new`] then shows whether the method refuses it.
     ///
+    /// [`PlannedRun::new`]: super::PlannedRun::new
+    ///
     /// # Errors
     ///
     /// Refuses what [`initial`](Self::initial) refuses.
