@@ -38,11 +38,11 @@
 //!   - `rk4_direction.rs` (`Rk4Direction::step`): RK4 in `f32`, for chips with a floating-point
 //!     unit.
 //! - **Its method and step count.** Before there is a plan: `Simulation::new`, with
-//!   `Stepping::initial` (`kernel/src/plan/cost.rs`). Then `Planner::tick` (`motion/planner.rs`)
+//!   `Stepping::initial` (`kernel/src/plan/steps.rs`). Then `Planner::tick` (`motion/planner.rs`)
 //!   advances a `Search` (`kernel/src/plan/search.rs`): a race of candidates against a reference
 //!   (`race.rs`), from which `best` (`candidate.rs`) chooses. `Player::follow` (`app/player.rs`)
-//!   adopts the plan. The prices are in `kernel/src/plan/prices.rs`, the budgets in [`config`]
-//!   (`Processor`).
+//!   adopts the plan when its motion has caught up (`CatchingUp`, `motion/simulation.rs`). The
+//!   prices are in `kernel/src/plan/prices.rs`, the budgets in [`config`] (`Processor`).
 //! - **A button.** `Buttons::read` of the board (its `mod.rs`) reads the pins in `App::tick`
 //!   (`app/mod.rs`). `Controls::tick` (`app/controls.rs`) debounces them and returns a
 //!   [`protocol::Command`], such as `Heavier`. `Player::execute` (`app/player.rs`) calls
@@ -51,9 +51,9 @@
 //! - **A frame on the link.** The table of bytes and the recipe for another field are at
 //!   [`protocol::Frame`] (`protocol/to_host.rs`). `Player::frame` and `App::show` fill it, and
 //!   `encode` (`protocol/mod.rs`) writes it.
-//! - **A fault.** `hard_fault` and `crash` (`board/cortex_m/crash.rs`) write a report where a
-//!   debugger may read it, not on a Pico; store the cause in memory that a reset keeps
-//!   (`board/cortex_m/retained.rs`); and reset. Then `resume` (`board/main_loop.rs`) starts the
+//! - **A fault.** `hard_fault` and `crash` (`board/cortex_m/crash.rs`) store the cause in memory that
+//!   a reset keeps (`board/cortex_m/retained.rs`); write a report where a debugger may read it, not
+//!   on a Pico; and reset. Then `resume` (`board/main_loop.rs`) starts the
 //!   same scene again, or after more than `MOST_RESTARTS` (`app/warm_restart.rs`) the first one,
 //!   and logs the cause. The host asks for it and prints it (`describe_restart`,
 //!   `host-tests/boards/src/link/mod.rs`). The user's side is "When it crashes or hangs" in

@@ -57,7 +57,7 @@ pub enum Parameter {
     Price(Method),
     /// Price of preparing a motion.
     Preparation,
-    /// The cost of a comparison in a price list.
+    /// Price of comparing a frame.
     Comparison,
     /// Largest allowed cost of computing a frame.
     FrameBudget,

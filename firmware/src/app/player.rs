@@ -11,9 +11,9 @@ use crate::motion::{CatchingUp, Horizon, PlanResult, Planned, Planner, Resources
 use crate::protocol::{Command, Field, Frame, PlayState, Status, in_range};
 use crate::scenes::{AnyScene, Report, SceneName, too_fast};
 
-/// The cost of a step of a motion that is shown for comparison, in steps by RK4 in `f32`. It is 1.55
-/// on a Cortex-M3 and 1.58 on a Cortex-M0+ by a count of figure 7, and 2.4 on a Cortex-M4F, where
-/// such a motion takes 1 % of a tick.
+/// The cost of a step of a motion that is shown for comparison, in steps by RK4 in `f32`: 1.55 on a
+/// Cortex-M3 and 1.58 on a Cortex-M0+, counted in figure 7. It is 2.4 on a Cortex-M4F, where such a
+/// motion takes 1 % of a tick.
 const OTHER_STEP: f32 = 1.6;
 
 /// An event of the planner, or of the motion that is shown.
@@ -252,8 +252,8 @@ impl<'a> Player<'a> {
             self.follow(&found);
         }
 
-        // Planning gives way to what exceeds the budget of a frame, and to motions without a budget. The
-        // next tick does, because a board may work ahead of it.
+        // Planning gives way to a motion that exceeds the budget of a frame, and to motions without
+        // a budget. It does so in the next tick, because a board may have worked ahead in this one.
         let costs = self.planner.processor.costs;
         let of_other = OTHER_STEP * costs.direction * other_steps as f32;
         let motion = self.scene.planned().map(|shown| shown.motion.stepping());

@@ -20,7 +20,7 @@
 //!    I2C driven by interrupts (`panel_bus`), `Ssd0323` on SPI, `NoDisplay`.
 //! 2. Write `bin/NAME.rs`, one line. Add a `[[bin]]` in `Cargo.toml`, the start of its flash in
 //!    `build.rs`, and its name in `protocol/to_host.rs`.
-//! 3. If QEMU has the machine, add a row in `boards.rs` and in `budgets.rs` of
+//! 3. If QEMU has the machine, add a row in `board.rs` and in `budgets.rs` of
 //!    `host-tests/boards/src/`.
 //!
 //! Then run `cargo fw --check`, `cargo test -p host-tests --test boards` with `no_panic::`, then

@@ -6,11 +6,12 @@
 //! 1. Add a variant of [`Controller`], the last one, because its place is its number on the link,
 //!    and its name in `Controller::named`. The compiler asks for a `Profile` in `oled_i2c.rs`. If
 //!    reading the memory back identifies it, add it to `with_memory` there.
-//! 2. Add a row in the model of modules, `host-tests/tests/firmware/oled_i2c/bus.rs`, with what the
-//!    data sheet says it answers. Then `cargo test -p host-tests --test firmware -- oled_i2c::
-//!    link::`, with `BLESS=1` for its number.
+//! 2. In `host-tests/tests/firmware/oled_i2c/`, add a `Kind` in the model of a module, `bus.rs`,
+//!    with the answers of the data sheet, and a row of `MODULES` in `mod.rs`. Then `cargo test -p
+//!    host-tests --test firmware -- oled_i2c:: link::`, with `BLESS=1` for its number.
 //!
-//! A controller of another family implements [`Display`], as `ssd0323.rs` does.
+//! A controller of another family implements [`Display`], as `ssd0323.rs` does, and the board's
+//! `Panel` uses it. On a Pico it also needs a [`PanelName`] and its wires in `board/pico/lcd.rs`.
 
 use core::convert::Infallible;
 

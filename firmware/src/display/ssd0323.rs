@@ -1,7 +1,7 @@
 //! The SSD0323 controller of a 128 x 64 OLED panel with 16 greys, on four-wire SPI.
 //!
-//! A whole frame takes 4,096 bytes, 9 ms at 3.6 MHz. So only the changes are sent: of the cells that
-//! were drawn, those that differ from the panel's memory.
+//! A whole frame takes 4,096 bytes, 9 ms at 3.6 MHz. So only the drawn cells that differ from the
+//! panel's memory are sent.
 //!
 //! Source: Solomon Systech, SSD0323 data sheet; register values from the panel's application note
 //! (OSRAM AN018).
@@ -144,7 +144,7 @@ impl<Spi: SpiDevice, Pin: OutputPin<Error = Infallible>> Ssd0323<'_, Spi, Pin> {
 }
 
 impl Memory {
-    /// Takes over the drawn cells of row `y`. Returns those that differ, a bit each.
+    /// Takes over the drawn cells of row `y`. Returns a bit for each cell that differs.
     fn take(&mut self, y: usize, drawn: u32, canvas: &Canvas) -> u32 {
         let [_, greys] = canvas.row(y);
         let greys: Option<&[u32; CELLS]> = greys.first_chunk();

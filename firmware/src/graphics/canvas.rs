@@ -1,7 +1,7 @@
-//! The canvas: two layers of 16 levels, and a record of what has changed.
+//! The canvas: two layers of 16 levels, and a record of the changes.
 //!
-//! A colour panel needs both layers. A panel of greys shows one, the foreground: there it begins as a
-//! copy of the ink, which takes half of the time of composing both.
+//! A colour panel needs both layers. A panel of greys shows only the foreground, which begins there
+//! as a copy of the ink: that takes half of the time of composing both.
 
 use core::ops::Range;
 
@@ -36,7 +36,7 @@ type Bits = u16;
 #[cfg(not(all(target_os = "none", not(lcd))))]
 type Bits = u32;
 
-/// Returns the bits as a word, which they are already on all but an OLED's board.
+/// Returns the bits as a word. On an OLED's board they are shorter.
 fn word(bits: impl Into<u32>) -> u32 {
     bits.into()
 }
@@ -100,7 +100,7 @@ impl Pen {
         }
     }
 
-    /// Returns the grey of pixel `x` in its word, which covers that of another word, if there is one.
+    /// Returns the grey of pixel `x` in its word, or in a covered word where that is transparent.
     fn grey(self, word: u32, covered: Option<&u32>, x: i32) -> u8 {
         let level = |word: u32| (word >> shift(x) & 15) as u8;
         match covered {
@@ -155,8 +155,9 @@ impl PartialEq for Canvas<'_> {
 }
 
 impl<'a> Canvas<'a> {
-    /// Creates a canvas in this memory, which is not cleared: the words of the ink, those of the
-    /// foreground, and the rows' cells. Its first drawing is in the foreground, and counts as whole.
+    /// Creates a canvas in this memory, which is not cleared: the words of the ink and of the
+    /// foreground, and the cells of the rows. Its first drawing is in the foreground, and counts as
+    /// whole.
     pub fn new(
         format: Format,
         [ink, foreground]: [&'a mut [u32]; 2],
@@ -515,7 +516,7 @@ impl<'a> Canvas<'a> {
 #[derive(Debug)]
 pub struct Row<'c> {
     words: &'c mut [u32],
-    /// The words of the layer that is covered, if there is one.
+    /// The words of the covered layer, or none.
     covered: &'c mut [u32],
     pen: Pen,
 }

@@ -312,7 +312,15 @@ impl SceneName {
             Self::Page => Some(Place::whole(format)),
             Self::Butterfly => Some(butterfly::Layout::of(format).place),
             Self::Figure7 | Self::Upright => Some(Place::halves(format)[0]),
-            _ => None,
+            Self::SmallLight
+            | Self::SmallEqual
+            | Self::SmallHeavy
+            | Self::Frequencies
+            | Self::Beats3To2
+            | Self::Beats2To1
+            | Self::Beats5To2
+            | Self::Beats3To1
+            | Self::Flips => None,
         }
     }
 

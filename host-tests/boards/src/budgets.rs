@@ -13,8 +13,8 @@ pub const PAGE: f64 = 0.17;
 pub const SHOWING: u64 = 120_000;
 /// The smallest part of a frame that must remain, on every board. It is enough for a command in
 /// each frame, for a log line, and to compute requested motions in reasonable time. A scene within
-/// [`SCENE`] may leave less. QEMU's buses take no time. A real `lm3s6965evb` will wait 0.7 ms (page) to 6 ms
-/// (`small-5`) for SPI; I2C delays no frame.
+/// [`SCENE`] may leave less. QEMU's buses take no time. A real `lm3s6965evb` will wait 0.7 ms (page)
+/// to 6 ms (`small-5`) for SPI; I2C delays no frame.
 pub const IDLE: f64 = 0.4;
 
 /// The memory of a program, bytes.
@@ -30,8 +30,8 @@ pub struct Memory {
 /// The largest memory that each application may take, by the name of its board.
 ///
 /// - Text: the smallest chip has 256 KiB of flash. A sixteenth of it stays free. With a Cortex-M0+,
-///   whose code is longer, 4 KiB do: no such chip is sold, and its real board is the Pico. The F405 has 1 MiB, and three quarters of it stay free for
-///   applications that build on the firmware.
+///   whose code is longer, 4 KiB do: no such chip is sold, and its real board is the Pico. The F405
+///   has 1 MiB, and three quarters of it stay free for applications that build on the firmware.
 /// - Data: only a few words need an initial value.
 /// - Bss: the two frames take 8 KiB. The application with its planner and a motion by two methods
 ///   takes 9 KiB, the queue of received bytes 1 KiB, and the panel's copy of its picture 4 KiB

@@ -124,9 +124,9 @@ const MARKS: [&str; 2] = [
 ];
 
 /// Returns the price list of every method that a plan chooses from, on one board for each kind of
-/// core. Three prices are those of the plan of the application's first scene: `preparation` is the
-/// most expensive one of a motion, of the search and of a restart of its shadows, `fixed64` and
-/// `comparison` are the first ones. All others are averages over a regular motion; `fixed32_unlike`
+/// core. Three prices are counted in the plan of the application's first scene: `preparation` is the
+/// most expensive of a motion's, of the search's start and of a restart of its shadows; `fixed64` and
+/// `comparison` are the first calls. All others are averages over a regular motion; `fixed32_unlike`
 /// is of unlike bobs and rods.
 pub fn prices(toolchain: &Toolchain) -> Result<Vec<(&'static Board, Costs)>> {
     let targets = Target::build_all(toolchain)?;

@@ -103,7 +103,7 @@ const HALF: Q64 = Q64(1 << 60);
 /// The largest change 2^-8 of a squared length in one step, over 64.
 const LENGTH: u64 = 1 << 50;
 
-/// What the energy of a motion demands.
+/// The units and limits that follow from the energy of a motion.
 struct Demands {
     /// The scaling with a unit of time of 1 s.
     seconds: Scaling,

@@ -28,10 +28,10 @@ pub struct Costs {
     /// A step by [`Method::Rk4Fixed32`] for other rods and masses.
     pub fixed32_unlike: f32,
     /// A step by [`Method::Extrapolation10Fixed64`] that also measures its truncation error, as in a
-    /// search. A step of a motion that is shown costs 3 % less.
+    /// search. A step of a motion that is shown costs 7 to 9 % less.
     pub fixed64: f32,
-    /// The preparation of a motion by any of these methods, or the restart of all shadows of a
-    /// search, whichever costs more. Shadows are five motions in 32 bits that measure how the
+    /// The preparation of a motion in a search, the start of a search, or the restart of all its
+    /// shadows, whichever costs the most. Shadows are five motions in 32 bits that measure how the
     /// rounding errors of a run in 64 bits grow.
     pub preparation: f32,
     /// The comparison of all methods of a search in a frame.

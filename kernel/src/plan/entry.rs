@@ -15,7 +15,7 @@ const MOTIONS: usize = CANDIDATES + 1 + SHADOWS;
 /// mean horizon (Cortex-M3 and Cortex-M4F).
 const SHARE: f32 = 0.4;
 
-/// What every race of a search needs to know of the motion.
+/// The start of a motion, and the steps and units of every race about it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Course {
     pub start: State<f64>,
@@ -91,8 +91,8 @@ impl Entry {
         let of_fewest = price * fewest.steps as f32;
         let of_drawn = in_64_bits.map_or(0.0, |one| costs.of_frame(one));
 
-        // The shadows with their restarts and comparisons. If planning cannot pay for all frames, it pays for the
-        // cheapest reference and the coarsest steps of RK4 in fewer.
+        // The shadows with their restarts and comparisons. If planning cannot pay for all frames, it
+        // pays for the cheapest reference and the coarsest steps of RK4 in fewer.
         let restarts = costs.preparation / most as f32;
         let of_shadows = SHADOWS as f32 * costs.of_frame(shadows) + restarts + costs.comparison;
         let needed = of_shadows + of_fewest + costs.of_frame(shadows);

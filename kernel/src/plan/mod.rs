@@ -1,7 +1,8 @@
 //! Planning: finds the cheapest method whose frames are accurate, and predicts its accuracy
 //! horizon.
 //!
-//! A frame is accurate if both bobs are within a tolerance of the exact motion.
+//! A frame is accurate if both bobs, and bob 2 relative to bob 1, are within a tolerance of the exact
+//! motion.
 //!
 //! # The race
 //!
@@ -34,10 +35,10 @@
 //! P  <-  (1 + 1/b) J P J^T + (1 + b) T^2 + n q^2        b = sqrt(tr(J P J^T)/tr(T^2))
 //! ```
 //!
-//! T adds up, because truncation may always point in the same direction; rounding errors are
-//! independent, and their squares add up. q follows from the number formats. J is measured by five
-//! *shadows*, cheap motions in 32 bits that start close to R. The error of R in a frame is that of
-//! P on the display.
+//! T adds up, because truncation may always point in the same direction. Rounding errors are
+//! independent, and their squares add up; slow motions round alike, which counts as T. q follows
+//! from the number formats. J is measured by five *shadows*, cheap motions in 32 bits that start
+//! close to R. The error of R in a frame is that of P on the display.
 //!
 //! # Budgets
 //!

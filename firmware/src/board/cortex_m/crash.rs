@@ -186,7 +186,6 @@ pub(super) fn hang(interrupted: &ExceptionFrame) {
 ///
 /// On a chip a debugger can be recognised. A call to an absent one is better avoided, because
 /// within a fault handler it would be fatal.
-/// within a fault handler it would be fatal.
 #[cfg(any(feature = "pico", feature = "stm32f405"))]
 pub(in crate::board) fn expect_no_debugger() {
     ALONE.store(true, Ordering::Relaxed);

@@ -63,9 +63,9 @@ impl Moments {
     };
 
     /// Adds the weighted differences of the row `row`, counted from 0, from the last row.
-    #[inline(never)] // Once, and not in memory, where steps run on some boards.
+    #[inline(never)] // Inlined, every row would have a copy.
     pub fn add(&mut self, row: usize, differences: &[Q64; 6]) {
-        // Rows are few, so that the square is never 0, which the compiler cannot see.
+        // The compiler cannot see that the square is not 0.
         let square = ((row as i32 + 1) * (row as i32 + 1)).max(1);
         for (i, &difference) in differences.iter().enumerate() {
             // Sums wrap, but return into range: d8 is far below 1/144, and d6 below 1/81.

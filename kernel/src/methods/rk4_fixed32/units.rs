@@ -58,7 +58,7 @@ pub struct Units {
     pub scaling: Scaling,
 }
 
-/// What the energy of a motion demands.
+/// The units and limits that follow from the energy of a motion.
 struct Demands {
     /// The scaling with T = 1 s.
     seconds: Scaling,
