@@ -25,7 +25,7 @@
 //! be off by d8 and d6, which cost a few additions. From them follows the bound
 //!
 //! ```text
-//! T = d8 max(1, x)        x = 16 |d8|/|d6|
+//! T = d8 max(1, x)        x = 32 |d8|/|d6|
 //! ```
 //!
 //! The errors of R are in an ellipsoid P of phase space. The motion maps small errors by its
@@ -36,8 +36,7 @@
 //! ```
 //!
 //! T adds up, because truncation may always point in the same direction. Rounding errors are
-//! independent, and their squares add up; slow motions round alike, which counts as T. q follows
-//! from the number formats. J is measured by five *shadows*, cheap motions in 32 bits that start
+//! independent, and their squares add up. q follows from the number formats. J is measured by five *shadows*, cheap motions in 32 bits that start
 //! close to R. The error of R in a frame is that of P on the display.
 //!
 //! # Budgets
