@@ -1,4 +1,32 @@
 //! The table of methods: a line for each.
+//!
+//! To add a method:
+//!
+//! 1. Its type gets a file in `methods/`, and `pub use` in `methods/mod.rs` and `lib.rs`. Equations
+//!    alone implement `Derivatives`, and an alias of `Canonical`, such as `HamiltonF64`, steps them;
+//!    any other method implements `Advance` and `FormOperations`.
+//! 2. It gets the last line of the table, over which `simulate`, `count`, the report and the tests
+//!    loop, and for the boards a line in `BoardMotion` (`firmware/src/job/table.rs`).
+//! 3. `BLESS=1 cargo test -p host-tests --test kernel golden::` adds its golden bits, `--test
+//!    firmware link::` its number on the link, and `--test commands cli::` its name in the outputs.
+//!
+//! If scenes are drawn by it:
+//!
+//! 1. In `methods/any.rs` it gets a line in `DrawnMotion` and, if it computes in 32 bits, one in
+//!    `Motion32`.
+//! 2. The compiler requires a price: a field of `Costs` and an arm of `Costs::step`
+//!    (`plan/cost.rs`), a number in each list of `plan/prices.rs`, and its counting in
+//!    `host-tests/commands/count/application.rs`. Any number will do until `cargo count
+//!    --write-prices` replaces it.
+//! 3. `cargo demo --method` and `cargo prove --method` then take it. A search without a requested
+//!    method tries only the candidates of `plan/mod.rs`.
+//!
+//! To add an integrator:
+//!
+//! 1. A file of 25 lines implements `RungeKutta`, as `Rk4` in `methods/canonical.rs`.
+//!    `Canonical<f64, Hamilton<f64>, MyIntegrator>` is then a motion; a method, as above.
+//! 2. [`Integrator`] gets a variant. The compiler names the matches to extend; the one in
+//!    `tests/integrators.rs` then names a weight that is wrong.
 
 use core::fmt;
 
