@@ -23,8 +23,16 @@
 //!
 //! # Where to look
 //!
-//! Each entry names the functions in the order of their calls. `kernel/` is the folder of the
-//! crate [`double_pendulum`].
+//! | where | file; `kernel/` is the folder of the crate [`double_pendulum`] |
+//! |---|---|
+//! | one step of RK4 on the panel | `kernel/src/methods/rk4_fixed32.rs`, `rk4_direction.rs` |
+//! | the choice of method and steps | `motion/planner.rs`, with `kernel/src/plan/mod.rs` |
+//! | the horizon: meaning; computation | `motion/horizon.rs`; `kernel/src/plan/mod.rs` |
+//! | a HardFault, also on a Pico | `board/cortex_m/crash.rs`, then `board/main_loop.rs` |
+//! | how to add a panel controller, a board | the top of `display/mod.rs`, `board/mod.rs` |
+//! | how to add a scene, a method | the top of `scenes/mod.rs`, `kernel/src/table.rs` |
+//!
+//! The functions, in the order of their calls:
 //!
 //! - **The step of a motion on the panel.** `Simulation::tick` (`motion/simulation.rs`),
 //!   `PlannedRun::advance` (`kernel/src/plan/run.rs`), `DrawnMotion::advance`
@@ -43,6 +51,9 @@
 //!   (`race.rs`), from which `best` (`candidate.rs`) chooses. `Player::follow` (`app/player.rs`)
 //!   adopts the plan when its motion has caught up (`CatchingUp`, `motion/simulation.rs`). The
 //!   prices are in `kernel/src/plan/prices.rs`, the budgets in [`config`] (`Processor`).
+//! - **The horizon.** `Race::compare` (`kernel/src/plan/race.rs`) compares the candidates with the
+//!   reference, whose error is from `uncertainty.rs`. `Planner::horizon` reads the result,
+//!   `Player::now` puts it into the report, and `draw_clock` (`scenes/mod.rs`) on the panel.
 //! - **A button.** `Buttons::read` of the board (its `mod.rs`) reads the pins in `App::tick`
 //!   (`app/mod.rs`). `Controls::tick` (`app/controls.rs`) debounces them and returns a
 //!   [`protocol::Command`], such as `Heavier`. `Player::execute` (`app/player.rs`) calls
@@ -62,9 +73,6 @@
 //!   `display/st7789.rs` or `display/ssd0323.rs`.
 //! - **Another term of the equations, such as friction.** No scene has one. "Out of scope" in
 //!   `kernel/README.md` says what it takes.
-//!
-//! To add a panel controller or a board: the top of `display/mod.rs` or `board/mod.rs`. To add a
-//! scene or a method: "Changing it" in `host-tests/README.md`.
 //!
 //! # Glossary
 //!

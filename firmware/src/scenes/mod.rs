@@ -1,7 +1,14 @@
 //! The trait of all scenes, and the catalogue. Each row of the catalogue contains a name, a scene
 //! and its initial settings.
 //!
-//! To add a scene, see "Changing it" in `host-tests/README.md`.
+//! To add a scene:
+//!
+//! 1. Write a type with the trait [`Scene`], as in `pendulums.rs`, and a row of the `catalogue!`. The
+//!    compiler asks for the other places, such as its description in `host-tests/demo/src/options.rs`.
+//!    If it shows a motion, add it to `OTHERS` in `host-tests/tests/firmware/sweep.rs`.
+//! 2. `BLESS=1 cargo test -p host-tests --test firmware -- scenes:: golden:: link::` makes its stored
+//!    files, and `cargo figures --animations` its picture.
+//! 3. Run these modules and `sweep::` without `BLESS`, and `--test boards scenes::`.
 
 mod beats;
 mod butterfly;
