@@ -1,7 +1,7 @@
 //! The panel's picture, in the terminal and in files: an animation (GIF) or one screenshot (PNG).
 //!
-//! If the terminal is large enough, a pixel is half a character in its grey. Otherwise a character
-//! shows eight pixels or more as dots, in the colour of the brightest.
+//! If the terminal is large enough, a pixel is half a character in its colour. Otherwise a character
+//! shows eight pixels or more as dots, in the amber of the brightest.
 
 use std::collections::HashMap;
 use std::fs::File;
@@ -25,15 +25,20 @@ use boards::qemu::{HEIGHT, Screenshot, WIDTH};
 /// The smallest grey that is shown as a dot. Only the end of a fading trail is darker.
 const SET: u8 = 3;
 
-/// Draws the screenshot over the area: a colour panel in half characters, an OLED in greys if there
-/// is a column for each pixel, or else in Braille. The shape is right if a character is twice as
-/// high as it is wide.
+/// Returns true if a panel is shown in half blocks: with colours, and with a column for each pixel of
+/// its text, or else in Braille.
+pub fn in_half_blocks(format: Format, columns: u16, colours: bool) -> bool {
+    colours && columns >= format.width / u16::from(format.unit)
+}
+
+/// Draws the screenshot over the area. The shape is right if a character is twice as high as it is
+/// wide.
 pub fn draw(frame: &mut Frame, area: Rect, screenshot: &Screenshot, colours: bool) {
-    if let Some(pixels) = screenshot.colours.as_ref().filter(|_| colours) {
+    let in_greys = in_half_blocks(screenshot.format, area.width, colours);
+    if let Some(pixels) = screenshot.colours.as_ref().filter(|_| in_greys) {
         return draw_colours(frame, area, screenshot.format, pixels);
     }
     let width = usize::from(screenshot.format.width);
-    let in_greys = colours && usize::from(area.width) >= width;
     let canvas = Canvas::default().marker(if in_greys {
         Marker::HalfBlock
     } else {

@@ -39,8 +39,7 @@ const KEYS_ROWS: usize = 2;
 const LEAST_USED: [usize; 2] = [4, 6];
 const JOINT: &str = "\u{a0}";
 
-/// Draws the whole terminal. Without colours, or without room for 128 columns and the numbers, the
-/// panel is drawn in Braille.
+/// Draws the whole terminal.
 pub fn draw(
     frame: &mut Frame,
     board: &str,
@@ -156,20 +155,20 @@ fn keys(width: u16) -> Vec<String> {
     rows_of(few.map(|place| KEYS[place]).collect())
 }
 
-/// Returns the width of the panel in characters. A pixel of an OLED is half a character, or a dot
-/// of a Braille pattern without colours; a colour panel fills the room. `None` if the terminal is
-/// too small.
+/// Returns the width of the panel in characters. In half blocks an OLED has whole pixels, and a
+/// colour panel fills the room; in Braille at most one dot is a pixel. `None` if the terminal is too
+/// small.
 fn panel_width(area: Rect, format: Format, colours: bool) -> Option<u16> {
     let columns = area.width.checked_sub(GAP + numbers::NARROWEST)?;
     let rows = area.height.checked_sub(WORDS)?;
     let most = columns
         .min((2 * u32::from(rows) * u32::from(format.width) / u32::from(format.height)) as u16);
-    let best = if colours && format.is_large() {
-        most
-    } else if colours && most >= format.width {
-        most / format.width * format.width
-    } else {
+    let best = if !panel::in_half_blocks(format, most, colours) {
         format.width / 2
+    } else if format.is_large() {
+        most
+    } else {
+        most / format.width * format.width
     };
     let width = best.min(most / 4 * 4);
     (width >= NARROWEST && rows >= numbers::ROWS).then_some(width)
@@ -212,6 +211,7 @@ mod tests {
     use boards::host::canvas;
     use double_pendulum::plan::Stepping;
     use double_pendulum::{Method, State};
+    use firmware::display::PanelName;
     use firmware::graphics::text::{self, Anchor};
     use firmware::motion::Horizon;
     use firmware::protocol::Frame as Reading;
@@ -304,11 +304,28 @@ mod tests {
     }
 
     #[test]
-    fn panel_is_enlarged_in_whole_steps() {
-        let width = |columns, rows| panel_width(Rect::new(0, 0, columns, rows), Format::OLED, true);
-        assert_eq!(width(80, 24), Some(64));
-        assert_eq!(width(150, 45), Some(128));
-        assert_eq!(width(300, 100), Some(256));
+    fn panel_is_enlarged_where_its_text_stays_readable() {
+        let shown = |panel: PanelName, columns, rows, colours| {
+            let format = panel.format();
+            let area = Rect::new(0, 0, columns, rows);
+            let width = panel_width(area, format, colours).expect("room");
+            (width, panel::in_half_blocks(format, width, colours))
+        };
+        for (panel, columns, rows, width, in_half_blocks) in [
+            (PanelName::Oled, 80, 24, 64, false),
+            (PanelName::Oled, 143, 39, 64, false),
+            (PanelName::Oled, 144, 39, 128, true),
+            (PanelName::Oled, 300, 100, 256, true),
+            (PanelName::Lcd13, 80, 24, 32, false),
+            (PanelName::Lcd13, 144, 39, 64, false),
+            (PanelName::Lcd13, 136, 67, 120, true),
+            (PanelName::Lcd13, 300, 100, 184, true),
+        ] {
+            let expected = (width, in_half_blocks);
+            let case = format!("{} in {columns} x {rows}", panel.name());
+            assert_eq!(shown(panel, columns, rows, true), expected, "{case}");
+            assert!(!shown(panel, columns, rows, false).1, "{case}");
+        }
     }
 
     /// The snapshots cover six sizes, scenes with and without a motion, and both pages of the help.
