@@ -34,12 +34,12 @@ pub fn run(PlanOptions { scene }: &PlanOptions) -> anyhow::Result<()> {
     if let (true, Ok(plan)) = (scene.is_linear(), &plan) {
         return Ok(linear_words(plan).iter().try_for_each(say)?);
     }
-    Ok(words(&problem, &plan, &scene.target)
+    Ok(words(&problem, &plan, &scene.target, scene.end())
         .iter()
         .try_for_each(say)?)
 }
 
-fn words(scene: &Problem, plan: &Result<Plan, Limit>, chip: &Chip) -> Vec<String> {
+fn words(scene: &Problem, plan: &Result<Plan, Limit>, chip: &Chip, end: &str) -> Vec<String> {
     let frame = chip.processor.budget(scene).frame;
     let mut lines = vec![format!("scene    {}", pendulum(scene))];
     if rests(scene) {
@@ -50,12 +50,16 @@ fn words(scene: &Problem, plan: &Result<Plan, Limit>, chip: &Chip) -> Vec<String
         Ok(plan) => {
             let share = 100.0 * plan.cost * f32::from(scene.rate) / chip.clock;
             let Plan { horizon, cost, .. } = plan;
+            let end = match plan.limit {
+                Limit::End => format!(", {end}"),
+                _ => String::new(),
+            };
             vec![
                 format!("method   {}", plan.method),
                 format!("step     {}", step(scene, plan)),
                 format!(
                     "horizon  expected to stay within half a pixel of the exact motion until \
-                     {horizon:.2} s of {} s",
+                     {horizon:.2} s of {} s{end}",
                     scene.duration
                 ),
                 format!(

@@ -121,6 +121,14 @@ impl SceneOptions {
         }
     }
 
+    /// Returns the words for the end of the scene. Only a motion of the user's own can be longer.
+    pub fn end(&self) -> &'static str {
+        match self.scene {
+            Some(_) => "the end",
+            None => "the end; longer with --seconds",
+        }
+    }
+
     pub fn is_linear(&self) -> bool {
         self.scene.is_some_and(SceneName::is_linear)
     }

@@ -211,6 +211,7 @@ pub fn words(
     plan: &Result<Plan, Limit>,
     Stepping { method, steps }: Stepping,
     frames: &[Verdict],
+    last: &str,
     stopped: &AtomicUsize,
 ) -> String {
     let (right, open) = counts(frames);
@@ -226,7 +227,7 @@ pub fn words(
             not_enclosed(scene, frames)
         ),
         _ => format!(
-            "no frame wrong of all {} frames, until {end:.3} s",
+            "no frame wrong of all {} frames, until {end:.3} s, {last}",
             frames.len()
         ),
     };
@@ -241,11 +242,11 @@ pub fn words(
         ),
         Err(_) => String::from("no method is fast enough"),
     };
-    let unknown =
+    let from_panel =
         ambiguity_time(scene, frames.len() as u32, stopped).map_or(String::new(), |time| {
             format!(
-                "\nunknown    the numbers on the panel are too coarse to tell where a bob is \
-                 after {time:.3} s"
+                "\n           with only the panel's numbers (mass ratio, start angle): each bob within \
+                 a rod's length until {time:.3} s"
             )
         });
 
@@ -253,7 +254,7 @@ pub fn words(
         || String::from("the start only"),
         |frame| {
             let width = at_most(frame.width);
-            format!("exact motion enclosed within {width} at {end:.3} s")
+            format!("sine and cosine of each exact angle within {width} at {end:.3} s")
         },
     );
     format!(
@@ -262,7 +263,7 @@ proved     within half a pixel until {:.3} s, all {right} frames
            {first}
 undecided  {open} {}
 predicted  {predicted}
-known      {known}{unknown}",
+known      {known}{from_panel}",
         time(scene, right),
         if open == 1 { "frame" } else { "frames" },
     )

@@ -145,7 +145,8 @@ pub fn run(options: &ProveOptions) -> anyhow::Result<ExitCode> {
             say("scene      shows the linear motion on purpose, not the exact one")?;
         }
         say(format_args!("scene      {}", pendulum(&scene)))?;
-        say(words(&scene, &plan, stepping, &proved, &stopped))?;
+        let last = options.scene.end();
+        say(words(&scene, &plan, stepping, &proved, last, &stopped))?;
     }
 
     Ok(interrupted_by(stopped.load(Ordering::Relaxed)))
