@@ -1,12 +1,12 @@
 //! The progress of a command: a spinner or a bar on a terminal, elsewhere a plain line from time to
 //! time.
 
-use std::fmt::Display;
+use std::fmt::{Display, Write};
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 
-use indicatif::{MultiProgress, ProgressBar, ProgressStyle};
+use indicatif::{HumanCount, MultiProgress, ProgressBar, ProgressState, ProgressStyle};
 
 use super::cli::complain;
 
@@ -52,13 +52,17 @@ impl Progress {
     /// Begins work with a known number of pieces: a bar on a terminal, elsewhere a line from time
     /// to time.
     pub fn of(doing: &str, length: u64) -> Self {
-        let style = "{prefix} {elapsed} {wide_bar} {pos}/{len}, {per_sec}, {eta} left";
+        let style = "{prefix} {elapsed} {wide_bar} {pos}/{len}, {rate}/s, {eta} left";
         Self::new(doing, ProgressBar::new(length), style)
     }
 
     fn new(doing: &str, bar: ProgressBar, style: &str) -> Self {
-        let style =
-            ProgressStyle::with_template(style).unwrap_or_else(|_| ProgressStyle::default_bar());
+        let rate = |state: &ProgressState, text: &mut dyn Write| {
+            _ = write!(text, "{}", HumanCount(state.per_sec() as u64));
+        };
+        let style = ProgressStyle::with_template(style)
+            .unwrap_or_else(|_| ProgressStyle::default_bar())
+            .with_key("rate", rate);
         let bar = BARS.get_or_init(MultiProgress::new).add(bar);
         Self {
             bar: bar.with_style(style).with_prefix(doing.to_owned()),

@@ -12,11 +12,13 @@ use std::{env, fs};
 
 use anyhow::{anyhow, ensure};
 
-use super::run::{quick_output, run_shown};
+use super::run::quick_output;
 use super::{TARGETS, Toolchain, WASM, remap, set_up_for, target, workspace};
 use firmware::display::PanelName;
 
 use crate::board::{Board, every_board};
+use crate::console::progress::Progress;
+use crate::process::run_watched;
 
 /// The list saves time: another call of cargo takes half a second.
 static BUILT: Mutex<Vec<(String, String)>> = Mutex::new(Vec::new());
@@ -98,7 +100,13 @@ impl Toolchain {
             let mut command = self.for_targets("build", &[board.target])?;
             command.args(["--bin", board.binary, "--features", board.feature]);
             command.env("PANEL", name);
-            self.finish(command, &format!("building {} for {name}", board.binary))?;
+            self.finish(
+                command,
+                &format!(
+                    "building {} for {}, panel {name}",
+                    board.binary, board.target
+                ),
+            )?;
             fs::copy(folder.join(board.binary), &image)?;
             BUILT
                 .lock()
@@ -279,13 +287,26 @@ impl Toolchain {
     }
 
     fn finish(&self, mut command: Command, doing: &str) -> anyhow::Result<()> {
-        let output = run_shown(&mut command, LIMIT, doing)?;
+        let progress = Progress::start(doing);
+        let output = run_watched(&mut command, LIMIT, |line| {
+            progress.alive(line.and_then(crate_of).as_deref());
+        })?;
         ensure!(
             output.status.success(),
             "the firmware does not build\n{}",
             output.stderr
         );
         Ok(())
+    }
+}
+
+/// Returns the crate that this line of Cargo names.
+fn crate_of(line: &str) -> Option<String> {
+    let words: Vec<_> = line.split_whitespace().collect();
+    match words[..] {
+        ["Compiling", "firmware", _, ..] => Some("firmware, the last crate, takes longest".into()),
+        ["Compiling" | "Checking", name, _, ..] => Some(name.to_owned()),
+        _ => None,
     }
 }
 
