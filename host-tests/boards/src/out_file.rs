@@ -12,7 +12,8 @@ use nix::fcntl::{Flock, FlockArg};
 use tempfile::TempPath;
 
 use crate::console::cli::{Refused, unwritable};
-use crate::process::remove_on_interrupt;
+use crate::console::progress::complain_above;
+use crate::process::on_interrupt;
 
 /// A file that is being written, without a buffer.
 ///
@@ -139,7 +140,12 @@ fn create(path: &Path) -> io::Result<Content> {
         return Err(taken());
     }
 
-    remove_on_interrupt(&part);
+    let (unfinished, path) = (part.clone(), path.to_owned());
+    on_interrupt(move || {
+        if fs::remove_file(unfinished).is_ok() {
+            complain_above(format_args!("interrupted: {} not written", path.display()));
+        }
+    });
     let part = TempPath::try_from_path(part)?;
     file.set_len(0)?;
     if let Some(rights) = rights {

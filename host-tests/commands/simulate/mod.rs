@@ -81,6 +81,12 @@ struct Written {
 
 impl<'a> Job<'a> {
     fn new(options: &'a SimulateOptions) -> anyhow::Result<Self> {
+        if let Some(scene) = options.scene.filter(|scene| !scene.has_angles()) {
+            bail!(
+                "--scene {}: has no motion to compute; choose another scene, as in --scene page",
+                scene.name()
+            );
+        }
         if let Some(tolerance) = &options.tolerance {
             let Choice {
                 request,

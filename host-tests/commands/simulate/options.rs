@@ -97,7 +97,8 @@ pub struct SimulateOptions {
     /// Print the table of methods: name, equations, numbers, integrator, order, where it runs
     #[arg(long, exclusive = true)]
     pub list: bool,
-    /// Where to compute it: on this computer, or in the firmware on an emulated board
+    /// Where to compute it: on this computer, or in the firmware on an emulated board; `pico` is
+    /// lm3s6965evb-m0, which has its core
     #[arg(long = "board", alias = "on", alias = "target", value_name = "NAME", default_value = HOST,
           value_parser = choice_with_aliases([None].into_iter().chain(BOARDS.iter().map(Some)), names))]
     pub place: Place,
