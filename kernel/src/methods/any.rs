@@ -29,6 +29,7 @@ macro_rules! motions {
 
         impl $motion {
             /// The methods, in the order of the variants.
+            #[allow(dead_code)] // Not every user needs it.
             $visibility const METHODS: &[$crate::Method] = &[$($crate::Method::$method),*];
 
             #[inline(never)] // Inlined, the motions of all kinds would share a stack frame.
