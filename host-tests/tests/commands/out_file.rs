@@ -1,11 +1,11 @@
 //! The files that commands write are complete or do not exist.
 
-use std::fs;
 use std::os::unix::fs::symlink;
 use std::path::Path;
 use std::process::{Command, Stdio};
 use std::thread::sleep;
 use std::time::Duration;
+use std::{fs, io};
 
 use boards::process::spawn;
 use nix::sys::signal::{Signal, kill};
@@ -55,7 +55,7 @@ fn a_file_is_replaced_by_a_complete_one_only() {
     long.args(LONG)
         .current_dir(&folder)
         .stdin(Stdio::null())
-        .stderr(Stdio::null());
+        .stderr(Stdio::piped());
     let mut long = spawn(&mut long, LIMIT).expect("it starts");
     let part = folder.path().join(".swing.csv.part");
     while fs::metadata(&part).map_or(0, |part| part.len()) == 0 {
@@ -72,6 +72,11 @@ fn a_file_is_replaced_by_a_complete_one_only() {
     );
     kill(Pid::from_raw(long.child.id().cast_signed()), Signal::SIGINT).expect("it runs");
     assert_eq!(long.wait().expect("it ends").code(), Some(130));
+    let report = io::read_to_string(long.child.stderr.take().expect("piped")).expect("text");
+    assert!(
+        report.ends_with("interrupted: swing.csv not written\n"),
+        "{report}"
+    );
     assert_eq!(fs::read_to_string(&file).expect("the old one"), "old");
 
     let link = folder.path().join("link.csv");
