@@ -65,6 +65,23 @@ pub enum Parameter {
     PlanningBudget,
 }
 
+impl Parameter {
+    /// Returns the SI unit after a space, to follow a value; empty for a plain number or a cost.
+    const fn unit(self) -> &'static str {
+        match self {
+            Parameter::M1 | Parameter::M2 => " kg",
+            Parameter::L1 | Parameter::L2 | Parameter::Tolerance => " m",
+            Parameter::G => " m/s^2",
+            Parameter::A1 | Parameter::A2 => " rad",
+            Parameter::W1 | Parameter::W2 => " rad/s",
+            Parameter::P1 | Parameter::P2 => " kg m^2/s",
+            Parameter::Dt | Parameter::Duration => " s",
+            Parameter::Energy => " J",
+            _ => "",
+        }
+    }
+}
+
 impl fmt::Display for Parameter {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
@@ -99,7 +116,7 @@ impl fmt::Display for Parameter {
 
 /// The reason why an input is refused, or why a motion cannot go on: the parameter and its value,
 /// in the unit of the [`Parameter`], except for [`Diverged`](Self::Diverged). Displays as one line,
-/// such as `l1 = 0.0: must be greater than zero`.
+/// such as `l1 = 0.0 m: must be greater than zero`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -199,18 +216,25 @@ impl Error {
 
 impl fmt::Display for Error {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let unit = self.parameter().unit();
         match self {
             Error::NotFinite { parameter, value } => {
                 write!(f, "{parameter} = {value:?}: must be a finite number")
             }
             Error::NotPositive { parameter, value } => {
-                write!(f, "{parameter} = {value:?}: must be greater than zero")
+                write!(
+                    f,
+                    "{parameter} = {value:?}{unit}: must be greater than zero"
+                )
             }
             Error::TooLarge {
                 parameter,
                 value,
                 limit,
-            } => write!(f, "{parameter} = {value:?}: must not exceed {limit:?}"),
+            } => write!(
+                f,
+                "{parameter} = {value:?}{unit}: must not exceed {limit:?}{unit}"
+            ),
             Error::TooSmall {
                 parameter,
                 value,
@@ -221,7 +245,10 @@ impl fmt::Display for Error {
                 } else {
                     "be at least"
                 };
-                write!(f, "{parameter} = {value:?}: must {relation} {limit:?}")
+                write!(
+                    f,
+                    "{parameter} = {value:?}{unit}: must {relation} {limit:?}{unit}"
+                )
             }
             Error::Diverged { parameter, value } => write!(
                 f,
@@ -231,16 +258,16 @@ impl fmt::Display for Error {
             Error::OutOfRange {
                 parameter: Parameter::Dt,
                 value: 0.0,
-            } => f.write_str("dt = 0.0: must not be zero"),
+            } => f.write_str("dt = 0.0 s: must not be zero"),
             Error::OutOfRange { parameter, value } => write!(
                 f,
-                "{parameter} = {value:?}: too large or too small for this arithmetic, \
+                "{parameter} = {value:?}{unit}: too large or too small for this arithmetic, \
                  together with the other values; use less extreme values"
             ),
             Error::UnequalRods { l1, l2 } => {
                 write!(
                     f,
-                    "l2 = {l2:?}: must equal l1 = {l1:?}; \
+                    "l2 = {l2:?}{unit}: must equal l1 = {l1:?}{unit}; \
                      these equations are for rods of equal length"
                 )
             }

@@ -309,7 +309,7 @@ fn errors_are_printed_in_one_line() {
                 parameter: L1,
                 value: 0.0,
             },
-            "l1 = 0.0: must be greater than zero",
+            "l1 = 0.0 m: must be greater than zero",
         ),
         (
             Error::TooLarge {
@@ -317,7 +317,7 @@ fn errors_are_printed_in_one_line() {
                 value: 2.0,
                 limit: 0.5,
             },
-            "dt = 2.0: must not exceed 0.5",
+            "dt = 2.0 s: must not exceed 0.5 s",
         ),
         (
             Error::TooSmall {
@@ -325,7 +325,7 @@ fn errors_are_printed_in_one_line() {
                 value: -1.0,
                 limit: 0.0,
             },
-            "g = -1.0: must be at least 0.0",
+            "g = -1.0 m/s^2: must be at least 0.0 m/s^2",
         ),
         (
             Error::TooSmall {
@@ -345,7 +345,7 @@ fn errors_are_printed_in_one_line() {
         ),
         (
             Error::UnequalRods { l1: 3.0, l2: 4.0 },
-            "l2 = 4.0: must equal l1 = 3.0; these equations are for rods of equal length",
+            "l2 = 4.0 m: must equal l1 = 3.0 m; these equations are for rods of equal length",
         ),
     ] {
         assert_eq!(error.to_string(), line);
