@@ -25,7 +25,7 @@
 //!
 //! | where | file; `kernel/` is the folder of the crate [`double_pendulum`] |
 //! |---|---|
-//! | one step of RK4 on the panel | `kernel/src/methods/rk4_fixed32.rs`, `rk4_direction.rs` |
+//! | one step of RK4 | `kernel/src/methods/rk4_fixed32.rs`; with an FPU `rk4_direction.rs` |
 //! | the choice of method and steps | `motion/planner.rs`, with `kernel/src/plan/mod.rs` |
 //! | the horizon: meaning; computation | `motion/horizon.rs`; `kernel/src/plan/mod.rs` |
 //! | a HardFault, also on a Pico | `board/cortex_m/crash.rs`, then `board/main_loop.rs` |
@@ -64,11 +64,9 @@
 //!   `encode` (`protocol/mod.rs`) writes it.
 //! - **A fault.** `hard_fault` and `crash` (`board/cortex_m/crash.rs`) store the cause in memory that
 //!   a reset keeps (`board/cortex_m/retained.rs`); write a report where a debugger may read it, not
-//!   on a Pico; and reset. Then `resume` (`board/main_loop.rs`) starts the
-//!   same scene again, or after more than `MOST_RESTARTS` (`app/warm_restart.rs`) the first one,
-//!   and logs the cause. The host asks for it and prints it (`describe_restart`,
-//!   `host-tests/boards/src/link/mod.rs`). The user's side is "When it crashes or hangs" in
-//!   `firmware/README.md`.
+//!   on a Pico; and reset. Then `resume` (`board/main_loop.rs`) starts the same scene again, or
+//!   after more than `MOST_RESTARTS` (`app/warm_restart.rs`) the first one, and logs the cause. The
+//!   host asks for it and prints it (`describe_restart`, `host-tests/boards/src/link/mod.rs`).
 //! - **The bytes for a panel.** `display/oled_i2c.rs`, with a row for each controller,
 //!   `display/st7789.rs` or `display/ssd0323.rs`.
 //! - **Another term of the equations, such as friction.** No scene has one. "Out of scope" in
