@@ -32,8 +32,9 @@ pub const OFFERED: [(&Board, &str); 4] = [
     (&LM3S6965EVB_M4, "Cortex-M4F at 25 MHz"),
     (&STM32F405, "STM32F405 (Cortex-M4F at 168 MHz)"),
 ];
-pub const PANELS: [PanelName; 4] = [
+pub const PANELS: [PanelName; 5] = [
     PanelName::Lcd13,
+    PanelName::Lcd2,
     PanelName::Display2,
     PanelName::Display,
     PanelName::Oled,
@@ -42,7 +43,7 @@ pub const PANELS: [PanelName; 4] = [
 /// The options for no window, also for root, and no requests of its own.
 pub const HEADLESS: &str = "--headless --no-sandbox --disable-gpu --disable-quic --no-first-run \
     --disable-background-networking --disable-component-update --disable-sync --hide-scrollbars";
-const PICTURE: &str = "--window-size=1000,960 --virtual-time-budget=60000";
+const PICTURE: &str = "--window-size=1000,1100 --virtual-time-budget=60000";
 const PICTURE_LIMIT: Duration = Duration::from_secs(120);
 /// A clock for the picture: 8.5 s in frames of 1/60 s, independent of the speed of the machine. The
 /// module is compiled at once, because the virtual time does not wait for a compilation, and a page
@@ -65,14 +66,13 @@ pub struct WebOptions {
 }
 
 /// Writes the page, and makes the picture and opens the page if the options demand it. If the
-/// picture cannot be written or a program is missing, this is refused before the build.
+/// picture cannot be written or Chromium is missing, this is refused before the build.
 pub fn run(options: &WebOptions) -> anyhow::Result<()> {
     let picture = options.picture.as_deref();
     let picture = picture.map(|path| OutFile::create("--picture", path));
     let picture = picture.transpose()?;
     let chromium = picture.as_ref().map(|_| toolchain::set_up_chromium());
     let chromium = chromium.transpose()?;
-    let opener = options.open.then(opener).transpose()?;
 
     let page = write_page()?;
     say(format_args!("wrote {}", page.display()))?;
@@ -81,8 +81,8 @@ pub fn run(options: &WebOptions) -> anyhow::Result<()> {
         picture.write_whole(&take_picture(&chromium, &page)?)?;
         say(format_args!("wrote {}", path.display()))?;
     }
-    if let Some(opener) = opener {
-        Command::new(opener)
+    if options.open {
+        Command::new(opener()?)
             .arg(page)
             .stdin(Stdio::null())
             .spawn()?;
@@ -93,8 +93,7 @@ pub fn run(options: &WebOptions) -> anyhow::Result<()> {
 fn opener() -> Result<PathBuf, Refused> {
     find("xdg-open").or_else(|| find("open")).ok_or_else(|| {
         Refused::because(
-            "--open: neither xdg-open nor open is installed; leave --open out, and open the page \
-             in a browser",
+            "--open: neither xdg-open nor open is installed; open the page in a browser",
         )
     })
 }

@@ -202,7 +202,7 @@ async function test() {
     ['m1=-1', `m1=-1: ${number} 0.001 to 1000 kg.`],
     ['l1=1e-30&l2=1e30', `l1=1e-30: ${number} 0.001 to 1000 m.\nl2=1e30: ${number} 0.001 to 1000 m.`],
     ['w2=Infinity', `w2=Infinity: ${number} -1000 to 1000 rad/s.`],
-    ['speed=5', `speed=5: ${number} 0.01 to 4.`],
+    ['speed=9/2', `speed=9/2: ${number} 0.01 to 4.`],
     ['method=foo', `method=foo: use one of plan, ${drawn.map(({ name }) => name).join(', ')}.`],
     ['scene=Page', `scene=Page: use one of ${scenes.map(({ name }) => name).join(', ')}.`],
     ['processor=m5', 'board=m5: use one of pico, lm3s6965evb, lm3s6965evb-m4, stm32f405.'],
@@ -220,6 +220,11 @@ async function test() {
     assert.equal(await of("at('said').textContent"), reasons);
     assert.equal(await of('later().then(() => decodeURI(location.hash))'), `#${words}`);
   }
+  await open('#speed=1/2&panel=lcd-2');
+  await see({ caption: 'speed 0.5', display: 'Pico-LCD-2' });
+  await open('#a1=100&a2=80&l1=0.3&l2=0.3');
+  await of('run(60)');
+  await see({ horizon: '^planning: not known yet$' });
   await open('#scene=nowhere&mu=2.5');
   await see({ scene: 'page', 'mu-now': '^2.5$' });
   await press('ArrowRight');
@@ -255,6 +260,7 @@ async function test() {
   await enter('words', 'file:///page.html#scene=flips&m2=3');
   await see({ scene: 'flips', caption: 'a map of all starts.*; m₁ = 1 kg, m₂ = 3 kg.* m/s²$' });
   assert.ok(await of("at('energy-card').hidden && at('save-numbers').disabled"));
+  assert.ok(await of("at('method-card').hidden && at('horizon-card').hidden"));
   await enter('words', '#l1=0.001&l2=10');
   await see({ caption: 'stopped: too fast for this chip; it needs longer rods.* l₁ = 0.001 m' });
   await of("at('words').focus()");
