@@ -44,9 +44,9 @@ pub struct DemoOptions {
           value_parser = choice([None].into_iter().chain(Method::DRAWN.iter().copied().map(Some)),
                                 |method| method.map_or("plan", Method::name)))]
     pub method: Option<MethodChoice>,
-    /// The panel. Of an OLED the controller, kept until the board is switched off; `auto`
+    /// The panel. Of an OLED the controller, kept until the board is switched off; `auto` or `oled`
     /// identifies it [default: as it is]. The other panels are those of an emulated Pico
-    #[arg(long, value_name = "NAME", value_parser = choice(panels(), PanelChoice::name))]
+    #[arg(long, value_name = "NAME", value_parser = choice_with_aliases(panels(), PanelChoice::names))]
     pub panel: Option<PanelChoice>,
     /// Turn the panel's picture by 180 degrees, or back by 0; kept as --panel
     #[arg(long, value_name = "DEGREES",
@@ -159,11 +159,11 @@ pub enum PanelChoice {
 }
 
 impl PanelChoice {
-    fn name(self) -> &'static str {
+    fn names(self) -> Vec<&'static str> {
         match self {
-            Self::Oled(None) => "auto",
-            Self::Oled(Some(controller)) => controller.name(),
-            Self::Colour(panel) => panel.name(),
+            Self::Oled(None) => vec!["auto", PanelName::Oled.name()],
+            Self::Oled(Some(controller)) => vec![controller.name()],
+            Self::Colour(panel) => vec![panel.name()],
         }
     }
 }

@@ -247,6 +247,7 @@ pub fn stepping(frame: &Frame) -> String {
         Horizon::Until(time) if frame.scene.is_linear() => {
             format!("leaves the exact motion by half a pixel at {time:.2} s")
         }
+        Horizon::Until(0.0) => "accuracy cannot be predicted here".to_owned(),
         Horizon::Until(time) if frame.report.time > f64::from(time) => {
             format!("was accurate to half a pixel until {time:.1} s")
         }
