@@ -7,7 +7,7 @@ use std::ffi::OsString;
 use std::path::PathBuf;
 use std::process::Command;
 use std::sync::{Mutex, PoisonError};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 use std::{env, fs};
 
 use anyhow::{anyhow, ensure};
@@ -28,6 +28,9 @@ const AHEAD: [&str; 3] = ["lm3s6965evb", "measure", "inject-panic"];
 
 /// For a slow, busy machine, including downloads.
 const LIMIT: Duration = Duration::from_secs(1800);
+
+/// The time for which the name of a crate is shown.
+const SILENCE: Duration = Duration::from_secs(5);
 
 /// The prefixes of environment variables that are removed for the firmware's build. `cargo run` and
 /// `cargo test` set such variables, and a user may have set them for host programs.
@@ -102,10 +105,7 @@ impl Toolchain {
             command.env("PANEL", name);
             self.finish(
                 command,
-                &format!(
-                    "building {} for {}, panel {name}",
-                    board.binary, board.target
-                ),
+                &format!("building {}-{name} for {}", board.binary, board.target),
             )?;
             fs::copy(folder.join(board.binary), &image)?;
             BUILT
@@ -287,9 +287,16 @@ impl Toolchain {
     }
 
     fn finish(&self, mut command: Command, doing: &str) -> anyhow::Result<()> {
+        // Cargo names each crate when it begins, so a name soon says nothing about the present.
         let progress = Progress::start(doing);
+        let mut named = Instant::now();
         let output = run_watched(&mut command, LIMIT, |line| {
-            progress.alive(line.and_then(crate_of).as_deref());
+            let name = line.and_then(crate_of);
+            if name.is_some() {
+                named = Instant::now();
+            }
+            let is_old = named.elapsed() > SILENCE;
+            progress.alive(name.or(is_old.then_some("the last crate takes longest")));
         })?;
         ensure!(
             output.status.success(),
@@ -301,13 +308,11 @@ impl Toolchain {
 }
 
 /// Returns the crate that this line of Cargo names.
-fn crate_of(line: &str) -> Option<String> {
-    let words: Vec<_> = line.split_whitespace().collect();
-    match words[..] {
-        ["Compiling", "firmware", _, ..] => Some("firmware, the last crate, takes longest".into()),
-        ["Compiling" | "Checking", name, _, ..] => Some(name.to_owned()),
-        _ => None,
-    }
+fn crate_of(line: &str) -> Option<&str> {
+    let mut words = line.split_whitespace();
+    let is_named = matches!(words.next(), Some("Compiling" | "Checking"));
+    let name = words.next().filter(|_| is_named)?;
+    words.next().map(|_version| name)
 }
 
 fn is_foreign(name: &OsString) -> bool {
