@@ -11,11 +11,6 @@ use crate::motion::{CatchingUp, Horizon, PlanResult, Planned, Planner, Resources
 use crate::protocol::{Command, Field, Frame, PlayState, Status, in_range};
 use crate::scenes::{AnyScene, Report, SceneName, too_fast};
 
-/// The cost of a step of a motion that is shown for comparison, in steps by RK4 in `f32`: 1.55 on a
-/// Cortex-M3 and 1.58 on a Cortex-M0+, counted in figure 7. It is 2.4 on a Cortex-M4F, where such a
-/// motion takes 1 % of a tick.
-const OTHER_STEP: f32 = 1.6;
-
 /// An event of the planner, or of the motion that is shown.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PlannerEvent {
@@ -227,19 +222,26 @@ impl<'a> Player<'a> {
     /// Advances by one tick of the clock, which is `due` ticks of the scene at any speed, as
     /// [`tick`](Self::tick) does. For a host that repeats the frames of a board.
     pub fn advance(&mut self, due: u32, mut tell: impl FnMut(PlannerEvent)) {
-        let mut other_steps = 0;
+        let mut cost = 0.0;
         for _ in 0..due {
             self.step += 1;
             self.scene.tick(self.step, &mut self.canvas);
-            other_steps += self.scene.other_steps();
+            cost += self.scene.cost(&self.planner.costs);
         }
+
+        // Motions that exceed the budget of a frame, as at a high speed, leave less time for planning.
+        let Processor {
+            frame, look_ahead, ..
+        } = self.planner.processor;
+        let excess = f32::max(cost - frame, 0.0);
+        let left = look_ahead - excess;
 
         // Either the planned motion catches up, or the planner works.
         if let MotionState::Switching(next) = &mut self.motion {
             if self
                 .scene
                 .planned()
-                .is_none_or(|motion| next.tick(motion, due))
+                .is_none_or(|motion| next.tick(motion, due, left))
             {
                 let stepping = next.stepping();
                 self.motion = MotionState::Steady;
@@ -249,26 +251,20 @@ impl<'a> Player<'a> {
         }
         if let Some(found) = self.planner.tick(self.step) {
             tell(PlannerEvent::Found(found));
-            self.follow(&found);
+            self.follow(&found, due, left);
         }
-
-        // Planning gives way to a motion that exceeds the budget of a frame, and to motions without
-        // a budget. It does so in the next tick, because a board may have worked ahead in this one.
-        let costs = self.planner.processor.costs;
-        let of_other = OTHER_STEP * costs.direction * other_steps as f32;
-        let motion = self.scene.planned().map(|shown| shown.motion.stepping());
-        let of_motion = motion.map_or(0.0, |stepping| self.cost(stepping));
-        let beyond = due as f32 * of_motion - self.planner.processor.frame;
-        self.planner.leave_time_for(beyond.max(0.0) + of_other);
+        // The next tick pays, because a board may have worked ahead in this one.
+        self.planner.leave_time_for(excess);
     }
 
     /// Begins to switch to the method and step count of a plan, if that does not shorten the
-    /// horizon.
+    /// horizon. `due` and `left` are the ticks of the scene and the cycles for catching up in this
+    /// tick of the clock.
     ///
     /// A plan whose horizon is past before its motion has caught up is not followed, because then
     /// that motion is as inaccurate as the current one. A plan that costs less, but has a shorter
     /// horizon than the panel has shown, is not followed either.
-    fn follow(&mut self, found: &PlanResult) {
+    fn follow(&mut self, found: &PlanResult, due: u32, left: f32) {
         let (Ok(plan), Some(simulation)) = (found, self.scene.planned()) else {
             return;
         };
@@ -276,12 +272,12 @@ impl<'a> Player<'a> {
         let current = simulation.motion.stepping();
         let planned = plan.stepping();
         let processor = &self.planner.processor;
-        let arrival = CatchingUp::arrival(&self.settings, planned, processor, self.step);
-        let is_longer = plan.horizon >= self.planner.horizon(current).max(arrival);
-        if planned == current || !is_longer {
+        let Ok(next) = CatchingUp::new(&self.settings, planned, processor) else {
             return;
-        }
-        if let Ok(next) = CatchingUp::new(&self.settings, planned, processor) {
+        };
+        let arrival = next.arrival(self.step, due, left);
+        let is_longer = plan.horizon >= self.planner.horizon(current).max(arrival);
+        if planned != current && is_longer {
             self.motion = MotionState::Switching(next);
         }
     }

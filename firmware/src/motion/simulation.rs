@@ -1,6 +1,6 @@
 //! The simulation of the motion of a scene, and the error of its energy.
 
-use double_pendulum::plan::{PlannedRun, Problem, Stepping};
+use double_pendulum::plan::{Costs, PlannedRun, Problem, Stepping};
 use double_pendulum::{Error, Method, Parameter, Pendulum, State};
 
 use crate::config::{Processor, TICK_RATE};
@@ -82,6 +82,11 @@ impl Simulation {
         let _is_lost = self.motion.advance(1);
     }
 
+    /// Returns the cost of a tick by these prices.
+    pub fn cost(&self, costs: &Costs) -> f32 {
+        costs.of_frame(self.motion.stepping())
+    }
+
     /// Returns the number of frames, 1/60 s each, since the start of the scene.
     pub fn frame(&self) -> u64 {
         self.motion.frame()
@@ -110,18 +115,17 @@ fn affordable(
 /// A motion by another method and step count that starts again and catches up with the motion that
 /// is shown.
 ///
-/// The number of ticks that it takes depends only on the cost of a frame and on the number of
-/// frames to catch up, so it is the same on every board of a processor class.
+/// The number of ticks that it takes depends only on prices and on the number of frames to catch up,
+/// so it is the same on every board of a processor class.
 #[derive(Clone, Debug)]
 pub struct CatchingUp {
     motion: PlannedRun,
-    /// The number of frames that it advances in a tick.
-    most: u32,
+    /// The cost of a frame.
+    cost: f32,
 }
 
 impl CatchingUp {
-    /// Creates the motion of `settings` at its start, by `stepping`. In each tick of the clock it
-    /// advances by as many frames of 1/60 s as [`Processor::look_ahead`] pays for, at least 2.
+    /// Creates the motion of `settings` at its start, by `stepping`.
     ///
     /// # Errors
     ///
@@ -131,17 +135,17 @@ impl CatchingUp {
         stepping: Stepping,
         processor: &Processor,
     ) -> Result<Self, Error> {
+        let costs = processor.costs.for_pendulum(&settings.parameters.cast());
         Ok(Self {
             motion: settings.run(0.0, stepping)?,
-            most: Self::frames(settings, stepping, processor),
+            cost: costs.of_frame(stepping).max(processor.piece()),
         })
     }
 
-    /// Returns the number of frames that a motion by `stepping` advances in a tick of the clock.
-    fn frames(settings: &Settings, stepping: Stepping, processor: &Processor) -> u32 {
-        let costs = processor.costs.for_pendulum(&settings.parameters.cast());
-        let frame = costs.of_frame(stepping).max(processor.piece());
-        ((processor.look_ahead / frame) as u32).max(2)
+    /// Returns the number of frames of 1/60 s that `cycles` pay for in a tick of the clock in which
+    /// the motion that is shown advances by `due`. With fewer than one more it would never catch up.
+    fn frames(&self, due: u32, cycles: f32) -> u32 {
+        ((cycles / self.cost) as u32).max(due + 1)
     }
 
     /// Returns the method and step count.
@@ -149,25 +153,19 @@ impl CatchingUp {
         self.motion.stepping()
     }
 
-    /// Returns the time, s since the start of the scene, when a motion by `stepping` has caught up
-    /// that starts again in tick `ticks`. It may be up to two ticks later.
-    pub fn arrival(
-        settings: &Settings,
-        stepping: Stepping,
-        processor: &Processor,
-        ticks: u64,
-    ) -> f64 {
-        let frames = f64::from(Self::frames(settings, stepping, processor));
-        ticks as f64 / f64::from(TICK_RATE) * (frames / (frames - 1.0))
+    /// Returns the time, s since the start of the scene, when the motion has caught up that starts
+    /// in tick `ticks` of the scene, if all ticks are like this one. It may be a few ticks later.
+    pub fn arrival(&self, ticks: u64, due: u32, cycles: f32) -> f64 {
+        let frames = self.frames(due, cycles);
+        ticks as f64 / f64::from(TICK_RATE) * f64::from(frames) / f64::from(frames - due)
     }
 
-    /// Advances by the frames of a tick of the clock, in which `simulation` has advanced by `due`,
-    /// but not beyond `simulation`. Returns true if it has caught up with it. Then `simulation`
-    /// continues with this motion. A motion that diverges is not reported here. Not checked: both
-    /// motions have the same settings.
-    pub fn tick(&mut self, simulation: &mut Simulation, due: u32) -> bool {
-        // With fewer than one more it would never catch up.
-        for _ in 0..self.most.max(due + 1) {
+    /// Advances by the frames of a tick of the clock that `cycles` pay for, in which `simulation`
+    /// has advanced by `due`, but not beyond `simulation`. Returns true if it has caught up with it.
+    /// Then `simulation` continues with this motion. A motion that diverges is not reported here.
+    /// Not checked: both motions have the same settings.
+    pub fn tick(&mut self, simulation: &mut Simulation, due: u32, cycles: f32) -> bool {
+        for _ in 0..self.frames(due, cycles) {
             if self.motion.frame() < simulation.frame() {
                 let _is_lost = self.motion.advance(1);
             }

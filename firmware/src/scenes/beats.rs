@@ -2,6 +2,7 @@
 //! return to their start after a few periods, and their Lissajous figure closes. The exact motion
 //! from the same start does not return.
 
+use double_pendulum::plan::Costs;
 use double_pendulum::{Error, Modes, Parameters, SmallOscillations};
 
 use crate::config::{GRAVITY, ROD};
@@ -234,6 +235,10 @@ impl Scene for Beats {
 
     fn report(&self, _: u64) -> Report {
         Report::of(&self.simulation)
+    }
+
+    fn cost(&self, costs: &Costs) -> f32 {
+        self.simulation.cost(costs)
     }
 
     fn planned(&mut self) -> Option<&mut Simulation> {

@@ -2,7 +2,7 @@
 //! their separation.
 
 use double_pendulum::Error;
-use double_pendulum::plan::PlannedRun;
+use double_pendulum::plan::{Costs, PlannedRun};
 use heapless::Deque;
 
 use crate::config::{Processor, TICK_RATE};
@@ -191,6 +191,10 @@ impl Scene for Butterfly {
         if ticks.is_multiple_of(TICKS_PER_VALUE) {
             self.put_down();
         }
+    }
+
+    fn cost(&self, costs: &Costs) -> f32 {
+        2.0 * self.first.cost(costs)
     }
 
     fn draw(&self, report: &Report, canvas: &mut Canvas) {

@@ -21,7 +21,7 @@ mod too_fast;
 pub use flips::Flips;
 pub use too_fast::too_fast;
 
-use double_pendulum::plan::Stepping;
+use double_pendulum::plan::{Costs, Stepping};
 use double_pendulum::{Error, State};
 
 use crate::config::{GREATEST_ANGLE, TICK_RATE};
@@ -79,10 +79,10 @@ pub trait Scene: Sized {
         Report::at(ticks)
     }
 
-    /// Returns the number of steps by RK4 in `f32` that the last tick has made for a motion which is
-    /// shown for comparison: time that planning must leave.
-    fn other_steps(&self) -> u32 {
-        0
+    /// Returns the cost of all motions in the last tick, cycles by these prices; 0 if nothing is
+    /// planned.
+    fn cost(&self, _: &Costs) -> f32 {
+        0.0
     }
 
     /// Returns the motion whose method and step count the plan may change.
@@ -242,9 +242,9 @@ macro_rules! catalogue {
                 match self { $(Self::$row(scene) => scene.draw(report, canvas),)* }
             }
 
-            /// Returns the steps of another motion, as [`Scene::other_steps`].
-            pub fn other_steps(&self) -> u32 {
-                match self { $(Self::$row(scene) => scene.other_steps(),)* }
+            /// Returns the cost of the motions in the last tick ([`Scene::cost`]).
+            pub fn cost(&self, costs: &Costs) -> f32 {
+                match self { $(Self::$row(scene) => scene.cost(costs),)* }
             }
 
             /// Returns the motion that is planned, as [`Scene::planned`].
