@@ -12,7 +12,7 @@ use crate::methods::any::{Motion32, Motion64};
 use crate::table::Method;
 
 /// The largest number of candidates in 32 bits: the closed form and RK4.
-pub(super) const IN_32_BITS: usize = 8;
+pub(super) const IN_32_BITS: usize = 7;
 /// The largest number of all candidates. The last one is in 64 bits.
 pub(super) const CANDIDATES: usize = IN_32_BITS + 1;
 
