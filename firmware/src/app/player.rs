@@ -222,18 +222,19 @@ impl<'a> Player<'a> {
     /// Advances by one tick of the clock, which is `due` ticks of the scene at any speed, as
     /// [`tick`](Self::tick) does. For a host that repeats the frames of a board.
     pub fn advance(&mut self, due: u32, mut tell: impl FnMut(PlannerEvent)) {
-        let mut cost = 0.0;
+        let [mut cost, mut other] = [0.0; 2];
         for _ in 0..due {
             self.step += 1;
             self.scene.tick(self.step, &mut self.canvas);
             cost += self.scene.cost(&self.planner.costs);
+            other += self.scene.other_cost(&self.planner.costs);
         }
 
-        // Motions that exceed the budget of a frame, as at a high speed, leave less time for planning.
+        // Motions beyond the budget of a frame, as at a high speed, leave less time for planning.
         let Processor {
             frame, look_ahead, ..
         } = self.planner.processor;
-        let excess = f32::max(cost - frame, 0.0);
+        let excess = f32::max(cost - frame, 0.0) + other;
         let left = look_ahead - excess;
 
         // Either the planned motion catches up, or the planner works.

@@ -79,9 +79,14 @@ pub trait Scene: Sized {
         Report::at(ticks)
     }
 
-    /// Returns the cost of all motions in the last tick, cycles by these prices; 0 if nothing is
-    /// planned.
+    /// Returns the cost of a tick, cycles by these prices, of the motions that share the budget of a
+    /// frame; 0 if nothing is planned.
     fn cost(&self, _: &Costs) -> f32 {
+        0.0
+    }
+
+    /// Returns the cost of a motion without a budget in the last tick.
+    fn other_cost(&self, _: &Costs) -> f32 {
         0.0
     }
 
@@ -242,9 +247,14 @@ macro_rules! catalogue {
                 match self { $(Self::$row(scene) => scene.draw(report, canvas),)* }
             }
 
-            /// Returns the cost of the motions in the last tick ([`Scene::cost`]).
+            /// Returns the cost of the motions of a tick ([`Scene::cost`]).
             pub fn cost(&self, costs: &Costs) -> f32 {
                 match self { $(Self::$row(scene) => scene.cost(costs),)* }
+            }
+
+            /// Returns the cost of another motion ([`Scene::other_cost`]).
+            pub fn other_cost(&self, costs: &Costs) -> f32 {
+                match self { $(Self::$row(scene) => scene.other_cost(costs),)* }
             }
 
             /// Returns the motion that is planned, as [`Scene::planned`].

@@ -236,8 +236,11 @@ impl Scene for Figure7 {
     }
 
     fn cost(&self, costs: &Costs) -> f32 {
-        let misprinted = OTHER_STEP * costs.direction * self.misprinted.tried as f32;
-        self.right.cost(costs) + misprinted
+        self.right.cost(costs)
+    }
+
+    fn other_cost(&self, costs: &Costs) -> f32 {
+        OTHER_STEP * costs.direction * self.misprinted.tried as f32
     }
 
     fn draw(&self, report: &Report, canvas: &mut Canvas) {
