@@ -137,7 +137,7 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
     /// [`MOST_TICKS_PER_FRAME`]: crate::config::MOST_TICKS_PER_FRAME
     pub fn run_to(&mut self, clock: u32, mut log: impl Log<Panel, Link>) -> bool {
         let late = clock.wrapping_sub(self.ticks);
-        let ticks = late.min(self.player.most_ticks());
+        let ticks = late.min(self.player.pace.most_ticks());
         if ticks == 0 {
             return true;
         }
@@ -154,7 +154,7 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
                 total: self.dropped.total,
             });
         }
-        self.player.note_frame(ticks);
+        self.player.pace.note_frame(ticks);
         if self.player.check() {
             log(Event::Stopped);
         }
@@ -169,7 +169,7 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
     /// Lowers a speed above 1 that the board cannot keep. Only for a board: the frames of a browser
     /// may be rare although it computes fast enough.
     pub fn keep_pace(&mut self, mut log: impl Log<Panel, Link>) {
-        if let Some(speed) = self.player.lower_speed() {
+        if let Some(speed) = self.player.pace.lower() {
             log(Event::Slowed(speed));
         }
     }

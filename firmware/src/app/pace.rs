@@ -95,6 +95,12 @@ impl Pace {
         })
     }
 
+    /// Pauses, with this number of ticks left to advance, or continues.
+    pub fn pause(&mut self, paused: bool, steps: u32) {
+        self.paused = paused;
+        self.steps = steps;
+    }
+
     /// Sets the speed, simulated time per real time, rounded to the nearest hundredth, a half
     /// upwards. A pause stays.
     ///

@@ -39,7 +39,7 @@ pub struct Player<'a> {
     planner: Planner,
     /// The last frame drawn.
     pub canvas: Canvas<'a>,
-    pace: Pace,
+    pub(super) pace: Pace,
     /// The report that is drawn and sent: of the start, or of the last [`check`](Self::check).
     pub report: Report,
 }
@@ -176,18 +176,9 @@ impl<'a> Player<'a> {
                     .start(self.name, field.set(self.settings, value)?)
                     .map_err(|_| field);
             }
-            Command::Pause(paused) => {
-                self.pace.paused = paused;
-                self.pace.steps = 0;
-            }
-            Command::TogglePause => {
-                self.pace.paused = !self.pace.paused;
-                self.pace.steps = 0;
-            }
-            Command::Step(ticks) => {
-                self.pace.paused = true;
-                self.pace.steps = ticks;
-            }
+            Command::Pause(paused) => self.pace.pause(paused, 0),
+            Command::TogglePause => self.pace.pause(!self.pace.paused, 0),
+            Command::Step(ticks) => self.pace.pause(true, ticks),
             Command::Ask
             | Command::AskPlan
             | Command::Identify
@@ -231,11 +222,9 @@ impl<'a> Player<'a> {
         }
 
         // Motions beyond the budget of a frame, as at a high speed, leave less time for planning.
-        let Processor {
-            frame, look_ahead, ..
-        } = self.planner.processor;
-        let excess = f32::max(cost - frame, 0.0) + other;
-        let left = look_ahead - excess;
+        let processor = self.planner.processor;
+        let excess = f32::max(cost - processor.frame, 0.0) + other;
+        let left = processor.look_ahead - excess;
 
         // Either the planned motion catches up, or the planner works.
         if let MotionState::Switching(next) = &mut self.motion {
@@ -377,21 +366,6 @@ impl<'a> Player<'a> {
         }
     }
 
-    /// Returns the largest number of ticks of the clock that a frame may complete.
-    pub(super) fn most_ticks(&self) -> u32 {
-        self.pace.most_ticks()
-    }
-
-    /// Notes a frame that completes this number of ticks of the clock.
-    pub(super) fn note_frame(&mut self, ticks: u32) {
-        self.pace.note_frame(ticks);
-    }
-
-    /// Lowers the speed if the last frames were late. Returns the new speed.
-    pub(super) fn lower_speed(&mut self) -> Option<f32> {
-        self.pace.lower()
-    }
-
     /// Returns true if the scene does not advance on its own: it is paused, also with ticks left of
     /// a [`Command::Step`], or stopped.
     pub fn is_still(&self) -> bool {
@@ -437,16 +411,10 @@ impl<'a> Player<'a> {
     /// Returns the state of the player; the angles of the settings are in degrees. The state of the
     /// panel is the default. The steps left have no effect unless the player is paused.
     pub fn status(&self) -> Status {
-        let Self {
-            name: scene,
-            settings,
-            method,
-            ..
-        } = *self;
         Status {
-            scene,
-            settings,
-            method,
+            scene: self.name,
+            settings: self.settings,
+            method: self.method,
             processor: self.planner.processor.code,
             state: self.state(),
             steps: self.pace.steps,
@@ -465,23 +433,12 @@ impl<'a> Player<'a> {
     /// field of the error of [`play`](Self::play), as in [`execute`](Self::execute). Angles beyond
     /// straight up are accepted.
     pub fn resume(&mut self, status: &Status) -> Result<(), Field> {
-        let Status {
-            scene,
-            settings,
-            method,
-            state,
-            steps,
-            speed,
-            ..
-        } = *status;
-
         let mut pace = Pace::default();
-        pace.paused = state == PlayState::Paused;
-        pace.steps = steps;
-        pace.set_speed(speed.into())?;
+        pace.pause(status.state == PlayState::Paused, status.steps);
+        pace.set_speed(status.speed.into())?;
 
-        let before = core::mem::replace(&mut self.method, method);
-        self.start(scene, settings)
+        let before = core::mem::replace(&mut self.method, status.method);
+        self.start(status.scene, status.settings)
             .inspect_err(|_| self.method = before)?;
         self.pace = pace;
         Ok(())

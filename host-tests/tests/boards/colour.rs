@@ -13,7 +13,7 @@ use firmware::display::PanelName;
 use firmware::protocol::{Command, ToHost};
 use firmware::scenes::SceneName;
 
-const FRAMES: u32 = 40;
+const FRAMES: u32 = 24;
 /// The frames at the start of a scene that may take longer: the first is whole.
 const FIRST: u32 = 6;
 const IDLE: f64 = 0.25;
