@@ -26,8 +26,9 @@
 //! | where | file; `kernel/` is the folder of the crate [`double_pendulum`] |
 //! |---|---|
 //! | one step of RK4 | `kernel/src/methods/rk4_fixed32.rs`; with an FPU `rk4_direction.rs` |
-//! | the choice of method and steps | `motion/planner.rs`, with `kernel/src/plan/mod.rs` |
-//! | the horizon: meaning; computation | `motion/horizon.rs`; `kernel/src/plan/mod.rs` |
+//! | one step of the page, which RK4 does not draw | `kernel/src/methods/extrapolation_fixed64.rs` |
+//! | the choice of method and steps | `kernel/src/plan/mod.rs`; its time: `motion/planner.rs` |
+//! | the horizon, and its words on the panel | `kernel/src/plan/mod.rs`, `motion/horizon.rs` |
 //! | a HardFault, also on a Pico | `board/cortex_m/crash.rs`, then `board/main_loop.rs` |
 //! | how to add a panel controller, a board | the top of `display/mod.rs`, `board/mod.rs` |
 //! | how to add a scene, a method | the top of `scenes/mod.rs`, `kernel/src/table.rs` |

@@ -10,8 +10,9 @@
 //!    with the answers of the data sheet, and a row of `MODULES` in `mod.rs`. Then `cargo test -p
 //!    host-tests --test firmware -- oled_i2c:: link::`, with `BLESS=1` for its number.
 //!
-//! A controller of another family implements [`Display`], as `ssd0323.rs` does, and the board's
-//! `Panel` uses it. On a Pico it also needs a [`PanelName`] and its wires in `board/pico/lcd.rs`.
+//! A controller of another family implements [`Display`], as `ssd0323.rs` does with the test of that
+//! name, and is the type `Panel` in the `mod.rs` of its board. On a Pico it also needs a
+//! [`PanelName`] (`panels.rs`), and its wires in `board/pico/lcd.rs`.
 
 use core::convert::Infallible;
 

@@ -28,16 +28,17 @@
 //! T = d8 max(1, x)        x = 32 |d8|/|d6|
 //! ```
 //!
-//! The errors of R are in an ellipsoid P of phase space. The motion maps small errors by its
-//! derivative J, and each step adds truncation, T, and rounding, q:
+//! The errors of R are in an ellipsoid of phase space with the matrix P. The motion maps small errors
+//! by its derivative J, and each step adds truncation, T, and rounding, q, here diagonal matrices:
 //!
 //! ```text
 //! P  <-  (1 + 1/b) J P J^T + (1 + b) T^2 + n q^2        b = sqrt(tr(J P J^T)/tr(T^2))
 //! ```
 //!
 //! T adds up, because truncation may always point in the same direction. Rounding errors are
-//! independent, and their squares add up. q follows from the number formats. J is measured by five *shadows*, cheap motions in 32 bits that start
-//! close to R. The error of R in a frame is that of P on the display.
+//! independent, and their squares add up. q follows from the number formats. J is measured by five
+//! *shadows*, cheap motions in 32 bits that start close to R: one for each dimension, and one to
+//! compare them with. The error of R in a frame is that of P on the display.
 //!
 //! # Budgets
 //!

@@ -2,8 +2,9 @@
 //! and then the run fails.
 //!
 //! The report is plain text, not a defmt log, because a crash may happen in the middle of a log
-//! line, and because the report must be readable without any tool. Without a debugger the board
-//! records the cause and restarts, and the next run reports it.
+//! line, and because the report must be readable without any tool. Without a debugger, and on a Pico
+//! always, the board keeps the cause and restarts, and the next run logs it (`resume`,
+//! `board/main_loop.rs`).
 //!
 //! A program that hangs is reported at the first interrupt of the watchdog. If the program
 //! continues nevertheless, nothing else happens. Otherwise the watchdog resets the board.
