@@ -37,14 +37,12 @@ pub use to_host::{
 pub const VERSION: u8 = 14;
 /// The largest size of a message without version and CRC, bytes.
 pub const MAX_MESSAGE: usize = 133;
-/// The largest size of a message before framing, with version and CRC, bytes.
 const MAX_BODY: usize = 1 + MAX_MESSAGE + 4;
 /// The largest size of a message on the wire. Version and CRC add five bytes, COBS adds one,
 /// because these bytes are fewer than 254, and the delimiters add two.
 pub const MAX_WIRE: usize = MAX_BODY + 3;
 
-/// Encodes a message for the wire, and returns the used part of `wire`. All messages fit (test
-/// `link`).
+/// Encodes a message, and returns the used part of `wire`. All messages fit (test `link`).
 pub fn encode<'wire>(message: &impl Serialize, wire: &'wire mut [u8; MAX_WIRE]) -> &'wire [u8] {
     frame(
         postcard::to_slice(message, &mut [0; MAX_MESSAGE]).unwrap_or_default(),
@@ -52,8 +50,7 @@ pub fn encode<'wire>(message: &impl Serialize, wire: &'wire mut [u8; MAX_WIRE]) 
     )
 }
 
-/// Returns the message in `bytes` from [`Decoder::push`]; `None` if they are not exactly one
-/// message of type `M`.
+/// Returns the message in `bytes`; `None` if they are not exactly one message of type `M`.
 pub fn read<M: DeserializeOwned>(bytes: &[u8]) -> Option<M> {
     postcard::take_from_bytes(bytes)
         .ok()
@@ -61,7 +58,6 @@ pub fn read<M: DeserializeOwned>(bytes: &[u8]) -> Option<M> {
         .map(|(message, _)| message)
 }
 
-/// Frames a message of bytes for the wire: adds version, CRC, COBS and delimiters.
 pub fn frame<'wire>(message: &[u8], wire: &'wire mut [u8; MAX_WIRE]) -> &'wire [u8] {
     if message.len() > MAX_MESSAGE {
         return &[];
@@ -85,7 +81,6 @@ pub fn frame<'wire>(message: &[u8], wire: &'wire mut [u8; MAX_WIRE]) -> &'wire [
     wire.get(..=end).unwrap_or_default()
 }
 
-/// The reason why received bytes are not an intact message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(target_os = "none", derive(defmt::Format))]
 pub enum LinkError {
@@ -104,8 +99,7 @@ impl LinkError {
     }
 }
 
-/// A decoder that splits a byte stream into checked messages. After damage it resynchronises at the
-/// next delimiter.
+/// A decoder of a byte stream. After damage it resynchronises at the next delimiter.
 #[derive(Debug)]
 pub struct Decoder {
     cobs: DecoderState,
@@ -125,8 +119,7 @@ impl Default for Decoder {
 }
 
 impl Decoder {
-    /// Takes one byte. At the end of a message returns the message without version and CRC, or its
-    /// error. The message may be empty.
+    /// Takes one byte. At the end of a message returns it without version and CRC, or its error.
     pub fn push(&mut self, byte: u8) -> Option<Result<&[u8], LinkError>> {
         match self.cobs.feed(byte) {
             Ok(DecodeResult::NoData | DecodeResult::DataStart) => None,
@@ -149,7 +142,6 @@ impl Decoder {
     }
 }
 
-/// Returns the message in a body if it is intact and of this version.
 fn open(body: &[u8]) -> Result<&[u8], LinkError> {
     let (checked, crc) = body.split_last_chunk().ok_or(LinkError::Malformed)?;
     if CRC.checksum(checked) != u32::from_le_bytes(*crc) {

@@ -9,7 +9,7 @@ use crate::graphics::{Anchor, Canvas, Fading, Format, Height, SUBPIXELS, label, 
 use crate::motion::{Resources, Settings};
 use crate::scenes::{Report, Scene, Shows, draw_clock, time};
 
-/// The approximate period of the exchange of energy between the rods, parts of the plot's width.
+/// The approximate number of exchanges of energy between the rods in the width of a plot.
 const EXCHANGES: f32 = 110.0 / 60.0;
 /// The smallest length of the scale bar for time, units.
 const LEAST_BAR: i32 = 16;
@@ -17,14 +17,12 @@ const LEAST_BAR: i32 = 16;
 const SWEEP_GAP: i32 = 4;
 const ENVELOPE_GREY: u8 = 5;
 
-/// The plots on a panel.
 #[derive(Clone, Copy, Debug)]
 struct Layout {
-    /// The rows of angle 0 for angle 1 and angle 2, pixels from the top, and the largest swing about
-    /// them.
+    /// The rows of angle 0 for angle 1 and angle 2, pixels from the top, and the largest swing
+    /// about them.
     rows: [f32; 2],
     swing: f32,
-    /// The first column of the plots, right of their names and scales; and the number of columns.
     left: i32,
     columns: i32,
 }
@@ -50,8 +48,7 @@ const CLOSED_FORM: Stepping = Stepping {
     steps: 1,
 };
 
-/// Returns the worked example of the page: equal rods of 0.25 m, m1 = 1 kg, g = 9.8 m/s^2, a1 = 0,
-/// a2 = 30 degrees, released from rest, with the mass ratio m2/m1, which is not checked.
+/// Returns the worked example of the page.
 pub fn example(mass_ratio: f64) -> Settings {
     let parameters = Parameters::equal_rods(mass_ratio, 0.25, PAGE_GRAVITY);
     Settings {
@@ -63,12 +60,8 @@ pub fn example(mass_ratio: f64) -> Settings {
 
 /// The two angles over time, by the linear model. On an OLED the curves scroll. On a larger panel,
 /// where that would take half of a tick, the newest column replaces the oldest one, as on an
-/// oscilloscope. The horizon that is shown with the time is the
-/// time until which the exact motion has the same angles, to half a pixel of the curves. The scale
-/// is in degrees. A requested method is ignored.
-///
-/// Settings that describe no pendulum or no finite start are refused, and so is a pendulum without
-/// gravity. One that hangs at rest at the start has level curves, and is not planned.
+/// oscilloscope. The horizon that is shown with the time is the time until which the exact motion
+/// has the same angles, to half a pixel of the curves. A requested method is ignored.
 #[derive(Clone, Debug)]
 pub struct Small {
     pendulum: Pendulum<f32>,
@@ -85,17 +78,14 @@ pub struct Small {
     layout: Layout,
     /// The next column of a sweep, from the left of the plot.
     next: i32,
-    /// The heights of the ends of the curves.
     ends: Option<[Height; 2]>,
 }
 
 impl Small {
-    /// Returns the envelopes of both angles at time `t`, rad.
-    ///
     /// The amplitude of C1 cos(w1 t + f1) + C2 cos(w2 t + f2) is sqrt(C1^2 + C2^2 + 2 C1 C2 cos((w1
     /// - w2) t + f1 - f2)).
     fn envelopes(&self, t: f64) -> [f32; 2] {
-        // The turns are exact for hours, so they are reduced in 64 bits.
+        // Reduced in 64 bits, in which turns are accurate for hours.
         let turns = self.exchange * t;
         let exchanged = (turns - libm::rint(turns)) as f32 * core::f32::consts::TAU;
         let phase = exchanged + self.phase;
@@ -104,7 +94,6 @@ impl Small {
             .map(|[c1, c2]| libm::sqrtf((c1 * c1 + c2 * c2 + 2.0 * c1 * c2 * cos).max(0.0)))
     }
 
-    /// Adds a column to the curves and their envelopes.
     fn extend(&mut self, time: f64, ink: &mut Canvas) {
         let Layout {
             rows: [row1, row2],
@@ -131,7 +120,6 @@ impl Small {
         } else {
             ink.scroll(left);
         }
-        // Heights are measured from the row of angle 0.
         let height = |(angle, row): (f32, f32)| plot::height(angle, row, self.scale);
 
         // Each envelope has a point above and one below.

@@ -90,8 +90,7 @@ pub struct CountOptions {
     write_prices: bool,
 }
 
-/// Counts, and prints a row for each method and board. A method that does not accept the pendulum
-/// is left out.
+/// Prints a row for each method and board. A method that does not accept the pendulum is left out.
 pub fn run(options: &CountOptions) -> anyhow::Result<()> {
     if options.write_prices {
         let toolchain = toolchain::set_up()?;
@@ -196,8 +195,8 @@ impl CountOptions {
         Ok(checked.into_iter().flatten().collect())
     }
 
-    /// Returns the setting in words. The counts depend on all of it, because software arithmetic
-    /// takes different paths for different numbers.
+    /// Returns all that the counts depend on: software arithmetic takes different paths for
+    /// different numbers.
     fn setting(&self) -> String {
         let Self {
             m2,

@@ -18,7 +18,6 @@ pub struct Map {
     pub centre: [f64; 2],
     /// The distance from the middle to the ends of the longer side, rad.
     pub half: f64,
-    /// The searches with the step and with half of it.
     pub searches: [Search; 2],
 }
 
@@ -32,7 +31,6 @@ const LEAST_PORTION: usize = 64;
 const PORTION_STEPS: f64 = 1e9;
 
 impl Map {
-    /// Returns the map of all starts.
     pub fn new(parameters: Parameters<f32>, limit: f32, size: [usize; 2]) -> Result<Self, Error> {
         let dt = step_size(&parameters)?;
         let search = |dt: f64| Search::new(&parameters, dt, (f64::from(limit) / dt).ceil() as u32);
@@ -48,12 +46,13 @@ impl Map {
         })
     }
 
+    /// Returns the most steps that a start takes: a search with the step, one with half of it.
     pub fn steps(&self) -> f64 {
         3.0 * f64::from(self.limit) / self.dt
     }
 
-    /// Returns the number of rows to compute. If the middle of the map is the hanging position, the
-    /// lower half mirrors the upper one in both directions.
+    /// Returns the number of rows to compute. About the hanging position, the lower half of a map
+    /// mirrors the upper one in both directions.
     pub fn rows(&self) -> usize {
         let [_, height] = self.size;
         if self.centre == [0.0; 2] {
@@ -94,8 +93,7 @@ impl Map {
             .collect()
     }
 
-    /// Returns the flips of [`Map::starts`]. `tick` is called with the number of starts completed
-    /// since that thread's last call.
+    /// Returns the flips of [`Map::starts`]. Calls `tick` with the size of each completed portion.
     pub fn points(&self, tick: impl Fn(usize) + Sync) -> Result<Vec<FlipPair>, Error> {
         let starts = self.starts();
 
@@ -130,7 +128,7 @@ impl Map {
     /// Returns true if two flips differ by more than a grey level of the panel, a 14th of the scale
     /// of [`Map::share`]. If the flips of the two steps differ, the start is in doubt.
     pub fn differ(&self, [one, other]: FlipPair) -> bool {
-        // One step size finds no flip at any time, the other one may.
+        // `Never` is no time on the scale. `Later` counts as its end.
         if [one, other].contains(&Flip::Never) {
             return one != other;
         }
@@ -138,8 +136,7 @@ impl Map {
         (level(one) - level(other)).abs() > 1.0
     }
 
-    /// Returns the position of a flip on the logarithmic scale of time, from 0 to 1, or `None`
-    /// without a flip.
+    /// Returns the position of a flip on the logarithmic scale of time, from 0 to 1.
     pub fn share(&self, flip: Flip<f32>) -> Option<f32> {
         match flip {
             Flip::After(time) => Some((time.ln() / self.limit.ln()).clamp(0.0, 1.0)),

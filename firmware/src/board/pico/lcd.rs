@@ -9,13 +9,11 @@ use rp2040_hal::pac::{DMA, RESETS, SPI0, SPI1};
 use super::pins;
 use crate::display::{PANEL, PanelName, PixelBus};
 
-/// The pins of a panel, and its SPI block.
 struct Wiring {
     is_spi1: bool,
     clock: usize,
     data: usize,
     select: usize,
-    /// High for data, low for a command.
     data_not_command: usize,
     reset: Option<usize>,
     light: usize,
@@ -42,7 +40,7 @@ const WIRING: Wiring = match PANEL {
     },
 };
 
-/// The request of the SPI block for more data, of the DMA's list.
+/// The DMA request of the SPI block for more data: `DREQ_SPI1_TX` or `DREQ_SPI0_TX`.
 const REQUEST: u32 = if WIRING.is_spi1 { 18 } else { 16 };
 /// The DMA channel's control: enabled, 16 bits, from rising addresses, chained to itself.
 const CONTROL: u32 = 1 | 1 << 2 | 1 << 4 | REQUEST << 15;
@@ -53,7 +51,6 @@ const CYCLES_PER_MS: u32 = 125_000;
 /// Two lines of pixels: one is sent while the other is filled.
 pub type Lines = [[u16; 320]; 2];
 
-/// The bus. Not checked: it exists once.
 pub struct Lcd {
     lines: &'static mut Lines,
     next: usize,
@@ -61,8 +58,7 @@ pub struct Lcd {
 }
 
 impl Lcd {
-    /// Starts the bus, and resets the panel. The blocks are reset first, because a reset of the
-    /// processor alone leaves them running.
+    /// Resets the blocks first, because a reset of the processor alone leaves them running.
     pub fn start(resets: &mut RESETS, lines: &'static mut Lines) -> Self {
         let hold = |resets: &mut RESETS, is_held: bool| {
             resets.reset().modify(|_, w| {
@@ -86,6 +82,7 @@ impl Lcd {
         };
         while !is_ready(resets) {}
 
+        // An output starts low, so that the panel, alone on the bus, stays selected.
         let outputs = [WIRING.select, WIRING.data_not_command, WIRING.light];
         outputs.into_iter().for_each(pins::use_for_output);
         pins::use_for_spi(WIRING.clock);
@@ -94,6 +91,7 @@ impl Lcd {
         let bus = Self {
             lines,
             next: 0,
+            // The first command then sets a width of 8 bits.
             is_for_pixels: true,
         };
         let spi = spi();
@@ -165,6 +163,7 @@ impl PixelBus for Lcd {
         self.become_idle(false);
         pins::set(WIRING.data_not_command, false);
         put(command);
+        // The panel reads the pin with the last bit of a byte.
         while spi().sspsr().read().bsy().bit_is_set() {}
         pins::set(WIRING.data_not_command, true);
         arguments.iter().copied().for_each(put);

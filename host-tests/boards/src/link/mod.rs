@@ -1,5 +1,4 @@
-//! The serial link to a board, emulated or real: the decoding of bytes into messages, and the
-//! serial port.
+//! The serial link to a board, emulated or real.
 
 mod inbox;
 mod panel;
@@ -138,7 +137,6 @@ mod tests {
         assert_eq!(choose(&with_ours), Ok("/dev/ttyACM1".to_owned()));
     }
 
-    /// Its USB ids alone do not identify a board, and two boards are ambiguous.
     #[test]
     fn a_running_board_is_known_by_its_names() {
         let board = ours("/dev/ttyACM0");

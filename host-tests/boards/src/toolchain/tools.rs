@@ -12,7 +12,6 @@ use super::run::{attempt, quick_output};
 use super::{target, workspace};
 use crate::console::cli::{Refused, complain};
 
-/// A program that may be the system's or unpacked.
 pub(super) struct Program {
     /// The package has the first name; any will do on the system.
     names: &'static [&'static str],
@@ -48,6 +47,7 @@ pub(super) const QEMU_AARCH64: Program = Program {
     install: "qemu-user, version 6 or newer",
 };
 
+/// The package rp2040js requires version 18.
 pub(super) const NODE: Program = Program {
     names: &["node"],
     least: 18,
@@ -73,8 +73,7 @@ pub(super) const CHROMIUM: Program = Program {
 };
 
 impl Program {
-    /// Returns the path of a program that is new enough. An unpacked one has priority, because it
-    /// was unpacked when the system's was not usable.
+    /// An unpacked program has priority: the system's was not usable when it was unpacked.
     fn find(&self) -> Result<PathBuf, String> {
         let name = self.names[0];
         let unpacked = executable(target().join(self.folder).join(name));
@@ -115,7 +114,6 @@ impl Program {
         ))
     }
 
-    /// Unpacks Debian's packages, which changes nothing on the system.
     fn unpack(&self) -> Result<(), String> {
         const SCRIPT: &str = "host-tests/boards/src/toolchain/unpack.sh";
         const LIMIT: Duration = Duration::from_secs(1200);
@@ -151,8 +149,7 @@ fn major_version(path: &Path) -> Result<u32, String> {
         .ok_or_else(|| "it prints no version".to_owned())
 }
 
-/// Returns the program that the shell would run for this name. The path is absolute, because
-/// programs run in other folders.
+/// Returns an absolute path, because programs run in other folders.
 pub fn find(program: &str) -> Option<PathBuf> {
     env::split_paths(&env::var_os("PATH")?)
         .find_map(|folder| executable(absolute(folder.join(program)).ok()?))
@@ -167,6 +164,7 @@ fn executable(path: PathBuf) -> Option<PathBuf> {
 fn find_core(targets: &[&str]) -> Result<(), String> {
     let mut rustc = Command::new("rustc");
     rustc.args(["--print", "sysroot"]).current_dir(workspace());
+    // rustup would install a missing toolchain, also where nothing may be installed.
     let sysroot = quick_output(rustc.env("RUSTUP_AUTO_INSTALL", "0"))?;
     let libraries = Path::new(sysroot.trim()).join("lib/rustlib");
     let has_core = |target: &&&str| {
