@@ -85,7 +85,7 @@ pub trait Scene: Sized {
         0.0
     }
 
-    /// Returns the cost of a motion without a budget in the last tick.
+    /// Returns the cost of another motion or picture, without a budget, in the last tick.
     fn other_cost(&self, _: &Costs) -> f32 {
         0.0
     }
