@@ -23,7 +23,7 @@
 //!
 //! # Where to look
 //!
-//! | where | file; `kernel/` is the folder of the crate [`double_pendulum`] |
+//! | where | file, in this folder or in `kernel/`, the crate [`double_pendulum`] |
 //! |---|---|
 //! | one step of RK4 | `kernel/src/methods/rk4_fixed32.rs`; with an FPU `rk4_direction.rs` |
 //! | one step of the page, which RK4 does not draw | `kernel/src/methods/extrapolation_fixed64.rs` |

@@ -4,8 +4,10 @@
 //! To add a scene:
 //!
 //! 1. Write a type with the trait [`Scene`], as in `pendulums.rs`, and the last row of the
-//!    `catalogue!`, because its place is its number on the link. The compiler asks for the other places, such as its description in `host-tests/demo/src/options.rs`.
-//!    If it shows a motion, add it to `OTHERS` in `host-tests/tests/firmware/sweep.rs`.
+//!    `catalogue!`, because its place is its number on the link; name it in the list there. The
+//!    compiler asks for the other places, such as its description in
+//!    `host-tests/demo/src/options.rs`. If it shows a motion, add it to `OTHERS` in
+//!    `host-tests/tests/firmware/sweep.rs`.
 //! 2. `BLESS=1 cargo test -p host-tests --test firmware -- scenes:: golden:: link::` makes its stored
 //!    files, and `cargo figures --animations` its picture.
 //! 3. Run these modules and `sweep::` without `BLESS`, and `--test boards scenes::`.

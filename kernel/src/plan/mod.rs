@@ -29,7 +29,7 @@
 //! ```
 //!
 //! The errors of R are in an ellipsoid of phase space with the matrix P. The motion maps small errors
-//! by its derivative J, and each step adds truncation, T, and rounding, q, here diagonal matrices:
+//! by its derivative J, and n steps add truncation, T, and rounding, q, here diagonal matrices:
 //!
 //! ```text
 //! P  <-  (1 + 1/b) J P J^T + (1 + b) T^2 + n q^2        b = sqrt(tr(J P J^T)/tr(T^2))

@@ -86,7 +86,7 @@ pub(super) struct Uncertainty {
     rounding: [f32; 4],
     truncation: [f32; 4],
     growth: f32,
-    /// n: the number of frames since the last restart.
+    /// The number of frames since the last restart.
     since: u32,
     /// The number of frames after which the shadows are restarted at the latest.
     most: u32,
