@@ -23,9 +23,9 @@ impl Costs {
         direction: 14857.6,
         fixed32: 672.2,
         fixed32_unlike: 904.5,
-        fixed64: 21702.0,
-        preparation: 194017.0,
-        comparison: 70842.0,
+        fixed64: 21672.0,
+        preparation: 193958.0,
+        comparison: 70738.0,
     };
 
     /// The counted price list of a Cortex-M4F, in cycles.
@@ -35,9 +35,9 @@ impl Costs {
         direction: 206.1,
         fixed32: 622.3,
         fixed32_unlike: 622.3,
-        fixed64: 14333.0,
-        preparation: 178102.0,
-        comparison: 10682.0,
+        fixed64: 14307.0,
+        preparation: 178060.0,
+        comparison: 10216.0,
     };
 
     /// The counted price list of a Cortex-M0+, in cycles.
@@ -47,9 +47,9 @@ impl Costs {
         direction: 25556.9,
         fixed32: 2128.6,
         fixed32_unlike: 2571.1,
-        fixed64: 80287.0,
-        preparation: 510456.0,
-        comparison: 123167.0,
+        fixed64: 80289.0,
+        preparation: 510461.0,
+        comparison: 123149.0,
     };
 }
 // end of the generated part
