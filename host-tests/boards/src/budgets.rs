@@ -74,7 +74,7 @@ pub const MEMORY: [(&str, Memory); 5] = [
     (
         "lm3s6965evb-m0",
         Memory {
-            text: 252 * KIB,
+            text: 251 * KIB,
             data: 256,
             bss: 24 * KIB,
             stack: 28 * KIB,
