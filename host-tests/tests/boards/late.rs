@@ -1,7 +1,7 @@
-//! A board that is late.
+//! A board that is late, and one that nearly is.
 
-use boards::LM3S6965EVB;
 use boards::qemu::Machine;
+use boards::{LM3S6965EVB, STM32F405};
 use firmware::protocol::{Answer, Command, Field, ToHost};
 use firmware::scenes::SceneName;
 
@@ -41,4 +41,32 @@ fn a_late_board_answers() -> anyhow::Result<()> {
     }
     assert!(frames <= MOST_FRAMES, "{frames} frames before the answer");
     Ok(())
+}
+
+/// Both motions of the butterfly, at twice the speed, take half of a tick of this board. Planning
+/// gives way.
+#[test]
+fn two_fast_motions_leave_time_for_every_frame() -> anyhow::Result<()> {
+    const FOLLOWED: u64 = 240;
+    let mut machine = on(&STM32F405, Machine::start)?;
+    machine.next_frame()?;
+    let name = SceneName::Butterfly;
+    let settings = name.first_settings().with_mass_ratio(63.0);
+    let twice = Command::Set {
+        field: Field::Speed,
+        value: 2.0,
+    };
+    for (request, command) in [(1, Command::Play(name, settings)), (2, twice)] {
+        machine.send(request, command)?;
+        assert_eq!(machine.next_answer()?, (request, Answer::Done));
+    }
+
+    let dropped = machine.next_frame()?.dropped;
+    loop {
+        let frame = machine.next_frame()?;
+        assert_eq!(frame.dropped, dropped, "tick {}", frame.report.step);
+        if frame.report.step >= FOLLOWED {
+            return Ok(());
+        }
+    }
 }
