@@ -181,9 +181,9 @@ pub fn figure_7() -> Settings {
     }
 }
 
-/// The cost of a step of the misprinted motion, in steps by RK4 in `f32`: 1.55 on a
-/// Cortex-M3 and 1.58 on a Cortex-M0+, counted in figure 7. It is 2.4 on a Cortex-M4F, where such a
-/// motion takes 1 % of a tick.
+/// The cost of a step of the misprinted motion, in steps by RK4 in `f32`: 1.55 on a Cortex-M3 and 1.58
+/// on a Cortex-M0+, counted in figure 7. It is 2.4 on a Cortex-M4F, where such a motion takes 1 % of
+/// a tick.
 const OTHER_STEP: f32 = 1.6;
 
 /// The correct motion on the left, the misprinted one on the right, and their energies, J, with the
