@@ -196,7 +196,6 @@ fn resume<Panel: Display<Error: fmt::Display>, Link: Write, Keys: Buttons>(
     journal
 }
 
-#[inline(never)] // Inlined, it and `retained::kept` take 3.6 KB of flash (M0+).
 fn log<Panel: fmt::Display, Link: Error>(event: Event<Panel, Link>) {
     match event {
         Event::Restarted(end, resumed) => {

@@ -110,6 +110,7 @@ impl Pen {
     }
 
     /// Sets pixel `x` in its word to a grey, unless it is brighter.
+    #[inline]
     fn lighten(self, word: &mut u32, covered: Option<&u32>, x: i32, grey: u8) {
         let least = match self.layer {
             Layer::Ink => 0,
@@ -288,12 +289,14 @@ impl<'a> Canvas<'a> {
 
     /// Returns row `y` for drawing in these columns, which count as changed; `None` outside the
     /// canvas.
+    #[inline]
     pub fn row_mut(&mut self, y: i32, columns: Range<i32>) -> Option<Row<'_>> {
         self.row_in(y, self.cells_of(columns))
     }
 
     /// Returns row `y` for drawing in these cells, as [`row_mut`](Self::row_mut). Several rows then
     /// need [`cells_of`](Self::cells_of) only once.
+    #[inline]
     pub(super) fn row_in(&mut self, y: i32, touched: u32) -> Option<Row<'_>> {
         let format = self.format;
         let (pen, [words, covered], cells) = self.parts();
@@ -331,7 +334,6 @@ impl<'a> Canvas<'a> {
     }
 
     /// Sets a rectangle to a grey, except pixels that are brighter.
-    #[inline(never)] // Inlined, it takes 1,508 bytes of flash (M3).
     pub fn lighten(&mut self, columns: Range<i32>, rows: Range<i32>, grey: u8) {
         let touched = self.cells_of(columns.clone());
         for y in rows {
@@ -361,37 +363,31 @@ impl<'a> Canvas<'a> {
     }
 
     /// As [`stamp`](Self::stamp), where the caller has touched the pixels.
-    #[inline(never)] // Inlined, it takes 336 bytes of flash (M3).
     pub(super) fn stamp_touched(&mut self, x: i32, y: i32, bits: u64, grey: u8) {
         let unit = self.format.units(1);
         let greys = u32::from(self.pen().level(grey)) * ONES;
-        let format = self.format;
+        let length = self.format.row_words();
         let (_, [words, _], _) = self.parts();
         let mut rest = bits;
-        let mut top = y;
+        // Negative numbers become words far beyond the end.
+        let mut start = (y as usize).wrapping_mul(length);
         while rest != 0 {
-            let end = top.saturating_add(unit);
-            let squares = (rest >> 56) as u8;
-            if squares != 0 {
-                let pixels = stretched(squares, unit) >> (x & 7);
-                for y in top..end {
-                    let Some(row) = row_of(words, format, y) else {
-                        continue;
-                    };
-                    let mut pixels = pixels;
-                    // A negative number becomes a word far beyond the end.
-                    let mut place = (x >> 3) as usize;
-                    while pixels != 0 {
-                        if let Some(word) = row.get_mut(place) {
-                            *word ^= (*word ^ greys) & nibbles(pixels >> 24);
-                        }
-                        pixels <<= 8;
-                        place = place.wrapping_add(1);
+            let pixels = stretched((rest >> 56) as u8, unit) >> (x & 7);
+            for _ in 0..unit {
+                let end = start.wrapping_add(length);
+                let row = words.get_mut(start..end).unwrap_or_default();
+                start = end;
+                let mut pixels = pixels;
+                let mut place = (x >> 3) as usize;
+                while pixels != 0 {
+                    if let Some(word) = row.get_mut(place) {
+                        *word ^= (*word ^ greys) & nibbles(pixels >> 24);
                     }
+                    pixels <<= 8;
+                    place = place.wrapping_add(1);
                 }
             }
             rest <<= 8;
-            top = end;
         }
     }
 
@@ -524,6 +520,7 @@ pub struct Row<'c> {
 impl Row<'_> {
     /// Replaces the grey of the pixel in column `x` by a function of it. Only the low four bits of
     /// the result count. The function is not called for a pixel outside the row.
+    #[inline]
     pub fn update(&mut self, x: i32, new: impl FnOnce(u8) -> u8) {
         // A negative number becomes a word far beyond the end.
         let place = (x >> 3) as usize;
@@ -537,6 +534,7 @@ impl Row<'_> {
     }
 
     /// Sets pixels to a grey of 0 to 15. They then cover the ink, also if that has the same grey.
+    #[inline]
     pub fn fill(&mut self, columns: Range<i32>, grey: u8) {
         let greys = u32::from(self.pen.level(grey)) * ONES;
         let Range { mut start, end } = columns;
@@ -553,6 +551,7 @@ impl Row<'_> {
     }
 
     /// Sets a pixel to a grey of 0 to 15. A pixel that is brighter already keeps its grey.
+    #[inline]
     pub fn lighten(&mut self, x: i32, grey: u8) {
         let place = (x >> 3) as usize;
         if let Some(word) = self.words.get_mut(place) {
@@ -580,6 +579,7 @@ impl Fading {
 }
 
 /// Returns row `y` of the words of a layer; `None` outside the canvas.
+#[inline]
 fn row_of(words: &mut [u32], format: Format, y: i32) -> Option<&mut [u32]> {
     // A negative number becomes a row far beyond the end.
     if y as u32 >= format.known().height.into() {

@@ -21,7 +21,6 @@ pub const fn height(value: f32, zero: f32, scale: f32) -> Height {
 /// Draws the part of a curve in column `x`, between two heights, subpixels, in either order. The
 /// curve extends 19 subpixels of a unit above and below them. Its brightness is 0 (black) to 255 (grey 15).
 /// Pixels that are brighter already keep their grey.
-#[inline(never)] // Inlined, it takes 2,216 bytes of flash (M3).
 pub fn column(canvas: &mut Canvas, x: i32, from: Height, to: Height, brightness: u8) {
     /// The product of brightness and coverage that is one grey, as for a
     /// [`Stroke`](crate::graphics::Stroke): 255 = 17 x 15.

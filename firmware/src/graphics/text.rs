@@ -127,6 +127,7 @@ const GLYPHS: [u64; 112] = {
 };
 
 /// Returns the glyph of a character; that of a question mark if the font lacks it.
+#[inline]
 pub fn glyph(character: char) -> Glyph {
     let (place, width) = match character {
         ' ' => (0, 3),

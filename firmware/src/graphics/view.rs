@@ -78,19 +78,21 @@ impl Place {
         let radius = (0.5 * height - format.units(9) as f32).min(0.25 * width - 1.0);
         [0.25, 0.75].map(|part| Self::within(radius, (part * width, 0.5 * height), format))
     }
-
-    /// Returns the factor for the widths of lines and gaps.
-    fn scale(&self) -> f32 {
-        (self.reach / REACH).max(1.0)
-    }
 }
 
 /// A pendulum on the frame: its sizes, and the present positions of its bobs.
 #[derive(Clone, Copy, Debug)]
 pub struct View {
     place: Place,
+    /// The pivot on the canvas.
+    pivot: Spot,
+    /// The factor for the widths of lines and gaps.
+    scale: f32,
     /// The lengths of rod 1 and rod 2, pixels.
     rods: [f32; 2],
+    /// Half the width of a rod, and the width of the gap around a bob, subpixels.
+    half_width: u16,
+    gap: u16,
     /// The radii of bob 1 and bob 2, subpixels.
     pub radii: [u16; 2],
     /// The positions of bob 1 and bob 2 on the canvas.
@@ -105,15 +107,21 @@ impl View {
     pub fn new(parameters: &Parameters<f64>, place: Place, directions: RodDirections) -> Self {
         let Parameters { m1, m2, l1, l2, .. } = parameters.cast::<f32>();
         let greatest = GREATEST_RADIUS * place.reach / REACH;
+        let scale = (place.reach / REACH).max(1.0);
         let radius = |mass: f32| {
             let pixels = greatest * libm::cbrtf(mass / m1.max(m2));
-            (pixels.max(LEAST_RADIUS * place.scale()) * SUBPIXELS as f32) as u16
+            (pixels.max(LEAST_RADIUS * scale) * SUBPIXELS as f32) as u16
         };
-        let scale = place.reach / (l1 + l2);
+        let metre = place.reach / (l1 + l2);
         let radii = [radius(m1), radius(m2)];
+        let (x, y) = place.pivot;
         let mut view = Self {
             place,
-            rods: [scale * l1, scale * l2],
+            pivot: Spot::at(x, y, place.format),
+            scale,
+            rods: [metre * l1, metre * l2],
+            half_width: (scale * ROD_HALF_WIDTH * SUBPIXELS as f32) as u16,
+            gap: (scale * f32::from(GAP)) as u16,
             radii,
             spots: Default::default(),
         };
@@ -153,7 +161,7 @@ impl View {
         Stroke {
             from,
             to,
-            radius: (self.place.scale() * f32::from(half_width)) as u16,
+            radius: (self.scale * f32::from(half_width)) as u16,
         }
         .lighten(ink, brightness);
     }
@@ -161,11 +169,13 @@ impl View {
     /// Draws the pivot, the rods and the bobs over the canvas. Around each bob the background is
     /// darkened.
     pub fn draw(&self, canvas: &mut Canvas, brightness: u8) {
-        let Place { format, pivot, .. } = self.place;
-        let pivot = Spot::at(pivot.0, pivot.1, format);
-        let [bob1, bob2] = self.spots;
-        let half_width = (self.place.scale() * ROD_HALF_WIDTH * SUBPIXELS as f32) as u16;
-        let gap = (self.place.scale() * f32::from(GAP)) as u16;
+        let &Self {
+            pivot,
+            half_width,
+            gap,
+            spots: [bob1, bob2],
+            ..
+        } = self;
         let rod_brightness = ROD_BRIGHTNESS.min(brightness);
 
         for (from, to) in [(pivot, bob1), (bob1, bob2)] {

@@ -125,7 +125,6 @@ impl Settings {
 
     /// Returns the problem to plan for a display `height` pixels high, in whose half height both
     /// rods fit.
-    #[inline(never)] // 0.25 KB more flash on an M0+ without.
     pub fn problem(&self, height: f32) -> Problem {
         Problem {
             pendulum: self.parameters,
@@ -138,7 +137,6 @@ impl Settings {
 
     /// Returns the motion at its start, by this method and step count per tick. Angle 1 starts
     /// `apart` rad larger than in the settings.
-    #[inline(never)] // 0.35 KB more flash on an M0+ without.
     pub fn run(&self, apart: f64, stepping: Stepping) -> Result<PlannedRun, Error> {
         let mut problem = self.problem(Format::OLED.height.into());
         problem.start.a1 += apart;

@@ -330,6 +330,11 @@ impl<const ORDER: u32> Advance for Fixed64<ORDER> {
         ]
     }
 
+    /// The lengths of the directions have just been restored.
+    fn energy_above_rest(&self, pendulum: &Pendulum<f64>) -> f64 {
+        pendulum.energy_above_rest_at(self.directions(), self.momenta())
+    }
+
     fn momenta<R: Real>(&self) -> [R; 2] {
         let [.., p1, p2] = self.0.z;
         let [unit1, unit2] = self.0.momenta;

@@ -111,13 +111,13 @@ impl Scaling {
         let &Parameters { m1, m2, l1, l2, g } = parameters;
         let nu = l1 / l2;
         // One more than allowed is enough to be refused below.
-        let places = |places: f64| (places as i32).clamp(-MOST - 1, MOST + 1);
-        let sigma = places(libm::ceil(libm::log2(nu)));
+        let places = |ratio: f64| libm::ilogb(ratio).clamp(-MOST - 1, MOST + 1);
+        let sigma = -places(1.0 / nu);
         let norm = scaled(nu, -sigma);
         let upper = sigma.max(0);
         let lower = (-sigma).max(0);
         let ratio = m1 / m2 * norm * norm;
-        let parts = places(libm::floor(libm::log2(ratio)));
+        let parts = places(ratio);
         let momentum = parts.max(0);
         let inverse = (-parts).max(0);
         if upper.max(lower).max(momentum).max(inverse) > MOST {

@@ -5,10 +5,13 @@
 //!
 //! No `f64` is pi. A pendulum that starts straight up would fall if the `f64` nearest to pi were
 //! taken literally. So a whole number times the `f64` nearest to pi/2 is that number of quarter
-//! turns here, and its sine and cosine are exact. The change is smaller than half a unit in the
-//! last place of the angle. An `f32` is taken literally.
+//! turns here, and its sine and cosine are exact. Angles beyond 1.6e6 rad are reduced by turns of
+//! that length, too. The change is smaller than half a unit in the last place of the angle. An
+//! `f32` up to 1.6e6 is taken literally.
 
 use core::ops::Neg;
+
+use super::Real;
 
 /// Returns an angle of `degrees`, rad, whose [`sin_cos`](crate::sin_cos) has the direction of that
 /// angle, exactly at multiples of 90 degrees.
@@ -28,19 +31,21 @@ use core::ops::Neg;
 pub fn radians(degrees: f64) -> f64 {
     /// pi/180, first the upper 26 bits and then the rest, so that products of halves are exact.
     const DEGREE: [f64; 2] = [0.01745329238474369, 1.3519960527851425e-10];
-    const LOWER: u64 = (1 << 27) - 1;
-
     let quarters = degrees / 90.0;
     if libm::rint(quarters) == quarters && quarters * 90.0 == degrees {
         return quarters * core::f64::consts::FRAC_PI_2;
     }
 
-    let upper = f64::from_bits(degrees.to_bits() & !LOWER);
+    let upper = upper_half(degrees);
     let lower = degrees - upper;
     upper * DEGREE[0] + (lower * DEGREE[0] + degrees * DEGREE[1])
 }
 
-use super::Real;
+/// Returns the first 26 bits of the significand.
+fn upper_half(x: f64) -> f64 {
+    const LOWER: u64 = (1 << 27) - 1;
+    f64::from_bits(x.to_bits() & !LOWER)
+}
 
 #[inline] // With `own_sin_cos`: 6.2 KB more flash on an M4F without.
 pub(super) fn single(x: f32) -> (f32, f32) {
@@ -81,6 +86,8 @@ pub(super) fn double(x: f64) -> (f64, f64) {
         2.0222662487959506e-21,
     ];
     const LARGEST: f64 = 1_647_098.0;
+    /// The `f64` nearest to 2 pi, first the upper 26 bits and then the rest.
+    const TURN: [f64; 2] = [6.283185243606567, 6.357301884918343e-08];
     const ROUNDER: f64 = 6_755_399_441_055_744.0;
     /// The same series as in [`single`]. The error of the fit is 4.0e-18 of sin r.
     const SINE: [f64; 6] = [
@@ -101,36 +108,32 @@ pub(super) fn double(x: f64) -> (f64, f64) {
         -1.1356709826679715e-11,
     ];
 
-    #[cold]
-    fn huge(x: f64) -> (f64, f64) {
-        libm::sincos(x)
+    let mut x = x;
+    while x.abs() > LARGEST {
+        // Products with 26 bits of the number of turns are exact.
+        let turns = upper_half(libm::rint(x / core::f64::consts::TAU));
+        x = (x - turns * TURN[0]) - turns * TURN[1];
     }
-
-    if x.abs() <= LARGEST {
-        let rounded = x * core::f64::consts::FRAC_2_PI + ROUNDER;
-        let k = rounded - ROUNDER;
-        // The rest of the argument is rounded only once.
-        let coarse = x - k * PI_OVER_TWO[0];
-        let middle = k * PI_OVER_TWO[1];
-        let rough = coarse - middle;
-        let lost = ((coarse - rough) - middle) - k * PI_OVER_TWO[2];
-        let is_quarters = k != 0.0 && x == k * core::f64::consts::FRAC_PI_2;
-        let rest = if is_quarters { 0.0 } else { rough + lost };
-        let (sine, cosine) =
-            by_quarters(first_octant(rest, SINE, COSINE), rounded.to_bits() as u32);
-        // The sine of pi is 0 and not -0, whose `atan2` would be -pi.
-        let is_zero = is_quarters && sine == 0.0;
-        (
-            if is_zero {
-                libm::copysign(0.0, x)
-            } else {
-                sine
-            },
-            cosine,
-        )
-    } else {
-        huge(x)
-    }
+    let rounded = x * core::f64::consts::FRAC_2_PI + ROUNDER;
+    let k = rounded - ROUNDER;
+    // The rest of the argument is rounded only once.
+    let coarse = x - k * PI_OVER_TWO[0];
+    let middle = k * PI_OVER_TWO[1];
+    let rough = coarse - middle;
+    let lost = ((coarse - rough) - middle) - k * PI_OVER_TWO[2];
+    let is_quarters = k != 0.0 && x == k * core::f64::consts::FRAC_PI_2;
+    let rest = if is_quarters { 0.0 } else { rough + lost };
+    let (sine, cosine) = by_quarters(first_octant(rest, SINE, COSINE), rounded.to_bits() as u32);
+    // The sine of pi is 0 and not -0, whose `atan2` would be -pi.
+    let is_zero = is_quarters && sine == 0.0;
+    (
+        if is_zero {
+            libm::copysign(0.0, x)
+        } else {
+            sine
+        },
+        cosine,
+    )
 }
 
 fn first_octant<R: Real, const N: usize>(r: R, sine: [R; N], cosine: [R; N]) -> (R, R) {

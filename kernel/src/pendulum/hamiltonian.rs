@@ -181,9 +181,9 @@ impl<R: Real> Pendulum<R> {
     }
 }
 
-/// Returns 1 - cos a, without cancellation for small a: sin^2 a / (1 + cos a) if cos a > 0.
+/// Returns 1 - cos a, without cancellation for small a: sin^2 a / (1 + cos a) if cos a > 1/2.
 fn one_minus_cos<R: Real>((sin, cos): (R, R)) -> R {
-    if cos > R::ZERO {
+    if cos > R::HALF {
         sin * sin / (R::ONE + cos)
     } else {
         R::ONE - cos

@@ -18,38 +18,38 @@ use super::Costs;
 impl Costs {
     /// The counted price list of a Cortex-M3, in cycles.
     pub const CORTEX_M3: Costs = Costs {
-        closed_form: 10906.1,
+        closed_form: 10978.1,
         direction_plain: 13045.4,
         direction: 14857.6,
         fixed32: 672.2,
-        fixed32_unlike: 904.5,
-        fixed64: 21672.0,
-        preparation: 193958.0,
-        comparison: 70738.0,
+        fixed32_unlike: 905.4,
+        fixed64: 21673.0,
+        preparation: 195560.0,
+        comparison: 76258.0,
     };
 
     /// The counted price list of a Cortex-M4F, in cycles.
     pub const CORTEX_M4F: Costs = Costs {
-        closed_form: 1777.3,
+        closed_form: 1820.3,
         direction_plain: 161.3,
         direction: 206.1,
         fixed32: 622.3,
         fixed32_unlike: 622.3,
-        fixed64: 14307.0,
-        preparation: 178060.0,
-        comparison: 10216.0,
+        fixed64: 14306.0,
+        preparation: 188606.0,
+        comparison: 11395.0,
     };
 
     /// The counted price list of a Cortex-M0+, in cycles.
     pub const CORTEX_M0PLUS: Costs = Costs {
-        closed_form: 19134.8,
+        closed_form: 19193.8,
         direction_plain: 22403.3,
         direction: 25556.9,
         fixed32: 2128.6,
         fixed32_unlike: 2571.1,
-        fixed64: 80289.0,
-        preparation: 510461.0,
-        comparison: 123149.0,
+        fixed64: 81984.0,
+        preparation: 508984.0,
+        comparison: 136805.0,
     };
 }
 // end of the generated part

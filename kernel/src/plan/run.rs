@@ -128,7 +128,6 @@ impl PlannedRun {
     ///
     /// This is enough for a picture, and costs far less than [`state`](Self::state) on a processor
     /// whose `f64` is software.
-    #[inline(never)] // 0.4 KB more flash on an M3 without.
     #[must_use]
     pub fn rounded_state(&self) -> State<f32> {
         let [a1, a2] = self.directions().map(|[s, c]| libm::atan2f(s, c));

@@ -14,9 +14,8 @@ use anyhow::{anyhow, ensure};
 
 use super::run::quick_output;
 use super::{TARGETS, Toolchain, WASM, remap, set_up_for, target, workspace};
-use firmware::display::PanelName;
 
-use crate::board::{Board, every_board};
+use crate::board::{Board, PICO, every_board};
 use crate::console::progress::Progress;
 use crate::process::run_watched;
 
@@ -87,12 +86,12 @@ impl Toolchain {
     }
 
     pub fn build_for(&self, board: &Board) -> anyhow::Result<PathBuf> {
-        if board.panel == PanelName::Oled {
+        if board.binary != PICO.binary {
             return self.build(board.binary, board.target);
         }
 
-        // Cargo gives the images for all panels the same name. Each is copied before the next
-        // build replaces it.
+        // Cargo gives the Pico's images for all panels the same name. Each is copied before the
+        // next build replaces it.
         static TURN: Mutex<()> = Mutex::new(());
         let _turn = TURN.lock().unwrap_or_else(PoisonError::into_inner);
         let name = board.panel.name();

@@ -150,15 +150,8 @@ fn frames(lines: &Lines, address: u32) -> Frames {
 }
 
 fn images() -> BTreeSet<PathBuf> {
-    let toolchain = crate::support::toolchain();
-    let build = |(binary, target)| {
-        toolchain
-            .build(binary, target)
-            .unwrap_or_else(|error| panic!("{error}"))
-    };
     every_board()
-        .map(|board| (board.binary, board.target))
-        .map(build)
+        .map(crate::support::application)
         .chain([crate::support::application(&pico_with(PanelName::Lcd13))])
         .collect()
 }

@@ -308,6 +308,7 @@ impl<const UNLIKE: bool, const INVERSE: bool> Equations<'_, UNLIKE, INVERSE> {
         ]
     }
 
+    #[inline]
     fn inverse(&self, square: Q64) -> Q64 {
         let shifts = &self.rows.shifts;
         let denominator = self.rows.inertia + self.down(square, shifts.momentum);

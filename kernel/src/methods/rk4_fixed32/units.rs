@@ -123,7 +123,7 @@ impl Units {
             limit,
         } = Demands::new(parameters, energy)?;
         let sixth = dt / 6.0;
-        let fit = libm::floor(libm::log2(longest / libm::fabs(sixth)));
+        let fit = longest / libm::fabs(sixth);
         if fit.is_nan() || libm::fabs(dt) > limit {
             return Err(Error::TooLarge {
                 parameter: Parameter::Dt,
@@ -132,7 +132,7 @@ impl Units {
             });
         }
 
-        let halvings = libm::fmin(fit, f64::from(MOST_HALVINGS)) as u32;
+        let halvings = libm::ilogb(fit).clamp(0, MOST_HALVINGS as i32) as u32;
         let scaling = seconds.in_unit(scaled(sixth, halvings as i32));
         let gravity = scaling.gravity.map(Gravity::from_f64);
         let reversed_gravity = gravity.map(|gravity| -gravity);

@@ -60,6 +60,7 @@ pub(crate) fn upper(a: i32, b: i32) -> i32 {
     (product(a, b) >> 32) as i32
 }
 
+#[inline]
 pub(crate) fn product(a: i32, b: i32) -> i64 {
     if IN_HALVES {
         product_of_halves(a, b)
@@ -68,6 +69,7 @@ pub(crate) fn product(a: i32, b: i32) -> i64 {
     }
 }
 
+#[inline]
 fn product_of_halves(a: i32, b: i32) -> i64 {
     let halves = |word: i32| (word & 0xffff, word >> 16);
     let (a0, a1) = halves(a);

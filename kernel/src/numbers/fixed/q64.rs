@@ -38,6 +38,7 @@ impl Q64 {
         ]
     }
 
+    #[inline]
     pub fn times_word(self, factor: i32) -> Self {
         let [upper, lower] = self.words().map(|word| product(word, factor));
         Self(upper + (lower >> 32))
@@ -85,6 +86,7 @@ impl Q64 {
 /// of the last digit.
 impl Mul for Q64 {
     type Output = Self;
+    #[inline]
     fn mul(self, factor: Self) -> Self {
         let [a, a_lower] = self.words();
         let [b, b_lower] = factor.words();
