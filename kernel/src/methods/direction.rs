@@ -67,6 +67,7 @@ pub(crate) fn state_of(z: [f64; 6], [unit1, unit2]: [f64; 2]) -> State<f64> {
     }
 }
 
+#[inline]
 pub(crate) fn directions<R: Real>(z: &[R; 6], norm: R) -> [Direction<R>; 2] {
     let [sin1, cos1, s, c, ..] = *z;
     let inverse = R::ONE / norm;

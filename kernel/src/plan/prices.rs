@@ -23,9 +23,9 @@ impl Costs {
         direction: 14857.6,
         fixed32: 672.2,
         fixed32_unlike: 905.4,
-        fixed64: 21673.0,
+        fixed64: 21672.0,
         preparation: 195560.0,
-        comparison: 76258.0,
+        comparison: 70813.0,
     };
 
     /// The counted price list of a Cortex-M4F, in cycles.
@@ -49,7 +49,7 @@ impl Costs {
         fixed32_unlike: 2571.1,
         fixed64: 81984.0,
         preparation: 508984.0,
-        comparison: 136805.0,
+        comparison: 123442.0,
     };
 }
 // end of the generated part

@@ -24,14 +24,13 @@
 //! stopped. The log of the LM3S6965 waits until it loses power. The log of the STM32F405 is in
 //! memory and never waits.
 
-use core::arch::naked_asm;
+use core::arch::{asm, naked_asm};
 use core::cell::UnsafeCell;
 use core::fmt::{Display, Write};
 use core::panic::PanicInfo;
 use core::sync::atomic::{AtomicBool, Ordering};
 
 use cortex_m::peripheral::{DCB, SCB};
-use cortex_m::register::msp;
 use cortex_m_rt::ExceptionFrame;
 use cortex_m_semihosting::{debug, hio};
 
@@ -63,9 +62,13 @@ unsafe impl Sync for Stack {}
 #[panic_handler]
 fn panic(info: &PanicInfo) -> ! {
     // The call of this handler, and the call of the function that called it. They are found on the
-    // stack, because the registers have other values by now. The second call is the place of the
-    // panic, unless a helper function is in between.
-    let mut calls = calls(msp::read());
+    // stack from the frame pointer on: below it, this function's own frame may contain calls that
+    // have returned. The second call is the place of the panic, unless a helper function is in
+    // between.
+    let frame: u32;
+    // SAFETY: a register is read.
+    unsafe { asm!("mov {}, r7", out(reg) frame, options(nomem, nostack, preserves_flags)) };
+    let mut calls = calls(frame);
     let [pc, lr] = [(); 2].map(|()| calls.next().unwrap_or_default());
 
     // The status of an earlier fault, if it is not zero.
