@@ -24,8 +24,8 @@ impl Costs {
         fixed32: 672.2,
         fixed32_unlike: 905.4,
         fixed64: 21672.0,
-        preparation: 195560.0,
-        comparison: 70813.0,
+        preparation: 195555.0,
+        comparison: 70828.0,
     };
 
     /// The counted price list of a Cortex-M4F, in cycles.
@@ -47,7 +47,7 @@ impl Costs {
         direction: 25556.9,
         fixed32: 2128.6,
         fixed32_unlike: 2571.1,
-        fixed64: 81984.0,
+        fixed64: 80289.0,
         preparation: 508984.0,
         comparison: 123442.0,
     };

@@ -40,8 +40,8 @@ impl Q64 {
 
     #[inline]
     pub fn times_word(self, factor: i32) -> Self {
-        let [upper, lower] = self.words().map(|word| product(word, factor));
-        Self(upper + (lower >> 32))
+        let [upper, lower] = self.words();
+        Self(product(upper, factor) + (product(lower, factor) >> 32))
     }
 
     /// Returns zero if the number is from -2^-`places` to below 2^-`places`, so that the results of
