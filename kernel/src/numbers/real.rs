@@ -38,9 +38,9 @@ impl<R: RealOperations> Real for R {}
 /// The errors of `f32` are absolute, for magnitudes of the angle up to pi and up to 1e4 rad (test
 /// `trigonometry`). The error of `f64` is relative, up to 1,647,098 rad.
 ///
-/// An `f32` beyond 12,867 is computed as an `f64` and rounded. An `f64` beyond 1,647,098 is
-/// computed by the `libm` crate, which is accurate but slow. For infinity and NaN both results are
-/// NaN.
+/// An `f32` beyond 12,867 is computed as an `f64` and rounded. An `f64` beyond 1,647,098 is first
+/// reduced by turns of the `f64` nearest to 2 pi, which changes the angle by less than half a unit
+/// in its last place. For infinity and NaN both results are NaN.
 #[must_use]
 pub fn sin_cos<R: Real>(angle: R) -> (R, R) {
     angle.own_sin_cos()
