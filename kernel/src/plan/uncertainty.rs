@@ -61,10 +61,11 @@ const PHASE: f64 = 12.0;
 /// as much as eight steps in 64 bits.
 const FEWEST: u32 = 8;
 /// The smallest diagonal element of the Cholesky factor, as a share of the largest deviation: the
-/// share of [`NEAR`] to which the shadows know the shape of the ellipsoid. Each is rounded to `f32`,
-/// so that the difference of two is off by up to 2^-24. With half or twice of it, the study of
-/// motions from high starts is right, too; with 2^-26, errors reached 1.8 times the bound.
-const SMALLEST: f64 = 1.0 / (1 << 24) as f64 / NEAR;
+/// share of [`NEAR`] to which the shadows know the shape of the ellipsoid. It is four standard
+/// deviations of eight roundings of `f32`, 0.3 x 2^-24 each: those of [`START`], of two shadows.
+/// With half or twice of it, the study of motions from high starts is right, too. With 2^-26, errors
+/// reached 1.8 times the bound; with 2^-11, which leaves out the deviations, 2.1 times.
+const SMALLEST: f64 = 1.0 / (1 << 22) as f64 / NEAR;
 
 /// The rounding error of the start: four standard deviations of four roundings of `f64`, 0.3 x 2^-53
 /// each. They are those of the sines and cosines of a1 and a1 - a2, and of each momentum.
