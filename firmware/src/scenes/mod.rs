@@ -5,7 +5,7 @@
 //!
 //! 1. Write a type with the trait [`Scene`], as in `pendulums.rs`, and the last row of the
 //!    `catalogue!`, because its place is its number on the link; name it in the list there. The
-//!    compiler asks for the other places, such as its description in
+//!    compiler names the other places, such as its description in
 //!    `host-tests/demo/src/options.rs`. If it shows a motion, add it to `OTHERS` in
 //!    `host-tests/tests/firmware/sweep.rs`.
 //! 2. `BLESS=1 cargo test -p host-tests --test firmware -- scenes:: golden:: link::` makes its stored

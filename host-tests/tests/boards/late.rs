@@ -1,4 +1,4 @@
-//! A board that is late, and one that nearly is.
+//! Boards that are late, or nearly late.
 
 use boards::qemu::Machine;
 use boards::{BOARDS, LM3S6965EVB, STM32F405};

@@ -31,6 +31,7 @@ use super::Real;
 pub fn radians(degrees: f64) -> f64 {
     /// pi/180, first the upper 26 bits and then the rest, so that products of halves are exact.
     const DEGREE: [f64; 2] = [0.01745329238474369, 1.3519960527851425e-10];
+
     let quarters = degrees / 90.0;
     if libm::rint(quarters) == quarters && quarters * 90.0 == degrees {
         return quarters * core::f64::consts::FRAC_PI_2;
@@ -77,7 +78,7 @@ pub(super) fn single(x: f32) -> (f32, f32) {
     }
 }
 
-pub(super) fn double(x: f64) -> (f64, f64) {
+pub(super) fn double(mut x: f64) -> (f64, f64) {
     /// pi/2 in three parts. The first two have 33 bits each, so that their products with k are
     /// exact for every k up to 2^20.
     const PI_OVER_TWO: [f64; 3] = [
@@ -108,12 +109,12 @@ pub(super) fn double(x: f64) -> (f64, f64) {
         -1.1356709826679715e-11,
     ];
 
-    let mut x = x;
     while x.abs() > LARGEST {
         // Products with 26 bits of the number of turns are exact.
         let turns = upper_half(libm::rint(x / core::f64::consts::TAU));
         x = (x - turns * TURN[0]) - turns * TURN[1];
     }
+
     let rounded = x * core::f64::consts::FRAC_2_PI + ROUNDER;
     let k = rounded - ROUNDER;
     // The rest of the argument is rounded only once.

@@ -60,11 +60,10 @@ const PHASE: f64 = 12.0;
 /// The smallest number of frames between two restarts that are due by that phase. A restart costs
 /// as much as eight steps in 64 bits.
 const FEWEST: u32 = 8;
-/// The smallest diagonal element of the Cholesky factor, as a share of the largest deviation: the
-/// share of [`NEAR`] to which the shadows know the shape of the ellipsoid. It is four standard
-/// deviations of eight roundings of `f32`, 0.3 x 2^-24 each: those of [`START`], of two shadows.
-/// With half or twice of it, the study of motions from high starts is right, too. With 2^-26, errors
-/// reached 1.8 times the bound; with 2^-11, which leaves out the deviations, 2.1 times.
+/// The smallest diagonal element of the Cholesky factor, as a share of the largest deviation. At the
+/// distance [`NEAR`], the shadows measure no narrower ellipsoid: four standard deviations of eight
+/// roundings of `f32`, 0.3 x 2^-24 each. Narrower ones had errors of twice the bound. With half or
+/// twice of it, mean horizons from high starts change by at most 0.5 %.
 const SMALLEST: f64 = 1.0 / (1 << 22) as f64 / NEAR;
 
 /// The rounding error of the start: four standard deviations of four roundings of `f64`, 0.3 x 2^-53
