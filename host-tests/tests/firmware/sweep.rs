@@ -5,14 +5,18 @@
 use boards::host::Show;
 use double_pendulum::{Modes, Parameters, Pendulum, SmallOscillations};
 use exact::taylor::Reference;
-use firmware::config::{HALF_PIXEL, MASS_RATIOS, PROCESSORS, Processor, REACH, TICK_RATE};
+use firmware::config::{
+    CORTEX_M0PLUS, CORTEX_M4F, HALF_PIXEL, MASS_RATIOS, PROCESSORS, Processor, REACH, TICK_RATE,
+};
 use firmware::graphics::{Format, Place};
 use firmware::motion::{Horizon, Settings};
 use firmware::protocol::PlayState;
 use firmware::scenes::SceneName;
 use rayon::prelude::*;
 
-const TICKS: u32 = 20 * TICK_RATE;
+/// How long a scene is played, s.
+const SHORT: u32 = 20;
+const LONG: u32 = 200;
 
 /// Relative. A motion in steps that do not resolve it gains or loses several percent within
 /// seconds.
@@ -52,7 +56,7 @@ struct Shown {
 }
 
 impl Shown {
-    fn new(case: &Case, processor: Processor) -> Self {
+    fn new(case: &Case, processor: Processor, seconds: u32) -> Self {
         let mut show = Show::on(processor, case.name, &case.settings).expect("good settings");
 
         let mut shown = Self {
@@ -64,7 +68,7 @@ impl Shown {
             states: vec![show.player.state()],
         };
 
-        for _ in 0..TICKS {
+        for _ in 0..seconds * TICK_RATE {
             show.tick();
             let report = show.report();
             shown.states.push(show.player.state());
@@ -176,10 +180,10 @@ enum Fault {
     },
 }
 
-fn faults(case: &Case) -> Vec<(Case, u8, Fault)> {
-    let shown: Vec<_> = PROCESSORS
+fn faults(case: &Case, processors: &[Processor], seconds: u32) -> Vec<(Case, u8, Fault)> {
+    let shown: Vec<_> = processors
         .iter()
-        .map(|&processor| Shown::new(case, processor))
+        .map(|&processor| Shown::new(case, processor, seconds))
         .collect();
 
     let frames = shown.iter().map(Shown::claimed_frames).max().unwrap_or(0);
@@ -235,14 +239,17 @@ fn faults(case: &Case) -> Vec<(Case, u8, Fault)> {
     faults
 }
 
-fn sweep(cases: &[Case]) {
+fn sweep(cases: &[Case], processors: &[Processor], seconds: u32) {
     let mut found = Vec::new();
     for (chunk, some) in cases.chunks(CHUNK).enumerate() {
-        let more: Vec<_> = some.par_iter().flat_map_iter(faults).collect();
+        let more: Vec<_> = some
+            .par_iter()
+            .flat_map_iter(|case| faults(case, processors, seconds))
+            .collect();
         more.iter().for_each(|fault| println!("{fault:?}"));
         found.extend(more);
 
-        let done = (chunk * CHUNK + some.len()) * PROCESSORS.len();
+        let done = (chunk * CHUNK + some.len()) * processors.len();
         println!("{done} scenes, {} faults", found.len());
     }
 
@@ -302,32 +309,45 @@ fn settings_of_all_kinds_are_shown_as_claimed() {
     cases.push(Case::new(SceneName::Beats5To2, 80.0, 179.0));
     // So light a bob 2 makes the curve so small that the chord of an error matters.
     cases.push(Case::new(SceneName::SmallLight, 0.01, -165.0));
-    sweep(&cases);
+    sweep(&cases, &PROCESSORS, SHORT);
 }
 
-fn some_degrees() -> Vec<f64> {
-    let every_15th = (-12..=12).map(|turn| 15.0 * f64::from(turn));
-    every_15th.chain([-179.0, -1.0, 1.0, 179.0]).collect()
+fn every_15th_degree() -> impl Iterator<Item = f64> {
+    (-12..=12).map(|turn| 15.0 * f64::from(turn))
+}
+
+/// Every scene with a motion, in every mass ratio.
+fn all_mass_ratios(degrees: &[f64]) -> Vec<Case> {
+    let mut cases = Vec::new();
+    for ratio in MASS_RATIOS {
+        for name in [SceneName::Page].into_iter().chain(OTHERS) {
+            cases.extend(
+                degrees
+                    .iter()
+                    .map(|&degrees| Case::new(name, ratio, degrees)),
+            );
+        }
+    }
+    cases
 }
 
 /// Every scene with a motion.
 #[test]
 #[ignore = "an hour"]
 fn all_mass_ratios_and_every_15th_degree_are_shown_as_claimed() {
-    let mut cases = Vec::new();
-    for ratio in MASS_RATIOS {
-        for degrees in some_degrees() {
-            cases.push(Case::new(SceneName::Page, ratio, degrees));
-        }
-        for name in OTHERS {
-            cases.extend(
-                some_degrees()
-                    .into_iter()
-                    .map(|degrees| Case::new(name, ratio, degrees)),
-            );
-        }
-    }
-    sweep(&cases);
+    let degrees: Vec<_> = every_15th_degree()
+        .chain([-179.0, -1.0, 1.0, 179.0])
+        .collect();
+    sweep(&all_mass_ratios(&degrees), &PROCESSORS, SHORT);
+}
+
+/// Every scene with a motion, for a long time.
+#[test]
+#[ignore = "an hour"]
+fn scenes_of_200_s_are_shown_as_claimed() {
+    let degrees: Vec<_> = every_15th_degree().collect();
+    let processors = [CORTEX_M0PLUS, CORTEX_M4F];
+    sweep(&all_mass_ratios(&degrees), &processors, LONG);
 }
 
 /// The page alone.
@@ -340,7 +360,7 @@ fn all_mass_ratios_and_degrees_of_the_page_are_shown_as_claimed() {
             cases.push(Case::new(SceneName::Page, ratio, degrees.into()));
         }
     }
-    sweep(&cases);
+    sweep(&cases, &PROCESSORS, SHORT);
 }
 
 #[test]
