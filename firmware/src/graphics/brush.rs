@@ -58,8 +58,7 @@ impl Stroke {
     #[inline(never)] // Test `scenes` profiles it by its name.
     pub fn lighten(&self, canvas: &mut Canvas, brightness: u8) {
         let limit = i32::from(self.radius) + HALF;
-        let line = Line::new(self.from, self.to, limit);
-        let grey = shade(brightness);
+        let line = Line::new(self.from, self.to, limit, brightness);
 
         let format = canvas.format;
         let columns = pixels([self.from.x, self.to.x], limit, format.right());
@@ -80,9 +79,9 @@ impl Stroke {
             let mut progress = dot(line.along, to);
             let mut across = line.along.0 * to.1 - line.along.1 * to.0;
             for x in columns {
-                let covered = line.covered((x, y), progress, across);
-                if covered > 0 {
-                    row.lighten(x, grey(covered));
+                let grey = line.grey((x, y), progress, across);
+                if grey > 0 {
+                    row.lighten(x, grey);
                 }
                 progress += line.along.0 * SUBPIXELS;
                 across -= line.along.1 * SUBPIXELS;
@@ -91,10 +90,9 @@ impl Stroke {
     }
 }
 
-/// A disc of `radius` subpixels, surrounded by a dark gap of `gap` subpixels that separates it from
-/// the background. Edges are soft, one pixel wide, half of it outside the radius. In the gap, up to
-/// its soft edge, the background becomes black; with a gap of 0 the background is darkened only in
-/// the soft edge of the disc. A disc with a radius below 16 is fainter.
+/// A disc of `radius` subpixels, surrounded by a black gap of `gap` subpixels that separates it from
+/// the background. The edge of the disc is soft, one pixel wide, half of it outside the radius; that
+/// of the gap is hard. A disc with a radius below 16 is fainter.
 #[derive(Clone, Copy, Debug)]
 pub struct Disc {
     /// The middle.
@@ -106,65 +104,42 @@ pub struct Disc {
 }
 
 impl Disc {
-    /// Draws the disc and its gap over the canvas: the disc replaces brighter pixels, too, and the
-    /// gap is darkened. The brightness is 0 (black) to 255 (grey 15). The parts outside the canvas
-    /// are not drawn.
+    /// Draws the disc over the canvas, with a brightness of 0 (black) to 255 (grey 15). Pixels whose
+    /// middles are in the disc or its gap are replaced. In the rest of the soft edge, pixels that
+    /// are brighter already keep their grey. The parts outside the canvas are not drawn.
     pub fn draw(&self, canvas: &mut Canvas, brightness: u8) {
-        let Spot {
-            x: centre_x,
-            y: centre_y,
-        } = self.centre;
-        let edge = i32::from(self.radius) + HALF;
+        let Spot { x, y } = self.centre;
+        let radius = i32::from(self.radius);
+        let edge = radius + HALF;
+        let gap = radius + i32::from(self.gap);
 
-        // Within `inner` a pixel is covered, up to `edge` in part. Up to `outer` it is darkened.
-        let inner = (edge - SUBPIXELS).max(0);
-        let outer = edge + i32::from(self.gap);
-        let wiped = (outer - SUBPIXELS).max(0);
-        let wipe = |old: u8, distance: i32| {
-            (((distance - wiped).max(0) as u32 * u32::from(old)) >> SHIFT) as u8
-        };
-
-        let grey = shade(brightness);
-        let full = grey(SUBPIXELS);
-
-        // The distance is a root only at the edges, where it matters.
+        // Linear in the square of the distance, which needs no root.
+        let soft = Edge::between(edge, |distance| distance * distance, brightness);
         let format = canvas.format;
-        let columns = pixels([centre_x; 2], outer, format.right());
-        let touched = canvas.cells_of(columns.clone());
-        for y in pixels([centre_y; 2], outer, format.bottom()) {
-            let Some(mut row) = canvas.row_in(y, touched) else {
+        let outer = edge.max(gap);
+        let touched = canvas.cells_of(pixels([x; 2], outer, format.right()));
+        for row in pixels([y; 2], outer, format.bottom()) {
+            let Some(mut pixels) = canvas.row_in(row, touched) else {
                 return;
             };
-            let dy = middle(y) - i32::from(centre_y);
-            let mut whole = 0..0;
-            for x in columns.clone() {
-                let dx = middle(x) - i32::from(centre_x);
-                let squared = dx * dx + dy * dy;
-                if squared >= outer * outer {
-                    if dx > 0 {
-                        break;
-                    }
-                    continue;
+            let down = middle(row) - i32::from(y);
+            let within = |radius: i32| {
+                let square = radius * radius - down * down;
+                if square <= 0 {
+                    return 0..0;
                 }
-                if squared < inner * inner {
-                    if whole.is_empty() {
-                        whole.start = x;
-                    }
-                    whole.end = x + 1;
-                    continue;
-                }
-                row.update(x, |old| {
-                    if squared < edge * edge {
-                        let distance = root(squared, inner, edge);
-                        wipe(old, distance).max(grey(edge - distance))
-                    } else if old == 0 {
-                        0
-                    } else {
-                        wipe(old, root(squared, edge, outer))
-                    }
-                });
+                let half = square.unsigned_abs().isqrt() as i32;
+                let first = i32::from(x) - half + HALF - 1;
+                let end = i32::from(x) + half + HALF;
+                (first >> SHIFT).max(0)..(end >> SHIFT).min(format.right())
+            };
+
+            pixels.fill(within(gap), 0);
+            for column in within(edge) {
+                let across = middle(column) - i32::from(x);
+                let square = across * across + down * down;
+                pixels.lighten(column, soft.grey(square));
             }
-            row.fill(whole, full);
         }
     }
 }
@@ -182,29 +157,16 @@ fn middle(pixel: i32) -> i32 {
     pixel * SUBPIXELS + HALF
 }
 
-/// Returns the function from the coverage of a pixel, 0 to [`SUBPIXELS`], to its grey, for a
-/// brightness of 0 to 255.
-///
-/// The edge is a ramp one pixel wide. For a straight edge of any direction this agrees with the
-/// covered area to a few percent.
-fn shade(brightness: u8) -> impl Fn(i32) -> u8 {
-    /// The product of brightness and coverage that is one grey. Full brightness, 255 = 17 x 15,
-    /// times full coverage is 15 of them.
-    const GREY: u32 = 17 * SUBPIXELS as u32;
-    let greys = (u32::from(brightness) << 16).div_ceil(GREY);
-    move |covered| ((covered.clamp(0, SUBPIXELS) as u32 * greys + (1 << 15)) >> 16) as u8
-}
-
-/// A straight line between two spots, and the two distances that limit its soft edge.
+/// A straight line between two spots, and its soft edge.
 struct Line {
     from: Spot,
     along: (i32, i32),
     length_squared: i32,
     length: i32,
-    /// The distance from the line beyond which nothing is covered, and the one within which a pixel
-    /// is covered whole, subpixels.
+    /// The distance from the line beyond which nothing is covered, subpixels.
     limit: i32,
-    whole: i32,
+    /// The soft edge, for distances times `length`.
+    edge: Edge,
 }
 
 /// The range of pixels of each row that can be near the line, if the line is extended without end.
@@ -232,20 +194,20 @@ impl Band {
 }
 
 impl Line {
-    fn new(from: Spot, to: Spot, limit: i32) -> Self {
+    fn new(from: Spot, to: Spot, limit: i32, brightness: u8) -> Self {
         let along = (
             i32::from(to.x) - i32::from(from.x),
             i32::from(to.y) - i32::from(from.y),
         );
         let length_squared = dot(along, along);
-        let length = length_squared.unsigned_abs().isqrt() as i32;
+        let length = (length_squared.unsigned_abs().isqrt() as i32).max(1);
         Self {
             from,
             along,
             length_squared,
             length,
             limit,
-            whole: (limit - SUBPIXELS).max(0),
+            edge: Edge::between(limit, |distance| distance * length, brightness),
         }
     }
 
@@ -284,9 +246,7 @@ impl Line {
         )
     }
 
-    /// Returns the coverage of the pixel at (x, y), subpixels: `limit`, which is more than a whole
-    /// pixel, within `whole` of the line, and 0 beyond `limit`. Only the values between need a
-    /// division.
+    /// Returns the grey of the pixel at (x, y).
     ///
     /// `progress` and `across` are the distances of the middle of the pixel along the line from its
     /// start and across it, each times the length of the line.
@@ -294,22 +254,10 @@ impl Line {
     /// A spot is at most one canvas size outside the canvas. So differences are at most 3 x 320 x 32
     /// = 30,720 across and 3 x 240 x 32 = 23,040 down, and the sum of their squares is 1.5e9. It
     /// fits into 31 bits.
-    fn covered(&self, (x, y): (i32, i32), progress: i32, across: i32) -> i32 {
-        let &Self {
-            along,
-            length,
-            limit,
-            whole,
-            ..
-        } = self;
-
+    fn grey(&self, (x, y): (i32, i32), progress: i32, across: i32) -> u8 {
         // The pixel is next to the line: the distance across counts.
         if progress > 0 && progress < self.length_squared {
-            return match across.abs() {
-                across if across >= limit * length => 0,
-                across if across < whole * length => limit,
-                across => limit - across.checked_div(length).unwrap_or_default(),
-            };
+            return self.edge.grey(across.abs());
         }
 
         // The pixel is beyond an end: the distance from that end counts.
@@ -317,30 +265,58 @@ impl Line {
         let end = if progress <= 0 {
             (dx, dy)
         } else {
-            (dx - along.0, dy - along.1)
+            (dx - self.along.0, dy - self.along.1)
         };
-        match dot(end, end) {
-            squared if squared >= limit * limit => 0,
-            squared if squared < whole * whole => limit,
-            squared => limit - root(squared, whole, limit),
+        let square = dot(end, end);
+        if square >= self.limit * self.limit {
+            return 0;
         }
+        self.edge
+            .grey(square.unsigned_abs().isqrt() as i32 * self.length)
     }
 }
 
-/// Returns the square root, rounded down. `square` is at least the square of `low` and less than
-/// the square of `high`.
+/// A soft edge, one pixel wide: the grey falls to 0 between two measures of the distance of a pixel.
 ///
-/// The chord between `low` and `high` gives a first value that is never too large, and too small by
-/// a few at most.
-fn root(square: i32, low: i32, high: i32) -> i32 {
-    let mut root = low
-        + (square - low * low)
-            .checked_div(low + high)
-            .unwrap_or_default();
-    while (root + 1) * (root + 1) <= square {
-        root += 1;
+/// Next to a straight edge of any direction it agrees with the covered area to a few percent.
+#[derive(Clone, Copy)]
+struct Edge {
+    /// The measure from which on the grey is 0.
+    outer: i32,
+    /// The difference of both measures.
+    width: i32,
+    /// The greys for a difference of 1, in parts.
+    slope: i32,
+}
+
+impl Edge {
+    const PARTS: u32 = 20;
+
+    /// The grey is 0 at the distance `limit`, subpixels. One pixel within, it is that of the
+    /// brightness of 0 (black) to 255 (grey 15), less if the limit is less than a pixel.
+    fn between(limit: i32, measure: impl Fn(i32) -> i32, brightness: u8) -> Self {
+        /// The brightness of a grey.
+        const GREY: i32 = 17;
+        let soft = limit.min(SUBPIXELS);
+        let outer = measure(limit);
+        let width = (outer - measure(limit - soft)).max(1);
+        let greys = (i32::from(brightness) * soft) << (Self::PARTS - SHIFT);
+        Self {
+            outer,
+            width,
+            slope: greys / GREY / width,
+        }
     }
-    root
+
+    /// Returns the grey of a pixel.
+    fn grey(self, measure: i32) -> u8 {
+        let rest = self.outer - measure;
+        if rest <= 0 {
+            return 0;
+        }
+        let rest = rest.min(self.width);
+        ((rest * self.slope + (1 << (Self::PARTS - 1))) >> Self::PARTS) as u8
+    }
 }
 
 /// Returns the scalar product.

@@ -5,6 +5,7 @@
 
 use core::ops::Range;
 
+use crate::graphics::row::{Pen, Row, nibbles, shift, shown};
 use crate::graphics::{Format, Palette};
 
 /// The frame buffers of a canvas: two layers of this number of words, and the rows. They are created
@@ -74,53 +75,8 @@ enum Layer {
     Foreground,
 }
 
-/// The level of a foreground that covers the ink with black. 0 is transparent. On a panel of greys it
-/// is not used.
-const BLACK: u8 = 1;
-/// The number 1 in every nibble, and in every byte.
-const ONES: u32 = 0x1111_1111;
+/// The number 1 in every byte.
 const BYTES: u32 = 0x0101_0101;
-
-/// A tool that changes pixels of a layer.
-#[derive(Clone, Copy, Debug)]
-struct Pen {
-    layer: Layer,
-    /// The foreground is transparent where nothing is drawn.
-    is_apart: bool,
-}
-
-impl Pen {
-    /// Returns the level that shows this grey.
-    fn level(self, grey: u8) -> u8 {
-        match self.layer {
-            Layer::Ink => grey,
-            Layer::Foreground if self.is_apart => grey.max(BLACK),
-            Layer::Foreground if grey == BLACK => 0,
-            Layer::Foreground => grey,
-        }
-    }
-
-    /// Returns the grey of pixel `x` in its word, or in a covered word where that is transparent.
-    fn grey(self, word: u32, covered: Option<&u32>, x: i32) -> u8 {
-        let level = |word: u32| (word >> shift(x) & 15) as u8;
-        match covered {
-            Some(covered) => shown(level(*covered), level(word)),
-            None => level(word),
-        }
-    }
-
-    /// Sets pixel `x` in its word to a grey, unless it is brighter.
-    #[inline]
-    fn lighten(self, word: &mut u32, covered: Option<&u32>, x: i32, grey: u8) {
-        let least = match self.layer {
-            Layer::Ink => 0,
-            Layer::Foreground => BLACK,
-        };
-        if grey > self.grey(*word, covered, x).max(least) {
-            put(word, x, grey);
-        }
-    }
-}
 
 /// A picture of a [`Format`] in two layers. Drawing cannot fail: pixels outside are ignored.
 ///
@@ -197,7 +153,7 @@ impl<'a> Canvas<'a> {
     #[inline(never)] // Test `scenes` profiles it by its name.
     pub fn on_clear_foreground(&mut self) -> &mut Self {
         self.layer = Layer::Foreground;
-        let is_apart = self.pen().is_apart;
+        let is_apart = self.format.is_large();
         let shift = self.cell_shift() - 3;
         for (y, cells) in (0..self.format.bottom()).zip(&mut *self.cells) {
             let drawn = core::mem::take(&mut cells.drawn);
@@ -235,8 +191,7 @@ impl<'a> Canvas<'a> {
 
     fn pen(&self) -> Pen {
         Pen {
-            layer: self.layer,
-            is_apart: self.format.is_large(),
+            is_apart: self.layer == Layer::Foreground && self.format.is_large(),
         }
     }
 
@@ -299,8 +254,9 @@ impl<'a> Canvas<'a> {
     #[inline]
     pub(super) fn row_in(&mut self, y: i32, touched: u32) -> Option<Row<'_>> {
         let format = self.format;
+        let layer = self.layer;
         let (pen, [words, covered], cells) = self.parts();
-        cells.get_mut(y as usize)?.touch(pen.layer, touched);
+        cells.get_mut(y as usize)?.touch(layer, touched);
         Some(Row {
             words: row_of(words, format, y)?,
             covered: row_of(covered, format, y).unwrap_or_default(),
@@ -311,7 +267,7 @@ impl<'a> Canvas<'a> {
     /// Returns the grey that a pixel shows, 0 to 15; `None` outside the canvas.
     pub fn get(&self, x: i32, y: i32) -> Option<u8> {
         let pixel = self.pixel(x, y)?;
-        Some(if self.pen().is_apart {
+        Some(if self.format.is_large() {
             shown(pixel >> 4, pixel & 15)
         } else {
             pixel & 15
@@ -365,7 +321,7 @@ impl<'a> Canvas<'a> {
     /// As [`stamp`](Self::stamp), where the caller has touched the pixels.
     pub(super) fn stamp_touched(&mut self, x: i32, y: i32, bits: u64, grey: u8) {
         let unit = self.format.units(1);
-        let greys = u32::from(self.pen().level(grey)) * ONES;
+        let greys = self.pen().greys(grey);
         let length = self.format.row_words();
         let (_, [words, _], _) = self.parts();
         let mut rest = bits;
@@ -406,13 +362,14 @@ impl<'a> Canvas<'a> {
         let rows = rows.start.max(0)..rows.end.min(self.format.bottom());
         let length = self.format.row_words();
         let mut place = rows.start as usize * length + (x >> 3) as usize;
+        let layer = self.layer;
         let (pen, [words, covered], cells) = self.parts();
         for y in rows {
             let (Some(word), Some(cells)) = (words.get_mut(place), cells.get_mut(y as usize))
             else {
                 return;
             };
-            cells.touch(pen.layer, touched);
+            cells.touch(layer, touched);
             pen.lighten(word, covered.get(place), x, grey(y));
             place += length;
         }
@@ -508,58 +465,6 @@ impl<'a> Canvas<'a> {
     }
 }
 
-/// A row of a canvas, for drawing on one layer.
-#[derive(Debug)]
-pub struct Row<'c> {
-    words: &'c mut [u32],
-    /// The words of the covered layer, or none.
-    covered: &'c mut [u32],
-    pen: Pen,
-}
-
-impl Row<'_> {
-    /// Replaces the grey of the pixel in column `x` by a function of it. Only the low four bits of
-    /// the result count. The function is not called for a pixel outside the row.
-    #[inline]
-    pub fn update(&mut self, x: i32, new: impl FnOnce(u8) -> u8) {
-        // A negative number becomes a word far beyond the end.
-        let place = (x >> 3) as usize;
-        if let Some(word) = self.words.get_mut(place) {
-            let old = self.pen.grey(*word, self.covered.get(place), x);
-            let new = new(old) & 15;
-            if new != old {
-                put(word, x, self.pen.level(new));
-            }
-        }
-    }
-
-    /// Sets pixels to a grey of 0 to 15. They then cover the ink, also if that has the same grey.
-    #[inline]
-    pub fn fill(&mut self, columns: Range<i32>, grey: u8) {
-        let greys = u32::from(self.pen.level(grey)) * ONES;
-        let Range { mut start, end } = columns;
-        while start < end {
-            let from = u32::MAX >> (4 * (start & 7));
-            let beyond = (start | 7) + 1 - end;
-            let to = u32::MAX << (4 * beyond.max(0));
-            // A negative number becomes a word far beyond the end.
-            if let Some(word) = self.words.get_mut((start >> 3) as usize) {
-                *word ^= (*word ^ greys) & (from & to).to_be();
-            }
-            start = (start | 7) + 1;
-        }
-    }
-
-    /// Sets a pixel to a grey of 0 to 15. A pixel that is brighter already keeps its grey.
-    #[inline]
-    pub fn lighten(&mut self, x: i32, grey: u8) {
-        let place = (x >> 3) as usize;
-        if let Some(word) = self.words.get_mut(place) {
-            self.pen.lighten(word, self.covered.get(place), x, grey);
-        }
-    }
-}
-
 /// The speed of fading. Every row loses one level in 64/`rows` ticks of the scene, whatever the
 /// height of the canvas; with 0 rows nothing fades.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -597,25 +502,6 @@ pub(super) fn carried(greys: u32, room: u32) -> u32 {
     (((greys & (15 * BYTES)) + room) >> 4) & BYTES
 }
 
-/// Sets pixel `x` in its word to a level.
-fn put(word: &mut u32, x: i32, level: u8) {
-    let shift = shift(x);
-    *word = *word & !(15 << shift) | u32::from(level) << shift;
-}
-
-/// Returns the position of a pixel's nibble in its word, as a shift.
-fn shift(x: i32) -> u32 {
-    4 * (x as u32 & 7 ^ 1)
-}
-
-/// Returns each of eight bits as a nibble of 0 or 15 of a word in memory, the highest bit on the
-/// left.
-fn nibbles(bits: u32) -> u32 {
-    let fours = (bits | bits << 12) & 0x000F_000F;
-    let twos = (fours | fours << 6) & 0x0303_0303;
-    (15 * ((twos | twos << 3) & ONES)).to_be()
-}
-
 /// Returns the squares of a row as pixels, the left one in the highest bit.
 fn stretched(squares: u8, unit: i32) -> u32 {
     if unit == 1 {
@@ -630,13 +516,4 @@ fn widened(squares: u8, unit: u32) -> u32 {
     (0..8)
         .filter(|place| squares << place & 0x80 != 0)
         .fold(0, |pixels, place| pixels | square >> (unit * place))
-}
-
-/// Returns the grey that these levels show.
-fn shown(ink: u8, foreground: u8) -> u8 {
-    match foreground {
-        0 => ink,
-        BLACK => 0,
-        grey => grey,
-    }
 }

@@ -7,14 +7,16 @@ mod format;
 pub mod label;
 mod palette;
 pub mod plot;
+mod row;
 pub mod text;
 mod view;
 
 pub use bitmap::{Bitmap, PAGES};
 pub use brush::{Disc, SUBPIXELS, Spot, Stroke};
-pub use canvas::{Canvas, Cells, Fading, FrameBuffers, Row};
+pub use canvas::{Canvas, Cells, Fading, FrameBuffers};
 pub use format::Format;
 pub use palette::{Palette, rgb};
 pub use plot::Height;
+pub use row::Row;
 pub use text::{Anchor, Glyph, glyph};
 pub use view::{Place, RodDirections, TRACE_HALF_WIDTH, View};

@@ -12,6 +12,7 @@ use crate::config::{
     GREATEST_ANGLE, HALF_PIXEL, PAGE_GRAVITY, Processor, STEPS_PER_TICK, TICK_RATE,
     TRAIL_BRIGHTNESS, TRAIL_FADING, TRAIL_HALF_WIDTH,
 };
+use crate::graphics::label::Label;
 use crate::graphics::{
     Anchor, Canvas, Fading, Format, Place, RodDirections, SUBPIXELS, TRACE_HALF_WIDTH, View, label,
     text,
@@ -24,9 +25,10 @@ use crate::scenes::{Report, Scene, Shows, draw_clock, time};
 /// The scene refuses what [`Simulation::new`] refuses.
 #[derive(Clone, Debug)]
 pub struct Page {
-    settings: Settings,
     simulation: Simulation,
     view: View,
+    mass_ratio: Label,
+    angles: [Label; 2],
 }
 
 impl Scene for Page {
@@ -41,11 +43,19 @@ impl Scene for Page {
         let place = Place::whole(resources.format);
         let directions = simulation.motion.directions();
         let view = View::new(&settings.parameters, place, directions);
+        let [degrees1, degrees2] = settings.degrees;
+        let angles = if degrees1 == degrees2 {
+            // Two equal angles need only one label.
+            [Label::new(), label::degrees("α ", degrees1)]
+        } else {
+            [("α₁ ", degrees1), ("α₂ ", degrees2)].map(|(name, angle)| label::degrees(name, angle))
+        };
         Ok((
             Self {
-                settings: *settings,
                 simulation,
                 view,
+                mass_ratio: label::mass_ratio(settings.mass_ratio()),
+                angles,
             },
             Some(2.0 * place.reach),
         ))
@@ -68,32 +78,9 @@ impl Scene for Page {
         let above_lowest = lowest - canvas.format.line();
         self.view.draw(canvas, u8::MAX);
 
-        // The settings.
-        let [degrees1, degrees2] = self.settings.degrees;
-        text::write(
-            canvas,
-            &label::mass_ratio(self.settings.mass_ratio()),
-            Anchor::Left(0),
-        );
-
-        // Two equal angles need only one label.
-        if degrees1 == degrees2 {
-            text::write(
-                canvas,
-                &label::degrees("α ", degrees1),
-                Anchor::Left(lowest),
-            );
-        } else {
-            text::write(
-                canvas,
-                &label::degrees("α₁ ", degrees1),
-                Anchor::Left(above_lowest),
-            );
-            text::write(
-                canvas,
-                &label::degrees("α₂ ", degrees2),
-                Anchor::Left(lowest),
-            );
+        text::write(canvas, &self.mass_ratio, Anchor::Left(0));
+        for (angle, top) in self.angles.iter().zip([above_lowest, lowest]) {
+            text::write(canvas, angle, Anchor::Left(top));
         }
         draw_clock(canvas, report, Anchor::Right(0), Anchor::Right(lowest));
     }
@@ -249,7 +236,7 @@ impl Scene for Figure7 {
         let right = label::label("true ", right, 1, " J");
         let is_lost = self.misprinted.is_lost();
         let misprinted = if is_lost {
-            label::Label::try_from("book too fast").unwrap_or_default()
+            Label::try_from("book too fast").unwrap_or_default()
         } else {
             label::label("book ", self.misprinted.energy(), 1, " J")
         };

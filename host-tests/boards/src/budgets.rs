@@ -6,7 +6,7 @@
 /// link, commands, and requested motions.
 pub const SCENE: f64 = 0.55;
 /// The same for the page on a Cortex-M3. Its motion in 64 bits takes half of it.
-pub const PAGE: f64 = 0.16;
+pub const PAGE: f64 = 0.15;
 /// The largest cost of drawing and sending a frame on a Cortex-M3, cycles. The most expensive
 /// scene, the butterfly with its two pendulums and a plot, takes 114,000. The report of the frame
 /// is not included.

@@ -72,7 +72,9 @@ pub trait RealOperations:
 
     fn from_f64(value: f64) -> Self;
     fn to_f64(self) -> f64;
-    fn from_i64(value: i64) -> Self;
+    /// Returns the whole number over 2^`halvings`, of at most 64, rounded once. The exponent is
+    /// changed, which costs less than a product in software.
+    fn fraction(whole: i64, halvings: u32) -> Self;
     fn cast<S: Real>(self) -> S {
         S::from_f64(self.to_f64())
     }
@@ -128,7 +130,7 @@ twice_by_bits!(twice_double, f64);
 macro_rules! real {
     (
         $float:ident, $twice:ident in software if $software:meta,
-        $side:expr, $from_side:expr, $sqrt:path, $atan2:path, $own:ident
+        $bits:ident, $side:expr, $from_side:expr, $sqrt:path, $atan2:path, $own:ident
     ) => {
         impl RealOperations for $float {
             const ZERO: Self = 0.0;
@@ -158,8 +160,12 @@ macro_rules! real {
             fn to_f64(self) -> f64 {
                 self as f64
             }
-            fn from_i64(value: i64) -> Self {
-                value as $float
+            fn fraction(whole: i64, halvings: u32) -> Self {
+                let halving = $float::to_bits(1.0) - $float::to_bits(0.5);
+                match whole as $float {
+                    0.0 => 0.0,
+                    whole => $float::from_bits(whole.to_bits() - halving * $bits::from(halvings)),
+                }
             }
             fn abs(self) -> Self {
                 $float::abs(self)
@@ -191,6 +197,7 @@ macro_rules! real {
 
 real!(
     f32, twice_single in software if all(target_arch = "arm", target_abi = "eabi"),
+    u32,
     |number: f32| number.to_bits() as i32,
     |side: i32| f32::from_bits(side as u32),
     libm::sqrtf, libm::atan2f, single
@@ -202,6 +209,7 @@ real!(
             any(target_abi = "eabi", target_os = "none"),
             not(feature = "double-fpu")
         ),
+    u64,
     |number: f64| (number.to_bits() >> 32) as i32,
     |side: i32| f64::from_bits(u64::from(side as u32) << 32),
     libm::sqrt, libm::atan2, double

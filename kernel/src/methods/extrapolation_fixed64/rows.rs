@@ -11,6 +11,8 @@ use crate::numbers::fixed::{Q64, nearest, scaled};
 
 /// The factor of a stored direction. Momenta and rates are stored as they are.
 pub(super) const EIGHTH: f64 = 0.125;
+/// The number of doublings that undo it.
+pub(super) const EIGHTHS: u32 = 3;
 
 /// The least common multiple of all n/2: the share 2/n of the step is a whole number of parts.
 const PARTS: i64 = 840;
@@ -141,7 +143,7 @@ impl Rows {
 
     /// Returns nu/sigma.
     pub fn norm_value(&self) -> f64 {
-        self.norm.value() / EIGHTH
+        self.norm.value::<f64>() / EIGHTH
     }
 
     /// Returns the length of the step in units of time.

@@ -20,13 +20,13 @@ fn wrapped(sum: i128) -> i64 {
 const UNIT: f64 = 18_446_744_073_709_551_616.0;
 
 impl Q64 {
-    pub fn value(self) -> f64 {
-        self.over(1.0)
+    pub fn value<R: Real>(self) -> R {
+        self.doubled(0)
     }
 
-    /// Returns the number over `divisor`, rounded once if that is a power of two.
-    pub fn over<R: Real>(self, divisor: f64) -> R {
-        R::from_i64(self.0) * R::from_f64(1.0 / (UNIT * divisor))
+    /// Returns the number doubled so often, at most 64 times, rounded once.
+    pub fn doubled<R: Real>(self, times: u32) -> R {
+        R::fraction(self.0, 64 - times)
     }
 
     /// Returns the upper word, rounded to nearest, and the lower one as a signed number.
