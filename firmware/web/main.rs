@@ -10,8 +10,8 @@
 use double_pendulum::State;
 use firmware::app::{App, NoButtons};
 use firmware::config::{CORTEX_M3, PROCESSORS};
-use firmware::display::{NoDisplay, PanelName};
-use firmware::graphics::{Format, FrameBuffers, View};
+use firmware::display::NoDisplay;
+use firmware::graphics::{Format, FrameBuffers, PanelName, View};
 use firmware::protocol::{
     Answer, Command, Decoder, Frame, MAX_WIRE, Status, ToHost, encode_command, read,
 };

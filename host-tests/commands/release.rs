@@ -16,7 +16,7 @@ use boards::flash;
 use boards::out_file;
 use boards::process;
 use boards::toolchain::{self, QUICK, target, workspace};
-use firmware::display::PanelName;
+use firmware::graphics::PanelName;
 
 const FOLDER: &str = "release-files";
 /// The file of checksums, in the format that `sha256sum --check` reads.

@@ -9,8 +9,7 @@ use anyhow::{bail, ensure};
 use clap::Parser;
 use double_pendulum::Method;
 use firmware::config::{MASS_RATIOS, TICK_RATE};
-use firmware::display::PanelName;
-use firmware::graphics::Format;
+use firmware::graphics::{Format, PanelName};
 use firmware::scenes::{LEAST_ENERGY_ERROR, SceneName};
 use serde_json::{Value, json};
 

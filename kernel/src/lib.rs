@@ -137,12 +137,12 @@ pub use error::{Error, Parameter};
 pub use methods::extrapolation::Extrapolation;
 pub use methods::{
     ClosedFormF32, ClosedFormF64, DirectionF32, DirectionF32Plain, ExtrapolationF64, Fixed32,
-    Fixed64, Form, HamiltonF32, HamiltonF64, Run, SmallOscillations, rk4,
+    Fixed64, Form, FormVisitor, HamiltonF32, HamiltonF64, Run, SmallOscillations, rk4,
 };
 pub use numbers::{Real, radians, sin_cos};
 pub use pendulum::{Direction, Motion, Parameters, Pendulum, State, Vector};
 pub use small::{Mode, Modes, periodic_mass_ratio};
-pub use table::{Equations, FormVisitor, Integrator, Method, Numbers};
+pub use table::{Equations, Integrator, Method, Numbers};
 
 /// Parts of the methods, for the firmware, tools and tests. They may change at any time.
 #[doc(hidden)] // Needed by one of these each, not by a user who computes a motion.

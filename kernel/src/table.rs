@@ -30,11 +30,6 @@
 
 use core::fmt;
 
-use crate::methods::{
-    ClosedFormF32, ClosedFormF64, DirectionF32, DirectionF32Plain, ExtrapolationF64, Fixed32,
-    Fixed64, Form, HamiltonF32, HamiltonF64,
-};
-
 /// The equations that a method integrates. Displays as `Hamilton`, `directions`, `textbook` or
 /// `linear`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -114,20 +109,35 @@ impl fmt::Display for Integrator {
     }
 }
 
-/// Generic code that [`Method::visit`] calls with the type of a method.
-pub trait FormVisitor {
-    /// The result of the call.
-    type Output;
-
-    /// Runs the code for the method that the type `F` computes.
-    fn visit<F: Form>(self) -> Self::Output;
-}
-
-/// Writes [`Method`] with a variant for each line:
+/// Calls a macro with the lines of the table:
 ///
 /// `number Variant = "name", equations, numbers, integrator, order, type;`
 ///
 /// The type is `-` if it is not in this crate.
+macro_rules! table {
+    ($macro:ident) => {
+        $macro! {
+            0  Rk4F64 = "rk4-f64", Hamilton, F64, Rk4, 4, HamiltonF64;
+            1  Rk4F32 = "rk4-f32", Hamilton, F32, Rk4, 4, HamiltonF32;
+            2  Rk4F32Direction = "rk4-f32-direction", Directions, CompensatedF32, Rk4, 4, DirectionF32;
+            3  Rk4F32DirectionPlain = "rk4-f32-direction-plain", Directions, F32, Rk4, 4, DirectionF32Plain;
+            4  Rk4Fixed32 = "rk4-fixed32", Directions, Fixed32, Rk4, 4, Fixed32;
+            5  Extrapolation8Fixed64 = "extrapolation8-fixed64", Directions, Fixed64, Extrapolation, 8, Fixed64<8>;
+            6  Extrapolation10Fixed64 = "extrapolation10-fixed64", Directions, Fixed64, Extrapolation, 10, Fixed64<10>;
+            7  Extrapolation12Fixed64 = "extrapolation12-fixed64", Directions, Fixed64, Extrapolation, 12, Fixed64<12>;
+            8  Extrapolation16Fixed64 = "extrapolation16-fixed64", Directions, Fixed64, Extrapolation, 16, Fixed64<16>;
+            9  Extrapolation12F64 = "extrapolation12-f64", Directions, CompensatedF64, Extrapolation, 12, ExtrapolationF64<12>;
+            10 Extrapolation16F64 = "extrapolation16-f64", Directions, CompensatedF64, Extrapolation, 16, ExtrapolationF64<16>;
+            11 ClosedFormF64 = "closed-form-f64", Linear, F64, ClosedForm, 0, ClosedFormF64;
+            12 ClosedFormF32 = "closed-form-f32", Linear, F32, ClosedForm, 0, ClosedFormF32;
+            13 Rk4F32Micromath = "rk4-f32-micromath", Hamilton, F32, Rk4, 4, -;
+            14 TextbookF32 = "textbook-f32", Textbook, F32, Rk4, 4, -;
+        }
+    };
+}
+pub(crate) use table;
+
+/// Writes [`Method`] with a variant for each line.
 macro_rules! methods {
     ($(
         $number:literal $method:ident = $name:literal, $equations:ident, $numbers:ident,
@@ -205,68 +215,11 @@ macro_rules! methods {
                     $(Method::$method => $order,)*
                 }
             }
-
-        /// Calls `visitor` with the type that computes this method, and returns its result; `None`,
-        /// without a call, for `rk4-f32-micromath` and `textbook-f32`, whose types are not in this
-        /// crate.
-        ///
-        /// This links every method. To link one method only, pass its type to
-        /// [`Pendulum::run`](crate::Pendulum::run).
-        ///
-        /// ```
-        /// use double_pendulum::{Form, FormVisitor, Method, Parameters, Pendulum, State};
-        ///
-        /// /// Computes the angle of rod 1 after a second.
-        /// struct AfterOneSecond;
-        ///
-        /// impl FormVisitor for AfterOneSecond {
-        ///     type Output = Result<f64, double_pendulum::Error>;
-        ///
-        ///     fn visit<F: Form>(self) -> Self::Output {
-        ///         let pendulum = Pendulum::<f64>::new(&Parameters::equal_rods(1.0, 1.0, 9.81))?;
-        ///         let mut run = pendulum.run::<F>(&State::at_rest(0.5, 0.5), 1.0 / 128.0)?;
-        ///         run.advance(128)?;
-        ///         Ok(run.state().a1)
-        ///     }
-        /// }
-        ///
-        /// let method = Method::from_name("rk4-fixed32").ok_or("no such method")?;
-        /// let angle = method.visit(AfterOneSecond).ok_or("not in this crate")??;
-        /// assert!(angle.abs() < 0.5);
-        /// # Ok::<(), Box<dyn std::error::Error>>(())
-        /// ```
-            pub fn visit<V: FormVisitor>(self, visitor: V) -> Option<V::Output> {
-                match self {
-                    $(Method::$method => methods!(@visit visitor $form $(<$of>)?),)*
-                }
-            }
         }
     };
-    (@visit $visitor:ident -) => {
-        None
-    };
-    (@visit $visitor:ident $form:ty) => {
-        Some($visitor.visit::<$form>())
-    };
 }
 
-methods! {
-    0  Rk4F64 = "rk4-f64", Hamilton, F64, Rk4, 4, HamiltonF64;
-    1  Rk4F32 = "rk4-f32", Hamilton, F32, Rk4, 4, HamiltonF32;
-    2  Rk4F32Direction = "rk4-f32-direction", Directions, CompensatedF32, Rk4, 4, DirectionF32;
-    3  Rk4F32DirectionPlain = "rk4-f32-direction-plain", Directions, F32, Rk4, 4, DirectionF32Plain;
-    4  Rk4Fixed32 = "rk4-fixed32", Directions, Fixed32, Rk4, 4, Fixed32;
-    5  Extrapolation8Fixed64 = "extrapolation8-fixed64", Directions, Fixed64, Extrapolation, 8, Fixed64<8>;
-    6  Extrapolation10Fixed64 = "extrapolation10-fixed64", Directions, Fixed64, Extrapolation, 10, Fixed64<10>;
-    7  Extrapolation12Fixed64 = "extrapolation12-fixed64", Directions, Fixed64, Extrapolation, 12, Fixed64<12>;
-    8  Extrapolation16Fixed64 = "extrapolation16-fixed64", Directions, Fixed64, Extrapolation, 16, Fixed64<16>;
-    9  Extrapolation12F64 = "extrapolation12-f64", Directions, CompensatedF64, Extrapolation, 12, ExtrapolationF64<12>;
-    10 Extrapolation16F64 = "extrapolation16-f64", Directions, CompensatedF64, Extrapolation, 16, ExtrapolationF64<16>;
-    11 ClosedFormF64 = "closed-form-f64", Linear, F64, ClosedForm, 0, ClosedFormF64;
-    12 ClosedFormF32 = "closed-form-f32", Linear, F32, ClosedForm, 0, ClosedFormF32;
-    13 Rk4F32Micromath = "rk4-f32-micromath", Hamilton, F32, Rk4, 4, -;
-    14 TextbookF32 = "textbook-f32", Textbook, F32, Rk4, 4, -;
-}
+table!(methods);
 
 impl Method {
     /// Returns the method of exactly this [`name`](Self::name), in lower case.

@@ -12,24 +12,22 @@
 //!
 //! A controller of another family implements [`Display`], as `ssd0323.rs` does with the test of that
 //! name, and is the type `Panel` in the `mod.rs` of its board. On a Pico it also needs a
-//! [`PanelName`] (`panels.rs`), and its wires in `board/pico/lcd.rs`.
+//! [`PanelName`](crate::graphics::PanelName), and its wires in `board/pico/lcd.rs`.
 
 use core::convert::Infallible;
 
 use embedded_hal::i2c::ErrorKind;
 use serde::{Deserialize, Serialize};
 
-use crate::graphics::Canvas;
+use crate::graphics::{Canvas, PanelName};
 
 mod bus;
 mod oled_i2c;
-mod panels;
 mod ssd0323;
 mod st7789;
 
 pub use bus::{OutByte, Outbox, PanelBus, SILENCE, Sent, free_bus};
 pub use oled_i2c::{OledError, OledI2c};
-pub use panels::PanelName;
 pub use ssd0323::{Memory, Ssd0323};
 pub use st7789::{PixelBus, St7789};
 
@@ -196,16 +194,6 @@ impl Controller {
         }
     }
 }
-
-/// The panel that the build variable `PANEL` names. It is an OLED without the variable, and also if
-/// that names a controller of an OLED.
-pub const PANEL: PanelName = match option_env!("PANEL") {
-    None => PanelName::Oled,
-    Some(name) => match PanelName::named(name) {
-        None => PanelName::Oled,
-        Some(panel) => panel,
-    },
-};
 
 /// The controller that the build variable `PANEL` names: `ssd1306`, also for an SSD1309, `sh1106`
 /// or `sh1107`. It is `None` without the variable, and then the controller is identified. The

@@ -22,11 +22,9 @@ use core::fmt;
 use embedded_hal::i2c::ErrorKind;
 
 use super::bus::{Outbox, PanelBus, Sent};
-use super::{
-    BusFault, By, Controller, Display, Found, PanelName, PanelOptions, PanelReport, PanelState,
-};
+use super::{BusFault, By, Controller, Display, Found, PanelOptions, PanelReport, PanelState};
 use crate::config::TICK_RATE;
-use crate::graphics::{Bitmap, Canvas, Format};
+use crate::graphics::{Bitmap, Canvas, Format, PanelName};
 
 const WIDTH: usize = Format::OLED.width as usize;
 const HEIGHT: usize = Format::OLED.height as usize;

@@ -9,8 +9,8 @@
 
 use core::convert::Infallible;
 
-use super::{Display, PanelName, PanelReport};
-use crate::graphics::Canvas;
+use super::{Display, PanelReport};
+use crate::graphics::{Canvas, PanelName};
 
 const SLEEP_OUT: u8 = 0x11;
 const INVERT: u8 = 0x21;

@@ -2,7 +2,7 @@
 
 use core::ops::Range;
 
-use crate::display::PANEL;
+use crate::graphics::PANEL;
 
 /// The size of a panel, and of a pixel of its text. Scenes compute their layout from it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]

@@ -2,7 +2,7 @@
 
 use cycles::Core;
 use firmware::config::{self, Processor};
-use firmware::display::PanelName;
+use firmware::graphics::PanelName;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Board {

@@ -11,7 +11,7 @@ use std::time::Duration;
 
 use anyhow::{Context, ensure};
 use firmware::app::Key;
-use firmware::display::PanelName;
+use firmware::graphics::PanelName;
 use firmware::protocol::{self, Frame, MAX_WIRE, ToHost, encode_command};
 
 use crate::flash::image::{flash_image, uf2};

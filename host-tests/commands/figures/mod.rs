@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::Result;
 use clap::Parser;
-use firmware::display::PanelName;
+use firmware::graphics::PanelName;
 use firmware::scenes::SceneName;
 
 use boards::console::cli::{say, unwritable};

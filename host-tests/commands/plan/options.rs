@@ -5,7 +5,7 @@ use clap::{Parser, value_parser};
 use double_pendulum::Method;
 use double_pendulum::plan::{Limit, Plan, PlanError, Problem, Search, Stepping};
 use firmware::config::{CORTEX_M0PLUS, CORTEX_M3, CORTEX_M4F, Processor, STM32F405};
-use firmware::display::PanelName;
+use firmware::graphics::PanelName;
 use firmware::motion::half_pixel;
 use firmware::scenes::SceneName;
 

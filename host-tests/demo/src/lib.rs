@@ -35,7 +35,7 @@ use panel::{Recording, png};
 use session::{Session, Source};
 
 use firmware::config::{CORTEX_M0PLUS, TICK_RATE};
-use firmware::display::PanelName;
+use firmware::graphics::PanelName;
 use firmware::scenes::SceneName;
 
 use boards::console::cli::{Refused, complain, say};

@@ -9,8 +9,8 @@ use clap::{Parser, value_parser};
 use double_pendulum::plan::Stepping;
 use double_pendulum::{Method, Parameter};
 use firmware::config::{GREATEST_SPEED, Processor, STM32F405};
-use firmware::display::{Controller, PanelName};
-use firmware::graphics::Format;
+use firmware::display::Controller;
+use firmware::graphics::{Format, PanelName};
 use firmware::motion::{Resources, Settings};
 use firmware::scenes::{AnyScene, SceneName};
 

@@ -211,7 +211,7 @@ mod tests {
     use boards::host::canvas;
     use double_pendulum::plan::Stepping;
     use double_pendulum::{Method, State};
-    use firmware::display::PanelName;
+    use firmware::graphics::PanelName;
     use firmware::graphics::text::{self, Anchor};
     use firmware::motion::Horizon;
     use firmware::protocol::Frame as Reading;

@@ -9,7 +9,7 @@ use boards::pico_with;
 use boards::qemu::LogLine;
 use boards::toolchain;
 use firmware::config::{CORTEX_M0PLUS, TICK_RATE};
-use firmware::display::PanelName;
+use firmware::graphics::PanelName;
 use firmware::protocol::{Command, ToHost};
 use firmware::scenes::SceneName;
 

@@ -19,8 +19,8 @@ use firmware::app::Key;
 use firmware::config::{
     BAUD, HOLD_TICKS, MOST_MEASURED_STEPS, RECEIVE_QUEUE, TICK_RATE, WATCHDOG_SECONDS,
 };
-use firmware::display::{BusFault, By, Controller, Found, PanelName, PanelReport, PanelState};
-use firmware::graphics::Bitmap;
+use firmware::display::{BusFault, By, Controller, Found, PanelReport, PanelState};
+use firmware::graphics::{Bitmap, PanelName};
 use firmware::job::{CRC, Request};
 use firmware::protocol::{
     Answer, BoardName, Cause, Command, Field, Frame, MAX_WIRE, Restarted, ToHost, encode_command,

@@ -21,7 +21,7 @@ use boards::toolchain;
 use boards::{BOARDS, Board, PICO};
 use cycles::{Core, Cost, Image};
 use firmware::config::TICK_RATE;
-use firmware::display::PanelName;
+use firmware::graphics::PanelName;
 use firmware::protocol::{Command, Frame, ToHost};
 use firmware::scenes::SceneName;
 use host_tests::count::FrameProfile;

@@ -7,8 +7,9 @@ use embedded_graphics::mono_font::MonoFont;
 use embedded_graphics::mono_font::iso_8859_7::FONT_5X8;
 use embedded_graphics::pixelcolor::BinaryColor;
 use fastrand::Rng;
-use firmware::display::PanelName;
-use firmware::graphics::{Canvas, Disc, Format, Glyph, Palette, SUBPIXELS, Spot, Stroke, glyph};
+use firmware::graphics::{
+    Canvas, Disc, Format, Glyph, Palette, PanelName, SUBPIXELS, Spot, Stroke, glyph,
+};
 
 use crate::bench::{blank, places};
 

@@ -7,9 +7,8 @@ use crate::snapshot;
 use double_pendulum::plan::{Limit, Plan, PlanError, Stepping};
 use double_pendulum::{Error, Method};
 use firmware::app::Record;
-use firmware::display::{
-    BusFault, By, Controller, Found, PanelName, PanelOptions, PanelReport, PanelState,
-};
+use firmware::display::{BusFault, By, Controller, Found, PanelOptions, PanelReport, PanelState};
+use firmware::graphics::PanelName;
 use firmware::job::{CRC, Reading, Request};
 use firmware::motion::{Horizon, PlanResult, Planned, Settings};
 use firmware::protocol::{

@@ -12,8 +12,7 @@ use firmware::config::{
     CORTEX_M0PLUS, CORTEX_M3, CORTEX_M4F, PIVOT, PROCESSOR, Processor, REACH, STM32F405, TICK_RATE,
     TRAIL_FADING, TRAIL_HALF_WIDTH,
 };
-use firmware::display::PanelName;
-use firmware::graphics::{Anchor, Format, plot, text};
+use firmware::graphics::{Anchor, Format, PanelName, plot, text};
 use firmware::job::CRC;
 use firmware::motion::{Resources, Settings};
 use firmware::protocol::{Command, PlayState};

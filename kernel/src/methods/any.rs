@@ -1,10 +1,13 @@
 //! Motions whose method is chosen at run time.
 
-use super::{ClosedFormF32, DirectionF32, DirectionF32Plain, Fixed32, Fixed64, Form};
+use super::{
+    ClosedFormF32, ClosedFormF64, DirectionF32, DirectionF32Plain, ExtrapolationF64, Fixed32,
+    Fixed64, Form, HamiltonF32, HamiltonF64,
+};
 use super::{extrapolation_fixed64, rk4_fixed32};
 use crate::error::Error;
 use crate::pendulum::{Parameters, State};
-use crate::table::Method;
+use crate::table::{Method, table};
 
 /// Defines an enum of motions, with a variant for each of some methods, one of which is chosen at
 /// run time. It implements [`Advance`](crate::parts::Advance), and links only these methods. `new`
@@ -185,3 +188,65 @@ const _: () = assert!(
     Motion32::METHODS.len() + 1 == Method::DRAWN.len(),
     "a method of DrawnMotion is missing in Motion32"
 );
+
+/// Generic code that [`Method::visit`] calls with the type of a method.
+pub trait FormVisitor {
+    /// The result of the call.
+    type Output;
+
+    /// Runs the code for the method that the type `F` computes.
+    fn visit<F: Form>(self) -> Self::Output;
+}
+
+/// Writes [`Method::visit`].
+macro_rules! visit {
+    ($(
+        $number:literal $method:ident = $name:literal, $equations:ident, $numbers:ident,
+        $integrator:ident, $order:literal, $form:tt $(<$of:literal>)?;
+    )*) => {
+        impl Method {
+            /// Calls `visitor` with the type that computes this method, and returns its result; `None`,
+            /// without a call, for `rk4-f32-micromath` and `textbook-f32`, whose types are not in this
+            /// crate.
+            ///
+            /// This links every method. To link one method only, pass its type to
+            /// [`Pendulum::run`](crate::Pendulum::run).
+            ///
+            /// ```
+            /// use double_pendulum::{Form, FormVisitor, Method, Parameters, Pendulum, State};
+            ///
+            /// /// Computes the angle of rod 1 after a second.
+            /// struct AfterOneSecond;
+            ///
+            /// impl FormVisitor for AfterOneSecond {
+            ///     type Output = Result<f64, double_pendulum::Error>;
+            ///
+            ///     fn visit<F: Form>(self) -> Self::Output {
+            ///         let pendulum = Pendulum::<f64>::new(&Parameters::equal_rods(1.0, 1.0, 9.81))?;
+            ///         let mut run = pendulum.run::<F>(&State::at_rest(0.5, 0.5), 1.0 / 128.0)?;
+            ///         run.advance(128)?;
+            ///         Ok(run.state().a1)
+            ///     }
+            /// }
+            ///
+            /// let method = Method::from_name("rk4-fixed32").ok_or("no such method")?;
+            /// let angle = method.visit(AfterOneSecond).ok_or("not in this crate")??;
+            /// assert!(angle.abs() < 0.5);
+            /// # Ok::<(), Box<dyn std::error::Error>>(())
+            /// ```
+            pub fn visit<V: FormVisitor>(self, visitor: V) -> Option<V::Output> {
+                match self {
+                    $(Method::$method => visit!(@of visitor $form $(<$of>)?),)*
+                }
+            }
+        }
+    };
+    (@of $visitor:ident -) => {
+        None
+    };
+    (@of $visitor:ident $form:ty) => {
+        Some($visitor.visit::<$form>())
+    };
+}
+
+table!(visit);

@@ -18,6 +18,7 @@ mod scaling;
 pub(crate) mod turns;
 
 pub(crate) use any::DrawnMotion;
+pub use any::FormVisitor;
 pub use canonical::{Canonical, Derivatives, Rk4, RungeKutta};
 pub use closed_form::{ClosedForm, SmallOscillations};
 pub use extrapolation_f64::ExtrapolationF64;

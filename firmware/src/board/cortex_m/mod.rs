@@ -8,6 +8,7 @@ pub(super) mod interrupt;
 pub(super) mod retained;
 pub(super) mod watchdog;
 
+mod handler;
 #[cfg(armv6m)]
 mod long_product;
 mod stack;

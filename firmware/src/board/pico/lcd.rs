@@ -7,7 +7,8 @@ use rp2040_hal::pac::spi0::RegisterBlock;
 use rp2040_hal::pac::{DMA, RESETS, SPI0, SPI1};
 
 use super::pins;
-use crate::display::{PANEL, PanelName, PixelBus};
+use crate::display::PixelBus;
+use crate::graphics::{PANEL, PanelName};
 
 struct Wiring {
     is_spi1: bool,

@@ -38,8 +38,7 @@ use crate::board::cortex_m::{start, watchdog};
 use crate::board::serial::Outward;
 use crate::board::{Board, log};
 use crate::config::WATCHDOG_SECONDS;
-use crate::display::{PANEL, PanelName};
-use crate::graphics::Format;
+use crate::graphics::{Format, PANEL, PanelName};
 use crate::protocol::BoardName;
 
 /// The code that the chip's boot ROM runs first. It makes the flash readable as memory, if that is

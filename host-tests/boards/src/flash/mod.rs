@@ -20,7 +20,7 @@ use crate::flash::image::{flash_image, uf2};
 use crate::link::{running_board, touch};
 use crate::out_file;
 use crate::toolchain::{self, Toolchain, target};
-use firmware::display::PanelName;
+use firmware::graphics::PanelName;
 
 /// Returns the name of the firmware's file, in the target folder and on a board's drive.
 pub fn file_name(panel: PanelName) -> String {

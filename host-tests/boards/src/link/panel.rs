@@ -1,7 +1,8 @@
 //! The state of a board's panel in words, with the remedy.
 
 use firmware::config::TICK_RATE;
-use firmware::display::{BusFault, Controller, Found, PanelName, PanelReport, PanelState};
+use firmware::display::{BusFault, Controller, Found, PanelReport, PanelState};
+use firmware::graphics::PanelName;
 
 /// Returns the panel that the firmware is built for and its state, or `None` if the board reports
 /// neither.

@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 use addr2line::Context;
 use addr2line::gimli::{self, Dwarf, EndianSlice, LittleEndian, SectionId};
 use boards::{BOARDS, every_board, pico_with};
-use firmware::display::PanelName;
+use firmware::graphics::PanelName;
 use object::{Object, ObjectSection};
 
 use crate::support::code::Code;

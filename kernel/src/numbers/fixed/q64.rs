@@ -155,7 +155,7 @@ mod tests {
     fn inverses_are_within_two_ulp() {
         let mut d = 1.0;
         while d < 8.0 {
-            let inverse = Q64::from_f64(d / 64.0).inverse().value() * 4.0;
+            let inverse = Q64::from_f64(d / 64.0).inverse().value::<f64>() * 4.0;
             assert!(
                 (inverse * d - 1.0).abs() <= 0.6 * f64::EPSILON * 2.0,
                 "{d}: {inverse:e}"

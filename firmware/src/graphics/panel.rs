@@ -60,3 +60,13 @@ impl PanelName {
         }
     }
 }
+
+/// The panel that the build variable `PANEL` names. It is an OLED without the variable, and also if
+/// that names a controller of an OLED.
+pub const PANEL: PanelName = match option_env!("PANEL") {
+    None => PanelName::Oled,
+    Some(name) => match PanelName::named(name) {
+        None => PanelName::Oled,
+        Some(panel) => panel,
+    },
+};
