@@ -1,5 +1,5 @@
 //! Runs one [`Request`] from the semihosting command line and prints the CRC of its bits, and the
-//! ticks it took, as one line.
+//! ticks it took, as one line. With the word `golden`, prints the golden bits of every method.
 #![no_std]
 #![no_main]
 
@@ -8,7 +8,7 @@ use core::fmt::Write;
 use cortex_m::peripheral::{Peripherals, SYST, syst::SystClkSource};
 use cortex_m_semihosting::{debug, hio};
 use firmware::board::cortex_m::command_line;
-use firmware::job::Request;
+use firmware::job::{Request, write_golden};
 
 /// SysTick counts processor cycles down from here; a run must take fewer. These are the ticks that
 /// are printed.
@@ -22,20 +22,22 @@ fn main() -> ! {
     }
 }
 
-/// Computes the request and prints the line. Returns an error, after the kernel's reason if there
-/// is one, without a debugger, if the command line is no request, or if it cannot be computed. The
-/// command line must fit into `buffer`.
+/// Computes the request and prints the line, or the golden bits. Returns an error, after the
+/// kernel's reason if there is one, without a debugger, if the command line is no request, or if it
+/// cannot be computed. The command line must fit into `buffer`.
 fn run(buffer: &mut [u8]) -> Result<(), ()> {
     let mut output = hio::hstdout()?;
+    let line = command_line(buffer).ok_or(())?;
+    if line == "golden" {
+        return write_golden(&mut output).map_err(|_| ());
+    }
     let mut peripherals = Peripherals::take().ok_or(())?;
     let clock = &mut peripherals.SYST;
     clock.set_clock_source(SystClkSource::Core);
     clock.set_reload(FULL);
     clock.clear_current();
     clock.enable_counter();
-    let outcome = Request::parse(command_line(buffer).ok_or(())?)
-        .ok_or(())?
-        .crc();
+    let outcome = Request::parse(line).ok_or(())?.crc();
     let ticks = FULL - SYST::get_current();
     match outcome {
         Ok(crc) => writeln!(output, "{crc:08x} {ticks}").map_err(|_| ()),

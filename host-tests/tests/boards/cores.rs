@@ -24,7 +24,13 @@ use Emulator::{Linux, Machine, Node};
 /// of the processor.
 struct Core(&'static str, &'static str, Emulator, Option<&'static str>);
 
-fn emulated(Core(_, target, emulator, double): &Core) -> anyhow::Result<Command> {
+/// Returns true if a board's program for measurements runs on this core.
+fn is_ours(Core(_, target, _, double): &Core) -> bool {
+    toolchain::TARGETS.contains(target) && double.is_none()
+}
+
+fn emulated(core: &Core) -> anyhow::Result<Command> {
+    let Core(_, target, emulator, double) = core;
     let toolchain = toolchain::set_up_for(target)?;
     let mut command = Command::new(&toolchain.qemu);
     // Machines without an operating system print by semihosting.
@@ -32,7 +38,8 @@ fn emulated(Core(_, target, emulator, double): &Core) -> anyhow::Result<Command>
         Machine(machine, processor) => {
             command.args(["-machine", machine, "-cpu", processor]);
             command.args(["-display", "none", "-monitor", "none", "-serial", "null"]);
-            command.args(["-semihosting-config", "enable=on,target=native", "-kernel"]);
+            command.args(["-semihosting-config", "enable=on,target=native,arg=golden"]);
+            command.arg("-kernel");
         }
         Linux => {}
         Node => {
@@ -40,10 +47,12 @@ fn emulated(Core(_, target, emulator, double): &Core) -> anyhow::Result<Command>
         }
     }
     // A failed build fails the test here; only a missing tool is returned as an error.
-    let image = toolchain
-        .build_cores(target, *double)
-        .unwrap_or_else(|error| panic!("{error}"));
-    command.arg(image);
+    let image = if is_ours(core) {
+        toolchain.build("measure", target)
+    } else {
+        toolchain.build_cores(target, *double)
+    };
+    command.arg(image.unwrap_or_else(|error| panic!("{error}")));
     Ok(command)
 }
 
@@ -51,10 +60,10 @@ fn emulated(Core(_, target, emulator, double): &Core) -> anyhow::Result<Command>
 fn computes_the_golden_bits(core: &Core, golden: &str) {
     let Core(name, target, _, double) = core;
     let image = (*target, *double);
-    assert!(toolchain::CORE_IMAGES.contains(&image), "{image:?}");
-    let is_ours = toolchain::TARGETS.contains(target) && double.is_none();
+    let is_built = is_ours(core) || toolchain::CORE_IMAGES.contains(&image);
+    assert!(is_built, "{image:?}");
     let mut command = match emulated(core) {
-        Err(missing) if is_ours => panic!("{}: {missing}", name),
+        Err(missing) if is_ours(core) => panic!("{}: {missing}", name),
         Ok(command) => command,
         // The output of the test is captured, but this message is not.
         Err(missing) => {
