@@ -13,7 +13,7 @@
 //! | [`job`] | motions that are computed on request, by any method |
 //! | [`motion`] | settings, the motion in progress, the planner, the accuracy horizon |
 //! | [`display`] | panel drivers, generic over `embedded-hal` |
-//! | [`graphics`] | canvas in two layers, brush, plots, text and its font, colours |
+//! | [`graphics`] | panels and their formats, canvas in two layers, brush, plots, text, colours |
 //! | [`fault`] | the text of a crash report |
 //! | [`config`] | all tunable numbers |
 //!
@@ -127,7 +127,7 @@ macro_rules! choice {
     };
 }
 
-// The image `cores` needs the jobs alone, and is compiled for many cores.
+// The image `cores` needs only the jobs.
 #[cfg(feature = "application")]
 pub mod app;
 #[cfg(all(target_arch = "arm", target_os = "none", feature = "application"))]

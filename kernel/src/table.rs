@@ -2,9 +2,9 @@
 //!
 //! To add a method:
 //!
-//! 1. Its type gets a file in `methods/`, and `pub use` in `methods/mod.rs` and `lib.rs`. Equations
-//!    alone implement `Derivatives`, and an alias of `Canonical`, such as `HamiltonF64`, steps them;
-//!    any other method implements `Advance` and `FormOperations`.
+//! 1. Its type gets a file in `methods/`, `pub use` in `methods/mod.rs` and `lib.rs`, and `use` in
+//!    `methods/any.rs`. Equations alone implement `Derivatives`, and an alias of `Canonical`, such
+//!    as `HamiltonF64`, steps them; any other method implements `Advance` and `FormOperations`.
 //! 2. It gets the last line of the table, over which `simulate`, `count`, the report and the tests
 //!    loop, and for the boards a line in `BoardMotion` (`firmware/src/job/table.rs`).
 //! 3. `BLESS=1 cargo test -p host-tests --test kernel golden::` adds its golden bits, `--test
@@ -113,7 +113,8 @@ impl fmt::Display for Integrator {
 ///
 /// `number Variant = "name", equations, numbers, integrator, order, type;`
 ///
-/// The type is `-` if it is not in this crate.
+/// The type is `-` if it is not in this crate. Only `methods/any.rs` uses the types, so that this
+/// module imports no method.
 macro_rules! table {
     ($macro:ident) => {
         $macro! {

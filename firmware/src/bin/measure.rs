@@ -22,9 +22,9 @@ fn main() -> ! {
     }
 }
 
-/// Computes the request and prints the line, or the golden bits. Returns an error, after the
-/// kernel's reason if there is one, without a debugger, if the command line is no request, or if it
-/// cannot be computed. The command line must fit into `buffer`.
+/// Computes the request and prints its line, or prints the golden bits. If the kernel refuses the
+/// request, prints the reason and returns an error. Also returns an error if there is no debugger,
+/// or if the command line is no request. The command line must fit into `buffer`.
 fn run(buffer: &mut [u8]) -> Result<(), ()> {
     let mut output = hio::hstdout()?;
     let line = command_line(buffer).ok_or(())?;

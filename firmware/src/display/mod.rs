@@ -12,7 +12,7 @@
 //!
 //! A controller of another family implements [`Display`], as `ssd0323.rs` does with the test of that
 //! name, and is the type `Panel` in the `mod.rs` of its board. On a Pico it also needs a
-//! [`PanelName`](crate::graphics::PanelName), and its wires in `board/pico/lcd.rs`.
+//! [`PanelName`], and its wires in `board/pico/lcd.rs`.
 
 use core::convert::Infallible;
 

@@ -1,4 +1,4 @@
-//! Drawing: a canvas in two layers, and the tools that draw on it.
+//! Drawing: the panels' formats, a canvas in two layers, and the tools that draw on it.
 
 mod bitmap;
 mod brush;

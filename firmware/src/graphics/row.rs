@@ -2,7 +2,7 @@
 
 use core::ops::Range;
 
-/// The level of a foreground that covers the ink with black. 0 is transparent.
+/// The level that covers the ink with black, in the foreground of a colour panel. 0 is transparent.
 const BLACK: u8 = 1;
 /// The number 1 in every nibble.
 const ONES: u32 = 0x1111_1111;
@@ -55,8 +55,7 @@ pub struct Row<'c> {
 impl Row<'_> {
     /// Replaces the grey of the pixel in column `x` by a function of it. Only the low four bits of
     /// the result count. The function is not called for a pixel outside the row.
-    #[inline]
-    pub fn update(&mut self, x: i32, new: impl FnOnce(u8) -> u8) {
+    pub(super) fn update(&mut self, x: i32, new: impl FnOnce(u8) -> u8) {
         // A negative number becomes a word far beyond the end.
         let place = (x >> 3) as usize;
         if let Some(word) = self.words.get_mut(place) {

@@ -11,7 +11,7 @@ pub type RodDirections = [[f32; 2]; 2];
 
 /// The brightness of a rod, between the trail's and the bobs'.
 const ROD_BRIGHTNESS: u8 = 190;
-/// The width of the dark gap between a bob and its background, subpixels.
+/// The width of the black gap between a bob and its background, subpixels.
 const GAP: u16 = SUBPIXELS as u16;
 /// Half the width of a trace that remains visible, subpixels on an OLED.
 pub const TRACE_HALF_WIDTH: u16 = 15;
@@ -166,8 +166,7 @@ impl View {
         .lighten(ink, brightness);
     }
 
-    /// Draws the pivot, the rods and the bobs over the canvas. Around each bob the background is
-    /// darkened.
+    /// Draws the pivot, the rods and the bobs over the canvas, each bob in a black gap.
     pub fn draw(&self, canvas: &mut Canvas, brightness: u8) {
         let &Self {
             pivot,

@@ -27,6 +27,8 @@ use crate::scenes::{Report, Scene, Shows, draw_clock, time};
 pub struct Page {
     simulation: Simulation,
     view: View,
+    /// The labels of the settings. They are formatted only once, because that takes a part of every
+    /// frame.
     mass_ratio: Label,
     angles: [Label; 2],
 }
@@ -263,8 +265,9 @@ impl Scene for Figure7 {
 /// same motion in 64 bits, which is not drawn, until a bob is half a pixel off. There is no plan,
 /// because the scene shows two given arithmetics. A requested method is ignored. The scene is too
 /// fast if a frame cannot pay for all three motions. It accepts every finite start, not only the
-/// upright one. It refuses settings that describe no pendulum or no such start, and steps that a method cannot make. A compensated motion that has diverged stands
-/// still; a plain one stops the scene, once its state is not finite.
+/// upright one. It refuses settings that describe no pendulum or no such start, and steps that a
+/// method cannot make. A compensated motion that has diverged stands still; a plain one stops the
+/// scene, once its state is not finite.
 ///
 /// The `f32` nearest to pi is too large by 8.7e-8, so that the exact motion from there falls after
 /// about 3 s. Plain `f32` drops the first tiny increments completely, so that the pendulum does not

@@ -14,7 +14,7 @@ use firmware::protocol::PlayState;
 use firmware::scenes::SceneName;
 use rayon::prelude::*;
 
-/// How long a scene is played, s.
+/// The times for which a scene is played, s.
 const SHORT: u32 = 20;
 const LONG: u32 = 200;
 
@@ -316,7 +316,7 @@ fn every_15th_degree() -> impl Iterator<Item = f64> {
     (-12..=12).map(|turn| 15.0 * f64::from(turn))
 }
 
-/// Every scene with a motion, in every mass ratio.
+/// Returns every scene with a motion, in every mass ratio.
 fn all_mass_ratios(degrees: &[f64]) -> Vec<Case> {
     let mut cases = Vec::new();
     for ratio in MASS_RATIOS {
@@ -331,7 +331,6 @@ fn all_mass_ratios(degrees: &[f64]) -> Vec<Case> {
     cases
 }
 
-/// Every scene with a motion.
 #[test]
 #[ignore = "an hour"]
 fn all_mass_ratios_and_every_15th_degree_are_shown_as_claimed() {
@@ -341,11 +340,11 @@ fn all_mass_ratios_and_every_15th_degree_are_shown_as_claimed() {
     sweep(&all_mass_ratios(&degrees), &PROCESSORS, SHORT);
 }
 
-/// Every scene with a motion, for a long time.
 #[test]
 #[ignore = "an hour"]
 fn scenes_of_200_s_are_shown_as_claimed() {
     let degrees: Vec<_> = every_15th_degree().collect();
+    // One without and one with floating point: all processors would take hours.
     let processors = [CORTEX_M0PLUS, CORTEX_M4F];
     sweep(&all_mass_ratios(&degrees), &processors, LONG);
 }

@@ -153,8 +153,7 @@ fn passes(before: &[[i32; 2]; 2], after: &[[i32; 2]; 2]) -> i32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::methods::FormVisitor;
-    use crate::methods::{DirectionF32Plain, HamiltonF32};
+    use crate::methods::{DirectionF32Plain, FormVisitor, HamiltonF32};
     use crate::table::Method;
 
     struct FirstFlip;

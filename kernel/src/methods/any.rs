@@ -205,9 +205,9 @@ macro_rules! visit {
         $integrator:ident, $order:literal, $form:tt $(<$of:literal>)?;
     )*) => {
         impl Method {
-            /// Calls `visitor` with the type that computes this method, and returns its result; `None`,
-            /// without a call, for `rk4-f32-micromath` and `textbook-f32`, whose types are not in this
-            /// crate.
+            /// Calls `visitor` with the type that computes this method, and returns its result;
+            /// `None`, without a call, for `rk4-f32-micromath` and `textbook-f32`, whose types are
+            /// not in this crate.
             ///
             /// This links every method. To link one method only, pass its type to
             /// [`Pendulum::run`](crate::Pendulum::run).
@@ -222,7 +222,8 @@ macro_rules! visit {
             ///     type Output = Result<f64, double_pendulum::Error>;
             ///
             ///     fn visit<F: Form>(self) -> Self::Output {
-            ///         let pendulum = Pendulum::<f64>::new(&Parameters::equal_rods(1.0, 1.0, 9.81))?;
+            ///         let parameters = Parameters::equal_rods(1.0, 1.0, 9.81);
+            ///         let pendulum = Pendulum::<f64>::new(&parameters)?;
             ///         let mut run = pendulum.run::<F>(&State::at_rest(0.5, 0.5), 1.0 / 128.0)?;
             ///         run.advance(128)?;
             ///         Ok(run.state().a1)
@@ -236,15 +237,15 @@ macro_rules! visit {
             /// ```
             pub fn visit<V: FormVisitor>(self, visitor: V) -> Option<V::Output> {
                 match self {
-                    $(Method::$method => visit!(@of visitor $form $(<$of>)?),)*
+                    $(Method::$method => visit!(@call visitor $form $(<$of>)?),)*
                 }
             }
         }
     };
-    (@of $visitor:ident -) => {
+    (@call $visitor:ident -) => {
         None
     };
-    (@of $visitor:ident $form:ty) => {
+    (@call $visitor:ident $form:ty) => {
         Some($visitor.visit::<$form>())
     };
 }

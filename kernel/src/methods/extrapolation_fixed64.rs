@@ -40,7 +40,7 @@ use crate::numbers::fixed::Q64;
 use crate::pendulum::{Direction, Parameters, Pendulum, State};
 use errors::Moments;
 pub(crate) use errors::Truncation;
-use rows::{EIGHTH, EIGHTHS, Rows, unit_of_time};
+use rows::{DIRECTION_SHIFT, EIGHTH, Rows, unit_of_time};
 
 /// A motion in the direction form, stepped by extrapolation of order `ORDER`, 2, 4 .. 16, in 64-bit
 /// fixed point.
@@ -325,8 +325,8 @@ impl<const ORDER: u32> Advance for Fixed64<ORDER> {
         let [upper, lower] = self.0.rods();
         let inverse = R::from_f64(self.0.inverse_norm);
         [
-            upper.map(|z| z.doubled(EIGHTHS)),
-            lower.map(|z| z.doubled::<R>(2 * EIGHTHS) * inverse),
+            upper.map(|z| z.doubled(DIRECTION_SHIFT)),
+            lower.map(|z| z.doubled::<R>(2 * DIRECTION_SHIFT) * inverse),
         ]
     }
 

@@ -72,8 +72,9 @@ pub trait RealOperations:
 
     fn from_f64(value: f64) -> Self;
     fn to_f64(self) -> f64;
-    /// Returns the whole number over 2^`halvings`, of at most 64, rounded once. The exponent is
-    /// changed, which costs less than a product in software.
+    /// Returns `whole`/2^`halvings`, rounded once. `halvings` is at most 64.
+    ///
+    /// The exponent is changed, because a product costs more in software.
     fn fraction(whole: i64, halvings: u32) -> Self;
     fn cast<S: Real>(self) -> S {
         S::from_f64(self.to_f64())

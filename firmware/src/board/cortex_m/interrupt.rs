@@ -1,4 +1,4 @@
-//! Interrupts: how one is enabled, and the type for data that it shares.
+//! The enabling of interrupts, and the type for data that they share with the program.
 
 use core::cell::RefCell;
 

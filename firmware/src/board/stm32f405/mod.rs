@@ -111,7 +111,7 @@ fn chip_number() -> [u32; 4] {
     [debug.idcode().read().bits(), a, b, c]
 }
 
-/// Starts the clock of the processor and of the buses. Also returns true in an emulator.
+/// Starts the clocks of the processor and the buses. The second value is true in an emulator.
 ///
 /// The source is the chip's own oscillator. It is accurate to 1 % at room temperature, which is
 /// sufficient for the eye and for the serial port. So the image fits boards with any crystal (8, 12

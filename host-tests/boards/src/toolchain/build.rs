@@ -46,8 +46,8 @@ const OURS: [&str; 5] = [
 /// kernel's feature `double-fpu`.
 pub type CoreImage = (&'static str, Option<&'static str>);
 
-/// The images of the golden bits on cores that no board has. The first runs on the boards' QEMU. The
-/// next two need the core library of their target, and the last three another emulator, too.
+/// The images of the golden bits on cores that no board has. The first runs on the boards' QEMU.
+/// The next two need the core library of their target, and the last three another emulator, too.
 pub const CORE_IMAGES: [CoreImage; 6] = [
     ("thumbv7em-none-eabihf", Some("cortex-m7")),
     ("thumbv8m.main-none-eabihf", None),

@@ -9,10 +9,11 @@ use crate::methods::extrapolation::{ROWS, half_substeps, rows, weight};
 use crate::methods::scaling::{Scaling, Shifts};
 use crate::numbers::fixed::{Q64, nearest, scaled};
 
-/// The factor of a stored direction. Momenta and rates are stored as they are.
-pub(super) const EIGHTH: f64 = 0.125;
-/// The number of doublings that undo it.
-pub(super) const EIGHTHS: u32 = 3;
+/// The number of bits by which a stored direction is halved. Momenta and rates are stored as they
+/// are.
+pub(super) const DIRECTION_SHIFT: u32 = 3;
+/// The factor of a stored direction.
+pub(super) const EIGHTH: f64 = 1.0 / (1_u32 << DIRECTION_SHIFT) as f64;
 
 /// The least common multiple of all n/2: the share 2/n of the step is a whole number of parts.
 const PARTS: i64 = 840;
@@ -143,7 +144,7 @@ impl Rows {
 
     /// Returns nu/sigma.
     pub fn norm_value(&self) -> f64 {
-        self.norm.value::<f64>() / EIGHTH
+        self.norm.doubled(DIRECTION_SHIFT)
     }
 
     /// Returns the length of the step in units of time.

@@ -24,7 +24,7 @@ impl Q64 {
         self.doubled(0)
     }
 
-    /// Returns the number doubled so often, at most 64 times, rounded once.
+    /// Returns the number times 2^`times`, rounded once. `times` is at most 64.
     pub fn doubled<R: Real>(self, times: u32) -> R {
         R::fraction(self.0, 64 - times)
     }
