@@ -12,7 +12,7 @@ use boards::console::cli::{complain, say};
 use boards::process;
 use boards::toolchain;
 
-/// Sets everything up and runs all tests, including those in QEMU. Takes about eight minutes.
+/// Sets everything up and runs all tests, including those in QEMU. Takes about seven minutes.
 #[derive(Debug, Parser)]
 #[command(name = "cargo verify", after_help = "Example: cargo verify --long")]
 pub struct VerifyOptions {
@@ -61,7 +61,7 @@ pub fn run(options: &VerifyOptions) -> anyhow::Result<ExitCode> {
     complain(if options.long {
         "note: running all tests, including those that take hours"
     } else {
-        "note: all tests take about eight minutes"
+        "note: all tests take about seven minutes"
     });
 
     let ignored: &[&str] = if options.long {
