@@ -91,8 +91,8 @@ impl Stroke {
 }
 
 /// A disc of `radius` subpixels, surrounded by a black gap of `gap` subpixels that separates it
-/// from the background. The edge of the disc is soft, one pixel wide, half of it outside the
-/// radius; that of the gap is hard. A disc with a radius below 16 is fainter.
+/// from the background. The disc has a soft edge, one pixel wide, half of it outside the radius.
+/// The gap has a hard edge. A disc with a radius below 16 is fainter.
 #[derive(Clone, Copy, Debug)]
 pub struct Disc {
     /// The middle.
