@@ -86,19 +86,17 @@ pub fn run(options: &VerifyOptions) -> anyhow::Result<ExitCode> {
         let toolchain = toolchain::set_up()?;
         toolchain::set_up_pico()?;
         toolchain.build_ahead()?;
-        let others = scope.spawn({
+        let minimal = scope.spawn({
             let toolchain = toolchain.clone();
-            move || {
-                toolchain.build_minimal_ahead()?;
-                toolchain.build_cores_ahead()
-            }
+            move || toolchain.build_minimal_ahead()
         });
         toolchain.build_applications_ahead()?;
         // Without the tools the test says that it is skipped.
         if let Ok(web) = toolchain::set_up_web() {
             web.build_web()?;
         }
-        others.join().expect("it does not panic")?;
+        toolchain.build_cores_ahead()?;
+        minimal.join().expect("it does not panic")?;
         let status = on_host.join().expect("it does not panic")?;
         anyhow::Ok(status)
     })?;
@@ -106,8 +104,15 @@ pub fn run(options: &VerifyOptions) -> anyhow::Result<ExitCode> {
         return Ok(process::exit_code(on_host));
     }
 
-    // Many of the other tests wait for a board, and the rest compute meanwhile. Two parts write to
-    // files, so that nothing is lost if one of them is stopped.
+    // Many of the other tests wait for a board, and the rest compute meanwhile. None of them calls
+    // cargo again for an image that has just been built. Two parts write to files, so that nothing
+    // is lost if one of them is stopped.
+    let built = toolchain::built_images()?;
+    let run = |tests: &[&str]| {
+        let mut command = run(tests, processors);
+        command.env(toolchain::BUILT_IMAGES, &built);
+        command
+    };
     let parts = [OF_COMMANDS, IN_DOCUMENTATION];
     let mut outputs = [tempfile::tempfile()?, tempfile::tempfile()?];
     let results = thread::scope(|scope| {
@@ -115,13 +120,13 @@ pub fn run(options: &VerifyOptions) -> anyhow::Result<ExitCode> {
             let part = parts[i];
             let output = &outputs[i];
             scope.spawn(move || {
-                let mut command = run(&[part], processors);
+                let mut command = run(&[part]);
                 command.stdout(output.try_clone()?);
                 command.stderr(output.try_clone()?);
                 shown(command)
             })
         });
-        let on_boards = shown(run(&[ON_BOARDS], processors));
+        let on_boards = shown(run(&[ON_BOARDS]));
         let [of_commands, in_documentation] =
             others.map(|other| other.join().expect("it does not panic"));
         [on_boards, of_commands, in_documentation]

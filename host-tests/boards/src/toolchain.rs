@@ -17,7 +17,7 @@ use std::process::exit;
 use std::sync::OnceLock;
 use std::{env, fmt, thread};
 
-pub use build::CORE_IMAGES;
+pub use build::{BUILT_IMAGES, CORE_IMAGES, built_images};
 pub use run::QUICK;
 pub use tools::find;
 use tools::{CHROMIUM, NODE, QEMU, QEMU_AARCH64, QEMU_RISCV};

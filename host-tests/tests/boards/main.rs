@@ -1,5 +1,6 @@
 //! The firmware on emulated boards: bits, frames, faults, costs.
 
+mod browser;
 mod budgets;
 mod colour;
 mod cores;
@@ -19,4 +20,3 @@ mod scenes;
 mod steps;
 #[path = "../support/mod.rs"]
 mod support;
-mod web;

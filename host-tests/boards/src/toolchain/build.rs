@@ -3,10 +3,11 @@
 //! A build writes below `firmware` in the target folder, shows its progress on stderr, and ignores
 //! variables such as `RUSTFLAGS`.
 
+use std::collections::BTreeSet;
 use std::ffi::OsString;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::Command;
-use std::sync::{Mutex, PoisonError};
+use std::sync::{LazyLock, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 use std::{env, fs};
 
@@ -19,8 +20,36 @@ use crate::board::{Board, PICO, every_board};
 use crate::console::progress::Progress;
 use crate::process::run_watched;
 
-/// The list saves time: another call of cargo takes half a second.
-static BUILT: Mutex<Vec<(String, String)>> = Mutex::new(Vec::new());
+/// The environment variable by which a process tells those that it starts which images it has
+/// built, separated like the folders of `PATH`.
+pub const BUILT_IMAGES: &str = "BUILT_IMAGES";
+
+/// The images for which cargo is not called again, which would take half a second.
+fn built() -> MutexGuard<'static, BTreeSet<PathBuf>> {
+    static BUILT: LazyLock<Mutex<BTreeSet<PathBuf>>> = LazyLock::new(|| {
+        let before = env::var_os(BUILT_IMAGES).unwrap_or_default();
+        Mutex::new(env::split_paths(&before).collect())
+    });
+    BUILT.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// The value of [`BUILT_IMAGES`] for the processes that this one starts.
+pub fn built_images() -> Result<OsString, env::JoinPathsError> {
+    env::join_paths(built().iter())
+}
+
+/// Returns the image, which it builds unless that has been done.
+fn once(
+    image: PathBuf,
+    build: impl FnOnce(&Path) -> anyhow::Result<()>,
+) -> anyhow::Result<PathBuf> {
+    let is_built = built().contains(&image);
+    if !is_built {
+        build(&image)?;
+        built().insert(image.clone());
+    }
+    Ok(image)
+}
 
 /// The binaries that run on every target.
 const AHEAD: [&str; 3] = ["lm3s6965evb", "measure", "inject-panic"];
@@ -76,12 +105,6 @@ impl Toolchain {
         target().join("firmware")
     }
 
-    /// The folder is separate, so that cargo can build these images and the boards' programs at the
-    /// same time. Only macros and build scripts are compiled twice because of it.
-    fn folder_of_cores() -> PathBuf {
-        Self::folder().join("cores")
-    }
-
     pub fn build_for(&self, board: &Board) -> anyhow::Result<PathBuf> {
         if board.binary != PICO.binary {
             return self.build(board.binary, board.target);
@@ -92,10 +115,8 @@ impl Toolchain {
         static TURN: Mutex<()> = Mutex::new(());
         let _turn = TURN.lock().unwrap_or_else(PoisonError::into_inner);
         let name = board.panel.name();
-        let folder = Self::folder().join(board.target).join("release");
-        let image = folder.join(format!("{}-{name}", board.binary));
-        let this = (image.display().to_string(), board.target.to_owned());
-        if !BUILT.lock().is_ok_and(|built| built.contains(&this)) {
+        let copy = format!("{}-{name}", board.binary);
+        once(Self::image(board.target, &copy), |copy| {
             let mut command = self.for_targets("build", &[board.target])?;
             command.args(["--bin", board.binary, "--features", board.feature]);
             command.env("PANEL", name);
@@ -103,32 +124,24 @@ impl Toolchain {
                 command,
                 &format!("building {}-{name} for {}", board.binary, board.target),
             )?;
-            fs::copy(folder.join(board.binary), &image)?;
-            BUILT
-                .lock()
-                .into_iter()
-                .for_each(|mut built| built.push(this.clone()));
-        }
-        Ok(image)
+            fs::copy(Self::image(board.target, board.binary), copy)?;
+            Ok(())
+        })
     }
 
-    /// Built once per process.
+    fn image(target: &str, binary: &str) -> PathBuf {
+        Self::folder().join(target).join("release").join(binary)
+    }
+
     pub fn build(&self, binary: &str, target: &str) -> anyhow::Result<PathBuf> {
-        let elf = Self::folder().join(target).join("release").join(binary);
-        let this = (binary.to_owned(), target.to_owned());
-        if !BUILT.lock().is_ok_and(|built| built.contains(&this)) {
+        once(Self::image(target, binary), |_| {
             let feature = every_board()
                 .find(|board| board.binary == binary)
                 .map_or("", |board| board.feature);
             let mut command = self.for_targets("build", &[target])?;
             command.args(["--bin", binary, "--features", feature]);
-            self.finish(command, &format!("building {binary} for {target}"))?;
-            BUILT
-                .lock()
-                .into_iter()
-                .for_each(|mut built| built.push(this.clone()));
-        }
-        Ok(elf)
+            self.finish(command, &format!("building {binary} for {target}"))
+        })
     }
 
     pub fn build_cores(&self, target: &str, double: Option<&str>) -> anyhow::Result<PathBuf> {
@@ -136,67 +149,51 @@ impl Toolchain {
         // replaces it.
         static TURN: Mutex<()> = Mutex::new(());
         let _turn = TURN.lock().unwrap_or_else(PoisonError::into_inner);
-        self.build_core_images(&[target], double)?;
-        let folder = Self::folder_of_cores().join(target).join("release");
-        let built = if target.starts_with("wasm") {
-            "cores.wasm"
-        } else {
-            "cores"
-        };
-        let image = folder.join(format!("{}-{built}", double.unwrap_or("any")));
-        fs::copy(folder.join(built), &image)?;
-        Ok(image)
-    }
-
-    fn build_core_images(&self, targets: &[&str], double: Option<&str>) -> anyhow::Result<()> {
-        let mut command = self.for_targets("build", targets)?;
-        command
-            .args(["--bin", "cores", "--no-default-features"])
-            .args(["--features", "cores"])
-            .env("CARGO_TARGET_DIR", Self::folder_of_cores())
-            // Nobody debugs these images, and debug information would double the time.
-            .env("CARGO_PROFILE_RELEASE_DEBUG", "false");
-        if let Some(cpu) = double {
-            // These flags replace the flags of the configuration, which are for a Cortex-M4F.
-            command.args(["--features", "double-pendulum-kernel/double-fpu"]);
-            command.env("RUSTFLAGS", format!("-Ctarget-cpu={cpu}"));
-        }
-        let names = double.map_or_else(|| targets.join(", "), str::to_owned);
-        self.finish(command, &format!("building cores for {names}"))
+        let extension = if target == WASM { ".wasm" } else { "" };
+        let binary = format!("cores{extension}");
+        let copy = format!("{}-{binary}", double.unwrap_or("any"));
+        once(Self::image(target, &copy), |copy| {
+            let mut command = self.for_targets("build", &[target])?;
+            command
+                .args(["--bin", "cores", "--no-default-features"])
+                .args(["--features", "cores"])
+                // Nobody debugs these images, and debug information would double the time.
+                .env("CARGO_PROFILE_RELEASE_DEBUG", "false");
+            if let Some(cpu) = double {
+                // These flags replace the flags of the configuration, which are for a Cortex-M4F.
+                command.args(["--features", "double-pendulum-kernel/double-fpu"]);
+                command.env("RUSTFLAGS", format!("-Ctarget-cpu={cpu}"));
+            }
+            let name = double.unwrap_or(target);
+            self.finish(command, &format!("building cores for {name}"))?;
+            fs::copy(Self::image(target, &binary), copy)?;
+            Ok(())
+        })
     }
 
     /// Builds the [`CORE_IMAGES`] ahead. It stops before the first target whose tools cannot be
     /// provided: without a network, each further one would wait for it.
     pub fn build_cores_ahead(&self) -> anyhow::Result<()> {
-        let is_ready = |target: &str| set_up_for(target).is_ok();
-        let (double, any): (Vec<CoreImage>, Vec<CoreImage>) = CORE_IMAGES
+        CORE_IMAGES
             .into_iter()
-            .take_while(|(target, _)| is_ready(target))
-            .partition(|(_, double)| double.is_some());
-
-        // Images for no particular processor are built together, the others one at a time. The one
-        // for WebAssembly is built alone, too: in one call with microcontrollers, cargo would
-        // enable their features for it, and the test's build would compile it again.
-        let (alone, together): (Vec<_>, Vec<_>) =
-            any.into_iter().partition(|(target, _)| *target == WASM);
-        let together: Vec<_> = together.into_iter().map(|(target, _)| target).collect();
-        if !together.is_empty() {
-            self.build_core_images(&together, None)?;
-        }
-        double
-            .into_iter()
-            .chain(alone)
-            .try_for_each(|(target, double)| self.build_core_images(&[target], double))
+            .take_while(|(target, _)| set_up_for(target).is_ok())
+            .try_for_each(|(target, double)| self.build_cores(target, double).map(drop))
     }
 
     /// Builds the programs of `kernel/minimal` as a user of the kernel would: in an empty folder,
     /// so that the settings of this repository do not apply.
     pub fn build_minimal(&self, target: &str) -> anyhow::Result<PathBuf> {
-        let nowhere = tempfile::tempdir()?;
-        let package = workspace().join("kernel/minimal");
         // A folder of their own: where the firmware's flags differ, cargo would compile the common
         // crates anew for either, and link all images again.
         let folder = Self::folder().join("minimal");
+        once(folder.join(target).join("release"), |_| {
+            self.compile_minimal(target, &folder)
+        })
+    }
+
+    fn compile_minimal(&self, target: &str, folder: &Path) -> anyhow::Result<()> {
+        let nowhere = tempfile::tempdir()?;
+        let package = workspace().join("kernel/minimal");
         let flags = remap::flags().map_err(|error| anyhow!(error))?;
 
         let mut sysroot = Command::new("rustc");
@@ -216,28 +213,31 @@ impl Toolchain {
             .arg("--config")
             .arg(package.join(".cargo/config.toml"))
             .args(["--config", &format!("target.{target}.rustflags={flags:?}")])
-            .env("CARGO_TARGET_DIR", &folder);
+            .env("CARGO_TARGET_DIR", folder);
         self.finish(
             command,
             &format!("building the minimal programs for {target}"),
-        )?;
-        Ok(folder.join(target).join("release"))
+        )
     }
 
     pub fn build_web(&self) -> anyhow::Result<PathBuf> {
-        let mut command = self.for_targets("build", &[WASM])?;
-        command
-            .args(["--bin", "web", "--features", "web"])
-            .env("CARGO_PROFILE_RELEASE_DEBUG", "false")
-            .env("CARGO_PROFILE_RELEASE_STRIP", "symbols");
-        self.finish(command, "building the application for the browser")?;
-        Ok(Self::folder().join(WASM).join("release/web.wasm"))
+        once(Self::image(WASM, "web.wasm"), |_| {
+            let mut command = self.for_targets("build", &[WASM])?;
+            command
+                .args(["--bin", "web", "--features", "web"])
+                .env("CARGO_PROFILE_RELEASE_DEBUG", "false")
+                .env("CARGO_PROFILE_RELEASE_STRIP", "symbols");
+            self.finish(command, "building the application for the browser")
+        })
     }
 
     pub fn build_ahead(&self) -> anyhow::Result<()> {
         let mut command = self.for_targets("build", &TARGETS)?;
         command.args(AHEAD.iter().flat_map(|binary| ["--bin", binary]));
-        self.finish(command, "building the firmware for all targets")
+        self.finish(command, "building the firmware for all targets")?;
+        let all = TARGETS.map(|target| AHEAD.map(|binary| Self::image(target, binary)));
+        built().extend(all.into_iter().flatten());
+        Ok(())
     }
 
     pub fn build_applications_ahead(&self) -> anyhow::Result<()> {
