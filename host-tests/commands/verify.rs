@@ -80,7 +80,8 @@ pub fn run(options: &VerifyOptions) -> anyhow::Result<ExitCode> {
             if !compiled.success() {
                 return Ok(compiled);
             }
-            shown(run(&ON_HOST, 2 * processors))
+            // The builds, one after the other, rarely use more than the other half.
+            shown(run(&ON_HOST, processors.div_ceil(2)))
         });
 
         let toolchain = toolchain::set_up()?;
