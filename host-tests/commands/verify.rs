@@ -23,7 +23,7 @@ pub struct VerifyOptions {
 
 const LIMITS: [Duration; 2] = [Duration::from_secs(3600), Duration::from_secs(12 * 3600)];
 /// The variables with the numbers of concurrent tests, and of concurrent pieces of work within
-/// tests. More than processors, because many tests wait for an emulator or a clock.
+/// tests.
 const THREADS: [&str; 2] = ["RUST_TEST_THREADS", "RAYON_NUM_THREADS"];
 
 const ON_HOST: [&str; 5] = [
@@ -80,8 +80,7 @@ pub fn run(options: &VerifyOptions) -> anyhow::Result<ExitCode> {
             if !compiled.success() {
                 return Ok(compiled);
             }
-            // The builds, one after the other, rarely use more than the other half.
-            shown(run(&ON_HOST, processors.div_ceil(2)))
+            shown(run(&ON_HOST, processors))
         });
 
         let toolchain = toolchain::set_up()?;
@@ -109,8 +108,8 @@ pub fn run(options: &VerifyOptions) -> anyhow::Result<ExitCode> {
     // cargo again for an image that has just been built. Two parts write to files, so that nothing
     // is lost if one of them is stopped.
     let built = toolchain::built_images()?;
-    let run = |tests: &[&str]| {
-        let mut command = run(tests, processors);
+    let run = |tests: &[&str], threads| {
+        let mut command = run(tests, threads);
         command.env(toolchain::BUILT_IMAGES, &built);
         command
     };
@@ -121,13 +120,14 @@ pub fn run(options: &VerifyOptions) -> anyhow::Result<ExitCode> {
             let part = parts[i];
             let output = &outputs[i];
             scope.spawn(move || {
-                let mut command = run(&[part]);
+                // Many commands wait for a clock.
+                let mut command = run(&[part], 2 * processors);
                 command.stdout(output.try_clone()?);
                 command.stderr(output.try_clone()?);
                 shown(command)
             })
         });
-        let on_boards = shown(run(&[ON_BOARDS]));
+        let on_boards = shown(run(&[ON_BOARDS], processors));
         let [of_commands, in_documentation] =
             others.map(|other| other.join().expect("it does not panic"));
         [on_boards, of_commands, in_documentation]

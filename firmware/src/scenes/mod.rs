@@ -10,7 +10,7 @@
 //!    `host-tests/tests/firmware/sweep.rs`.
 //! 2. `BLESS=1 cargo test -p host-tests --test firmware -- scenes:: golden:: link::` makes its stored
 //!    files, and `cargo figures --animations` its picture.
-//! 3. Run these modules and `sweep::` without `BLESS`, and `--test boards scenes::`.
+//! 3. Run these modules and `sweep::` without `BLESS`, and `--test boards all_scenes::`.
 
 mod beats;
 mod butterfly;

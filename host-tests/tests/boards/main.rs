@@ -1,5 +1,6 @@
 //! The firmware on emulated boards: bits, frames, faults, costs.
 
+mod all_scenes;
 mod browser;
 mod budgets;
 mod colour;
@@ -16,7 +17,6 @@ mod qemu_lm3s6965evb;
 mod qemu_plan;
 mod qemu_restart;
 mod qemu_stm32f405;
-mod scenes;
 mod steps;
 #[path = "../support/mod.rs"]
 mod support;

@@ -157,8 +157,11 @@ impl Toolchain {
             command
                 .args(["--bin", "cores", "--no-default-features"])
                 .args(["--features", "cores"])
-                // Nobody debugs these images, and debug information would double the time.
-                .env("CARGO_PROFILE_RELEASE_DEBUG", "false");
+                // Nobody debugs these images or counts their cycles. So they compile in two thirds
+                // of the time.
+                .env("CARGO_PROFILE_RELEASE_DEBUG", "false")
+                .env("CARGO_PROFILE_RELEASE_LTO", "off")
+                .env("CARGO_PROFILE_RELEASE_CODEGEN_UNITS", "16");
             if let Some(cpu) = double {
                 // These flags replace the flags of the configuration, which are for a Cortex-M4F.
                 command.args(["--features", "double-pendulum-kernel/double-fpu"]);

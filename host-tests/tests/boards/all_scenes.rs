@@ -4,8 +4,8 @@
 //! overflows of counters are detected.
 //!
 //! The clock of an emulated board counts instructions, so that an hour of it takes minutes. The
-//! long test is run by `cargo test -p host-tests --test boards scenes:: -- --ignored` or `cargo
-//! verify --long`. The command `cargo test -p host-tests --test boards scenes:: -- --nocapture`
+//! long test is run by `cargo test -p host-tests --test boards all_scenes:: -- --ignored` or `cargo
+//! verify --long`. The command `cargo test -p host-tests --test boards all_scenes:: -- --nocapture`
 //! prints the memory and the idle time of each board.
 
 use std::time::Duration;
