@@ -5,6 +5,7 @@ use boards::LM3S6965EVB;
 use boards::host::Show;
 use boards::qemu::Machine;
 use firmware::config::{MASS_RATIOS, TICK_RATE};
+use firmware::motion::Settings;
 use firmware::protocol::{Answer, Command, PlayState};
 use firmware::scenes::SceneName;
 
@@ -24,17 +25,19 @@ fn up_held_down_shows_the_hosts_motion_at_mass_ratio_100() -> anyhow::Result<()>
     machine.next_frame()?;
 
     for name in [SceneName::Page, SceneName::Figure7] {
-        let mut settings = name.first_settings();
+        let heavier = |settings: Settings, _| settings.heavier();
+        let settings = MASS_RATIOS.iter().fold(name.first_settings(), heavier);
+        assert_eq!(settings.mass_ratio(), 100.0);
+
+        // The host plans first, because the board drops frames while the host does not read.
+        let mut show = Show::on(board.processor(), name, &settings)?;
+
         machine.send(1, Command::Choose(name))?;
         assert_eq!(machine.next_answer()?, (1, Answer::Done));
         for _ in MASS_RATIOS {
             machine.send(1, Command::Heavier)?;
             assert_eq!(machine.next_answer()?, (1, Answer::Done));
-            settings = settings.heavier();
         }
-        assert_eq!(settings.mass_ratio(), 100.0);
-
-        let mut show = Show::on(board.processor(), name, &settings)?;
         loop {
             let frame = machine.next_frame()?;
             let place = format!("{}, step {}", name.name(), frame.report.step);
