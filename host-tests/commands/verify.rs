@@ -104,9 +104,9 @@ pub fn run(options: &VerifyOptions) -> anyhow::Result<ExitCode> {
         return Ok(process::exit_code(on_host));
     }
 
-    // Many of the other tests wait for a board, and the rest compute meanwhile. None of them calls
-    // cargo again for an image that has just been built. Two parts write to files, so that nothing
-    // is lost if one of them is stopped.
+    // Many of the other tests wait for a board or a clock, and the rest compute meanwhile. None of
+    // them calls cargo again for an image that has just been built. Two parts write to files, so
+    // that nothing is lost if one of them is stopped.
     let built = toolchain::built_images()?;
     let run = |tests: &[&str], threads| {
         let mut command = run(tests, threads);
@@ -120,14 +120,13 @@ pub fn run(options: &VerifyOptions) -> anyhow::Result<ExitCode> {
             let part = parts[i];
             let output = &outputs[i];
             scope.spawn(move || {
-                // Many commands wait for a clock.
                 let mut command = run(&[part], 2 * processors);
                 command.stdout(output.try_clone()?);
                 command.stderr(output.try_clone()?);
                 shown(command)
             })
         });
-        let on_boards = shown(run(&[ON_BOARDS], processors));
+        let on_boards = shown(run(&[ON_BOARDS], processors + 1));
         let [of_commands, in_documentation] =
             others.map(|other| other.join().expect("it does not panic"));
         [on_boards, of_commands, in_documentation]

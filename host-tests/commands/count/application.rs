@@ -124,10 +124,10 @@ const MARKS: [&str; 2] = [
 ];
 
 /// Returns the price list of every method that a plan chooses from, on one board for each kind of
-/// core. Three prices are counted in the plan of the application's first scene: `preparation` is the
-/// most expensive of a motion's, of the search's start and of a restart of its shadows; `fixed64` and
-/// `comparison` are the first calls. All others are averages over a regular motion; `fixed32_unlike`
-/// is of unlike bobs and rods.
+/// core. Three prices are of first calls in the plan of the application's first scene: `fixed64`,
+/// `comparison`, and `preparation`, the most expensive of a motion's, of the search's start and of a
+/// restart of its shadows. All others are averages over a regular motion; `fixed32_unlike` is of
+/// unlike bobs and rods.
 pub fn prices(toolchain: &Toolchain) -> Result<Vec<(&'static Board, Costs)>> {
     let targets = Target::build_all(toolchain)?;
     targets
@@ -164,12 +164,8 @@ fn on(target: &Target, toolchain: &Toolchain) -> Result<Costs> {
 /// The functions of the planner that have a price.
 const STEP: &str = "::measure";
 const COMPARISON: &str = "Race::compare";
-/// Each with the number of calls that are counted: a race prepares ten motions.
-const PREPARATIONS: [(&str, usize); 3] = [
-    ("Search::new", 1),
-    ("Race::prepare", 10),
-    ("Uncertainty::restart", 1),
-];
+/// The first motion that a race prepares costs more than twice as much as any other.
+const PREPARATIONS: [&str; 3] = ["Search::new", "Race::prepare", "Uncertainty::restart"];
 
 /// The prices that only the application has code for.
 struct Planning {
@@ -191,24 +187,20 @@ fn in_application(board: &'static Board, toolchain: &Toolchain) -> Result<Planni
         limit: LIMIT,
     };
 
-    let price = |name: &str, calls: usize| {
+    let price = |name: &str| {
         let mut machine = Machine::halted(&settings)?;
         let function = image.function(name)?.address;
-        let mut costs = Vec::new();
-        for _ in 0..calls {
-            let [calls] = machine.next_call_logged(function, |log| {
-                calls_in(log, &image, board.core(), [BTreeSet::from([function])])
-            })?;
-            costs.extend(calls.ended);
-        }
-        most(name, &costs)
+        let [calls] = machine.next_call_logged(function, |log| {
+            calls_in(log, &image, board.core(), [BTreeSet::from([function])])
+        })?;
+        most(name, &calls.ended)
     };
-    let preparations = PREPARATIONS.map(|(name, calls)| price(name, calls));
+    let preparations = PREPARATIONS.map(price);
     let preparations = preparations.into_iter().collect::<Result<Vec<_>>>()?;
     Ok(Planning {
-        step: price(STEP, 1)?,
+        step: price(STEP)?,
         preparation: preparations.into_iter().fold(0.0, f32::max),
-        comparison: price(COMPARISON, 1)?,
+        comparison: price(COMPARISON)?,
     })
 }
 
