@@ -86,15 +86,15 @@ pub fn run(options: &VerifyOptions) -> anyhow::Result<ExitCode> {
         let toolchain = toolchain::set_up()?;
         toolchain::set_up_pico()?;
         toolchain.build_ahead()?;
-        let minimal = scope.spawn({
-            let toolchain = toolchain.clone();
-            move || toolchain.build_minimal_ahead()
-        });
         toolchain.build_applications_ahead()?;
         // Without the tools the test says that it is skipped.
         if let Ok(web) = toolchain::set_up_web() {
             web.build_web()?;
         }
+        let minimal = scope.spawn({
+            let toolchain = toolchain.clone();
+            move || toolchain.build_minimal_ahead()
+        });
         toolchain.build_cores_ahead()?;
         minimal.join().expect("it does not panic")?;
         let status = on_host.join().expect("it does not panic")?;
