@@ -12,7 +12,7 @@ use boards::console::cli::{complain, say};
 use boards::process;
 use boards::toolchain;
 
-/// Sets everything up and runs all tests, including those in QEMU. Takes about seven minutes.
+/// Sets everything up and runs all tests, including those in QEMU. Takes about six minutes.
 #[derive(Debug, Parser)]
 #[command(name = "cargo verify", after_help = "Example: cargo verify --long")]
 pub struct VerifyOptions {
@@ -37,10 +37,12 @@ const ON_BOARDS: &str = "--test=boards";
 const OF_COMMANDS: &str = "--test=commands";
 const IN_DOCUMENTATION: &str = "--doc";
 
-/// Sets up, and runs `cargo test` in four parts: on the host during the installation and the
-/// builds, and then on the boards, of the commands and of the documentation, all at once. Returns
-/// the exit code of the first part that fails. Without the tools of the page for a browser, its
-/// tests are skipped.
+/// Sets up, and runs `cargo test` in four parts. Returns the exit code of the first that fails.
+///
+/// Two things are done at a time, because neither keeps all processors busy alone: the tests are
+/// compiled, and those that need no firmware are run, while the tools are fetched and the firmware
+/// is compiled. The tests of the commands and of the documentation begin as soon as their images are
+/// there, and those on the boards last.
 pub fn run(options: &VerifyOptions) -> anyhow::Result<ExitCode> {
     let limit = LIMITS[usize::from(options.long)];
     let processors = available_parallelism()?.get();
@@ -61,7 +63,7 @@ pub fn run(options: &VerifyOptions) -> anyhow::Result<ExitCode> {
     complain(if options.long {
         "note: running all tests, including those that take hours"
     } else {
-        "note: all tests take about seven minutes"
+        "note: all tests take about six minutes"
     });
 
     let ignored: &[&str] = if options.long {
@@ -70,11 +72,18 @@ pub fn run(options: &VerifyOptions) -> anyhow::Result<ExitCode> {
         &[]
     };
     let run = |tests: &[&str], threads| test(&[tests, ignored].concat(), threads);
+    // These tests wait for a board or a clock at times. For an image that has been built, they do
+    // not call cargo again.
+    let run_built = |part| {
+        let mut command = run(&[part], 2 * processors);
+        command.env(toolchain::BUILT_IMAGES, toolchain::built_images()?);
+        anyhow::Ok(command)
+    };
     let shown = |mut command: Command| process::spawn(&mut command, limit)?.wait();
 
-    // The tests are compiled, and those that need no firmware are run, while the tools are fetched
-    // and the firmware is compiled, because none of these keeps all processors busy alone.
-    let on_host = thread::scope(|scope| {
+    // Two parts write to files, so that nothing is lost if one of them is stopped.
+    let mut outputs = [tempfile::tempfile()?, tempfile::tempfile()?];
+    let results = thread::scope(|scope| {
         let on_host = scope.spawn(|| {
             let compiled = shown(test(&["--no-run", "--quiet"], processors))?;
             if !compiled.success() {
@@ -87,6 +96,15 @@ pub fn run(options: &VerifyOptions) -> anyhow::Result<ExitCode> {
         toolchain::set_up_pico()?;
         toolchain.build_ahead()?;
         toolchain.build_applications_ahead()?;
+
+        let mut others = Vec::new();
+        for (part, output) in [OF_COMMANDS, IN_DOCUMENTATION].into_iter().zip(&outputs) {
+            let mut command = run_built(part)?;
+            command.stdout(output.try_clone()?);
+            command.stderr(output.try_clone()?);
+            others.push((part, scope.spawn(move || shown(command))));
+        }
+
         // Without the tools the test says that it is skipped.
         if let Ok(web) = toolchain::set_up_web() {
             web.build_web()?;
@@ -97,40 +115,16 @@ pub fn run(options: &VerifyOptions) -> anyhow::Result<ExitCode> {
         });
         toolchain.build_cores_ahead()?;
         minimal.join().expect("it does not panic")?;
-        let status = on_host.join().expect("it does not panic")?;
-        anyhow::Ok(status)
-    })?;
-    if !on_host.success() {
-        return Ok(process::exit_code(on_host));
-    }
 
-    // Many of the other tests wait for a board or a clock, and the rest compute meanwhile. None of
-    // them calls cargo again for an image that has just been built. Two parts write to files, so
-    // that nothing is lost if one of them is stopped.
-    let built = toolchain::built_images()?;
-    let run = |tests: &[&str], threads| {
-        let mut command = run(tests, threads);
-        command.env(toolchain::BUILT_IMAGES, &built);
-        command
-    };
-    let parts = [OF_COMMANDS, IN_DOCUMENTATION];
-    let mut outputs = [tempfile::tempfile()?, tempfile::tempfile()?];
-    let results = thread::scope(|scope| {
-        let others = [0, 1].map(|i| {
-            let part = parts[i];
-            let output = &outputs[i];
-            scope.spawn(move || {
-                let mut command = run(&[part], 2 * processors);
-                command.stdout(output.try_clone()?);
-                command.stderr(output.try_clone()?);
-                shown(command)
-            })
-        });
-        let on_boards = shown(run(&[ON_BOARDS], processors + 1));
-        let [of_commands, in_documentation] =
-            others.map(|other| other.join().expect("it does not panic"));
-        [on_boards, of_commands, in_documentation]
-    });
+        let mut results = vec![("on the host", on_host.join().expect("it does not panic")?)];
+        if results[0].1.success() {
+            results.push((ON_BOARDS, shown(run_built(ON_BOARDS)?)?));
+        }
+        for (part, other) in others {
+            results.push((part, other.join().expect("it does not panic")?));
+        }
+        anyhow::Ok(results)
+    })?;
     let printed = outputs.iter_mut().try_for_each(|output| {
         let mut text = Vec::new();
         output.rewind()?;
@@ -138,11 +132,7 @@ pub fn run(options: &VerifyOptions) -> anyhow::Result<ExitCode> {
         say(String::from_utf8_lossy(&text).trim_end())
     });
 
-    for (part, result) in [ON_BOARDS, OF_COMMANDS, IN_DOCUMENTATION]
-        .iter()
-        .zip(results)
-    {
-        let status = result?;
+    for (part, status) in results {
         if !status.success() {
             complain(format_args!("error: cargo test {part} failed"));
             return Ok(process::exit_code(status));

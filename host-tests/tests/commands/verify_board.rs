@@ -193,28 +193,45 @@ const HANG: Restarted = Restarted {
 /// one. It counts 100 cycles for a step of the second arithmetic, and none for the others. One bit
 /// is flipped in a motion of it, and one in a scene. In another scene a frame takes longer than the
 /// run, and the board reports a restart after it.
-fn counting(mut message: ToHost, measurements: &mut u32) -> Vec<u8> {
-    match &mut message {
-        ToHost::Answer(_, Answer::Measured { steps, cycles }) => {
-            let is_counted = (1..17).contains(measurements);
-            *cycles = if is_counted { *steps * 100 } else { 0 };
-            *measurements += 1;
+#[derive(Default)]
+struct Counting {
+    measurements: u32,
+    is_flipped: bool,
+    is_overlong: bool,
+}
+
+/// A board that the host reads late drops frames, so that not every step is sent.
+const STEP: u64 = 20;
+
+impl Counting {
+    fn change(&mut self, mut message: ToHost) -> Vec<u8> {
+        match &mut message {
+            ToHost::Answer(_, Answer::Measured { steps, cycles }) => {
+                let is_counted = (1..17).contains(&self.measurements);
+                *cycles = if is_counted { *steps * 100 } else { 0 };
+                self.measurements += 1;
+            }
+            ToHost::Answer(3, Answer::Sample { index: 5, reading }) => {
+                let [_, w2] = &mut reading.velocities;
+                *w2 = f64::from_bits(w2.to_bits() ^ 1);
+            }
+            ToHost::Frame(frame) if frame.report.step >= STEP => match frame.scene {
+                SceneName::Butterfly if !self.is_flipped => {
+                    self.is_flipped = true;
+                    let a1 = &mut frame.report.state.a1;
+                    *a1 = f32::from_bits(a1.to_bits() ^ 1);
+                }
+                SceneName::Upright if !self.is_overlong => {
+                    self.is_overlong = true;
+                    frame.busy_cycles = OVERLONG;
+                    return [wire(message), wire(ToHost::Restarted(HANG))].concat();
+                }
+                _ => {}
+            },
+            _ => {}
         }
-        ToHost::Answer(3, Answer::Sample { index: 5, reading }) => {
-            let [_, w2] = &mut reading.velocities;
-            *w2 = f64::from_bits(w2.to_bits() ^ 1);
-        }
-        ToHost::Frame(frame) if frame.scene == SceneName::Butterfly && frame.report.step == 20 => {
-            let a1 = &mut frame.report.state.a1;
-            *a1 = f32::from_bits(a1.to_bits() ^ 1);
-        }
-        ToHost::Frame(frame) if frame.scene == SceneName::Upright && frame.report.step == 20 => {
-            frame.busy_cycles = OVERLONG;
-            return [wire(message), wire(ToHost::Restarted(HANG))].concat();
-        }
-        _ => {}
+        wire(message)
     }
-    wire(message)
 }
 
 /// The six problems are two flipped bits, a frame that is too long, a restart, the panel and a
@@ -241,13 +258,13 @@ fn the_report_has_differences_answers_of_the_person_and_counted_cycles() {
         verification.child.stderr.take().expect("a pipe"),
     ));
     let mut said = Vec::new();
-    let mut measurements = 0;
+    let mut counting = Counting::default();
     let mut step = 0;
 
     let mut carry = |bench: &mut Bench| {
         bench.carry(|message| {
             step = message.frame().map_or(step, |frame| frame.report.step);
-            counting(message, &mut measurements)
+            counting.change(message)
         });
         step
     };
@@ -287,7 +304,7 @@ fn the_report_has_differences_answers_of_the_person_and_counted_cycles() {
         .iter()
         .find(|line| line.starts_with("problem: butterfly: frame"));
     assert!(
-        scene.is_some_and(|line| line.contains("step 20: a1 is 0x")),
+        scene.is_some_and(|line| line.contains(": a1 is 0x")),
         "{said:#?}"
     );
 
