@@ -39,10 +39,9 @@ const IN_DOCUMENTATION: &str = "--doc";
 
 /// Sets up, and runs `cargo test` in four parts. Returns the exit code of the first that fails.
 ///
-/// Two things are done at a time, because neither keeps all processors busy alone: the tests are
-/// compiled, and those that need no firmware are run, while the tools are fetched and the firmware
-/// is compiled. The tests of the commands and of the documentation begin as soon as their images are
-/// there, and those on the boards last.
+/// One thread compiles all tests and runs those without firmware. Another fetches the tools and
+/// builds the images, because neither keeps all processors busy alone. The tests of the commands and
+/// the documentation start once the applications are built, and the tests on the boards last.
 pub fn run(options: &VerifyOptions) -> anyhow::Result<ExitCode> {
     let limit = LIMITS[usize::from(options.long)];
     let processors = available_parallelism()?.get();
@@ -72,8 +71,7 @@ pub fn run(options: &VerifyOptions) -> anyhow::Result<ExitCode> {
         &[]
     };
     let run = |tests: &[&str], threads| test(&[tests, ignored].concat(), threads);
-    // These tests wait for a board or a clock at times. For an image that has been built, they do
-    // not call cargo again.
+    // Twice as many threads as processors, because many of these tests wait for a board or a clock.
     let run_built = |part| {
         let mut command = run(&[part], 2 * processors);
         command.env(toolchain::BUILT_IMAGES, toolchain::built_images()?);

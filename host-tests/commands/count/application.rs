@@ -164,7 +164,7 @@ fn on(target: &Target, toolchain: &Toolchain) -> Result<Costs> {
 /// The functions of the planner that have a price.
 const STEP: &str = "::measure";
 const COMPARISON: &str = "Race::compare";
-/// The first motion that a race prepares costs more than twice as much as any other.
+/// A race first prepares its reference, at more than twice the cost of any other motion.
 const PREPARATIONS: [&str; 3] = ["Search::new", "Race::prepare", "Uncertainty::restart"];
 
 /// The prices that only the application has code for.

@@ -196,11 +196,13 @@ const HANG: Restarted = Restarted {
 #[derive(Default)]
 struct Counting {
     measurements: u32,
-    is_flipped: bool,
+    /// The step whose angle has a flipped bit.
+    flipped: Option<u64>,
     is_overlong: bool,
 }
 
-/// A board that the host reads late drops frames, so that not every step is sent.
+/// The first frame from this step on is changed. A board that is read late drops frames, so that a
+/// given step may never be sent.
 const STEP: u64 = 20;
 
 impl Counting {
@@ -216,8 +218,8 @@ impl Counting {
                 *w2 = f64::from_bits(w2.to_bits() ^ 1);
             }
             ToHost::Frame(frame) if frame.report.step >= STEP => match frame.scene {
-                SceneName::Butterfly if !self.is_flipped => {
-                    self.is_flipped = true;
+                SceneName::Butterfly if self.flipped.is_none() => {
+                    self.flipped = Some(frame.report.step);
                     let a1 = &mut frame.report.state.a1;
                     *a1 = f32::from_bits(a1.to_bits() ^ 1);
                 }
@@ -300,11 +302,13 @@ fn the_report_has_differences_answers_of_the_person_and_counted_cycles() {
         said.iter().any(|line| line.starts_with(&sample)),
         "no {sample:?} in {said:#?}"
     );
+    let step = counting.flipped.expect("a frame of the butterfly");
+    let flipped = format!("step {step}: a1 is 0x");
     let scene = said
         .iter()
         .find(|line| line.starts_with("problem: butterfly: frame"));
     assert!(
-        scene.is_some_and(|line| line.contains(": a1 is 0x")),
+        scene.is_some_and(|line| line.contains(&flipped)),
         "{said:#?}"
     );
 

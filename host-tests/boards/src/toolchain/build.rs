@@ -20,11 +20,11 @@ use crate::board::{Board, PICO, every_board};
 use crate::console::progress::Progress;
 use crate::process::run_watched;
 
-/// The environment variable by which a process tells those that it starts which images it has
-/// built, separated like the folders of `PATH`.
+/// The environment variable with the images that the parent process has built, separated like the
+/// folders of `PATH`.
 pub const BUILT_IMAGES: &str = "BUILT_IMAGES";
 
-/// The images for which cargo is not called again, which would take half a second.
+/// The images that are up to date. Calling cargo for one again would take half a second.
 fn built() -> MutexGuard<'static, BTreeSet<PathBuf>> {
     static BUILT: LazyLock<Mutex<BTreeSet<PathBuf>>> = LazyLock::new(|| {
         let before = env::var_os(BUILT_IMAGES).unwrap_or_default();
@@ -33,7 +33,7 @@ fn built() -> MutexGuard<'static, BTreeSet<PathBuf>> {
     BUILT.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// The value of [`BUILT_IMAGES`] for the processes that this one starts.
+/// Returns the value of [`BUILT_IMAGES`] for child processes.
 pub fn built_images() -> Result<OsString, env::JoinPathsError> {
     env::join_paths(built().iter())
 }
@@ -157,8 +157,8 @@ impl Toolchain {
             command
                 .args(["--bin", "cores", "--no-default-features"])
                 .args(["--features", "cores"])
-                // Nobody debugs these images or counts their cycles. So they compile in two thirds
-                // of the time.
+                // Only the results of these images matter, not their speed or debug information. So
+                // they compile in two thirds of the time.
                 .env("CARGO_PROFILE_RELEASE_DEBUG", "false")
                 .env("CARGO_PROFILE_RELEASE_LTO", "off")
                 .env("CARGO_PROFILE_RELEASE_CODEGEN_UNITS", "16");
