@@ -156,13 +156,13 @@ fn binaries() -> Vec<String> {
 fn the_board_follows_from_the_binary() {
     for (binary, name) in [
         ("lm3s6965evb", "lm3s6965evb"),
-        ("inject-panic", "lm3s6965evb"),
+        ("measure", "lm3s6965evb"),
         (
             "target/thumbv7em-none-eabihf/release/lm3s6965evb",
             "lm3s6965evb-m4",
         ),
         (
-            "target/thumbv7em-none-eabihf/release/inject-panic",
+            "target/thumbv7em-none-eabihf/release/measure",
             "lm3s6965evb-m4",
         ),
     ] {

@@ -1,12 +1,12 @@
 //! Faults in the running application: their reports, and the restart of the board.
 //!
-//! All faults except the panic are injected into the images that are flashed. A debugger stops the
-//! board in the middle of a frame that is drawn but not yet sent, and diverts its processor.
+//! The faults are injected into the images that are flashed. A debugger stops the board in the
+//! middle of a frame that is drawn but not yet sent, and diverts its processor.
 
 use std::path::PathBuf;
 use std::time::Duration;
 
-use crate::support::{address, application, on, settings, toolchain};
+use crate::support::{address, application, on};
 use boards::qemu::{Machine, MachineSettings, Register};
 use boards::{BOARDS, Board, STM32F405};
 use cycles::Image;
@@ -154,22 +154,22 @@ fn function_after(what: &str, report: &str, image: &Image) -> String {
         .map_or(String::new(), |function| function.name.clone())
 }
 
+/// A board can be taken only once, so a second start of the program panics.
 #[test]
 fn a_panic_reports_its_place_and_reason_and_ends_with_failure() -> anyhow::Result<()> {
-    let toolchain = toolchain();
     for board in &BOARDS {
-        let elf = toolchain.build("inject-panic", board.target)?;
-        let parts = [
-            "boot: about to panic",
-            "PANIC",
-            "inject-panic.rs:",
-            "injected with the number 42",
-            "cfsr 0x00000000",
-        ];
+        let (elf, mut probe, frame) = within(board, SceneName::Page, true)?;
+        probe.divert(&[(Register::Pc, address(&elf, "main"))])?;
         let report = last_words(
             board,
-            &mut Machine::start(&settings(&toolchain, board, &elf))?,
-            &parts,
+            probe.run()?,
+            &[
+                "PANIC",
+                &format!("{}.rs:", board.binary),
+                "the board was taken before",
+                "cfsr 0x00000000",
+                &place(&frame),
+            ],
         )?;
 
         let image = Image::read(&elf)?;

@@ -38,9 +38,9 @@ fn a_program_without_end_is_stopped_with_success_on_request() {
         Some("stopped after 5 s, as requested")
     );
     assert_eq!(
-        fw(&["inject-panic", "--seconds", "600"]).status.code(),
+        fw(&["measure", "--seconds", "600"]).status.code(),
         Some(1),
-        "a failure is one"
+        "a program that lacks its request fails"
     );
 }
 

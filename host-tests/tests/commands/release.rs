@@ -9,15 +9,13 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::Duration;
 
-use boards::every_board;
 use boards::flash::image::flash_image;
 use boards::process::{self, Output};
 use boards::toolchain::{target, workspace};
+use boards::{LM3S6965EVB, every_board};
 
 use super::cli::{output, program};
-use crate::support::{application, toolchain};
-
-const SMALL: (&str, &str) = ("inject-panic", "thumbv7m-none-eabi");
+use crate::support::application;
 
 const LONG: Duration = Duration::from_secs(3600);
 
@@ -109,26 +107,21 @@ fn no_folder_of_the_builder_is_in_an_image() {
 #[test]
 #[ignore = "compiles for half a minute; `.ci/run` runs it"]
 fn an_image_built_elsewhere_has_the_same_bytes() -> anyhow::Result<()> {
-    let (binary, chip) = SMALL;
-    let here = toolchain()
-        .build(binary, chip)
-        .unwrap_or_else(|error| panic!("{error}"));
+    let board = &LM3S6965EVB;
+    let here = application(board);
     let elsewhere = Elsewhere::new()?;
 
     let mut command = program("fw");
-    command.arg(binary);
+    command.args([board.binary, "--seconds", "5"]);
     let ran = elsewhere.output(&mut command);
-    assert!(
-        ran.stdout.contains("injected with the number 42"),
-        "{ran:?}"
-    );
+    assert!(ran.stdout.contains("boot: lm3s6965evb"), "{ran:?}");
 
     let there = elsewhere
         .target()
         .join("firmware")
-        .join(chip)
+        .join(board.target)
         .join("release")
-        .join(binary);
+        .join(board.binary);
     let [here, there] = [here, there].map(fs::read);
     let [here, there] = [here?, there?];
     assert!(flash_image(&here)? == flash_image(&there)?, "loaded bytes");

@@ -1,5 +1,5 @@
 //! A search for panics on the device: every place in the release images that could panic is found
-//! and must be in a short list.
+//! and must be in a short list. Every entry of the list must be found, so the search works.
 //!
 //! The search goes backwards from the panic handler. It follows the branches to it, and the
 //! branches to their functions in turn, through the helpers of the core library, to the places in
@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 
 use addr2line::Context;
 use addr2line::gimli::{self, Dwarf, EndianSlice, LittleEndian, SectionId};
-use boards::{BOARDS, every_board, pico_with};
+use boards::{every_board, pico_with};
 use firmware::graphics::PanelName;
 use object::{Object, ObjectSection};
 
@@ -189,19 +189,4 @@ fn only_permitted_code_can_panic() {
             "nothing of {name} can panic any more: strike it off the list"
         );
     }
-}
-
-#[test]
-fn an_injected_panic_is_found() {
-    let toolchain = crate::support::toolchain();
-    let elf = toolchain
-        .build("inject-panic", BOARDS[0].target)
-        .unwrap_or_else(|error| panic!("{error}"));
-    let found = places(&elf);
-    assert!(
-        found
-            .values()
-            .any(|frames| owner(frames).starts_with("inject_panic::")),
-        "{found:#?}"
-    );
 }
