@@ -26,7 +26,7 @@ const REGULAR: u64 = 32;
 /// The smallest number of steps. Fewer would show mainly the start, where momenta are zero and
 /// soft-float arithmetic takes shortcuts.
 const LEAST_STEPS: u64 = 4;
-const AFFORDABLE_INSTRUCTIONS: u64 = 300_000;
+const AFFORDABLE_INSTRUCTIONS: u64 = 120_000;
 
 /// The cost of one step. Instructions, cycles and stalls are averages over `steps` steps; the sizes
 /// are of the whole run, with the first step.

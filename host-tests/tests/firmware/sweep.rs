@@ -274,8 +274,8 @@ const OTHERS: [SceneName; 10] = [
 #[test]
 fn settings_of_all_kinds_are_shown_as_claimed() {
     let mut cases = Vec::new();
-    for ratio in [0.01, 0.1, 1.0, 2.5, 10.0, 63.0, 100.0] {
-        for degrees in [1.0, 90.0, -120.0, 171.0, 180.0] {
+    for ratio in [0.01, 1.0, 10.0, 100.0] {
+        for degrees in [1.0, -120.0, 171.0, 180.0] {
             cases.push(Case::new(SceneName::Page, ratio, degrees));
         }
     }
@@ -285,7 +285,7 @@ fn settings_of_all_kinds_are_shown_as_claimed() {
             name,
             settings: first,
         });
-        for (ratio, degrees) in [(0.01, 120.0), (100.0, -15.0), (100.0, 179.0)] {
+        for (ratio, degrees) in [(0.01, 120.0), (100.0, 179.0)] {
             cases.push(Case::new(name, ratio, degrees));
         }
     }

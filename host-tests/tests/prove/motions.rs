@@ -82,7 +82,7 @@ fn random_motions_are_inside(count: usize, frames: u32) {
 
 #[test]
 fn random_motions_are_inside_for_half_a_second() {
-    random_motions_are_inside(100, 30);
+    random_motions_are_inside(50, 30);
 }
 
 #[test]
