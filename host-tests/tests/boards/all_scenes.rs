@@ -41,12 +41,6 @@ const NO_PANEL: &str = "panel: absent";
 /// The largest number of cycles per instruction, averaged over the work of a frame; 1.1 to 1.95
 /// were found.
 const MOST_CYCLES: f64 = 2.2;
-/// The number of frames that are profiled if a scene takes more than the share [`NEAR`] of one of
-/// its budgets. One is not enough then, because in the map of flips the cycles per instruction vary
-/// by 4 % from frame to frame.
-const PROFILED: usize = 2;
-/// A scene that takes more than this share of a budget is near it.
-const NEAR: f64 = 0.9;
 
 /// Returns the number of ticks of a scene in a round.
 ///
@@ -157,10 +151,8 @@ impl<'a> SceneRun<'a> {
     }
 }
 
-fn cycles_per_instruction(parts: impl Iterator<Item = Cost>) -> f64 {
-    let mut sum = Cost::default();
-    parts.for_each(|part| sum += part);
-    sum.cycles as f64 / sum.instructions as f64
+fn cycles_per_instruction(cost: Cost) -> f64 {
+    cost.cycles as f64 / cost.instructions as f64
 }
 
 fn plays(
@@ -181,7 +173,7 @@ fn plays(
     let mut too_much = Vec::new();
     let mut reached = Vec::new();
     let mut least_idle = 1.0_f64;
-    let mut profiles = vec![FrameProfile::of_next(&mut machine, &image, board.core())?];
+    let mut profile = FrameProfile::of_next(&mut machine, &image, board.core())?;
 
     for round in 0..2 {
         let mut name = SceneName::Page;
@@ -229,34 +221,22 @@ fn plays(
                 of_budget.max(of_whole * whole / (1.0 - budgets::IDLE))
             };
 
-            // Logging a frame takes a second. A scene is profiled if it may exceed its budgets, and
-            // the butterfly, because it is the most expensive to show.
-            let mut profiled = |number| {
-                let profiled = || FrameProfile::of_next(&mut machine, &image, board.core());
-                std::iter::repeat_with(profiled)
-                    .take(number)
-                    .collect::<Result<Vec<_>, _>>()
-            };
+            // Logging a frame takes a second. A frame is profiled if the scene may exceed its
+            // budgets, and one of the butterfly, because it is the most expensive to show.
             if name == SceneName::Butterfly || load(MOST_CYCLES, MOST_CYCLES) > 1.0 {
-                profiles = profiled(1)?;
+                profile = FrameProfile::of_next(&mut machine, &image, board.core())?;
             }
 
             // The board's clock counts instructions. The numbers of cycles per instruction are
-            // estimated from frames that QEMU logs: from several of them if the scene is near a
-            // budget.
-            let estimated = |profiles: &[FrameProfile]| {
-                let of_scene = cycles_per_instruction(profiles.iter().map(|profile| profile.scene));
-                let of_whole = cycles_per_instruction(profiles.iter().map(|profile| profile.busy));
-                [of_scene, of_whole]
-            };
-            let [of_scene, of_whole] = estimated(&profiles);
-            if load(of_scene, of_whole) > NEAR {
-                profiles.extend(profiled(PROFILED - 1)?);
-            }
-            let [of_scene, of_whole] = estimated(&profiles);
+            // estimated from a frame that QEMU logs, of this scene or an earlier one.
+            let FrameProfile {
+                scene: of_scene,
+                busy: of_whole,
+                showing,
+            } = profile;
+            let [of_scene, of_whole] = [of_scene, of_whole].map(cycles_per_instruction);
+            let showing = showing.cycles;
             let idle = 1.0 - whole * of_whole;
-            let showing = profiles.iter().map(|profile| profile.showing.cycles).max();
-            let showing = showing.expect("of this scene or an earlier frame");
             let found = format!(
                 "{:15} {:12} {:4.1} % of a frame, idle {:4.1} %, \
                 at {of_scene:.2} and {of_whole:.2} cycles for an instruction; shown in {showing}",
