@@ -24,12 +24,13 @@ use firmware::scenes::SceneName;
 use crate::bench::{Plain, answers, app, blank, frames, starting_with, wire};
 
 fn answer(app: &mut Plain, command: Command) -> Answer {
+    let sent = app.link.len();
     app.receive(wire(9, command), |_| ());
-    last(app, 9)
+    last(&app.link[sent..], 9)
 }
 
-fn last(app: &Plain, request: u16) -> Answer {
-    let (to, answer) = answers(&app.link).pop().expect("an answer");
+fn last(link: &[u8], request: u16) -> Answer {
+    let (to, answer) = answers(link).pop().expect("an answer");
     assert_eq!(to, request);
     answer
 }
@@ -152,7 +153,7 @@ fn a_board_reports_its_identity_and_the_cycles_of_steps() {
     app.receive(wire(3, Command::Simulate(request)), |_| ());
 
     while app.work(|_| ()) {}
-    assert!(matches!(last(&app, 3), Answer::Sample { index: 1, .. }));
+    assert!(matches!(last(&app.link, 3), Answer::Sample { index: 1, .. }));
 
     for _ in 0..2 {
         assert_eq!(
@@ -245,7 +246,7 @@ fn a_motion_that_is_too_fast_is_stopped_and_reported() {
     let mut app = app();
     let mut events = Vec::new();
     app.receive(wire(1, set(Field::W2, 2e4)), |event| events.push(event));
-    assert_eq!(last(&app, 1), Answer::Done);
+    assert_eq!(last(&app.link, 1), Answer::Done);
     for clock in 1..=10 {
         app.run_to(clock, |event| events.push(event));
     }
@@ -343,7 +344,7 @@ fn an_intact_command_that_cannot_be_read_is_answered_too() {
     ] {
         app.receive(frame(message, &mut [0; MAX_WIRE]).iter().copied(), |_| ());
         assert_eq!(
-            last(&app, request),
+            last(&app.link, request),
             Answer::Refused(Field::Message),
             "{message:?}"
         );
