@@ -153,7 +153,10 @@ fn a_board_reports_its_identity_and_the_cycles_of_steps() {
     app.receive(wire(3, Command::Simulate(request)), |_| ());
 
     while app.work(|_| ()) {}
-    assert!(matches!(last(&app.link, 3), Answer::Sample { index: 1, .. }));
+    assert!(matches!(
+        last(&app.link, 3),
+        Answer::Sample { index: 1, .. }
+    ));
 
     for _ in 0..2 {
         assert_eq!(
