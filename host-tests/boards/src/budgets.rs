@@ -6,7 +6,7 @@
 /// frame to frame. The rest is for the panel's bus, the serial link, commands, and requested
 /// motions.
 pub const SCENE: f64 = 0.56;
-/// The same for the page on a Cortex-M3. Its motion in 64 bits takes half of it.
+/// The same for the page on a Cortex-M3 in its first 10 s. Its motion in 64 bits takes half of it.
 pub const PAGE: f64 = 0.15;
 /// The largest cost of drawing and sending a frame on a Cortex-M3, cycles. The most expensive
 /// scene, the butterfly with its two pendulums and a plot, takes 105,000; the next, `small-5`, took
