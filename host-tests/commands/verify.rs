@@ -122,7 +122,8 @@ pub fn run(options: &VerifyOptions) -> anyhow::Result<ExitCode> {
             results.push((part, other.join().expect("it does not panic")?));
         }
         anyhow::Ok(results)
-    })?;
+    });
+    // Also shown if a build has failed meanwhile.
     let printed = outputs.iter_mut().try_for_each(|output| {
         let mut text = Vec::new();
         output.rewind()?;
@@ -130,7 +131,7 @@ pub fn run(options: &VerifyOptions) -> anyhow::Result<ExitCode> {
         say(String::from_utf8_lossy(&text).trim_end())
     });
 
-    for (part, status) in results {
+    for (part, status) in results? {
         if !status.success() {
             complain(format_args!("error: cargo test {part} failed"));
             return Ok(process::exit_code(status));

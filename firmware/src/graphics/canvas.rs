@@ -274,6 +274,13 @@ impl<'a> Canvas<'a> {
         })
     }
 
+    /// Writes the greys that a row shows, from the left.
+    pub fn show_row(&self, y: i32, greys: &mut [u8]) {
+        for (x, grey) in (0..).zip(greys) {
+            *grey = self.get(x, y).unwrap_or_default();
+        }
+    }
+
     /// Returns both layers of a pixel, the ink in the high nibble; `None` outside the canvas.
     pub fn pixel(&self, x: i32, y: i32) -> Option<u8> {
         let [ink, foreground] = self.row(y as usize);

@@ -108,24 +108,19 @@ impl Screenshot {
 impl From<&Canvas<'_>> for Screenshot {
     fn from(canvas: &Canvas<'_>) -> Self {
         let format = canvas.format;
-        let table = canvas.palette.colours();
-        let mut greys = Vec::new();
-        let mut colours = Vec::new();
-        // Tests convert thousands of frames, and without optimisation iterators would take several
-        // times as long as loops.
-        for y in 0..format.bottom() {
-            for x in 0..format.right() {
-                greys.push(canvas.get(x, y).unwrap_or_default());
-                if format.is_large() {
-                    let pixel = canvas.pixel(x, y).unwrap_or_default();
-                    colours.push(table[usize::from(pixel)]);
-                }
-            }
+        let [width, height] = [format.width, format.height].map(usize::from);
+        let mut greys = vec![0; width * height];
+        for (y, row) in (0..).zip(greys.chunks_mut(width)) {
+            canvas.show_row(y, row);
         }
+
+        let table = canvas.palette.colours();
+        let colour = |(x, y)| table[usize::from(canvas.pixel(x, y).unwrap_or_default())];
+        let places = (0..format.bottom()).flat_map(|y| (0..format.right()).map(move |x| (x, y)));
         Self {
             format,
             greys,
-            colours: format.is_large().then_some(colours),
+            colours: format.is_large().then(|| places.map(colour).collect()),
         }
     }
 }
