@@ -123,11 +123,14 @@ pub fn run(options: &VerifyOptions) -> anyhow::Result<ExitCode> {
         }
         anyhow::Ok(results)
     });
-    // Also shown if a build has failed meanwhile.
+    // Printed even if a build has failed.
     let printed = outputs.iter_mut().try_for_each(|output| {
         let mut text = Vec::new();
         output.rewind()?;
         output.read_to_end(&mut text)?;
+        if text.is_empty() {
+            return Ok(());
+        }
         say(String::from_utf8_lossy(&text).trim_end())
     });
 

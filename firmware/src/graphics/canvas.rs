@@ -274,8 +274,11 @@ impl<'a> Canvas<'a> {
         })
     }
 
-    /// Writes the greys that a row shows, from the left.
-    pub fn show_row(&self, y: i32, greys: &mut [u8]) {
+    /// Writes the greys that row `y` shows to `greys`, from the left.
+    ///
+    /// Host programs read thousands of frames. This crate is optimised in their debug builds and
+    /// they are not, so a call of [`get`](Self::get) for each pixel would take longer.
+    pub fn read_row(&self, y: i32, greys: &mut [u8]) {
         for (x, grey) in (0..).zip(greys) {
             *grey = self.get(x, y).unwrap_or_default();
         }

@@ -2,20 +2,20 @@
 
 /// The largest part of a frame that a scene may take to advance and to be drawn, after the first 6
 /// frames, on a Cortex-M3 and a Cortex-M0+. It is meant for the tick that prepares a motion on the
-/// former, and for the map of flips on the latter, whose cycles per instruction vary by 4 % from
-/// frame to frame. The rest is for the panel's bus, the serial link, commands, and requested
-/// motions.
+/// former, and for the map of flips on the latter. It includes 4 %, by which the cycles per
+/// instruction of that map vary from frame to frame. The rest is for the panel's bus, the serial
+/// link, commands, and requested motions.
 pub const SCENE: f64 = 0.56;
 /// The same for the page on a Cortex-M3 in its first 10 s. Its motion in 64 bits takes half of it.
 pub const PAGE: f64 = 0.15;
 /// The largest cost of drawing and sending a frame on a Cortex-M3, cycles. The most expensive
-/// scene, the butterfly with its two pendulums and a plot, takes 105,000; the next, `small-5`, took
-/// 100,000. The report of the frame is not included.
+/// scenes are the butterfly, with its two pendulums and a plot, and `small-5`. The report of the
+/// frame is not included.
 pub const SHOWING: u64 = 107_000;
 /// The smallest part of a frame that must remain, on every board. It is enough for a command in
-/// each frame, for a log line, and to compute requested motions in reasonable time. A scene within
-/// [`SCENE`] may leave less. QEMU's buses take no time. A real `lm3s6965evb` will wait 0.7 ms (page)
-/// to 6 ms (`small-5`) for SPI; I2C delays no frame.
+/// each frame, for a log line, and to compute requested motions in reasonable time. QEMU's buses
+/// take no time. A real `lm3s6965evb` will wait 0.7 ms (page) to 6 ms (`small-5`) for SPI; I2C
+/// delays no frame.
 pub const IDLE: f64 = 0.4;
 
 /// The memory of a program, bytes.

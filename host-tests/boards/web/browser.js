@@ -48,7 +48,8 @@ async function see(expected) {
   }
 }
 
-// The clock of the page, its board that starts, and the colours on its canvas, each as one number.
+// The clock of the page, the promise of its new board, and the colours on its canvas, a number for
+// each pixel.
 const SETUP = `
   let time = 0;
   const { instantiate } = WebAssembly;
@@ -240,8 +241,9 @@ async function test() {
   assert.equal(await of('later().then(() => location.hash)'), '#scene=page&mu=2.5&angle=121');
 
   // Every scene takes the least and the most of every number, or names what it needs.
-  for (const { name } of scenes) {
+  for (const { key, name } of scenes) {
     await follow(`#scene=${name}`);
+    await see({ scene: `^${key} ${name}$` });
     const refused = await of(`[...document.querySelectorAll('#fields input')].flatMap((field) => {
       const take = (value) => {
         field.value = value;

@@ -26,7 +26,8 @@ const REGULAR: u64 = 32;
 /// The smallest number of steps. Fewer would show mainly the start, where momenta are zero and
 /// soft-float arithmetic takes shortcuts.
 const LEAST_STEPS: u64 = 4;
-const AFFORDABLE_INSTRUCTIONS: u64 = 120_000;
+/// The instructions that are counted for a row of a table.
+const AFFORDABLE: u64 = 300_000;
 
 /// The cost of one step. Instructions, cycles and stalls are averages over `steps` steps; the sizes
 /// are of the whole run, with the first step.
@@ -46,15 +47,16 @@ pub struct StepCost {
     pub stack_bytes: u32,
 }
 
-/// Returns the number of steps that can be counted in a few seconds. It depends only on the number
+/// Returns the number of steps that can be counted in about a second. It depends only on the number
 /// of executed instructions, not on the host.
 pub fn affordable_steps(target: &Target, request: &Request) -> Result<u32> {
-    Ok(affordable(one_step(target, request)?.instructions))
+    Ok(affordable(one_step(target, request)?, AFFORDABLE))
 }
 
-fn affordable(one: u64) -> u32 {
+fn affordable(one: Cost, instructions: u64) -> u32 {
     // A multiple of the period, so that the rare work has its true share of the average.
-    let steps = (AFFORDABLE_INSTRUCTIONS / one.max(1)).clamp(LEAST_STEPS, FULL_CYCLE.into());
+    let steps = instructions / one.instructions.max(1);
+    let steps = steps.clamp(LEAST_STEPS, FULL_CYCLE.into());
     let steps = if steps < REGULAR {
         steps
     } else {
@@ -64,8 +66,13 @@ fn affordable(one: u64) -> u32 {
 }
 
 pub fn affordable_cost(target: &Target, request: &Request) -> Result<StepCost> {
-    let calling = one_step(target, request)?;
-    cost_after(calling, target, request, affordable(calling.instructions))
+    cost_within(AFFORDABLE, target, request)
+}
+
+/// Returns the cost of one step, averaged over about this many instructions.
+fn cost_within(instructions: u64, target: &Target, request: &Request) -> Result<StepCost> {
+    let one = one_step(target, request)?;
+    cost_after(one, target, request, affordable(one, instructions))
 }
 
 /// Returns the cost of one step, averaged over `request.stride` steps after the first. It is the

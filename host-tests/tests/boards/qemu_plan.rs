@@ -13,16 +13,13 @@ use firmware::scenes::SceneName;
 use rayon::prelude::*;
 
 /// A scene that soon changes its method, a scene without a motion, a motion that ends early, and a
-/// linear scene.
-const SCENES: [SceneName; 4] = [
-    SceneName::Beats2To1,
-    SceneName::Frequencies,
-    SceneName::Page,
-    SceneName::SmallLight,
+/// linear scene, each with the seconds for which it is followed.
+const SCENES: [(SceneName, u32); 4] = [
+    (SceneName::Beats2To1, 18),
+    (SceneName::Frequencies, 1),
+    (SceneName::Page, 18),
+    (SceneName::SmallLight, 18),
 ];
-/// The steps for which a motion is followed, and a scene without one.
-const FOLLOWED: u64 = 18 * TICK_RATE as u64;
-const FOLLOWED_WITHOUT_MOTION: u64 = TICK_RATE as u64;
 
 #[test]
 fn every_board_finds_the_hosts_plan_and_follows_it_from_the_same_tick() -> anyhow::Result<()> {
@@ -35,15 +32,15 @@ fn every_board_plans_further_scenes_as_the_host_does() -> anyhow::Result<()> {
     every_board_plans(&SCENES[2..])
 }
 
-fn every_board_plans(scenes: &[SceneName]) -> anyhow::Result<()> {
+fn every_board_plans(scenes: &[(SceneName, u32)]) -> anyhow::Result<()> {
     BOARDS.par_iter().try_for_each(|board| {
         let mut machine = on(board, Machine::start)?;
         machine.next_frame()?;
-        for &name in scenes {
+        for &(name, seconds) in scenes {
             machine.send(1, Command::Choose(name))?;
             assert_eq!(machine.next_answer()?, (1, Answer::Done));
             machine.lines();
-            followed(&mut machine, board, name)?;
+            followed(&mut machine, board, name, seconds)?;
         }
         let counts = machine.counts();
         assert_eq!((counts.damaged, counts.lost), (0, 0), "{}", board.name);
@@ -51,12 +48,13 @@ fn every_board_plans(scenes: &[SceneName]) -> anyhow::Result<()> {
     })
 }
 
-fn followed(machine: &mut Machine, board: &Board, name: SceneName) -> anyhow::Result<()> {
+fn followed(
+    machine: &mut Machine,
+    board: &Board,
+    name: SceneName,
+    seconds: u32,
+) -> anyhow::Result<()> {
     let mut show = show(board, name);
-    let steps = match name {
-        SceneName::Frequencies => FOLLOWED_WITHOUT_MOTION,
-        _ => FOLLOWED,
-    };
     loop {
         let frame = machine.next_frame()?;
         assert_eq!(frame.dropped, 0, "{}: {frame:?}", board.name);
@@ -67,7 +65,7 @@ fn followed(machine: &mut Machine, board: &Board, name: SceneName) -> anyhow::Re
             board.name,
             name.name()
         );
-        if frame.report.step >= steps {
+        if frame.report.step >= u64::from(seconds * TICK_RATE) {
             break;
         }
     }

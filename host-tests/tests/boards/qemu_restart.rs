@@ -173,7 +173,7 @@ fn a_panic_reports_its_place_and_reason_and_ends_with_failure() -> anyhow::Resul
         )?;
 
         let image = Image::read(&elf)?;
-        for (what, name) in [("pc", "panic_fmt"), ("lr", "main")] {
+        for (what, name) in [("pc", "panic_fmt"), ("lr", "__cortex_m_rt_main")] {
             let caller = function_after(what, &report, &image);
             assert!(
                 caller.contains(name),

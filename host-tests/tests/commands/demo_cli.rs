@@ -178,8 +178,7 @@ fn a_motion_of_the_user_is_played_recorded_and_compared() {
     let output = output(command.arg("--record").arg(&animation));
     assert_eq!(output.status.code(), Some(0), "{output:?}");
     let summary = &output.stdout;
-    // On a busy machine the question for the motion arrives a frame late, and one frame more is
-    // compared.
+    // On a busy machine the board's answer may arrive some frames late. Then more are compared.
     let compared = summary
         .split_once(" frames, all identical to the host")
         .and_then(|(before, _)| before.split_whitespace().next_back()?.parse().ok());

@@ -253,9 +253,8 @@ fn planner_reports_that_no_method_fits() {
     );
 }
 
-/// The planner verifies only the requested method, even if it costs more than a frame allows, and
-/// finds a horizon of 9.5 to 10.55 s. `cargo prove --scene page --method rk4-f32-direction --steps
-/// 4` proves it accurate until 10.9 s.
+/// The planner verifies only the requested method, even if it costs more than a frame allows.
+/// `cargo prove --scene page --method rk4-f32-direction --steps 4` proves the frames until 10.9 s.
 #[test]
 fn a_requested_stepping_is_kept() {
     let mut planner = Planner::new(STM32F405);

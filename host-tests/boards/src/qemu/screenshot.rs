@@ -111,16 +111,18 @@ impl From<&Canvas<'_>> for Screenshot {
         let [width, height] = [format.width, format.height].map(usize::from);
         let mut greys = vec![0; width * height];
         for (y, row) in (0..).zip(greys.chunks_mut(width)) {
-            canvas.show_row(y, row);
+            canvas.read_row(y, row);
         }
 
         let table = canvas.palette.colours();
-        let colour = |(x, y)| table[usize::from(canvas.pixel(x, y).unwrap_or_default())];
-        let places = (0..format.bottom()).flat_map(|y| (0..format.right()).map(move |x| (x, y)));
+        let pixel = |i: usize| canvas.pixel((i % width) as i32, (i / width) as i32);
+        let colour = |i| table[usize::from(pixel(i).unwrap_or_default())];
         Self {
             format,
             greys,
-            colours: format.is_large().then(|| places.map(colour).collect()),
+            colours: format
+                .is_large()
+                .then(|| (0..width * height).map(colour).collect()),
         }
     }
 }
