@@ -7,8 +7,9 @@
 //!    as `HamiltonF64`, steps them; any other method implements `Advance` and `FormOperations`.
 //! 2. It gets the last line of the table, over which `simulate`, `count`, the report and the tests
 //!    loop, and for the boards a line in `BoardMotion` (`firmware/src/job/table.rs`).
-//! 3. `BLESS=1 cargo test -p host-tests --test kernel golden::` adds its golden bits, `--test
-//!    firmware link::` its number on the link, and `--test commands cli::` its name in the outputs.
+//! 3. After `cargo setup`, `BLESS=1 cargo test -p host-tests --test kernel golden::` adds its golden
+//!    bits, `--test firmware link::` its number on the link, and `--test commands cli::output` its
+//!    name in the outputs.
 //!
 //! If scenes are drawn by it:
 //!
@@ -21,12 +22,18 @@
 //! 3. `cargo demo --method` and `cargo prove --method` then take it. A search without a requested
 //!    method tries only the candidates of `plan/mod.rs`.
 //!
-//! To add an integrator:
+//! To add an integrator of order 4:
 //!
-//! 1. A file of 25 lines implements `RungeKutta`, as `Rk4` in `methods/canonical.rs`.
-//!    `Canonical<f64, Hamilton<f64>, MyIntegrator>` is then a motion; a method, as above.
-//! 2. [`Integrator`] gets a variant. The compiler names the matches to extend; the one in
-//!    `tests/integrators.rs` then names a weight that is wrong.
+//! 1. A file of 25 lines implements `RungeKutta`, as `Rk4` in `methods/canonical.rs`, with `pub use`
+//!    in `methods/mod.rs` and in `parts` (`lib.rs`). In `methods/any.rs` `Canonical<f64,
+//!    Hamilton<f64>, MyIntegrator>` is then a motion; a method, as above.
+//! 2. [`Integrator`] gets a variant. The compiler names the matches to extend: its name here, its
+//!    longest step in `firmware/src/job/mod.rs`, its evaluations in
+//!    `host-tests/commands/simulate/tolerance.rs`, and `tests/integrators.rs`, which then says what
+//!    is wrong: a weight, or the limit of stability.
+//!
+//! A lower order, or one that is unstable without friction like every explicit one of order 2, needs
+//! tolerances of its own in the tests, which expect order 4 or more.
 
 use core::fmt;
 

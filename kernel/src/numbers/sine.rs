@@ -90,6 +90,8 @@ pub(super) fn double(mut x: f64) -> (f64, f64) {
     /// The `f64` nearest to 2 pi, first the upper 26 bits and then the rest.
     const TURN: [f64; 2] = [6.283185243606567, 6.357301884918343e-08];
     const ROUNDER: f64 = 6_755_399_441_055_744.0;
+    /// More than the rest of any multiple of the `f64` nearest to pi/2, below 3e-10.
+    const NEAREST: f64 = 1e-9;
     /// The same series as in [`single`]. The error of the fit is 4.0e-18 of sin r.
     const SINE: [f64; 6] = [
         -0.16666666666666627,
@@ -122,19 +124,21 @@ pub(super) fn double(mut x: f64) -> (f64, f64) {
     let middle = k * PI_OVER_TWO[1];
     let rough = coarse - middle;
     let lost = ((coarse - rough) - middle) - k * PI_OVER_TWO[2];
-    let is_quarters = k != 0.0 && x == k * core::f64::consts::FRAC_PI_2;
-    let rest = if is_quarters { 0.0 } else { rough + lost };
-    let (sine, cosine) = by_quarters(first_octant(rest, SINE, COSINE), rounded.to_bits() as u32);
-    // The sine of pi is 0 and not -0, whose `atan2` would be -pi.
-    let is_zero = is_quarters && sine == 0.0;
-    (
-        if is_zero {
-            libm::copysign(0.0, x)
+    let rest = rough + lost;
+    let quarters = rounded.to_bits() as u32;
+    // The comparison of `rest` saves nearly all angles the product.
+    if rest.abs() < NEAREST && k != 0.0 && x == k * core::f64::consts::FRAC_PI_2 {
+        let (sine, cosine) = by_quarters((0.0, 1.0), quarters);
+        // The sine of pi is 0 and not -0, whose `atan2` would be -pi.
+        let sine = if sine == 0.0 {
+            libm::copysign(sine, x)
         } else {
             sine
-        },
-        cosine,
-    )
+        };
+        (sine, cosine)
+    } else {
+        by_quarters(first_octant(rest, SINE, COSINE), quarters)
+    }
 }
 
 fn first_octant<R: Real, const N: usize>(r: R, sine: [R; N], cosine: [R; N]) -> (R, R) {
