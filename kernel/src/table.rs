@@ -32,8 +32,8 @@
 //!    `host-tests/commands/simulate/tolerance.rs`, and `tests/integrators.rs`, which then says what
 //!    is wrong: a weight, or the limit of stability.
 //!
-//! A lower order, or one that is unstable without friction like every explicit one of order 2, needs
-//! tolerances of its own in the tests, which expect order 4 or more.
+//! The tests expect order 4 or more, and stability without friction, which no explicit integrator of
+//! order 2 has. Any other integrator needs tolerances of its own there.
 
 use core::fmt;
 

@@ -2,9 +2,9 @@
 
 /// The largest part of a frame that a scene may take to advance and to be drawn, after the first 6
 /// frames, on a Cortex-M3 and a Cortex-M0+. It is meant for the tick that prepares a motion on the
-/// former, and for the map of flips on the latter. It includes 4 %, by which the cycles per
-/// instruction of that map vary from frame to frame. The rest is for the panel's bus, the serial
-/// link, commands, and requested motions.
+/// former, and for the map of flips on the latter. The cycles per instruction of that map vary by
+/// 4 % from frame to frame, which is included. The rest is for the panel's bus, the serial link,
+/// commands, and requested motions.
 pub const SCENE: f64 = 0.56;
 /// The same for the page on a Cortex-M3 in its first 10 s. Its motion in 64 bits takes half of it.
 pub const PAGE: f64 = 0.15;

@@ -256,7 +256,7 @@ fn plays(board: &'static Board, limit: Duration, again: u32) -> anyhow::Result<V
             );
             println!("{found}");
 
-            // The budget for showing a frame is that of the M3.
+            // Only the M3 has a budget for showing a frame.
             if load(of_scene, of_whole) > 1.0
                 || is_profiled && board.core() == Core::M3 && showing > budgets::SHOWING
             {

@@ -13,7 +13,7 @@ use firmware::scenes::SceneName;
 use rayon::prelude::*;
 
 /// A scene that soon changes its method, a scene without a motion, a motion that ends early, and a
-/// linear scene, each with the seconds for which it is followed.
+/// linear scene. The number is the time for which the scene is followed, s.
 const SCENES: [(SceneName, u32); 4] = [
     (SceneName::Beats2To1, 18),
     (SceneName::Frequencies, 1),

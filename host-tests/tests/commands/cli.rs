@@ -51,7 +51,7 @@ fn played(line: &str, folder: &Path) -> String {
 
 #[test]
 fn output_of_every_command_equals_its_snapshot() {
-    // A command that first sets the tools up says so, which is in no snapshot.
+    // Without the tools a command would fetch them, and print a line that no snapshot has.
     toolchain();
     let empty = tempfile::tempdir().expect("a folder");
     let folder = workspace().join("host-tests/golden/commands");

@@ -90,7 +90,7 @@ pub(super) fn double(mut x: f64) -> (f64, f64) {
     /// The `f64` nearest to 2 pi, first the upper 26 bits and then the rest.
     const TURN: [f64; 2] = [6.283185243606567, 6.357301884918343e-08];
     const ROUNDER: f64 = 6_755_399_441_055_744.0;
-    /// More than the rest of any multiple of the `f64` nearest to pi/2, below 3e-10.
+    /// The rest of a multiple of the `f64` nearest to pi/2 is smaller: below 3e-10.
     const NEAREST: f64 = 1e-9;
     /// The same series as in [`single`]. The error of the fit is 4.0e-18 of sin r.
     const SINE: [f64; 6] = [

@@ -128,9 +128,9 @@ pub struct Plan {
     /// The largest expected error until the horizon, divided by the tolerance: from 0 to 1, and 0
     /// if the horizon is 0.
     pub error: f32,
-    /// The cost of computing a frame by the price list ([`Costs::of_frame`]), without drawing it. A
-    /// method that the search has chosen costs at most the frame budget; one that the caller has
-    /// fixed ([`Search::of`]) may cost more.
+    /// The cost of computing a frame by the price list ([`Costs::of_frame`]), without drawing it.
+    /// The search only chooses methods within the frame budget; a method that the caller has fixed
+    /// ([`Search::of`]) may cost more.
     pub cost: f32,
     /// The accuracy horizon, s since the start: all frames up to this time, included, are predicted
     /// to be accurate. If all frames of the problem are, it is the duration, which need not be a
